@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "limitsurf/mesh/control_mesh.h"
+#include "limitsurf/types.h"
+
+namespace limitsurf {
+
+/// Bounds on the error of every evaluation, each held by a test against values of independent
+/// high-precision subdivision, for valences to 100 and (u, v) down to 2^-40 from an extraordinary
+/// vertex and at it.
+///
+/// Position: relative to the diagonal of the control mesh's bounding box.
+constexpr double kPositionError = 1e-13;
+/// First and second derivatives: relative to the larger of the value itself and the face's largest
+/// derivative at least 1/16 away from its corners.
+constexpr double kFirstDerivativeError = 1e-12;
+constexpr double kSecondDerivativeError = 1e-11;
+/// Normals: radians; at a smooth corner of one face only outside 2^-20 of the vertex, where du and
+/// dv are antiparallel.
+constexpr double kNormalError = 1e-11;
+
+enum class Derivatives { none = 0, first = 1, second = 2 };
+
+/// Positions and derivatives, one row per location in the caller's order. Members that were not
+/// asked for have no rows.
+struct Evaluation {
+  Points position, du, dv, duu, duv, dvv;
+  Points normal;
+};
+
+/// Principal curvatures k1 >= k2 with their unit directions in space; mean = (k1 + k2) / 2,
+/// gaussian = k1 k2. Signs follow the normal: a sphere seen from outside has negative curvatures.
+struct Curvature {
+  Eigen::VectorXd gaussian, mean, k1, k2;
+  Points direction1, direction2;
+};
+
+/// Sparse linear weights of the control mesh's vertices, one row per location (CSR).
+struct Stencils {
+  std::vector<std::int64_t> offsets;
+  std::vector<int> indices;
+  std::vector<double> weights, du_weights, dv_weights;  ///< the latter two only if asked for
+};
+
+struct Tessellation {
+  Points positions, normals;
+  std::vector<int> face_vertices;  ///< quads, four indices each
+  std::vector<Location> locations;
+};
+
+/// The Catmull-Clark limit surface of a control mesh, evaluated exactly at any location.
+///
+/// Topology is analysed once, in the constructor; setPositions() re-poses the surface at the cost
+/// of the irregular faces alone. All const members may be called from many threads at once.
+///
+/// Every batch call takes `threads`: 0 means all cores, n at most n. The result for a location does
+/// not depend on it, nor on what else is in the batch, to the last bit.
+///
+/// Memory: the cage, 64 bytes a regular face, O(neighbourhood) an irregular one, O(valence) an
+/// extraordinary vertex.
+class LimitSurface {
+ public:
+  /// Throws MeshError where OpenSubdiv cannot represent the topology.
+  explicit LimitSurface(ControlMesh mesh);
+  ~LimitSurface();
+  LimitSurface(LimitSurface&&) noexcept;
+  LimitSurface& operator=(LimitSurface&&) noexcept;
+
+  const ControlMesh& mesh() const;
+  /// The cage's current positions: the mesh's, until setPositions() gave others.
+  const Points& positions() const;
+
+  /// The same topology under a new pose. Throws MeshError as ControlMesh does for positions, and
+  /// then leaves the surface as it was. Not to be called while another thread evaluates.
+  void setPositions(const Points& positions, int threads = 0);
+
+  /// Number of Ptex faces.
+  int faceCount() const;
+  /// Ptex face -> face of the control mesh, and the n-gon's corner it belongs to (0 for quads).
+  const std::vector<int>& baseFace() const;
+  const std::vector<int>& corner() const;
+  /// Faces of the control mesh that have no limit surface (holes included), with the reason.
+  const std::map<int, std::string>& refused() const;
+
+  /// Limit positions and derivatives with respect to the face's own (u, v).
+  ///
+  /// Properties:
+  ///   (1) rotating a quad's vertex order rotates (u, v) and moves no position by more than
+  ///       kPositionError;
+  ///   (2) on a shared edge both faces give the same position to kPositionError;
+  ///   (3) any number of threads gives the same bits.
+  ///
+  /// Exactly at an irregular vertex: position always; du, dv and second derivatives along a
+  /// boundary that bounds the face are the limit curve's; du = dv = 0 at interior valence 2 and 3;
+  /// all others have no limit and are NaN. The normal is NaN where approaches to the vertex within
+  /// the face's sector do not agree on one (interior valence 2, boundaries with four and more
+  /// faces). Use frames() where a direction is needed.
+  ///
+  /// `normals` asks for unit normals (needs derivatives >= first).
+  ///
+  /// Throws LocationError naming the first row whose face or (u, v) is out of range, MeshError
+  /// naming the first whose face is refused. Cost: O(1) a location, but O(valence) within 2^-4 of
+  /// an extraordinary vertex.
+  Evaluation evaluate(Span<Location> at, Derivatives derivatives = Derivatives::none,
+                      bool normals = false, int threads = 0) const;
+
+  /// Row-major 3x3 rotations, nine numbers a row: columns tangent (along du), normal x tangent,
+  /// normal. Always finite: at an irregular vertex the limit over u = v = 2^-n as seen from the
+  /// vertex; where du or the normal vanishes, completed from dv, then from the least aligned world
+  /// axis.
+  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> frames(Span<Location> at,
+                                                                   int threads = 0) const;
+
+  /// Curvature; NaN exactly at irregular vertices, where it has no limit.
+  Curvature curvature(Span<Location> at, int threads = 0) const;
+
+  /// The exact linear weights of position (and du, dv) on the cage's vertices.
+  Stencils stencils(Span<Location> at, bool first_derivatives = false, int threads = 0) const;
+
+  /// One location per vertex of the control mesh; face = -1 for vertices that no face with a limit
+  /// surface uses.
+  std::vector<Location> vertexLocations() const;
+
+  /// per_side x per_side stratified random locations on each Ptex face that has a surface (paper,
+  /// figure 1), in face order. The same seed gives the same locations on every machine.
+  std::vector<Location> scatterJittered(int per_side, std::uint64_t seed, int threads = 0) const;
+
+  /// Watertight quads on the limit surface: each Ptex face becomes 2^levels x 2^levels quads
+  /// (an n-gon's sub-faces 2^(levels-1)); shared points are shared. levels >= 1 where the mesh has faces other
+  /// than quads.
+  Tessellation tessellate(int levels, int threads = 0) const;
+
+  /// Area of the limit surface, relative error below 1e-9.
+  double area(int threads = 0) const;
+
+  /// The tightest axis-aligned box around the limit surface (rows: minimum, maximum), to
+  /// kPositionError.
+  Eigen::Matrix<double, 2, 3, Eigen::RowMajor> bounds(int threads = 0) const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace limitsurf {
+
+using Vector3 = Eigen::Vector3d;
+
+/// One point or vector per row.
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// A read-only view of contiguous elements that somebody else owns.
+template <typename T>
+class Span {
+ public:
+  Span() = default;
+  Span(const T* data, std::size_t size) : data_(data), size_(size) {}
+  Span(const std::vector<T>& elements) : Span(elements.data(), elements.size()) {}
+
+  const T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  const T* begin() const { return data_; }
+  const T* end() const { return data_ + size_; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+  Span subspan(std::size_t begin, std::size_t count) const { return {data_ + begin, count}; }
+
+ private:
+  const T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// An address on the limit surface. `face` is a Ptex face id: a quad has one, an n-gon (n != 4) has
+/// n, one per corner, numbered in the order of the control mesh's faces. (u, v) lie in [0, 1]^2:
+/// a quad's (0,0), (1,0), (1,1), (0,1) are its vertices 0 to 3; a sub-face's are its corner, the
+/// midpoint of the edge that leaves the corner, the n-gon's centre, the midpoint of the edge before.
+struct Location {
+  int face = -1;
+  double u = 0;
+  double v = 0;
+};
+
+}  // namespace limitsurf
