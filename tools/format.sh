@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+#
+# Formats the C++ and Python sources; with --check only says what is not as it should be.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+set_up
+cd "$ROOT"
+
+mapfile -t cpp < <(find native tools -name '*.h' -o -name '*.cpp')
+if [[ ${1-} != --check ]]; then
+  ruff check --fix
+  ruff format
+  clang-format -i "${cpp[@]}"
+  exit
+fi
+
+status=0
+ruff check || status=1
+ruff format --check || status=1
+for file in "${cpp[@]}"; do
+  clang-format --dry-run -Werror "$file" 2>/dev/null ||
+    { echo "Would reformat: $file" && status=1; }
+done
+exit $status
