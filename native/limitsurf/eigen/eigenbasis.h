@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "limitsurf/eigen/outer_modes.h"
+#include "limitsurf/eigen/ring.h"
+#include "limitsurf/types.h"
+
+namespace limitsurf {
+
+/// Functionals of a face's control grid, to be applied after some subdivision steps: a quarter's
+/// 4 x 4 window of weights for each derivative wanted.
+struct WindowWeights {
+  static constexpr int kMax = 6;
+  int a = 0, b = 0;       ///< the quarter: window from cell (a - 1, b - 1)
+  int count = 1;          ///< position; du, dv; duu, duv, dvv: 1, 3 or 6 functionals
+  double w[kMax][16];     ///< row-major in (y, x)
+};
+
+/// The eigenbasis of one kind of ring: everything that evaluation near an extraordinary vertex needs
+/// to know about the vertex, and nothing about a mesh.
+///
+/// A ring's points are sums of modes, each of which subdivision multiplies by its eigenvalue; a
+/// defective mode feeds another one as well (Jordan normal form; paper, section 2). Modes:
+///   0          the constant, eigenvalue 1: its coefficient is the limit position;
+///   1, 2       interior: the two other rotation-symmetric ones; sector: the curve modes;
+///   the rest   spoke modes, each a sine or cosine around the vertex (spoke_mode.h).
+/// Coefficients belong to the vertex and serve all its faces. Because a spoke mode turns with the
+/// face, one pair of tables (for the sine and the cosine) serves all faces of the same Sides, so that
+/// a basis takes O(faces) memory. Tables are computed in long double and rounded once.
+class Eigenbasis {
+ public:
+  /// Bases are shared: all surfaces in a process use one per kind and number of faces.
+  static std::shared_ptr<const Eigenbasis> get(const Ring& ring);
+
+  explicit Eigenbasis(const Ring& ring);
+
+  const Ring& ring() const { return ring_; }
+  int modeCount() const { return ring_.size(); }
+  double eigenvalue(int mode) const { return lambda_[mode]; }
+
+  /// Jordan chains: A (mode `from`) = lambda (mode `from`) + rate (mode `to`).
+  struct Chain {
+    int from = -1, to = -1;
+    double rate = 0;
+  };
+  const std::vector<Chain>& chains() const { return chains_; }
+
+  /// Coefficients (one row per mode) of the ring's points. O(faces^2).
+  void project(const Points& ring_points, Points& coefficients) const;
+
+  /// The transpose of project(): weights on modes (rows) become weights on the ring's points.
+  Eigen::MatrixXd projectTransposed(const Eigen::MatrixXd& mode_weights) const;
+
+  Sides sides(int face) const;
+  const OuterModes<double>& outerModes(int face) const { return tables(sides(face)).outer_modes; }
+
+  /// One mode on one face: its values at the outer cells before, on the whole grid after a step.
+  struct Table {
+    double outer[tile_grid::kOuter] = {};
+    double grid[tile_grid::kCells] = {};
+  };
+  Table table(int mode, int face) const;
+
+  /// Weights of the functionals after `steps` >= 1 steps, on the ring's modes and the outer points.
+  ///
+  /// Derivatives count in the face's own (u, v), so that first derivatives carry 2^steps and second
+  /// ones 4^steps, of which 2^(steps - 1) is left to the caller (it may overflow).
+  /// `ring_steps`: how many steps the ring's coefficients are older than the outer points.
+  /// `mode_weights` gets one row per functional and one column per mode.
+  /// Cost: O(faces).
+  void weights(int face, int steps, int ring_steps, const WindowWeights& window,
+               Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& outer_weights) const;
+
+ private:
+  struct FaceTables {  // of the faces with the same Sides
+    explicit FaceTables(const OuterModes<long double>& modes) : outer_modes(modes) {}
+    OuterModes<double> outer_modes;
+    std::vector<Table> outer;      // one per outer mode
+    std::vector<Table> cosine;     // per spoke pair: 2 i for lambda+, 2 i + 1 for lambda-
+    std::vector<Table> sine;
+  };
+  struct Fixed {  // modes 1 and 2 on one face
+    Table tables[2];
+  };
+  struct Spoke {
+    double edge, face;  // (x_e, x_f)
+  };
+  using Amplitudes = Eigen::Array<double, Eigen::Dynamic, 3>;  // powers of eigenvalues
+
+  class Builder;
+  friend class Builder;
+
+  const FaceTables& tables(Sides sides) const { return *face_tables_[static_cast<int>(sides)]; }
+  /// Spoke mode m (>= 1), lambda+ or lambda-: index into tables, and its first mode's number.
+  int pairIndex(int m, bool plus) const { return 2 * (m - 1) + (plus ? 0 : 1); }
+  int spokeCount() const { return ring_.interior() ? ring_.faces / 2 : ring_.faces; }
+  double cosAt(long i) const { return cos_[static_cast<std::size_t>(i % period_)]; }
+  double sinAt(long i) const { return sin_[static_cast<std::size_t>(i % period_)]; }
+  const Fixed& fixed(int face) const { return fixed_[ring_.interior() ? 0 : face]; }
+
+  /// How the tables of pair (m, plus) combine into its modes on a face: each mode's number, and the
+  /// factors of the cosine and the sine table.
+  struct Part {
+    int mode;
+    double cosine, sine;
+  };
+  int parts(int m, bool plus, int face, Part out[2]) const;
+  int firstMode(int m) const;
+
+  Ring ring_;
+  long period_;                   // of the trigonometric tables
+  std::vector<double> cos_, sin_;
+  std::vector<double> lambda_;
+  std::vector<Spoke> spokes_;     // by pairIndex
+  std::vector<Chain> chains_;
+  std::vector<double> rest_;      // interior valence 2: what mode 1 or 2 feeds into outer modes
+  int rest_mode_ = -1;
+  std::vector<Fixed> fixed_;      // one for the interior, one per face of a sector
+  std::vector<double> curve_ring_[2];          // sectors: modes 1 and 2 on the ring
+  Eigen::Matrix2d radial_, radial_inverse_;    // interior: modes 1 and 2 from mean e - v, f - v
+  double radial_vertex_[2] = {0, 0};
+  std::unique_ptr<FaceTables> face_tables_[4];
+};
+
+}  // namespace limitsurf

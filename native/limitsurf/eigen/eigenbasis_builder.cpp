@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/eigen/eigenbasis_builder.h"
+
+#include <cmath>
+
+namespace limitsurf {
+
+using tile_grid::cell;
+using tile_grid::kCells;
+
+void Eigenbasis::Builder::build() {
+  buildCircle();
+  basis_.lambda_.assign(ring_.size(), 1);
+  const bool one_face = !ring_.interior() && ring_.faces == 1;
+  if (one_face) {
+    buildOuterTables(Sides::both);
+  } else if (ring_.interior()) {
+    buildOuterTables(Sides::inner);
+  } else {
+    buildOuterTables(Sides::left);
+    buildOuterTables(Sides::right);
+    if (ring_.faces > 2) {
+      buildOuterTables(Sides::inner);
+    }
+  }
+  buildSpokes();
+  if (ring_.interior()) {
+    buildRadial();
+  } else {
+    buildCurves();
+  }
+}
+
+/// Interior: spoke i of mode m stands at the angle 2 pi m i / N = (2 pi / 2N) 2 m i, face j at
+/// (2 pi / 2N) m (2 j + 1); sector: pi m i / k = (2 pi / 4k) 2 m i likewise.
+void Eigenbasis::Builder::buildCircle() {
+  basis_.period_ = ring_.interior() ? 2L * ring_.faces : 4L * ring_.faces;
+  const Circle<Real> circle(basis_.period_);
+  for (long i = 0; i < basis_.period_; ++i) {
+    basis_.cos_.push_back(static_cast<double>(circle.cos(i)));
+    basis_.sin_.push_back(static_cast<double>(circle.sin(i)));
+  }
+}
+
+const Eigenbasis::Builder::Outer& Eigenbasis::Builder::outer(Sides sides) {
+  return outer_.try_emplace(sides, sides).first->second;
+}
+
+Eigenbasis::Table Eigenbasis::Builder::rounded(const Wide& wide) {
+  Table table;
+  for (Eigen::Index i = 0; i < wide.outer.size(); ++i) {
+    table.outer[i] = static_cast<double>(wide.outer[i]);
+  }
+  for (int c = 0; c < kCells; ++c) {
+    table.grid[c] = static_cast<double>(wide.grid[c]);
+  }
+  return table;
+}
+
+Eigenbasis::Builder::Wide Eigenbasis::Builder::continued(Sides sides, Real lambda,
+                                                         const Cells& ring_cells, Real feeds,
+                                                         const Wide* fed) {
+  const Outer& o = outer(sides);
+  Outer::Vector rhs = Outer::Vector::Zero(o.count());
+  if (fed) {
+    rhs = feeds * fed->outer;
+  }
+  Wide wide;
+  wide.outer = o.continuation(lambda, ring_cells, rhs, wide.rest);
+  Cells cells = ring_cells;
+  for (int i = 0; i < o.count(); ++i) {
+    cells[o.cells()[i]] = wide.outer[i];
+  }
+  wide.grid.fill(0);
+  o.step().apply(cells, wide.grid);
+  for (const int c : tile_grid::kRingCells) {
+    // The fed vector's grid holds its ring times lambda.
+    wide.grid[c] = lambda * ring_cells[c] + (fed ? feeds * fed->grid[c] / lambda : 0);
+  }
+  return wide;
+}
+
+void Eigenbasis::Builder::buildOuterTables(Sides sides) {
+  const Outer& o = outer(sides);
+  auto tables = std::make_unique<FaceTables>(o);
+  for (int q = 0; q < o.count(); ++q) {
+    Cells cells{};
+    for (int i = 0; i < o.count(); ++i) {
+      cells[o.cells()[i]] = o.vectors()(i, q);
+    }
+    Wide wide;
+    wide.outer = o.vectors().col(q);
+    wide.grid.fill(0);
+    o.step().apply(cells, wide.grid);
+    tables->outer.push_back(rounded(wide));
+  }
+  basis_.face_tables_[static_cast<int>(sides)] = std::move(tables);
+}
+
+/// The ring cells of a spoke mode turned so that e_j of this face stands at angle 0.
+Eigenbasis::Builder::Cells Eigenbasis::Builder::spokeCells(Real m, Real edge, Real face,
+                                                           bool sine) const {
+  const Circle<Real> circle(basis_.period_);
+  const auto wave = [&](int twice_position) {
+    const long i = static_cast<long>(m) * twice_position;
+    return sine ? circle.sin(i) : circle.cos(i);
+  };
+  Cells cells{};
+  cells[cell(0, -1)] = edge * wave(-2);
+  cells[cell(1, -1)] = face * wave(-1);
+  cells[cell(1, 0)] = edge * wave(0);
+  cells[cell(1, 1)] = face * wave(1);
+  cells[cell(0, 1)] = edge * wave(2);
+  cells[cell(-1, 1)] = face * wave(3);
+  cells[cell(-1, 0)] = edge * wave(4);
+  return cells;
+}
+
+Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bool plus,
+                                                          bool sine) {
+  const auto mode = ring_.interior() ? SpokeMode<Real>::at(2L * m, ring_.faces)
+                                     : SpokeMode<Real>::at(m, ring_.faces);
+  const Real lambda = plus ? mode.lambda_plus : mode.lambda_minus;
+  Cells cells = spokeCells(m, plus ? mode.edgePlus() : mode.edgeMinus(),
+                           plus ? mode.facePlus() : mode.faceMinus(), sine);
+  if (sides == Sides::right) {
+    // Counted from the last spoke, which lies on the boundary, the sine mode is itself again (up to
+    // its sign), seen in a mirror that exchanges u and v.
+    Cells mirrored{};
+    for (int c = 0; c < kCells; ++c) {
+      mirrored[cell(tile_grid::yOf(c), tile_grid::xOf(c))] = cells[c];
+    }
+    cells = mirrored;
+  }
+  for (int c = 0; c < kCells; ++c) {
+    if (!tile_grid::exists(sides, c)) {
+      cells[c] = 0;
+    }
+  }
+  return continued(sides, lambda, cells);
+}
+
+void Eigenbasis::Builder::buildSpokes() {
+  const bool interior = ring_.interior();
+  for (int m = 1; m <= basis_.spokeCount(); ++m) {
+    const auto mode =
+        interior ? SpokeMode<Real>::at(2L * m, ring_.faces) : SpokeMode<Real>::at(m, ring_.faces);
+    for (const bool plus : {true, false}) {
+      basis_.spokes_.push_back({static_cast<double>(plus ? mode.edgePlus() : mode.edgeMinus()),
+                                static_cast<double>(plus ? mode.facePlus() : mode.faceMinus())});
+      Part part[2];
+      const int parts = basis_.parts(m, plus, 0, part);
+      for (int i = 0; i < parts; ++i) {
+        basis_.lambda_[part[i].mode] =
+            static_cast<double>(plus ? mode.lambda_plus : mode.lambda_minus);
+      }
+      for (const Sides sides : {Sides::inner, Sides::left, Sides::right, Sides::both}) {
+        if (FaceTables* tables = basis_.face_tables_[static_cast<int>(sides)].get()) {
+          tables->sine.push_back(rounded(spokeTable(sides, m, plus, true)));
+          if (sides == Sides::inner) {
+            tables->cosine.push_back(rounded(spokeTable(sides, m, plus, false)));
+          }
+        }
+      }
+    }
+  }
+}
+
+/// Modes 1 and 2 of the interior: (a, b) = (mean e - v, mean f - v) goes to Q (a, b), whose
+/// eigenvalues are lambda = (3 N - 7 +- sqrt(5 N^2 - 30 N + 49)) / (8 N).
+void Eigenbasis::Builder::buildRadial() {
+  const Real n = ring_.faces;
+  const Real column = Real(1) / 2 - 3 / (2 * n);
+  const Real q01 = Real(1) / 8 - 1 / (4 * n), q11 = Real(1) / 4 - 1 / (4 * n);
+  const Real root = std::sqrt(5 * n * n - 30 * n + 49);
+  Eigen::Matrix<Real, 2, 2> vectors;
+  basis_.fixed_.resize(1);
+  for (int i = 0; i < 2; ++i) {
+    const Real lambda = (3 * n - 7 + (i == 0 ? root : -root)) / (8 * n);
+    Eigen::Matrix<Real, 2, 1> x(q01, lambda - column), other(lambda - q11, column);
+    if (other.norm() > x.norm()) {
+      x = other;
+    }
+    x.normalize();
+    vectors.col(i) = x;
+    const Real v = (3 / (2 * n) * x[0] + 1 / (4 * n) * x[1]) / (lambda - 1);
+    Cells cells{};
+    for (const int c : tile_grid::kRingCells) {
+      const bool on_spoke = tile_grid::xOf(c) == 0 || tile_grid::yOf(c) == 0;
+      cells[c] = c == cell(0, 0) ? v : v + (on_spoke ? x[0] : x[1]);
+    }
+    const Wide wide = continued(Sides::inner, lambda, cells);
+    basis_.lambda_[1 + i] = static_cast<double>(lambda);
+    basis_.radial_vertex_[i] = static_cast<double>(v);
+    basis_.fixed_[0].tables[i] = rounded(wide);
+    if (ring_.faces == 2 && i == 0) {  // eigenvalue 1/8, defective with S12's
+      basis_.rest_mode_ = 1;
+      for (Eigen::Index q = 0; q < wide.rest.size(); ++q) {
+        basis_.rest_.push_back(static_cast<double>(wide.rest[q]));
+      }
+    }
+  }
+  basis_.radial_ = vectors.cast<double>();
+  const Real determinant = vectors(0, 0) * vectors(1, 1) - vectors(0, 1) * vectors(1, 0);
+  Eigen::Matrix<Real, 2, 2> inverse;
+  inverse << vectors(1, 1), -vectors(0, 1), -vectors(1, 0), vectors(0, 0);
+  basis_.radial_inverse_ = (inverse / determinant).cast<double>();
+}
+
+Eigenbasis::Builder::Cells Eigenbasis::Builder::ringCells(const std::vector<Real>& ring,
+                                                          int face) const {
+  const int j = face, k = ring_.faces;
+  Cells cells{};
+  cells[cell(0, 0)] = ring[0];
+  cells[cell(1, 0)] = ring[ring_.edge(j)];
+  cells[cell(1, 1)] = ring[ring_.face(j)];
+  cells[cell(0, 1)] = ring[ring_.edge(j + 1)];
+  if (j > 0) {
+    cells[cell(0, -1)] = ring[ring_.edge(j - 1)];
+    cells[cell(1, -1)] = ring[ring_.face(j - 1)];
+  }
+  if (j < k - 1) {
+    cells[cell(-1, 0)] = ring[ring_.edge(j + 2)];
+    cells[cell(-1, 1)] = ring[ring_.face(j + 1)];
+  }
+  return cells;
+}
+
+/// A sector's spoke mode on one of its faces, assembled from the tables' construction.
+Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeOnFace(int m, bool plus, int face) {
+  const auto mode = SpokeMode<Real>::at(m, ring_.faces);
+  const Circle<Real> circle(basis_.period_);
+  std::vector<Real> ring(ring_.size(), 0);
+  for (int i = 0; i <= ring_.faces; ++i) {
+    ring[ring_.edge(i)] = (plus ? mode.edgePlus() : mode.edgeMinus()) * circle.sin(2L * m * i);
+  }
+  for (int j = 0; j < ring_.faces; ++j) {
+    ring[ring_.face(j)] =
+        (plus ? mode.facePlus() : mode.faceMinus()) * circle.sin(1L * m * (2 * j + 1));
+  }
+  return continued(basis_.sides(face), plus ? mode.lambda_plus : mode.lambda_minus,
+                   ringCells(ring, face));
+}
+
+void Eigenbasis::Builder::buildCurves() {
+  const std::vector<CurveMode<Real>> modes = curveModes<Real>(ring_);
+  basis_.fixed_.resize(ring_.faces);
+  for (int i = 0; i < 2; ++i) {
+    const CurveMode<Real>& mode = modes[i];
+    basis_.lambda_[1 + i] = static_cast<double>(mode.lambda);
+    basis_.curve_ring_[i].assign(mode.ring.begin(), mode.ring.end());
+    for (int j = 0; j < ring_.faces; ++j) {
+      const Cells cells = ringCells(mode.ring, j);
+      if (mode.fed_mode) {
+        const Wide fed = spokeOnFace(mode.fed_mode, mode.feeds_plus, j);
+        basis_.fixed_[j].tables[i] =
+            rounded(continued(basis_.sides(j), mode.lambda, cells, mode.feeds, &fed));
+      } else {
+        basis_.fixed_[j].tables[i] = rounded(continued(basis_.sides(j), mode.lambda, cells));
+      }
+    }
+    if (mode.fed_mode) {
+      Part part[2];
+      basis_.parts(mode.fed_mode, mode.feeds_plus, 0, part);
+      basis_.chains_.push_back({1 + i, part[0].mode, static_cast<double>(mode.feeds)});
+    }
+  }
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/eigen/spoke_mode.h"
+
+#include <cmath>
+
+#include "limitsurf/eigen/circle.h"
+
+namespace limitsurf {
+
+template <typename Real>
+SpokeMode<Real> SpokeMode<Real>::at(long numerator, long denominator) {
+  SpokeMode mode;
+  const Real c = Circle<Real>(4 * denominator).cos(numerator);
+  const Real s = std::sqrt(4 + c * c);
+  const Real length = std::sqrt((c + s) * (c + s) + 4);
+  mode.cos_alpha = (c + s) / length;
+  mode.sin_alpha = 2 / length;
+  if (2 * numerator == denominator) {  // phi = pi/2: 1/8 meets an eigenvalue of S12
+    mode.lambda_plus = Real(1) / 2;
+    mode.lambda_minus = Real(1) / 8;
+  } else {
+    mode.lambda_plus = Real(1) / 4 + c * (c + s) / 8;
+    mode.lambda_minus = 1 / (16 * mode.lambda_plus);
+  }
+  if (numerator == denominator) {  // phi = pi: edges and faces do not see each other
+    mode.cos_alpha = 1;
+    mode.sin_alpha = 0;
+  }
+  return mode;
+}
+
+template struct SpokeMode<double>;
+template struct SpokeMode<long double>;
+
+}  // namespace limitsurf

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "limitsurf/mesh/subdivision_rules.h"
+
+namespace limitsurf {
+
+/// Which sides of an extraordinary vertex's face lie on the boundary of the vertex's sector.
+enum class Sides {
+  inner,  ///< neither
+  left,   ///< the u axis (first face of a sector)
+  right,  ///< the v axis (last face of a sector)
+  both,   ///< both (a sector of one face)
+};
+
+/// The control points around one quad of an extraordinary vertex, laid out as a 5 x 5 grid.
+///
+/// Cell (x, y), -1 <= x, y <= 3, holds the control point at (x, y) when the extraordinary vertex is
+/// at (0, 0) and the face is [0, 1]^2. Cell (-1, -1) has no point. Before a subdivision the 15 cells
+/// with x, y <= 2 determine the face; after it all 24 carry the three regular quarters: the 4 x 4
+/// window from (a - 1, b - 1) to (a + 2, b + 2) belongs to quarter (a, b).
+namespace tile_grid {
+
+constexpr int kSize = 5;
+constexpr int kCells = kSize * kSize;
+constexpr int cell(int x, int y) { return (y + 1) * kSize + (x + 1); }
+constexpr int xOf(int c) { return c % kSize - 1; }
+constexpr int yOf(int c) { return c / kSize - 1; }
+
+/// Ring points next to the face: v, e_j, f_j, e_j+1, f_j+1, e_j+2, e_j-1, f_j-1.
+constexpr std::array<int, 8> kRingCells = {cell(0, 0),  cell(1, 0),  cell(1, 1),  cell(0, 1),
+                                           cell(-1, 1), cell(-1, 0), cell(0, -1), cell(1, -1)};
+
+/// The control points beyond the ring: Stam's points 2N+1 to 2N+7.
+constexpr int kOuter = 7;
+constexpr std::array<int, kOuter> kOuterCells = {cell(2, -1), cell(2, 0), cell(2, 1), cell(2, 2),
+                                                 cell(1, 2),  cell(0, 2), cell(-1, 2)};
+
+/// Whether the cell exists: cells beyond a boundary side do not.
+constexpr bool exists(Sides sides, int c) {
+  const bool below = yOf(c) < 0, before = xOf(c) < 0;
+  if (below && before) {
+    return false;
+  }
+  return !(below && (sides == Sides::left || sides == Sides::both)) &&
+         !(before && (sides == Sides::right || sides == Sides::both));
+}
+
+constexpr bool isRingCell(int c) { return xOf(c) <= 1 && yOf(c) <= 1; }
+
+}  // namespace tile_grid
+
+/// The part of one subdivision step that no extraordinary rule touches: the 16 cells with x or y
+/// above 1 after the step from the 15 cells before it (S11, S12, S21, S22 of the paper).
+template <typename Real>
+class TileStep {
+ public:
+  explicit TileStep(Sides sides) : sides_(sides) {
+    using namespace tile_grid;
+    for (int c = 0; c < kCells; ++c) {
+      if (!isRingCell(c) && exists(sides, c)) {
+        rows_.push_back({c, row(xOf(c), yOf(c))});
+      }
+    }
+  }
+
+  struct Term {
+    int cell;
+    Real weight;
+  };
+  struct Row {
+    int cell;
+    std::vector<Term> terms;
+  };
+  const std::vector<Row>& rows() const { return rows_; }
+
+  /// Fills the non-ring cells of `next` from `cells`. Both are indexable by cell; their elements
+  /// are scalars or vectors.
+  template <typename Cells>
+  void apply(const Cells& cells, Cells& next) const {
+    for (const Row& r : rows_) {
+      next[r.cell] = r.terms[0].weight * cells[r.terms[0].cell];
+      for (std::size_t i = 1; i < r.terms.size(); ++i) {
+        next[r.cell] += r.terms[i].weight * cells[r.terms[i].cell];
+      }
+    }
+  }
+
+ private:
+  bool onBoundary(int x0, int y0, int x1, int y1) const {
+    const bool left = sides_ == Sides::left || sides_ == Sides::both;
+    const bool right = sides_ == Sides::right || sides_ == Sides::both;
+    return (left && y0 == 0 && y1 == 0) || (right && x0 == 0 && x1 == 0);
+  }
+
+  void addFace(std::vector<Term>& terms, int x, int y, Real weight) const {
+    const Real each = weight * rules_.faceMask(4);
+    for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+      add(terms, x + dx, y + dy, each);
+    }
+  }
+
+  void add(std::vector<Term>& terms, int x, int y, Real weight) const {
+    const int c = tile_grid::cell(x, y);
+    for (Term& term : terms) {
+      if (term.cell == c) {
+        term.weight += weight;
+        return;
+      }
+    }
+    terms.push_back({c, weight});
+  }
+
+  /// The new point at (x, y) of the finer grid, that is (x/2, y/2) of the coarser one.
+  std::vector<Term> row(int x, int y) const {
+    std::vector<Term> terms;
+    const int x0 = (x - (x & 1)) / 2, y0 = (y - (y & 1)) / 2;
+    if ((x & 1) && (y & 1)) {
+      addFace(terms, x0, y0, 1);
+    } else if ((x & 1) || (y & 1)) {
+      const int x1 = x0 + (x & 1), y1 = y0 + (y & 1);
+      const auto mask = rules_.edgeMask(onBoundary(x0, y0, x1, y1));
+      add(terms, x0, y0, mask.vertices[0]);
+      add(terms, x1, y1, mask.vertices[1]);
+      if (mask.faces[0] != 0) {
+        addFace(terms, x0 - (y & 1), y0 - (x & 1), mask.faces[0]);
+        addFace(terms, x0, y0, mask.faces[1]);
+      }
+    } else if (onBoundary(x0 - 1, y0, x0, y0)) {
+      addCrease(terms, x0, y0, 1, 0);
+    } else if (onBoundary(x0, y0 - 1, x0, y0)) {
+      addCrease(terms, x0, y0, 0, 1);
+    } else {
+      const auto mask = rules_.vertexMask(VertexRule::smooth, 4);
+      add(terms, x0, y0, mask.vertex);
+      for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+        add(terms, x0 + dx, y0 + dy, mask.edges[0]);
+      }
+      for (const auto& [dx, dy] : {std::pair{0, 0}, {-1, 0}, {-1, -1}, {0, -1}}) {
+        addFace(terms, x0 + dx, y0 + dy, mask.faces[0]);
+      }
+    }
+    return terms;
+  }
+
+  void addCrease(std::vector<Term>& terms, int x, int y, int dx, int dy) const {
+    const auto mask = rules_.vertexMask(VertexRule::crease, 3);
+    add(terms, x, y, mask.vertex);
+    add(terms, x + dx, y + dy, mask.edges.front());
+    add(terms, x - dx, y - dy, mask.edges.back());
+  }
+
+  Sides sides_;
+  SubdivisionRules<Real> rules_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/mesh/control_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "limitsurf/mesh/limits.h"
+
+namespace limitsurf {
+namespace {
+
+template <typename... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+  std::ostringstream message;
+  message.precision(17);
+  (message << ... << parts);
+  throw MeshError(message.str());
+}
+
+void checkSizes(const std::vector<std::int64_t>& sizes, std::size_t index_count) {
+  std::size_t sum = 0;
+  for (std::size_t f = 0; f < sizes.size(); ++f) {
+    if (sizes[f] < 3) {
+      refuse("face ", f, " has ", sizes[f], " vertices; a face needs at least 3");
+    }
+    if (sizes[f] > kMaxValence) {
+      refuse("face ", f, " has ", sizes[f], " vertices; the limit is ", kMaxValence);
+    }
+    sum += static_cast<std::size_t>(sizes[f]);
+  }
+  if (sum != index_count) {
+    refuse("face_sizes add up to ", sum, " but face_vertices has ", index_count, " entries");
+  }
+  if (sum > static_cast<std::size_t>(kMaxCorners)) {
+    refuse("the mesh has ", sum, " face corners; the limit is ", kMaxCorners);
+  }
+}
+
+std::vector<std::pair<int, int>> sortedEdges(const ControlMesh& mesh) {
+  std::vector<std::pair<int, int>> edges;
+  edges.reserve(mesh.faceVertices().size());
+  for (int f = 0; f < mesh.faceCount(); ++f) {
+    const Span<int> vertices = mesh.faceVertices(f);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      edges.push_back(std::minmax(vertices[i], vertices[(i + 1) % vertices.size()]));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+void checkSharpness(const std::string& where, double value) {
+  if (std::isnan(value) || value < 0) {
+    refuse(where, " has sharpness ", value, "; sharpness is 0 or more");
+  }
+  if (value > 0) {
+    refuse(where, " has sharpness ", value, "; sharpness above 0 is not supported yet");
+  }
+}
+
+void checkEdgeSharpness(const ControlMesh& mesh, const EdgeSharpness& sharpness) {
+  if (sharpness.edges.size() != sharpness.values.size()) {
+    refuse("edge_sharpness has ", sharpness.edges.size(), " edges but ", sharpness.values.size(),
+           " values");
+  }
+  if (sharpness.edges.empty()) {
+    return;
+  }
+  const std::vector<std::pair<int, int>> edges = sortedEdges(mesh);
+  for (std::size_t i = 0; i < sharpness.edges.size(); ++i) {
+    const auto [a, b] = std::minmax(sharpness.edges[i].first, sharpness.edges[i].second);
+    std::ostringstream where;
+    where << "edge_sharpness row " << i << ", edge (" << sharpness.edges[i].first << ", "
+          << sharpness.edges[i].second << ")";
+    const bool in_range = a >= 0 && b < mesh.vertexCount();
+    if (!in_range || !std::binary_search(edges.begin(), edges.end(),
+                                         std::pair<int, int>(static_cast<int>(a),
+                                                             static_cast<int>(b)))) {
+      refuse(where.str(), ": the mesh has no such edge");
+    }
+    checkSharpness(where.str(), sharpness.values[i]);
+  }
+}
+
+void checkVertexSharpness(const ControlMesh& mesh, const VertexSharpness& sharpness) {
+  if (sharpness.vertices.size() != sharpness.values.size()) {
+    refuse("vertex_sharpness has ", sharpness.vertices.size(), " vertices but ",
+           sharpness.values.size(), " values");
+  }
+  for (std::size_t i = 0; i < sharpness.vertices.size(); ++i) {
+    const std::int64_t vertex = sharpness.vertices[i];
+    std::ostringstream where;
+    where << "vertex_sharpness row " << i << ", vertex " << vertex;
+    if (vertex < 0 || vertex >= mesh.vertexCount()) {
+      refuse(where.str(), ": the mesh has ", mesh.vertexCount(), " vertices");
+    }
+    checkSharpness(where.str(), sharpness.values[i]);
+  }
+}
+
+void checkHoles(const ControlMesh& mesh, const std::vector<std::int64_t>& holes) {
+  for (const std::int64_t face : holes) {
+    if (face < 0 || face >= mesh.faceCount()) {
+      refuse("hole ", face, ": the mesh has ", mesh.faceCount(), " faces");
+    }
+  }
+}
+
+void checkValences(const ControlMesh& mesh) {
+  std::vector<int> faces_at(mesh.vertexCount(), 0);
+  for (const int vertex : mesh.faceVertices()) {
+    if (++faces_at[vertex] > kMaxValence) {
+      refuse("vertex ", vertex, " has more than ", kMaxValence, " faces");
+    }
+  }
+}
+
+}  // namespace
+
+void checkPositions(const Points& positions, int vertex_count) {
+  if (positions.rows() != vertex_count) {
+    refuse("positions has ", positions.rows(), " rows; the mesh has ", vertex_count, " vertices");
+  }
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    if (!positions.row(v).allFinite()) {
+      refuse("vertex ", v, " has position (", positions(v, 0), ", ", positions(v, 1), ", ",
+             positions(v, 2), "); positions must be finite");
+    }
+  }
+}
+
+ControlMesh::ControlMesh(Points positions, const std::vector<std::int64_t>& face_sizes,
+                         const std::vector<std::int64_t>& face_vertices, MeshOptions options)
+    : positions_(std::move(positions)), options_(std::move(options)) {
+  if (positions_.rows() > kMaxCorners) {
+    refuse("the mesh has ", positions_.rows(), " vertices; the limit is ", kMaxCorners);
+  }
+  checkPositions(positions_, static_cast<int>(positions_.rows()));
+  checkSizes(face_sizes, face_vertices.size());
+  if (options_.scheme == Scheme::bilinear) {
+    refuse("scheme 'bilinear' is not supported yet");
+  }
+
+  face_offsets_.reserve(face_sizes.size() + 1);
+  face_offsets_.push_back(0);
+  for (const std::int64_t size : face_sizes) {
+    face_offsets_.push_back(face_offsets_.back() + static_cast<int>(size));
+  }
+  face_vertices_.reserve(face_vertices.size());
+  for (int f = 0; f < faceCount(); ++f) {
+    for (int i = face_offsets_[f]; i < face_offsets_[f + 1]; ++i) {
+      if (face_vertices[i] < 0 || face_vertices[i] >= positions_.rows()) {
+        refuse("face ", f, " names vertex ", face_vertices[i], "; the mesh has ",
+               positions_.rows(), " vertices");
+      }
+      face_vertices_.push_back(static_cast<int>(face_vertices[i]));
+    }
+  }
+  checkValences(*this);
+  checkEdgeSharpness(*this, options_.edge_sharpness);
+  checkVertexSharpness(*this, options_.vertex_sharpness);
+  checkHoles(*this, options_.holes);
+}
+
+std::vector<int> ControlMesh::faceSizes() const {
+  std::vector<int> sizes(faceCount());
+  for (int f = 0; f < faceCount(); ++f) {
+    sizes[f] = faceSize(f);
+  }
+  return sizes;
+}
+
+}  // namespace limitsurf
