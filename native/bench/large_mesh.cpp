@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "large_mesh.h"
+
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bfr_peer.h"
+#include "cages.h"
+#include "face_classes.h"
+
+namespace limitsurf::bench {
+namespace {
+
+struct Cost {
+  double seconds, cpu_seconds;
+  double peak_mib, kept_mib;  ///< above what the process held before
+};
+
+/// A line of /proc/self/status, in MiB.
+double statusMib(const char* key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.compare(0, std::strlen(key), key) == 0)
+      return std::stod(line.substr(line.find(':') + 1)) / 1024;
+  }
+  return 0;
+}
+
+double cpuSeconds() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+using Opening = std::function<std::shared_ptr<void>()>;
+
+Cost measureHere(const Opening& open) {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts anew
+  const double before = statusMib("VmRSS");
+  const double cpu_before = cpuSeconds();
+  const auto start = std::chrono::steady_clock::now();
+  const std::shared_ptr<void> opened = open();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  Cost cost;
+  cost.seconds = elapsed.count();
+  cost.cpu_seconds = cpuSeconds() - cpu_before;
+  cost.peak_mib = statusMib("VmHWM") - before;
+  malloc_trim(0);
+  cost.kept_mib = statusMib("VmRSS") - before;
+  return cost;
+}
+
+/// False if the process that did the work failed.
+bool measureApart(const Opening& open, Cost& cost) {
+  int ends[2];
+  if (pipe(ends) != 0) return false;
+  const pid_t child = fork();
+  if (child < 0) return false;
+  if (child == 0) {
+    const Cost measured = measureHere(open);
+    const bool is_written = write(ends[1], &measured, sizeof measured) == sizeof measured;
+    _exit(is_written ? 0 : 1);
+  }
+  close(ends[1]);
+  const bool is_read = read(ends[0], &cost, sizeof cost) == sizeof cost;
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return is_read && status == 0;
+}
+
+}  // namespace
+
+int measureLargeMesh(int side) {
+  const Cage cage = largeCage(side);
+  const std::vector<ClassifiedFace> classified = classifyFaces(cage);
+  const std::size_t regular = facesOf(classified, FaceClass::regular).size();
+  std::printf("%d quads, %.2f %% of them irregular; all threads; median of 3\n\n", cage.faceCount(),
+              100.0 * (1 - static_cast<double>(regular) / cage.faceCount()));
+
+  struct Row {
+    const char* name;
+    Opening open;
+    std::vector<Cost> costs;
+  };
+  struct BfrWithTopology {
+    TopologyPointer topology;
+    BfrPeer bfr;
+  };
+  const auto open_bfr = [&](int level) {
+    TopologyPointer topology = farTopology(cage);
+    BfrPeer bfr(cage, *topology, level);
+    return std::make_shared<BfrWithTopology>(BfrWithTopology{std::move(topology), std::move(bfr)});
+  };
+  std::vector<Row> rows = {
+      {"Far topology alone", [&] { return std::shared_ptr<void>(farTopology(cage)); }, {}},
+      {"limitsurf ControlMesh",
+       [&] { return std::make_shared<ControlMesh>(cage.controlMesh()); },
+       {}},
+      {"limitsurf ControlMesh + LimitSurface",
+       [&] { return std::make_shared<LimitSurface>(cage.controlMesh()); },
+       {}},
+      {"Far topology + Bfr 2 surfaces", [&] { return open_bfr(2); }, {}},
+      {"Far topology + Bfr 10 surfaces", [&] { return open_bfr(10); }, {}},
+  };
+  for (int repetition = 0; repetition < 3; ++repetition) {
+    for (Row& row : rows) {
+      Cost cost;
+      if (!measureApart(row.open, cost)) {
+        std::fprintf(stderr, "%s failed\n", row.name);
+        return 1;
+      }
+      row.costs.push_back(cost);
+    }
+  }
+  std::printf("| | s | CPU s | peak MiB | kept MiB |\n|---|---:|---:|---:|---:|\n");
+  for (Row& row : rows) {
+    std::sort(row.costs.begin(), row.costs.end(),
+              [](const Cost& a, const Cost& b) { return a.seconds < b.seconds; });
+    const Cost& middle = row.costs[1];
+    std::printf("| %s | %.2f | %.2f | %.0f | %.0f |\n", row.name, middle.seconds,
+                middle.cpu_seconds, middle.peak_mib, middle.kept_mib);
+  }
+  return 0;
+}
+
+}  // namespace limitsurf::bench

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// limitsurf beside OpenSubdiv's Bfr, in one process and one run.
+//
+//   limitsurf_bench                       all tables
+//   limitsurf_bench --benchmark_filter=boundary-EV
+//   limitsurf_bench --samples=20000       locations in a batch (default 100000)
+//   limitsurf_bench --large[=1000]        opening a grid of 1000 x 1000 quads: time and memory
+#include <benchmark/benchmark.h>
+#include <opensubdiv/version.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <vector>
+
+#include "agreement.h"
+#include "evaluation_benchmarks.h"
+#include "large_mesh.h"
+#include "ratio_reporter.h"
+#include "setup_benchmarks.h"
+
+namespace {
+
+/// The number after `flag` and "=", the default if there is none, 0 if `argument` is another flag.
+int valueOf(const char* argument, const char* flag, int default_value) {
+  const std::size_t length = std::strlen(flag);
+  if (std::strncmp(argument, flag, length) != 0) return 0;
+  if (argument[length] == '\0') return default_value;
+  return argument[length] == '=' ? std::atoi(argument + length + 1) : 0;
+}
+
+int runTables(int argc, char** argv, int sample_count) {
+  using namespace limitsurf::bench;
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+
+  std::vector<Group> groups = evaluationGroups(sample_count);
+  for (Group& group : setupGroups()) groups.push_back(std::move(group));
+  RatioReporter reporter;
+  runGroups(groups, reporter);
+
+  std::printf(
+      "\nOpenSubdiv %d.%d.%d, Bfr<double> levels 2 (default) and 10; smooth boundaries; one "
+      "thread; medians of CPU time.\n",
+      OPENSUBDIV_VERSION_MAJOR, OPENSUBDIV_VERSION_MINOR, OPENSUBDIV_VERSION_PATCH);
+  reporter.printTable(kEvaluationTable, "Evaluation, ns per sample", {"face", "order", "result"},
+                      groups);
+  reporter.printTable(kOpeningTable, "Opening a mesh, ns per face", {"mesh", "faces", "irregular"},
+                      groups);
+  reporter.printTable(kPosingTable, "New positions, ns per irregular face",
+                      {"mesh", "faces", "irregular"}, groups);
+  return allAgreed() ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Ours come first, so that the caller's own win.
+  static char interleave[] = "--benchmark_enable_random_interleaving=true";
+  static char repetitions[] = "--benchmark_repetitions=9";
+  static char time[] = "--benchmark_min_time=0.03";
+  std::vector<char*> arguments = {argv[0], interleave, repetitions, time};
+  int sample_count = 100000;
+  int large_side = 0;
+  for (int i = 1; i < argc; ++i) {
+    if (const int count = valueOf(argv[i], "--samples", 0)) {
+      sample_count = count;
+    } else if (const int side = valueOf(argv[i], "--large", 1000)) {
+      large_side = side;
+    } else {
+      arguments.push_back(argv[i]);
+    }
+  }
+  try {
+    if (large_side > 0) return limitsurf::bench::measureLargeMesh(large_side);
+    return runTables(static_cast<int>(arguments.size()), arguments.data(), sample_count);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
