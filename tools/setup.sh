@@ -36,7 +36,7 @@ find_python() {
   local candidate
   for candidate in python3.11 python3 /usr/bin/python3.11; do
     if "$candidate" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null; then
-      PYTHON=$(command -v "$candidate")
+      PYTHON=$("$candidate" -c 'import sys; print(sys._base_executable)') # no virtual environment's
       return
     fi
   done
@@ -70,9 +70,10 @@ install_apt_packages() {
   say "Debian packages: ${missing[*]}"
   local log
   log=$(mktemp)
-  if ! { "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 update &&
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 \
-      install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 </dev/null; then
+  # Some unrelated source may fail to update: what counts is whether the packages can be installed.
+  "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 update >"$log" 2>&1 </dev/null || true
+  if ! "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 \
+    install -y --no-install-recommends "${missing[@]}" >>"$log" 2>&1 </dev/null; then
     tail -n 40 "$log" >&2
     fail "apt-get did not install: ${missing[*]}" "(its whole output: $log)"
   fi
