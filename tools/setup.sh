@@ -40,7 +40,7 @@ find_python() {
       return
     fi
   done
-  fail "Python 3.11 is needed (Blender 4.2 to 5.0 as a module exists for no other), and none was found." \
+  fail "Python 3.11 is needed (Blender 4.2 to 5.0 as a module exists for no other): none found." \
     "On Debian 12: apt-get install python3. Elsewhere: put a python3.11 on PATH."
 }
 

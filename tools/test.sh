@@ -48,7 +48,8 @@ part() {
 
 build_cpp() {
   cmake -S . -B build/cpp -G Ninja -D CMAKE_BUILD_TYPE=Release \
-    -D LIMITSURF_BUILD_TESTS=ON -D LIMITSURF_BUILD_TOOLS=ON -D LIMITSURF_BUILD_BENCH=ON >"$results/configure.log" ||
+    -D LIMITSURF_BUILD_TESTS=ON -D LIMITSURF_BUILD_TOOLS=ON -D LIMITSURF_BUILD_BENCH=ON \
+    >"$results/configure.log" ||
     { cat "$results/configure.log" && return 1; }
   cmake --build build/cpp --parallel "$JOBS"
 }
