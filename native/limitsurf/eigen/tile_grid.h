@@ -79,8 +79,8 @@ class TileStep {
 
   /// Fills the non-ring cells of `next` from `cells`. Both are indexable by cell; their elements
   /// are scalars or vectors.
-  template <typename Cells>
-  void apply(const Cells& cells, Cells& next) const {
+  template <typename Cells, typename NextCells>
+  void apply(const Cells& cells, NextCells& next) const {
     for (const Row& r : rows_) {
       next[r.cell] = r.terms[0].weight * cells[r.terms[0].cell];
       for (std::size_t i = 1; i < r.terms.size(); ++i) {

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/patch/child_mesh.h"
+
+#include <algorithm>
+
+namespace limitsurf {
+
+FaceCorner ChildMesh::otherSide(FaceCorner side) const {
+  const FaceCorner beyond = Fan(parent_, side).at(-1);
+  if (!beyond.exists()) {
+    return {};
+  }
+  // Seen from beyond, the edge ends at this vertex.
+  const int size = parent_.faceSize(beyond.face);
+  return {beyond.face, (beyond.corner + size - 1) % size};
+}
+
+VertexId ChildMesh::ofEdge(FaceCorner side) const {
+  const FaceCorner other = otherSide(side);
+  FaceId id = corners_.number(side);
+  if (other.exists()) {
+    id = std::min(id, corners_.number(other));
+  }
+  return 3 * id + kOfEdge;
+}
+
+VertexId ChildMesh::vertex(FaceCorner at) const {
+  const FaceCorner origin = corners_.at(at.face);
+  switch (at.corner) {
+    case 0:
+      return 3 * parent_.vertex(origin) + kOfVertex;
+    case 1:
+      return ofEdge(origin);
+    case 2:
+      return 3 * origin.face + kOfFace;
+    default: {
+      const int size = parent_.faceSize(origin.face);
+      return ofEdge({origin.face, (origin.corner + size - 1) % size});
+    }
+  }
+}
+
+int ChildMesh::facesAt(VertexId vertex) const {
+  switch (vertex % 3) {
+    case kOfVertex:
+      return parent_.facesAt(vertex / 3);
+    case kOfEdge:
+      return otherSide(corners_.at(vertex / 3)).exists() ? 4 : 2;
+    default:
+      return parent_.faceSize(vertex / 3);
+  }
+}
+
+bool ChildMesh::interior(VertexId vertex) const {
+  switch (vertex % 3) {
+    case kOfVertex:
+      return parent_.interior(vertex / 3);
+    case kOfEdge:
+      return otherSide(corners_.at(vertex / 3)).exists();
+    default:
+      return true;
+  }
+}
+
+FaceCorner ChildMesh::faceAt(VertexId vertex, int i) const {
+  if (vertex % 3 == kOfVertex) {
+    return {corners_.number(parent_.faceAt(vertex / 3, i)), 0};
+  }
+  if (vertex % 3 == kOfFace) {
+    return {corners_.number({vertex / 3, i}), 2};
+  }
+  // Counter-clockwise around the edge's middle, from the child at the end of the edge: the two on
+  // this side, then the two on the other, where the edge runs the opposite way.
+  const FaceCorner here = corners_.at(vertex / 3);
+  const FaceCorner side = i < 2 ? here : otherSide(here);
+  const int next = (side.corner + 1) % parent_.faceSize(side.face);
+  return i % 2 == 0 ? FaceCorner{corners_.number({side.face, next}), 3}
+                    : FaceCorner{corners_.number(side), 1};
+}
+
+int ChildMesh::positionOf(FaceCorner at) const {
+  const FaceCorner origin = corners_.at(at.face);
+  switch (at.corner) {
+    case 0:
+      return parent_.positionOf(origin);
+    case 1:
+      return vertex(at) == 3 * at.face + kOfEdge ? 1 : 3;
+    case 2:
+      return origin.corner;
+    default: {
+      const int size = parent_.faceSize(origin.face);
+      const FaceCorner side = {origin.face, (origin.corner + size - 1) % size};
+      return vertex(at) == 3 * corners_.number(side) + kOfEdge ? 0 : 2;
+    }
+  }
+}
+
+int ChildMesh::point(VertexId vertex) {
+  const auto known = made_.find(vertex);
+  if (known != made_.end()) {
+    return known->second;
+  }
+  const int point = makePoint(vertex);
+  made_.emplace(vertex, point);
+  return point;
+}
+
+int ChildMesh::makePoint(VertexId vertex) {
+  const std::int64_t id = vertex / 3;
+  if (vertex % 3 == kOfVertex) {
+    return makeVertexPoint(id);
+  }
+  std::vector<int> sources;
+  if (vertex % 3 == kOfFace) {
+    const int size = parent_.faceSize(id);
+    for (int c = 0; c < size; ++c) {
+      sources.push_back(parent_.point(parent_.vertex({id, c})));
+    }
+    return points_.addFacePoint(sources);
+  }
+  const FaceCorner side = corners_.at(id), other = otherSide(side);
+  sources = {parent_.point(parent_.vertex(side)), parent_.point(parent_.vertexAfter(side, 1))};
+  if (!other.exists()) {
+    return points_.addEdgePoint(sources, 0, 0);
+  }
+  sources.push_back(point(3 * side.face + kOfFace));
+  sources.push_back(point(3 * other.face + kOfFace));
+  return points_.addEdgePoint(sources, parent_.faceSize(side.face), parent_.faceSize(other.face));
+}
+
+int ChildMesh::makeVertexPoint(VertexId vertex) {
+  const int faces = parent_.facesAt(vertex);
+  const bool interior = parent_.interior(vertex);
+  std::vector<int> sources = {parent_.point(vertex)};
+  if (!interior && faces == 1 && boundary_ == Boundary::corners) {
+    return points_.addVertexPoint(sources, VertexRule::corner, 2);
+  }
+  for (int i = 0; i < faces; ++i) {
+    sources.push_back(parent_.point(parent_.vertexAfter(parent_.faceAt(vertex, i), 1)));
+  }
+  if (!interior) {
+    const FaceCorner last = parent_.faceAt(vertex, faces - 1);
+    sources.push_back(
+        parent_.point(parent_.vertexAfter(last, parent_.faceSize(last.face) - 1)));
+    return points_.addVertexPoint(sources, VertexRule::crease, faces + 1);
+  }
+  for (int i = 0; i < faces; ++i) {
+    sources.push_back(point(3 * parent_.faceAt(vertex, i).face + kOfFace));
+  }
+  return points_.addVertexPoint(sources, VertexRule::smooth, faces);
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "limitsurf/eigen/eigenbasis.h"
+#include "limitsurf/patch/refined_points.h"
+
+namespace limitsurf {
+
+class Topology;
+
+/// A quad whose surface is one bicubic B-spline patch.
+struct BSplineTile {
+  std::array<int, 16> points;  ///< row-major in (y, x), from (-1, -1) to (2, 2)
+  /// Sides with no points beyond them: the boundary of the surface. Their entries in `points` repeat
+  /// others and weigh nothing.
+  bool x_low, x_high, y_low, y_high;
+};
+
+/// A quad with an extraordinary vertex at one corner and regular ones at the others.
+struct RingTile {
+  int ring;          ///< index into TileTable::rings
+  int face;          ///< which of the ring's faces
+  int ring_steps;    ///< how many subdivisions the ring's points are older than the outer points
+  int corner;        ///< the quad's corner with the extraordinary vertex
+  int depth;         ///< 1 for a child of a split Ptex face, else 0
+  std::array<int, tile_grid::kOuter> outer;  ///< points, in the order of the basis's outer cells
+};
+
+/// An extraordinary vertex: its eigenbasis and its points, shared by all tiles around it.
+struct RingPoints {
+  std::shared_ptr<const Eigenbasis> basis;
+  std::vector<int> points;  ///< in the order of Ring
+};
+
+/// What a Ptex face, or one of its four children, consists of.
+struct TileRef {
+  enum Kind : std::uint32_t { kNone = 0, kBSpline = 1, kRing = 2, kSplit = 3 };
+  std::uint32_t kind : 2;
+  std::uint32_t index : 30;
+};
+
+/// The surface as tiles: topology only, no positions.
+///
+/// A Ptex face is one tile, or splits into four children, child c standing at its corner c with the
+/// orientation of ChildMesh; children are tiles. Splits happen where a tile could not serve: beside
+/// faces other than quads, and where a quad has several extraordinary vertices.
+struct TileTable {
+  RefinedPoints points;
+  std::vector<TileRef> faces;                  ///< per Ptex face
+  std::vector<std::array<TileRef, 4>> splits;
+  std::vector<BSplineTile> bsplines;
+  std::vector<RingTile> ring_tiles;            ///< grouped by ring
+  std::vector<RingPoints> rings;
+};
+
+/// Numbers the Ptex faces of a mesh.
+struct PtexFaces {
+  explicit PtexFaces(const ControlMesh& mesh);
+  std::vector<int> base_face, corner;  ///< per Ptex face
+  std::vector<int> first;              ///< per face of the mesh; one more at the end
+};
+
+/// Throws nothing: faces that `topology` refuses get tiles of kind kNone.
+TileTable buildTileTable(const ControlMesh& mesh, const Topology& topology, const PtexFaces& ptex);
+
+}  // namespace limitsurf

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/limit_surface.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "limitsurf/surface/differential.h"
+#include "limitsurf/surface/limit_surface_data.h"
+
+namespace limitsurf {
+
+LimitSurface::Data::Data(ControlMesh&& control_mesh, PtexFaces&& ptex_faces,
+                         const Topology& topology)
+    : mesh(std::move(control_mesh)),
+      positions(mesh.positions()),
+      ptex(std::move(ptex_faces)),
+      refused(topology.refused()),
+      table(buildTileTable(mesh, topology, ptex)),
+      pose(table) {
+  pose.set(positions, 0);
+}
+
+LimitSurface::Data::Data(ControlMesh control_mesh)
+    : Data(std::move(control_mesh), PtexFaces(control_mesh), Topology(control_mesh)) {}
+
+VertexApproach LimitSurface::Data::approachTo(const TileLocation& at) const {
+  return vertexApproach(table, pose, static_cast<int>(at.tile.index),
+                        at.turns[0] + at.turns[1]);
+}
+
+void LimitSurface::Data::check(Span<Location> at, int threads) const {
+  if (threads < 0) {
+    throw std::invalid_argument("threads is " + std::to_string(threads) +
+                                "; 0 means all cores, n at most n");
+  }
+  std::ostringstream message;
+  message.precision(17);
+  for (std::size_t row = 0; row < at.size(); ++row) {
+    const Location& location = at[row];
+    const auto inside = [](double t) { return t >= 0 && t <= 1; };  // false for NaN
+    if (location.face < 0 || location.face >= static_cast<int>(table.faces.size())) {
+      message << "row " << row << ": face " << location.face << " is not among the "
+              << table.faces.size() << " Ptex faces";
+      throw LocationError(message.str());
+    }
+    if (!inside(location.u) || !inside(location.v)) {
+      message << "row " << row << ": (u, v) = (" << location.u << ", " << location.v
+              << ") is outside [0, 1]";
+      throw LocationError(message.str());
+    }
+    if (table.faces[location.face].kind == TileRef::kNone) {
+      const int base = ptex.base_face[location.face];
+      message << "row " << row << ": Ptex face " << location.face << " belongs to face " << base
+              << ", which has no limit surface: " << refused.at(base);
+      throw MeshError(message.str());
+    }
+  }
+}
+
+LimitSurface::LimitSurface(ControlMesh mesh) : data_(std::make_unique<Data>(std::move(mesh))) {}
+LimitSurface::~LimitSurface() = default;
+LimitSurface::LimitSurface(LimitSurface&&) noexcept = default;
+LimitSurface& LimitSurface::operator=(LimitSurface&&) noexcept = default;
+
+const ControlMesh& LimitSurface::mesh() const { return data_->mesh; }
+const Points& LimitSurface::positions() const { return data_->positions; }
+int LimitSurface::faceCount() const { return static_cast<int>(data_->ptex.base_face.size()); }
+const std::vector<int>& LimitSurface::baseFace() const { return data_->ptex.base_face; }
+const std::vector<int>& LimitSurface::corner() const { return data_->ptex.corner; }
+const std::map<int, std::string>& LimitSurface::refused() const { return data_->refused; }
+
+void LimitSurface::setPositions(const Points& positions, int threads) {
+  data_->check({}, threads);
+  checkPositions(positions, data_->mesh.vertexCount());
+  data_->positions = positions;
+  data_->pose.set(positions, threads);
+}
+
+Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bool normals,
+                                  int threads) const {
+  data_->check(at, threads);
+  const auto rows = static_cast<Eigen::Index>(at.size());
+  Evaluation out;
+  out.position.resize(rows, 3);
+  if (derivatives >= Derivatives::first) {
+    out.du.resize(rows, 3);
+    out.dv.resize(rows, 3);
+    if (normals) {
+      out.normal.resize(rows, 3);
+    }
+  }
+  if (derivatives == Derivatives::second) {
+    out.duu.resize(rows, 3);
+    out.duv.resize(rows, 3);
+    out.dvv.resize(rows, 3);
+  }
+
+  const auto put = [](Points& points, Eigen::Index row, const Padded& value) {
+    double* to = points.data() + 3 * row;
+    to[0] = value[0];
+    to[1] = value[1];
+    to[2] = value[2];
+  };
+  const auto putNormal = [&](Eigen::Index row, const TileLocation& place, const Jet& jet) {
+    Vector3 normal;
+    if (!place.atVertex()) {
+      normal = unitNormal(jet.du.head<3>(), jet.dv.head<3>());
+    } else if (vertexHasNormal(data_->ringAt(place))) {
+      const Vector3 towards = data_->approachTo(place).normal;
+      normal = towards / towards.norm();
+    } else {
+      normal.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    out.normal.row(row) = normal;
+  };
+
+  data_->forEach(at, threads,
+                 [&](Eigen::Index row, const TileLocation& place, TileEvaluator& evaluator) {
+                   Jet jet;
+                   if (derivatives == Derivatives::none) {
+                     evaluator.evaluate<0>(place, jet);
+                   } else if (derivatives == Derivatives::first) {
+                     evaluator.evaluate<1>(place, jet);
+                   } else {
+                     evaluator.evaluate<2>(place, jet);
+                   }
+                   put(out.position, row, jet.anchor + jet.offset);
+                   if (derivatives >= Derivatives::first) {
+                     put(out.du, row, jet.du);
+                     put(out.dv, row, jet.dv);
+                     if (normals) {
+                       putNormal(row, place, jet);
+                     }
+                   }
+                   if (derivatives == Derivatives::second) {
+                     const auto whole = [&](const Padded& half) -> Padded {
+                       return half.unaryExpr(
+                           [&](double x) { return std::ldexp(x, jet.exponent); });
+                     };
+                     put(out.duu, row, whole(jet.duu));
+                     put(out.duv, row, whole(jet.duv));
+                     put(out.dvv, row, whole(jet.dvv));
+                   }
+                 });
+  return out;
+}
+
+Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> LimitSurface::frames(Span<Location> at,
+                                                                               int threads) const {
+  data_->check(at, threads);
+  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> out(at.size(), 9);
+  data_->forEach(at, threads,
+                 [&](Eigen::Index row, const TileLocation& place, TileEvaluator& evaluator) {
+                   Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rotation;
+                   if (place.atVertex()) {
+                     const VertexApproach towards = data_->approachTo(place);
+                     rotation = frame(towards.du, towards.dv, towards.normal);
+                   } else {
+                     Jet jet;
+                     evaluator.evaluate<1>(place, jet);
+                     const Vector3 du = jet.du.head<3>(), dv = jet.dv.head<3>();
+                     const Vector3 normal = unitNormal(du, dv);
+                     rotation = frame(du, dv, normal.allFinite() ? normal : Vector3::Zero());
+                   }
+                   out.row(row) = Eigen::Map<const Eigen::Matrix<double, 1, 9>>(rotation.data());
+                 });
+  return out;
+}
+
+Curvature LimitSurface::curvature(Span<Location> at, int threads) const {
+  data_->check(at, threads);
+  const auto rows = static_cast<Eigen::Index>(at.size());
+  Curvature out;
+  for (Eigen::VectorXd* values : {&out.gaussian, &out.mean, &out.k1, &out.k2}) {
+    values->resize(rows);
+  }
+  out.direction1.resize(rows, 3);
+  out.direction2.resize(rows, 3);
+  data_->forEach(at, threads,
+                 [&](Eigen::Index row, const TileLocation& place, TileEvaluator& evaluator) {
+                   Jet jet;
+                   evaluator.evaluate<2>(place, jet);
+                   const PrincipalCurvatures k = principalCurvatures(jet);
+                   out.k1[row] = k.k1;
+                   out.k2[row] = k.k2;
+                   out.mean[row] = k.k1 / 2 + k.k2 / 2;
+                   out.gaussian[row] = k.k1 * k.k2;
+                   out.direction1.row(row) = k.direction1;
+                   out.direction2.row(row) = k.direction2;
+                 });
+  return out;
+}
+
+std::vector<Location> LimitSurface::vertexLocations() const {
+  std::vector<Location> result(data_->mesh.vertexCount());
+  for (int face = 0; face < data_->mesh.faceCount(); ++face) {
+    if (data_->refused.count(face)) {
+      continue;
+    }
+    const Span<int> vertices = data_->mesh.faceVertices(face);
+    for (int c = 0; c < static_cast<int>(vertices.size()); ++c) {
+      Location& location = result[vertices[c]];
+      if (location.face >= 0) {
+        continue;
+      }
+      const int first = data_->ptex.first[face];
+      if (vertices.size() == 4) {
+        location = {first, c == 1 || c == 2 ? 1. : 0., c >= 2 ? 1. : 0.};
+      } else {
+        location = {first + c, 0, 0};
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/pose.h"
+
+#include "limitsurf/parallel.h"
+
+namespace limitsurf {
+namespace {
+
+using tile_grid::cell;
+
+Padded padded(const Vector3& v) { return {v[0], v[1], v[2], 0}; }
+
+const TileStep<double>& tileStep(Sides sides) {
+  static const TileStep<double> steps[4] = {
+      TileStep<double>(Sides::inner), TileStep<double>(Sides::left), TileStep<double>(Sides::right),
+      TileStep<double>(Sides::both)};
+  return steps[static_cast<int>(sides)];
+}
+
+void setRingCells(const Ring& ring, int face, const Points& points, Padded cells[]) {
+  const auto put = [&](int x, int y, int i) {
+    cells[cell(x, y)] = padded(points.row(i).transpose());
+  };
+  const int k = ring.faces;
+  put(0, 0, 0);
+  put(1, 0, ring.edge(face));
+  put(1, 1, ring.face(face));
+  put(0, 1, ring.nextEdge(face));
+  if (ring.interior() || face > 0) {
+    const int before = (face + k - 1) % k;
+    put(0, -1, ring.edge(before));
+    put(1, -1, ring.face(before));
+  }
+  if (ring.interior() || face < k - 1) {
+    const int after = (face + 1) % k;
+    put(-1, 1, ring.face(after));
+    put(-1, 0, ring.nextEdge(after));
+  }
+}
+
+}  // namespace
+
+void Pose::set(const Points& cage, int threads) {
+  const RefinedPoints& refined = table_->points;
+  points_.resize(static_cast<std::size_t>(refined.size()));
+  parallelFor(static_cast<std::size_t>(cage.rows()), 16384, threads,
+              [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                  points_[i] = padded(cage.row(static_cast<Eigen::Index>(i)).transpose());
+                }
+              });
+  for (int i = refined.cagePoints(); i < refined.size(); ++i) {  // sources come first
+    const Span<int> sources = refined.sources(i);
+    const std::vector<double>& weights = refined.weights(i);
+    // Relative to one of the sources, to keep the digits of small faces far from the origin.
+    const Padded base = points_[sources[0]];
+    Padded sum = Padded::Zero();
+    for (std::size_t s = 1; s < sources.size(); ++s) {
+      sum += weights[s] * (points_[sources[s]] - base);
+    }
+    points_[i] = base + sum;
+  }
+
+  if (first_tile_.empty()) {
+    first_tile_.assign(table_->rings.size() + 1, 0);
+    ring_tiles_.resize(table_->ring_tiles.size());
+    std::size_t grids = 0;
+    for (std::size_t t = 0; t < ring_tiles_.size(); ++t) {
+      const RingTile& tile = table_->ring_tiles[t];
+      first_tile_[tile.ring + 1] = static_cast<int>(t) + 1;
+      ring_tiles_[t].first_grid = grids;
+      grids += gridSteps(tile);
+    }
+    grids_.resize(grids);
+    rings_.resize(table_->rings.size());
+  }
+  parallelFor(rings_.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t ring = begin; ring < end; ++ring) {
+      setRing(static_cast<int>(ring));
+    }
+  });
+}
+
+void Pose::setRing(int ring_index) {
+  const RingPoints& ring = table_->rings[ring_index];
+  RingPose& pose = rings_[ring_index];
+  const Padded vertex = points_[ring.points[0]];
+  Points points(ring.points.size(), 3);
+  for (std::size_t i = 0; i < ring.points.size(); ++i) {
+    points.row(i) = (points_[ring.points[i]] - vertex).head<3>().transpose();
+  }
+  ring.basis->project(points, pose.coefficients);
+  const Vector3 to_limit = pose.coefficients.row(0);
+  pose.limit = vertex + padded(to_limit);
+  // What rounding left between the limit as stored and the constant mode.
+  pose.coefficients.row(0) = ((vertex - pose.limit) + padded(to_limit)).head<3>().transpose();
+
+  points.rowwise() -= to_limit.transpose();
+  std::vector<Points> levels = {std::move(points)};
+  for (int t = first_tile_[ring_index]; t < first_tile_[ring_index + 1]; ++t) {
+    const RingTile& tile = table_->ring_tiles[t];
+    while (static_cast<int>(levels.size()) <= tile.ring_steps + gridSteps(tile)) {
+      levels.push_back(subdivideRing(ring.basis->ring(), levels.back()));
+    }
+    setRingTile(t, levels);
+  }
+}
+
+void Pose::setRingTile(int t, const std::vector<Points>& ring_levels) {
+  const RingTile& tile = table_->ring_tiles[t];
+  const Eigenbasis& basis = *table_->rings[tile.ring].basis;
+  const Padded& limit = rings_[tile.ring].limit;
+  RingTilePose& pose = ring_tiles_[t];
+
+  Grid start;
+  for (Padded& point : start.points) {
+    point.setZero();
+  }
+  setRingCells(basis.ring(), tile.face, ring_levels[tile.ring_steps], start.points);
+  const std::vector<int>& cells = basis.outerModes(tile.face).cells();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    pose.outer[i] = points_[tile.outer[i]] - limit;
+    start.points[cells[i]] = pose.outer[i];
+  }
+  const TileStep<double>& step = tileStep(basis.sides(tile.face));
+  const Padded* before = start.points;
+  for (int n = 1; n <= gridSteps(tile); ++n) {
+    Padded* after = grids_[pose.first_grid + n - 1].points;
+    std::fill_n(after, tile_grid::kCells, Padded::Zero());
+    step.apply(before, after);
+    setRingCells(basis.ring(), tile.face, ring_levels[tile.ring_steps + n], after);
+    before = after;
+  }
+}
+
+}  // namespace limitsurf

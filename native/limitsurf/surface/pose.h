@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limitsurf/eigen/tile_grid.h"
+#include "limitsurf/patch/tile_table.h"
+#include "limitsurf/surface/jet.h"
+
+namespace limitsurf {
+
+/// Everything about a surface that depends on its control points' positions.
+///
+/// Regular tiles read the points themselves. A ring keeps the coefficients of its modes, and a ring
+/// tile the control grids of its first subdivision steps: a random location lies deeper than n steps
+/// with probability 4^-n only.
+class Pose {
+ public:
+  /// Steps whose grids are kept, in a whole Ptex face and in a child of one.
+  static constexpr int kGridSteps[2] = {3, 2};
+
+  struct Grid {
+    Padded points[tile_grid::kCells];  ///< relative to the ring's limit
+  };
+
+  struct RingPose {
+    Padded limit;          ///< the limit position of the extraordinary vertex
+    Points coefficients;   ///< of the modes, relative to the limit
+  };
+
+  struct RingTilePose {
+    std::size_t first_grid = 0;
+    Padded outer[tile_grid::kOuter];  ///< relative to the ring's limit
+  };
+
+  explicit Pose(const TileTable& table) : table_(&table) {}
+
+  void set(const Points& cage, int threads);
+
+  const Padded& point(int i) const { return points_[i]; }
+  const RingPose& ring(int i) const { return rings_[i]; }
+  const RingTilePose& ringTile(int i) const { return ring_tiles_[i]; }
+  /// The grid after `steps` >= 1 steps.
+  const Grid& grid(int tile, int steps) const { return grids_[ring_tiles_[tile].first_grid + steps - 1]; }
+  static int gridSteps(const RingTile& tile) { return kGridSteps[tile.depth]; }
+
+ private:
+  void setRing(int ring);
+  void setRingTile(int tile, const std::vector<Points>& ring_levels);
+
+  const TileTable* table_;
+  std::vector<Padded> points_;
+  std::vector<RingPose> rings_;
+  std::vector<RingTilePose> ring_tiles_;
+  std::vector<int> first_tile_;  // per ring, and one more
+  std::vector<Grid> grids_;
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <stdexcept>
+
+#include "limitsurf/surface/limit_surface_data.h"
+
+namespace limitsurf {
+namespace {
+
+/// SplitMix64's output function (Steele, Lea, Flood 2014): random bits by counter, so that a sample
+/// depends on its seed and number alone.
+std::uint64_t mixed(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/// Uniform in [0, 1).
+double uniform(std::uint64_t bits) { return std::ldexp(static_cast<double>(bits >> 11), -53); }
+
+}  // namespace
+
+std::vector<Location> LimitSurface::scatterJittered(int per_side, std::uint64_t seed,
+                                                    int threads) const {
+  data_->check({}, threads);
+  if (per_side < 1) {
+    throw std::invalid_argument("per_side is " + std::to_string(per_side) +
+                                "; it must be at least 1");
+  }
+  std::vector<int> faces;
+  for (int face = 0; face < faceCount(); ++face) {
+    if (data_->table.faces[face].kind != TileRef::kNone) {
+      faces.push_back(face);
+    }
+  }
+  const std::size_t side = static_cast<std::size_t>(per_side), per_face = side * side;
+  std::vector<Location> result(faces.size() * per_face);
+  const std::uint64_t key = mixed(seed);
+  parallelFor(result.size(), 8192, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t cell = i % per_face;
+      const int face = faces[i / per_face];
+      const std::uint64_t number = static_cast<std::uint64_t>(face) * per_face + cell;
+      const std::uint64_t bits = mixed(key ^ mixed(number));
+      const double u = (static_cast<double>(cell % side) + uniform(bits)) / per_side;
+      const double v = (static_cast<double>(cell / side) + uniform(mixed(bits))) / per_side;
+      result[i] = {face, std::min(u, 1.), std::min(v, 1.)};
+    }
+  });
+  return result;
+}
+
+}  // namespace limitsurf

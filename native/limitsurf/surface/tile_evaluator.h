@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limitsurf/patch/tile_table.h"
+#include "limitsurf/surface/jet.h"
+#include "limitsurf/surface/pose.h"
+
+namespace limitsurf {
+
+/// Where a location lies among the tiles.
+struct TileLocation {
+  TileRef tile;
+  double u, v;        ///< in the tile's frame; of a ring tile turned so that its vertex is (0, 0)
+  int turns[2];       ///< corners by which the frame was turned: in the split, in the tile
+  bool in_split;
+
+  /// At the extraordinary vertex of a ring tile.
+  bool atVertex() const { return tile.kind == TileRef::kRing && u == 0 && v == 0; }
+};
+
+/// Evaluates single locations. Holds the control points of the last regular tile, which a batch
+/// sorted by face asks for again and again; one evaluator belongs to one thread.
+class TileEvaluator {
+ public:
+  TileEvaluator(const TileTable& table, const Pose& pose) : table_(table), pose_(pose) {}
+
+  TileLocation locate(const Location& at) const;
+
+  /// At an extraordinary vertex derivatives without a limit are NaN.
+  template <int Order>
+  void evaluate(const TileLocation& at, Jet& jet);
+
+ private:
+  template <int Order>
+  void evaluateBSpline(const TileLocation& at, Jet& jet);
+  template <int Order>
+  void evaluateRing(const TileLocation& at, Jet& jet);
+  const TileTable& table_;
+  const Pose& pose_;
+  int loaded_ = -1;
+  Padded window_[16];
+  Eigen::MatrixXd mode_weights_, outer_weights_;
+};
+
+/// The quarter of a ring tile that (u, v) lies in after enough subdivisions to leave the vertex's
+/// own quarter behind, and where in it. Not to be asked at the vertex.
+struct Quarter {
+  Quarter(double u, double v);
+  int steps;     ///< >= 1
+  int a, b;      ///< 0 or 1, not both 0
+  double u, v;   ///< in [0, 1]
+};
+
+/// Weights of the quarter's window for position and derivatives up to `order`.
+WindowWeights windowWeights(const Quarter& quarter, Sides sides, int order);
+
+/// Whether the low side of the quarter's window in u or v has no points beyond it.
+inline bool boundaryBefore(const Quarter& q, Sides sides) {
+  return q.a == 0 && (sides == Sides::right || sides == Sides::both);
+}
+inline bool boundaryBelow(const Quarter& q, Sides sides) {
+  return q.b == 0 && (sides == Sides::left || sides == Sides::both);
+}
+
+}  // namespace limitsurf
