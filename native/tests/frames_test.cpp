@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "support/meshes.h"
+#include "support/witness.h"
+
+namespace limitsurf::test {
+namespace {
+
+using Frame = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Frame frameOf(const LimitSurface& surface, const Location& at) {
+  const std::vector<Location> one = {at};
+  const auto rows = surface.frames(one);
+  return Eigen::Map<const Frame>(rows.data());
+}
+
+/// Tangent along du, normal x tangent, normal.
+Frame frameFrom(const Vector3& du, const Vector3& normal) {
+  Frame frame;
+  frame.col(0) = du.normalized();
+  frame.col(2) = normal;
+  frame.col(1) = normal.cross(frame.col(0));
+  return frame;
+}
+
+TEST(Frames, AreRotationsEverywhere) {
+  for (const Cage& cage : {cross(), cube(), perturbed(valenceTwo(), 0.1, 1), fan(5, false, 2),
+                           fan(4, false, 3), fan(9, true, 4), mixture(5), ngon(5, 6)}) {
+    const LimitSurface surface = limitSurface(cage);
+    std::vector<Location> at;
+    Random random(1);
+    for (int face = 0; face < static_cast<int>(ptexFaces(cage).size()); ++face) {
+      at += anywhere(face, 3, random);
+      for (int corner = 0; corner < 4; ++corner) {
+        at.push_back(cornerLocation(face, corner));
+        at += shells(face, corner, {3, 20, 40});
+      }
+    }
+    const auto frames = surface.frames(at);
+    ASSERT_EQ(frames.rows(), static_cast<int>(at.size()));
+    for (int i = 0; i < frames.rows(); ++i) {
+      const Frame frame = Eigen::Map<const Frame>(frames.data() + 9 * i);
+      EXPECT_LE((frame.transpose() * frame - Frame::Identity()).cwiseAbs().maxCoeff(), 1e-14)
+          << describe(at[i]);
+      EXPECT_NEAR(frame.determinant(), 1, 1e-14) << describe(at[i]);
+    }
+  }
+}
+
+TEST(Frames, FollowDuAndTheNormal) {
+  const Cage cage = mixture(6);
+  const LimitSurface surface = limitSurface(cage);
+  std::vector<Location> at;
+  Random random(1);
+  for (int face = 0; face < static_cast<int>(ptexFaces(cage).size()); ++face) {
+    at += anywhere(face, 10, random);
+  }
+  const Evaluation e = surface.evaluate(at, Derivatives::first, true);
+  const auto frames = surface.frames(at);
+  for (int i = 0; i < frames.rows(); ++i) {
+    const Frame frame = Eigen::Map<const Frame>(frames.data() + 9 * i);
+    EXPECT_LE((frame - frameFrom(e.du.row(i), e.normal.row(i))).norm(), 1e-14) << describe(at[i]);
+  }
+}
+
+/// The frame on the diagonal towards (0, 0), where going deeper changes it no more.
+std::optional<Frame> diagonalLimit(DeepSubdivision& deep, int face) {
+  std::optional<Frame> last;
+  for (int n : {160, 320}) {
+    const double t = std::ldexp(1.0, -n);
+    const Truth truth = deep.evaluate({face, t, t});
+    const Frame frame = frameFrom(truth[kDu], truth[kNormal]);
+    if (last && (frame - *last).norm() < 1e-13) return frame;
+    last = frame;
+  }
+  return std::nullopt;
+}
+
+/// Compares the frame at the vertex with the limit along the diagonal, as far as that settles (it
+/// does not where two leading eigenvalues lie close together).
+void compareAtVertices(bool closed, Boundary boundary, const std::vector<int>& fans,
+                       int least_compared) {
+  int compared = 0;
+  double worst = 0;
+  for (int faces : fans) {
+    Cage cage = fan(faces, closed, 10 + faces);
+    cage.options.boundary = boundary;
+    const LimitSurface surface = limitSurface(cage);
+    DeepSubdivision deep(cage);
+    for (int sector = 0; sector < faces; ++sector) {
+      const std::optional<Frame> limit = diagonalLimit(deep, 4 * sector);
+      if (!limit) continue;
+      ++compared;
+      const double error = (frameOf(surface, {4 * sector, 0, 0}) - *limit).norm();
+      worst = std::max(worst, error);
+      EXPECT_LE(error, 1e-10) << faces << " faces, sector " << sector << ": is\n"
+                              << frameOf(surface, {4 * sector, 0, 0}) << "\nshould be\n"
+                              << *limit;
+    }
+  }
+  std::printf("  %d frames compared, worst %.1e\n", compared, worst);
+  EXPECT_GE(compared, least_compared);
+}
+
+TEST(Frames, AtInteriorVerticesAreTheLimitAlongTheDiagonal) {
+  compareAtVertices(true, Boundary::smooth, {3, 4, 5, 6, 7, 8, 9}, 20);
+}
+
+TEST(Frames, AtSmoothBoundariesAreTheLimitAlongTheDiagonal) {
+  compareAtVertices(false, Boundary::smooth, {2, 3, 5, 6, 7, 9, 10}, 10);
+}
+
+TEST(Frames, AtPinnedBoundariesAreTheLimitAlongTheDiagonal) {
+  compareAtVertices(false, Boundary::corners, {1, 2, 3, 5, 6}, 5);
+}
+
+TEST(Frames, AtOtherCornersAreTheSameAsSeenFromTheVertex) {
+  // Turning the face's vertices, so that the vertex lies at another corner, turns du into dv and so
+  // on: the normal stays.
+  const Cage cage = fan(5, true, 3);
+  const Frame frame = frameOf(limitSurface(cage), {0, 0, 0});
+  for (int turn = 1; turn < 4; ++turn) {
+    Cage turned = cage;
+    std::rotate(turned.faces[0].begin(), turned.faces[0].begin() + turn, turned.faces[0].end());
+    const int corner = 4 - turn;
+    const Frame other = frameOf(limitSurface(turned), cornerLocation(0, corner));
+    EXPECT_LE((other.col(2) - frame.col(2)).norm(), 1e-12) << "turned by " << turn;
+    DeepSubdivision deep(turned);
+    const Location vertex = cornerLocation(0, corner);
+    const double t = 0x1p-50;
+    const Truth truth = deep.evaluate({0, std::abs(vertex.u - t), std::abs(vertex.v - t)});
+    EXPECT_LE((other - frameFrom(truth[kDu], truth[kNormal])).norm(), 1e-6) << "turned " << turn;
+  }
+}
+
+}  // namespace
+}  // namespace limitsurf::test

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The promised accuracy, held on values of the true limit surface.
+#include "support/golden.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "support/accuracy.h"
+
+namespace limitsurf::test {
+namespace {
+
+class GoldenValues : public testing::TestWithParam<std::string> {};
+
+TEST_P(GoldenValues, AreReached) {
+  const Golden golden = readGolden(GetParam());
+  if (golden.hasSharpness()) GTEST_SKIP() << "has sharpness, which is not supported yet";
+  const LimitSurface surface = limitSurface(golden.cage);
+  const CornerPoints corners(golden.cage);
+  const Evaluation evaluation = surface.evaluate(golden.at, Derivatives::second, true);
+
+  Accuracy accuracy(golden.name, diagonal(golden.cage.positions));
+  for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
+    accuracy.addScale(golden.at[i], truthOf(golden, i));
+  }
+  for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
+    Truth truth = truthOf(golden, i);
+    if (corners.insideSmoothCorner(golden.at[i])) truth.values[kNormal].setConstant(NAN);
+    accuracy.check(golden.at[i], rowOf(evaluation, i), truth);
+  }
+  std::printf("%s\n", accuracy.summary().c_str());
+  for (int quantity = 0; quantity < kQuantities; ++quantity) {
+    char figure[20];
+    std::snprintf(figure, sizeof figure, "%.2e", accuracy.worst(quantity));
+    RecordProperty(kQuantityNames[quantity], figure);
+  }
+}
+
+TEST_P(GoldenValues, AreMissingWhereThereIsNoLimit) {
+  const Golden golden = readGolden(GetParam());
+  if (golden.hasSharpness()) GTEST_SKIP() << "has sharpness, which is not supported yet";
+  const LimitSurface surface = limitSurface(golden.cage);
+  const CornerPoints corners(golden.cage);
+  const Evaluation evaluation = surface.evaluate(golden.at, Derivatives::second, true);
+
+  for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
+    const Truth got = rowOf(evaluation, i), truth = truthOf(golden, i);
+    for (int quantity = 0; quantity < kQuantities; ++quantity) {
+      const auto where = [&] {
+        return golden.name + ", " + describe(golden.at[i]) + ": " + kQuantityNames[quantity];
+      };
+      if (!truth[quantity].hasNaN()) {
+        EXPECT_TRUE(got[quantity].allFinite()) << where();
+        continue;
+      }
+      const CornerPoint* corner = corners.at(golden.at[i]);
+      ASSERT_TRUE(corner != nullptr && !corner->regular()) << where();
+      const bool first = quantity == kDu || quantity == kDv;
+      if (first && !corner->boundary && corner->faces <= 3) {
+        EXPECT_EQ(got[quantity], Vector3::Zero()) << where() << " at interior valence 2 or 3";
+      } else {
+        EXPECT_TRUE(got[quantity].array().isNaN().all())
+            << where() << " has no limit, but is " << got[quantity].transpose();
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GoldenValues, testing::ValuesIn(goldenNames()),
+                         [](const auto& info) { return info.param; });
+
+TEST(GoldenData, SaysHowMuchOfItIsSkipped) {
+  int held = 0, skipped = 0;
+  long samples = 0;
+  for (const std::string& name : goldenNames()) {
+    const Golden golden = readGolden(name);
+    ++(golden.hasSharpness() ? skipped : held);
+    if (!golden.hasSharpness()) samples += static_cast<long>(golden.at.size());
+  }
+  std::printf("golden values: %d meshes (%ld locations) held, %d meshes with sharpness skipped\n",
+              held, samples, skipped);
+  EXPECT_EQ(held + skipped, 78);
+}
+
+}  // namespace
+}  // namespace limitsurf::test

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "support/accuracy.h"
+#include "support/deep_subdivision.h"
+#include "support/random.h"
+
+namespace limitsurf::test {
+
+/// Holds LimitSurface to the promised accuracy against DeepSubdivision at all the locations; at
+/// irregular vertices themselves in position alone. Adds the worst figures to `all`.
+void compareWithSubdivision(const std::string& name, const Cage& cage,
+                            const std::vector<Location>& at, Accuracy& all);
+
+/// Locations on square rings at the distances 2^-n of a face's corner: on the diagonal, on both
+/// sides of it, and on both edges. No rounding: 1 - u of a location is exact for n up to 50.
+std::vector<Location> shells(int face, int corner, const std::vector<int>& n);
+
+/// `count` locations anywhere on the face.
+std::vector<Location> anywhere(int face, int count, Random& random);
+
+/// Appends.
+void operator+=(std::vector<Location>& locations, const std::vector<Location>& more);
+
+}  // namespace limitsurf::test
