@@ -37,22 +37,23 @@ struct Powers {
   }
 };
 
-using Functionals = Eigen::Array<double, WindowWeights::kMax, 1>;
+using Functionals = Eigen::Array<double, GridWindow::kMaxCount, 1>;
 
-Functionals applied(const WindowWeights& window, const double* grid) {
-  Functionals result = Functionals::Zero();
+Functionals applied(const GridWindow& window, const double* grid) {
   const double* corner = grid + window.b * tile_grid::kSize + window.a;
-  for (int d = 0; d < window.count; ++d) {
-    double sum = 0;
-    for (int y = 0; y < 4; ++y) {
-      double row = 0;
-      for (int x = 0; x < 4; ++x) {
-        row += window.w[d][4 * y + x] * corner[y * tile_grid::kSize + x];
-      }
-      sum += row;
-    }
-    result[d] = sum;
+  PatchValues<double> patch{};
+  switch (window.order) {
+    case 0:
+      evaluateWindow<0>(corner, tile_grid::kSize, window.u, window.v, patch);
+      break;
+    case 1:
+      evaluateWindow<1>(corner, tile_grid::kSize, window.u, window.v, patch);
+      break;
+    default:
+      evaluateWindow<2>(corner, tile_grid::kSize, window.u, window.v, patch);
   }
+  Functionals result;
+  result << patch.value, patch.du, patch.dv, patch.duu, patch.duv, patch.dvv;
   return result;
 }
 
@@ -293,21 +294,21 @@ Eigenbasis::Table Eigenbasis::table(int mode, int face) const {
   return result;
 }
 
-void Eigenbasis::weights(int face, int steps, int ring_steps, const WindowWeights& window,
+void Eigenbasis::weights(int face, int steps, int ring_steps, const GridWindow& window,
                          Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& outer_weights) const {
   const FaceTables& t = tables(sides(face));
   const OuterModes<double>& outer = t.outer_modes;
-  const int count = window.count, outer_count = outer.count();
+  const int count = window.count(), outer_count = outer.count();
   mode_weights.resize(count, modeCount());
 
   // Weights on the outer modes, then through W^-1 on the outer points.
-  Eigen::Matrix<double, WindowWeights::kMax, tile_grid::kOuter> on_outer_modes;
+  Eigen::Matrix<double, GridWindow::kMaxCount, tile_grid::kOuter> on_outer_modes;
   for (int q = 0; q < outer_count; ++q) {
     on_outer_modes.col(q) =
         scaled(applied(window, t.outer[q].grid), Powers(outer.lambda(q), steps - 1), count);
   }
-  Eigen::Matrix<double, WindowWeights::kMax, tile_grid::kOuter> on_outer =
-      Eigen::Matrix<double, WindowWeights::kMax, tile_grid::kOuter>::Zero();
+  Eigen::Matrix<double, GridWindow::kMaxCount, tile_grid::kOuter> on_outer =
+      Eigen::Matrix<double, GridWindow::kMaxCount, tile_grid::kOuter>::Zero();
   on_outer.leftCols(outer_count) = on_outer_modes.leftCols(outer_count) * outer.inverse();
   outer_weights = on_outer.topLeftCorner(count, outer_count);
 

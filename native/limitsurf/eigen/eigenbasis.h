@@ -5,19 +5,22 @@
 #include <memory>
 #include <vector>
 
+#include "limitsurf/eigen/bspline_window.h"
 #include "limitsurf/eigen/outer_modes.h"
 #include "limitsurf/eigen/ring.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
 
-/// Functionals of a face's control grid, to be applied after some subdivision steps: a quarter's
-/// 4 x 4 window of weights for each derivative wanted.
-struct WindowWeights {
-  static constexpr int kMax = 6;
-  int a = 0, b = 0;       ///< the quarter: window from cell (a - 1, b - 1)
-  int count = 1;          ///< position; du, dv; duu, duv, dvv: 1, 3 or 6 functionals
-  double w[kMax][16];     ///< row-major in (y, x)
+/// Where to evaluate a face's control grid after some subdivision steps, and which derivatives.
+struct GridWindow {
+  int a, b;           ///< the quarter: window from cell (a - 1, b - 1)
+  CubicWeights u, v;
+  int order;          ///< 0: value; 1: du and dv as well; 2: duu, duv, dvv as well
+
+  static constexpr int kMaxCount = 6;
+  /// How many functionals that makes: 1, 3 or 6.
+  int count() const { return order == 0 ? 1 : order == 1 ? 3 : 6; }
 };
 
 /// The eigenbasis of one kind of ring: everything that evaluation near an extraordinary vertex needs
@@ -72,7 +75,7 @@ class Eigenbasis {
   /// `ring_steps`: how many steps the ring's coefficients are older than the outer points.
   /// `mode_weights` gets one row per functional and one column per mode.
   /// Cost: O(faces).
-  void weights(int face, int steps, int ring_steps, const WindowWeights& window,
+  void weights(int face, int steps, int ring_steps, const GridWindow& window,
                Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& outer_weights) const;
 
  private:
@@ -89,7 +92,6 @@ class Eigenbasis {
   struct Spoke {
     double edge, face;  // (x_e, x_f)
   };
-  using Amplitudes = Eigen::Array<double, Eigen::Dynamic, 3>;  // powers of eigenvalues
 
   class Builder;
   friend class Builder;

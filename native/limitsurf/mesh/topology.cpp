@@ -35,23 +35,21 @@ int repeatedVertex(Span<int> vertices) {
   return twice == sorted.end() ? -1 : *twice;
 }
 
-/// Why the faces at a vertex form no single fan.
-std::string nonManifoldReason(const Far::TopologyLevel& level, int vertex) {
+/// What is wrong with one of the vertex's edges; empty if nothing is.
+std::string nonManifoldEdge(const Far::TopologyLevel& level, int vertex) {
   for (const int edge : level.GetVertexEdges(vertex)) {
     if (!level.IsEdgeNonManifold(edge)) {
       continue;
     }
     const auto ends = level.GetEdgeVertices(edge);
     const auto faces = level.GetEdgeFaces(edge);
-    if (faces.size() > 2) {
-      return text("edge (", ends[0], ", ", ends[1], ") has ", faces.size(), " faces");
-    }
     if (faces.size() == 2) {
       return text("faces ", faces[0], " and ", faces[1], " have opposite windings along edge (",
                   ends[0], ", ", ends[1], ")");
     }
+    return text("edge (", ends[0], ", ", ends[1], ") has ", faces.size(), " faces");
   }
-  return text("the faces at vertex ", vertex, " form more than one fan");
+  return {};
 }
 
 }  // namespace
@@ -93,9 +91,16 @@ void Topology::refuseSpoiled(const ControlMesh& mesh) {
     }
   }
   for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
-    if (level().IsVertexNonManifold(vertex) && level().GetVertexFaces(vertex).size() > 0) {
-      spoiled.emplace(vertex,
-                      text("at vertex ", vertex, ", ", nonManifoldReason(level(), vertex)));
+    if (!level().IsVertexNonManifold(vertex) || level().GetVertexFaces(vertex).size() == 0 ||
+        spoiled.count(vertex)) {
+      continue;
+    }
+    std::string reason = nonManifoldEdge(level(), vertex);
+    if (reason.empty() && !splitIntoFans(vertex)) {
+      reason = "a closed fan of faces meets others";
+    }
+    if (!reason.empty()) {
+      spoiled.emplace(vertex, text("at vertex ", vertex, ", ", reason));
     }
   }
   for (const auto& [vertex, reason] : spoiled) {
@@ -103,6 +108,42 @@ void Topology::refuseSpoiled(const ControlMesh& mesh) {
       refused_.emplace(face, reason);
     }
   }
+}
+
+bool Topology::splitIntoFans(int vertex) {
+  const auto faces = level().GetVertexFaces(vertex);
+  const auto corners = level().GetVertexFaceLocalIndices(vertex);
+  std::map<int, int> face_after;  // edge -> which of `faces` it is the first edge of
+  std::map<int, int> face_before;
+  for (int i = 0; i < faces.size(); ++i) {
+    const auto edges = level().GetFaceEdges(faces[i]);
+    face_after[edges[corners[i]]] = i;
+    face_before[edges[(corners[i] + edges.size() - 1) % edges.size()]] = i;
+  }
+  std::vector<SplitFan> fans;
+  int used = 0;
+  for (const auto& [first_edge, first] : face_after) {
+    if (face_before.count(first_edge)) {
+      continue;  // not where a fan begins
+    }
+    SplitFan fan{vertex, {}};
+    for (int i = first;;) {
+      fan.faces.emplace_back(faces[i], corners[i]);
+      ++used;
+      const auto edges = level().GetFaceEdges(faces[i]);
+      const auto next = face_after.find(edges[(corners[i] + edges.size() - 1) % edges.size()]);
+      if (next == face_after.end()) {
+        break;
+      }
+      i = next->second;
+    }
+    fans.push_back(std::move(fan));
+  }
+  if (used != faces.size()) {
+    return false;
+  }
+  split_fans_.insert(split_fans_.end(), fans.begin(), fans.end());
+  return true;
 }
 
 }  // namespace limitsurf

@@ -132,8 +132,8 @@ int ChildMesh::makeVertexPoint(VertexId vertex) {
   const int faces = parent_.facesAt(vertex);
   const bool interior = parent_.interior(vertex);
   std::vector<int> sources = {parent_.point(vertex)};
-  if (!interior && faces == 1 && boundary_ == Boundary::corners) {
-    return points_.addVertexPoint(sources, VertexRule::corner, 2);
+  if (parent_.pinned(vertex)) {
+    return points_.addVertexPoint(sources, VertexRule::corner, 0);
   }
   for (int i = 0; i < faces; ++i) {
     sources.push_back(parent_.point(parent_.vertexAfter(parent_.faceAt(vertex, i), 1)));

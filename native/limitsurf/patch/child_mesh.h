@@ -3,7 +3,6 @@
 
 #include <unordered_map>
 
-#include "limitsurf/mesh/control_mesh.h"
 #include "limitsurf/patch/corner_numbering.h"
 #include "limitsurf/patch/face_mesh.h"
 #include "limitsurf/patch/refined_points.h"
@@ -17,8 +16,8 @@ namespace limitsurf {
 class ChildMesh final : public FaceMesh {
  public:
   /// `corners` numbers the parent's corners; the numbers are the children's ids.
-  ChildMesh(FaceMesh& parent, const CornerNumbering& corners, RefinedPoints& points, Boundary boundary)
-      : parent_(parent), corners_(corners), points_(points), boundary_(boundary) {}
+  ChildMesh(FaceMesh& parent, const CornerNumbering& corners, RefinedPoints& points)
+      : parent_(parent), corners_(corners), points_(points) {}
 
   FaceId child(FaceCorner at) const { return corners_.number(at); }
   FaceCorner parentCorner(FaceId face) const { return corners_.at(face); }
@@ -32,6 +31,9 @@ class ChildMesh final : public FaceMesh {
   int facesAt(VertexId vertex) const override;
   bool interior(VertexId vertex) const override;
   FaceCorner faceAt(VertexId vertex, int i) const override;
+  bool pinned(VertexId vertex) const override {
+    return vertex % 3 == kOfVertex && parent_.pinned(vertex / 3);
+  }
   int positionOf(FaceCorner at) const override;
   int point(VertexId vertex) override;
 
@@ -49,7 +51,6 @@ class ChildMesh final : public FaceMesh {
   FaceMesh& parent_;
   const CornerNumbering& corners_;
   RefinedPoints& points_;
-  Boundary boundary_;
   std::unordered_map<VertexId, int> made_;
 };
 

@@ -30,6 +30,8 @@ class FaceMesh {
   virtual int facesAt(VertexId vertex) const = 0;
   virtual bool interior(VertexId vertex) const = 0;
   virtual FaceCorner faceAt(VertexId vertex, int i) const = 0;
+  /// Whether the vertex, on a boundary, stays where it is.
+  virtual bool pinned(VertexId vertex) const = 0;
   /// The i for which faceAt(vertex(at), i) is `at`.
   virtual int positionOf(FaceCorner at) const = 0;
 
@@ -50,11 +52,13 @@ class Fan {
         vertex_(mesh.vertex(at)),
         count_(mesh.facesAt(vertex_)),
         interior_(mesh.interior(vertex_)),
+        pinned_(mesh.pinned(vertex_)),
         position_(mesh.positionOf(at)) {}
 
   VertexId vertex() const { return vertex_; }
   int count() const { return count_; }
   bool interior() const { return interior_; }
+  bool pinned() const { return pinned_; }
   /// Where the face stands among the vertex's faces.
   int position() const { return position_; }
 
@@ -82,7 +86,7 @@ class Fan {
   const FaceMesh& mesh_;
   VertexId vertex_;
   int count_;
-  bool interior_;
+  bool interior_, pinned_;
   int position_;
 };
 

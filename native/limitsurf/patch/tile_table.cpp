@@ -67,9 +67,9 @@ class Builder {
         ptex_(ptex),
         table_{RefinedPoints(mesh.vertexCount(), mesh.options().triangles), {}, {}, {}, {}, {}},
         cage_corners_(mesh),
-        levels_{CageMesh(topology, cage_corners_),
-                ChildMesh(levels_.cage, cage_corners_, table_.points, mesh.options().boundary),
-                ChildMesh(levels_.child, quad_corners_, table_.points, mesh.options().boundary)} {}
+        levels_{CageMesh(topology, cage_corners_, mesh.options().boundary),
+                ChildMesh(levels_.cage, cage_corners_, table_.points),
+                ChildMesh(levels_.child, quad_corners_, table_.points)} {}
 
   TileTable build() {
     table_.faces.assign(ptex_.base_face.size(), TileRef{TileRef::kNone, 0});
@@ -91,16 +91,13 @@ class Builder {
     ChildMesh child, grandchild;
   };
 
-  bool regular(const Fan& fan) const {
-    if (fan.interior()) {
-      return fan.count() == 4;
-    }
-    return fan.count() == 2 || (fan.count() == 1 && mesh_.options().boundary == Boundary::corners);
+  static bool regular(const Fan& fan) {
+    return fan.count() == (fan.interior() ? 4 : fan.pinned() ? 1 : 2);
   }
 
-  int extraordinary(const QuadFans& quad) const {
+  static int extraordinary(const QuadFans& quad) {
     return static_cast<int>(std::count_if(std::begin(quad.fans), std::end(quad.fans),
-                                          [&](const Fan& fan) { return !regular(fan); }));
+                                          [](const Fan& fan) { return !regular(fan); }));
   }
 
   static bool allQuads(const QuadFans& quad) {
@@ -261,7 +258,10 @@ class Builder {
 
   static RingPoints makeRing(FaceMesh& mesh, VertexId vertex) {
     const int faces = mesh.facesAt(vertex);
-    const Ring ring{mesh.interior(vertex) ? RingKind::interior : RingKind::boundary, faces};
+    const Ring ring{mesh.interior(vertex) ? RingKind::interior
+                    : mesh.pinned(vertex) ? RingKind::pinned
+                                          : RingKind::boundary,
+                    faces};
     RingPoints result;
     result.basis = Eigenbasis::get(ring);
     result.points.resize(ring.size());

@@ -62,23 +62,23 @@ Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& norma
 
 PrincipalCurvatures principalCurvatures(const Jet& jet) {
   PrincipalCurvatures result{kNaN, kNaN, Vector3::Constant(kNaN), Vector3::Constant(kNaN)};
-  const double first = std::max(jet.du.abs().maxCoeff(), jet.dv.abs().maxCoeff());
-  const Vector3 du = jet.du.head<3>() / first, dv = jet.dv.head<3>() / first;
+  const double first = std::max(jet.patch.du.abs().maxCoeff(), jet.patch.dv.abs().maxCoeff());
+  const Vector3 du = jet.patch.du.head<3>() / first, dv = jet.patch.dv.head<3>() / first;
   const Vector3 n = unitNormal(du, dv);
   if (!n.allFinite()) {
     return result;
   }
-  double second = std::max({jet.duu.abs().maxCoeff(), jet.duv.abs().maxCoeff(),
-                            jet.dvv.abs().maxCoeff()});
+  double second = std::max({jet.patch.duu.abs().maxCoeff(), jet.patch.duv.abs().maxCoeff(),
+                            jet.patch.dvv.abs().maxCoeff()});
   if (second == 0) {
     second = 1;
   }
   // In the orthonormal basis (x, y) of the tangent plane du = (a, 0), dv = (b, c).
   const Vector3 x = du.normalized(), y = n.cross(x);
   const double a = du.norm(), b = dv.dot(x), c = dv.dot(y);
-  const double uu = (jet.duu / second).matrix().head<3>().dot(n);
-  const double uv = (jet.duv / second).matrix().head<3>().dot(n);
-  const double vv = (jet.dvv / second).matrix().head<3>().dot(n);
+  const double uu = (jet.patch.duu / second).matrix().head<3>().dot(n);
+  const double uv = (jet.patch.duv / second).matrix().head<3>().dot(n);
+  const double vv = (jet.patch.dvv / second).matrix().head<3>().dot(n);
   const double xx = uu / (a * a);
   const double xy = (uv - b * a * xx) / (a * c);
   const double yy = (vv - 2 * b * c * xy - b * b * xx) / (c * c);

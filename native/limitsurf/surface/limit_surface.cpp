@@ -104,7 +104,7 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
   const auto putNormal = [&](Eigen::Index row, const TileLocation& place, const Jet& jet) {
     Vector3 normal;
     if (!place.atVertex()) {
-      normal = unitNormal(jet.du.head<3>(), jet.dv.head<3>());
+      normal = unitNormal(jet.patch.du.head<3>(), jet.patch.dv.head<3>());
     } else if (vertexHasNormal(data_->ringAt(place))) {
       const Vector3 towards = data_->approachTo(place).normal;
       normal = towards / towards.norm();
@@ -124,10 +124,10 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
                    } else {
                      evaluator.evaluate<2>(place, jet);
                    }
-                   put(out.position, row, jet.anchor + jet.offset);
+                   put(out.position, row, jet.anchor + jet.patch.value);
                    if (derivatives >= Derivatives::first) {
-                     put(out.du, row, jet.du);
-                     put(out.dv, row, jet.dv);
+                     put(out.du, row, jet.patch.du);
+                     put(out.dv, row, jet.patch.dv);
                      if (normals) {
                        putNormal(row, place, jet);
                      }
@@ -137,9 +137,9 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
                        return half.unaryExpr(
                            [&](double x) { return std::ldexp(x, jet.exponent); });
                      };
-                     put(out.duu, row, whole(jet.duu));
-                     put(out.duv, row, whole(jet.duv));
-                     put(out.dvv, row, whole(jet.dvv));
+                     put(out.duu, row, whole(jet.patch.duu));
+                     put(out.duv, row, whole(jet.patch.duv));
+                     put(out.dvv, row, whole(jet.patch.dvv));
                    }
                  });
   return out;
@@ -158,7 +158,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> LimitSurface::frames(S
                    } else {
                      Jet jet;
                      evaluator.evaluate<1>(place, jet);
-                     const Vector3 du = jet.du.head<3>(), dv = jet.dv.head<3>();
+                     const Vector3 du = jet.patch.du.head<3>(), dv = jet.patch.dv.head<3>();
                      const Vector3 normal = unitNormal(du, dv);
                      rotation = frame(du, dv, normal.allFinite() ? normal : Vector3::Zero());
                    }

@@ -64,13 +64,16 @@ class Row {
   void addBSpline(const TileLocation& at) {
     const BSplineTile& tile = table_.bsplines[at.tile.index];
     const CubicWeights u(at.u, tile.x_low, tile.x_high), v(at.v, tile.y_low, tile.y_high);
+    double du[4], dv[4];
+    u.firstOnPoints(du);
+    v.firstOnPoints(dv);
     for (int y = 0; y < 4; ++y) {
       for (int x = 0; x < 4; ++x) {
         const bool beyond = (x == 0 && tile.x_low) || (x == 3 && tile.x_high) ||
                             (y == 0 && tile.y_low) || (y == 3 && tile.y_high);
         if (!beyond) {
-          add(tile.points[4 * y + x], {v.value[y] * u.value[x], v.value[y] * u.first[x],
-                                       v.first[y] * u.value[x]});
+          add(tile.points[4 * y + x], {v.value[y] * u.value[x], v.value[y] * du[x],
+                                       dv[y] * u.value[x]});
         }
       }
     }
@@ -85,7 +88,7 @@ class Row {
     } else {
       const Quarter quarter(at.u, at.v);
       ring.basis->weights(tile.face, quarter.steps, tile.ring_steps,
-                          windowWeights(quarter, ring.basis->sides(tile.face), order),
+                          gridWindow(quarter, ring.basis->sides(tile.face), order),
                           mode_weights, outer_weights);
     }
     const Eigen::MatrixXd on_ring = ring.basis->projectTransposed(mode_weights.transpose());

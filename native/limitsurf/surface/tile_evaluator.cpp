@@ -20,23 +20,11 @@ Quarter::Quarter(double u_, double v_) {
   v -= b;
 }
 
-WindowWeights windowWeights(const Quarter& quarter, Sides sides, int order) {
-  const CubicWeights u(quarter.u, boundaryBefore(quarter, sides), false);
-  const CubicWeights v(quarter.v, boundaryBelow(quarter, sides), false);
-  const double* u_factors[6] = {u.value, u.first, u.value, u.second, u.first, u.value};
-  const double* v_factors[6] = {v.value, v.value, v.first, v.value, v.first, v.second};
-  WindowWeights window;
-  window.a = quarter.a;
-  window.b = quarter.b;
-  window.count = order == 0 ? 1 : order == 1 ? 3 : 6;
-  for (int d = 0; d < window.count; ++d) {
-    for (int y = 0; y < 4; ++y) {
-      for (int x = 0; x < 4; ++x) {
-        window.w[d][4 * y + x] = v_factors[d][y] * u_factors[d][x];
-      }
-    }
-  }
-  return window;
+GridWindow gridWindow(const Quarter& quarter, Sides sides, int order) {
+  const bool left = sides == Sides::left || sides == Sides::both;
+  const bool right = sides == Sides::right || sides == Sides::both;
+  return {quarter.a, quarter.b, CubicWeights(quarter.u, right && quarter.a == 0, false),
+          CubicWeights(quarter.v, left && quarter.b == 0, false), order};
 }
 
 TileLocation TileEvaluator::locate(const Location& at) const {
@@ -94,7 +82,7 @@ void TileEvaluator::evaluateBSpline(const TileLocation& at, Jet& jet) {
   }
   jet.anchor = anchor;
   evaluateWindow<Order>(window_, 4, CubicWeights(at.u, tile.x_low, tile.x_high),
-                        CubicWeights(at.v, tile.y_low, tile.y_high), jet);
+                        CubicWeights(at.v, tile.y_low, tile.y_high), jet.patch);
 }
 
 template <int Order>
@@ -102,34 +90,33 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   const int index = static_cast<int>(at.tile.index);
   const RingTile& tile = table_.ring_tiles[index];
   const Quarter quarter(at.u, at.v);
+  const Eigenbasis& basis = *table_.rings[tile.ring].basis;
+  const GridWindow window = gridWindow(quarter, basis.sides(tile.face), Order);
+  PatchValues<Padded>& patch = jet.patch;
   jet.anchor = pose_.ring(tile.ring).limit;
-  const Sides sides = table_.rings[tile.ring].basis->sides(tile.face);
   if (quarter.steps > Pose::gridSteps(tile)) {
-    const WindowWeights window = windowWeights(quarter, sides, Order);
-    table_.rings[tile.ring].basis->weights(tile.face, quarter.steps, tile.ring_steps, window,
-                                           mode_weights_, outer_weights_);
+    basis.weights(tile.face, quarter.steps, tile.ring_steps, window, mode_weights_,
+                  outer_weights_);
     const Points& modes = pose_.ring(tile.ring).coefficients;
-    Padded* const values[6] = {&jet.offset, &jet.du, &jet.dv, &jet.duu, &jet.duv, &jet.dvv};
-    for (int d = 0; d < window.count; ++d) {
-      Vector3 sum = modes.transpose() * mode_weights_.row(d).transpose();
-      Padded value(sum[0], sum[1], sum[2], 0);
+    Padded* const values[6] = {&patch.value, &patch.du,  &patch.dv,
+                               &patch.duu,   &patch.duv, &patch.dvv};
+    for (int d = 0; d < window.count(); ++d) {
+      const Vector3 sum = modes.transpose() * mode_weights_.row(d).transpose();
+      *values[d] = Padded(sum[0], sum[1], sum[2], 0);
       for (Eigen::Index i = 0; i < outer_weights_.cols(); ++i) {
-        value += outer_weights_(d, i) * pose_.ringTile(index).outer[i];
+        *values[d] += outer_weights_(d, i) * pose_.ringTile(index).outer[i];
       }
-      *values[d] = value;
     }
     jet.exponent = quarter.steps - 1;
     return;
   }
-  const CubicWeights u(quarter.u, boundaryBefore(quarter, sides), false);
-  const CubicWeights v(quarter.v, boundaryBelow(quarter, sides), false);
-  const Pose::Grid& grid = pose_.grid(index, quarter.steps);
-  evaluateWindow<Order>(grid.points + quarter.b * tile_grid::kSize + quarter.a, tile_grid::kSize,
-                        u, v, jet);
+  const Padded* grid = pose_.grid(index, quarter.steps).points;
+  evaluateWindow<Order>(grid + window.b * tile_grid::kSize + window.a, tile_grid::kSize, window.u,
+                        window.v, patch);
   if (Order > 0) {
     const double scale = std::ldexp(1., quarter.steps);
-    jet.du *= scale;
-    jet.dv *= scale;
+    patch.du *= scale;
+    patch.dv *= scale;
     jet.exponent = 2 * quarter.steps;
   }
 }

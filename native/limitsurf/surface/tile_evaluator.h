@@ -51,15 +51,7 @@ struct Quarter {
   double u, v;   ///< in [0, 1]
 };
 
-/// Weights of the quarter's window for position and derivatives up to `order`.
-WindowWeights windowWeights(const Quarter& quarter, Sides sides, int order);
-
-/// Whether the low side of the quarter's window in u or v has no points beyond it.
-inline bool boundaryBefore(const Quarter& q, Sides sides) {
-  return q.a == 0 && (sides == Sides::right || sides == Sides::both);
-}
-inline bool boundaryBelow(const Quarter& q, Sides sides) {
-  return q.b == 0 && (sides == Sides::left || sides == Sides::both);
-}
+/// The window on a ring tile's grid that serves the quarter, for derivatives up to `order`.
+GridWindow gridWindow(const Quarter& quarter, Sides sides, int order);
 
 }  // namespace limitsurf

@@ -35,23 +35,15 @@ bool dominates(double growth_a, int power_a, double growth_b, int power_b) {
 std::vector<Term> approachTerms(const Eigenbasis& basis, int face, const Points& coefficients) {
   Quarter corner(1, 1);  // the outermost point of the way, where it enters quarter (1, 1)
   corner.u = corner.v = 0;
-  const WindowWeights window = windowWeights(corner, basis.sides(face), 1);
-  const auto derivative = [&](const Eigenbasis::Table& table, int d) {
-    double sum = 0;
-    for (int y = 0; y < 4; ++y) {
-      for (int x = 0; x < 4; ++x) {
-        sum += window.w[d][4 * y + x] *
-               table.grid[(y + window.b) * tile_grid::kSize + x + window.a];
-      }
-    }
-    return sum;
-  };
+  const GridWindow window = gridWindow(corner, basis.sides(face), 1);
 
   std::vector<Term> terms;
   const auto add = [&](int shape, double growth, int power, const Vector3& coefficient) {
     const Eigenbasis::Table table = basis.table(shape, face);
-    terms.push_back(
-        {growth, power, derivative(table, 1) * coefficient, derivative(table, 2) * coefficient});
+    PatchValues<double> patch;
+    evaluateWindow<1>(table.grid + window.b * tile_grid::kSize + window.a, tile_grid::kSize,
+                      window.u, window.v, patch);
+    terms.push_back({growth, power, patch.du * coefficient, patch.dv * coefficient});
   };
   // Powers of lambda order the terms; the 2^n that both derivatives share does not. Of a large ring
   // only the slowest modes can matter.
@@ -104,13 +96,14 @@ void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet
     return {c[0], c[1], c[2], 0};
   };
   jet.anchor = ring_pose.limit;
-  jet.offset = coefficient(0, 1);
+  PatchValues<Padded>& patch = jet.patch;
+  patch.value = coefficient(0, 1);
   jet.exponent = 0;
   const Padded none = Padded::Constant(std::numeric_limits<double>::quiet_NaN());
-  jet.du = jet.dv = jet.duu = jet.duv = jet.dvv = none;
+  patch.du = patch.dv = patch.duu = patch.duv = patch.dvv = none;
   if (ring.interior()) {
     if (ring.faces <= 3) {
-      jet.du = jet.dv = Padded::Zero();
+      patch.du = patch.dv = Padded::Zero();
     }
     return;
   }
@@ -120,12 +113,12 @@ void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet
   const double first = std::ldexp(1., -tile.ring_steps), second = first * first;
   const bool pinned = ring.kind == RingKind::pinned;
   if (sides == Sides::left || sides == Sides::both) {
-    jet.du = coefficient(1, first) + (pinned ? coefficient(2, first) : Padded::Zero());
-    jet.duu = pinned ? Padded::Zero() : coefficient(2, 6 * second);
+    patch.du = coefficient(1, first) + (pinned ? coefficient(2, first) : Padded::Zero());
+    patch.duu = pinned ? Padded::Zero() : coefficient(2, 6 * second);
   }
   if (sides == Sides::right || sides == Sides::both) {
-    jet.dv = coefficient(1, -first) + (pinned ? coefficient(2, first) : Padded::Zero());
-    jet.dvv = pinned ? Padded::Zero() : coefficient(2, 6 * second);
+    patch.dv = coefficient(1, -first) + (pinned ? coefficient(2, first) : Padded::Zero());
+    patch.dvv = pinned ? Padded::Zero() : coefficient(2, 6 * second);
   }
 }
 
