@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Attributes of meshes and curves as whole numpy arrays."""
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+
+class Layout(NamedTuple):
+    key: str  # the property that holds an element's value
+    width: int
+    dtype: type
+
+
+LAYOUTS = {
+    "FLOAT": Layout("value", 1, np.float32),
+    "INT": Layout("value", 1, np.int32),
+    "FLOAT2": Layout("vector", 2, np.float32),
+    "FLOAT_VECTOR": Layout("vector", 3, np.float32),
+    "QUATERNION": Layout("value", 4, np.float32),
+}
+
+
+def write(data: bpy.types.ID, name: str, kind: str, domain: str, values: np.ndarray) -> None:
+    """Creates the attribute, or overwrites it: one row of `values` per element of the domain."""
+    attribute = data.attributes.get(name)
+    if attribute is None:
+        attribute = data.attributes.new(name, kind, domain)
+    if (attribute.name, attribute.data_type, attribute.domain) != (name, kind, domain):
+        raise RuntimeError(f"{data.name}: attribute {name!r} exists as another kind")
+    layout = LAYOUTS[kind]
+    values = np.ascontiguousarray(values, layout.dtype)
+    if values.size != len(attribute.data) * layout.width:
+        raise ValueError(f"{name}: {values.shape} values for {len(attribute.data)} elements")
+    attribute.data.foreach_set(layout.key, values.ravel())
+
+
+def read(data: bpy.types.ID, name: str) -> np.ndarray:
+    """The attribute's values, (n,) or (n, width). KeyError where there is none of that name."""
+    attribute = data.attributes[name]
+    layout = LAYOUTS[attribute.data_type]
+    values = np.empty(len(attribute.data) * layout.width, layout.dtype)
+    attribute.data.foreach_get(layout.key, values)
+    return values if layout.width == 1 else values.reshape(-1, layout.width)
+
+
+def column(collection: bpy.types.bpy_prop_collection, key: str, dtype: type) -> np.ndarray:
+    """One number of each element of a collection, such as every loop's vertex."""
+    values = np.empty(len(collection), dtype)
+    collection.foreach_get(key, values)
+    return values

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_hair_add."""
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+from bpy.props import FloatProperty, FloatVectorProperty, IntProperty
+
+from .. import attributes, ids, roots
+from ..binding import Binding
+from ..objects import add_on_surface
+from ..rotations import WorldSpace
+from ..scatter import ScatterOperator, Target
+from .strands import Shape
+
+
+class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
+    """Grow hair on the active mesh's limit surface: each root lies exactly on the smooth surface
+    that its subdivisions converge to"""
+
+    bl_idname = ids.HAIR_ADD
+    bl_label = "Add Hair on Limit Surface"
+    noun = "strands"
+
+    length: FloatProperty(
+        name="Length",
+        description="Length of the strands in world units, whatever the object's scale",
+        default=0.1,
+        min=0.0,
+        soft_max=10.0,
+        subtype="DISTANCE",
+    )
+    points: IntProperty(
+        name="Points",
+        description="Control points per strand, root included",
+        default=5,
+        min=2,
+        max=1024,
+        soft_max=32,
+    )
+    tilt: FloatVectorProperty(
+        name="Tilt",
+        description="Angles by which strands lean from the surface's normal, towards growing u "
+        "and towards growing v of their face",
+        size=2,
+        default=(0.0, 0.0),
+        min=-np.pi,
+        max=np.pi,
+        unit="ROTATION",
+    )
+    random: FloatProperty(
+        name="Random",
+        description="Largest angle by which a strand leans to a random side besides",
+        default=0.0,
+        min=0.0,
+        max=np.pi,
+        unit="ROTATION",
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Radius of the strands in world units",
+        default=0.001,
+        min=0.0,
+        soft_max=0.1,
+        precision=4,
+        subtype="DISTANCE",
+    )
+
+    def elements_per_location(self) -> int:
+        return self.points
+
+    def draw_own(self, layout: bpy.types.UILayout) -> None:
+        for name in ("length", "points", "tilt", "random", "radius"):
+            layout.prop(self, name)
+
+    def build(
+        self, context: bpy.types.Context, target: Target, progress: Callable[[float], None]
+    ) -> None:
+        count = len(target.locations)
+        space = WorldSpace(target.cage.matrix)
+        shape = Shape(self.length, self.points, tuple(self.tilt), self.random)
+        rng = np.random.default_rng(self.seed)
+        binding = Binding(target.locations)
+        position = np.empty((count, self.points, 3), np.float32)
+        for part in roots.evaluate(target.surface, target.locations, progress):
+            binding.fill(part)
+            position[part.rows] = shape.strands(part.position, part.frame, space, rng)
+
+        curves = bpy.data.hair_curves.new(ids.HAIR_OBJECT)
+        try:
+            curves.add_curves([self.points] * count)
+            curves.points.foreach_set("position", position.ravel())
+            radius = np.full(count * self.points, self.radius / space.mean_scale)
+            attributes.write(curves, "radius", "FLOAT", "POINT", radius)
+            binding.write(curves, "CURVE")
+            curves.surface = target.ob
+            surface_uv = target.surface_uv()
+            if surface_uv is not None:
+                curves.surface_uv_map = target.cage.uv_map.name
+                attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", surface_uv)
+            add_on_surface(context, ids.HAIR_OBJECT, curves, target.ob)
+        except BaseException:
+            bpy.data.hair_curves.remove(curves)
+            raise

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every name that scripts, files and menus rely on, each stated once."""
+
+TAB = "Limit"
+
+HAIR_ADD = "object.limit_hair_add"
+POINTS_ADD = "object.limit_points_add"
+
+PANEL = "VIEW3D_PT_limit_surface"
+OBJECT_MENU = "VIEW3D_MT_object_limit_surface"
+
+# Attributes of generated curves and points
+FACE = "limit_face"
+UV = "limit_uv"
+REST_ROOT = "rest_root"
+REST_ROTATION = "rest_rot"
+SURFACE_UV = "surface_uv_coordinate"  # Blender's own
+NORMAL = "normal"
+TANGENT = "tangent"
+ROTATION = "rotation"
+
+# Attributes of the surface's mesh: Blender's own
+EDGE_CREASE = "crease_edge"
+VERTEX_CREASE = "crease_vert"
+
+HAIR_OBJECT = "Limit Hair"
+POINTS_OBJECT = "Limit Points"
+INSTANCES_GROUP = "Limit Instances"
+INSTANCES_MARK = "limit_surface_instances"  # custom property of that node group: its version
+
+CAGE_SCENE = ".limit_cage"

@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar tab and the menu entries."""
+
+from .menus import VIEW3D_MT_object_limit_surface, append_menus, remove_menus
+from .panel import VIEW3D_PT_limit_surface
+
+__all__ = ["append_menus", "classes", "remove_menus"]
+
+classes = (VIEW3D_PT_limit_surface, VIEW3D_MT_object_limit_surface)

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Entries in Blender's own menus: Add > Curve, and Object > Limit Surface."""
+
+import bpy
+
+from .. import ids
+
+
+class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
+    bl_idname = ids.OBJECT_MENU
+    bl_label = "Limit Surface"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        self.layout.operator(ids.HAIR_ADD, icon="CURVES")
+        self.layout.operator(ids.POINTS_ADD, icon="POINTCLOUD_DATA")
+
+
+def _draw_in_add_curve(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.operator(ids.HAIR_ADD, text="Hair on Limit Surface", icon="CURVES")
+
+
+def _draw_in_object(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.menu(ids.OBJECT_MENU)
+
+
+_ENTRIES = (
+    (bpy.types.VIEW3D_MT_curve_add, _draw_in_add_curve),
+    (bpy.types.VIEW3D_MT_object, _draw_in_object),
+)
+
+
+def append_menus() -> None:
+    for menu, draw in _ENTRIES:
+        menu.append(draw)
+
+
+def remove_menus() -> None:
+    for menu, draw in _ENTRIES:
+        menu.remove(draw)

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar tab Limit: whose surface it is, and what can be made on it."""
+
+import bpy
+
+from .. import cage, ids, native
+from ..preferences import draw_unavailable
+
+
+class VIEW3D_PT_limit_surface(bpy.types.Panel):
+    bl_idname = ids.PANEL
+    bl_label = "Limit Surface"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = ids.TAB
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        if not native.available():
+            draw_unavailable(layout)
+        _draw_rules(layout, context.active_object)
+        column = layout.column()
+        column.enabled = native.available()
+        column.operator(ids.HAIR_ADD, icon="CURVES")
+        column.operator(ids.POINTS_ADD, icon="POINTCLOUD_DATA")
+
+
+def _draw_rules(layout: bpy.types.UILayout, ob: bpy.types.Object | None) -> None:
+    if ob is None or ob.type != "MESH":
+        layout.label(text="No active mesh", icon="INFO")
+        return
+    subsurf = cage.find_subsurf(ob)
+    layout.label(text=ob.name, icon="OBJECT_DATA")
+    if subsurf is None:
+        layout.label(text="Rules: Subdivision's defaults", icon="MOD_SUBSURF")
+        return
+    row = layout.row()
+    row.label(text=subsurf.name, icon="MOD_SUBSURF")
+    row.prop(subsurf, "boundary_smooth", text="")
