@@ -76,6 +76,8 @@ void LimitSurface::setPositions(const Points& positions, int threads) {
   data_->pose.set(positions, threads);
 }
 
+void LimitSurface::checkLocations(Span<Location> at) const { data_->check(at, 0); }
+
 Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bool normals,
                                   int threads) const {
   data_->check(at, threads);

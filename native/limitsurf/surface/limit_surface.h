@@ -26,6 +26,9 @@ constexpr double kSecondDerivativeError = 1e-11;
 /// dv are antiparallel.
 constexpr double kNormalError = 1e-11;
 
+/// Area: relative to the area.
+constexpr double kAreaError = 1e-9;
+
 enum class Derivatives { none = 0, first = 1, second = 2 };
 
 /// Positions and derivatives, one row per location in the caller's order. Members that were not
@@ -89,6 +92,9 @@ class LimitSurface {
   /// Faces of the control mesh that have no limit surface (holes included), with the reason.
   const std::map<int, std::string>& refused() const;
 
+  /// Throws what evaluate() throws for the first row that cannot be evaluated, and does nothing else.
+  void checkLocations(Span<Location> at) const;
+
   /// Limit positions and derivatives with respect to the face's own (u, v).
   ///
   /// Properties:
@@ -132,12 +138,12 @@ class LimitSurface {
   /// figure 1), in face order. The same seed gives the same locations on every machine.
   std::vector<Location> scatterJittered(int per_side, std::uint64_t seed, int threads = 0) const;
 
-  /// Watertight quads on the limit surface: each Ptex face becomes 2^levels x 2^levels quads
-  /// (an n-gon's sub-faces 2^(levels-1)); shared points are shared. levels >= 1 where the mesh has faces other
-  /// than quads.
+  /// Watertight quads on the limit surface: a quad becomes 2^levels x 2^levels of them, each sub-face
+  /// of an n-gon half as many a side. Points on shared edges exist once. Throws std::invalid_argument
+  /// for levels below 0, below 1 where the mesh has faces other than quads, or above 12.
   Tessellation tessellate(int levels, int threads = 0) const;
 
-  /// Area of the limit surface, relative error below 1e-9.
+  /// Area of the limit surface, relative error below kAreaError.
   double area(int threads = 0) const;
 
   /// The tightest axis-aligned box around the limit surface (rows: minimum, maximum), to

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exact evaluation of Catmull-Clark limit surfaces, at and near extraordinary vertices and open
+boundaries included.
+
+    mesh = limitsurf.ControlMesh.from_faces(positions, faces)
+    surface = limitsurf.LimitSurface(mesh)
+    here = surface.evaluate(face=[0, 0], uv=[[0, 0], [0.25, 0.5]], derivatives=1)
+    here.position, here.du, here.dv, here.normal
+"""
+
+from ._limitsurf import ControlMesh, LimitSurface, LocationError, MeshError, __version__
+from ._results import Curvature, Evaluation, Locations, Stencils, Tessellation
+
+__all__ = [
+    "ControlMesh",
+    "Curvature",
+    "Evaluation",
+    "LimitSurface",
+    "LocationError",
+    "Locations",
+    "MeshError",
+    "Stencils",
+    "Tessellation",
+    "__version__",
+]
+
+for _public in (ControlMesh, LimitSurface, LocationError, MeshError):
+    _public.__module__ = __name__
+del _public

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the calls on arrays return: named arrays, one row per location."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evaluation:
+    """Position and derivatives, (n, 3) each; None where they were not asked for."""
+
+    position: Array
+    du: Array | None
+    dv: Array | None
+    duu: Array | None
+    duv: Array | None
+    dvv: Array | None
+    normal: Array | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curvature:
+    """Principal curvatures k1 >= k2 with unit directions; mean and Gaussian curvature."""
+
+    gaussian: Array
+    mean: Array
+    k1: Array
+    k2: Array
+    direction1: Array
+    direction2: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stencils:
+    """Sparse rows (CSR) of weights on the cage's vertices."""
+
+    offsets: NDArray[np.int64]
+    indices: NDArray[np.int32]
+    weights: NDArray[np.float64]
+    du_weights: NDArray[np.float64] | None
+    dv_weights: NDArray[np.float64] | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Locations:
+    """Ptex faces (n,) and parameters (n, 2)."""
+
+    face: NDArray[np.int32]
+    uv: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.face)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tessellation:
+    """Quads on the limit surface and where their points lie."""
+
+    positions: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    locations: Locations

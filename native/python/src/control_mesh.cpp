@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "control_mesh.h"
+
+#include <map>
+
+#include "arrays.h"
+#include "docstrings.h"
+
+namespace limitsurf::python {
+namespace {
+
+template <typename Enum>
+Enum choice(const std::string& value, const char* name,
+            const std::vector<std::pair<const char*, Enum>>& choices) {
+  std::string known;
+  for (const auto& [text, result] : choices) {
+    if (value == text) {
+      return result;
+    }
+    known += std::string(known.empty() ? "'" : " or '") + text + "'";
+  }
+  throw MeshError(std::string(name) + " is '" + value + "'; expected " + known);
+}
+
+const std::vector<std::pair<const char*, Boundary>> kBoundaries = {
+    {"smooth", Boundary::smooth}, {"corners", Boundary::corners}};
+const std::vector<std::pair<const char*, Creasing>> kCreasings = {
+    {"uniform", Creasing::uniform}, {"chaikin", Creasing::chaikin}};
+const std::vector<std::pair<const char*, Triangles>> kTriangles = {
+    {"catmark", Triangles::catmark}, {"smooth", Triangles::smooth}};
+const std::vector<std::pair<const char*, Scheme>> kSchemes = {{"catmark", Scheme::catmark},
+                                                              {"bilinear", Scheme::bilinear}};
+
+template <typename Enum>
+std::string text(Enum value, const std::vector<std::pair<const char*, Enum>>& choices) {
+  for (const auto& [name, known] : choices) {
+    if (known == value) {
+      return name;
+    }
+  }
+  return {};
+}
+
+std::vector<std::int64_t> vectorOf(const Integers& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
+std::pair<py::object, py::object> pairOf(const py::object& object, const char* name) {
+  const py::tuple pair = py::tuple(object);
+  if (pair.size() != 2) {
+    throw MeshError(std::string(name) + " has " + std::to_string(pair.size()) +
+                    " entries; expected two arrays");
+  }
+  return {pair[0], pair[1]};
+}
+
+std::vector<double> sharpnessValues(const py::object& object, const char* name) {
+  const Doubles values = doubles(object, name);
+  requireVector<MeshError>(values, name);
+  return {values.data(), values.data() + values.size()};
+}
+
+MeshOptions meshOptions(const py::object& edge_sharpness, const py::object& vertex_sharpness,
+                        const std::string& boundary, const std::string& creasing,
+                        const std::string& triangles, const std::string& scheme,
+                        const py::object& holes) {
+  MeshOptions options;
+  options.boundary = choice(boundary, "boundary", kBoundaries);
+  options.creasing = choice(creasing, "creasing", kCreasings);
+  options.triangles = choice(triangles, "triangles", kTriangles);
+  options.scheme = choice(scheme, "scheme", kSchemes);
+  if (!edge_sharpness.is_none()) {
+    const auto [edges_object, values] = pairOf(edge_sharpness, "edge_sharpness");
+    const Integers edges = integers(edges_object, "edge_sharpness edges");
+    if (edges.size() > 0) {
+      requireRows<MeshError>(edges, "edge_sharpness edges", 2);
+    }
+    for (py::ssize_t i = 0; 2 * i < edges.size(); ++i) {
+      options.edge_sharpness.edges.emplace_back(edges.data()[2 * i], edges.data()[2 * i + 1]);
+    }
+    options.edge_sharpness.values = sharpnessValues(values, "edge_sharpness values");
+  }
+  if (!vertex_sharpness.is_none()) {
+    const auto [vertices, values] = pairOf(vertex_sharpness, "vertex_sharpness");
+    const Integers array = integers(vertices, "vertex_sharpness vertices");
+    requireVector<MeshError>(array, "vertex_sharpness vertices");
+    options.vertex_sharpness.vertices = vectorOf(array);
+    options.vertex_sharpness.values = sharpnessValues(values, "vertex_sharpness values");
+  }
+  if (!holes.is_none()) {
+    const Integers array = integers(holes, "holes");
+    requireVector<MeshError>(array, "holes");
+    options.holes = vectorOf(array);
+  }
+  return options;
+}
+
+Points positionsOf(const py::object& object) {
+  const Doubles array = doubles(object, "positions");
+  if (array.ndim() != 2 || array.shape(1) != 3) {
+    throw MeshError("positions has shape " + shapeText(array) + "; expected (V, 3)");
+  }
+  return pointsOf(array);
+}
+
+std::shared_ptr<ControlMesh> makeMesh(const py::object& positions, const py::object& face_sizes,
+                                      const py::object& face_vertices,
+                                      const MeshOptions& options) {
+  const Points points = positionsOf(positions);
+  const Integers sizes = integers(face_sizes, "face_sizes");
+  const Integers vertices = integers(face_vertices, "face_vertices");
+  requireVector<MeshError>(sizes, "face_sizes");
+  requireVector<MeshError>(vertices, "face_vertices");
+  const std::vector<std::int64_t> size_vector = vectorOf(sizes), vertex_vector = vectorOf(vertices);
+  const py::gil_scoped_release release;
+  return std::make_shared<ControlMesh>(points, size_vector, vertex_vector, options);
+}
+
+/// (F, k) array or a sequence of sequences -> sizes and vertices.
+std::pair<py::object, py::object> flattened(const py::object& faces) {
+  const py::module_ numpy = py::module_::import("numpy");
+  if (py::isinstance<py::array>(faces)) {
+    const Integers array = integers(faces, "faces");
+    if (array.ndim() != 2) {
+      throw MeshError("faces has shape " + shapeText(array) + "; expected (F, k)");
+    }
+    return {numpy.attr("full")(array.shape(0), array.shape(1)), array.attr("ravel")()};
+  }
+  std::vector<std::int64_t> sizes;
+  py::list vertices;
+  for (const py::handle face : py::iter(faces)) {
+    const Integers corner_vertices = integers(face, "a face");
+    requireVector<MeshError>(corner_vertices, "a face");
+    sizes.push_back(corner_vertices.size());
+    vertices.append(corner_vertices);
+  }
+  return {py::array_t<std::int64_t>(static_cast<py::ssize_t>(sizes.size()), sizes.data()),
+          sizes.empty() ? py::object(py::array_t<std::int64_t>(0))
+                        : numpy.attr("concatenate")(vertices)};
+}
+
+py::array_t<double> positionArray(const Points& points) {
+  return py::array_t<double>({points.rows(), Eigen::Index{3}}, points.data());
+}
+
+template <typename T>
+py::array_t<T> arrayOf(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+py::object edgeSharpness(const ControlMesh& mesh) {
+  const EdgeSharpness& sharpness = mesh.options().edge_sharpness;
+  py::array_t<std::int64_t> edges({static_cast<py::ssize_t>(sharpness.edges.size()), py::ssize_t{2}});
+  for (std::size_t i = 0; i < sharpness.edges.size(); ++i) {
+    edges.mutable_data()[2 * i] = sharpness.edges[i].first;
+    edges.mutable_data()[2 * i + 1] = sharpness.edges[i].second;
+  }
+  return py::make_tuple(edges, arrayOf(sharpness.values));
+}
+
+py::tuple state(const ControlMesh& mesh) {
+  const MeshOptions& o = mesh.options();
+  return py::make_tuple(positionArray(mesh.positions()), arrayOf(mesh.faceSizes()),
+                        arrayOf(mesh.faceVertices()), edgeSharpness(mesh),
+                        py::make_tuple(arrayOf(o.vertex_sharpness.vertices),
+                                       arrayOf(o.vertex_sharpness.values)),
+                        text(o.boundary, kBoundaries), text(o.creasing, kCreasings),
+                        text(o.triangles, kTriangles), text(o.scheme, kSchemes),
+                        arrayOf(o.holes));
+}
+
+}  // namespace
+
+void bindControlMesh(py::module_& module) {
+  using namespace py::literals;
+  py::class_<ControlMesh, std::shared_ptr<ControlMesh>>(module, "ControlMesh", kControlMeshDoc)
+      .def(py::init([](const py::object& positions, const py::object& face_sizes,
+                       const py::object& face_vertices, const py::object& edge_sharpness,
+                       const py::object& vertex_sharpness, const std::string& boundary,
+                       const std::string& creasing, const std::string& triangles,
+                       const std::string& scheme, const py::object& holes) {
+             return makeMesh(positions, face_sizes, face_vertices,
+                             meshOptions(edge_sharpness, vertex_sharpness, boundary, creasing,
+                                         triangles, scheme, holes));
+           }),
+           "positions"_a, "face_sizes"_a, "face_vertices"_a, "edge_sharpness"_a = py::none(),
+           "vertex_sharpness"_a = py::none(), "boundary"_a = "smooth", "creasing"_a = "uniform",
+           "triangles"_a = "catmark", "scheme"_a = "catmark", "holes"_a = py::none())
+      .def_static(
+          "from_faces",
+          [](const py::object& positions, const py::object& faces,
+             const py::object& edge_sharpness, const py::object& vertex_sharpness,
+             const std::string& boundary, const std::string& creasing,
+             const std::string& triangles, const std::string& scheme, const py::object& holes) {
+            const auto [sizes, vertices] = flattened(faces);
+            return makeMesh(positions, sizes, vertices,
+                            meshOptions(edge_sharpness, vertex_sharpness, boundary, creasing,
+                                        triangles, scheme, holes));
+          },
+          "positions"_a, "faces"_a, "edge_sharpness"_a = py::none(),
+          "vertex_sharpness"_a = py::none(), "boundary"_a = "smooth", "creasing"_a = "uniform",
+          "triangles"_a = "catmark", "scheme"_a = "catmark", "holes"_a = py::none(), kFromFacesDoc)
+      .def_property_readonly(
+          "positions", [](const ControlMesh& mesh) { return positionArray(mesh.positions()); },
+          "(V, 3) float64, a copy.")
+      .def_property_readonly(
+          "face_sizes", [](const ControlMesh& mesh) { return arrayOf(mesh.faceSizes()); },
+          "(F,) int32: vertices of each face.")
+      .def_property_readonly(
+          "face_vertices", [](const ControlMesh& mesh) { return arrayOf(mesh.faceVertices()); },
+          "Vertex indices of all faces, one face after the other, int32.")
+      .def_property_readonly(
+          "boundary",
+          [](const ControlMesh& mesh) { return text(mesh.options().boundary, kBoundaries); },
+          "'smooth' or 'corners'.")
+      .def_property_readonly(
+          "triangles",
+          [](const ControlMesh& mesh) { return text(mesh.options().triangles, kTriangles); },
+          "'catmark' or 'smooth'.")
+      .def("__repr__",
+           [](const ControlMesh& mesh) {
+             return "ControlMesh(" + std::to_string(mesh.vertexCount()) + " vertices, " +
+                    std::to_string(mesh.faceCount()) + " faces, boundary='" +
+                    text(mesh.options().boundary, kBoundaries) + "')";
+           })
+      .def(py::pickle([](const ControlMesh& mesh) { return state(mesh); },
+                      [](const py::tuple& s) {
+                        return makeMesh(
+                            s[0], s[1], s[2],
+                            meshOptions(s[3], s[4], py::cast<std::string>(s[5]),
+                                        py::cast<std::string>(s[6]), py::cast<std::string>(s[7]),
+                                        py::cast<std::string>(s[8]), s[9]));
+                      }));
+}
+
+}  // namespace limitsurf::python

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace limitsurf::python {
+
+constexpr const char* kControlMeshDoc =
+    R"(A control mesh (cage): positions, faces of any size, and the rules of their subdivision.
+
+Parameters
+----------
+positions : (V, 3) array of float
+    Finite; any unit of length.
+face_sizes : (F,) array of int
+    Vertices of each face, 3 to 65,535.
+face_vertices : (sum of face_sizes,) array of int
+    Vertex indices of all faces, one face after the other, counter-clockwise seen from outside.
+edge_sharpness : (edges (E, 2) int, values (E,) float), optional
+vertex_sharpness : (vertices (n,) int, values (n,) float), optional
+    Sharpness above 0 is not supported yet and refused.
+boundary : 'smooth' or 'corners'
+    'smooth': every boundary is a uniform cubic B-spline curve (OpenSubdiv's EDGE_ONLY, Blender's
+    'ALL'); 'corners': boundary vertices with one face stay where they are.
+creasing : 'uniform' or 'chaikin'
+triangles : 'catmark' or 'smooth'
+    'smooth': OpenSubdiv's TRI_SUB_SMOOTH.
+scheme : 'catmark'
+holes : (n,) array of int, optional
+    Faces that have no surface, though their neighbours see them.
+
+Raises
+------
+MeshError
+    For what makes the mesh meaningless: sizes that do not add up, indices out of range, positions
+    that are not finite, more than 65,535 edges at a vertex, and options that are not known.
+    Faces that merely have no limit surface are told by LimitSurface.refused instead.
+TypeError
+    For arrays of the wrong kind, such as floats where indices are wanted.
+)";
+
+constexpr const char* kFromFacesDoc =
+    R"(The same from faces given as an (F, k) array or as a list of lists of vertex indices.)";
+
+constexpr const char* kLimitSurfaceDoc =
+    R"(The Catmull-Clark limit surface of a control mesh, evaluated exactly at any location.
+
+A location is (face, u, v): a Ptex face id and parameters in [0, 1]. A quad is one Ptex face with
+(0,0), (1,0), (1,1), (0,1) at its vertices 0 to 3; an n-gon is n of them, one per corner, with (0,0)
+at the corner, u towards the next vertex and (1,1) at the centre.
+
+Topology is analysed once, here; set_positions() re-poses cheaply. Every call on arrays releases the
+GIL, uses all cores (threads=0; threads=n at most n), can be interrupted, and gives the same bits for
+a location whatever the thread count and the rest of the batch.
+
+The method is Stam 1998 inside and Lacewell & Burley 2007 at boundaries, at any valence.
+)";
+
+constexpr const char* kSetPositionsDoc =
+    R"(Re-pose: the same topology under new positions, (V, 3) float.
+
+Raises MeshError for another shape or values that are not finite, and then changes nothing. Costs
+O(V) and the irregular faces; waits for evaluations that run in other threads.
+)";
+
+constexpr const char* kEvaluateDoc =
+    R"(Limit positions and derivatives with respect to the face's own (u, v).
+
+Parameters
+----------
+face : int or (n,) array of int
+uv : (n, 2) array of float in [0, 1]
+derivatives : 0, 1 or 2
+threads : int
+dtype : float64 or float32
+    Of the results; all is computed in float64.
+
+Returns
+-------
+Evaluation
+    .position and, as far as asked for (else None), .du .dv .normal, .duu .duv .dvv; (n, 3) each.
+    Exactly at an irregular vertex: position always; derivatives along a boundary that bounds the
+    face are the limit curve's; du = dv = 0 at interior valence 2 and 3; all others are NaN, and so
+    is the normal where approaches to the vertex do not agree on one.
+
+Error: position 1e-13 of the bounding box's diagonal; du, dv 1e-12 and second derivatives 1e-11 of
+the larger of the value itself and the face's largest; normals 1e-11 radians (at a smooth corner of
+one face only outside 2^-20 of the vertex).
+
+Cost: O(1) a location, O(valence) within about 1/16 of an irregular vertex.
+
+Raises LocationError naming the first row out of range, MeshError for a refused face, TypeError for
+faces that are not integers.
+)";
+
+constexpr const char* kFramesDoc =
+    R"((n, 3, 3) rotations whose columns are the tangent (along du), normal x tangent, and the normal.
+
+Always finite: at an irregular vertex the limit over u = v = 2^-n as seen from the vertex; where du
+or the normal vanishes, completed from dv, then from the least aligned world axis.
+)";
+
+constexpr const char* kCurvatureDoc =
+    R"(Curvature: .gaussian .mean .k1 .k2 (n,) with k1 >= k2, and their unit .direction1 .direction2 (n, 3).
+
+Signs follow the normal: a sphere seen from outside curves negatively. NaN exactly at irregular
+vertices, where curvature has no limit in general.
+)";
+
+constexpr const char* kStencilsDoc =
+    R"(The exact linear weights of position (and du, dv with derivatives=1) on the cage's vertices.
+
+Returns Stencils in CSR form: row i is .indices[.offsets[i]:.offsets[i + 1]] with .weights,
+.du_weights, .dv_weights (None if not asked for). Position weights add up to 1, the others to 0. Where
+a derivative has no limit its weights are NaN. Weights depend on topology alone: they serve all poses.
+
+Cost: as evaluate(), but O(valence^2) on tiles at an irregular vertex.
+)";
+
+constexpr const char* kVertexLocationsDoc =
+    R"(Locations (.face, .uv) of all cage vertices, in vertex order.
+
+face = -1, uv = NaN for vertices of no face with a limit surface.
+)";
+
+constexpr const char* kScatterJitteredDoc =
+    R"(per_side x per_side random locations a Ptex face, one in each cell of a regular grid.
+
+Lacewell & Burley 2007, figure 1. Locations (.face, .uv) in face order; refused faces get none. The
+same seed (0 to 2^64 - 1) gives the same locations on every machine.
+)";
+
+constexpr const char* kTessellateDoc =
+    R"(Watertight quads on the limit surface: 2^levels x 2^levels a quad face.
+
+Each sub-face of an n-gon gets half as many a side, so levels >= 1 where there are n-gons. Returns
+Tessellation: .positions .normals (n, 3), .faces (m, 4) int32, .locations of the points.
+)";
+
+}  // namespace limitsurf::python

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limit_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <shared_mutex>
+#include <sstream>
+
+#include "arrays.h"
+#include "docstrings.h"
+#include "limitsurf/surface/limit_surface.h"
+
+namespace limitsurf::python {
+namespace {
+
+/// A surface that may be re-posed while other Python threads, without the GIL, evaluate it.
+struct SharedSurface {
+  explicit SharedSurface(std::shared_ptr<ControlMesh> m) : mesh(std::move(m)), surface(*mesh) {}
+
+  std::shared_ptr<ControlMesh> mesh;
+  LimitSurface surface;
+  mutable std::shared_mutex mutex;
+};
+
+/// Rows after which a long call looks for Ctrl-C.
+constexpr std::size_t kRowsPerChunk = std::size_t{1} << 17;
+
+using Locations = std::vector<Location>;
+
+Locations locationsOf(const SharedSurface& shared, const py::object& face, const py::object& uv) {
+  const Doubles uvs = doubles(uv, "uv");
+  requireRows<LocationError>(uvs, "uv", 2);
+  const Integers faces = integers(face, "face");
+  const std::size_t rows = static_cast<std::size_t>(uvs.shape(0));
+  if (faces.ndim() > 1 || (faces.ndim() == 1 && faces.shape(0) != uvs.shape(0))) {
+    throw LocationError("face has shape " + shapeText(faces) + " and uv " + shapeText(uvs) +
+                        "; expected one face, or (n,) and (n, 2)");
+  }
+  const std::int64_t* ids = faces.data();
+  const double* parameters = uvs.data();
+  const bool one = faces.ndim() == 0;
+  const std::int64_t face_count = shared.surface.faceCount();
+  Locations result(rows);
+  const py::gil_scoped_release release;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::int64_t id = ids[one ? 0 : row];
+    if (id < 0 || id >= face_count) {
+      std::ostringstream message;
+      message << "row " << row << ": face " << id << " is not among the " << face_count
+              << " Ptex faces";
+      throw LocationError(message.str());
+    }
+    result[row] = {static_cast<int>(id), parameters[2 * row], parameters[2 * row + 1]};
+  }
+  shared.surface.checkLocations(result);
+  return result;
+}
+
+void checkThreads(int threads) {
+  if (threads < 0) {
+    throw py::value_error("threads is " + std::to_string(threads) +
+                          "; 0 means all cores, n at most n");
+  }
+}
+
+/// Calls body(first row, the chunk's locations) for chunk after chunk, without the GIL and with the
+/// surface held still; stops for signals in between.
+template <typename Body>
+void inChunks(const SharedSurface& shared, const Locations& at, const Body& body) {
+  const py::gil_scoped_release release;
+  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerChunk) {
+    body(begin, Span<Location>(at).subspan(begin, std::min(kRowsPerChunk, at.size() - begin)));
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) {
+      throw py::error_already_set();
+    }
+  }
+}
+
+py::object result(const char* name) {
+  return py::module_::import("limitsurf._results").attr(name);
+}
+
+py::object evaluate(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                    int derivatives, int threads, const py::object& dtype) {
+  if (derivatives < 0 || derivatives > 2) {
+    throw py::value_error("derivatives is " + std::to_string(derivatives) +
+                          "; expected 0, 1 or 2");
+  }
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const Locations at = locationsOf(shared, face, uv);
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  // position, du, dv, normal, duu, duv, dvv
+  Output outputs[7];
+  const int wanted = derivatives == 0 ? 1 : derivatives == 1 ? 4 : 7;
+  for (int i = 0; i < wanted; ++i) {
+    outputs[i] = Output(type, {rows, 3});
+  }
+  inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
+    const Evaluation e = shared.surface.evaluate(chunk, static_cast<Derivatives>(derivatives),
+                                                 derivatives > 0, threads);
+    const Points* values[7] = {&e.position, &e.du, &e.dv, &e.normal, &e.duu, &e.duv, &e.dvv};
+    for (int i = 0; i < wanted; ++i) {
+      outputs[i].put(3 * begin, values[i]->data(), 3 * chunk.size());
+    }
+  });
+  return result("Evaluation")(outputs[0].object(), outputs[1].object(), outputs[2].object(),
+                              outputs[4].object(), outputs[5].object(), outputs[6].object(),
+                              outputs[3].object());
+}
+
+py::object frames(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                  int threads, const py::object& dtype) {
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const Locations at = locationsOf(shared, face, uv);
+  Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
+  inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
+    const auto rotations = shared.surface.frames(chunk, threads);
+    output.put(9 * begin, rotations.data(), 9 * chunk.size());
+  });
+  return output.object();
+}
+
+py::object curvature(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                     int threads, const py::object& dtype) {
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const Locations at = locationsOf(shared, face, uv);
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  Output scalars[4], directions[2];
+  for (Output& output : scalars) {
+    output = Output(type, {rows});
+  }
+  for (Output& output : directions) {
+    output = Output(type, {rows, 3});
+  }
+  inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
+    const Curvature c = shared.surface.curvature(chunk, threads);
+    const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
+    for (int i = 0; i < 4; ++i) {
+      scalars[i].put(begin, values[i]->data(), chunk.size());
+    }
+    directions[0].put(3 * begin, c.direction1.data(), 3 * chunk.size());
+    directions[1].put(3 * begin, c.direction2.data(), 3 * chunk.size());
+  });
+  return result("Curvature")(scalars[0].object(), scalars[1].object(), scalars[2].object(),
+                             scalars[3].object(), directions[0].object(), directions[1].object());
+}
+
+template <typename T>
+py::array_t<T> arrayOf(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+py::object stencils(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                    int derivatives, int threads) {
+  if (derivatives < 0 || derivatives > 1) {
+    throw py::value_error("derivatives is " + std::to_string(derivatives) + "; expected 0 or 1");
+  }
+  checkThreads(threads);
+  const Locations at = locationsOf(shared, face, uv);
+  Stencils all;
+  all.offsets.push_back(0);
+  inChunks(shared, at, [&](std::size_t, Span<Location> chunk) {
+    const Stencils part = shared.surface.stencils(chunk, derivatives > 0, threads);
+    const std::int64_t before = all.offsets.back();
+    for (std::size_t i = 1; i < part.offsets.size(); ++i) {
+      all.offsets.push_back(before + part.offsets[i]);
+    }
+    const auto append = [](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(all.indices, part.indices);
+    append(all.weights, part.weights);
+    append(all.du_weights, part.du_weights);
+    append(all.dv_weights, part.dv_weights);
+  });
+  const auto optional = [&](const std::vector<double>& weights) {
+    return derivatives > 0 ? py::object(arrayOf(weights)) : py::object(py::none());
+  };
+  return result("Stencils")(arrayOf(all.offsets), arrayOf(all.indices), arrayOf(all.weights),
+                            optional(all.du_weights), optional(all.dv_weights));
+}
+
+py::object locations(const Locations& at) {
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  py::array_t<int> face(rows);
+  py::array_t<double> uv({rows, py::ssize_t{2}});
+  int* faces = face.mutable_data();
+  double* uvs = uv.mutable_data();
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    faces[i] = at[i].face;
+    uvs[2 * i] = at[i].face < 0 ? kNaN : at[i].u;
+    uvs[2 * i + 1] = at[i].face < 0 ? kNaN : at[i].v;
+  }
+  return result("Locations")(face, uv);
+}
+
+py::array_t<double> pointArray(const Points& points) {
+  return py::array_t<double>({points.rows(), Eigen::Index{3}}, points.data());
+}
+
+Points currentPositions(const SharedSurface& shared) {
+  const py::gil_scoped_release release;
+  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  return shared.surface.positions();
+}
+
+py::object tessellate(const SharedSurface& shared, int levels, int threads) {
+  checkThreads(threads);
+  Tessellation t;
+  {
+    const py::gil_scoped_release release;
+    const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+    t = shared.surface.tessellate(levels, threads);
+  }
+  const py::array_t<int> faces({static_cast<py::ssize_t>(t.face_vertices.size() / 4), py::ssize_t{4}},
+                               t.face_vertices.data());
+  return result("Tessellation")(pointArray(t.positions), pointArray(t.normals), faces,
+                                locations(t.locations));
+}
+
+void setPositions(SharedSurface& shared, const py::object& positions, int threads) {
+  checkThreads(threads);
+  const Doubles array = doubles(positions, "positions");
+  if (array.ndim() != 2 || array.shape(1) != 3 ||
+      array.shape(0) != shared.mesh->vertexCount()) {
+    throw MeshError("positions has shape " + shapeText(array) + "; expected (" +
+                    std::to_string(shared.mesh->vertexCount()) + ", 3)");
+  }
+  const Points points = pointsOf(array);
+  const py::gil_scoped_release release;
+  const std::unique_lock<std::shared_mutex> lock(shared.mutex);
+  shared.surface.setPositions(points, threads);
+}
+
+std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<ControlMesh>& mesh) {
+  const py::gil_scoped_release release;
+  return std::make_unique<SharedSurface>(mesh);
+}
+
+}  // namespace
+
+void bindLimitSurface(py::module_& module) {
+  using namespace py::literals;
+  const py::object float64 = py::dtype("float64");
+  py::class_<SharedSurface>(module, "LimitSurface", kLimitSurfaceDoc)
+      .def(py::init(&makeSurface), "mesh"_a.none(false))
+      .def_readonly("mesh", &SharedSurface::mesh, "The ControlMesh, in the pose it was made with.")
+      .def_property_readonly(
+          "positions",
+          [](const SharedSurface& shared) { return pointArray(currentPositions(shared)); },
+          "(V, 3) float64: the cage's current positions, a copy.")
+      .def_property_readonly(
+          "face_count", [](const SharedSurface& s) { return s.surface.faceCount(); },
+          "Number of Ptex faces.")
+      .def_property_readonly(
+          "base_face", [](const SharedSurface& s) { return arrayOf(s.surface.baseFace()); },
+          "(face_count,) int32: the mesh's face that each Ptex face belongs to.")
+      .def_property_readonly(
+          "corner", [](const SharedSurface& s) { return arrayOf(s.surface.corner()); },
+          "(face_count,) int32: the n-gon's corner that each Ptex face belongs to, 0 for quads.")
+      .def_property_readonly(
+          "refused",
+          [](const SharedSurface& s) {
+            py::dict refused;
+            for (const auto& [face, reason] : s.surface.refused()) {
+              refused[py::int_(face)] = reason;
+            }
+            return refused;
+          },
+          "dict: faces of the mesh without a limit surface (holes included) -> the reason.")
+      .def("set_positions", &setPositions, "positions"_a, "threads"_a = 0, kSetPositionsDoc)
+      .def("evaluate", &evaluate, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
+           "threads"_a = 0, "dtype"_a = float64, kEvaluateDoc)
+      .def("frames", &frames, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0,
+           "dtype"_a = float64, kFramesDoc)
+      .def("curvature", &curvature, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0,
+           "dtype"_a = float64, kCurvatureDoc)
+      .def("stencils", &stencils, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
+           "threads"_a = 0, kStencilsDoc)
+      .def(
+          "vertex_locations",
+          [](const SharedSurface& s) { return locations(s.surface.vertexLocations()); },
+          kVertexLocationsDoc)
+      .def(
+          "scatter_jittered",
+          [](const SharedSurface& shared, int per_side, std::uint64_t seed, int threads) {
+            checkThreads(threads);
+            Locations at;
+            {
+              const py::gil_scoped_release release;
+              at = shared.surface.scatterJittered(per_side, seed, threads);
+            }
+            return locations(at);
+          },
+          "per_side"_a, "seed"_a = 0, py::kw_only(), "threads"_a = 0, kScatterJitteredDoc)
+      .def("tessellate", &tessellate, "levels"_a, py::kw_only(), "threads"_a = 0, kTessellateDoc)
+      .def(
+          "area",
+          [](const SharedSurface& shared, int threads) {
+            checkThreads(threads);
+            const py::gil_scoped_release release;
+            const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+            return shared.surface.area(threads);
+          },
+          py::kw_only(), "threads"_a = 0,
+          "Area of the limit surface, refused faces left out; relative error below 1e-9.")
+      .def(
+          "bounds",
+          [](const SharedSurface& shared, int threads) {
+            checkThreads(threads);
+            Eigen::Matrix<double, 2, 3, Eigen::RowMajor> box;
+            {
+              const py::gil_scoped_release release;
+              const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+              box = shared.surface.bounds(threads);
+            }
+            return py::array_t<double>({2, 3}, box.data());
+          },
+          py::kw_only(), "threads"_a = 0,
+          "(2, 3) float64: the tightest axis-aligned box around the limit surface, minimum and "
+          "maximum; error 1e-13 of the cage's diagonal. NaN where there is no surface.")
+      .def("__repr__",
+           [](const SharedSurface& s) {
+             return "LimitSurface(" + std::to_string(s.surface.faceCount()) + " Ptex faces, " +
+                    std::to_string(s.surface.refused().size()) + " faces refused)";
+           })
+      .def(py::pickle(
+          [](const SharedSurface& s) {
+            return py::make_tuple(py::cast(s.mesh), pointArray(currentPositions(s)));
+          },
+          [](const py::tuple& state) {
+            auto shared = makeSurface(py::cast<std::shared_ptr<ControlMesh>>(state[0]));
+            shared->surface.setPositions(pointsOf(py::cast<Doubles>(state[1])));
+            return shared;
+          }));
+}
+
+}  // namespace limitsurf::python
