@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects to test on, and what is looked at in them."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import bpy
+import limitsurf
+import numpy as np
+from limit_surface import attributes, ids
+
+CROSS = Path(__file__).resolve().parents[1] / "native/tests/data/cross.obj"
+BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
+
+
+def add_mesh(
+    name: str,
+    positions: np.ndarray | Sequence[Sequence[float]],
+    faces: Sequence[Sequence[int]],
+    edges: Sequence[tuple[int, int]] = (),
+) -> bpy.types.Object:
+    """A new object, active, as a user's is."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(positions, edges, faces)
+    ob = bpy.data.objects.new(name, mesh)
+    bpy.context.collection.objects.link(ob)
+    bpy.context.view_layer.objects.active = ob
+    ob.select_set(True)
+    return ob
+
+
+def cross() -> bpy.types.Object:
+    lines = [line.split() for line in CROSS.read_text().splitlines()]
+    positions = [[float(x) for x in words[1:]] for words in lines if words[0] == "v"]
+    faces = [[int(i) - 1 for i in words[1:]] for words in lines if words[0] == "f"]
+    return add_mesh("Cross", positions, faces)
+
+
+def grid_with_holes() -> bpy.types.Object:
+    """5 x 4 quads on a bent sheet, two of them missing: corners of 1, 2 and 3 faces."""
+    columns, rows = 6, 5
+    positions = [
+        (x, y, 0.3 * np.sin(1.3 * x) + 0.2 * y * y) for y in range(rows) for x in range(columns)
+    ]
+    faces = [
+        (a, a + 1, a + 1 + columns, a + columns)
+        for y in range(rows - 1)
+        for x in range(columns - 1)
+        for a in [y * columns + x]
+        if (x, y) not in {(1, 1), (3, 2)}
+    ]
+    return add_mesh("Holes", positions, faces)
+
+
+def mixed_polygons() -> bpy.types.Object:
+    """A triangle, a pentagon and quads around a vertex, open all around."""
+    positions = [
+        (0, 0, 0.5), (1, 0, 0.2), (1.1, 1, 0), (0, 1.2, 0.1), (-1, 1, 0), (-1.3, 0.1, 0.2),
+        (-0.9, -1, 0), (0, -1.1, 0.3), (1, -1, -0.1), (0.4, 1.9, -0.2),
+    ]  # fmt: skip
+    faces = [(0, 1, 2, 9, 3), (0, 3, 4, 5), (0, 5, 7), (5, 6, 7), (0, 7, 8, 1)]
+    return add_mesh("Mixed", positions, faces)
+
+
+def monkey() -> bpy.types.Object:
+    bpy.ops.mesh.primitive_monkey_add()
+    return bpy.context.active_object
+
+
+SCENES: dict[str, Callable[[], bpy.types.Object]] = {
+    "cross": cross,
+    "grid with holes": grid_with_holes,
+    "mixed polygons": mixed_polygons,
+    "monkey": monkey,
+}
+
+
+def add_subsurf(ob: bpy.types.Object, boundary: str = "ALL") -> bpy.types.SubsurfModifier:
+    subsurf = ob.modifiers.new("Subdivision", "SUBSURF")
+    subsurf.boundary_smooth = boundary
+    return subsurf
+
+
+def add_uv_map(ob: bpy.types.Object, affine: Callable[[np.ndarray], np.ndarray]) -> None:
+    """A UV map that is a function of the vertices' positions."""
+    layer = ob.data.uv_layers.new(name="Flat")
+    corners = attributes.column(ob.data.loops, "vertex_index", np.int32)
+    positions = attributes.read(ob.data, "position")[corners]
+    layer.data.foreach_set("uv", affine(positions).astype(np.float32).ravel())
+
+
+def activate(ob: bpy.types.Object) -> None:
+    bpy.context.view_layer.objects.active = ob
+
+
+def add_hair(ob: bpy.types.Object, **properties: object) -> bpy.types.Object:
+    activate(ob)
+    assert bpy.ops.object.limit_hair_add(**{"per_side": 4} | properties) == {"FINISHED"}
+    return bpy.context.active_object
+
+
+def add_points(ob: bpy.types.Object, **properties: object) -> bpy.types.Object:
+    activate(ob)
+    assert bpy.ops.object.limit_points_add(**{"per_side": 4} | properties) == {"FINISHED"}
+    return bpy.context.active_object
+
+
+def strands(hair: bpy.types.Object) -> np.ndarray:
+    """Control points (strands, points, 3) in the hair's own space."""
+    return attributes.read(hair.data, "position").reshape(len(hair.data.curves), -1, 3)
+
+
+def locations(data: bpy.types.ID) -> tuple[np.ndarray, np.ndarray]:
+    return attributes.read(data, ids.FACE), attributes.read(data, ids.UV).astype(np.float64)
+
+
+def surface_without_addon(ob: bpy.types.Object, boundary: str = "ALL") -> limitsurf.LimitSurface:
+    """The limit surface of the mesh that Blender shows once all Subdivision modifiers are off."""
+    subsurfs = [m for m in ob.modifiers if m.type == "SUBSURF"]
+    shown = [m.show_viewport for m in ob.modifiers]
+    for modifier in list(ob.modifiers)[ob.modifiers.find(subsurfs[0].name) if subsurfs else 0 :]:
+        modifier.show_viewport = False
+    mesh = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    faces = [list(polygon.vertices) for polygon in mesh.polygons]
+    positions = np.array([vertex.co for vertex in mesh.vertices], np.float64)
+    for modifier, was in zip(ob.modifiers, shown, strict=True):
+        modifier.show_viewport = was
+    cage = limitsurf.ControlMesh.from_faces(positions, faces, boundary=BOUNDARIES[boundary])
+    return limitsurf.LimitSurface(cage)
+
+
+def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
+    return points @ np.array(matrix)[:3, :3].T + np.array(matrix)[:3, 3]
+
+
+def file_contents() -> dict[str, list[str]]:
+    """The names of everything in the file, kind by kind."""
+    kinds = (p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION")
+    return {kind: sorted(item.name_full for item in getattr(bpy.data, kind)) for kind in kinds}
