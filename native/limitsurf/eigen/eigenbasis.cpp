@@ -254,6 +254,45 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
   return ring;
 }
 
+std::vector<double> Eigenbasis::ringVector(int mode) const {
+  std::vector<double> ring(ring_.size(), 1.);
+  if (mode == 0) {
+    return ring;
+  }
+  if (mode < 3 && !ring_.interior()) {
+    return curve_ring_[mode - 1];
+  }
+  if (mode < 3) {
+    const double v = radial_vertex_[mode - 1];
+    ring[0] = v;
+    for (int i = 0; i < ring_.faces; ++i) {
+      ring[ring_.edge(i)] = v + radial_(0, mode - 1);
+      ring[ring_.face(i)] = v + radial_(1, mode - 1);
+    }
+    return ring;
+  }
+  ring[0] = 0;
+  const int m = 1 + (mode - 3) / (ring_.interior() ? 4 : 2);
+  for (const bool plus : {true, false}) {
+    Part part[2];
+    const int count = parts(m, plus, 0, part);
+    for (int p = 0; p < count; ++p) {
+      if (part[p].mode != mode) {
+        continue;
+      }
+      const std::vector<double>& wave = part[p].cosine != 0 ? cos_ : sin_;
+      const Spoke& spoke = spokes_[pairIndex(m, plus)];
+      for (int i = 0; i < ring_.edges(); ++i) {
+        ring[ring_.edge(i)] = spoke.edge * wave[2L * m * i % period_];
+      }
+      for (int j = 0; j < ring_.faces; ++j) {
+        ring[ring_.face(j)] = spoke.face * wave[m * (2L * j + 1) % period_];
+      }
+    }
+  }
+  return ring;
+}
+
 Eigenbasis::Table Eigenbasis::table(int mode, int face) const {
   Table result;
   if (mode == 0) {

@@ -51,12 +51,24 @@ class Eigenbasis {
     double rate = 0;
   };
   const std::vector<Chain>& chains() const { return chains_; }
+  /// What each mode feeds into outer mode `q`: nothing but at interior valence 2.
+  Eigen::VectorXd chainsToOuter(int q) const {
+    Eigen::VectorXd rates = Eigen::VectorXd::Zero(modeCount());
+    if (rest_mode_ >= 0) {
+      rates[rest_mode_] = rest_[q];
+    }
+    return rates;
+  }
 
   /// Coefficients (one row per mode) of the ring's points. O(faces^2).
   void project(const Points& ring_points, Points& coefficients) const;
 
   /// The transpose of project(): weights on modes (rows) become weights on the ring's points.
   Eigen::MatrixXd projectTransposed(const Eigen::MatrixXd& mode_weights) const;
+
+  /// A mode on the ring: one value per point. The modes are the columns of U0 in the paper, up to
+  /// their order and length. O(faces).
+  std::vector<double> ringVector(int mode) const;
 
   Sides sides(int face) const;
   const OuterModes<double>& outerModes(int face) const { return tables(sides(face)).outer_modes; }

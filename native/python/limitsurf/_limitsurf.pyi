@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from ._results import Curvature, Evaluation, Locations, Stencils, Tessellation
+
+__version__: str
+
+class MeshError(ValueError): ...
+class LocationError(ValueError): ...
+
+class ControlMesh:
+    def __init__(
+        self,
+        positions: ArrayLike,
+        face_sizes: ArrayLike,
+        face_vertices: ArrayLike,
+        edge_sharpness: tuple[ArrayLike, ArrayLike] | None = None,
+        vertex_sharpness: tuple[ArrayLike, ArrayLike] | None = None,
+        boundary: Literal["smooth", "corners"] = "smooth",
+        creasing: Literal["uniform", "chaikin"] = "uniform",
+        triangles: Literal["catmark", "smooth"] = "catmark",
+        scheme: Literal["catmark", "bilinear"] = "catmark",
+        holes: ArrayLike | None = None,
+    ) -> None: ...
+    @staticmethod
+    def from_faces(
+        positions: ArrayLike,
+        faces: NDArray[np.integer[Any]] | Sequence[ArrayLike],
+        edge_sharpness: tuple[ArrayLike, ArrayLike] | None = None,
+        vertex_sharpness: tuple[ArrayLike, ArrayLike] | None = None,
+        boundary: Literal["smooth", "corners"] = "smooth",
+        creasing: Literal["uniform", "chaikin"] = "uniform",
+        triangles: Literal["catmark", "smooth"] = "catmark",
+        scheme: Literal["catmark", "bilinear"] = "catmark",
+        holes: ArrayLike | None = None,
+    ) -> ControlMesh: ...
+    @property
+    def positions(self) -> NDArray[np.float64]: ...
+    @property
+    def face_sizes(self) -> NDArray[np.int32]: ...
+    @property
+    def face_vertices(self) -> NDArray[np.int32]: ...
+    @property
+    def boundary(self) -> str: ...
+    @property
+    def triangles(self) -> str: ...
+
+class LimitSurface:
+    def __init__(self, mesh: ControlMesh) -> None: ...
+    @property
+    def mesh(self) -> ControlMesh: ...
+    @property
+    def positions(self) -> NDArray[np.float64]: ...
+    @property
+    def face_count(self) -> int: ...
+    @property
+    def base_face(self) -> NDArray[np.int32]: ...
+    @property
+    def corner(self) -> NDArray[np.int32]: ...
+    @property
+    def refused(self) -> Mapping[int, str]: ...
+    def set_positions(self, positions: ArrayLike, threads: int = 0) -> None: ...
+    def evaluate(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        derivatives: Literal[0, 1, 2] = 0,
+        *,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
+    ) -> Evaluation: ...
+    def frames(
+        self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0, dtype: DTypeLike = ...
+    ) -> NDArray[np.floating[Any]]: ...
+    def curvature(
+        self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0, dtype: DTypeLike = ...
+    ) -> Curvature: ...
+    def stencils(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        derivatives: Literal[0, 1] = 0,
+        *,
+        threads: int = 0,
+    ) -> Stencils: ...
+    def vertex_locations(self) -> Locations: ...
+    def scatter_jittered(
+        self, per_side: int, seed: int = 0, *, threads: int = 0
+    ) -> Locations: ...
+    def tessellate(self, levels: int, *, threads: int = 0) -> Tessellation: ...
+    def area(self, *, threads: int = 0) -> float: ...
+    def bounds(self, *, threads: int = 0) -> NDArray[np.float64]: ...

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Prints, for each valence, what the eigenbasis of its vertices is worth:
+//   - the defective eigenvalue of the ring matrix S and its zero-based index among the eigenvalues in
+//     decreasing order (Lacewell & Burley 2007, figure 4), found by ranks of S - lambda, S being made
+//     from OpenSubdiv's masks;
+//   - max |A - T J T^-1|, A being the whole face's subdivision matrix;
+//   - the evaluator's error against explicit recursive subdivision in 50 decimal digits.
+//
+//   verify_eigenbasis [boundary|interior|pinned] [--valences FIRST LAST] [--csv FILE]
+#include <Eigen/LU>
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "limitsurf/eigen/eigenbasis.h"
+#include "limitsurf/surface/limit_surface.h"
+#include "support/deep_subdivision.h"
+#include "support/meshes.h"
+#include "support/random.h"
+
+namespace limitsurf {
+namespace {
+
+using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+
+struct Line {
+  int valence = 0;
+  int index = -1;             // of the defective eigenvalue; -1: none
+  double value = 0;
+  double factorisation = 0;   // max |A - T J T^-1|
+  bool evaluated = false;
+  double position = 0;        // errors of the evaluator, as limit_surface.h measures them
+  double derivative = 0;
+};
+
+/// First, second, middle and last face: all there is up to symmetry and rotation of the modes.
+std::vector<int> someFaces(int faces) {
+  const std::set<int> some = {0, std::min(1, faces - 1), faces / 2, faces - 1};
+  return {some.begin(), some.end()};
+}
+
+LongMatrix ringMatrix(const Ring& ring) {
+  return subdivideRing<LongMatrix>(ring, LongMatrix::Identity(ring.size(), ring.size()));
+}
+
+/// The eigenvalue that occurs more often than it has eigenvectors.
+void findDefect(const Eigenbasis& basis, Line& line) {
+  std::vector<double> lambda;
+  for (int mode = 0; mode < basis.modeCount(); ++mode) {
+    lambda.push_back(basis.eigenvalue(mode));
+  }
+  std::sort(lambda.rbegin(), lambda.rend());
+  const LongMatrix s = ringMatrix(basis.ring());
+  for (std::size_t i = 0; i < lambda.size();) {
+    std::size_t end = i;
+    while (end < lambda.size() && lambda[i] - lambda[end] < 1e-14) {
+      ++end;
+    }
+    if (end - i > 1) {
+      Eigen::FullPivLU<LongMatrix> lu(s -
+                                      lambda[i] * LongMatrix::Identity(s.rows(), s.cols()));
+      lu.setThreshold(1e-13L);
+      if (lu.dimensionOfKernel() < static_cast<Eigen::Index>(end - i)) {
+        line.index = static_cast<int>(i);
+        line.value = lambda[i];
+      }
+    }
+    i = end;
+  }
+}
+
+/// max |A - T J T^-1| for one face, with T and its inverse as evaluation uses them.
+double factorisationError(const Eigenbasis& basis, int face) {
+  const Ring& ring = basis.ring();
+  const OuterModes<double>& outer = basis.outerModes(face);
+  const int n = ring.size(), k = n + outer.count();
+  Eigen::MatrixXd u0(n, n), u1(outer.count(), n);
+  for (int mode = 0; mode < n; ++mode) {
+    const std::vector<double> vector = basis.ringVector(mode);
+    u0.col(mode) = Eigen::Map<const Eigen::VectorXd>(vector.data(), n);
+    u1.col(mode) = Eigen::Map<const Eigen::VectorXd>(basis.table(mode, face).outer, outer.count());
+  }
+  const Eigen::MatrixXd u0_inverse =
+      basis.projectTransposed(Eigen::MatrixXd::Identity(n, n)).transpose();
+  Eigen::MatrixXd t = Eigen::MatrixXd::Zero(k, k), t_inverse = t, j = t, a = t;
+  t.topLeftCorner(n, n) = u0;
+  t.bottomLeftCorner(outer.count(), n) = u1;
+  t.bottomRightCorner(outer.count(), outer.count()) = outer.vectors();
+  t_inverse.topLeftCorner(n, n) = u0_inverse;
+  t_inverse.bottomLeftCorner(outer.count(), n) = -outer.inverse() * u1 * u0_inverse;
+  t_inverse.bottomRightCorner(outer.count(), outer.count()) = outer.inverse();
+  for (int mode = 0; mode < n; ++mode) {
+    j(mode, mode) = basis.eigenvalue(mode);
+  }
+  for (const Eigenbasis::Chain& chain : basis.chains()) {
+    j(chain.to, chain.from) = chain.rate;
+  }
+  for (int q = 0; q < outer.count(); ++q) {
+    j(n + q, n + q) = outer.lambda(q);
+    j.block(n, 0, outer.count(), n).row(q) = basis.chainsToOuter(q).transpose();
+  }
+
+  a.topLeftCorner(n, n) = ringMatrix(ring).cast<double>();
+  a.bottomRightCorner(outer.count(), outer.count()) = outer.s12();
+  const int faces = ring.faces;
+  const auto addRingColumn = [&](int x, int y, int point) {
+    a.block(n, point, outer.count(), 1) += outer.s11().col(tile_grid::cell(x, y));
+  };
+  addRingColumn(0, 0, 0);
+  addRingColumn(1, 0, ring.edge(face));
+  addRingColumn(1, 1, ring.face(face));
+  addRingColumn(0, 1, ring.nextEdge(face));
+  if (ring.interior() || face > 0) {
+    const int before = (face + faces - 1) % faces;
+    addRingColumn(0, -1, ring.edge(before));
+    addRingColumn(1, -1, ring.face(before));
+  }
+  if (ring.interior() || face < faces - 1) {
+    const int after = (face + 1) % faces;
+    addRingColumn(-1, 1, ring.face(after));
+    addRingColumn(-1, 0, ring.nextEdge(after));
+  }
+  return (a - t * j * t_inverse).cwiseAbs().maxCoeff();
+}
+
+/// The evaluator on a fan of perturbed quads, at random and on shells down to 2^-40.
+void measureEvaluator(RingKind kind, int faces, Line& line) {
+  line.evaluated = true;
+  test::Cage cage = test::fan(faces, kind == RingKind::interior, 7 * faces + 1);
+  if (kind == RingKind::pinned) {
+    cage.options.boundary = Boundary::corners;
+  }
+  const LimitSurface surface = test::limitSurface(cage);
+  test::DeepSubdivision truth(cage);
+  test::Random random(faces);
+  for (const int sector : someFaces(faces)) {
+    const int face = 4 * sector;  // four quads a sector, the first at the vertex
+    std::vector<Location> at;
+    for (const int shell : {1, 2, 3, 4, 5, 8, 13, 21, 30, 40}) {
+      const double size = std::ldexp(1., -shell);
+      at.push_back({face, size, size * random.uniform()});
+      at.push_back({face, size * random.uniform(), size});
+    }
+    for (int i = 0; i < 6; ++i) {
+      at.push_back({face, random.uniform(), random.uniform()});
+    }
+    const Evaluation got = surface.evaluate(at, Derivatives::first);
+    double scale = 0;
+    std::vector<test::Truth> truths;
+    for (const Location& location : at) {
+      truths.push_back(truth.evaluate(location));
+      if (std::max(location.u, location.v) >= 1. / 16) {
+        scale = std::max({scale, truths.back()[test::kDu].norm(), truths.back()[test::kDv].norm()});
+      }
+    }
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const test::Truth& t = truths[i];
+      line.position =
+          std::max(line.position, (got.position.row(row).transpose() - t[test::kPosition]).norm() /
+                                      test::diagonal(cage.positions));
+      for (const auto& [quantity, value] :
+           {std::pair{test::kDu, &got.du}, std::pair{test::kDv, &got.dv}}) {
+        line.derivative =
+            std::max(line.derivative, (value->row(row).transpose() - t[quantity]).norm() /
+                                          std::max(scale, t[quantity].norm()));
+      }
+    }
+    const Vector3 vertex = surface.evaluate(std::vector<Location>{{face, 0, 0}}).position.row(0);
+    line.position = std::max(line.position, (vertex - truth.cornerPosition(face, 0)).norm() /
+                                                test::diagonal(cage.positions));
+  }
+}
+
+Line verified(RingKind kind, int valence) {
+  Line line;
+  line.valence = valence;
+  const Ring ring{kind, kind == RingKind::interior ? valence : valence - 1};
+  const auto basis = Eigenbasis::get(ring);
+  findDefect(*basis, line);
+  for (const int face : someFaces(ring.faces)) {
+    line.factorisation = std::max(line.factorisation, factorisationError(*basis, face));
+  }
+  // Pinned vertices with several faces need sharpness or a bow-tie: there is no fan of them.
+  if (kind != RingKind::pinned || ring.faces == 1) {
+    measureEvaluator(kind, ring.faces, line);
+  }
+  return line;
+}
+
+int run(int argc, char** argv) {
+  RingKind kind = RingKind::boundary;
+  int first = 2, last = 100;
+  std::string csv;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "interior" || argument == "boundary" || argument == "pinned") {
+      kind = argument == "interior"   ? RingKind::interior
+             : argument == "boundary" ? RingKind::boundary
+                                      : RingKind::pinned;
+    } else if (argument == "--valences" && i + 2 < argc) {
+      first = std::stoi(argv[++i]);
+      last = std::stoi(argv[++i]);
+    } else if (argument == "--csv" && i + 1 < argc) {
+      csv = argv[++i];
+    } else {
+      std::fprintf(stderr,
+                   "usage: verify_eigenbasis [boundary|interior|pinned] [--valences FIRST LAST] "
+                   "[--csv FILE]\n");
+      return 2;
+    }
+  }
+  if (first < 2 || last < first) {
+    std::fprintf(stderr, "valences %d to %d: expected 2 <= FIRST <= LAST\n", first, last);
+    return 2;
+  }
+
+  std::ofstream table;
+  if (!csv.empty()) {
+    table.open(csv);
+    table << "valence,index,value,factorisation,position,derivative\n";
+  }
+  std::printf("valence  defective eigenvalue   max |A - T J T^-1|   error in position   in du, dv\n");
+  for (int valence = first; valence <= last; ++valence) {
+    const Line line = verified(kind, valence);
+    char defect[40] = "none";
+    if (line.index >= 0) {
+      std::snprintf(defect, sizeof defect, "index %3d: %g", line.index, line.value);
+    }
+    std::printf("%7d  %-20s   %18.1e", valence, defect, line.factorisation);
+    if (line.evaluated) {
+      std::printf("   %17.1e   %9.1e\n", line.position, line.derivative);
+    } else {
+      std::printf("   %17s   %9s\n", "-", "-");
+    }
+    std::fflush(stdout);
+    if (table.is_open()) {
+      table << valence << ',' << line.index << ',' << line.value << ',' << line.factorisation << ','
+            << line.position << ',' << line.derivative << '\n';
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace limitsurf
+
+int main(int argc, char** argv) { return limitsurf::run(argc, argv); }
