@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The arrays behind the operators: quaternions, world frames, attributes."""
+
+import bpy
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from limit_surface import attributes
+from limit_surface.errors import RefusalError
+from limit_surface.rotations import WorldSpace, quaternions
+from mathutils import Quaternion
+
+unit_quaternions = (
+    st.tuples(*[st.floats(-1, 1)] * 4)
+    .map(lambda q: Quaternion(q))
+    .filter(lambda q: q.magnitude > 1e-3)
+    .map(lambda q: q.normalized())
+)
+
+
+def matrix(q):
+    return np.array(q.to_matrix(), np.float64)
+
+
+@given(unit_quaternions)
+def test_quaternions_give_the_matrix_back(q):
+    (found,) = quaternions(matrix(q)[None])
+    assert found[0] >= 0
+    np.testing.assert_allclose(matrix(Quaternion(found)), matrix(q), atol=1e-6)
+
+
+def test_quaternions_of_half_turns():
+    turns = np.array([np.diag(d) for d in ([1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1])])
+    np.testing.assert_array_equal(np.abs(quaternions(turns.astype(float))), np.eye(4))
+
+
+def test_no_quaternions():
+    assert quaternions(np.empty((0, 3, 3))).shape == (0, 4)
+
+
+@given(unit_quaternions, st.tuples(*[st.floats(0.1, 10) | st.floats(-10, -0.1)] * 3))
+def test_world_frames_are_orthonormal_and_map_back(q, scale):
+    space = np.eye(4)
+    space[:3, :3] = matrix(q) @ np.diag(scale)
+    world = WorldSpace(space)
+    frame = world.frames(np.eye(3)[None])
+    np.testing.assert_allclose(frame[0].T @ frame[0], np.eye(3), atol=1e-9)
+    assert np.linalg.det(frame[0]) == pytest.approx(np.sign(np.prod(scale)))
+    vectors = np.array([[1.0, 2.0, 3.0]])
+    np.testing.assert_allclose(world.to_local(vectors) @ space[:3, :3].T, vectors, atol=1e-9)
+
+
+def test_a_singular_matrix_is_refused():
+    with pytest.raises(RefusalError, match="scale is 0"):
+        WorldSpace(np.diag([1.0, 0.0, 1.0, 1.0]))
+
+
+@pytest.mark.parametrize(
+    ("kind", "width"),
+    [("INT", 1), ("FLOAT", 1), ("FLOAT2", 2), ("FLOAT_VECTOR", 3), ("QUATERNION", 4)],
+)
+def test_attributes_come_back(kind, width):
+    mesh = bpy.data.meshes.new("Points")
+    mesh.vertices.add(5)
+    values = np.arange(5 * width).reshape(5, width)
+    attributes.write(mesh, "made", kind, "POINT", values)
+    attributes.write(mesh, "made", kind, "POINT", values + 1)  # overwrites
+    assert [a.name for a in mesh.attributes].count("made") == 1
+    np.testing.assert_array_equal(attributes.read(mesh, "made").reshape(5, width), values + 1)
+
+
+def test_attributes_of_another_kind_or_size_are_not_overwritten():
+    mesh = bpy.data.meshes.new("Points")
+    mesh.vertices.add(5)
+    attributes.write(mesh, "made", "INT", "POINT", np.arange(5))
+    with pytest.raises(RuntimeError, match="another kind"):
+        attributes.write(mesh, "made", "FLOAT", "POINT", np.arange(5))
+    with pytest.raises(ValueError, match="for 5 elements"):
+        attributes.write(mesh, "made", "INT", "POINT", np.arange(6))
