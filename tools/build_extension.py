@@ -115,10 +115,11 @@ def blender_extension(*arguments: str | Path) -> None:
 
 
 def run(*command: str | Path, environment: dict[str, str] | None = None) -> None:
-    try:
-        subprocess.run(command, env=environment, check=True)
-    except subprocess.CalledProcessError as error:
-        fail(f"{' '.join(map(str, command))} ended with {error.returncode}")
+    """Shows what the program says only where it fails."""
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    if done.returncode:
+        print(done.stdout + done.stderr, file=sys.stderr, end="")
+        fail(f"{' '.join(map(str, command))} ended with {done.returncode}")
 
 
 def fail(message: str) -> None:

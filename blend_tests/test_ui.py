@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panel, menus and preferences, drawn into a layout that takes notes."""
+
+from types import SimpleNamespace
+from unittest.mock import MagicMock
+
+import bpy
+import limit_surface
+import limitsurf
+import scenes
+from limit_surface import ids
+from limit_surface.preferences import LimitSurfacePreferences
+from processes import ROOT, run_python
+
+
+def drawn(cls, method="draw"):
+    layout = MagicMock()
+    getattr(cls, method)(SimpleNamespace(layout=layout), bpy.context)
+    return layout
+
+
+def labels(layout):
+    return [call.kwargs.get("text") for call in layout.label.call_args_list]
+
+
+def test_panel_offers_the_operators():
+    layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
+    assert "No active mesh" in labels(layout)
+    assert layout.column().enabled is True
+    offered = [call.args[0] for call in layout.column().operator.call_args_list]
+    assert offered == [ids.HAIR_ADD, ids.POINTS_ADD]
+
+
+def test_panel_shows_whose_rules_count():
+    ob = scenes.cross()
+    assert "Rules: Subdivision's defaults" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
+    subsurf = scenes.add_subsurf(ob)
+    row = drawn(bpy.types.VIEW3D_PT_limit_surface).row()
+    assert labels(row) == ["Subdivision"]
+    row.prop.assert_called_once_with(subsurf, "boundary_smooth", text="")
+
+
+def test_preferences_show_the_version():
+    layout = drawn(LimitSurfacePreferences)
+    assert labels(layout) == [f"Native module limitsurf {limitsurf.__version__}"]
+
+
+def test_menu_offers_the_operators():
+    layout = drawn(bpy.types.VIEW3D_MT_object_limit_surface)
+    offered = [call.args[0] for call in layout.operator.call_args_list]
+    assert offered == [ids.HAIR_ADD, ids.POINTS_ADD]
+
+
+def test_redo_panel_shows_every_property_and_the_count():
+    ob = scenes.cross()
+    scenes.add_hair(ob)
+    last = bpy.types.OBJECT_OT_limit_hair_add
+    layout = MagicMock()
+    self = MagicMock(layout=layout, summary="80 strands on 5 faces")
+    self.draw_own = lambda layout: last.draw_own(self, layout)
+    last.draw(self, bpy.context)
+    shown = {call.args[1] for call in layout.prop.call_args_list}
+    properties = {p.identifier for p in bpy.ops.object.limit_hair_add.get_rna_type().properties}
+    assert shown == properties - {"rna_type", "summary"}
+    assert "80 strands on 5 faces" in labels(layout)
+
+
+def test_registering_again():
+    for _ in range(2):
+        limit_surface.unregister()
+        assert not hasattr(bpy.types, ids.PANEL)
+        limit_surface.register()
+    assert hasattr(bpy.types, ids.PANEL)
+
+
+WITHOUT_NATIVE = f"""
+import sys
+sys.path.insert(0, {str(ROOT / "addon")!r})
+{{spoil}}
+import bpy, limit_surface
+from types import SimpleNamespace
+from unittest.mock import MagicMock
+from limit_surface.preferences import LimitSurfacePreferences
+limit_surface.register()
+bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+mesh = bpy.data.meshes.new("M")
+mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+ob = bpy.data.objects.new("M", mesh)
+bpy.context.collection.objects.link(ob)
+bpy.context.view_layer.objects.active = ob
+for operator in (bpy.ops.object.limit_hair_add, bpy.ops.object.limit_points_add):
+    assert not operator.poll()
+    try:
+        operator()
+    except RuntimeError as error:
+        print("POLL", error)
+for cls in (bpy.types.VIEW3D_PT_limit_surface, LimitSurfacePreferences):
+    layout = MagicMock()
+    cls.draw(SimpleNamespace(layout=layout), bpy.context)
+    print("DRAWN", " ".join(call.kwargs["text"] for call in layout.box().label.call_args_list))
+    if cls is not LimitSurfacePreferences:
+        assert layout.column().enabled is False
+limit_surface.unregister()
+"""
+
+
+def check_reason_is_shown(spoil, reason):
+    done = run_python(WITHOUT_NATIVE.format(spoil=spoil))
+    lines = [line for line in done.stdout.splitlines() if line.startswith(("POLL", "DRAWN"))]
+    assert len(lines) == 4
+    for line in lines:
+        assert "does not load" in line
+        assert reason in line
+    assert "Traceback" not in done.stdout + done.stderr
+
+
+def test_missing_native_module():
+    check_reason_is_shown("sys.modules['limitsurf'] = None", "ModuleNotFoundError")
+
+
+def test_broken_native_module(tmp_path):
+    (tmp_path / "limitsurf.py").write_text("raise OSError('wrong ELF class')")
+    check_reason_is_shown(f"sys.path.insert(0, {str(tmp_path)!r})", "OSError: wrong ELF class")
+
+
+def test_a_folder_of_that_name_is_not_the_module(tmp_path):
+    (tmp_path / "limitsurf").mkdir()
+    spoil = f"sys.path = [{str(tmp_path)!r}, *(p for p in sys.path if 'site-packages' not in p)]"
+    # Blender itself comes from site-packages, and is found before they are taken away.
+    check_reason_is_shown(f"import bpy, numpy; {spoil}", "is not the native module")
