@@ -34,7 +34,7 @@ LENGTH = 0.26
 
 SURFACE_BLUE = (0.055, 0.16, 0.50)
 CAGE_GREEN = (0.02, 0.33, 0.06)
-HAIR_BROWN = (0.30, 0.14, 0.05)
+HAIR_BROWN = (0.42, 0.21, 0.08)
 
 
 def main() -> None:
@@ -57,6 +57,7 @@ def main() -> None:
     with quiet():
         bpy.ops.render.render(write_still=True)
     print(f"{picture}: rendered in {time.perf_counter() - begin:.1f} s")
+    bpy.context.preferences.filepaths.save_version = 0  # no figure1.blend1
     bpy.ops.wm.save_as_mainfile(filepath=str(blend), compress=True)
     print(f"{blend}: {blend.stat().st_size / 2**20:.1f} MiB")
     print(f"All in {time.perf_counter() - start:.1f} s")
@@ -121,11 +122,13 @@ def add_cage_and_surface(positions: np.ndarray, faces: list[list[int]], at: Vect
     cage = add_mesh("Control mesh", positions, faces, at)
     wire = cage.modifiers.new("Wireframe", "WIREFRAME")
     wire.thickness, wire.use_even_offset, wire.use_boundary, wire.offset = 0.035, False, True, 0
+    cage.visible_shadow = False
     cage.data.materials.append(material("Control mesh", CAGE_GREEN, roughness=0.5))
     for i, position in enumerate(positions):
         bpy.ops.mesh.primitive_uv_sphere_add(radius=0.055, location=position)
         ball = bpy.context.active_object
         ball.parent = cage
+        ball.visible_shadow = False
         ball.name = f"Control vertex {i}"
         ball.data.shade_smooth()
         ball.data.materials.append(cage.data.materials[0])
@@ -175,6 +178,8 @@ def set_up_picture(width: int, height: int, samples: int) -> None:
     scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.render.resolution_percentage = 100
     scene.render.film_transparent = False
+    scene.render.image_settings.color_mode = "RGB"
+    scene.render.image_settings.compression = 90
     scene.view_settings.view_transform = "Standard"
 
     add_camera(scene)
