@@ -70,17 +70,18 @@ TEST(Frames, FollowDuAndTheNormal) {
   }
 }
 
-/// The frame on the diagonal towards (0, 0), where going deeper changes it no more.
+/// The frame on the diagonal towards (0, 0), so deep that it changes no more; none where that takes
+/// too long, that is where leading eigenvalues lie close together or have a Jordan block.
 std::optional<Frame> diagonalLimit(DeepSubdivision& deep, int face) {
-  std::optional<Frame> last;
-  for (int n : {160, 320}) {
+  const auto at = [&](int n) {
     const double t = std::ldexp(1.0, -n);
     const Truth truth = deep.evaluate({face, t, t});
-    const Frame frame = frameFrom(truth[kDu], truth[kNormal]);
-    if (last && (frame - *last).norm() < 1e-13) return frame;
-    last = frame;
-  }
-  return std::nullopt;
+    return frameFrom(truth[kDu], truth[kNormal]);
+  };
+  // What is left shrinks geometrically: at twice the depth it is squared.
+  const Frame halfway = at(225), limit = at(450);
+  if ((halfway - limit).norm() > 1e-6) return std::nullopt;
+  return limit;
 }
 
 /// Compares the frame at the vertex with the limit along the diagonal, as far as that settles (it
@@ -114,11 +115,11 @@ TEST(Frames, AtInteriorVerticesAreTheLimitAlongTheDiagonal) {
 }
 
 TEST(Frames, AtSmoothBoundariesAreTheLimitAlongTheDiagonal) {
-  compareAtVertices(false, Boundary::smooth, {2, 3, 5, 6, 7, 9, 10}, 10);
+  compareAtVertices(false, Boundary::smooth, {2, 3, 5, 6, 7}, 15);
 }
 
 TEST(Frames, AtPinnedBoundariesAreTheLimitAlongTheDiagonal) {
-  compareAtVertices(false, Boundary::corners, {1, 2, 3, 5, 6}, 5);
+  compareAtVertices(false, Boundary::corners, {1, 2, 3, 5, 6, 7}, 10);
 }
 
 TEST(Frames, AtOtherCornersAreTheSameAsSeenFromTheVertex) {

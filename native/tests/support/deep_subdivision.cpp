@@ -424,7 +424,8 @@ Truth DeepSubdivision::evaluate(const Location& at) {
     v = 2 * v - high_v;
     std::unique_ptr<Node>& child = node->children[corner];
     if (!child) {
-      child = std::make_unique<Node>(Refinement(node->mesh, false).child(corner, true));
+      child = std::make_unique<Node>(
+          Refinement(node->mesh, data_->smooth_triangles).child(corner, true));
     }
     node = child.get();
   }
@@ -450,7 +451,7 @@ Vector3 DeepSubdivision::cornerPosition(int face, int corner) {
       const Location at = cornerLocation(face, corner);
       return rounded(mesh.origin + test::evaluate(gridAround(mesh), at.u, at.v, 0, 0));
     }
-    LocalMesh child = Refinement(mesh, false).child(corner, true);
+    LocalMesh child = Refinement(mesh, data_->smooth_triangles).child(corner, true);
     const Vector3 step = rounded(child.origin - mesh.origin);
     mesh = std::move(child);
     // Steps shrink by a factor of 0.8 or less each.

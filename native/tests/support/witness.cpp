@@ -57,13 +57,17 @@ void compareWithSubdivision(const std::string& name, const Cage& cage,
 }
 
 std::vector<Location> shells(int face, int corner, const std::vector<int>& n) {
+  // Twelve binary digits: enough that no product of weights is exact by luck, few enough that
+  // 1 - u is.
+  constexpr double a = 3277 / 4096.0, b = 2459 / 4096.0, c = 1433 / 4096.0;
+  constexpr double directions[][2] = {{1, 1}, {a, a}, {a, c}, {b, a},
+                                      {1, b}, {c, 1}, {a, 0}, {0, b}};
   const Location origin = cornerLocation(face, corner);
   std::vector<Location> result;
   for (int level : n) {
     const double t = std::ldexp(1.0, -level);
-    for (const auto& [du, dv] : {std::pair(t, t), std::pair(t, 0.375 * t), std::pair(0.75 * t, t),
-                                 std::pair(t, 0.0), std::pair(0.0, t)}) {
-      result.push_back({face, std::abs(origin.u - du), std::abs(origin.v - dv)});
+    for (const auto& [du, dv] : directions) {
+      result.push_back({face, std::abs(origin.u - du * t), std::abs(origin.v - dv * t)});
     }
   }
   return result;

@@ -15,8 +15,8 @@ namespace limitsurf::test {
 void compareWithSubdivision(const std::string& name, const Cage& cage,
                             const std::vector<Location>& at, Accuracy& all);
 
-/// Locations on square rings at the distances 2^-n of a face's corner: on the diagonal, on both
-/// sides of it, and on both edges. No rounding: 1 - u of a location is exact for n up to 50.
+/// Locations on square rings at the distances 2^-n of a face's corner, n up to 40: in several
+/// directions, on the diagonal and on both edges. 1 - u and 1 - v are exact.
 std::vector<Location> shells(int face, int corner, const std::vector<int>& n);
 
 /// `count` locations anywhere on the face.
