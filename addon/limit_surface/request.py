@@ -9,7 +9,10 @@ LARGE_COUNT = 3_000_000  # more than so many are made only if the user insists
 LARGE_MEMORY = 4 << 30  # bytes
 MOST_ELEMENTS = 2**31 - 1  # what Blender counts to
 
-BYTES_PER_LOCATION = 128  # attributes, and the arrays they are filled from
+# Measured at the peak: attributes and the arrays they are filled from; positions, and the finer
+# curve that Blender evaluates between them.
+BYTES_PER_LOCATION = 130
+BYTES_PER_ELEMENT = 200
 
 
 @dataclass(frozen=True)
@@ -24,8 +27,8 @@ class RequestSize:
 
     @property
     def memory(self) -> int:
-        """Bytes, counting Blender's data, the arrays it is filled from and the undo step."""
-        return self.count * BYTES_PER_LOCATION + self.elements * 48
+        """Bytes."""
+        return self.count * BYTES_PER_LOCATION + self.elements * BYTES_PER_ELEMENT
 
     @property
     def is_large(self) -> bool:

@@ -14,7 +14,7 @@ from . import cage, native, roots
 from .errors import RefusalError
 from .progress import progress_bar
 from .request import RequestSize
-from .uv_map import PtexCorners
+from .uv_map import PtexMap
 
 if TYPE_CHECKING:
     import limitsurf
@@ -33,11 +33,13 @@ class Target:
         """The locations on the cage's own UV map, as Blender's hair tools look them up."""
         if self.cage.uv_map is None:
             return None
-        corners = PtexCorners(self.cage.face_sizes, self.cage.uv_map.values)
-        face = self.locations.face
-        base_face = np.asarray(self.surface.base_face)[face]
-        corner = np.asarray(self.surface.corner)[face]
-        return corners.at(base_face, corner, self.locations.uv.astype(np.float64))
+        on_cage = PtexMap(
+            self.cage.face_sizes,
+            self.cage.uv_map.values,
+            np.asarray(self.surface.base_face),
+            np.asarray(self.surface.corner),
+        )
+        return on_cage.at(self.locations.face, self.locations.uv.astype(np.float64))
 
 
 class ScatterOperator:

@@ -4,29 +4,36 @@
 import numpy as np
 
 
-class PtexCorners:
-    """The four corners of each Ptex face, in the order of its (u, v): 00, 10, 11, 01.
+class PtexMap:
+    """Values at face corners, bilinear on each Ptex face between its four corners.
 
     A quad's are its own. The sub-face at corner i of any other polygon has that corner, the
     midpoint of the edge that leaves it, the polygon's centre, the midpoint of the edge before it.
     """
 
-    def __init__(self, face_sizes: np.ndarray, values: np.ndarray) -> None:
-        """`values`: one row per face corner."""
-        self._sizes = face_sizes
-        self._starts = np.concatenate([[0], np.cumsum(face_sizes)[:-1]])
-        self._values = values
-
-    def at(self, base_face: np.ndarray, corner: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """Bilinear on Ptex faces, each given as base face and corner (0 for quads)."""
-        size, start = self._sizes[base_face], self._starts[base_face]
+    def __init__(
+        self,
+        face_sizes: np.ndarray,
+        values: np.ndarray,  # one row per face corner
+        base_face: np.ndarray,  # of each Ptex face, as LimitSurface tells it
+        corner: np.ndarray,
+    ) -> None:
+        starts = np.concatenate([[0], np.cumsum(face_sizes)[:-1]])
+        size, start = face_sizes[base_face], starts[base_face]
         here, after, opposite, before = (
-            self._values[start + (corner + step) % size] for step in (0, 1, 2, -1)
+            values[start + (corner + step) % size] for step in (0, 1, 2, -1)
         )
         split = (size != 4)[:, None]
-        centre = np.add.reduceat(self._values, self._starts)[base_face] / size[:, None]
-        after = np.where(split, (here + after) / 2, after)
-        opposite = np.where(split, centre, opposite)
-        before = np.where(split, (here + before) / 2, before)
+        centre = np.add.reduceat(values, starts)[base_face] / size[:, None]
+        self._here = here
+        self._after = np.where(split, (here + after) / 2, after)
+        self._opposite = np.where(split, centre, opposite)
+        self._before = np.where(split, (here + before) / 2, before)
+
+    def at(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
         u, v = uv[:, :1], uv[:, 1:]
-        return (here * (1 - u) + after * u) * (1 - v) + (before * (1 - u) + opposite * u) * v
+        value = (1 - u) * (1 - v) * self._here[face]
+        value += u * (1 - v) * self._after[face]
+        value += u * v * self._opposite[face]
+        value += (1 - u) * v * self._before[face]
+        return value
