@@ -29,41 +29,51 @@ class CageMesh final : public FaceMesh {
     }
     return level_.GetFaceVertices(static_cast<int>(at.face))[at.corner];
   }
-  int facesAt(VertexId vertex) const override {
-    return isFan(vertex) ? static_cast<int>(fan(vertex).faces.size())
-                         : level_.GetVertexFaces(static_cast<int>(vertex)).size();
+  FaceCorner twin(FaceCorner side) const override {
+    const int edge = level_.GetFaceEdges(static_cast<int>(side.face))[side.corner];
+    const auto faces = level_.GetEdgeFaces(edge);
+    if (faces.size() < 2) {
+      return {};
+    }
+    const auto sides = level_.GetEdgeFaceLocalIndices(edge);
+    const int other = faces[0] == side.face && sides[0] == side.corner ? 1 : 0;
+    return {faces[other], sides[other]};
   }
-  bool interior(VertexId vertex) const override {
-    return !isFan(vertex) && !level_.IsVertexBoundary(static_cast<int>(vertex));
-  }
+
+  VertexFan fan(VertexId vertex) const override;
+  bool onlyQuadsAround(VertexId vertex) const override { return (marks_[vertex] & kQuads) != 0; }
   FaceCorner faceAt(VertexId vertex, int i) const override {
-    if (isFan(vertex)) {
-      return {fan(vertex).faces[i].first, fan(vertex).faces[i].second};
+    if (isSplit(vertex)) {
+      const auto& [face, corner] = splitFan(vertex).faces[i];
+      return {face, corner};
     }
     const int v = static_cast<int>(vertex);
     return {level_.GetVertexFaces(v)[i], level_.GetVertexFaceLocalIndices(v)[i]};
   }
-  bool pinned(VertexId vertex) const override {
-    return isFan(vertex) ||
-           (boundary_ == Boundary::corners && !interior(vertex) && facesAt(vertex) == 1);
-  }
-  int positionOf(FaceCorner at) const override { return positions_[corners_.number(at)]; }
+  int positionOf(FaceCorner at) const override { return positions_.at(corners_.number(at)); }
   int point(VertexId vertex) override {
-    return isFan(vertex) ? fan(vertex).vertex : static_cast<int>(vertex);
+    return isSplit(vertex) ? splitFan(vertex).vertex : static_cast<int>(vertex);
   }
 
+  /// Whether the face's surface is one B-spline patch.
+  bool regularFace(FaceId face) const;
+
  private:
-  bool isFan(VertexId vertex) const { return vertex >= level_.GetNumVertices(); }
-  const Topology::SplitFan& fan(VertexId vertex) const {
+  enum Mark : std::uint8_t { kRegular = 1, kQuads = 2 };
+
+  bool isSplit(VertexId vertex) const { return vertex >= level_.GetNumVertices(); }
+  const Topology::SplitFan& splitFan(VertexId vertex) const {
     return fans_[static_cast<std::size_t>(vertex - level_.GetNumVertices())];
   }
+  void mark(VertexId vertex);
 
   const OpenSubdiv::Far::TopologyLevel& level_;
   const std::vector<Topology::SplitFan>& fans_;
   const CageCorners& corners_;
   Boundary boundary_;
-  std::unordered_map<FaceId, int> fan_of_;  // corner -> fan, of split vertices
-  std::vector<std::uint16_t> positions_;    // corner -> its face among its vertex's; 16 bits suffice
+  std::unordered_map<FaceId, int> fan_of_;     // corner -> fan, of split vertices
+  std::unordered_map<FaceId, int> positions_;  // corner -> position, of irregular vertices
+  std::vector<std::uint8_t> marks_;            // per vertex
 };
 
 }  // namespace limitsurf

@@ -2,21 +2,12 @@
 #include "limitsurf/patch/child_mesh.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace limitsurf {
 
-FaceCorner ChildMesh::otherSide(FaceCorner side) const {
-  const FaceCorner beyond = Fan(parent_, side).at(-1);
-  if (!beyond.exists()) {
-    return {};
-  }
-  // Seen from beyond, the edge ends at this vertex.
-  const int size = parent_.faceSize(beyond.face);
-  return {beyond.face, (beyond.corner + size - 1) % size};
-}
-
 VertexId ChildMesh::ofEdge(FaceCorner side) const {
-  const FaceCorner other = otherSide(side);
+  const FaceCorner other = parent_.twin(side);
   FaceId id = corners_.number(side);
   if (other.exists()) {
     id = std::min(id, corners_.number(other));
@@ -33,32 +24,40 @@ VertexId ChildMesh::vertex(FaceCorner at) const {
       return ofEdge(origin);
     case 2:
       return 3 * origin.face + kOfFace;
+    default:
+      return ofEdge(parent_.before(origin));
+  }
+}
+
+FaceCorner ChildMesh::twin(FaceCorner side) const {
+  const FaceCorner origin = corners_.at(side.face);
+  switch (side.corner) {
+    case 0: {  // from the vertex to the middle of the edge, which runs the other way beyond
+      const FaceCorner beyond = parent_.twin(origin);
+      return beyond.exists() ? FaceCorner{corners_.number(parent_.after(beyond, 1)), 3}
+                             : FaceCorner{};
+    }
+    case 1:
+      return {corners_.number(parent_.after(origin, 1)), 2};
+    case 2:
+      return {corners_.number(parent_.before(origin)), 1};
     default: {
-      const int size = parent_.faceSize(origin.face);
-      return ofEdge({origin.face, (origin.corner + size - 1) % size});
+      const FaceCorner beyond = parent_.twin(parent_.before(origin));
+      return beyond.exists() ? FaceCorner{corners_.number(beyond), 0} : FaceCorner{};
     }
   }
 }
 
-int ChildMesh::facesAt(VertexId vertex) const {
+VertexFan ChildMesh::fan(VertexId vertex) const {
   switch (vertex % 3) {
     case kOfVertex:
-      return parent_.facesAt(vertex / 3);
-    case kOfEdge:
-      return otherSide(corners_.at(vertex / 3)).exists() ? 4 : 2;
+      return parent_.fan(vertex / 3);
+    case kOfEdge: {
+      const bool interior = parent_.twin(corners_.at(vertex / 3)).exists();
+      return {interior ? 4 : 2, interior, false};
+    }
     default:
-      return parent_.faceSize(vertex / 3);
-  }
-}
-
-bool ChildMesh::interior(VertexId vertex) const {
-  switch (vertex % 3) {
-    case kOfVertex:
-      return parent_.interior(vertex / 3);
-    case kOfEdge:
-      return otherSide(corners_.at(vertex / 3)).exists();
-    default:
-      return true;
+      return {parent_.faceSize(vertex / 3), true, false};
   }
 }
 
@@ -72,9 +71,8 @@ FaceCorner ChildMesh::faceAt(VertexId vertex, int i) const {
   // Counter-clockwise around the edge's middle, from the child at the end of the edge: the two on
   // this side, then the two on the other, where the edge runs the opposite way.
   const FaceCorner here = corners_.at(vertex / 3);
-  const FaceCorner side = i < 2 ? here : otherSide(here);
-  const int next = (side.corner + 1) % parent_.faceSize(side.face);
-  return i % 2 == 0 ? FaceCorner{corners_.number({side.face, next}), 3}
+  const FaceCorner side = i < 2 ? here : parent_.twin(here);
+  return i % 2 == 0 ? FaceCorner{corners_.number(parent_.after(side, 1)), 3}
                     : FaceCorner{corners_.number(side), 1};
 }
 
@@ -87,11 +85,8 @@ int ChildMesh::positionOf(FaceCorner at) const {
       return vertex(at) == 3 * at.face + kOfEdge ? 1 : 3;
     case 2:
       return origin.corner;
-    default: {
-      const int size = parent_.faceSize(origin.face);
-      const FaceCorner side = {origin.face, (origin.corner + size - 1) % size};
-      return vertex(at) == 3 * corners_.number(side) + kOfEdge ? 0 : 2;
-    }
+    default:
+      return vertex(at) == 3 * corners_.number(parent_.before(origin)) + kOfEdge ? 0 : 2;
   }
 }
 
@@ -118,7 +113,7 @@ int ChildMesh::makePoint(VertexId vertex) {
     }
     return points_.addFacePoint(sources);
   }
-  const FaceCorner side = corners_.at(id), other = otherSide(side);
+  const FaceCorner side = corners_.at(id), other = parent_.twin(side);
   sources = {parent_.point(parent_.vertex(side)), parent_.point(parent_.vertexAfter(side, 1))};
   if (!other.exists()) {
     return points_.addEdgePoint(sources, 0, 0);
@@ -129,25 +124,23 @@ int ChildMesh::makePoint(VertexId vertex) {
 }
 
 int ChildMesh::makeVertexPoint(VertexId vertex) {
-  const int faces = parent_.facesAt(vertex);
-  const bool interior = parent_.interior(vertex);
+  const VertexFan fan = parent_.fan(vertex);
   std::vector<int> sources = {parent_.point(vertex)};
-  if (parent_.pinned(vertex)) {
+  if (fan.pinned) {
     return points_.addVertexPoint(sources, VertexRule::corner, 0);
   }
-  for (int i = 0; i < faces; ++i) {
+  for (int i = 0; i < fan.faces; ++i) {
     sources.push_back(parent_.point(parent_.vertexAfter(parent_.faceAt(vertex, i), 1)));
   }
-  if (!interior) {
-    const FaceCorner last = parent_.faceAt(vertex, faces - 1);
-    sources.push_back(
-        parent_.point(parent_.vertexAfter(last, parent_.faceSize(last.face) - 1)));
-    return points_.addVertexPoint(sources, VertexRule::crease, faces + 1);
+  if (!fan.interior) {
+    const FaceCorner last = parent_.faceAt(vertex, fan.faces - 1);
+    sources.push_back(parent_.point(parent_.vertex(parent_.before(last))));
+    return points_.addVertexPoint(sources, VertexRule::crease, fan.faces + 1);
   }
-  for (int i = 0; i < faces; ++i) {
+  for (int i = 0; i < fan.faces; ++i) {
     sources.push_back(point(3 * parent_.faceAt(vertex, i).face + kOfFace));
   }
-  return points_.addVertexPoint(sources, VertexRule::smooth, faces);
+  return points_.addVertexPoint(sources, VertexRule::smooth, fan.faces);
 }
 
 }  // namespace limitsurf

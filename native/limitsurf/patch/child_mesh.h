@@ -20,7 +20,6 @@ class ChildMesh final : public FaceMesh {
       : parent_(parent), corners_(corners), points_(points) {}
 
   FaceId child(FaceCorner at) const { return corners_.number(at); }
-  FaceCorner parentCorner(FaceId face) const { return corners_.at(face); }
   FaceMesh& parent() const { return parent_; }
 
   /// The parent's vertex that this vertex is the new point of, or -1.
@@ -28,12 +27,10 @@ class ChildMesh final : public FaceMesh {
 
   int faceSize(FaceId) const override { return 4; }
   VertexId vertex(FaceCorner at) const override;
-  int facesAt(VertexId vertex) const override;
-  bool interior(VertexId vertex) const override;
+  FaceCorner twin(FaceCorner side) const override;
+  VertexFan fan(VertexId vertex) const override;
+  bool onlyQuadsAround(VertexId) const override { return true; }
   FaceCorner faceAt(VertexId vertex, int i) const override;
-  bool pinned(VertexId vertex) const override {
-    return vertex % 3 == kOfVertex && parent_.pinned(vertex / 3);
-  }
   int positionOf(FaceCorner at) const override;
   int point(VertexId vertex) override;
 
@@ -42,9 +39,6 @@ class ChildMesh final : public FaceMesh {
   enum Origin { kOfVertex = 0, kOfEdge = 1, kOfFace = 2 };
 
   VertexId ofEdge(FaceCorner side) const;
-  /// The other side of the edge that leaves a face's corner: the same edge as seen from the face
-  /// beyond. Does not exist on a boundary.
-  FaceCorner otherSide(FaceCorner side) const;
   int makePoint(VertexId vertex);
   int makeVertexPoint(VertexId parent_vertex);
 

@@ -10,11 +10,22 @@ namespace limitsurf {
 using FaceId = std::int64_t;
 using VertexId = std::int64_t;
 
+/// A corner of a face. As a side of the face it stands for the edge from this corner to the next.
 struct FaceCorner {
   FaceId face = -1;
   int corner = 0;
 
   bool exists() const { return face >= 0; }
+};
+
+/// What surrounds a vertex.
+struct VertexFan {
+  int faces;
+  bool interior;  ///< faces all around
+  bool pinned;    ///< on a boundary, and does not move
+
+  /// Whether the surface around the vertex, if all its faces are quads, is a B-spline's.
+  bool regular() const { return faces == (interior ? 4 : pinned ? 1 : 2); }
 };
 
 /// The topology of one level of refinement, answered on demand. Only faces whose vertices are
@@ -25,69 +36,34 @@ class FaceMesh {
 
   virtual int faceSize(FaceId face) const = 0;
   virtual VertexId vertex(FaceCorner at) const = 0;
+  /// The same edge as a side of the face beyond it; does not exist on a boundary.
+  virtual FaceCorner twin(FaceCorner side) const = 0;
 
+  virtual VertexFan fan(VertexId vertex) const = 0;
+  virtual bool onlyQuadsAround(VertexId vertex) const = 0;
   /// The faces around a vertex, counter-clockwise; on a boundary from the first to the last.
-  virtual int facesAt(VertexId vertex) const = 0;
-  virtual bool interior(VertexId vertex) const = 0;
   virtual FaceCorner faceAt(VertexId vertex, int i) const = 0;
-  /// Whether the vertex, on a boundary, stays where it is.
-  virtual bool pinned(VertexId vertex) const = 0;
-  /// The i for which faceAt(vertex(at), i) is `at`.
+  /// The i for which faceAt(vertex(at), i) is `at`. Irregular vertices only.
   virtual int positionOf(FaceCorner at) const = 0;
 
   /// The number of the vertex's control point.
   virtual int point(VertexId vertex) = 0;
 
-  VertexId vertexAfter(FaceCorner at, int steps) const {
-    return vertex({at.face, (at.corner + steps) % faceSize(at.face)});
+  FaceCorner after(FaceCorner at, int steps) const {
+    return {at.face, (at.corner + steps) % faceSize(at.face)};
   }
-};
-
-/// The faces around a corner of a face, counted from that face: +1 is the next one counter-clockwise,
-/// beyond the edge to the corner before; -1 the one beyond the edge to the corner after.
-class Fan {
- public:
-  Fan(const FaceMesh& mesh, FaceCorner at)
-      : mesh_(mesh),
-        vertex_(mesh.vertex(at)),
-        count_(mesh.facesAt(vertex_)),
-        interior_(mesh.interior(vertex_)),
-        pinned_(mesh.pinned(vertex_)),
-        position_(mesh.positionOf(at)) {}
-
-  VertexId vertex() const { return vertex_; }
-  int count() const { return count_; }
-  bool interior() const { return interior_; }
-  bool pinned() const { return pinned_; }
-  /// Where the face stands among the vertex's faces.
-  int position() const { return position_; }
-
-  /// Does not exist beyond a boundary.
-  FaceCorner at(int offset) const {
-    int i = position_ + offset;
-    if (interior_) {
-      i = ((i % count_) + count_) % count_;
-    } else if (i < 0 || i >= count_) {
-      return {};
-    }
-    return mesh_.faceAt(vertex_, i);
+  FaceCorner before(FaceCorner at) const {
+    return {at.face, (at.corner == 0 ? faceSize(at.face) : at.corner) - 1};
   }
+  VertexId vertexAfter(FaceCorner at, int steps) const { return vertex(after(at, steps)); }
 
-  bool allQuads() const {
-    for (int i = 0; i < count_; ++i) {
-      if (mesh_.faceSize(mesh_.faceAt(vertex_, i).face) != 4) {
-        return false;
-      }
-    }
-    return true;
+  /// The same vertex's corner in the next face around it, counter-clockwise.
+  FaceCorner turned(FaceCorner at) const { return twin(before(at)); }
+  /// In the next face clockwise.
+  FaceCorner turnedBack(FaceCorner at) const {
+    const FaceCorner side = twin(at);
+    return side.exists() ? after(side, 1) : side;
   }
-
- private:
-  const FaceMesh& mesh_;
-  VertexId vertex_;
-  int count_;
-  bool interior_, pinned_;
-  int position_;
 };
 
 }  // namespace limitsurf

@@ -13,34 +13,27 @@
 namespace limitsurf {
 namespace {
 
-/// Fans around the four corners of a quad.
-struct QuadFans {
-  QuadFans(const FaceMesh& mesh, FaceId face)
-      : fans{Fan(mesh, {face, 0}), Fan(mesh, {face, 1}), Fan(mesh, {face, 2}),
-             Fan(mesh, {face, 3})} {}
-  Fan fans[4];
-};
-
 /// The vertices around a quad on the grid -1 <= x, y <= 2, as far as the corners' own faces hold
 /// them; -1 where there is none. Needs quads all around.
 class Window {
  public:
   /// Corner `origin` of the quad is put at (0, 0), the next one at (1, 0).
-  Window(const FaceMesh& mesh, FaceId face, const QuadFans& quad, int origin) {
+  Window(const FaceMesh& mesh, FaceId face, int origin) {
     vertices_.fill(-1);
     for (int i = 0; i < 4; ++i) {
-      const Fan& fan = quad.fans[(origin + i) % 4];
-      set(i, 0, 0, mesh.vertex({face, (origin + i) % 4}));
-      if (const FaceCorner after = fan.at(+1); after.exists()) {
-        set(i, -1, 1, mesh.vertexAfter(after, 2));
-        set(i, -1, 0, mesh.vertexAfter(after, 3));
+      const FaceCorner here = {face, (origin + i) % 4};
+      set(i, 0, 0, mesh.vertex(here));
+      const FaceCorner next = mesh.turned(here);
+      if (next.exists()) {
+        set(i, -1, 1, mesh.vertexAfter(next, 2));
+        set(i, -1, 0, mesh.vertexAfter(next, 3));
+        if (const VertexFan fan = mesh.fan(mesh.vertex(here)); fan.interior && fan.regular()) {
+          set(i, -1, -1, mesh.vertexAfter(mesh.turned(next), 2));
+        }
       }
-      if (const FaceCorner before = fan.at(-1); before.exists()) {
-        set(i, 0, -1, mesh.vertexAfter(before, 1));
-        set(i, 1, -1, mesh.vertexAfter(before, 2));
-      }
-      if (fan.interior() && fan.count() == 4) {
-        set(i, -1, -1, mesh.vertexAfter(fan.at(2), 2));
+      if (const FaceCorner previous = mesh.turnedBack(here); previous.exists()) {
+        set(i, 0, -1, mesh.vertexAfter(previous, 1));
+        set(i, 1, -1, mesh.vertexAfter(previous, 2));
       }
     }
   }
@@ -91,18 +84,27 @@ class Builder {
     ChildMesh child, grandchild;
   };
 
-  static bool regular(const Fan& fan) {
-    return fan.count() == (fan.interior() ? 4 : fan.pinned() ? 1 : 2);
-  }
+  /// Corners with extraordinary vertices.
+  struct Irregular {
+    int count = 0, first = 0;
 
-  static int extraordinary(const QuadFans& quad) {
-    return static_cast<int>(std::count_if(std::begin(quad.fans), std::end(quad.fans),
-                                          [](const Fan& fan) { return !regular(fan); }));
-  }
+    Irregular(const FaceMesh& mesh, FaceId face) {
+      for (int corner = 3; corner >= 0; --corner) {
+        if (!mesh.fan(mesh.vertex({face, corner})).regular()) {
+          ++count;
+          first = corner;
+        }
+      }
+    }
+  };
 
-  static bool allQuads(const QuadFans& quad) {
-    return std::all_of(std::begin(quad.fans), std::end(quad.fans),
-                       [](const Fan& fan) { return fan.allQuads(); });
+  static bool amongQuads(const FaceMesh& mesh, FaceId quad) {
+    for (int corner = 0; corner < 4; ++corner) {
+      if (!mesh.onlyQuadsAround(mesh.vertex({quad, corner}))) {
+        return false;
+      }
+    }
+    return true;
   }
 
   /// The bulk of a mesh, on all cores: quads among quads without extraordinary vertices.
@@ -111,15 +113,8 @@ class Builder {
     parallelFor(mesh_.faceCount(), 4096, 0, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
         const int face = static_cast<int>(f);
-        if (!topology_.refused().empty() && topology_.refused().count(face)) {
-          continue;
-        }
-        kinds_[f] = kIrregular;
-        if (mesh_.faceSize(face) == 4) {
-          const QuadFans quad(levels_.cage, face);
-          if (extraordinary(quad) == 0 && allQuads(quad)) {
-            kinds_[f] = kRegular;
-          }
+        if (topology_.refused().empty() || !topology_.refused().count(face)) {
+          kinds_[f] = levels_.cage.regularFace(face) ? kRegular : kIrregular;
         }
       }
     });
@@ -133,7 +128,7 @@ class Builder {
     parallelFor(regular_faces.size(), 4096, 0, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const int face = regular_faces[i];
-        table_.bsplines[i] = bspline(levels_.cage, face, QuadFans(levels_.cage, face));
+        table_.bsplines[i] = bspline(levels_.cage, face);
         table_.faces[ptex_.first[face]] = {TileRef::kBSpline, static_cast<std::uint32_t>(i)};
       }
     });
@@ -141,18 +136,19 @@ class Builder {
 
   void addIrregularFace(int face) {
     if (mesh_.faceSize(face) == 4) {
-      const QuadFans quad(levels_.cage, face);
+      const Irregular irregular(levels_.cage, face);
       table_.faces[ptex_.first[face]] =
-          allQuads(quad) && extraordinary(quad) <= 1 ? tile(levels_.cage, 0, face, quad, 0)
-                                                     : split(levels_.child, 1, face);
+          amongQuads(levels_.cage, face) && irregular.count <= 1
+              ? tile(levels_.cage, 0, face, irregular, 0)
+              : split(levels_.child, 1, face);
       return;
     }
     for (int corner = 0; corner < mesh_.faceSize(face); ++corner) {
       const FaceId child = levels_.child.child({face, corner});
-      const QuadFans quad(levels_.child, child);
-      table_.faces[ptex_.first[face] + corner] = extraordinary(quad) <= 1
-                                                     ? tile(levels_.child, 1, child, quad, 0)
-                                                     : split(levels_.grandchild, 2, child);
+      const Irregular irregular(levels_.child, child);
+      table_.faces[ptex_.first[face] + corner] =
+          irregular.count <= 1 ? tile(levels_.child, 1, child, irregular, 0)
+                               : split(levels_.grandchild, 2, child);
     }
   }
 
@@ -161,26 +157,24 @@ class Builder {
     std::array<TileRef, 4> children;
     for (int corner = 0; corner < 4; ++corner) {
       const FaceId child = mesh.child({parent, corner});
-      children[corner] = tile(mesh, level, child, QuadFans(mesh, child), 1);
+      children[corner] = tile(mesh, level, child, Irregular(mesh, child), 1);
     }
     table_.splits.push_back(children);
     return {TileRef::kSplit, static_cast<std::uint32_t>(table_.splits.size() - 1)};
   }
 
-  TileRef tile(FaceMesh& mesh, int level, FaceId face, const QuadFans& quad, int depth) {
-    for (int corner = 0; corner < 4; ++corner) {
-      if (!regular(quad.fans[corner])) {
-        table_.ring_tiles.push_back(ringTile(mesh, level, face, quad, corner));
-        table_.ring_tiles.back().depth = depth;
-        return {TileRef::kRing, static_cast<std::uint32_t>(table_.ring_tiles.size() - 1)};
-      }
+  TileRef tile(FaceMesh& mesh, int level, FaceId face, const Irregular& irregular, int depth) {
+    if (irregular.count > 0) {
+      table_.ring_tiles.push_back(ringTile(mesh, level, {face, irregular.first}));
+      table_.ring_tiles.back().depth = depth;
+      return {TileRef::kRing, static_cast<std::uint32_t>(table_.ring_tiles.size() - 1)};
     }
-    table_.bsplines.push_back(bspline(mesh, face, quad));
+    table_.bsplines.push_back(bspline(mesh, face));
     return {TileRef::kBSpline, static_cast<std::uint32_t>(table_.bsplines.size() - 1)};
   }
 
-  static BSplineTile bspline(FaceMesh& mesh, FaceId face, const QuadFans& quad) {
-    const Window window(mesh, face, quad, 0);
+  static BSplineTile bspline(FaceMesh& mesh, FaceId face) {
+    const Window window(mesh, face, 0);
     BSplineTile tile;
     tile.x_low = window.at(-1, 0) < 0;
     tile.x_high = window.at(2, 0) < 0;
@@ -196,14 +190,14 @@ class Builder {
     return tile;
   }
 
-  RingTile ringTile(FaceMesh& mesh, int level, FaceId face, const QuadFans& quad, int corner) {
+  RingTile ringTile(FaceMesh& mesh, int level, FaceCorner at) {
     RingTile tile;
-    tile.corner = corner;
-    const auto [ring, steps] = ringOf(mesh, level, quad.fans[corner].vertex());
+    tile.corner = at.corner;
+    const auto [ring, steps] = ringOf(mesh, level, mesh.vertex(at));
     tile.ring = ring;
     tile.ring_steps = steps;
-    tile.face = quad.fans[corner].position();
-    const Window window(mesh, face, quad, corner);
+    tile.face = mesh.positionOf(at);
+    const Window window(mesh, at.face, at.corner);
     const std::vector<int>& cells = table_.rings[ring].basis->outerModes(tile.face).cells();
     tile.outer.fill(0);
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -234,7 +228,7 @@ class Builder {
     if (level > 0) {
       ChildMesh& child = static_cast<ChildMesh&>(mesh);
       const VertexId above = child.parentVertex(vertex);
-      if (above >= 0 && quadsAround(child.parent(), above)) {
+      if (above >= 0 && child.parent().onlyQuadsAround(above)) {
         const auto [ring, steps] = ringOf(child.parent(), level - 1, above);
         return {ring, steps + 1};
       }
@@ -247,20 +241,12 @@ class Builder {
     return {known->second, 0};
   }
 
-  static bool quadsAround(const FaceMesh& mesh, VertexId vertex) {
-    for (int i = 0; i < mesh.facesAt(vertex); ++i) {
-      if (mesh.faceSize(mesh.faceAt(vertex, i).face) != 4) {
-        return false;
-      }
-    }
-    return true;
-  }
-
   static RingPoints makeRing(FaceMesh& mesh, VertexId vertex) {
-    const int faces = mesh.facesAt(vertex);
-    const Ring ring{mesh.interior(vertex) ? RingKind::interior
-                    : mesh.pinned(vertex) ? RingKind::pinned
-                                          : RingKind::boundary,
+    const VertexFan fan = mesh.fan(vertex);
+    const int faces = fan.faces;
+    const Ring ring{fan.interior ? RingKind::interior
+                    : fan.pinned ? RingKind::pinned
+                                 : RingKind::boundary,
                     faces};
     RingPoints result;
     result.basis = Eigenbasis::get(ring);
