@@ -128,3 +128,34 @@ def test_a_folder_of_that_name_is_not_the_module(tmp_path):
     spoil = f"sys.path = [{str(tmp_path)!r}, *(p for p in sys.path if 'site-packages' not in p)]"
     # Blender itself comes from site-packages, and is found before they are taken away.
     check_reason_is_shown(f"import bpy, numpy; {spoil}", "is not the native module")
+
+
+def invoked(operator_class, **properties):
+    """What invoke() does with a window manager that only takes notes."""
+    context = SimpleNamespace(
+        active_object=bpy.context.active_object,
+        evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get,
+        window_manager=MagicMock(),
+    )
+    self = MagicMock(allow_large=False, noun="strands", bl_label="Hair", **properties)
+    self.elements_per_location.return_value = 5
+    self._size = lambda cage: operator_class._size(self, cage)
+    operator_class.invoke(self, context, None)
+    return self, context.window_manager.invoke_confirm
+
+
+def test_large_counts_are_asked_about():
+    scenes.cross()
+    self, confirm = invoked(bpy.types.OBJECT_OT_limit_hair_add, per_side=1000)
+    self.execute.assert_not_called()
+    assert confirm.call_args.kwargs["message"].startswith("Make 5,000,000 strands of 5 points")
+    known = bpy.types.WindowManager.bl_rna.functions["invoke_confirm"].parameters.keys()
+    assert set(confirm.call_args.kwargs) <= set(known)
+    assert self.allow_large  # for the execution that follows consent
+
+
+def test_small_counts_are_not_asked_about():
+    scenes.cross()
+    self, confirm = invoked(bpy.types.OBJECT_OT_limit_hair_add, per_side=10)
+    self.execute.assert_called_once()
+    confirm.assert_not_called()
