@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/surface/pose.h"
 
+#include <algorithm>
+
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -40,6 +42,36 @@ void setRingCells(const Ring& ring, int face, const Points& points, Padded cells
 
 }  // namespace
 
+Pose::Pose(const TileTable& table)
+    : table_(&table),
+      rings_(table.rings.size()),
+      ring_tiles_(table.ring_tiles.size()),
+      first_tile_(table.rings.size() + 1, 0) {
+  std::size_t tiles[2] = {0, 0};
+  for (const RingTile& tile : table.ring_tiles) {
+    ++tiles[tile.depth];
+  }
+  std::size_t grids = 0;
+  for (int fewer = 0; fewer < kMostGridSteps[0]; ++fewer) {
+    grids = 0;
+    for (int depth = 0; depth < 2; ++depth) {
+      grid_steps_[depth] = std::max(1, kMostGridSteps[depth] - fewer);
+      grids += tiles[depth] * static_cast<std::size_t>(grid_steps_[depth]);
+    }
+    if (grids * sizeof(Grid) <= kGridBytes) {
+      break;
+    }
+  }
+  grids_.resize(grids);
+  std::size_t next = 0;
+  for (std::size_t t = 0; t < ring_tiles_.size(); ++t) {
+    const RingTile& tile = table.ring_tiles[t];
+    first_tile_[tile.ring + 1] = static_cast<int>(t) + 1;
+    ring_tiles_[t].first_grid = next;
+    next += static_cast<std::size_t>(gridSteps(tile));
+  }
+}
+
 void Pose::set(const Points& cage, int threads) {
   const RefinedPoints& refined = table_->points;
   points_.resize(static_cast<std::size_t>(refined.size()));
@@ -61,19 +93,6 @@ void Pose::set(const Points& cage, int threads) {
     points_[i] = base + sum;
   }
 
-  if (first_tile_.empty()) {
-    first_tile_.assign(table_->rings.size() + 1, 0);
-    ring_tiles_.resize(table_->ring_tiles.size());
-    std::size_t grids = 0;
-    for (std::size_t t = 0; t < ring_tiles_.size(); ++t) {
-      const RingTile& tile = table_->ring_tiles[t];
-      first_tile_[tile.ring + 1] = static_cast<int>(t) + 1;
-      ring_tiles_[t].first_grid = grids;
-      grids += gridSteps(tile);
-    }
-    grids_.resize(grids);
-    rings_.resize(table_->rings.size());
-  }
   parallelFor(rings_.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
       setRing(static_cast<int>(ring));

@@ -16,8 +16,10 @@ namespace limitsurf {
 /// with probability 4^-n only.
 class Pose {
  public:
-  /// Steps whose grids are kept, in a whole Ptex face and in a child of one.
-  static constexpr int kGridSteps[2] = {3, 2};
+  /// Steps whose grids are kept, in a whole Ptex face and in a child of one, as long as all grids
+  /// together stay below kGridBytes; else fewer, but at least one.
+  static constexpr int kMostGridSteps[2] = {4, 3};
+  static constexpr std::size_t kGridBytes = std::size_t{256} << 20;
 
   struct Grid {
     Padded points[tile_grid::kCells];  ///< relative to the ring's limit
@@ -33,7 +35,7 @@ class Pose {
     Padded outer[tile_grid::kOuter];  ///< relative to the ring's limit
   };
 
-  explicit Pose(const TileTable& table) : table_(&table) {}
+  explicit Pose(const TileTable& table);
 
   void set(const Points& cage, int threads);
 
@@ -42,13 +44,14 @@ class Pose {
   const RingTilePose& ringTile(int i) const { return ring_tiles_[i]; }
   /// The grid after `steps` >= 1 steps.
   const Grid& grid(int tile, int steps) const { return grids_[ring_tiles_[tile].first_grid + steps - 1]; }
-  static int gridSteps(const RingTile& tile) { return kGridSteps[tile.depth]; }
+  int gridSteps(const RingTile& tile) const { return grid_steps_[tile.depth]; }
 
  private:
   void setRing(int ring);
   void setRingTile(int tile, const std::vector<Points>& ring_levels);
 
   const TileTable* table_;
+  int grid_steps_[2];
   std::vector<Padded> points_;
   std::vector<RingPose> rings_;
   std::vector<RingTilePose> ring_tiles_;

@@ -94,7 +94,7 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   const GridWindow window = gridWindow(quarter, basis.sides(tile.face), Order);
   PatchValues<Padded>& patch = jet.patch;
   jet.anchor = pose_.ring(tile.ring).limit;
-  if (quarter.steps > Pose::gridSteps(tile)) {
+  if (quarter.steps > pose_.gridSteps(tile)) {
     basis.weights(tile.face, quarter.steps, tile.ring_steps, window, mode_weights_,
                   outer_weights_);
     const Points& modes = pose_.ring(tile.ring).coefficients;
