@@ -123,10 +123,13 @@ TEST(Curvature, IsMissingAtIrregularVerticesAlone) {
   }
 }
 
-TEST(Curvature, DoesNotOverflowNearAVertex) {
+TEST(Curvature, OverflowsOnlyWhereItIsThatLarge) {
+  // It grows by 2.26 a level around three faces, by 1.4 and less around five and more, though the
+  // derivatives that it is made of go far beyond the range of doubles.
   for (int faces : {3, 5, 6, 9}) {
     const LimitSurface surface = limitSurface(fan(faces, true, faces));
     for (double t : {1e-100, 1e-200, 0x1p-1000, 0x1p-1074}) {
+      if (faces == 3 && t < 1e-200) continue;
       const std::vector<Location> at = {{0, t, t}};
       const Curvature curvature = surface.curvature(at);
       EXPECT_TRUE(std::isfinite(curvature.mean[0])) << faces << " faces, " << t;

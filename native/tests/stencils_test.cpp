@@ -143,8 +143,10 @@ TEST(Stencils, WithoutDerivativesHaveTheSameWeights) {
   const LimitSurface surface = limitSurface(cage);
   const std::vector<Location> at = places(cage);
   const Stencils with = surface.stencils(at, true), without = surface.stencils(at);
-  EXPECT_EQ(with.indices, without.indices);
-  EXPECT_EQ(with.weights, without.weights);
+  ASSERT_EQ(with.indices, without.indices);
+  for (std::size_t k = 0; k < with.weights.size(); ++k) {
+    EXPECT_NEAR(with.weights[k], without.weights[k], 1e-15);  // no promise of equal bits here
+  }
   EXPECT_TRUE(without.du_weights.empty());
   EXPECT_TRUE(without.dv_weights.empty());
 }
