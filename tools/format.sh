@@ -18,8 +18,8 @@ fi
 status=0
 ruff check || status=1
 ruff format --check || status=1
-for file in "${cpp[@]}"; do
-  clang-format --dry-run -Werror "$file" 2>/dev/null ||
-    { echo "Would reformat: $file" && status=1; }
-done
+report=$(clang-format --dry-run -Werror "${cpp[@]}" 2>&1) || {
+  sed -nE 's/^([^:]+):[0-9]+:.*/Would reformat: \1/p; t; /^ /!p' <<<"$report" | sort -u
+  status=1
+}
 exit $status
