@@ -333,6 +333,88 @@ Eigenbasis::Table Eigenbasis::table(int mode, int face) const {
   return result;
 }
 
+template <typename Body>
+void Eigenbasis::forEachTable(int face, const Points& coefficients, const Body& body) const {
+  const auto coefficient = [&](int mode) -> Eigen::Array4d {
+    return {coefficients(mode, 0), coefficients(mode, 1), coefficients(mode, 2), 0};
+  };
+  for (int i = 0; i < 2; ++i) {
+    body(fixed(face).tables[i], lambda_[1 + i], coefficient(1 + i));
+  }
+  const FaceTables& t = tables(sides(face));
+  for (int m = 1; m <= spokeCount(); ++m) {
+    for (const bool plus : {true, false}) {
+      Part part[2];
+      const int count = parts(m, plus, face, part);
+      if (count == 0) {
+        continue;
+      }
+      Eigen::Array4d cosine = Eigen::Array4d::Zero(), sine = cosine;
+      for (int p = 0; p < count; ++p) {
+        cosine += part[p].cosine * coefficient(part[p].mode);
+        sine += part[p].sine * coefficient(part[p].mode);
+      }
+      const double lambda = lambda_[part[0].mode];
+      body(t.sine[pairIndex(m, plus)], lambda, sine);
+      if (!t.cosine.empty()) {
+        body(t.cosine[pairIndex(m, plus)], lambda, cosine);
+      }
+    }
+  }
+}
+
+void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& coefficients,
+                             const Eigen::Array4d outer_points[], Eigen::Array4d grid[]) const {
+  const FaceTables& t = tables(sides(face));
+  const OuterModes<double>& outer = t.outer_modes;
+  const int outer_count = outer.count();
+  std::fill_n(grid, tile_grid::kCells, Eigen::Array4d::Zero());
+  Eigen::Array4d left_over[tile_grid::kOuter];  // of the outer points, besides the ring's modes
+  std::copy_n(outer_points, outer_count, left_over);
+  const auto add = [&](const Table& table, const Eigen::Array4d& in_grid,
+                       const Eigen::Array4d& in_outer) {
+    for (int c = 0; c < tile_grid::kCells; ++c) {
+      grid[c] += table.grid[c] * in_grid;
+    }
+    for (int i = 0; i < outer_count; ++i) {
+      left_over[i] -= table.outer[i] * in_outer;
+    }
+  };
+
+  const Eigen::Array4d constant(coefficients(0, 0), coefficients(0, 1), coefficients(0, 2), 0);
+  add(table(0, face), std::ldexp(1., steps - 1) * constant, constant);
+  forEachTable(face, coefficients,
+               [&](const Table& table, double lambda, const Eigen::Array4d& coefficient) {
+                 const Eigen::Array4d before = power(lambda, ring_steps) * coefficient;
+                 add(table, power(2 * lambda, steps - 1) * before, before);
+               });
+  for (const Chain& chain : chains_) {
+    const double lambda = lambda_[chain.from];
+    const Eigen::Array4d fed = power(lambda, ring_steps) * chain.rate / lambda *
+                               Eigen::Array4d(coefficients(chain.from, 0),
+                                              coefficients(chain.from, 1),
+                                              coefficients(chain.from, 2), 0);
+    add(table(chain.to, face), (steps - 1 + ring_steps) * power(2 * lambda, steps - 1) * fed,
+        ring_steps * fed);
+  }
+  for (int q = 0; q < outer_count; ++q) {
+    Eigen::Array4d coefficient = Eigen::Array4d::Zero();
+    for (int i = 0; i < outer_count; ++i) {
+      coefficient += outer.inverse()(q, i) * left_over[i];
+    }
+    if (rest_mode_ >= 0) {
+      coefficient += (steps - 1) * rest_[q] / lambda_[rest_mode_] *
+                     power(lambda_[rest_mode_], ring_steps) *
+                     Eigen::Array4d(coefficients(rest_mode_, 0), coefficients(rest_mode_, 1),
+                                    coefficients(rest_mode_, 2), 0);
+    }
+    coefficient *= power(2 * outer.lambda(q), steps - 1);
+    for (int c = 0; c < tile_grid::kCells; ++c) {
+      grid[c] += t.outer[q].grid[c] * coefficient;
+    }
+  }
+}
+
 void Eigenbasis::weights(int face, int steps, int ring_steps, const GridWindow& window,
                          Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& outer_weights) const {
   const FaceTables& t = tables(sides(face));

@@ -80,6 +80,14 @@ class Eigenbasis {
   };
   Table table(int mode, int face) const;
 
+  /// The face's control points after `steps` >= 1 steps, times 2^(steps - 1) lest they underflow.
+  ///
+  /// `coefficients` and `outer_points` (in the order of the outer cells) are relative to the limit
+  /// position. Serves positions and first derivatives: second ones, where modes of very different
+  /// size meet, keep their digits in weights() alone. Cost: O(faces).
+  void controlGrid(int face, int steps, int ring_steps, const Points& coefficients,
+                   const Eigen::Array4d outer_points[], Eigen::Array4d grid[]) const;
+
   /// Weights of the functionals after `steps` >= 1 steps, on the ring's modes and the outer points.
   ///
   /// Derivatives count in the face's own (u, v), so that first derivatives carry 2^steps and second
@@ -124,6 +132,9 @@ class Eigenbasis {
   };
   int parts(int m, bool plus, int face, Part out[2]) const;
   int firstMode(int m) const;
+  /// Calls body(table, lambda, coefficient) for all modes but the constant on one face.
+  template <typename Body>
+  void forEachTable(int face, const Points& coefficients, const Body& body) const;
 
   Ring ring_;
   long period_;                   // of the trigonometric tables

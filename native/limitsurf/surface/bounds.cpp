@@ -140,7 +140,11 @@ class RingTileBounds {
   void include(double tolerance, Extremes& extremes) {
     extremes.include(ring_.limit);
     for (int steps = 1; steps < kMostSteps; ++steps) {
-      loadGrid(steps);
+      basis_.controlGrid(tile_.face, steps, tile_.ring_steps, ring_.coefficients, pose_.outer,
+                         grid_);
+      for (Padded& point : grid_) {
+        point *= std::ldexp(1., 1 - steps);
+      }
       for (const auto& [a, b] : {std::pair{1, 0}, {1, 1}, {0, 1}}) {
         includeQuarter(a, b, tolerance, extremes);
       }
@@ -152,36 +156,6 @@ class RingTileBounds {
 
  private:
   static constexpr int kMostSteps = 400;
-
-  /// The control points after `steps` steps: the functionals that pick single points.
-  void loadGrid(int steps) {
-    for (int c = 0; c < tile_grid::kCells; ++c) {
-      grid_[c].setZero();
-      if (!tile_grid::exists(sides_, c)) {
-        continue;
-      }
-      const int x = tile_grid::xOf(c), y = tile_grid::yOf(c);
-      GridWindow pick{x > 0 ? 1 : 0, y > 0 || x <= 0 ? 1 : 0, CubicWeights(0, false, false),
-                      CubicWeights(0, false, false), 0};
-      if (y < 0) {
-        pick.b = 0;
-        pick.a = 1;
-      } else if (x < 0) {
-        pick.a = 0;
-        pick.b = 1;
-      }
-      for (int i = 0; i < 4; ++i) {
-        pick.u.value[i] = i == x - pick.a + 1 ? 1 : 0;
-        pick.v.value[i] = i == y - pick.b + 1 ? 1 : 0;
-      }
-      basis_.weights(tile_.face, steps, tile_.ring_steps, pick, mode_weights_, outer_weights_);
-      const Vector3 sum = ring_.coefficients.transpose() * mode_weights_.row(0).transpose();
-      grid_[c] = Padded(sum[0], sum[1], sum[2], 0);
-      for (Eigen::Index i = 0; i < outer_weights_.cols(); ++i) {
-        grid_[c] += outer_weights_(0, i) * pose_.outer[i];
-      }
-    }
-  }
 
   void includeQuarter(int a, int b, double tolerance, Extremes& extremes) {
     Padded window[16];
@@ -264,7 +238,6 @@ class RingTileBounds {
   const Sides sides_;
   std::vector<Share> shares_;
   Padded grid_[tile_grid::kCells];
-  Eigen::MatrixXd mode_weights_, outer_weights_;
 };
 
 }  // namespace

@@ -95,19 +95,19 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   PatchValues<Padded>& patch = jet.patch;
   jet.anchor = pose_.ring(tile.ring).limit;
   if (quarter.steps > pose_.gridSteps(tile)) {
-    basis.weights(tile.face, quarter.steps, tile.ring_steps, window, mode_weights_,
-                  outer_weights_);
-    const Points& modes = pose_.ring(tile.ring).coefficients;
-    Padded* const values[6] = {&patch.value, &patch.du,  &patch.dv,
-                               &patch.duu,   &patch.duv, &patch.dvv};
-    for (int d = 0; d < window.count(); ++d) {
-      const Vector3 sum = modes.transpose() * mode_weights_.row(d).transpose();
-      *values[d] = Padded(sum[0], sum[1], sum[2], 0);
-      for (Eigen::Index i = 0; i < outer_weights_.cols(); ++i) {
-        *values[d] += outer_weights_(d, i) * pose_.ringTile(index).outer[i];
-      }
+    if (Order < 2) {
+      Padded grid[tile_grid::kCells];
+      basis.controlGrid(tile.face, quarter.steps, tile.ring_steps,
+                        pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer, grid);
+      evaluateWindow<Order>(grid + window.b * tile_grid::kSize + window.a, tile_grid::kSize,
+                            window.u, window.v, patch);
+      patch.value *= std::ldexp(1., 1 - quarter.steps);
+      patch.du *= 2;
+      patch.dv *= 2;
+    } else {
+      evaluateByModes(tile, index, quarter.steps, window, patch);
+      jet.exponent = quarter.steps - 1;
     }
-    jet.exponent = quarter.steps - 1;
     return;
   }
   const Padded* grid = pose_.grid(index, quarter.steps).points;
@@ -118,6 +118,22 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
     patch.du *= scale;
     patch.dv *= scale;
     jet.exponent = 2 * quarter.steps;
+  }
+}
+
+void TileEvaluator::evaluateByModes(const RingTile& tile, int index, int steps,
+                                    const GridWindow& window, PatchValues<Padded>& patch) {
+  table_.rings[tile.ring].basis->weights(tile.face, steps, tile.ring_steps, window, mode_weights_,
+                                         outer_weights_);
+  const Points& modes = pose_.ring(tile.ring).coefficients;
+  Padded* const values[6] = {&patch.value, &patch.du,  &patch.dv,
+                             &patch.duu,   &patch.duv, &patch.dvv};
+  for (int d = 0; d < window.count(); ++d) {
+    const Vector3 sum = modes.transpose() * mode_weights_.row(d).transpose();
+    *values[d] = Padded(sum[0], sum[1], sum[2], 0);
+    for (Eigen::Index i = 0; i < outer_weights_.cols(); ++i) {
+      *values[d] += outer_weights_(d, i) * pose_.ringTile(index).outer[i];
+    }
   }
 }
 

@@ -35,6 +35,9 @@ class TileEvaluator {
   void evaluateBSpline(const TileLocation& at, Jet& jet);
   template <int Order>
   void evaluateRing(const TileLocation& at, Jet& jet);
+  /// Each mode's derivatives on their own, for second derivatives deep in a ring tile.
+  void evaluateByModes(const RingTile& tile, int index, int steps, const GridWindow& window,
+                       PatchValues<Padded>& patch);
   const TileTable& table_;
   const Pose& pose_;
   int loaded_ = -1;
