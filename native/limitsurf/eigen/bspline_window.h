@@ -47,11 +47,11 @@ struct PatchValues {
   Point value, du, dv, duu, duv, dvv;
 };
 
-/// The bicubic patch of a 4 x 4 window of control points, rows `stride` points apart; derivatives up
-/// to Order.
-template <int Order, typename Point>
-void evaluateWindow(const Point* points, int stride, const CubicWeights& u, const CubicWeights& v,
-                    PatchValues<Point>& out) {
+/// The bicubic patch of a 4 x 4 window of control points; derivatives up to Order. `points(x, y)`,
+/// 0 <= x, y <= 3, yields them.
+template <int Order, typename Point, typename Points>
+inline void evaluatePatch(const Points& points, const CubicWeights& u, const CubicWeights& v,
+                          PatchValues<Point>& out) {
   const auto value = [](const CubicWeights& w, const Point& a, const Point& b, const Point& c,
                         const Point& d) -> Point {
     return w.value[0] * a + w.value[1] * b + w.value[2] * c + w.value[3] * d;
@@ -61,16 +61,16 @@ void evaluateWindow(const Point* points, int stride, const CubicWeights& u, cons
     // From the points themselves: rows that were summed up first are equally spaced but for rounding.
     Point column[4];
     for (int x = 0; x < 4; ++x) {
-      const Point *p = points + x, *q = p + stride, *r = q + stride, *s = r + stride;
-      column[x] = v.second[0] * ((*r - *q) - (*q - *p)) + v.second[1] * ((*s - *r) - (*r - *q));
+      const Point p = points(x, 0), q = points(x, 1), r = points(x, 2), s = points(x, 3);
+      column[x] = v.second[0] * ((r - q) - (q - p)) + v.second[1] * ((s - r) - (r - q));
     }
     out.dvv = value(u, column[0], column[1], column[2], column[3]);
   }
-  for (int y = 0; y < 4; ++y, points += stride) {
-    row[y] = value(u, points[0], points[1], points[2], points[3]);
+  for (int y = 0; y < 4; ++y) {
+    const Point p = points(0, y), q = points(1, y), r = points(2, y), s = points(3, y);
+    row[y] = value(u, p, q, r, s);
     if (Order >= 1) {
-      const Point d0 = points[1] - points[0], d1 = points[2] - points[1],
-                  d2 = points[3] - points[2];
+      const Point d0 = q - p, d1 = r - q, d2 = s - r;
       row_du[y] = u.first[0] * d0 + u.first[1] * d1 + u.first[2] * d2;
       if (Order >= 2) {
         row_duu[y] = u.second[0] * (d1 - d0) + u.second[1] * (d2 - d1);
@@ -79,15 +79,23 @@ void evaluateWindow(const Point* points, int stride, const CubicWeights& u, cons
   }
   out.value = value(v, row[0], row[1], row[2], row[3]);
   if (Order >= 1) {
-    const Point d0 = row[1] - row[0], d1 = row[2] - row[1], d2 = row[3] - row[2];
     out.du = value(v, row_du[0], row_du[1], row_du[2], row_du[3]);
-    out.dv = v.first[0] * d0 + v.first[1] * d1 + v.first[2] * d2;
+    out.dv = v.first[0] * (row[1] - row[0]) + v.first[1] * (row[2] - row[1]) +
+             v.first[2] * (row[3] - row[2]);
     if (Order >= 2) {
       out.duu = value(v, row_duu[0], row_duu[1], row_duu[2], row_duu[3]);
       out.duv = v.first[0] * (row_du[1] - row_du[0]) + v.first[1] * (row_du[2] - row_du[1]) +
                 v.first[2] * (row_du[3] - row_du[2]);
     }
   }
+}
+
+/// The same with the window's rows `stride` points apart.
+template <int Order, typename Point>
+void evaluateWindow(const Point* window, int stride, const CubicWeights& u, const CubicWeights& v,
+                    PatchValues<Point>& out) {
+  evaluatePatch<Order, Point>(
+      [=](int x, int y) -> const Point& { return window[y * stride + x]; }, u, v, out);
 }
 
 }  // namespace limitsurf

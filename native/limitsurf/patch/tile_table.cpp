@@ -197,6 +197,7 @@ class Builder {
     tile.ring = ring;
     tile.ring_steps = steps;
     tile.face = mesh.positionOf(at);
+    tile.sides = table_.rings[ring].basis->sides(tile.face);
     const Window window(mesh, at.face, at.corner);
     const std::vector<int>& cells = table_.rings[ring].basis->outerModes(tile.face).cells();
     tile.outer.fill(0);

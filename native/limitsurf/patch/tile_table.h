@@ -30,6 +30,7 @@ struct RingTile {
   int ring_steps;    ///< how many subdivisions the ring's points are older than the outer points
   int corner;        ///< the quad's corner with the extraordinary vertex
   int depth;         ///< 1 for a child of a split Ptex face, else 0
+  Sides sides;       ///< of the ring's face
   std::array<int, tile_grid::kOuter> outer;  ///< points, in the order of the basis's outer cells
 };
 

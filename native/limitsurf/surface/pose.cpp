@@ -148,6 +148,7 @@ void Pose::setRingTile(int t, const std::vector<Points>& ring_levels) {
     std::fill_n(after, tile_grid::kCells, Padded::Zero());
     step.apply(before, after);
     setRingCells(basis.ring(), tile.face, ring_levels[tile.ring_steps + n], after);
+    after[cell(-1, -1)] = limit;
     before = after;
   }
 }

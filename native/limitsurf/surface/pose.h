@@ -21,8 +21,11 @@ class Pose {
   static constexpr int kMostGridSteps[2] = {4, 3};
   static constexpr std::size_t kGridBytes = std::size_t{256} << 20;
 
+  /// Control points relative to the ring's limit, which takes the place of cell (-1, -1).
   struct Grid {
-    Padded points[tile_grid::kCells];  ///< relative to the ring's limit
+    Padded points[tile_grid::kCells];
+
+    const Padded& limit() const { return points[tile_grid::cell(-1, -1)]; }
   };
 
   struct RingPose {

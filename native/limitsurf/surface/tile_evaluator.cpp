@@ -72,17 +72,26 @@ void TileEvaluator::evaluate(const TileLocation& at, Jet& jet) {
 
 template <int Order>
 void TileEvaluator::evaluateBSpline(const TileLocation& at, Jet& jet) {
-  const BSplineTile& tile = table_.bsplines[at.tile.index];
+  const int index = static_cast<int>(at.tile.index);
+  const BSplineTile& tile = table_.bsplines[index];
   const Padded& anchor = pose_.point(tile.points[5]);
-  if (loaded_ != static_cast<int>(at.tile.index)) {
-    loaded_ = static_cast<int>(at.tile.index);
+  const CubicWeights u(at.u, tile.x_low, tile.x_high), v(at.v, tile.y_low, tile.y_high);
+  jet.anchor = anchor;
+  if (index == loaded_) {
+    evaluateWindow<Order>(window_, 4, u, v, jet.patch);
+    return;
+  }
+  const auto point = [&](int x, int y) -> Padded {
+    return pose_.point(tile.points[4 * y + x]) - anchor;
+  };
+  if (index == last_) {  // asked for again: worth keeping
+    loaded_ = index;
     for (int i = 0; i < 16; ++i) {
-      window_[i] = pose_.point(tile.points[i]) - anchor;
+      window_[i] = point(i % 4, i / 4);
     }
   }
-  jet.anchor = anchor;
-  evaluateWindow<Order>(window_, 4, CubicWeights(at.u, tile.x_low, tile.x_high),
-                        CubicWeights(at.v, tile.y_low, tile.y_high), jet.patch);
+  last_ = index;
+  evaluatePatch<Order, Padded>(point, u, v, jet.patch);
 }
 
 template <int Order>
@@ -90,11 +99,11 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   const int index = static_cast<int>(at.tile.index);
   const RingTile& tile = table_.ring_tiles[index];
   const Quarter quarter(at.u, at.v);
-  const Eigenbasis& basis = *table_.rings[tile.ring].basis;
-  const GridWindow window = gridWindow(quarter, basis.sides(tile.face), Order);
+  const GridWindow window = gridWindow(quarter, tile.sides, Order);
   PatchValues<Padded>& patch = jet.patch;
-  jet.anchor = pose_.ring(tile.ring).limit;
   if (quarter.steps > pose_.gridSteps(tile)) {
+    const Eigenbasis& basis = *table_.rings[tile.ring].basis;
+    jet.anchor = pose_.ring(tile.ring).limit;
     if (Order < 2) {
       Padded grid[tile_grid::kCells];
       basis.controlGrid(tile.face, quarter.steps, tile.ring_steps,
@@ -110,8 +119,9 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
     }
     return;
   }
-  const Padded* grid = pose_.grid(index, quarter.steps).points;
-  evaluateWindow<Order>(grid + window.b * tile_grid::kSize + window.a, tile_grid::kSize, window.u,
+  const Pose::Grid& grid = pose_.grid(index, quarter.steps);
+  jet.anchor = grid.limit();
+  evaluateWindow<Order>(grid.points + window.b * tile_grid::kSize + window.a, tile_grid::kSize, window.u,
                         window.v, patch);
   if (Order > 0) {
     const double scale = std::ldexp(1., quarter.steps);

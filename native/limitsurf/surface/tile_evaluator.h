@@ -18,8 +18,8 @@ struct TileLocation {
   bool atVertex() const { return tile.kind == TileRef::kRing && u == 0 && v == 0; }
 };
 
-/// Evaluates single locations. Holds the control points of the last regular tile, which a batch
-/// sorted by face asks for again and again; one evaluator belongs to one thread.
+/// Evaluates single locations. Keeps the control points of a regular tile that is asked for twice in
+/// a row, as batches sorted by face do; one evaluator belongs to one thread.
 class TileEvaluator {
  public:
   TileEvaluator(const TileTable& table, const Pose& pose) : table_(table), pose_(pose) {}
@@ -40,8 +40,8 @@ class TileEvaluator {
                        PatchValues<Padded>& patch);
   const TileTable& table_;
   const Pose& pose_;
-  int loaded_ = -1;
-  Padded window_[16];
+  int last_ = -1, loaded_ = -1;  // regular tiles
+  Padded window_[16];            // of the loaded one, relative to its anchor
   Eigen::MatrixXd mode_weights_, outer_weights_;
 };
 
