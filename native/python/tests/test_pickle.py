@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+import copy
+import multiprocessing
+import pickle
+
+import limitsurf as ls
+import numpy as np
+import pytest
+import shapes
+
+
+def same_surface(a, b):
+    rng = np.random.default_rng(0)
+    face, uv = rng.integers(0, a.face_count, 20), rng.random((20, 2))
+    return a.evaluate(face, uv).position.tobytes() == b.evaluate(face, uv).position.tobytes()
+
+
+@pytest.mark.parametrize("protocol", range(2, pickle.HIGHEST_PROTOCOL + 1))
+def test_meshes(mesh, protocol):
+    again = pickle.loads(pickle.dumps(mesh, protocol))
+    np.testing.assert_array_equal(again.positions, mesh.positions)
+    np.testing.assert_array_equal(again.face_vertices, mesh.face_vertices)
+    assert same_surface(ls.LimitSurface(mesh), ls.LimitSurface(again))
+
+
+def test_options_survive():
+    positions, faces = shapes.house()
+    mesh = ls.ControlMesh.from_faces(
+        positions,
+        faces,
+        boundary="corners",
+        triangles="smooth",
+        creasing="chaikin",
+        holes=[3],
+        edge_sharpness=([[0, 1]], [0]),
+    )
+    again = pickle.loads(pickle.dumps(mesh))
+    assert (again.boundary, again.triangles) == ("corners", "smooth")
+    assert ls.LimitSurface(again).refused == ls.LimitSurface(mesh).refused
+    assert set(ls.LimitSurface(again).refused) == {3}
+
+
+def test_surfaces_keep_their_pose(surface):
+    surface.set_positions(surface.positions + [1, 2, 3])
+    for again in (pickle.loads(pickle.dumps(surface)), copy.deepcopy(surface)):
+        assert same_surface(surface, again)
+        np.testing.assert_array_equal(again.mesh.positions, surface.mesh.positions)
+
+
+@pytest.mark.parametrize("cls", [ls.ControlMesh, ls.LimitSurface])
+@pytest.mark.parametrize("state", [(), (1, 2), ("a",) * 10, (None,) * 10])
+def test_broken_pickles_are_errors(cls, state):
+    blank = cls.__new__(cls)
+    with pytest.raises((TypeError, ValueError, RuntimeError, IndexError)):
+        blank.__setstate__(state)
+
+
+def middle_of(surface):
+    return surface.evaluate(0, [[0.5, 0.5]]).position
+
+
+def test_other_processes(cube):
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        there = pool.apply(middle_of, (cube,))
+    np.testing.assert_array_equal(there, middle_of(cube))
+
+
+def test_results():
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.cube()))
+    here = surface.evaluate(0, [[0.5, 0.5]], 1)
+    again = pickle.loads(pickle.dumps(here))
+    np.testing.assert_array_equal(again.du, here.du)
