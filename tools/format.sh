@@ -19,7 +19,7 @@ status=0
 ruff check || status=1
 ruff format --check || status=1
 report=$(clang-format --dry-run -Werror "${cpp[@]}" 2>&1) || {
-  sed -nE 's/^([^:]+):[0-9]+:.*/Would reformat: \1/p; t; /^ /!p' <<<"$report" | sort -u
+  sed -nE 's/^([^:]+):[0-9]+:[0-9]+: error: .*/Would reformat: \1/p' <<<"$report" | sort -u
   status=1
 }
 exit $status
