@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Prints, for each valence, what the eigenbasis of its vertices is worth:
-//   - the defective eigenvalue of the ring matrix S and its zero-based index among the eigenvalues in
-//     decreasing order (Lacewell & Burley 2007, figure 4), found by ranks of S - lambda, S being made
-//     from OpenSubdiv's masks;
+//   - the defective eigenvalue of the ring matrix S and its zero-based index among the eigenvalues
+//   in
+//     decreasing order (Lacewell & Burley 2007, figure 4), found by ranks of S - lambda, S being
+//     made from OpenSubdiv's masks;
 //   - max |A - T J T^-1|, A being the whole face's subdivision matrix;
 //   - the evaluator's error against explicit recursive subdivision in 50 decimal digits.
 //
@@ -30,11 +31,11 @@ using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
 struct Line {
   int valence = 0;
-  int index = -1;             // of the defective eigenvalue; -1: none
+  int index = -1;  // of the defective eigenvalue; -1: none
   double value = 0;
-  double factorisation = 0;   // max |A - T J T^-1|
+  double factorisation = 0;  // max |A - T J T^-1|
   bool evaluated = false;
-  double position = 0;        // errors of the evaluator, as limit_surface.h measures them
+  double position = 0;  // errors of the evaluator, as limit_surface.h measures them
   double derivative = 0;
 };
 
@@ -62,8 +63,7 @@ void findDefect(const Eigenbasis& basis, Line& line) {
       ++end;
     }
     if (end - i > 1) {
-      Eigen::FullPivLU<LongMatrix> lu(s -
-                                      lambda[i] * LongMatrix::Identity(s.rows(), s.cols()));
+      Eigen::FullPivLU<LongMatrix> lu(s - lambda[i] * LongMatrix::Identity(s.rows(), s.cols()));
       lu.setThreshold(1e-13L);
       if (lu.dimensionOfKernel() < static_cast<Eigen::Index>(end - i)) {
         line.index = static_cast<int>(i);
@@ -225,7 +225,8 @@ int run(int argc, char** argv) {
     table.open(csv);
     table << "valence,index,value,factorisation,position,derivative\n";
   }
-  std::printf("valence  defective eigenvalue   max |A - T J T^-1|   error in position   in du, dv\n");
+  std::printf(
+      "valence  defective eigenvalue   max |A - T J T^-1|   error in position   in du, dv\n");
   for (int valence = first; valence <= last; ++valence) {
     const Line line = verified(kind, valence);
     char defect[40] = "none";

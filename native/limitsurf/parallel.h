@@ -18,10 +18,9 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
     return;
   }
   const auto run = [&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        body(range.begin(), range.end());
-                      });
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, grain),
+        [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
   };
   if (threads == 1 || count <= grain) {
     body(std::size_t{0}, count);

@@ -36,7 +36,8 @@ class Span {
 /// An address on the limit surface. `face` is a Ptex face id: a quad has one, an n-gon (n != 4) has
 /// n, one per corner, numbered in the order of the control mesh's faces. (u, v) lie in [0, 1]^2:
 /// a quad's (0,0), (1,0), (1,1), (0,1) are its vertices 0 to 3; a sub-face's are its corner, the
-/// midpoint of the edge that leaves the corner, the n-gon's centre, the midpoint of the edge before.
+/// midpoint of the edge that leaves the corner, the n-gon's centre, the midpoint of the edge
+/// before.
 struct Location {
   int face = -1;
   double u = 0;

@@ -10,8 +10,8 @@ namespace limitsurf {
 /// derivatives are multiplied by 2^n and 4^n, and rounding with them.
 ///
 /// At a boundary the missing first (low) or last (high) point is the linear continuation of the two
-/// next to it (paper, figure 2: p0 = 2 p1 - p2): the missing difference equals its neighbour. All is
-/// folded into the weights, the missing point itself weighs nothing.
+/// next to it (paper, figure 2: p0 = 2 p1 - p2): the missing difference equals its neighbour. All
+/// is folded into the weights, the missing point itself weighs nothing.
 struct CubicWeights {
   double value[4];
   double first[3];   ///< on the differences p1 - p0, p2 - p1, p3 - p2
@@ -58,7 +58,8 @@ inline void evaluatePatch(const Points& points, const CubicWeights& u, const Cub
   };
   Point row[4], row_du[4], row_duu[4];
   if (Order >= 2) {
-    // From the points themselves: rows that were summed up first are equally spaced but for rounding.
+    // From the points themselves: rows that were summed up first are equally spaced but for
+    // rounding.
     Point column[4];
     for (int x = 0; x < 4; ++x) {
       const Point p = points(x, 0), q = points(x, 1), r = points(x, 2), s = points(x, 3);
@@ -94,8 +95,8 @@ inline void evaluatePatch(const Points& points, const CubicWeights& u, const Cub
 template <int Order, typename Point>
 void evaluateWindow(const Point* window, int stride, const CubicWeights& u, const CubicWeights& v,
                     PatchValues<Point>& out) {
-  evaluatePatch<Order, Point>(
-      [=](int x, int y) -> const Point& { return window[y * stride + x]; }, u, v, out);
+  evaluatePatch<Order, Point>([=](int x, int y) -> const Point& { return window[y * stride + x]; },
+                              u, v, out);
 }
 
 }  // namespace limitsurf

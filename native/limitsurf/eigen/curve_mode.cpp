@@ -29,9 +29,10 @@ Real sinFace(int j) {
 /// Eigenvalue 1/2 with v = 0, e_0 = 1, e_k = end (1 or -1): a combination of the two spoke modes of
 /// phi = pi/2, whose eigenvector is (x_e, x_f) = (1, sqrt 2).
 ///
-/// With k even sin(pi k / 2) = 0 leaves e_k = cos(pi k / 2). Where that is not `end`, the derivative
-/// of the sine mode with respect to phi, x' = (i cos(phi i), rho' sin + rho (j + 1/2) cos), steps
-/// in: (S - mu) x' = mu' (sine mode), with mu' = -1/6, rho = sqrt 2, rho' = sqrt 2 / 6 at pi/2.
+/// With k even sin(pi k / 2) = 0 leaves e_k = cos(pi k / 2). Where that is not `end`, the
+/// derivative of the sine mode with respect to phi, x' = (i cos(phi i), rho' sin + rho (j + 1/2)
+/// cos), steps in: (S - mu) x' = mu' (sine mode), with mu' = -1/6, rho = sqrt 2, rho' = sqrt 2 / 6
+/// at pi/2.
 template <typename Real>
 CurveMode<Real> halfMode(const Ring& ring, int end) {
   const int k = ring.faces;
@@ -46,8 +47,8 @@ CurveMode<Real> halfMode(const Ring& ring, int end) {
     mode.ring[ring.edge(i)] = (1 - slope * i) * cosEdge<Real>(i) + sine * sinEdge<Real>(i);
   }
   for (int j = 0; j < k; ++j) {
-    mode.ring[ring.face(j)] = (1 - slope * (j + Real(1) / 2)) * cosFace<Real>(j) +
-                              (sine - slope / 6) * sinFace<Real>(j);
+    mode.ring[ring.face(j)] =
+        (1 - slope * (j + Real(1) / 2)) * cosFace<Real>(j) + (sine - slope / 6) * sinFace<Real>(j);
   }
   if (defective) {
     const Real norm = std::sqrt(Real(3) / 2);  // of (1, sqrt 2) in (x_e, x_f / 2)

@@ -16,9 +16,9 @@ namespace limitsurf {
 template <typename Real>
 struct CurveMode {
   Real lambda = 0;
-  std::vector<Real> ring;  ///< one value per point of the ring
-  int fed_mode = 0;        ///< spoke mode m fed by this vector; 0: none
-  bool feeds_plus = false; ///< w is the mode's lambda+ eigenvector, else its lambda- one
+  std::vector<Real> ring;   ///< one value per point of the ring
+  int fed_mode = 0;         ///< spoke mode m fed by this vector; 0: none
+  bool feeds_plus = false;  ///< w is the mode's lambda+ eigenvector, else its lambda- one
   Real feeds = 0;
 };
 

@@ -32,9 +32,7 @@ struct Powers {
     by_order[1] = 2 * scaled;
     by_order[2] = 4 * scaled;
   }
-  double at(int functional) const {
-    return by_order[functional == 0 ? 0 : functional < 3 ? 1 : 2];
-  }
+  double at(int functional) const { return by_order[functional == 0 ? 0 : functional < 3 ? 1 : 2]; }
 };
 
 using Functionals = Eigen::Array<double, GridWindow::kMaxCount, 1>;
@@ -390,10 +388,10 @@ void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& 
                });
   for (const Chain& chain : chains_) {
     const double lambda = lambda_[chain.from];
-    const Eigen::Array4d fed = power(lambda, ring_steps) * chain.rate / lambda *
-                               Eigen::Array4d(coefficients(chain.from, 0),
-                                              coefficients(chain.from, 1),
-                                              coefficients(chain.from, 2), 0);
+    const Eigen::Array4d fed =
+        power(lambda, ring_steps) * chain.rate / lambda *
+        Eigen::Array4d(coefficients(chain.from, 0), coefficients(chain.from, 1),
+                       coefficients(chain.from, 2), 0);
     add(table(chain.to, face), (steps - 1 + ring_steps) * power(2 * lambda, steps - 1) * fed,
         ring_steps * fed);
   }

@@ -14,17 +14,17 @@ namespace limitsurf {
 
 /// Where to evaluate a face's control grid after some subdivision steps, and which derivatives.
 struct GridWindow {
-  int a, b;           ///< the quarter: window from cell (a - 1, b - 1)
+  int a, b;  ///< the quarter: window from cell (a - 1, b - 1)
   CubicWeights u, v;
-  int order;          ///< 0: value; 1: du and dv as well; 2: duu, duv, dvv as well
+  int order;  ///< 0: value; 1: du and dv as well; 2: duu, duv, dvv as well
 
   static constexpr int kMaxCount = 6;
   /// How many functionals that makes: 1, 3 or 6.
   int count() const { return order == 0 ? 1 : order == 1 ? 3 : 6; }
 };
 
-/// The eigenbasis of one kind of ring: everything that evaluation near an extraordinary vertex needs
-/// to know about the vertex, and nothing about a mesh.
+/// The eigenbasis of one kind of ring: everything that evaluation near an extraordinary vertex
+/// needs to know about the vertex, and nothing about a mesh.
 ///
 /// A ring's points are sums of modes, each of which subdivision multiplies by its eigenvalue; a
 /// defective mode feeds another one as well (Jordan normal form; paper, section 2). Modes:
@@ -32,8 +32,8 @@ struct GridWindow {
 ///   1, 2       interior: the two other rotation-symmetric ones; sector: the curve modes;
 ///   the rest   spoke modes, each a sine or cosine around the vertex (spoke_mode.h).
 /// Coefficients belong to the vertex and serve all its faces. Because a spoke mode turns with the
-/// face, one pair of tables (for the sine and the cosine) serves all faces of the same Sides, so that
-/// a basis takes O(faces) memory. Tables are computed in long double and rounded once.
+/// face, one pair of tables (for the sine and the cosine) serves all faces of the same Sides, so
+/// that a basis takes O(faces) memory. Tables are computed in long double and rounded once.
 class Eigenbasis {
  public:
   /// Bases are shared: all surfaces in a process use one per kind and number of faces.
@@ -102,8 +102,8 @@ class Eigenbasis {
   struct FaceTables {  // of the faces with the same Sides
     explicit FaceTables(const OuterModes<long double>& modes) : outer_modes(modes) {}
     OuterModes<double> outer_modes;
-    std::vector<Table> outer;      // one per outer mode
-    std::vector<Table> cosine;     // per spoke pair: 2 i for lambda+, 2 i + 1 for lambda-
+    std::vector<Table> outer;   // one per outer mode
+    std::vector<Table> cosine;  // per spoke pair: 2 i for lambda+, 2 i + 1 for lambda-
     std::vector<Table> sine;
   };
   struct Fixed {  // modes 1 and 2 on one face
@@ -137,16 +137,16 @@ class Eigenbasis {
   void forEachTable(int face, const Points& coefficients, const Body& body) const;
 
   Ring ring_;
-  long period_;                   // of the trigonometric tables
+  long period_;  // of the trigonometric tables
   std::vector<double> cos_, sin_;
   std::vector<double> lambda_;
-  std::vector<Spoke> spokes_;     // by pairIndex
+  std::vector<Spoke> spokes_;  // by pairIndex
   std::vector<Chain> chains_;
-  std::vector<double> rest_;      // interior valence 2: what mode 1 or 2 feeds into outer modes
+  std::vector<double> rest_;  // interior valence 2: what mode 1 or 2 feeds into outer modes
   int rest_mode_ = -1;
-  std::vector<Fixed> fixed_;      // one for the interior, one per face of a sector
-  std::vector<double> curve_ring_[2];          // sectors: modes 1 and 2 on the ring
-  Eigen::Matrix2d radial_, radial_inverse_;    // interior: modes 1 and 2 from mean e - v, f - v
+  std::vector<Fixed> fixed_;                 // one for the interior, one per face of a sector
+  std::vector<double> curve_ring_[2];        // sectors: modes 1 and 2 on the ring
+  Eigen::Matrix2d radial_, radial_inverse_;  // interior: modes 1 and 2 from mean e - v, f - v
   double radial_vertex_[2] = {0, 0};
   std::unique_ptr<FaceTables> face_tables_[4];
 };

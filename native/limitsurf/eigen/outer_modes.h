@@ -11,8 +11,8 @@ namespace limitsurf {
 
 /// The eigenvectors that vanish on the ring: those of S12 (paper: W1), continued to the whole grid.
 ///
-/// S12 does not depend on the valence and has no defect. Its eigenvalues are 1/8 and 1/16 twice, 1/32
-/// once for each side of the face that lies inside the sector, and 1/64.
+/// S12 does not depend on the valence and has no defect. Its eigenvalues are 1/8 and 1/16 twice,
+/// 1/32 once for each side of the face that lies inside the sector, and 1/64.
 template <typename Real>
 class OuterModes {
  public:

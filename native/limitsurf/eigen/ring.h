@@ -15,8 +15,8 @@ enum class RingKind {
   pinned,    ///< a sector of faces; the vertex stays where it is
 };
 
-/// A vertex and its quads: vertex v, spoke points e_i (the far ends of its edges, counter-clockwise)
-/// and face points f_j (opposite corners; f_j lies between e_j and e_j+1).
+/// A vertex and its quads: vertex v, spoke points e_i (the far ends of its edges,
+/// counter-clockwise) and face points f_j (opposite corners; f_j lies between e_j and e_j+1).
 /// Points are numbered v, e_0, e_1, ..., f_0, f_1, ...
 struct Ring {
   RingKind kind;
@@ -56,8 +56,9 @@ Values subdivideRing(const Ring& ring, const Values& points) {
 
   const Real face_weight = rules.faceMask(4);
   for (int j = 0; j < ring.faces; ++j) {
-    next.row(ring.face(j)) = face_weight * (points.row(0) + points.row(ring.edge(j)) +
-                                            points.row(ring.nextEdge(j)) + points.row(ring.face(j)));
+    next.row(ring.face(j)) =
+        face_weight * (points.row(0) + points.row(ring.edge(j)) + points.row(ring.nextEdge(j)) +
+                       points.row(ring.face(j)));
   }
   for (int i = 0; i < ring.edges(); ++i) {
     const bool boundary = !ring.interior() && (i == 0 || i == ring.faces);

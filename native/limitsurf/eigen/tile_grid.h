@@ -19,9 +19,9 @@ enum class Sides {
 /// The control points around one quad of an extraordinary vertex, laid out as a 5 x 5 grid.
 ///
 /// Cell (x, y), -1 <= x, y <= 3, holds the control point at (x, y) when the extraordinary vertex is
-/// at (0, 0) and the face is [0, 1]^2. Cell (-1, -1) has no point. Before a subdivision the 15 cells
-/// with x, y <= 2 determine the face; after it all 24 carry the three regular quarters: the 4 x 4
-/// window from (a - 1, b - 1) to (a + 2, b + 2) belongs to quarter (a, b).
+/// at (0, 0) and the face is [0, 1]^2. Cell (-1, -1) has no point. Before a subdivision the 15
+/// cells with x, y <= 2 determine the face; after it all 24 carry the three regular quarters: the 4
+/// x 4 window from (a - 1, b - 1) to (a + 2, b + 2) belongs to quarter (a, b).
 namespace tile_grid {
 
 constexpr int kSize = 5;

@@ -74,9 +74,9 @@ void checkEdgeSharpness(const ControlMesh& mesh, const EdgeSharpness& sharpness)
     where << "edge_sharpness row " << i << ", edge (" << sharpness.edges[i].first << ", "
           << sharpness.edges[i].second << ")";
     const bool in_range = a >= 0 && b < mesh.vertexCount();
-    if (!in_range || !std::binary_search(edges.begin(), edges.end(),
-                                         std::pair<int, int>(static_cast<int>(a),
-                                                             static_cast<int>(b)))) {
+    if (!in_range ||
+        !std::binary_search(edges.begin(), edges.end(),
+                            std::pair<int, int>(static_cast<int>(a), static_cast<int>(b)))) {
       refuse(where.str(), ": the mesh has no such edge");
     }
     checkSharpness(where.str(), sharpness.values[i]);
@@ -151,8 +151,8 @@ ControlMesh::ControlMesh(Points positions, const std::vector<std::int64_t>& face
   for (int f = 0; f < faceCount(); ++f) {
     for (int i = face_offsets_[f]; i < face_offsets_[f + 1]; ++i) {
       if (face_vertices[i] < 0 || face_vertices[i] >= positions_.rows()) {
-        refuse("face ", f, " names vertex ", face_vertices[i], "; the mesh has ",
-               positions_.rows(), " vertices");
+        refuse("face ", f, " names vertex ", face_vertices[i], "; the mesh has ", positions_.rows(),
+               " vertices");
       }
       face_vertices_.push_back(static_cast<int>(face_vertices[i]));
     }

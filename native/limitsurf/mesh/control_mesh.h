@@ -43,7 +43,8 @@ struct MeshOptions {
   Scheme scheme = Scheme::catmark;
   EdgeSharpness edge_sharpness;
   VertexSharpness vertex_sharpness;
-  std::vector<std::int64_t> holes;  ///< faces that have no surface, though their neighbours see them
+  std::vector<std::int64_t>
+      holes;  ///< faces that have no surface, though their neighbours see them
 };
 
 /// The control mesh (cage): positions, faces of any size, and the rules of their subdivision.

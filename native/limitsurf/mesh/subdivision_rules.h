@@ -62,7 +62,8 @@ class SubdivisionRules {
     return result;
   }
 
-  /// Edges and faces are counted counter-clockwise; on a boundary the first and last edge lie on it.
+  /// Edges and faces are counted counter-clockwise; on a boundary the first and last edge lie on
+  /// it.
   VertexMask vertexMask(VertexRule rule, int edge_count) const {
     using OpenSubdiv::Sdc::Crease;
     VertexMask result;

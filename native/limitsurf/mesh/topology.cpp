@@ -67,8 +67,8 @@ Topology::Topology(const ControlMesh& mesh) {
                                           ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
                                           : Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  refiner_.reset(Factory::Create(descriptor,
-                                 Factory::Options(OpenSubdiv::Sdc::SCHEME_CATMARK, options)));
+  refiner_.reset(
+      Factory::Create(descriptor, Factory::Options(OpenSubdiv::Sdc::SCHEME_CATMARK, options)));
   if (!refiner_) {
     throw MeshError("OpenSubdiv cannot represent the mesh's topology");
   }
@@ -85,8 +85,8 @@ void Topology::refuseSpoiled(const ControlMesh& mesh) {
     if (twice >= 0) {
       refused_.emplace(face, text("it uses vertex ", twice, " twice"));
       for (const int vertex : mesh.faceVertices(face)) {
-        spoiled.emplace(vertex, text("at vertex ", vertex, ", face ", face, " uses vertex ", twice,
-                                     " twice"));
+        spoiled.emplace(
+            vertex, text("at vertex ", vertex, ", face ", face, " uses vertex ", twice, " twice"));
       }
     }
   }

@@ -11,8 +11,8 @@ namespace limitsurf {
 
 /// One Catmull-Clark refinement of another level, of which only the points asked for come to be.
 ///
-/// Face (f, c), the child of f at its corner c, has at its corners 0 to 3 the points of f's vertex c,
-/// of the edge c, of f itself and of the edge c - 1: the orientation of Ptex sub-faces.
+/// Face (f, c), the child of f at its corner c, has at its corners 0 to 3 the points of f's vertex
+/// c, of the edge c, of f itself and of the edge c - 1: the orientation of Ptex sub-faces.
 class ChildMesh final : public FaceMesh {
  public:
   /// `corners` numbers the parent's corners; the numbers are the children's ids.

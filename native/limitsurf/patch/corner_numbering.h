@@ -42,9 +42,7 @@ class CageCorners final : public CornerNumbering {
 class QuadCorners final : public CornerNumbering {
  public:
   FaceId number(FaceCorner at) const override { return 4 * at.face + at.corner; }
-  FaceCorner at(FaceId number) const override {
-    return {number / 4, static_cast<int>(number % 4)};
-  }
+  FaceCorner at(FaceId number) const override { return {number / 4, static_cast<int>(number % 4)}; }
 };
 
 }  // namespace limitsurf

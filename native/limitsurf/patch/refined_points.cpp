@@ -13,8 +13,7 @@ int RefinedPoints::addFacePoint(const std::vector<int>& sources) {
   return add(sources, {kFace, static_cast<int>(sources.size()), 0});
 }
 
-int RefinedPoints::addEdgePoint(const std::vector<int>& sources, int face_size_0,
-                                int face_size_1) {
+int RefinedPoints::addEdgePoint(const std::vector<int>& sources, int face_size_0, int face_size_1) {
   if (sources.size() == 2) {
     return add(sources, {kEdge, 0, 0});
   }

@@ -17,7 +17,8 @@ namespace limitsurf {
 /// topology alone and are shared by all points that have the same.
 class RefinedPoints {
  public:
-  RefinedPoints(int cage_points, Triangles triangles) : cage_points_(cage_points), rules_(triangles) {}
+  RefinedPoints(int cage_points, Triangles triangles)
+      : cage_points_(cage_points), rules_(triangles) {}
 
   int cagePoints() const { return cage_points_; }
   int size() const { return cage_points_ + static_cast<int>(mask_of_.size()); }

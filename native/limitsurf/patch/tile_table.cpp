@@ -137,22 +137,22 @@ class Builder {
   void addIrregularFace(int face) {
     if (mesh_.faceSize(face) == 4) {
       const Irregular irregular(levels_.cage, face);
-      table_.faces[ptex_.first[face]] =
-          amongQuads(levels_.cage, face) && irregular.count <= 1
-              ? tile(levels_.cage, 0, face, irregular, 0)
-              : split(levels_.child, 1, face);
+      table_.faces[ptex_.first[face]] = amongQuads(levels_.cage, face) && irregular.count <= 1
+                                            ? tile(levels_.cage, 0, face, irregular, 0)
+                                            : split(levels_.child, 1, face);
       return;
     }
     for (int corner = 0; corner < mesh_.faceSize(face); ++corner) {
       const FaceId child = levels_.child.child({face, corner});
       const Irregular irregular(levels_.child, child);
-      table_.faces[ptex_.first[face] + corner] =
-          irregular.count <= 1 ? tile(levels_.child, 1, child, irregular, 0)
-                               : split(levels_.grandchild, 2, child);
+      table_.faces[ptex_.first[face] + corner] = irregular.count <= 1
+                                                     ? tile(levels_.child, 1, child, irregular, 0)
+                                                     : split(levels_.grandchild, 2, child);
     }
   }
 
-  /// Four children of a quad of the level above `mesh`. None has more than one extraordinary vertex.
+  /// Four children of a quad of the level above `mesh`. None has more than one extraordinary
+  /// vertex.
   TileRef split(ChildMesh& mesh, int level, FaceId parent) {
     std::array<TileRef, 4> children;
     for (int corner = 0; corner < 4; ++corner) {
@@ -214,8 +214,10 @@ class Builder {
       return mesh.point(vertex);
     }
     const bool beyond_x = x == 2 && window.at(2, 0) < 0 && window.at(2, 1) < 0;
-    const int inner = beyond_x ? outerPoint(mesh, window, x - 1, y) : outerPoint(mesh, window, x, y - 1);
-    const int next = beyond_x ? outerPoint(mesh, window, x - 2, y) : outerPoint(mesh, window, x, y - 2);
+    const int inner =
+        beyond_x ? outerPoint(mesh, window, x - 1, y) : outerPoint(mesh, window, x, y - 1);
+    const int next =
+        beyond_x ? outerPoint(mesh, window, x - 2, y) : outerPoint(mesh, window, x, y - 2);
     const auto [known, is_new] = reflections_.try_emplace({inner, next}, 0);
     if (is_new) {
       known->second = table_.points.addReflection(inner, next);
@@ -316,8 +318,7 @@ PtexFaces::PtexFaces(const ControlMesh& mesh) {
   first.push_back(static_cast<int>(base_face.size()));
 }
 
-TileTable buildTileTable(const ControlMesh& mesh, const Topology& topology,
-                         const PtexFaces& ptex) {
+TileTable buildTileTable(const ControlMesh& mesh, const Topology& topology, const PtexFaces& ptex) {
   return Builder(mesh, topology, ptex).build();
 }
 

@@ -18,19 +18,19 @@ class Topology;
 /// A quad whose surface is one bicubic B-spline patch.
 struct BSplineTile {
   std::array<int, 16> points;  ///< row-major in (y, x), from (-1, -1) to (2, 2)
-  /// Sides with no points beyond them: the boundary of the surface. Their entries in `points` repeat
-  /// others and weigh nothing.
+  /// Sides with no points beyond them: the boundary of the surface. Their entries in `points`
+  /// repeat others and weigh nothing.
   bool x_low, x_high, y_low, y_high;
 };
 
 /// A quad with an extraordinary vertex at one corner and regular ones at the others.
 struct RingTile {
-  int ring;          ///< index into TileTable::rings
-  int face;          ///< which of the ring's faces
-  int ring_steps;    ///< how many subdivisions the ring's points are older than the outer points
-  int corner;        ///< the quad's corner with the extraordinary vertex
-  int depth;         ///< 1 for a child of a split Ptex face, else 0
-  Sides sides;       ///< of the ring's face
+  int ring;        ///< index into TileTable::rings
+  int face;        ///< which of the ring's faces
+  int ring_steps;  ///< how many subdivisions the ring's points are older than the outer points
+  int corner;      ///< the quad's corner with the extraordinary vertex
+  int depth;       ///< 1 for a child of a split Ptex face, else 0
+  Sides sides;     ///< of the ring's face
   std::array<int, tile_grid::kOuter> outer;  ///< points, in the order of the basis's outer cells
 };
 
@@ -54,10 +54,10 @@ struct TileRef {
 /// faces other than quads, and where a quad has several extraordinary vertices.
 struct TileTable {
   RefinedPoints points;
-  std::vector<TileRef> faces;                  ///< per Ptex face
+  std::vector<TileRef> faces;  ///< per Ptex face
   std::vector<std::array<TileRef, 4>> splits;
   std::vector<BSplineTile> bsplines;
-  std::vector<RingTile> ring_tiles;            ///< grouped by ring
+  std::vector<RingTile> ring_tiles;  ///< grouped by ring
   std::vector<RingPoints> rings;
 };
 

@@ -202,8 +202,8 @@ class RingTileBounds {
         shares_.push_back({lambda, coefficient * largest / lambda, 0});
         for (const Eigenbasis::Chain& chain : basis_.chains()) {
           if (chain.from == mode) {
-            shares_.push_back({lambda, coefficient * kLargestEntry / lambda,
-                               std::abs(chain.rate) / lambda});
+            shares_.push_back(
+                {lambda, coefficient * kLargestEntry / lambda, std::abs(chain.rate) / lambda});
           }
         }
       }
@@ -245,11 +245,10 @@ class RingTileBounds {
 Eigen::Matrix<double, 2, 3, Eigen::RowMajor> LimitSurface::bounds(int threads) const {
   data_->check({}, threads);
   const TileTable& table = data_->table;
-  const Eigen::RowVector3d cage =
-      data_->positions.rows() > 0
-          ? Eigen::RowVector3d(data_->positions.colwise().maxCoeff() -
-                               data_->positions.colwise().minCoeff())
-          : Eigen::RowVector3d::Zero();
+  const Eigen::RowVector3d cage = data_->positions.rows() > 0
+                                      ? Eigen::RowVector3d(data_->positions.colwise().maxCoeff() -
+                                                           data_->positions.colwise().minCoeff())
+                                      : Eigen::RowVector3d::Zero();
   const double tolerance = kPositionError / 4 * cage.norm();
 
   // A first guess prunes most tiles; each block then goes on from it alone, so that the result does

@@ -83,7 +83,8 @@ PrincipalCurvatures principalCurvatures(const Jet& jet) {
   const double xy = (uv - b * a * xx) / (a * c);
   const double yy = (vv - 2 * b * c * xy - b * b * xx) / (c * c);
 
-  const double mean = (xx + yy) / 2, half = (xx - yy) / 2, radius = std::sqrt(half * half + xy * xy);
+  const double mean = (xx + yy) / 2, half = (xx - yy) / 2,
+               radius = std::sqrt(half * half + xy * xy);
   const double scale = std::ldexp(second / first / first, jet.exponent);
   result.k1 = (mean + radius) * scale;
   result.k2 = (mean - radius) * scale;

@@ -13,9 +13,9 @@ using Padded = Eigen::Array4d;
 
 /// Position and derivatives at one location.
 ///
-/// The position is anchor + patch.value, where the anchor is near, so that derivatives are differences of
-/// small numbers. Second derivatives are to be multiplied by 2^exponent: close to an extraordinary
-/// vertex they alone leave the range of double.
+/// The position is anchor + patch.value, where the anchor is near, so that derivatives are
+/// differences of small numbers. Second derivatives are to be multiplied by 2^exponent: close to an
+/// extraordinary vertex they alone leave the range of double.
 struct Jet {
   Padded anchor;
   PatchValues<Padded> patch;  ///< its value is the offset

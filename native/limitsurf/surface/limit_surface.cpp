@@ -24,8 +24,7 @@ LimitSurface::Data::Data(ControlMesh control_mesh)
     : Data(std::move(control_mesh), PtexFaces(control_mesh), Topology(control_mesh)) {}
 
 VertexApproach LimitSurface::Data::approachTo(const TileLocation& at) const {
-  return vertexApproach(table, pose, static_cast<int>(at.tile.index),
-                        at.turns[0] + at.turns[1]);
+  return vertexApproach(table, pose, static_cast<int>(at.tile.index), at.turns[0] + at.turns[1]);
 }
 
 void LimitSurface::Data::check(Span<Location> at, int threads) const {
@@ -136,8 +135,7 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
                    }
                    if (derivatives == Derivatives::second) {
                      const auto whole = [&](const Padded& half) -> Padded {
-                       return half.unaryExpr(
-                           [&](double x) { return std::ldexp(x, jet.exponent); });
+                       return half.unaryExpr([&](double x) { return std::ldexp(x, jet.exponent); });
                      };
                      put(out.duu, row, whole(jet.patch.duu));
                      put(out.duv, row, whole(jet.patch.duv));

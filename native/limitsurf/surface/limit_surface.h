@@ -92,7 +92,8 @@ class LimitSurface {
   /// Faces of the control mesh that have no limit surface (holes included), with the reason.
   const std::map<int, std::string>& refused() const;
 
-  /// Throws what evaluate() throws for the first row that cannot be evaluated, and does nothing else.
+  /// Throws what evaluate() throws for the first row that cannot be evaluated, and does nothing
+  /// else.
   void checkLocations(Span<Location> at) const;
 
   /// Limit positions and derivatives with respect to the face's own (u, v).
@@ -138,9 +139,10 @@ class LimitSurface {
   /// figure 1), in face order. The same seed gives the same locations on every machine.
   std::vector<Location> scatterJittered(int per_side, std::uint64_t seed, int threads = 0) const;
 
-  /// Watertight quads on the limit surface: a quad becomes 2^levels x 2^levels of them, each sub-face
-  /// of an n-gon half as many a side. Points on shared edges exist once. Throws std::invalid_argument
-  /// for levels below 0, below 1 where the mesh has faces other than quads, or above 12.
+  /// Watertight quads on the limit surface: a quad becomes 2^levels x 2^levels of them, each
+  /// sub-face of an n-gon half as many a side. Points on shared edges exist once. Throws
+  /// std::invalid_argument for levels below 0, below 1 where the mesh has faces other than quads,
+  /// or above 12.
   Tessellation tessellate(int levels, int threads = 0) const;
 
   /// Area of the limit surface, relative error below kAreaError.

@@ -12,8 +12,8 @@ namespace limitsurf {
 /// Everything about a surface that depends on its control points' positions.
 ///
 /// Regular tiles read the points themselves. A ring keeps the coefficients of its modes, and a ring
-/// tile the control grids of its first subdivision steps: a random location lies deeper than n steps
-/// with probability 4^-n only.
+/// tile the control grids of its first subdivision steps: a random location lies deeper than n
+/// steps with probability 4^-n only.
 class Pose {
  public:
   /// Steps whose grids are kept, in a whole Ptex face and in a child of one, as long as all grids
@@ -29,8 +29,8 @@ class Pose {
   };
 
   struct RingPose {
-    Padded limit;          ///< the limit position of the extraordinary vertex
-    Points coefficients;   ///< of the modes, relative to the limit
+    Padded limit;         ///< the limit position of the extraordinary vertex
+    Points coefficients;  ///< of the modes, relative to the limit
   };
 
   struct RingTilePose {
@@ -46,7 +46,9 @@ class Pose {
   const RingPose& ring(int i) const { return rings_[i]; }
   const RingTilePose& ringTile(int i) const { return ring_tiles_[i]; }
   /// The grid after `steps` >= 1 steps.
-  const Grid& grid(int tile, int steps) const { return grids_[ring_tiles_[tile].first_grid + steps - 1]; }
+  const Grid& grid(int tile, int steps) const {
+    return grids_[ring_tiles_[tile].first_grid + steps - 1];
+  }
   int gridSteps(const RingTile& tile) const { return grid_steps_[tile.depth]; }
 
  private:

@@ -72,8 +72,8 @@ class Row {
         const bool beyond = (x == 0 && tile.x_low) || (x == 3 && tile.x_high) ||
                             (y == 0 && tile.y_low) || (y == 3 && tile.y_high);
         if (!beyond) {
-          add(tile.points[4 * y + x], {v.value[y] * u.value[x], v.value[y] * du[x],
-                                       dv[y] * u.value[x]});
+          add(tile.points[4 * y + x],
+              {v.value[y] * u.value[x], v.value[y] * du[x], dv[y] * u.value[x]});
         }
       }
     }
@@ -88,8 +88,8 @@ class Row {
     } else {
       const Quarter quarter(at.u, at.v);
       ring.basis->weights(tile.face, quarter.steps, tile.ring_steps,
-                          gridWindow(quarter, ring.basis->sides(tile.face), order),
-                          mode_weights, outer_weights);
+                          gridWindow(quarter, ring.basis->sides(tile.face), order), mode_weights,
+                          outer_weights);
     }
     const Eigen::MatrixXd on_ring = ring.basis->projectTransposed(mode_weights.transpose());
     const auto weightsOf = [&](const auto& column) {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kMostLevels = 12;
 
-/// Hands out the tessellation's points: one for each vertex of the mesh, for each step along an edge
-/// and for each place inside a face, made when a face first asks for it.
+/// Hands out the tessellation's points: one for each vertex of the mesh, for each step along an
+/// edge and for each place inside a face, made when a face first asks for it.
 class PointNumbers {
  public:
   PointNumbers(const ControlMesh& mesh, const PtexFaces& ptex, int side)
@@ -95,7 +95,8 @@ class PointNumbers {
   }
 
   int inside(int corner, int i, int j, const Location& at) {
-    const std::size_t place = (static_cast<std::size_t>(corner) * (side_ + 1) + i) * (side_ + 1) + j;
+    const std::size_t place =
+        (static_cast<std::size_t>(corner) * (side_ + 1) + i) * (side_ + 1) + j;
     if (inside_.size() <= place) {
       inside_.resize(place + 1, -1);
     }

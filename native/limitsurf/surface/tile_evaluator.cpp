@@ -121,8 +121,8 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   }
   const Pose::Grid& grid = pose_.grid(index, quarter.steps);
   jet.anchor = grid.limit();
-  evaluateWindow<Order>(grid.points + window.b * tile_grid::kSize + window.a, tile_grid::kSize, window.u,
-                        window.v, patch);
+  evaluateWindow<Order>(grid.points + window.b * tile_grid::kSize + window.a, tile_grid::kSize,
+                        window.u, window.v, patch);
   if (Order > 0) {
     const double scale = std::ldexp(1., quarter.steps);
     patch.du *= scale;

@@ -10,16 +10,16 @@ namespace limitsurf {
 /// Where a location lies among the tiles.
 struct TileLocation {
   TileRef tile;
-  double u, v;        ///< in the tile's frame; of a ring tile turned so that its vertex is (0, 0)
-  int turns[2];       ///< corners by which the frame was turned: in the split, in the tile
+  double u, v;   ///< in the tile's frame; of a ring tile turned so that its vertex is (0, 0)
+  int turns[2];  ///< corners by which the frame was turned: in the split, in the tile
   bool in_split;
 
   /// At the extraordinary vertex of a ring tile.
   bool atVertex() const { return tile.kind == TileRef::kRing && u == 0 && v == 0; }
 };
 
-/// Evaluates single locations. Keeps the control points of a regular tile that is asked for twice in
-/// a row, as batches sorted by face do; one evaluator belongs to one thread.
+/// Evaluates single locations. Keeps the control points of a regular tile that is asked for twice
+/// in a row, as batches sorted by face do; one evaluator belongs to one thread.
 class TileEvaluator {
  public:
   TileEvaluator(const TileTable& table, const Pose& pose) : table_(table), pose_(pose) {}
@@ -49,9 +49,9 @@ class TileEvaluator {
 /// own quarter behind, and where in it. Not to be asked at the vertex.
 struct Quarter {
   Quarter(double u, double v);
-  int steps;     ///< >= 1
-  int a, b;      ///< 0 or 1, not both 0
-  double u, v;   ///< in [0, 1]
+  int steps;    ///< >= 1
+  int a, b;     ///< 0 or 1, not both 0
+  double u, v;  ///< in [0, 1]
 };
 
 /// The window on a ring tile's grid that serves the quarter, for derivatives up to `order`.

@@ -53,17 +53,15 @@ std::vector<Term> approachTerms(const Eigenbasis& basis, int face, const Points&
   }
   constexpr std::size_t kSlowest = 24;
   const std::size_t kept = std::min(kSlowest, modes.size());
-  std::partial_sort(
-      modes.begin(), modes.begin() + static_cast<std::ptrdiff_t>(kept), modes.end(),
-      [&](int a, int b) { return basis.eigenvalue(a) > basis.eigenvalue(b); });
+  std::partial_sort(modes.begin(), modes.begin() + static_cast<std::ptrdiff_t>(kept), modes.end(),
+                    [&](int a, int b) { return basis.eigenvalue(a) > basis.eigenvalue(b); });
   for (std::size_t i = 0; i < kept; ++i) {
     const int mode = modes[i];
     const Vector3 coefficient = coefficients.row(mode);
     add(mode, basis.eigenvalue(mode), 0, coefficient);
     for (const Eigenbasis::Chain& chain : basis.chains()) {
       if (chain.from == mode) {
-        add(chain.to, basis.eigenvalue(mode), 1,
-            chain.rate / basis.eigenvalue(mode) * coefficient);
+        add(chain.to, basis.eigenvalue(mode), 1, chain.rate / basis.eigenvalue(mode) * coefficient);
       }
     }
   }
@@ -72,8 +70,8 @@ std::vector<Term> approachTerms(const Eigenbasis& basis, int face, const Points&
   });
   std::vector<Term> merged;
   for (const Term& term : terms) {
-    if (!merged.empty() && !dominates(merged.back().growth, merged.back().power, term.growth,
-                                      term.power)) {
+    if (!merged.empty() &&
+        !dominates(merged.back().growth, merged.back().power, term.growth, term.power)) {
       merged.back().du += term.du;
       merged.back().dv += term.dv;
     } else {
@@ -133,12 +131,10 @@ bool vertexHasNormal(const Ring& ring) {
   }
 }
 
-VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring_tile,
-                              int turns) {
+VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring_tile, int turns) {
   const RingTile& tile = table.ring_tiles[ring_tile];
   const Points& coefficients = pose.ring(tile.ring).coefficients;
-  std::vector<Term> terms =
-      approachTerms(*table.rings[tile.ring].basis, tile.face, coefficients);
+  std::vector<Term> terms = approachTerms(*table.rings[tile.ring].basis, tile.face, coefficients);
   for (Term& term : terms) {
     for (int i = 0; i < turns; ++i) {
       const Vector3 du = term.du;
@@ -178,8 +174,8 @@ VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring
   for (std::size_t i = 0; i < crosses.size();) {
     Vector3 sum = Vector3::Zero();
     const CrossTerm& leading = crosses[i];
-    for (; i < crosses.size() && !dominates(leading.growth, leading.power, crosses[i].growth,
-                                            crosses[i].power);
+    for (; i < crosses.size() &&
+           !dominates(leading.growth, leading.power, crosses[i].growth, crosses[i].power);
          ++i) {
       sum += crosses[i].normal;
     }

@@ -31,9 +31,8 @@ Integers integers(const py::handle& object, const char* name) {
   const bool empty_list = array.size() == 0 && kind == 'f';  // numpy's type for []
   if (kind == 'O') {
     // Integers beyond 64 bits: no index is that large, so let them be as wrong as they are.
-    py::array clipped = viewed(py::module_::import("numpy").attr("clip")(
-                                   array, py::int_(-1), py::int_(INT64_MAX)),
-                               name);
+    py::array clipped = viewed(
+        py::module_::import("numpy").attr("clip")(array, py::int_(-1), py::int_(INT64_MAX)), name);
     return py::cast<Integers>(clipped.attr("astype")("int64"));
   }
   if (kind != 'i' && kind != 'u' && !empty_list) {

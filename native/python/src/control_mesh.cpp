@@ -22,12 +22,12 @@ Enum choice(const std::string& value, const char* name,
   throw MeshError(std::string(name) + " is '" + value + "'; expected " + known);
 }
 
-const std::vector<std::pair<const char*, Boundary>> kBoundaries = {
-    {"smooth", Boundary::smooth}, {"corners", Boundary::corners}};
-const std::vector<std::pair<const char*, Creasing>> kCreasings = {
-    {"uniform", Creasing::uniform}, {"chaikin", Creasing::chaikin}};
-const std::vector<std::pair<const char*, Triangles>> kTriangles = {
-    {"catmark", Triangles::catmark}, {"smooth", Triangles::smooth}};
+const std::vector<std::pair<const char*, Boundary>> kBoundaries = {{"smooth", Boundary::smooth},
+                                                                   {"corners", Boundary::corners}};
+const std::vector<std::pair<const char*, Creasing>> kCreasings = {{"uniform", Creasing::uniform},
+                                                                  {"chaikin", Creasing::chaikin}};
+const std::vector<std::pair<const char*, Triangles>> kTriangles = {{"catmark", Triangles::catmark},
+                                                                   {"smooth", Triangles::smooth}};
 const std::vector<std::pair<const char*, Scheme>> kSchemes = {{"catmark", Scheme::catmark},
                                                               {"bilinear", Scheme::bilinear}};
 
@@ -104,8 +104,7 @@ Points positionsOf(const py::object& object) {
 }
 
 std::shared_ptr<ControlMesh> makeMesh(const py::object& positions, const py::object& face_sizes,
-                                      const py::object& face_vertices,
-                                      const MeshOptions& options) {
+                                      const py::object& face_vertices, const MeshOptions& options) {
   const Points points = positionsOf(positions);
   const Integers sizes = integers(face_sizes, "face_sizes");
   const Integers vertices = integers(face_vertices, "face_vertices");
@@ -150,7 +149,8 @@ py::array_t<T> arrayOf(const std::vector<T>& values) {
 
 py::object edgeSharpness(const ControlMesh& mesh) {
   const EdgeSharpness& sharpness = mesh.options().edge_sharpness;
-  py::array_t<std::int64_t> edges({static_cast<py::ssize_t>(sharpness.edges.size()), py::ssize_t{2}});
+  py::array_t<std::int64_t> edges(
+      {static_cast<py::ssize_t>(sharpness.edges.size()), py::ssize_t{2}});
   for (std::size_t i = 0; i < sharpness.edges.size(); ++i) {
     edges.mutable_data()[2 * i] = sharpness.edges[i].first;
     edges.mutable_data()[2 * i + 1] = sharpness.edges[i].second;
@@ -160,13 +160,12 @@ py::object edgeSharpness(const ControlMesh& mesh) {
 
 py::tuple state(const ControlMesh& mesh) {
   const MeshOptions& o = mesh.options();
-  return py::make_tuple(positionArray(mesh.positions()), arrayOf(mesh.faceSizes()),
-                        arrayOf(mesh.faceVertices()), edgeSharpness(mesh),
-                        py::make_tuple(arrayOf(o.vertex_sharpness.vertices),
-                                       arrayOf(o.vertex_sharpness.values)),
-                        text(o.boundary, kBoundaries), text(o.creasing, kCreasings),
-                        text(o.triangles, kTriangles), text(o.scheme, kSchemes),
-                        arrayOf(o.holes));
+  return py::make_tuple(
+      positionArray(mesh.positions()), arrayOf(mesh.faceSizes()), arrayOf(mesh.faceVertices()),
+      edgeSharpness(mesh),
+      py::make_tuple(arrayOf(o.vertex_sharpness.vertices), arrayOf(o.vertex_sharpness.values)),
+      text(o.boundary, kBoundaries), text(o.creasing, kCreasings), text(o.triangles, kTriangles),
+      text(o.scheme, kSchemes), arrayOf(o.holes));
 }
 
 }  // namespace
@@ -188,10 +187,10 @@ void bindControlMesh(py::module_& module) {
            "triangles"_a = "catmark", "scheme"_a = "catmark", "holes"_a = py::none())
       .def_static(
           "from_faces",
-          [](const py::object& positions, const py::object& faces,
-             const py::object& edge_sharpness, const py::object& vertex_sharpness,
-             const std::string& boundary, const std::string& creasing,
-             const std::string& triangles, const std::string& scheme, const py::object& holes) {
+          [](const py::object& positions, const py::object& faces, const py::object& edge_sharpness,
+             const py::object& vertex_sharpness, const std::string& boundary,
+             const std::string& creasing, const std::string& triangles, const std::string& scheme,
+             const py::object& holes) {
             const auto [sizes, vertices] = flattened(faces);
             return makeMesh(positions, sizes, vertices,
                             meshOptions(edge_sharpness, vertex_sharpness, boundary, creasing,

@@ -80,15 +80,12 @@ void inChunks(const SharedSurface& shared, const Locations& at, const Body& body
   }
 }
 
-py::object result(const char* name) {
-  return py::module_::import("limitsurf._results").attr(name);
-}
+py::object result(const char* name) { return py::module_::import("limitsurf._results").attr(name); }
 
 py::object evaluate(const SharedSurface& shared, const py::object& face, const py::object& uv,
                     int derivatives, int threads, const py::object& dtype) {
   if (derivatives < 0 || derivatives > 2) {
-    throw py::value_error("derivatives is " + std::to_string(derivatives) +
-                          "; expected 0, 1 or 2");
+    throw py::value_error("derivatives is " + std::to_string(derivatives) + "; expected 0, 1 or 2");
   }
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
@@ -220,8 +217,9 @@ py::object tessellate(const SharedSurface& shared, int levels, int threads) {
     const std::shared_lock<std::shared_mutex> lock(shared.mutex);
     t = shared.surface.tessellate(levels, threads);
   }
-  const py::array_t<int> faces({static_cast<py::ssize_t>(t.face_vertices.size() / 4), py::ssize_t{4}},
-                               t.face_vertices.data());
+  const py::array_t<int> faces(
+      {static_cast<py::ssize_t>(t.face_vertices.size() / 4), py::ssize_t{4}},
+      t.face_vertices.data());
   return result("Tessellation")(pointArray(t.positions), pointArray(t.normals), faces,
                                 locations(t.locations));
 }
@@ -229,8 +227,7 @@ py::object tessellate(const SharedSurface& shared, int levels, int threads) {
 void setPositions(SharedSurface& shared, const py::object& positions, int threads) {
   checkThreads(threads);
   const Doubles array = doubles(positions, "positions");
-  if (array.ndim() != 2 || array.shape(1) != 3 ||
-      array.shape(0) != shared.mesh->vertexCount()) {
+  if (array.ndim() != 2 || array.shape(1) != 3 || array.shape(0) != shared.mesh->vertexCount()) {
     throw MeshError("positions has shape " + shapeText(array) + "; expected (" +
                     std::to_string(shared.mesh->vertexCount()) + ", 3)");
   }
@@ -279,8 +276,8 @@ void bindLimitSurface(py::module_& module) {
       .def("set_positions", &setPositions, "positions"_a, "threads"_a = 0, kSetPositionsDoc)
       .def("evaluate", &evaluate, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
            "threads"_a = 0, "dtype"_a = float64, kEvaluateDoc)
-      .def("frames", &frames, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0,
-           "dtype"_a = float64, kFramesDoc)
+      .def("frames", &frames, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0, "dtype"_a = float64,
+           kFramesDoc)
       .def("curvature", &curvature, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0,
            "dtype"_a = float64, kCurvatureDoc)
       .def("stencils", &stencils, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),

@@ -13,8 +13,7 @@ PYBIND11_MODULE(_limitsurf, module) {
       "A control mesh that has no meaning, or a request for a face without limit surface. The "
       "message names the face, vertex or row and the value.";
   py::register_exception<limitsurf::LocationError>(module, "LocationError", PyExc_ValueError)
-      .doc() =
-      "A location outside the surface's domain. The message names the row and the value.";
+      .doc() = "A location outside the surface's domain. The message names the row and the value.";
   limitsurf::python::bindControlMesh(module);
   limitsurf::python::bindLimitSurface(module);
 }
