@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "limitsurf/eigen/eigenbasis.h"
+#include "limitsurf/eigen/ring_cells.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "support/deep_subdivision.h"
 #include "support/meshes.h"
@@ -107,24 +108,9 @@ double factorisationError(const Eigenbasis& basis, int face) {
 
   a.topLeftCorner(n, n) = ringMatrix(ring).cast<double>();
   a.bottomRightCorner(outer.count(), outer.count()) = outer.s12();
-  const int faces = ring.faces;
-  const auto addRingColumn = [&](int x, int y, int point) {
-    a.block(n, point, outer.count(), 1) += outer.s11().col(tile_grid::cell(x, y));
-  };
-  addRingColumn(0, 0, 0);
-  addRingColumn(1, 0, ring.edge(face));
-  addRingColumn(1, 1, ring.face(face));
-  addRingColumn(0, 1, ring.nextEdge(face));
-  if (ring.interior() || face > 0) {
-    const int before = (face + faces - 1) % faces;
-    addRingColumn(0, -1, ring.edge(before));
-    addRingColumn(1, -1, ring.face(before));
-  }
-  if (ring.interior() || face < faces - 1) {
-    const int after = (face + 1) % faces;
-    addRingColumn(-1, 1, ring.face(after));
-    addRingColumn(-1, 0, ring.nextEdge(after));
-  }
+  forEachRingCell(ring, face, [&](int cell, int point) {
+    a.block(n, point, outer.count(), 1) += outer.s11().col(cell);
+  });
   return (a - t * j * t_inverse).cwiseAbs().maxCoeff();
 }
 

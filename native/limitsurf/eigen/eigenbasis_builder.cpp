@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "limitsurf/eigen/ring_cells.h"
+
 namespace limitsurf {
 
 using tile_grid::cell;
@@ -209,20 +211,8 @@ void Eigenbasis::Builder::buildRadial() {
 
 Eigenbasis::Builder::Cells Eigenbasis::Builder::ringCells(const std::vector<Real>& ring,
                                                           int face) const {
-  const int j = face, k = ring_.faces;
   Cells cells{};
-  cells[cell(0, 0)] = ring[0];
-  cells[cell(1, 0)] = ring[ring_.edge(j)];
-  cells[cell(1, 1)] = ring[ring_.face(j)];
-  cells[cell(0, 1)] = ring[ring_.edge(j + 1)];
-  if (j > 0) {
-    cells[cell(0, -1)] = ring[ring_.edge(j - 1)];
-    cells[cell(1, -1)] = ring[ring_.face(j - 1)];
-  }
-  if (j < k - 1) {
-    cells[cell(-1, 0)] = ring[ring_.edge(j + 2)];
-    cells[cell(-1, 1)] = ring[ring_.face(j + 1)];
-  }
+  forEachRingCell(ring_, face, [&](int cell, int point) { cells[cell] = ring[point]; });
   return cells;
 }
 

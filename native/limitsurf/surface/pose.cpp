@@ -3,12 +3,11 @@
 
 #include <algorithm>
 
+#include "limitsurf/eigen/ring_cells.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
 namespace {
-
-using tile_grid::cell;
 
 Padded padded(const Vector3& v) { return {v[0], v[1], v[2], 0}; }
 
@@ -20,24 +19,9 @@ const TileStep<double>& tileStep(Sides sides) {
 }
 
 void setRingCells(const Ring& ring, int face, const Points& points, Padded cells[]) {
-  const auto put = [&](int x, int y, int i) {
-    cells[cell(x, y)] = padded(points.row(i).transpose());
-  };
-  const int k = ring.faces;
-  put(0, 0, 0);
-  put(1, 0, ring.edge(face));
-  put(1, 1, ring.face(face));
-  put(0, 1, ring.nextEdge(face));
-  if (ring.interior() || face > 0) {
-    const int before = (face + k - 1) % k;
-    put(0, -1, ring.edge(before));
-    put(1, -1, ring.face(before));
-  }
-  if (ring.interior() || face < k - 1) {
-    const int after = (face + 1) % k;
-    put(-1, 1, ring.face(after));
-    put(-1, 0, ring.nextEdge(after));
-  }
+  forEachRingCell(ring, face, [&](int cell, int point) {
+    cells[cell] = padded(points.row(point).transpose());
+  });
 }
 
 }  // namespace
@@ -148,7 +132,7 @@ void Pose::setRingTile(int t, const std::vector<Points>& ring_levels) {
     std::fill_n(after, tile_grid::kCells, Padded::Zero());
     step.apply(before, after);
     setRingCells(basis.ring(), tile.face, ring_levels[tile.ring_steps + n], after);
-    after[cell(-1, -1)] = limit;
+    after[tile_grid::cell(-1, -1)] = limit;
     before = after;
   }
 }

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// From a ring's points to its modes' coefficients, and the transpose of that.
+#include "limitsurf/eigen/curve_mode.h"
+#include "limitsurf/eigen/eigenbasis.h"
+
+namespace limitsurf {
+
+void Eigenbasis::project(const Points& ring_points, Points& coefficients) const {
+  const int faces = ring_.faces, edges = ring_.edges();
+  coefficients.setZero(modeCount(), 3);
+  Points rest = ring_points;
+  if (ring_.interior()) {
+    const Vector3 v = ring_points.row(0);
+    Vector3 edge_mean = Vector3::Zero(), face_mean = Vector3::Zero();
+    for (int i = 0; i < faces; ++i) {
+      edge_mean += (ring_points.row(ring_.edge(i)).transpose() - v) / faces;
+      face_mean += (ring_points.row(ring_.face(i)).transpose() - v) / faces;
+    }
+    Vector3 constant = v;
+    for (int i = 0; i < 2; ++i) {
+      const Vector3 coefficient =
+          radial_inverse_(i, 0) * edge_mean + radial_inverse_(i, 1) * face_mean;
+      coefficients.row(1 + i) = coefficient;
+      constant -= radial_vertex_[i] * coefficient;
+    }
+    coefficients.row(0) = constant;
+    rest.rowwise() -= v.transpose();
+  } else {
+    const Vector3 v = ring_points.row(0), e_0 = ring_points.row(ring_.edge(0)),
+                  e_k = ring_points.row(ring_.edge(faces));
+    const auto curve = curveCoefficients<Vector3>(ring_.kind, v, e_0, e_k);
+    coefficients.row(0) = curve.constant;
+    coefficients.row(1) = curve.first;
+    coefficients.row(2) = curve.second;
+    for (int i = 0; i < ring_.size(); ++i) {
+      rest.row(i) -=
+          (curve.constant + curve_ring_[0][i] * curve.first + curve_ring_[1][i] * curve.second)
+              .transpose();
+    }
+  }
+
+  for (int m = 1; m <= spokeCount(); ++m) {
+    Vector3 edge_cos = Vector3::Zero(), edge_sin = edge_cos, face_cos = edge_cos,
+            face_sin = edge_cos;
+    long edge_angle = 0, face_angle = m;
+    const long step = 2L * m;
+    const auto advance = [&](long& angle) {
+      angle += step;
+      while (angle >= period_) {
+        angle -= period_;
+      }
+    };
+    while (face_angle >= period_) {
+      face_angle -= period_;
+    }
+    for (int i = 0; i < edges; ++i, advance(edge_angle)) {
+      const Vector3 e = rest.row(ring_.edge(i));
+      edge_cos += cos_[edge_angle] * e;
+      edge_sin += sin_[edge_angle] * e;
+    }
+    for (int j = 0; j < faces; ++j, advance(face_angle)) {
+      const Vector3 f = rest.row(ring_.face(j));
+      face_cos += cos_[face_angle] * f;
+      face_sin += sin_[face_angle] * f;
+    }
+    // 2 / faces normalises sines and cosines, 1 / faces those that alternate.
+    const bool alternating = ring_.interior() ? 2 * m == faces : m == faces;
+    const double norm = (alternating ? 1. : 2.) / faces;
+    for (const bool plus : {true, false}) {
+      const Spoke& spoke = spokes_[pairIndex(m, plus)];
+      const double e = norm * spoke.edge, f = norm * spoke.face / 4;
+      const Vector3 cosine = e * edge_cos + f * face_cos, sine = e * edge_sin + f * face_sin;
+      // On face 0 of a ring the parts are the cosine and the sine mode themselves.
+      Part part[2];
+      const int count = parts(m, plus, 0, part);
+      for (int i = 0; i < count; ++i) {
+        coefficients.row(part[i].mode) = part[i].cosine != 0 ? cosine : sine;
+      }
+    }
+  }
+}
+
+Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weights) const {
+  const int faces = ring_.faces, edges = ring_.edges();
+  Eigen::MatrixXd ring = Eigen::MatrixXd::Zero(ring_.size(), mode_weights.cols());
+  for (int m = 1; m <= spokeCount(); ++m) {
+    const bool alternating = ring_.interior() ? 2 * m == faces : m == faces;
+    const double norm = (alternating ? 1. : 2.) / faces;
+    for (const bool plus : {true, false}) {
+      const Spoke& spoke = spokes_[pairIndex(m, plus)];
+      Part part[2];
+      const int count = parts(m, plus, 0, part);
+      for (int p = 0; p < count; ++p) {
+        const std::vector<double>& wave = part[p].cosine != 0 ? cos_ : sin_;
+        const auto weight = norm * mode_weights.row(part[p].mode);
+        for (int i = 0; i < edges; ++i) {
+          ring.row(ring_.edge(i)) += spoke.edge * wave[2L * m * i % period_] * weight;
+        }
+        for (int j = 0; j < faces; ++j) {
+          ring.row(ring_.face(j)) += spoke.face / 4 * wave[m * (2L * j + 1) % period_] * weight;
+        }
+      }
+    }
+  }
+
+  if (ring_.interior()) {
+    // The spoke modes saw e - v and f - v, but the sum of v over each wave is 0.
+    const auto constant = mode_weights.row(0);
+    Eigen::MatrixXd means(2, mode_weights.cols());
+    for (int i = 0; i < 2; ++i) {
+      means.row(i).setZero();
+      for (int mode = 0; mode < 2; ++mode) {
+        means.row(i) += radial_inverse_(mode, i) *
+                        (mode_weights.row(1 + mode) - radial_vertex_[mode] * constant);
+      }
+    }
+    for (int i = 0; i < faces; ++i) {
+      ring.row(ring_.edge(i)) += means.row(0) / faces;
+      ring.row(ring_.face(i)) += means.row(1) / faces;
+    }
+    ring.row(0) += constant - means.row(0) - means.row(1);
+    return ring;
+  }
+
+  // The spoke modes saw what the curve modes left over.
+  Eigen::MatrixXd curve = mode_weights.topRows(3);
+  for (int i = 0; i < ring_.size(); ++i) {
+    curve.row(0) -= ring.row(i);
+    curve.row(1) -= curve_ring_[0][i] * ring.row(i);
+    curve.row(2) -= curve_ring_[1][i] * ring.row(i);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 unit = Vector3::Unit(i);
+    const auto c = curveCoefficients<double>(ring_.kind, unit[0], unit[1], unit[2]);
+    ring.row(i == 0 ? 0 : ring_.edge(i == 1 ? 0 : faces)) +=
+        c.constant * curve.row(0) + c.first * curve.row(1) + c.second * curve.row(2);
+  }
+  return ring;
+}
+
+}  // namespace limitsurf
