@@ -21,16 +21,18 @@ TEST_P(GoldenValues, AreReached) {
   if (golden.hasSharpness()) GTEST_SKIP() << "has sharpness, which is not supported yet";
   const LimitSurface surface = limitSurface(golden.cage);
   const CornerPoints corners(golden.cage);
-  const Evaluation evaluation = surface.evaluate(golden.at, Derivatives::second, true);
 
   Accuracy accuracy(golden.name, diagonal(golden.cage.positions));
   for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
     accuracy.addScale(golden.at[i], truthOf(golden, i));
   }
-  for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
-    Truth truth = truthOf(golden, i);
-    if (corners.insideSmoothCorner(golden.at[i])) truth.values[kNormal].setConstant(NAN);
-    accuracy.check(golden.at[i], rowOf(evaluation, i), truth);
+  for (Derivatives order : kOrders) {
+    const Evaluation evaluation = surface.evaluate(golden.at, order, order != Derivatives::none);
+    for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
+      Truth truth = upTo(order, truthOf(golden, i));
+      if (corners.insideSmoothCorner(golden.at[i])) truth.values[kNormal].setConstant(NAN);
+      accuracy.check(golden.at[i], rowOf(evaluation, i), truth);
+    }
   }
   std::printf("%s\n", accuracy.summary().c_str());
   for (int quantity = 0; quantity < kQuantities; ++quantity) {
@@ -45,26 +47,29 @@ TEST_P(GoldenValues, AreMissingWhereThereIsNoLimit) {
   if (golden.hasSharpness()) GTEST_SKIP() << "has sharpness, which is not supported yet";
   const LimitSurface surface = limitSurface(golden.cage);
   const CornerPoints corners(golden.cage);
-  const Evaluation evaluation = surface.evaluate(golden.at, Derivatives::second, true);
-
-  for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
-    const Truth got = rowOf(evaluation, i), truth = truthOf(golden, i);
-    for (int quantity = 0; quantity < kQuantities; ++quantity) {
-      const auto where = [&] {
-        return golden.name + ", " + describe(golden.at[i]) + ": " + kQuantityNames[quantity];
-      };
-      if (!truth[quantity].hasNaN()) {
-        EXPECT_TRUE(got[quantity].allFinite()) << where();
-        continue;
-      }
-      const CornerPoint* corner = corners.at(golden.at[i]);
-      ASSERT_TRUE(corner != nullptr && !corner->regular()) << where();
-      const bool first = quantity == kDu || quantity == kDv;
-      if (first && !corner->boundary && corner->faces <= 3) {
-        EXPECT_EQ(got[quantity], Vector3::Zero()) << where() << " at interior valence 2 or 3";
-      } else {
-        EXPECT_TRUE(got[quantity].array().isNaN().all())
-            << where() << " has no limit, but is " << got[quantity].transpose();
+  for (Derivatives order : {Derivatives::first, Derivatives::second}) {
+    const Evaluation evaluation = surface.evaluate(golden.at, order, true);
+    const int quantities[] = {kPosition, kDu, kDv, kNormal, kDuu, kDuv, kDvv};
+    for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
+      const Truth got = rowOf(evaluation, i), truth = truthOf(golden, i);
+      for (int quantity : quantities) {
+        if (order == Derivatives::first && quantity == kDuu) break;
+        const auto where = [&] {
+          return golden.name + ", " + describe(golden.at[i]) + ": " + kQuantityNames[quantity];
+        };
+        if (!truth[quantity].hasNaN()) {
+          EXPECT_TRUE(got[quantity].allFinite()) << where();
+          continue;
+        }
+        const CornerPoint* corner = corners.at(golden.at[i]);
+        ASSERT_TRUE(corner != nullptr && !corner->regular()) << where();
+        const bool first = quantity == kDu || quantity == kDv;
+        if (first && !corner->boundary && corner->faces <= 3) {
+          EXPECT_EQ(got[quantity], Vector3::Zero()) << where() << " at interior valence 2 or 3";
+        } else {
+          EXPECT_TRUE(got[quantity].array().isNaN().all())
+              << where() << " has no limit, but is " << got[quantity].transpose();
+        }
       }
     }
   }

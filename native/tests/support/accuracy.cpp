@@ -34,9 +34,28 @@ Truth truthOf(const Golden& golden, int sample) {
 }
 
 Truth rowOf(const Evaluation& evaluation, int row) {
-  return {{evaluation.position.row(row), evaluation.du.row(row), evaluation.dv.row(row),
-           evaluation.duu.row(row), evaluation.duv.row(row), evaluation.dvv.row(row),
-           evaluation.normal.row(row)}};
+  const Points* const quantities[kQuantities] = {
+      &evaluation.position, &evaluation.du,  &evaluation.dv,    &evaluation.duu,
+      &evaluation.duv,      &evaluation.dvv, &evaluation.normal};
+  Truth result;
+  for (int quantity = 0; quantity < kQuantities; ++quantity) {
+    if (quantities[quantity]->rows() > row) {
+      result.values[quantity] = quantities[quantity]->row(row);
+    } else {
+      result.values[quantity].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return result;
+}
+
+Truth upTo(Derivatives order, Truth truth) {
+  for (int quantity = kDu; quantity < kQuantities; ++quantity) {
+    const bool second = quantity >= kDuu && quantity <= kDvv;
+    if (order < (second ? Derivatives::second : Derivatives::first)) {
+      truth.values[quantity].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return truth;
 }
 
 double allowedError(int quantity) {

@@ -19,8 +19,14 @@ struct Truth {
 /// Sample `sample` of golden values.
 Truth truthOf(const Golden& golden, int sample);
 
-/// Row `row` of a batch, as the seven quantities. Asks for second derivatives and normals.
+/// Row `row` of a batch, as the seven quantities; NaN where the batch has none.
 Truth rowOf(const Evaluation& evaluation, int row);
+
+/// Without what an evaluation to that order does not give.
+Truth upTo(Derivatives order, Truth truth);
+
+/// The evaluator may take another way for each order: what is compared, is compared in all three.
+constexpr Derivatives kOrders[] = {Derivatives::none, Derivatives::first, Derivatives::second};
 
 /// The allowed error of each quantity (limit_surface.h).
 double allowedError(int quantity);

@@ -37,7 +37,10 @@ void compareWithSubdivision(const std::string& name, const Cage& cage,
       accuracy.addScale(location, deep.evaluate(location));
     }
   }
-  const Evaluation evaluation = surface.evaluate(at, Derivatives::second, true);
+  std::vector<Evaluation> evaluations;
+  for (Derivatives order : kOrders) {
+    evaluations.push_back(surface.evaluate(at, order, order != Derivatives::none));
+  }
   for (int i = 0; i < static_cast<int>(at.size()); ++i) {
     const CornerPoint* point = corners.at(at[i]);
     Truth truth;
@@ -51,7 +54,9 @@ void compareWithSubdivision(const std::string& name, const Cage& cage,
         truth.values[kNormal].setConstant(NAN);
       }
     }
-    accuracy.check(at[i], rowOf(evaluation, i), truth);
+    for (int order = 0; order < 3; ++order) {
+      accuracy.check(at[i], rowOf(evaluations[order], i), upTo(kOrders[order], truth));
+    }
   }
   all.merge(accuracy);
 }
