@@ -60,9 +60,10 @@ Values subdivideRing(const Ring& ring, const Values& points) {
         face_weight * (points.row(0) + points.row(ring.edge(j)) + points.row(ring.nextEdge(j)) +
                        points.row(ring.face(j)));
   }
+  const auto inner_mask = rules.edgeMask(false), boundary_mask = rules.edgeMask(true);
   for (int i = 0; i < ring.edges(); ++i) {
     const bool boundary = !ring.interior() && (i == 0 || i == ring.faces);
-    const auto mask = rules.edgeMask(boundary);
+    const auto& mask = boundary ? boundary_mask : inner_mask;
     auto row = next.row(ring.edge(i));
     row = mask.vertices[0] * points.row(0) + mask.vertices[1] * points.row(ring.edge(i));
     if (!boundary) {
