@@ -98,7 +98,7 @@ TEST(SlowIrregularMeshes, PolygonsAgreeWithSubdivision) {
 }
 
 TEST(SlowIrregularMeshes, MixturesAgreeWithSubdivision) {
-  compareMixtures(100, 10, {1, 2, 4, 8, 16, 28, 40});
+  compareMixtures(100, 5, {1, 2, 4, 8, 16, 28, 40});
 }
 
 }  // namespace
