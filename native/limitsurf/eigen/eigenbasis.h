@@ -80,7 +80,8 @@ class Eigenbasis {
   };
   Table table(int mode, int face) const;
 
-  /// The face's control points after `steps` >= 1 steps, times 2^(steps - 1) lest they underflow.
+  /// The face's control points after `steps` >= 1 steps less the constant mode, times 2^(steps - 1)
+  /// lest they underflow.
   ///
   /// `coefficients` and `outer_points` (in the order of the outer cells) are relative to the limit
   /// position. Serves positions and first derivatives: second ones, where modes of very different

@@ -111,7 +111,9 @@ void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& 
   };
 
   const Eigen::Array4d constant(coefficients(0, 0), coefficients(0, 1), coefficients(0, 2), 0);
-  add(table(0, face), std::ldexp(1., steps - 1) * constant, constant);
+  for (int i = 0; i < outer_count; ++i) {
+    left_over[i] -= constant;
+  }
   forEachTable(face, coefficients,
                [&](const Table& table, double lambda, const Eigen::Array4d& coefficient) {
                  const Eigen::Array4d before = power(lambda, ring_steps) * coefficient;

@@ -138,6 +138,9 @@ ControlMesh::ControlMesh(Points positions, const std::vector<std::int64_t>& face
   }
   checkPositions(positions_, static_cast<int>(positions_.rows()));
   checkSizes(face_sizes, face_vertices.size());
+  if (face_sizes.empty()) {
+    refuse("the mesh has no faces");
+  }
   if (options_.scheme == Scheme::bilinear) {
     refuse("scheme 'bilinear' is not supported yet");
   }

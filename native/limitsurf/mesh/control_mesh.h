@@ -51,6 +51,7 @@ struct MeshOptions {
 ///
 /// A ControlMesh is checked when it is made and immutable afterwards. What makes the mesh
 /// meaningless throws MeshError, naming the face or vertex and the value:
+///   - no faces at all;
 ///   - face_sizes that do not add up to the number of face_vertices, or a size below 3 or above
 ///     OpenSubdiv's limit of 65,535;
 ///   - a vertex index below 0 or past the last position;

@@ -19,62 +19,45 @@ constexpr double kWeight[kPoints] = {0.08566224618958525, 0.1803807865240693, 0.
 constexpr double kConverged = kAreaError / 10;
 constexpr int kMostHalvings = 10;
 
-/// Area of one tile in its own parameters.
-class TileArea {
+/// Integral of |du x dv| over [0, 1]^2 of a bicubic patch.
+class PatchArea {
  public:
-  TileArea(TileEvaluator& evaluator, TileRef tile) : evaluator_(evaluator) {
-    at_.tile = tile;
-    at_.turns[0] = at_.turns[1] = 0;
-    at_.in_split = false;
-  }
+  PatchArea(const Padded* window, int stride, bool x_low, bool x_high, bool y_low, bool y_high)
+      : window_(window),
+        stride_(stride),
+        x_low_(x_low),
+        x_high_(x_high),
+        y_low_(y_low),
+        y_high_(y_high) {}
 
-  double bspline() { return adaptive(0, 0, 1, kMostHalvings); }
-
-  /// Quarter after quarter towards the extraordinary vertex, until the rest, which shrinks by a
-  /// factor below 1/2 a step, is negligible.
-  double ring() {
-    double sum = 0;
-    for (int step = 1; step < 200; ++step) {
-      const double size = std::ldexp(1., -step);
-      double quarters = 0;
-      for (const auto& [a, b] : {std::pair{1, 0}, {1, 1}, {0, 1}}) {
-        quarters += adaptive(a * size, b * size, size, step < 3 ? kMostHalvings : 1);
-      }
-      sum += quarters;
-      if (!(quarters > kConverged * 0.01 * sum)) {
-        break;
-      }
-    }
-    return sum;
-  }
+  double operator()(int halvings = kMostHalvings) const { return adaptive(0, 0, 1, halvings); }
 
  private:
-  double square(double u, double v, double size) {
+  double square(double u0, double v0, double size) const {
     double sum = 0;
     for (int j = 0; j < kPoints; ++j) {
+      const CubicWeights v(v0 + size * kAt[j], y_low_, y_high_);
       for (int i = 0; i < kPoints; ++i) {
-        at_.u = u + size * kAt[i];
-        at_.v = v + size * kAt[j];
-        Jet jet;
-        evaluator_.evaluate<1>(at_, jet);
-        const Vector3 du = jet.patch.du.head<3>(), dv = jet.patch.dv.head<3>();
+        const CubicWeights u(u0 + size * kAt[i], x_low_, x_high_);
+        PatchValues<Padded> patch;
+        evaluateWindow<1>(window_, stride_, u, v, patch);
+        const Vector3 du = patch.du.head<3>(), dv = patch.dv.head<3>();
         sum += kWeight[i] * kWeight[j] * du.cross(dv).norm();
       }
     }
     return sum * size * size;
   }
 
-  double adaptive(double u, double v, double size, int halvings) {
+  double adaptive(double u, double v, double size, int halvings) const {
     const double whole = square(u, v, size);
     if (halvings == 0) {
       return whole;
     }
     const double half = size / 2;
-    double quarters[4];
+    double sum = 0;
     for (int q = 0; q < 4; ++q) {
-      quarters[q] = square(u + (q & 1) * half, v + (q >> 1) * half, half);
+      sum += square(u + (q & 1) * half, v + (q >> 1) * half, half);
     }
-    const double sum = std::accumulate(quarters, quarters + 4, 0.);
     if (std::abs(sum - whole) <= kConverged * sum) {
       return sum;
     }
@@ -85,9 +68,47 @@ class TileArea {
     return refined;
   }
 
-  TileEvaluator& evaluator_;
-  TileLocation at_;
+  const Padded* window_;
+  int stride_;
+  bool x_low_, x_high_, y_low_, y_high_;
 };
+
+double areaOf(const BSplineTile& tile, const Pose& pose) {
+  Padded window[16];
+  for (int i = 0; i < 16; ++i) {
+    window[i] = pose.point(tile.points[i]) - pose.point(tile.points[5]);
+  }
+  return PatchArea(window, 4, tile.x_low, tile.x_high, tile.y_low, tile.y_high)();
+}
+
+/// Quarter after quarter towards the extraordinary vertex, until the rest, which shrinks by a
+/// factor below 1/2 a step, is negligible. The deeper a quarter, the less its own precision
+/// matters.
+double areaOf(const TileTable& table, const Pose& pose, int index) {
+  const RingTile& tile = table.ring_tiles[index];
+  const Eigenbasis& basis = *table.rings[tile.ring].basis;
+  const bool left = tile.sides == Sides::left || tile.sides == Sides::both;
+  const bool right = tile.sides == Sides::right || tile.sides == Sides::both;
+  constexpr int kMostSteps = 200, kAdaptiveSteps = 6;
+  double sum = 0;
+  for (int steps = 1; steps <= kMostSteps; ++steps) {
+    Padded grid[tile_grid::kCells];
+    basis.controlGrid(tile.face, steps, tile.ring_steps, pose.ring(tile.ring).coefficients,
+                      pose.ringTile(index).outer, grid);
+    double quarters = 0;
+    for (const auto& [a, b] : {std::pair{1, 0}, {1, 1}, {0, 1}}) {
+      quarters +=
+          PatchArea(grid + b * tile_grid::kSize + a, tile_grid::kSize, right && a == 0, false,
+                    left && b == 0, false)(steps <= kAdaptiveSteps ? kMostHalvings : 1);
+    }
+    quarters = std::ldexp(quarters, 2 * (1 - steps));  // grids come magnified
+    sum += quarters;
+    if (!(quarters > kConverged / 100 * sum)) {
+      break;
+    }
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -96,16 +117,10 @@ double LimitSurface::area(int threads) const {
   const TileTable& table = data_->table;
   const std::size_t regular = table.bsplines.size();
   std::vector<double> areas(regular + table.ring_tiles.size());
-  parallelFor(areas.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
-    TileEvaluator evaluator(table, data_->pose);
+  parallelFor(areas.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (i < regular) {
-        areas[i] =
-            TileArea(evaluator, {TileRef::kBSpline, static_cast<std::uint32_t>(i)}).bspline();
-      } else {
-        areas[i] =
-            TileArea(evaluator, {TileRef::kRing, static_cast<std::uint32_t>(i - regular)}).ring();
-      }
+      areas[i] = i < regular ? areaOf(table.bsplines[i], data_->pose)
+                             : areaOf(table, data_->pose, static_cast<int>(i - regular));
     }
   });
   return std::accumulate(areas.begin(), areas.end(), 0.);

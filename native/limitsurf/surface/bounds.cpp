@@ -143,7 +143,7 @@ class RingTileBounds {
       basis_.controlGrid(tile_.face, steps, tile_.ring_steps, ring_.coefficients, pose_.outer,
                          grid_);
       for (Padded& point : grid_) {
-        point *= std::ldexp(1., 1 - steps);
+        point = std::ldexp(1., 1 - steps) * point + ring_.constant();
       }
       for (const auto& [a, b] : {std::pair{1, 0}, {1, 1}, {0, 1}}) {
         includeQuarter(a, b, tolerance, extremes);

@@ -27,13 +27,13 @@ Vector3 leastAlignedAxis(const Vector3& unit) {
 
 }  // namespace
 
+Vector3 unitDirection(const Vector3& v) {
+  const Vector3 unit = direction(v);
+  return unit.isZero(0) ? Vector3(Vector3::Constant(kNaN)) : unit;
+}
+
 Vector3 unitNormal(const Vector3& du, const Vector3& dv) {
-  const Vector3 cross = direction(du).cross(direction(dv));
-  const double length = cross.norm();
-  if (!(length > 0)) {
-    return Vector3::Constant(kNaN);
-  }
-  return cross / length;
+  return unitDirection(direction(du).cross(direction(dv)));
 }
 
 Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& normal) {

@@ -8,6 +8,9 @@
 
 namespace limitsurf {
 
+/// v over its length; NaN where that is 0 or not finite. Neither overflows nor underflows.
+Vector3 unitDirection(const Vector3& v);
+
 /// Unit vector along du x dv; NaN where that vanishes or is NaN. Neither overflows nor underflows.
 Vector3 unitNormal(const Vector3& du, const Vector3& dv);
 

@@ -102,13 +102,13 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
     to[1] = value[1];
     to[2] = value[2];
   };
-  const auto putNormal = [&](Eigen::Index row, const TileLocation& place, const Jet& jet) {
+  const auto putNormal = [&](Eigen::Index row, const TileLocation& place, const Jet& jet,
+                             TileEvaluator& evaluator) {
     Vector3 normal;
     if (!place.atVertex()) {
-      normal = unitNormal(jet.patch.du.head<3>(), jet.patch.dv.head<3>());
+      normal = evaluator.normalDirection(place, jet);
     } else if (vertexHasNormal(data_->ringAt(place))) {
-      const Vector3 towards = data_->approachTo(place).normal;
-      normal = towards / towards.norm();
+      normal = unitDirection(data_->approachTo(place).normal);
     } else {
       normal.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
@@ -130,7 +130,7 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
                      put(out.du, row, jet.patch.du);
                      put(out.dv, row, jet.patch.dv);
                      if (normals) {
-                       putNormal(row, place, jet);
+                       putNormal(row, place, jet, evaluator);
                      }
                    }
                    if (derivatives == Derivatives::second) {
@@ -159,7 +159,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> LimitSurface::frames(S
                      Jet jet;
                      evaluator.evaluate<1>(place, jet);
                      const Vector3 du = jet.patch.du.head<3>(), dv = jet.patch.dv.head<3>();
-                     const Vector3 normal = unitNormal(du, dv);
+                     const Vector3 normal = evaluator.normalDirection(place, jet);
                      rotation = frame(du, dv, normal.allFinite() ? normal : Vector3::Zero());
                    }
                    out.row(row) = Eigen::Map<const Eigen::Matrix<double, 1, 9>>(rotation.data());

@@ -31,6 +31,11 @@ class Pose {
   struct RingPose {
     Padded limit;         ///< the limit position of the extraordinary vertex
     Points coefficients;  ///< of the modes, relative to the limit
+
+    /// What rounding left of the constant mode.
+    Padded constant() const {
+      return {coefficients(0, 0), coefficients(0, 1), coefficients(0, 2), 0};
+    }
   };
 
   struct RingTilePose {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/surface/tile_evaluator.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
@@ -110,7 +113,8 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
                         pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer, grid);
       evaluateWindow<Order>(grid + window.b * tile_grid::kSize + window.a, tile_grid::kSize,
                             window.u, window.v, patch);
-      patch.value *= std::ldexp(1., 1 - quarter.steps);
+      patch.value =
+          std::ldexp(1., 1 - quarter.steps) * patch.value + pose_.ring(tile.ring).constant();
       patch.du *= 2;
       patch.dv *= 2;
     } else {
@@ -145,6 +149,58 @@ void TileEvaluator::evaluateByModes(const RingTile& tile, int index, int steps,
       *values[d] += outer_weights_(d, i) * pose_.ringTile(index).outer[i];
     }
   }
+}
+
+Vector3 TileEvaluator::normalDirection(const TileLocation& at, const Jet& jet) {
+  const auto direct = [&]() -> Vector3 {
+    return unitNormal(jet.patch.du.head<3>(), jet.patch.dv.head<3>());
+  };
+  if (at.tile.kind != TileRef::kRing) {
+    return direct();
+  }
+  const int index = static_cast<int>(at.tile.index);
+  const RingTile& tile = table_.ring_tiles[index];
+  const Quarter quarter(at.u, at.v);
+  const Points& modes = pose_.ring(tile.ring).coefficients;
+  if (quarter.steps <= kStepsToParallel || modes.rows() > kMostPairedModes) {
+    return direct();
+  }
+  table_.rings[tile.ring].basis->weights(tile.face, quarter.steps, tile.ring_steps,
+                                         gridWindow(quarter, tile.sides, 1), mode_weights_,
+                                         outer_weights_);
+  // du x dv = sum over pairs of (a_i b_j - a_j b_i) p_i x p_j.
+  struct Share {
+    double a, b;
+    Vector3 p;
+  };
+  std::vector<Share> shares;
+  double largest = 0;
+  const auto add = [&](double a, double b, const Vector3& p) {
+    shares.push_back({a, b, p});
+    largest = std::max({largest, std::abs(a), std::abs(b)});
+  };
+  for (Eigen::Index i = 1; i < modes.rows(); ++i) {
+    add(mode_weights_(1, i), mode_weights_(2, i), modes.row(i).transpose());
+  }
+  for (Eigen::Index i = 0; i < outer_weights_.cols(); ++i) {
+    add(outer_weights_(1, i), outer_weights_(2, i),
+        pose_.ringTile(index).outer[i].head<3>().matrix());
+  }
+  if (!(largest > 0)) {
+    return direct();
+  }
+  for (Share& share : shares) {
+    share.a /= largest;
+    share.b /= largest;
+  }
+  Vector3 normal = Vector3::Zero();
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    for (std::size_t j = i + 1; j < shares.size(); ++j) {
+      const Share &s = shares[i], &t = shares[j];
+      normal += (s.a * t.b - t.a * s.b) * s.p.cross(t.p);
+    }
+  }
+  return unitDirection(normal);
 }
 
 template void TileEvaluator::evaluate<0>(const TileLocation&, Jet&);

@@ -30,7 +30,19 @@ class TileEvaluator {
   template <int Order>
   void evaluate(const TileLocation& at, Jet& jet);
 
+  /// The unit normal where the jet was evaluated, NaN where du x dv vanishes. Not to be asked at an
+  /// extraordinary vertex.
+  ///
+  /// Deep in a ring tile the leading mode may bring du and dv so close to parallel that nothing is
+  /// left of their product; there the products of different modes are added up instead.
+  Vector3 normalDirection(const TileLocation& at, const Jet& jet);
+
  private:
+  /// Up to here du x dv itself keeps kNormalError: du and dv differ by 2^-steps at least.
+  static constexpr int kStepsToParallel = 8;
+  /// Pairs of modes cost their number squared.
+  static constexpr int kMostPairedModes = 256;
+
   template <int Order>
   void evaluateBSpline(const TileLocation& at, Jet& jet);
   template <int Order>

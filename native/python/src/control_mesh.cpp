@@ -224,6 +224,9 @@ void bindControlMesh(py::module_& module) {
            })
       .def(py::pickle([](const ControlMesh& mesh) { return state(mesh); },
                       [](const py::tuple& s) {
+                        if (s.size() != 10) {
+                          throw py::value_error("no state of a ControlMesh");
+                        }
                         return makeMesh(
                             s[0], s[1], s[2],
                             meshOptions(s[3], s[4], py::cast<std::string>(s[5]),

@@ -334,8 +334,11 @@ void bindLimitSurface(py::module_& module) {
             return py::make_tuple(py::cast(s.mesh), pointArray(currentPositions(s)));
           },
           [](const py::tuple& state) {
+            if (state.size() != 2 || !py::isinstance<ControlMesh>(state[0])) {
+              throw py::value_error("no state of a LimitSurface");
+            }
             auto shared = makeSurface(py::cast<std::shared_ptr<ControlMesh>>(state[0]));
-            shared->surface.setPositions(pointsOf(py::cast<Doubles>(state[1])));
+            setPositions(*shared, state[1], 0);
             return shared;
           }));
 }
