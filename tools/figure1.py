@@ -225,6 +225,5 @@ def add_light(name: str, location: tuple[float, float, float], energy: float, si
 
 if __name__ == "__main__":
     main()
-    # Blender's own clean-up at exit may take longer than all of the above.
-    sys.stdout.flush()
-    os._exit(0)
+    # With classes of an add-on still registered, Blender as a module never ends.
+    limit_surface.unregister()
