@@ -18,7 +18,7 @@ using TopologyPointer = std::unique_ptr<OpenSubdiv::Far::TopologyRefiner>;
 /// OpenSubdiv's topology of a cage, boundaries and corners smooth.
 TopologyPointer farTopology(const Cage& cage);
 
-/// Approximation levels of Bfr: its default, and its highest.
+/// Approximation levels of Bfr: its default, and one that comes near our accuracy.
 constexpr int kBfrLevels[] = {2, 10};
 
 /// OpenSubdiv's Bfr in double precision, a surface with its patch points kept for every face.
