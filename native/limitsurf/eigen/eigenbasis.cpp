@@ -22,7 +22,7 @@ std::shared_ptr<const Eigenbasis> Eigenbasis::get(const Ring& ring) {
   return basis;
 }
 
-Eigenbasis::Eigenbasis(const Ring& ring) : ring_(ring) { Builder(*this).build(); }
+Eigenbasis::Eigenbasis(const Ring& ring) : ring_(ring), step_(ring) { Builder(*this).build(); }
 
 Sides Eigenbasis::sides(int face) const {
   if (ring_.interior()) {

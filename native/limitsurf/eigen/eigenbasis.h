@@ -42,6 +42,7 @@ class Eigenbasis {
   explicit Eigenbasis(const Ring& ring);
 
   const Ring& ring() const { return ring_; }
+  const RingStep<double>& step() const { return step_; }
   int modeCount() const { return ring_.size(); }
   double eigenvalue(int mode) const { return lambda_[mode]; }
 
@@ -138,6 +139,7 @@ class Eigenbasis {
   void forEachTable(int face, const Points& coefficients, const Body& body) const;
 
   Ring ring_;
+  RingStep<double> step_;
   long period_;  // of the trigonometric tables
   std::vector<double> cos_, sin_;
   std::vector<double> lambda_;

@@ -34,7 +34,8 @@ OuterModes<Real>::OuterModes(Sides sides) : sides_(sides), step_(sides) {
     if (target == cells_.end()) {
       continue;
     }
-    for (const auto& term : row.terms) {
+    for (std::size_t i = row.first; i < row.end; ++i) {
+      const auto& term = step_.term(i);
       const auto source = std::find(cells_.begin(), cells_.end(), term.cell);
       if (source == cells_.end()) {
         s11_(target - cells_.begin(), term.cell) = term.weight;

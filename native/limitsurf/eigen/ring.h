@@ -46,39 +46,59 @@ struct Ring {
   }
 };
 
-/// One subdivision of a ring's points: S in the paper, as an operator that costs O(faces).
-/// `Values` is a matrix with one row per point; rows may be any width.
-template <typename Values>
-Values subdivideRing(const Ring& ring, const Values& points) {
-  using Real = typename Values::Scalar;
-  const SubdivisionRules<Real> rules;
-  Values next = Values::Zero(points.rows(), points.cols());
+/// One subdivision of a ring's points: S in the paper, as an operator that costs O(faces). Holds
+/// the masks of one kind of ring.
+template <typename Real>
+class RingStep {
+ public:
+  explicit RingStep(const Ring& ring)
+      : ring_(ring),
+        face_(SubdivisionRules<Real>().faceMask(4)),
+        edge_(SubdivisionRules<Real>().edgeMask(false)),
+        boundary_(SubdivisionRules<Real>().edgeMask(true)),
+        vertex_(SubdivisionRules<Real>().vertexMask(ring.rule(), ring.edges())) {}
 
-  const Real face_weight = rules.faceMask(4);
-  for (int j = 0; j < ring.faces; ++j) {
-    next.row(ring.face(j)) =
-        face_weight * (points.row(0) + points.row(ring.edge(j)) + points.row(ring.nextEdge(j)) +
-                       points.row(ring.face(j)));
-  }
-  const auto inner_mask = rules.edgeMask(false), boundary_mask = rules.edgeMask(true);
-  for (int i = 0; i < ring.edges(); ++i) {
-    const bool boundary = !ring.interior() && (i == 0 || i == ring.faces);
-    const auto& mask = boundary ? boundary_mask : inner_mask;
-    auto row = next.row(ring.edge(i));
-    row = mask.vertices[0] * points.row(0) + mask.vertices[1] * points.row(ring.edge(i));
-    if (!boundary) {
-      const int before = i == 0 ? ring.faces - 1 : i - 1;
-      row += mask.faces[0] * next.row(ring.face(before)) + mask.faces[1] * next.row(ring.face(i));
+  /// `at(i)` reads point i, `next(i)` is assigned to; both are numbers or vectors.
+  template <typename At, typename Next>
+  void apply(const At& at, const Next& next) const {
+    for (int j = 0; j < ring_.faces; ++j) {
+      next(ring_.face(j)) =
+          face_ * (at(0) + at(ring_.edge(j)) + at(ring_.nextEdge(j)) + at(ring_.face(j)));
+    }
+    for (int i = 0; i < ring_.edges(); ++i) {
+      const int e = ring_.edge(i);
+      if (!ring_.interior() && (i == 0 || i == ring_.faces)) {
+        next(e) = boundary_.vertices[0] * at(0) + boundary_.vertices[1] * at(e);
+      } else {
+        const int before = i == 0 ? ring_.faces - 1 : i - 1;
+        next(e) = edge_.vertices[0] * at(0) + edge_.vertices[1] * at(e) +
+                  edge_.faces[0] * next(ring_.face(before)) + edge_.faces[1] * next(ring_.face(i));
+      }
+    }
+    next(0) = vertex_.vertex * at(0);
+    for (std::size_t i = 0; i < vertex_.edges.size(); ++i) {
+      if (vertex_.edges[i] != 0) {  // a boundary's inner spokes
+        next(0) += vertex_.edges[i] * at(ring_.edge(static_cast<int>(i)));
+      }
+    }
+    for (std::size_t j = 0; j < vertex_.faces.size(); ++j) {
+      next(0) += vertex_.faces[j] * next(ring_.face(static_cast<int>(j)));
     }
   }
-  const auto mask = rules.vertexMask(ring.rule(), ring.edges());
-  next.row(0) = mask.vertex * points.row(0);
-  for (std::size_t i = 0; i < mask.edges.size(); ++i) {
-    next.row(0) += mask.edges[i] * points.row(ring.edge(static_cast<int>(i)));
-  }
-  for (std::size_t j = 0; j < mask.faces.size(); ++j) {
-    next.row(0) += mask.faces[j] * next.row(ring.face(static_cast<int>(j)));
-  }
+
+ private:
+  Ring ring_;
+  Real face_;
+  typename SubdivisionRules<Real>::EdgeMask edge_, boundary_;
+  typename SubdivisionRules<Real>::VertexMask vertex_;
+};
+
+/// The same on a matrix with one row per point.
+template <typename Values>
+Values subdivideRing(const Ring& ring, const Values& points) {
+  Values next(points.rows(), points.cols());
+  RingStep<typename Values::Scalar>(ring).apply([&](int i) { return points.row(i); },
+                                                [&](int i) { return next.row(i); });
   return next;
 }
 

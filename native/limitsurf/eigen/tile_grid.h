@@ -62,7 +62,9 @@ class TileStep {
     using namespace tile_grid;
     for (int c = 0; c < kCells; ++c) {
       if (!isRingCell(c) && exists(sides, c)) {
-        rows_.push_back({c, row(xOf(c), yOf(c))});
+        const std::vector<Term> terms = row(xOf(c), yOf(c));
+        rows_.push_back({c, terms_.size(), terms_.size() + terms.size()});
+        terms_.insert(terms_.end(), terms.begin(), terms.end());
       }
     }
   }
@@ -71,20 +73,22 @@ class TileStep {
     int cell;
     Real weight;
   };
+  /// A cell after the step, and its range of terms.
   struct Row {
     int cell;
-    std::vector<Term> terms;
+    std::size_t first, end;
   };
   const std::vector<Row>& rows() const { return rows_; }
+  const Term& term(std::size_t i) const { return terms_[i]; }
 
   /// Fills the non-ring cells of `next` from `cells`. Both are indexable by cell; their elements
   /// are scalars or vectors.
   template <typename Cells, typename NextCells>
   void apply(const Cells& cells, NextCells& next) const {
     for (const Row& r : rows_) {
-      next[r.cell] = r.terms[0].weight * cells[r.terms[0].cell];
-      for (std::size_t i = 1; i < r.terms.size(); ++i) {
-        next[r.cell] += r.terms[i].weight * cells[r.terms[i].cell];
+      next[r.cell] = terms_[r.first].weight * cells[terms_[r.first].cell];
+      for (std::size_t i = r.first + 1; i < r.end; ++i) {
+        next[r.cell] += terms_[i].weight * cells[terms_[i].cell];
       }
     }
   }
@@ -156,6 +160,7 @@ class TileStep {
   Sides sides_;
   SubdivisionRules<Real> rules_;
   std::vector<Row> rows_;
+  std::vector<Term> terms_;
 };
 
 }  // namespace limitsurf

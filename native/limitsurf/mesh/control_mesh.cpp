@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <sstream>
 
 #include "limitsurf/mesh/limits.h"
@@ -107,11 +109,38 @@ void checkHoles(const ControlMesh& mesh, const std::vector<std::int64_t>& holes)
   }
 }
 
+/// Counts edges only where there are enough faces to make it worth while: a vertex has at most
+/// twice as many edges as faces.
 void checkValences(const ControlMesh& mesh) {
   std::vector<int> faces_at(mesh.vertexCount(), 0);
   for (const int vertex : mesh.faceVertices()) {
-    if (++faces_at[vertex] > kMaxValence) {
-      refuse("vertex ", vertex, " has more than ", kMaxValence, " faces");
+    ++faces_at[vertex];
+  }
+  std::map<int, std::set<int>> neighbours;
+  for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
+    if (faces_at[vertex] > kMaxValence / 2) {
+      neighbours[vertex];
+    }
+  }
+  if (neighbours.empty()) {
+    return;
+  }
+  for (int f = 0; f < mesh.faceCount(); ++f) {
+    const Span<int> vertices = mesh.faceVertices(f);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const int a = vertices[i], b = vertices[(i + 1) % vertices.size()];
+      for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
+        const auto known = neighbours.find(from);
+        if (known != neighbours.end()) {
+          known->second.insert(to);
+        }
+      }
+    }
+  }
+  for (const auto& [vertex, others] : neighbours) {
+    const std::size_t count = std::max(others.size(), static_cast<std::size_t>(faces_at[vertex]));
+    if (count > static_cast<std::size_t>(kMaxValence)) {
+      refuse("vertex ", vertex, " has ", count, " edges; the limit is ", kMaxValence);
     }
   }
 }

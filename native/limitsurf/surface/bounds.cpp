@@ -139,6 +139,9 @@ class RingTileBounds {
 
   void include(double tolerance, Extremes& extremes) {
     extremes.include(ring_.limit);
+    if (restIsWithin(0, tolerance, extremes)) {
+      return;
+    }
     for (int steps = 1; steps < kMostSteps; ++steps) {
       basis_.controlGrid(tile_.face, steps, tile_.ring_steps, ring_.coefficients, pose_.outer,
                          grid_);
@@ -178,18 +181,20 @@ class RingTileBounds {
   /// What a mode can contribute, at most, to a coordinate of a control point after n steps:
   /// size (1 + n chained) lambda^n.
   struct Share {
-    double lambda, size, chained;
+    double lambda;
+    Vector3 size;
+    double chained;
   };
 
   void boundShares() {
     const OuterModes<double>& outer = basis_.outerModes(tile_.face);
-    double outer_size = 0;
+    Vector3 outer_size = Vector3::Zero();
     for (int i = 0; i < outer.count(); ++i) {
-      outer_size += pose_.outer[i].abs().maxCoeff();
+      outer_size += pose_.outer[i].abs().head<3>().matrix();
     }
     for (int mode = 0; mode < basis_.modeCount(); ++mode) {
       const Eigenbasis::Table table = basis_.table(mode, tile_.face);
-      const double coefficient = ring_.coefficients.row(mode).cwiseAbs().maxCoeff();
+      const Vector3 coefficient = ring_.coefficients.row(mode).cwiseAbs().transpose();
       double largest = 0;
       for (const double value : table.grid) {
         largest = std::max(largest, std::abs(value));
@@ -215,13 +220,13 @@ class RingTileBounds {
 
   /// Whether all quarters deeper than `steps` stay within what is known.
   bool restIsWithin(int steps, double tolerance, const Extremes& extremes) const {
-    double reach = 0;
+    Vector3 reach = Vector3::Zero();
     for (const Share& share : shares_) {
       reach += share.size * (1 + steps * share.chained) * std::pow(share.lambda, steps);
     }
     for (int axis = 0; axis < 3; ++axis) {
-      if (ring_.limit[axis] + reach > extremes.most[axis] + tolerance ||
-          -ring_.limit[axis] + reach > extremes.most[3 + axis] + tolerance) {
+      if (ring_.limit[axis] + reach[axis] > extremes.most[axis] + tolerance ||
+          -ring_.limit[axis] + reach[axis] > extremes.most[3 + axis] + tolerance) {
         return false;
       }
     }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <cstring>
 #include <utility>
 
 #include "limitsurf/eigen/bspline_window.h"
@@ -10,6 +12,14 @@ namespace limitsurf {
 
 /// A point or vector padded to four doubles, so that compilers use whole registers.
 using Padded = Eigen::Array4d;
+
+/// 2^exponent, -1022 <= exponent <= 1023. (std::ldexp takes as long as half an evaluation.)
+inline double powerOfTwo(int exponent) {
+  const std::uint64_t bits = static_cast<std::uint64_t>(exponent + 1023) << 52;
+  double result;
+  std::memcpy(&result, &bits, sizeof result);
+  return result;
+}
 
 /// Position and derivatives at one location.
 ///

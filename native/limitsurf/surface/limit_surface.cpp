@@ -135,6 +135,9 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
                    }
                    if (derivatives == Derivatives::second) {
                      const auto whole = [&](const Padded& half) -> Padded {
+                       if (jet.exponent <= 1000) {
+                         return half * powerOfTwo(jet.exponent);
+                       }
                        return half.unaryExpr([&](double x) { return std::ldexp(x, jet.exponent); });
                      };
                      put(out.duu, row, whole(jet.patch.duu));

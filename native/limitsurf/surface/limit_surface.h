@@ -26,7 +26,8 @@ constexpr double kSecondDerivativeError = 1e-11;
 /// dv are antiparallel.
 constexpr double kNormalError = 1e-11;
 
-/// Area: relative to the area.
+/// Area: relative to the area. Not where du x dv vanishes along a curve, as on a mesh folded over
+/// in a plane: there the integrand has a kink and 1e-7 is reached.
 constexpr double kAreaError = 1e-9;
 
 enum class Derivatives { none = 0, first = 1, second = 2 };
@@ -145,7 +146,7 @@ class LimitSurface {
   /// or above 12.
   Tessellation tessellate(int levels, int threads = 0) const;
 
-  /// Area of the limit surface, relative error below kAreaError.
+  /// Area of the limit surface; relative error: see kAreaError.
   double area(int threads = 0) const;
 
   /// The tightest axis-aligned box around the limit surface (rows: minimum, maximum), to

@@ -18,10 +18,8 @@ const TileStep<double>& tileStep(Sides sides) {
   return steps[static_cast<int>(sides)];
 }
 
-void setRingCells(const Ring& ring, int face, const Points& points, Padded cells[]) {
-  forEachRingCell(ring, face, [&](int cell, int point) {
-    cells[cell] = padded(points.row(point).transpose());
-  });
+void setRingCells(const Ring& ring, int face, const Padded points[], Padded cells[]) {
+  forEachRingCell(ring, face, [&](int cell, int point) { cells[cell] = points[point]; });
 }
 
 }  // namespace
@@ -47,6 +45,9 @@ Pose::Pose(const TileTable& table)
     }
   }
   grids_.resize(grids);
+  for (Grid& grid : grids_) {  // cells that do not exist stay 0
+    std::fill_n(grid.points, tile_grid::kCells, Padded::Zero());
+  }
   std::size_t next = 0;
   for (std::size_t t = 0; t < ring_tiles_.size(); ++t) {
     const RingTile& tile = table.ring_tiles[t];
@@ -98,28 +99,39 @@ void Pose::setRing(int ring_index) {
   // What rounding left between the limit as stored and the constant mode.
   pose.coefficients.row(0) = ((vertex - pose.limit) + padded(to_limit)).head<3>().transpose();
 
-  points.rowwise() -= to_limit.transpose();
-  std::vector<Points> levels = {std::move(points)};
+  // The ring's points after 0, 1, 2, ... steps, one ring after the other.
+  std::vector<Padded> levels(ring.points.size());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    levels[i] = padded(points.row(static_cast<Eigen::Index>(i)).transpose() - to_limit);
+  }
   for (int t = first_tile_[ring_index]; t < first_tile_[ring_index + 1]; ++t) {
     const RingTile& tile = table_->ring_tiles[t];
-    while (static_cast<int>(levels.size()) <= tile.ring_steps + gridSteps(tile)) {
-      levels.push_back(subdivideRing(ring.basis->ring(), levels.back()));
+    const int steps = tile.ring_steps + gridSteps(tile);
+    while (levels.size() <= ring.points.size() * static_cast<std::size_t>(steps)) {
+      const std::size_t size = levels.size();
+      levels.resize(size + ring.points.size());
+      const Padded* before = &levels[size - ring.points.size()];
+      Padded* after = &levels[size];
+      ring.basis->step().apply([=](int i) -> const Padded& { return before[i]; },
+                               [=](int i) -> Padded& { return after[i]; });
     }
     setRingTile(t, levels);
   }
 }
 
-void Pose::setRingTile(int t, const std::vector<Points>& ring_levels) {
+void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
   const RingTile& tile = table_->ring_tiles[t];
   const Eigenbasis& basis = *table_->rings[tile.ring].basis;
   const Padded& limit = rings_[tile.ring].limit;
+  const std::size_t ring_size = table_->rings[tile.ring].points.size();
+  const Padded* ring = &ring_levels[ring_size * static_cast<std::size_t>(tile.ring_steps)];
   RingTilePose& pose = ring_tiles_[t];
 
   Grid start;
   for (Padded& point : start.points) {
     point.setZero();
   }
-  setRingCells(basis.ring(), tile.face, ring_levels[tile.ring_steps], start.points);
+  setRingCells(basis.ring(), tile.face, ring, start.points);
   const std::vector<int>& cells = basis.outerModes(tile.face).cells();
   for (std::size_t i = 0; i < cells.size(); ++i) {
     pose.outer[i] = points_[tile.outer[i]] - limit;
@@ -129,9 +141,9 @@ void Pose::setRingTile(int t, const std::vector<Points>& ring_levels) {
   const Padded* before = start.points;
   for (int n = 1; n <= gridSteps(tile); ++n) {
     Padded* after = grids_[pose.first_grid + n - 1].points;
-    std::fill_n(after, tile_grid::kCells, Padded::Zero());
+    ring += ring_size;
     step.apply(before, after);
-    setRingCells(basis.ring(), tile.face, ring_levels[tile.ring_steps + n], after);
+    setRingCells(basis.ring(), tile.face, ring, after);
     after[tile_grid::cell(-1, -1)] = limit;
     before = after;
   }

@@ -58,7 +58,7 @@ class Pose {
 
  private:
   void setRing(int ring);
-  void setRingTile(int tile, const std::vector<Points>& ring_levels);
+  void setRingTile(int tile, const std::vector<Padded>& ring_levels);
 
   const TileTable* table_;
   int grid_steps_[2];

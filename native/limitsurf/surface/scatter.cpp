@@ -16,6 +16,9 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+/// More than any machine's memory holds today.
+constexpr std::size_t kMostLocations = std::size_t{1} << 40;
+
 /// Uniform in [0, 1).
 double uniform(std::uint64_t bits) { return std::ldexp(static_cast<double>(bits >> 11), -53); }
 
@@ -35,6 +38,11 @@ std::vector<Location> LimitSurface::scatterJittered(int per_side, std::uint64_t 
     }
   }
   const std::size_t side = static_cast<std::size_t>(per_side), per_face = side * side;
+  if (!faces.empty() && per_face > kMostLocations / faces.size()) {
+    throw std::invalid_argument("per_side is " + std::to_string(per_side) + " on " +
+                                std::to_string(faces.size()) + " faces; the limit is " +
+                                std::to_string(kMostLocations) + " locations");
+  }
   std::vector<Location> result(faces.size() * per_face);
   const std::uint64_t key = mixed(seed);
   parallelFor(result.size(), 8192, threads, [&](std::size_t begin, std::size_t end) {

@@ -151,7 +151,7 @@ Stencils LimitSurface::stencils(Span<Location> at, bool first_derivatives, int t
     Weights weights;
   };
   std::vector<std::vector<Entry>> rows(at.size());
-  parallelFor(at.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
+  parallelFor(at.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
     const TileEvaluator evaluator(data_->table, data_->pose);
     Row row(data_->table);
     for (std::size_t i = begin; i < end; ++i) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -125,6 +126,13 @@ Tessellation LimitSurface::tessellate(int levels, int threads) const {
                                 (only_quads ? "0" : "1") + " to " + std::to_string(kMostLevels));
   }
   const int side = 1 << levels;
+  const std::size_t most_points =
+      (mesh.faceVertices().size() / 3 + 1) * (side + std::size_t{1}) * (side + std::size_t{1});
+  if (most_points > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    throw std::invalid_argument("levels is " + std::to_string(levels) + " on " +
+                                std::to_string(mesh.faceCount()) + " faces: up to " +
+                                std::to_string(most_points) + " points are too many");
+  }
   PointNumbers numbers(mesh, data_->ptex, side);
   Tessellation result;
   const auto addQuads = [&](int n, const auto& point) {

@@ -12,11 +12,22 @@
 namespace limitsurf {
 
 Quarter::Quarter(double u_, double v_) {
-  int exponent;
-  std::frexp(std::max(u_, v_), &exponent);  // max(u, v) in [2^(exponent - 1), 2^exponent)
-  steps = std::max(1, 1 - exponent);
-  u = std::ldexp(u_, steps);
-  v = std::ldexp(v_, steps);
+  const double larger = std::max(u_, v_);
+  if (larger >= 0x1p-1000) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &larger, sizeof bits);
+    steps =
+        std::max(1, 1023 - static_cast<int>(bits >> 52));  // larger in [2^-steps, 2^(1 - steps))
+    const double scale = powerOfTwo(steps);
+    u = u_ * scale;
+    v = v_ * scale;
+  } else {
+    int exponent;
+    std::frexp(larger, &exponent);  // larger in [2^(exponent - 1), 2^exponent)
+    steps = 1 - exponent;
+    u = std::ldexp(u_, steps);
+    v = std::ldexp(v_, steps);
+  }
   a = u >= 1 ? 1 : 0;
   b = v >= 1 ? 1 : 0;
   u -= a;
@@ -128,7 +139,7 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   evaluateWindow<Order>(grid.points + window.b * tile_grid::kSize + window.a, tile_grid::kSize,
                         window.u, window.v, patch);
   if (Order > 0) {
-    const double scale = std::ldexp(1., quarter.steps);
+    const double scale = powerOfTwo(quarter.steps);
     patch.du *= scale;
     patch.dv *= scale;
     jet.exponent = 2 * quarter.steps;
