@@ -148,6 +148,7 @@ Tessellation LimitSurface::tessellate(int levels, int threads) const {
     if (data_->refused.count(face)) {
       continue;
     }
+    InterruptionPoint::pass();
     numbers.startFace(face);
     if (mesh.faceSize(face) == 4) {
       addQuads(side, [&](int i, int j) { return numbers.quadPoint(i, j); });

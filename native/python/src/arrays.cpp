@@ -25,24 +25,39 @@ std::string shapeText(const py::array& array) {
   return py::cast<std::string>(py::str(py::tuple(array.attr("shape"))));
 }
 
-Integers integers(const py::handle& object, const char* name) {
+Integers integers(const py::handle& object, const char* name, RaiseText raise) {
   const py::array array = viewed(object, name);
   const char kind = array.dtype().kind();
-  const bool empty_list = array.size() == 0 && kind == 'f';  // numpy's type for []
-  if (kind == 'O') {
-    // Integers beyond 64 bits: no index is that large, so let them be as wrong as they are.
-    py::array clipped = viewed(
-        py::module_::import("numpy").attr("clip")(array, py::int_(-1), py::int_(INT64_MAX)), name);
-    return py::cast<Integers>(clipped.attr("astype")("int64"));
+  const auto beyond = [&](const py::handle& value, std::int64_t place) {
+    raise(std::string(name) + " has the value " + py::cast<std::string>(py::str(value)) +
+          " at place " + std::to_string(place) + ", which no index can have");
+  };
+  if (kind == 'O') {  // Python's own integers, which may be of any size
+    Integers result(std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
+    std::int64_t* to = result.mutable_data();
+    for (const py::handle value : array.attr("ravel")().attr("tolist")()) {
+      if (!PyLong_Check(value.ptr()) || PyBool_Check(value.ptr())) {
+        throw py::type_error(std::string(name) + " has the value " +
+                             py::cast<std::string>(py::repr(value)) + "; expected integers");
+      }
+      int overflow = 0;
+      *to++ = PyLong_AsLongLongAndOverflow(value.ptr(), &overflow);
+      if (overflow != 0) {
+        beyond(value, to - 1 - result.data());
+      }
+    }
+    return result;
   }
+  const bool empty_list = array.size() == 0 && kind == 'f';  // numpy's type for []
   if (kind != 'i' && kind != 'u' && !empty_list) {
     throw py::type_error(std::string(name) + " has dtype " + dtypeText(array) +
                          "; expected integers");
   }
-  if (kind == 'u' && array.itemsize() == 8) {
-    const py::object largest = py::module_::import("numpy").attr("minimum")(
-        array, py::module_::import("numpy").attr("uint64")(INT64_MAX));
-    return py::cast<Integers>(largest.attr("astype")("int64"));
+  if (kind == 'u' && array.itemsize() == 8 && array.size() > 0) {
+    const py::object largest = array.attr("max")();
+    if (py::cast<std::uint64_t>(largest) > static_cast<std::uint64_t>(INT64_MAX)) {
+      beyond(largest, py::cast<std::int64_t>(array.attr("argmax")()));
+    }
   }
   return py::cast<Integers>(array.attr("astype")("int64", py::arg("copy") = false));
 }
@@ -50,7 +65,7 @@ Integers integers(const py::handle& object, const char* name) {
 Doubles doubles(const py::handle& object, const char* name) {
   const py::array array = viewed(object, name);
   const char kind = array.dtype().kind();
-  if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b') {
+  if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b' && kind != 'O') {
     throw py::type_error(std::string(name) + " has dtype " + dtypeText(array) +
                          "; expected real numbers");
   }
@@ -79,9 +94,10 @@ void Output::put(std::size_t offset, const double* from, std::size_t count) {
 
 py::dtype floatType(const py::object& dtype) {
   const py::dtype result = py::dtype::from_args(dtype);
-  if (result.kind() != 'f' || (result.itemsize() != 8 && result.itemsize() != 4)) {
+  if (result.kind() != 'f' || (result.itemsize() != 8 && result.itemsize() != 4) ||
+      !py::cast<bool>(result.attr("isnative"))) {
     throw py::type_error("dtype is " + py::cast<std::string>(py::str(result)) +
-                         "; expected float64 or float32");
+                         "; expected float64 or float32 in the machine's byte order");
   }
   return result;
 }

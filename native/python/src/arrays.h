@@ -21,8 +21,17 @@ using Integers = py::array_t<std::int64_t, py::array::c_style>;
 /// "(4, 2)".
 std::string shapeText(const py::array& array);
 
-/// Anything numpy can view as integers; TypeError for floats, booleans and the rest.
-Integers integers(const py::handle& object, const char* name);
+/// Throws the error that a wrong value in an array deserves.
+using RaiseText = void (*)(const std::string&);
+
+Integers integers(const py::handle& object, const char* name, RaiseText raise);
+
+/// Anything numpy can view as integers; TypeError for floats, booleans and the rest, Error for
+/// integers beyond 64 bits.
+template <typename Error>
+Integers integers(const py::handle& object, const char* name) {
+  return integers(object, name, [](const std::string& text) { throw Error(text); });
+}
 
 /// Anything numpy can convert to float64; TypeError for what is not real numbers.
 Doubles doubles(const py::handle& object, const char* name);
@@ -42,6 +51,11 @@ void requireRows(const py::array& array, const char* name, int columns) {
     throw Error(std::string(name) + " has shape " + shapeText(array) + "; expected (n, " +
                 std::to_string(columns) + ")");
   }
+}
+
+template <typename T>
+py::array_t<T> arrayOf(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
 /// A (n, 3) array as points.

@@ -71,7 +71,7 @@ MeshOptions meshOptions(const py::object& edge_sharpness, const py::object& vert
   options.scheme = choice(scheme, "scheme", kSchemes);
   if (!edge_sharpness.is_none()) {
     const auto [edges_object, values] = pairOf(edge_sharpness, "edge_sharpness");
-    const Integers edges = integers(edges_object, "edge_sharpness edges");
+    const Integers edges = integers<MeshError>(edges_object, "edge_sharpness edges");
     if (edges.size() > 0) {
       requireRows<MeshError>(edges, "edge_sharpness edges", 2);
     }
@@ -82,13 +82,13 @@ MeshOptions meshOptions(const py::object& edge_sharpness, const py::object& vert
   }
   if (!vertex_sharpness.is_none()) {
     const auto [vertices, values] = pairOf(vertex_sharpness, "vertex_sharpness");
-    const Integers array = integers(vertices, "vertex_sharpness vertices");
+    const Integers array = integers<MeshError>(vertices, "vertex_sharpness vertices");
     requireVector<MeshError>(array, "vertex_sharpness vertices");
     options.vertex_sharpness.vertices = vectorOf(array);
     options.vertex_sharpness.values = sharpnessValues(values, "vertex_sharpness values");
   }
   if (!holes.is_none()) {
-    const Integers array = integers(holes, "holes");
+    const Integers array = integers<MeshError>(holes, "holes");
     requireVector<MeshError>(array, "holes");
     options.holes = vectorOf(array);
   }
@@ -103,23 +103,23 @@ Points positionsOf(const py::object& object) {
   return pointsOf(array);
 }
 
-std::shared_ptr<ControlMesh> makeMesh(const py::object& positions, const py::object& face_sizes,
-                                      const py::object& face_vertices, const MeshOptions& options) {
+std::shared_ptr<BoundMesh> makeMesh(const py::object& positions, const py::object& face_sizes,
+                                    const py::object& face_vertices, const MeshOptions& options) {
   const Points points = positionsOf(positions);
-  const Integers sizes = integers(face_sizes, "face_sizes");
-  const Integers vertices = integers(face_vertices, "face_vertices");
+  const Integers sizes = integers<MeshError>(face_sizes, "face_sizes");
+  const Integers vertices = integers<MeshError>(face_vertices, "face_vertices");
   requireVector<MeshError>(sizes, "face_sizes");
   requireVector<MeshError>(vertices, "face_vertices");
   const std::vector<std::int64_t> size_vector = vectorOf(sizes), vertex_vector = vectorOf(vertices);
   const py::gil_scoped_release release;
-  return std::make_shared<ControlMesh>(points, size_vector, vertex_vector, options);
+  return std::shared_ptr<BoundMesh>(new BoundMesh(points, size_vector, vertex_vector, options));
 }
 
 /// (F, k) array or a sequence of sequences -> sizes and vertices.
 std::pair<py::object, py::object> flattened(const py::object& faces) {
   const py::module_ numpy = py::module_::import("numpy");
   if (py::isinstance<py::array>(faces)) {
-    const Integers array = integers(faces, "faces");
+    const Integers array = integers<MeshError>(faces, "faces");
     if (array.ndim() != 2) {
       throw MeshError("faces has shape " + shapeText(array) + "; expected (F, k)");
     }
@@ -128,7 +128,7 @@ std::pair<py::object, py::object> flattened(const py::object& faces) {
   std::vector<std::int64_t> sizes;
   py::list vertices;
   for (const py::handle face : py::iter(faces)) {
-    const Integers corner_vertices = integers(face, "a face");
+    const Integers corner_vertices = integers<MeshError>(face, "a face");
     requireVector<MeshError>(corner_vertices, "a face");
     sizes.push_back(corner_vertices.size());
     vertices.append(corner_vertices);
@@ -140,11 +140,6 @@ std::pair<py::object, py::object> flattened(const py::object& faces) {
 
 py::array_t<double> positionArray(const Points& points) {
   return py::array_t<double>({points.rows(), Eigen::Index{3}}, points.data());
-}
-
-template <typename T>
-py::array_t<T> arrayOf(const std::vector<T>& values) {
-  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
 py::object edgeSharpness(const ControlMesh& mesh) {
@@ -172,7 +167,7 @@ py::tuple state(const ControlMesh& mesh) {
 
 void bindControlMesh(py::module_& module) {
   using namespace py::literals;
-  py::class_<ControlMesh, std::shared_ptr<ControlMesh>>(module, "ControlMesh", kControlMeshDoc)
+  py::class_<BoundMesh, std::shared_ptr<BoundMesh>>(module, "ControlMesh", kControlMeshDoc)
       .def(py::init([](const py::object& positions, const py::object& face_sizes,
                        const py::object& face_vertices, const py::object& edge_sharpness,
                        const py::object& vertex_sharpness, const std::string& boundary,
@@ -200,29 +195,29 @@ void bindControlMesh(py::module_& module) {
           "vertex_sharpness"_a = py::none(), "boundary"_a = "smooth", "creasing"_a = "uniform",
           "triangles"_a = "catmark", "scheme"_a = "catmark", "holes"_a = py::none(), kFromFacesDoc)
       .def_property_readonly(
-          "positions", [](const ControlMesh& mesh) { return positionArray(mesh.positions()); },
+          "positions", [](const BoundMesh& mesh) { return positionArray(mesh.positions()); },
           "(V, 3) float64, a copy.")
       .def_property_readonly(
-          "face_sizes", [](const ControlMesh& mesh) { return arrayOf(mesh.faceSizes()); },
+          "face_sizes", [](const BoundMesh& mesh) { return arrayOf(mesh.faceSizes()); },
           "(F,) int32: vertices of each face.")
       .def_property_readonly(
-          "face_vertices", [](const ControlMesh& mesh) { return arrayOf(mesh.faceVertices()); },
+          "face_vertices", [](const BoundMesh& mesh) { return arrayOf(mesh.faceVertices()); },
           "Vertex indices of all faces, one face after the other, int32.")
       .def_property_readonly(
           "boundary",
-          [](const ControlMesh& mesh) { return text(mesh.options().boundary, kBoundaries); },
+          [](const BoundMesh& mesh) { return text(mesh.options().boundary, kBoundaries); },
           "'smooth' or 'corners'.")
       .def_property_readonly(
           "triangles",
-          [](const ControlMesh& mesh) { return text(mesh.options().triangles, kTriangles); },
+          [](const BoundMesh& mesh) { return text(mesh.options().triangles, kTriangles); },
           "'catmark' or 'smooth'.")
       .def("__repr__",
-           [](const ControlMesh& mesh) {
+           [](const BoundMesh& mesh) {
              return "ControlMesh(" + std::to_string(mesh.vertexCount()) + " vertices, " +
                     std::to_string(mesh.faceCount()) + " faces, boundary='" +
                     text(mesh.options().boundary, kBoundaries) + "')";
            })
-      .def(py::pickle([](const ControlMesh& mesh) { return state(mesh); },
+      .def(py::pickle([](const BoundMesh& mesh) { return state(mesh); },
                       [](const py::tuple& s) {
                         if (s.size() != 10) {
                           throw py::value_error("no state of a ControlMesh");

@@ -3,9 +3,29 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstdlib>
+#include <new>
+
 #include "limitsurf/mesh/control_mesh.h"
 
 namespace limitsurf::python {
+
+/// Python can make an object without initialising it (`cls.__new__(cls)`); its memory is then all
+/// zero, which every member of the bound classes takes for empty.
+struct ZeroedMemory {
+  static void* operator new(std::size_t size) {
+    void* memory = std::calloc(1, size);
+    if (!memory) {
+      throw std::bad_alloc();
+    }
+    return memory;
+  }
+  static void operator delete(void* memory) { std::free(memory); }
+};
+
+struct BoundMesh : ZeroedMemory, ControlMesh {
+  using ControlMesh::ControlMesh;
+};
 
 void bindControlMesh(pybind11::module_& module);
 

@@ -7,32 +7,62 @@
 #include <memory>
 #include <shared_mutex>
 #include <sstream>
+#include <utility>
 
 #include "arrays.h"
+#include "control_mesh.h"
 #include "docstrings.h"
+#include "limitsurf/parallel.h"
 #include "limitsurf/surface/limit_surface.h"
 
 namespace limitsurf::python {
 namespace {
 
 /// A surface that may be re-posed while other Python threads, without the GIL, evaluate it.
-struct SharedSurface {
-  explicit SharedSurface(std::shared_ptr<ControlMesh> m) : mesh(std::move(m)), surface(*mesh) {}
+struct SharedSurface : ZeroedMemory {
+  explicit SharedSurface(std::shared_ptr<BoundMesh> m)
+      : mesh(std::move(m)), surface_(std::make_unique<LimitSurface>(*mesh)) {}
 
-  std::shared_ptr<ControlMesh> mesh;
-  LimitSurface surface;
+  const LimitSurface& surface() const {
+    if (!surface_) {
+      throw py::value_error("this LimitSurface was never initialised");
+    }
+    return *surface_;
+  }
+  LimitSurface& surface() {
+    std::as_const(*this).surface();
+    return *surface_;
+  }
+
+  std::shared_ptr<BoundMesh> mesh;
   mutable std::shared_mutex mutex;
+
+ private:
+  std::unique_ptr<LimitSurface> surface_;
 };
 
-/// Rows after which a long call looks for Ctrl-C.
+/// For a call that has let go of the GIL: lets Ctrl-C end it.
+InterruptionPoint interruptible() {
+  return InterruptionPoint([] {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) {
+      throw py::error_already_set();
+    }
+  });
+}
+
+/// Rows evaluated at a time, so that results are copied while they are in the cache.
 constexpr std::size_t kRowsPerChunk = std::size_t{1} << 17;
 
 using Locations = std::vector<Location>;
 
 Locations locationsOf(const SharedSurface& shared, const py::object& face, const py::object& uv) {
-  const Doubles uvs = doubles(uv, "uv");
+  Doubles uvs = doubles(uv, "uv");
+  if (uvs.ndim() == 1 && uvs.size() == 0) {
+    uvs = Doubles(std::vector<py::ssize_t>{0, 2});  // []
+  }
   requireRows<LocationError>(uvs, "uv", 2);
-  const Integers faces = integers(face, "face");
+  const Integers faces = integers<LocationError>(face, "face");
   const std::size_t rows = static_cast<std::size_t>(uvs.shape(0));
   if (faces.ndim() > 1 || (faces.ndim() == 1 && faces.shape(0) != uvs.shape(0))) {
     throw LocationError("face has shape " + shapeText(faces) + " and uv " + shapeText(uvs) +
@@ -41,7 +71,7 @@ Locations locationsOf(const SharedSurface& shared, const py::object& face, const
   const std::int64_t* ids = faces.data();
   const double* parameters = uvs.data();
   const bool one = faces.ndim() == 0;
-  const std::int64_t face_count = shared.surface.faceCount();
+  const std::int64_t face_count = shared.surface().faceCount();
   Locations result(rows);
   const py::gil_scoped_release release;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -54,7 +84,7 @@ Locations locationsOf(const SharedSurface& shared, const py::object& face, const
     }
     result[row] = {static_cast<int>(id), parameters[2 * row], parameters[2 * row + 1]};
   }
-  shared.surface.checkLocations(result);
+  shared.surface().checkLocations(result);
   return result;
 }
 
@@ -65,18 +95,15 @@ void checkThreads(int threads) {
   }
 }
 
-/// Calls body(first row, the chunk's locations) for chunk after chunk, without the GIL and with the
-/// surface held still; stops for signals in between.
+/// Calls body(first row, the chunk's locations) for chunk after chunk, without the GIL, with the
+/// surface held still, and so that Ctrl-C ends it.
 template <typename Body>
 void inChunks(const SharedSurface& shared, const Locations& at, const Body& body) {
   const py::gil_scoped_release release;
   const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  const InterruptionPoint point = interruptible();
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerChunk) {
     body(begin, Span<Location>(at).subspan(begin, std::min(kRowsPerChunk, at.size() - begin)));
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) {
-      throw py::error_already_set();
-    }
   }
 }
 
@@ -98,8 +125,8 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
     outputs[i] = Output(type, {rows, 3});
   }
   inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
-    const Evaluation e = shared.surface.evaluate(chunk, static_cast<Derivatives>(derivatives),
-                                                 derivatives > 0, threads);
+    const Evaluation e = shared.surface().evaluate(chunk, static_cast<Derivatives>(derivatives),
+                                                   derivatives > 0, threads);
     const Points* values[7] = {&e.position, &e.du, &e.dv, &e.normal, &e.duu, &e.duv, &e.dvv};
     for (int i = 0; i < wanted; ++i) {
       outputs[i].put(3 * begin, values[i]->data(), 3 * chunk.size());
@@ -117,7 +144,7 @@ py::object frames(const SharedSurface& shared, const py::object& face, const py:
   const Locations at = locationsOf(shared, face, uv);
   Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
   inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
-    const auto rotations = shared.surface.frames(chunk, threads);
+    const auto rotations = shared.surface().frames(chunk, threads);
     output.put(9 * begin, rotations.data(), 9 * chunk.size());
   });
   return output.object();
@@ -137,7 +164,7 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
     output = Output(type, {rows, 3});
   }
   inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
-    const Curvature c = shared.surface.curvature(chunk, threads);
+    const Curvature c = shared.surface().curvature(chunk, threads);
     const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
     for (int i = 0; i < 4; ++i) {
       scalars[i].put(begin, values[i]->data(), chunk.size());
@@ -147,11 +174,6 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
   });
   return result("Curvature")(scalars[0].object(), scalars[1].object(), scalars[2].object(),
                              scalars[3].object(), directions[0].object(), directions[1].object());
-}
-
-template <typename T>
-py::array_t<T> arrayOf(const std::vector<T>& values) {
-  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
 py::object stencils(const SharedSurface& shared, const py::object& face, const py::object& uv,
@@ -164,7 +186,7 @@ py::object stencils(const SharedSurface& shared, const py::object& face, const p
   Stencils all;
   all.offsets.push_back(0);
   inChunks(shared, at, [&](std::size_t, Span<Location> chunk) {
-    const Stencils part = shared.surface.stencils(chunk, derivatives > 0, threads);
+    const Stencils part = shared.surface().stencils(chunk, derivatives > 0, threads);
     const std::int64_t before = all.offsets.back();
     for (std::size_t i = 1; i < part.offsets.size(); ++i) {
       all.offsets.push_back(before + part.offsets[i]);
@@ -206,7 +228,7 @@ py::array_t<double> pointArray(const Points& points) {
 Points currentPositions(const SharedSurface& shared) {
   const py::gil_scoped_release release;
   const std::shared_lock<std::shared_mutex> lock(shared.mutex);
-  return shared.surface.positions();
+  return shared.surface().positions();
 }
 
 py::object tessellate(const SharedSurface& shared, int levels, int threads) {
@@ -215,7 +237,8 @@ py::object tessellate(const SharedSurface& shared, int levels, int threads) {
   {
     const py::gil_scoped_release release;
     const std::shared_lock<std::shared_mutex> lock(shared.mutex);
-    t = shared.surface.tessellate(levels, threads);
+    const InterruptionPoint point = interruptible();
+    t = shared.surface().tessellate(levels, threads);
   }
   const py::array_t<int> faces(
       {static_cast<py::ssize_t>(t.face_vertices.size() / 4), py::ssize_t{4}},
@@ -234,10 +257,10 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
   const Points points = pointsOf(array);
   const py::gil_scoped_release release;
   const std::unique_lock<std::shared_mutex> lock(shared.mutex);
-  shared.surface.setPositions(points, threads);
+  shared.surface().setPositions(points, threads);
 }
 
-std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<ControlMesh>& mesh) {
+std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {
   const py::gil_scoped_release release;
   return std::make_unique<SharedSurface>(mesh);
 }
@@ -255,19 +278,19 @@ void bindLimitSurface(py::module_& module) {
           [](const SharedSurface& shared) { return pointArray(currentPositions(shared)); },
           "(V, 3) float64: the cage's current positions, a copy.")
       .def_property_readonly(
-          "face_count", [](const SharedSurface& s) { return s.surface.faceCount(); },
+          "face_count", [](const SharedSurface& s) { return s.surface().faceCount(); },
           "Number of Ptex faces.")
       .def_property_readonly(
-          "base_face", [](const SharedSurface& s) { return arrayOf(s.surface.baseFace()); },
+          "base_face", [](const SharedSurface& s) { return arrayOf(s.surface().baseFace()); },
           "(face_count,) int32: the mesh's face that each Ptex face belongs to.")
       .def_property_readonly(
-          "corner", [](const SharedSurface& s) { return arrayOf(s.surface.corner()); },
+          "corner", [](const SharedSurface& s) { return arrayOf(s.surface().corner()); },
           "(face_count,) int32: the n-gon's corner that each Ptex face belongs to, 0 for quads.")
       .def_property_readonly(
           "refused",
           [](const SharedSurface& s) {
             py::dict refused;
-            for (const auto& [face, reason] : s.surface.refused()) {
+            for (const auto& [face, reason] : s.surface().refused()) {
               refused[py::int_(face)] = reason;
             }
             return refused;
@@ -284,7 +307,7 @@ void bindLimitSurface(py::module_& module) {
            "threads"_a = 0, kStencilsDoc)
       .def(
           "vertex_locations",
-          [](const SharedSurface& s) { return locations(s.surface.vertexLocations()); },
+          [](const SharedSurface& s) { return locations(s.surface().vertexLocations()); },
           kVertexLocationsDoc)
       .def(
           "scatter_jittered",
@@ -293,7 +316,8 @@ void bindLimitSurface(py::module_& module) {
             Locations at;
             {
               const py::gil_scoped_release release;
-              at = shared.surface.scatterJittered(per_side, seed, threads);
+              const InterruptionPoint point = interruptible();
+              at = shared.surface().scatterJittered(per_side, seed, threads);
             }
             return locations(at);
           },
@@ -305,7 +329,8 @@ void bindLimitSurface(py::module_& module) {
             checkThreads(threads);
             const py::gil_scoped_release release;
             const std::shared_lock<std::shared_mutex> lock(shared.mutex);
-            return shared.surface.area(threads);
+            const InterruptionPoint point = interruptible();
+            return shared.surface().area(threads);
           },
           py::kw_only(), "threads"_a = 0,
           "Area of the limit surface, refused faces left out; relative error below 1e-9.")
@@ -317,7 +342,8 @@ void bindLimitSurface(py::module_& module) {
             {
               const py::gil_scoped_release release;
               const std::shared_lock<std::shared_mutex> lock(shared.mutex);
-              box = shared.surface.bounds(threads);
+              const InterruptionPoint point = interruptible();
+              box = shared.surface().bounds(threads);
             }
             return py::array_t<double>({2, 3}, box.data());
           },
@@ -326,18 +352,18 @@ void bindLimitSurface(py::module_& module) {
           "maximum; error 1e-13 of the cage's diagonal. NaN where there is no surface.")
       .def("__repr__",
            [](const SharedSurface& s) {
-             return "LimitSurface(" + std::to_string(s.surface.faceCount()) + " Ptex faces, " +
-                    std::to_string(s.surface.refused().size()) + " faces refused)";
+             return "LimitSurface(" + std::to_string(s.surface().faceCount()) + " Ptex faces, " +
+                    std::to_string(s.surface().refused().size()) + " faces refused)";
            })
       .def(py::pickle(
           [](const SharedSurface& s) {
             return py::make_tuple(py::cast(s.mesh), pointArray(currentPositions(s)));
           },
           [](const py::tuple& state) {
-            if (state.size() != 2 || !py::isinstance<ControlMesh>(state[0])) {
+            if (state.size() != 2 || !py::isinstance<BoundMesh>(state[0])) {
               throw py::value_error("no state of a LimitSurface");
             }
-            auto shared = makeSurface(py::cast<std::shared_ptr<ControlMesh>>(state[0]));
+            auto shared = makeSurface(py::cast<std::shared_ptr<BoundMesh>>(state[0]));
             setPositions(*shared, state[1], 0);
             return shared;
           }));
