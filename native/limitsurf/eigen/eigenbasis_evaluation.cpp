@@ -60,13 +60,15 @@ Functionals scaled(Functionals values, const Powers& powers, int count) {
   return values;
 }
 
+Eigen::Array4d padded(const Points& points, int row) {
+  return {points(row, 0), points(row, 1), points(row, 2), 0};
+}
+
 }  // namespace
 
 template <typename Body>
 void Eigenbasis::forEachTable(int face, const Points& coefficients, const Body& body) const {
-  const auto coefficient = [&](int mode) -> Eigen::Array4d {
-    return {coefficients(mode, 0), coefficients(mode, 1), coefficients(mode, 2), 0};
-  };
+  const auto coefficient = [&](int mode) { return padded(coefficients, mode); };
   for (int i = 0; i < 2; ++i) {
     body(fixed(face).tables[i], lambda_[1 + i], coefficient(1 + i));
   }
@@ -110,7 +112,7 @@ void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& 
     }
   };
 
-  const Eigen::Array4d constant(coefficients(0, 0), coefficients(0, 1), coefficients(0, 2), 0);
+  const Eigen::Array4d constant = padded(coefficients, 0);
   for (int i = 0; i < outer_count; ++i) {
     left_over[i] -= constant;
   }
@@ -122,9 +124,7 @@ void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& 
   for (const Chain& chain : chains_) {
     const double lambda = lambda_[chain.from];
     const Eigen::Array4d fed =
-        power(lambda, ring_steps) * chain.rate / lambda *
-        Eigen::Array4d(coefficients(chain.from, 0), coefficients(chain.from, 1),
-                       coefficients(chain.from, 2), 0);
+        power(lambda, ring_steps) * chain.rate / lambda * padded(coefficients, chain.from);
     add(table(chain.to, face), (steps - 1 + ring_steps) * power(2 * lambda, steps - 1) * fed,
         ring_steps * fed);
   }
@@ -135,9 +135,7 @@ void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& 
     }
     if (rest_mode_ >= 0) {
       coefficient += (steps - 1) * rest_[q] / lambda_[rest_mode_] *
-                     power(lambda_[rest_mode_], ring_steps) *
-                     Eigen::Array4d(coefficients(rest_mode_, 0), coefficients(rest_mode_, 1),
-                                    coefficients(rest_mode_, 2), 0);
+                     power(lambda_[rest_mode_], ring_steps) * padded(coefficients, rest_mode_);
     }
     coefficient *= power(2 * outer.lambda(q), steps - 1);
     for (int c = 0; c < tile_grid::kCells; ++c) {

@@ -16,6 +16,9 @@ enum class Sides {
   both,   ///< both (a sector of one face)
 };
 
+constexpr bool onLeft(Sides sides) { return sides == Sides::left || sides == Sides::both; }
+constexpr bool onRight(Sides sides) { return sides == Sides::right || sides == Sides::both; }
+
 /// The control points around one quad of an extraordinary vertex, laid out as a 5 x 5 grid.
 ///
 /// Cell (x, y), -1 <= x, y <= 3, holds the control point at (x, y) when the extraordinary vertex is
@@ -45,8 +48,7 @@ constexpr bool exists(Sides sides, int c) {
   if (below && before) {
     return false;
   }
-  return !(below && (sides == Sides::left || sides == Sides::both)) &&
-         !(before && (sides == Sides::right || sides == Sides::both));
+  return !(below && onLeft(sides)) && !(before && onRight(sides));
 }
 
 constexpr bool isRingCell(int c) { return xOf(c) <= 1 && yOf(c) <= 1; }
@@ -95,9 +97,7 @@ class TileStep {
 
  private:
   bool onBoundary(int x0, int y0, int x1, int y1) const {
-    const bool left = sides_ == Sides::left || sides_ == Sides::both;
-    const bool right = sides_ == Sides::right || sides_ == Sides::both;
-    return (left && y0 == 0 && y1 == 0) || (right && x0 == 0 && x1 == 0);
+    return (onLeft(sides_) && y0 == 0 && y1 == 0) || (onRight(sides_) && x0 == 0 && x1 == 0);
   }
 
   void addFace(std::vector<Term>& terms, int x, int y, Real weight) const {

@@ -87,8 +87,6 @@ double areaOf(const BSplineTile& tile, const Pose& pose) {
 double areaOf(const TileTable& table, const Pose& pose, int index) {
   const RingTile& tile = table.ring_tiles[index];
   const Eigenbasis& basis = *table.rings[tile.ring].basis;
-  const bool left = tile.sides == Sides::left || tile.sides == Sides::both;
-  const bool right = tile.sides == Sides::right || tile.sides == Sides::both;
   constexpr int kMostSteps = 200, kAdaptiveSteps = 6;
   double sum = 0;
   for (int steps = 1; steps <= kMostSteps; ++steps) {
@@ -97,9 +95,9 @@ double areaOf(const TileTable& table, const Pose& pose, int index) {
                       pose.ringTile(index).outer, grid);
     double quarters = 0;
     for (const auto& [a, b] : {std::pair{1, 0}, {1, 1}, {0, 1}}) {
-      quarters +=
-          PatchArea(grid + b * tile_grid::kSize + a, tile_grid::kSize, right && a == 0, false,
-                    left && b == 0, false)(steps <= kAdaptiveSteps ? kMostHalvings : 1);
+      quarters += PatchArea(grid + b * tile_grid::kSize + a, tile_grid::kSize,
+                            onRight(tile.sides) && a == 0, false, onLeft(tile.sides) && b == 0,
+                            false)(steps <= kAdaptiveSteps ? kMostHalvings : 1);
     }
     quarters = std::ldexp(quarters, 2 * (1 - steps));  // grids come magnified
     sum += quarters;

@@ -132,8 +132,7 @@ class RingTileBounds {
       : tile_(table.ring_tiles[tile]),
         basis_(*table.rings[tile_.ring].basis),
         ring_(pose.ring(tile_.ring)),
-        pose_(pose.ringTile(tile)),
-        sides_(basis_.sides(tile_.face)) {
+        pose_(pose.ringTile(tile)) {
     boundShares();
   }
 
@@ -167,12 +166,10 @@ class RingTileBounds {
         window[4 * y + x] = grid_[(b + y) * tile_grid::kSize + a + x];
       }
     }
-    const bool right = sides_ == Sides::right || sides_ == Sides::both;
-    const bool left = sides_ == Sides::left || sides_ == Sides::both;
-    if (right && a == 0) {
+    if (onRight(tile_.sides) && a == 0) {
       continueLow(window, 4, 1);
     }
-    if (left && b == 0) {
+    if (onLeft(tile_.sides) && b == 0) {
       continueLow(window, 1, 4);
     }
     includeWindow(window, ring_.limit, tolerance, extremes);
@@ -240,7 +237,6 @@ class RingTileBounds {
   const Eigenbasis& basis_;
   const Pose::RingPose& ring_;
   const Pose::RingTilePose& pose_;
-  const Sides sides_;
   std::vector<Share> shares_;
   Padded grid_[tile_grid::kCells];
 };

@@ -137,7 +137,7 @@ void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
     pose.outer[i] = points_[tile.outer[i]] - limit;
     start.points[cells[i]] = pose.outer[i];
   }
-  const TileStep<double>& step = tileStep(basis.sides(tile.face));
+  const TileStep<double>& step = tileStep(tile.sides);
   const Padded* before = start.points;
   for (int n = 1; n <= gridSteps(tile); ++n) {
     Padded* after = grids_[pose.first_grid + n - 1].points;

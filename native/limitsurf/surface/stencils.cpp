@@ -88,8 +88,7 @@ class Row {
     } else {
       const Quarter quarter(at.u, at.v);
       ring.basis->weights(tile.face, quarter.steps, tile.ring_steps,
-                          gridWindow(quarter, ring.basis->sides(tile.face), order), mode_weights,
-                          outer_weights);
+                          gridWindow(quarter, tile.sides, order), mode_weights, outer_weights);
     }
     const Eigen::MatrixXd on_ring = ring.basis->projectTransposed(mode_weights.transpose());
     const auto weightsOf = [&](const auto& column) {
@@ -113,11 +112,10 @@ class Row {
       undefined_[0] = undefined_[1] = basis.ring().faces > 3;
       return w;
     }
-    const Sides sides = basis.sides(tile.face);
     const double first = std::ldexp(1., -tile.ring_steps);
     const double sum = basis.ring().kind == RingKind::pinned ? first : 0;
-    undefined_[0] = sides == Sides::inner || sides == Sides::right;
-    undefined_[1] = sides == Sides::inner || sides == Sides::left;
+    undefined_[0] = !onLeft(tile.sides);
+    undefined_[1] = !onRight(tile.sides);
     w(1, 1) = first;
     w(1, 2) = sum;
     w(2, 1) = -first;

@@ -35,10 +35,8 @@ Quarter::Quarter(double u_, double v_) {
 }
 
 GridWindow gridWindow(const Quarter& quarter, Sides sides, int order) {
-  const bool left = sides == Sides::left || sides == Sides::both;
-  const bool right = sides == Sides::right || sides == Sides::both;
-  return {quarter.a, quarter.b, CubicWeights(quarter.u, right && quarter.a == 0, false),
-          CubicWeights(quarter.v, left && quarter.b == 0, false), order};
+  return {quarter.a, quarter.b, CubicWeights(quarter.u, onRight(sides) && quarter.a == 0, false),
+          CubicWeights(quarter.v, onLeft(sides) && quarter.b == 0, false), order};
 }
 
 TileLocation TileEvaluator::locate(const Location& at) const {

@@ -107,14 +107,13 @@ void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet
   }
   // The boundary is a cubic B-spline curve e_k, v, e_0 with first and second derivatives
   // (e_0 - e_k) / 2 and e_0 - 2 v + e_k at v; pinned, it ends there as e_0 - v and 0.
-  const Sides sides = basis.sides(tile.face);
   const double first = std::ldexp(1., -tile.ring_steps), second = first * first;
   const bool pinned = ring.kind == RingKind::pinned;
-  if (sides == Sides::left || sides == Sides::both) {
+  if (onLeft(tile.sides)) {
     patch.du = coefficient(1, first) + (pinned ? coefficient(2, first) : Padded::Zero());
     patch.duu = pinned ? Padded::Zero() : coefficient(2, 6 * second);
   }
-  if (sides == Sides::right || sides == Sides::both) {
+  if (onRight(tile.sides)) {
     patch.dv = coefficient(1, -first) + (pinned ? coefficient(2, first) : Padded::Zero());
     patch.dvv = pinned ? Padded::Zero() : coefficient(2, 6 * second);
   }
