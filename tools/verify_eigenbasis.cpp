@@ -8,12 +8,13 @@
 //   - max |A - T J T^-1|, A being the whole face's subdivision matrix;
 //   - the evaluator's error against explicit recursive subdivision in 50 decimal digits.
 //
-//   verify_eigenbasis [boundary|interior|pinned] [--valences FIRST LAST] [--csv FILE]
+//   verify_eigenbasis [boundary|interior|pinned|cone|dart] [--valences FIRST LAST] [--csv FILE]
 #include <Eigen/LU>
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -166,18 +167,26 @@ void measureEvaluator(RingKind kind, int faces, Line& line) {
 Line verified(RingKind kind, int valence) {
   Line line;
   line.valence = valence;
-  const Ring ring{kind, kind == RingKind::interior ? valence : valence - 1};
+  const bool closed = Ring{kind, valence}.closed();
+  const Ring ring{kind, closed ? valence : valence - 1};
   const auto basis = Eigenbasis::get(ring);
   findDefect(*basis, line);
   for (const int face : someFaces(ring.faces)) {
     line.factorisation = std::max(line.factorisation, factorisationError(*basis, face));
   }
-  // Pinned vertices with several faces need sharpness or a bow-tie: there is no fan of them.
-  if (kind != RingKind::pinned || ring.faces == 1) {
+  // The other kinds need sharpness, or a bow-tie.
+  if (kind == RingKind::interior || kind == RingKind::boundary ||
+      (kind == RingKind::pinned && ring.faces == 1)) {
     measureEvaluator(kind, ring.faces, line);
   }
   return line;
 }
+
+const std::map<std::string, RingKind> kKinds = {{"boundary", RingKind::boundary},
+                                                {"interior", RingKind::interior},
+                                                {"pinned", RingKind::pinned},
+                                                {"cone", RingKind::cone},
+                                                {"dart", RingKind::dart}};
 
 int run(int argc, char** argv) {
   RingKind kind = RingKind::boundary;
@@ -185,10 +194,9 @@ int run(int argc, char** argv) {
   std::string csv;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    if (argument == "interior" || argument == "boundary" || argument == "pinned") {
-      kind = argument == "interior"   ? RingKind::interior
-             : argument == "boundary" ? RingKind::boundary
-                                      : RingKind::pinned;
+    const auto named = kKinds.find(argument);
+    if (named != kKinds.end()) {
+      kind = named->second;
     } else if (argument == "--valences" && i + 2 < argc) {
       first = std::stoi(argv[++i]);
       last = std::stoi(argv[++i]);
@@ -196,8 +204,8 @@ int run(int argc, char** argv) {
       csv = argv[++i];
     } else {
       std::fprintf(stderr,
-                   "usage: verify_eigenbasis [boundary|interior|pinned] [--valences FIRST LAST] "
-                   "[--csv FILE]\n");
+                   "usage: verify_eigenbasis [boundary|interior|pinned|cone|dart] "
+                   "[--valences FIRST LAST] [--csv FILE]\n");
       return 2;
     }
   }

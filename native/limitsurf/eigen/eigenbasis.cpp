@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <stdexcept>
 
 #include "limitsurf/eigen/eigenbasis_builder.h"
 
@@ -22,22 +23,19 @@ std::shared_ptr<const Eigenbasis> Eigenbasis::get(const Ring& ring) {
   return basis;
 }
 
-Eigenbasis::Eigenbasis(const Ring& ring) : ring_(ring), step_(ring) { Builder(*this).build(); }
-
-Sides Eigenbasis::sides(int face) const {
-  if (ring_.interior()) {
-    return Sides::inner;
+Eigenbasis::Eigenbasis(const Ring& ring) : ring_(ring), step_(ring) {
+  if (ring.kind == RingKind::dart) {
+    throw std::logic_error("dart: no eigenbasis yet");
   }
-  const bool left = face == 0, right = face == ring_.faces - 1;
-  return left && right ? Sides::both : left ? Sides::left : right ? Sides::right : Sides::inner;
+  Builder(*this).build();
 }
 
-int Eigenbasis::firstMode(int m) const { return 3 + (ring_.interior() ? 4 : 2) * (m - 1); }
+int Eigenbasis::firstMode(int m) const { return 3 + (ring_.closed() ? 4 : 2) * (m - 1); }
 
 int Eigenbasis::parts(int m, bool plus, int face, Part out[2]) const {
   const int first = firstMode(m);
   const long turn = 2L * m * face;
-  if (ring_.interior()) {
+  if (ring_.closed()) {
     if (2 * m == ring_.faces) {  // spokes alternate, or faces do
       out[0] = plus ? Part{first, cosAt(turn), 0} : Part{first + 1, 0, cosAt(turn)};
       return 1;
@@ -69,7 +67,7 @@ std::vector<double> Eigenbasis::ringVector(int mode) const {
   if (mode == 0) {
     return ring;
   }
-  if (mode < 3 && !ring_.interior()) {
+  if (mode < 3 && !ring_.closed()) {
     return curve_ring_[mode - 1];
   }
   if (mode < 3) {
@@ -82,7 +80,7 @@ std::vector<double> Eigenbasis::ringVector(int mode) const {
     return ring;
   }
   ring[0] = 0;
-  const int m = 1 + (mode - 3) / (ring_.interior() ? 4 : 2);
+  const int m = 1 + (mode - 3) / (ring_.closed() ? 4 : 2);
   for (const bool plus : {true, false}) {
     Part part[2];
     const int count = parts(m, plus, 0, part);
@@ -116,7 +114,7 @@ Eigenbasis::Table Eigenbasis::table(int mode, int face) const {
     return fixed(face).tables[mode - 1];
   }
   const FaceTables& t = tables(sides(face));
-  const int m = 1 + (mode - 3) / (ring_.interior() ? 4 : 2);
+  const int m = 1 + (mode - 3) / (ring_.closed() ? 4 : 2);
   for (const bool plus : {true, false}) {
     Part part[2];
     const int count = parts(m, plus, face, part);

@@ -71,7 +71,7 @@ class Eigenbasis {
   /// their order and length. O(faces).
   std::vector<double> ringVector(int mode) const;
 
-  Sides sides(int face) const;
+  Sides sides(int face) const { return ring_.sides(face); }
   const OuterModes<double>& outerModes(int face) const { return tables(sides(face)).outer_modes; }
 
   /// One mode on one face: its values at the outer cells before, on the whole grid after a step.
@@ -121,10 +121,10 @@ class Eigenbasis {
   const FaceTables& tables(Sides sides) const { return *face_tables_[static_cast<int>(sides)]; }
   /// Spoke mode m (>= 1), lambda+ or lambda-: index into tables, and its first mode's number.
   int pairIndex(int m, bool plus) const { return 2 * (m - 1) + (plus ? 0 : 1); }
-  int spokeCount() const { return ring_.interior() ? ring_.faces / 2 : ring_.faces; }
+  int spokeCount() const { return ring_.closed() ? ring_.faces / 2 : ring_.faces; }
   double cosAt(long i) const { return cos_[static_cast<std::size_t>(i % period_)]; }
   double sinAt(long i) const { return sin_[static_cast<std::size_t>(i % period_)]; }
-  const Fixed& fixed(int face) const { return fixed_[ring_.interior() ? 0 : face]; }
+  const Fixed& fixed(int face) const { return fixed_[ring_.closed() ? 0 : face]; }
 
   /// How the tables of pair (m, plus) combine into its modes on a face: each mode's number, and the
   /// factors of the cosine and the sine table.

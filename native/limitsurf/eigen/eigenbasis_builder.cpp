@@ -13,10 +13,10 @@ using tile_grid::kCells;
 void Eigenbasis::Builder::build() {
   buildCircle();
   basis_.lambda_.assign(ring_.size(), 1);
-  const bool one_face = !ring_.interior() && ring_.faces == 1;
+  const bool one_face = !ring_.closed() && ring_.faces == 1;
   if (one_face) {
     buildOuterTables(Sides::both);
-  } else if (ring_.interior()) {
+  } else if (ring_.closed()) {
     buildOuterTables(Sides::inner);
   } else {
     buildOuterTables(Sides::left);
@@ -26,7 +26,7 @@ void Eigenbasis::Builder::build() {
     }
   }
   buildSpokes();
-  if (ring_.interior()) {
+  if (ring_.closed()) {
     buildRadial();
   } else {
     buildCurves();
@@ -36,7 +36,7 @@ void Eigenbasis::Builder::build() {
 /// Interior: spoke i of mode m stands at the angle 2 pi m i / N = (2 pi / 2N) 2 m i, face j at
 /// (2 pi / 2N) m (2 j + 1); sector: pi m i / k = (2 pi / 4k) 2 m i likewise.
 void Eigenbasis::Builder::buildCircle() {
-  basis_.period_ = ring_.interior() ? 2L * ring_.faces : 4L * ring_.faces;
+  basis_.period_ = ring_.closed() ? 2L * ring_.faces : 4L * ring_.faces;
   const Circle<Real> circle(basis_.period_);
   for (long i = 0; i < basis_.period_; ++i) {
     basis_.cos_.push_back(static_cast<double>(circle.cos(i)));
@@ -120,8 +120,8 @@ Eigenbasis::Builder::Cells Eigenbasis::Builder::spokeCells(Real m, Real edge, Re
 
 Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bool plus,
                                                           bool sine) {
-  const auto mode = ring_.interior() ? SpokeMode<Real>::at(2L * m, ring_.faces)
-                                     : SpokeMode<Real>::at(m, ring_.faces);
+  const auto mode = ring_.closed() ? SpokeMode<Real>::at(2L * m, ring_.faces)
+                                   : SpokeMode<Real>::at(m, ring_.faces);
   const Real lambda = plus ? mode.lambda_plus : mode.lambda_minus;
   Cells cells = spokeCells(m, plus ? mode.edgePlus() : mode.edgeMinus(),
                            plus ? mode.facePlus() : mode.faceMinus(), sine);
@@ -143,7 +143,7 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bo
 }
 
 void Eigenbasis::Builder::buildSpokes() {
-  const bool interior = ring_.interior();
+  const bool interior = ring_.closed();
   for (int m = 1; m <= basis_.spokeCount(); ++m) {
     const auto mode =
         interior ? SpokeMode<Real>::at(2L * m, ring_.faces) : SpokeMode<Real>::at(m, ring_.faces);
@@ -168,24 +168,27 @@ void Eigenbasis::Builder::buildSpokes() {
   }
 }
 
-/// Modes 1 and 2 of the interior: (a, b) = (mean e - v, mean f - v) goes to Q (a, b), whose
-/// eigenvalues are lambda = (3 N - 7 +- sqrt(5 N^2 - 30 N + 49)) / (8 N).
+/// Modes 1 and 2 of a closed ring: (a, b) = (mean e - v, mean f - v) moves v by (p, q) (a, b) and
+/// goes to Q (a, b), Q = B(0) - [p q; p q], B as in spoke_mode.h. The eigenvalues of Q are
+/// (3 N - 7 +- sqrt(5 N^2 - 30 N + 49)) / (8 N), those of B(0), where v stays, (3 +- sqrt 5) / 8.
 void Eigenbasis::Builder::buildRadial() {
   const Real n = ring_.faces;
-  const Real column = Real(1) / 2 - 3 / (2 * n);
-  const Real q01 = Real(1) / 8 - 1 / (4 * n), q11 = Real(1) / 4 - 1 / (4 * n);
-  const Real root = std::sqrt(5 * n * n - 30 * n + 49);
+  const bool moves = ring_.kind == RingKind::interior;
+  const Real p = moves ? 3 / (2 * n) : 0, q = moves ? 1 / (4 * n) : 0;
+  const Real column = Real(1) / 2 - p, q01 = Real(1) / 8 - q, q11 = Real(1) / 4 - q;
+  const Real mean = moves ? (3 * n - 7) / (8 * n) : Real(3) / 8;
+  const Real root = moves ? std::sqrt(5 * n * n - 30 * n + 49) / (8 * n) : std::sqrt(Real(5)) / 8;
   Eigen::Matrix<Real, 2, 2> vectors;
   basis_.fixed_.resize(1);
   for (int i = 0; i < 2; ++i) {
-    const Real lambda = (3 * n - 7 + (i == 0 ? root : -root)) / (8 * n);
+    const Real lambda = mean + (i == 0 ? root : -root);
     Eigen::Matrix<Real, 2, 1> x(q01, lambda - column), other(lambda - q11, column);
     if (other.norm() > x.norm()) {
       x = other;
     }
     x.normalize();
     vectors.col(i) = x;
-    const Real v = (3 / (2 * n) * x[0] + 1 / (4 * n) * x[1]) / (lambda - 1);
+    const Real v = (p * x[0] + q * x[1]) / (lambda - 1);
     Cells cells{};
     for (const int c : tile_grid::kRingCells) {
       const bool on_spoke = tile_grid::xOf(c) == 0 || tile_grid::yOf(c) == 0;
@@ -195,7 +198,7 @@ void Eigenbasis::Builder::buildRadial() {
     basis_.lambda_[1 + i] = static_cast<double>(lambda);
     basis_.radial_vertex_[i] = static_cast<double>(v);
     basis_.fixed_[0].tables[i] = rounded(wide);
-    if (ring_.faces == 2 && i == 0) {  // eigenvalue 1/8, defective with S12's
+    if (moves && ring_.faces == 2 && i == 0) {  // eigenvalue 1/8, defective with S12's
       basis_.rest_mode_ = 1;
       for (Eigen::Index q = 0; q < wide.rest.size(); ++q) {
         basis_.rest_.push_back(static_cast<double>(wide.rest[q]));

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "limitsurf/eigen/tile_grid.h"
 #include "limitsurf/mesh/subdivision_rules.h"
 
 namespace limitsurf {
@@ -13,6 +14,8 @@ enum class RingKind {
   interior,  ///< faces all around
   boundary,  ///< a sector of faces; the boundary is a smooth curve through the vertex
   pinned,    ///< a sector of faces; the vertex stays where it is
+  cone,      ///< faces all around; the vertex stays where it is
+  dart,      ///< faces all around; the sharp edge e_0 ends at the vertex, which moves smoothly
 };
 
 /// A vertex and its quads: vertex v, spoke points e_i (the far ends of its edges,
@@ -22,17 +25,27 @@ struct Ring {
   RingKind kind;
   int faces;
 
-  bool interior() const { return kind == RingKind::interior; }
-  int edges() const { return interior() ? faces : faces + 1; }
+  /// Whether faces stand all around the vertex, so that the last one meets the first.
+  bool closed() const { return kind != RingKind::boundary && kind != RingKind::pinned; }
+  int edges() const { return closed() ? faces : faces + 1; }
   int size() const { return 1 + edges() + faces; }
   int edge(int i) const { return 1 + i; }
   int face(int j) const { return 1 + edges() + j; }
   /// The spoke after e_j, counter-clockwise around the vertex.
-  int nextEdge(int j) const { return edge(interior() && j + 1 == faces ? 0 : j + 1); }
+  int nextEdge(int j) const { return edge(closed() && j + 1 == faces ? 0 : j + 1); }
+  /// Whether spoke e_i is a boundary or infinitely sharp: no face beyond it moves its points.
+  bool sharp(int i) const {
+    return closed() ? kind == RingKind::dart && i == 0 : i == 0 || i == faces;
+  }
+  Sides sides(int face) const {
+    const bool left = sharp(face), right = sharp(closed() ? (face + 1) % faces : face + 1);
+    return left && right ? Sides::both : left ? Sides::left : right ? Sides::right : Sides::inner;
+  }
 
   VertexRule rule() const {
     switch (kind) {
       case RingKind::interior:
+      case RingKind::dart:
         return VertexRule::smooth;
       case RingKind::boundary:
         return VertexRule::crease;
@@ -55,7 +68,7 @@ class RingStep {
       : ring_(ring),
         face_(SubdivisionRules<Real>().faceMask(4)),
         edge_(SubdivisionRules<Real>().edgeMask(false)),
-        boundary_(SubdivisionRules<Real>().edgeMask(true)),
+        sharp_edge_(SubdivisionRules<Real>().edgeMask(true)),
         vertex_(SubdivisionRules<Real>().vertexMask(ring.rule(), ring.edges())) {}
 
   /// `at(i)` reads point i, `next(i)` is assigned to; both are numbers or vectors.
@@ -67,8 +80,8 @@ class RingStep {
     }
     for (int i = 0; i < ring_.edges(); ++i) {
       const int e = ring_.edge(i);
-      if (!ring_.interior() && (i == 0 || i == ring_.faces)) {
-        next(e) = boundary_.vertices[0] * at(0) + boundary_.vertices[1] * at(e);
+      if (ring_.sharp(i)) {
+        next(e) = sharp_edge_.vertices[0] * at(0) + sharp_edge_.vertices[1] * at(e);
       } else {
         const int before = i == 0 ? ring_.faces - 1 : i - 1;
         next(e) = edge_.vertices[0] * at(0) + edge_.vertices[1] * at(e) +
@@ -89,7 +102,7 @@ class RingStep {
  private:
   Ring ring_;
   Real face_;
-  typename SubdivisionRules<Real>::EdgeMask edge_, boundary_;
+  typename SubdivisionRules<Real>::EdgeMask edge_, sharp_edge_;
   typename SubdivisionRules<Real>::VertexMask vertex_;
 };
 

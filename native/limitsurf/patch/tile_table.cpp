@@ -259,7 +259,7 @@ class Builder {
       const FaceCorner at = mesh.faceAt(vertex, j);
       result.points[ring.edge(j)] = mesh.point(mesh.vertexAfter(at, 1));
       result.points[ring.face(j)] = mesh.point(mesh.vertexAfter(at, 2));
-      if (!ring.interior() && j == faces - 1) {
+      if (!ring.closed() && j == faces - 1) {
         result.points[ring.edge(faces)] = mesh.point(mesh.vertexAfter(at, 3));
       }
     }

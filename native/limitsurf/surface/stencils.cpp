@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
 namespace {
@@ -108,8 +109,8 @@ class Row {
   Eigen::MatrixXd vertexWeights(const Eigenbasis& basis, const RingTile& tile) {
     Eigen::MatrixXd w = Eigen::MatrixXd::Zero(3, basis.modeCount());
     w(0, 0) = 1;
-    if (basis.ring().interior()) {
-      undefined_[0] = undefined_[1] = basis.ring().faces > 3;
+    if (basis.ring().closed()) {
+      undefined_[0] = undefined_[1] = !vertexIsStationary(basis.ring());
       return w;
     }
     const double first = std::ldexp(1., -tile.ring_steps);

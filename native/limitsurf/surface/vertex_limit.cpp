@@ -99,8 +99,8 @@ void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet
   jet.exponent = 0;
   const Padded none = Padded::Constant(std::numeric_limits<double>::quiet_NaN());
   patch.du = patch.dv = patch.duu = patch.duv = patch.dvv = none;
-  if (ring.interior()) {
-    if (ring.faces <= 3) {
+  if (ring.closed()) {
+    if (vertexIsStationary(ring)) {
       patch.du = patch.dv = Padded::Zero();
     }
     return;
@@ -119,14 +119,20 @@ void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet
   }
 }
 
+bool vertexIsStationary(const Ring& ring) {
+  return ring.kind == RingKind::interior && ring.faces <= 3;
+}
+
 bool vertexHasNormal(const Ring& ring) {
   switch (ring.kind) {
     case RingKind::interior:
       return ring.faces >= 3;
     case RingKind::boundary:
       return ring.faces <= 3;
-    default:
+    case RingKind::pinned:
       return ring.faces == 1;
+    default:
+      return false;
   }
 }
 

@@ -12,6 +12,9 @@ namespace limitsurf {
 /// and 3; NaN for all that has no limit.
 void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet);
 
+/// Whether du = dv = 0 at the vertex: all its modes shrink by more than half a step.
+bool vertexIsStationary(const Ring& ring);
+
 /// Whether all approaches to the vertex within its sector agree on a normal: everywhere inside but
 /// at valence 2, and in boundary sectors of up to three faces (paper's valence 4).
 bool vertexHasNormal(const Ring& ring);
