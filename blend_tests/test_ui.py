@@ -35,9 +35,18 @@ def test_panel_shows_whose_rules_count():
     ob = scenes.cross()
     assert "Rules: Subdivision's defaults" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
     subsurf = scenes.add_subsurf(ob)
-    row = drawn(bpy.types.VIEW3D_PT_limit_surface).row()
-    assert labels(row) == ["Subdivision"]
-    row.prop.assert_called_once_with(subsurf, "boundary_smooth", text="")
+    layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
+    assert "Subdivision" in labels(layout)
+    assert shown_rules(layout, subsurf) == ["boundary_smooth", "uv_smooth", "use_creases"]
+    subsurf.subdivision_type = "SIMPLE"
+    layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
+    assert shown_rules(layout, subsurf) == []
+    assert "Simple: flat between edges" in labels(layout.column())
+
+
+def shown_rules(layout, subsurf):
+    calls = layout.column().prop.call_args_list
+    return [call.args[1] for call in calls if call.args[0] == subsurf]
 
 
 def test_preferences_show_the_version():

@@ -17,13 +17,11 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from . import attributes, ids, native
+from . import attributes, ids, native, rules, sharpness, uv_map
 from .errors import CageError
 
 if TYPE_CHECKING:
     import limitsurf
-
-BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
 
 # These carry a state from frame to frame, which a copy does not have.
 SIMULATIONS = {"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "EXPLODE"}
@@ -37,59 +35,53 @@ def is_busy() -> bool:
 
 
 @dataclass(frozen=True)
-class CornerMap:
-    """A UV map: one row per face corner, in the cage's order of corners."""
-
-    name: str
-    values: np.ndarray
-
-
-@dataclass(frozen=True)
 class Cage:
     mesh: limitsurf.ControlMesh
+    rules: rules.Rules
     face_sizes: np.ndarray
     matrix: np.ndarray  # object to world, 4x4
-    uv_map: CornerMap | None  # the active one, as it is on the cage
-    boundary: str
-    subsurf: str  # the modifier's name; empty where the object has none
-    ignored: tuple[str, ...]  # enabled modifiers behind it
+    uv_map: uv_map.UvMap | None  # the active one, as it is on the cage
+    ignored: tuple[str, ...]  # enabled modifiers behind the subdivision
 
     @property
     def ptex_face_count(self) -> int:
         return int(np.where(self.face_sizes == 4, 1, self.face_sizes).sum())
 
 
-def find_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
-    """The modifier whose rules the limit surface follows: the first enabled in the viewport."""
-    return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_viewport), None)
-
-
 def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
     """The object's cage at the depsgraph's frame. CageError where it has none."""
-    subsurf = find_subsurf(ob)
+    subsurf = rules.find_subsurf(ob)
     cut = ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
-    _check_modifiers(ob, cut, subsurf)
+    _check_modifiers(ob, cut)
+    found = rules.read(subsurf)
     with _evaluated_copy(ob, cut, depsgraph.scene) as evaluated:
         mesh = evaluated.data
         if not mesh.polygons:
             raise CageError(f"{ob.name} has no faces")
-        _check_sharpness(ob, mesh, use_creases=subsurf is None or subsurf.use_creases)
-        boundary = BOUNDARIES[subsurf.boundary_smooth] if subsurf else "smooth"
-        face_sizes = attributes.column(mesh.polygons, "loop_total", np.int32)
         return Cage(
-            mesh=native.limitsurf.ControlMesh(
-                attributes.read(mesh, "position").astype(np.float64),
-                face_sizes,
-                attributes.column(mesh.loops, "vertex_index", np.int32),
-                boundary=boundary,
-            ),
-            face_sizes=face_sizes,
+            mesh=_control_mesh(mesh, found),
+            rules=found,
+            face_sizes=attributes.column(mesh.polygons, "loop_total", np.int32),
             matrix=np.array(evaluated.matrix_world, np.float64),
             uv_map=_read_uv_map(ob, mesh),
-            boundary=boundary,
-            subsurf=subsurf.name if subsurf else "",
             ignored=tuple(m.name for m in ob.modifiers[cut + 1 :] if m.show_viewport),
         )
+
+
+def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules) -> limitsurf.ControlMesh:
+    if found.scheme == "bilinear":
+        sharp = sharpness.NOTHING  # all of it is as sharp as can be
+    else:
+        sharp = sharpness.read(mesh, found.use_creases)
+    return native.limitsurf.ControlMesh(
+        attributes.read(mesh, "position").astype(np.float64),
+        attributes.column(mesh.polygons, "loop_total", np.int32),
+        attributes.column(mesh.loops, "vertex_index", np.int32),
+        edge_sharpness=(sharp.edges, sharp.edge_values),
+        vertex_sharpness=(sharp.vertices, sharp.vertex_values),
+        boundary=found.boundary,
+        scheme=found.scheme,
+    )
 
 
 @contextmanager
@@ -124,14 +116,15 @@ def _evaluated_copy(
         _busy = was_busy
 
 
-def _check_modifiers(
-    ob: bpy.types.Object, cut: int, subsurf: bpy.types.SubsurfModifier | None
-) -> None:
+def _check_modifiers(ob: bpy.types.Object, cut: int) -> None:
     for modifier in ob.modifiers[:cut]:
         if not modifier.show_viewport:
             continue
         if modifier.type == "MULTIRES":
-            raise CageError(f"{ob.name}: Multiresolution ({modifier.name}) is not supported")
+            raise CageError(
+                f"{ob.name}: Multiresolution ({modifier.name}) is not supported: apply it, or "
+                "switch it off"
+            )
         if modifier.type in SIMULATIONS or (
             modifier.type == "NODES" and _has_simulation(modifier.node_group)
         ):
@@ -139,10 +132,6 @@ def _check_modifiers(
                 f"{ob.name}: the simulation {modifier.name} stands before the subdivision, which "
                 "is not supported: apply it, or bake it to a mesh cache"
             )
-    if subsurf and subsurf.subdivision_type != "CATMULL_CLARK":
-        raise CageError(
-            f"{ob.name}: {subsurf.name} is set to Simple: only Catmull-Clark has a limit surface"
-        )
 
 
 def _has_simulation(group: bpy.types.NodeTree | None) -> bool:
@@ -154,39 +143,8 @@ def _has_simulation(group: bpy.types.NodeTree | None) -> bool:
     )
 
 
-def _check_sharpness(ob: bpy.types.Object, mesh: bpy.types.Mesh, use_creases: bool) -> None:
-    """Refuses what makes edges or vertices sharp: creases, and loose edges, in Blender's rules."""
-    for name, what in (
-        (ids.EDGE_CREASE, "edge creases"),
-        (ids.VERTEX_CREASE, "vertex creases"),
-    ):
-        if use_creases and name in mesh.attributes:
-            count = np.count_nonzero(attributes.read(mesh, name) > 0)
-            if count:
-                raise CageError(
-                    f"{ob.name} has {what} ({count}), which are not supported yet: remove them, "
-                    "or switch Use Creases off in the Subdivision Surface modifier"
-                )
-
-    loose = np.ones(len(mesh.edges), bool)
-    loose[attributes.column(mesh.loops, "edge_index", np.int32)] = False
-    if not loose.any():
-        return
-    ends = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", ends)
-    in_faces = np.zeros(len(mesh.vertices), bool)
-    in_faces[attributes.column(mesh.loops, "vertex_index", np.int32)] = True
-    touching = np.unique(ends.reshape(-1, 2)[loose])
-    touching = touching[in_faces[touching]]
-    if touching.size:
-        raise CageError(
-            f"{ob.name} has loose edges at vertices of faces ({touching.size}, the first is "
-            f"{touching[0]}), which makes them sharp: not supported yet, delete the loose edges"
-        )
-
-
-def _read_uv_map(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> CornerMap | None:
+def _read_uv_map(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> uv_map.UvMap | None:
     active = ob.data.uv_layers.active
     if active is None or active.name not in mesh.uv_layers:
         return None
-    return CornerMap(active.name, attributes.read(mesh, active.name).astype(np.float64))
+    return uv_map.read(mesh, active.name)

@@ -13,8 +13,8 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 from . import cage, native, roots
 from .errors import RefusalError
 from .progress import progress_bar
+from .ptex_map import PtexMap
 from .request import RequestSize
-from .uv_map import PtexMap
 
 if TYPE_CHECKING:
     import limitsurf
@@ -35,7 +35,7 @@ class Target:
             return None
         on_cage = PtexMap(
             self.cage.face_sizes,
-            self.cage.uv_map.values,
+            self.cage.uv_map.values[self.cage.uv_map.indices],
             np.asarray(self.surface.base_face),
             np.asarray(self.surface.corner),
         )
@@ -188,10 +188,9 @@ class ScatterOperator:
                 f"{len(refused):,} of {len(found.face_sizes):,} faces have no limit surface and "
                 f"were left out: {_reasons(refused)}",
             )
-        rules = found.subsurf or "no Subdivision Surface, default rules"
-        notes = [f"{self.summary} of {target.ob.name}", f"boundary {found.boundary} ({rules})"]
+        notes = [f"{self.summary} of {target.ob.name}", str(found.rules)]
         if found.ignored:
-            notes.append(f"ignored behind {found.subsurf}: {', '.join(found.ignored)}")
+            notes.append(f"ignored behind {found.rules.subsurf}: {', '.join(found.ignored)}")
         if found.uv_map is None and target.ob.data.uv_layers.active:
             lost = target.ob.data.uv_layers.active.name
             notes.append(f"no UVs stored: the UV map {lost} does not outlast the modifiers")

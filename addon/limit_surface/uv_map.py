@@ -1,39 +1,61 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cage's UV map at locations of the limit surface."""
+"""A cage's UV map: one value for the corners that Blender subdivides as one.
 
+Where the corners around a vertex share a value the map is smooth there; where they do not, a seam
+runs through it. Marks of seams on edges have no say.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
 import numpy as np
 
+from . import attributes
 
-class PtexMap:
-    """Values at face corners, bilinear on each Ptex face between its four corners.
+LIMIT = np.float32(1e-4)  # corners of a vertex that differ by less along each axis share a value
 
-    A quad's are its own. The sub-face at corner i of any other polygon has that corner, the
-    midpoint of the edge that leaves it, the polygon's centre, the midpoint of the edge before it.
+
+@dataclass(frozen=True)
+class UvMap:
+    name: str
+    values: np.ndarray  # (m, 2)
+    indices: np.ndarray  # one per face corner of the cage
+
+
+def read(mesh: bpy.types.Mesh, name: str) -> UvMap:
+    uv = attributes.read(mesh, name)
+    corner_vertex = attributes.column(mesh.loops, "vertex_index", np.int32)
+    face_sizes = attributes.column(mesh.polygons, "loop_total", np.int32)
+    leader = _leaders(uv, corner_vertex, np.repeat(_is_mirrored(uv, face_sizes), face_sizes))
+    leaders, indices = np.unique(leader, return_inverse=True)
+    return UvMap(name, uv[leaders].astype(np.float64), indices.reshape(-1))
+
+
+def _leaders(uv: np.ndarray, corner_vertex: np.ndarray, mirrored: np.ndarray) -> np.ndarray:
+    """For each corner the one whose value it takes, chosen as Blender does.
+
+    The last corner of a vertex takes along all that are close to it and turned the same way; of
+    the rest the last one does, and so on. So who is close to whom depends on that order.
     """
+    leader = np.arange(len(uv))
+    last = np.empty(corner_vertex.max(initial=-1) + 1, int)
+    rest = leader
+    while rest.size:
+        vertex = corner_vertex[rest]
+        last[vertex] = rest  # ascending: the last stays
+        to = last[vertex]
+        close = (np.abs(uv[rest] - uv[to]) < LIMIT).all(axis=1) & (mirrored[rest] == mirrored[to])
+        leader[rest[close]] = to[close]
+        rest = rest[~close & (rest != to)]
+    return leader
 
-    def __init__(
-        self,
-        face_sizes: np.ndarray,
-        values: np.ndarray,  # one row per face corner
-        base_face: np.ndarray,  # of each Ptex face, as LimitSurface tells it
-        corner: np.ndarray,
-    ) -> None:
-        starts = np.concatenate([[0], np.cumsum(face_sizes)[:-1]])
-        size, start = face_sizes[base_face], starts[base_face]
-        here, after, opposite, before = (
-            values[start + (corner + step) % size] for step in (0, 1, 2, -1)
-        )
-        split = (size != 4)[:, None]
-        centre = np.add.reduceat(values, starts)[base_face] / size[:, None]
-        self._here = here
-        self._after = np.where(split, (here + after) / 2, after)
-        self._opposite = np.where(split, centre, opposite)
-        self._before = np.where(split, (here + before) / 2, before)
 
-    def at(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        u, v = uv[:, :1], uv[:, 1:]
-        value = (1 - u) * (1 - v) * self._here[face]
-        value += u * (1 - v) * self._after[face]
-        value += u * v * self._opposite[face]
-        value += (1 - u) * v * self._before[face]
-        return value
+def _is_mirrored(uv: np.ndarray, face_sizes: np.ndarray) -> np.ndarray:
+    """Whether a face's corners run clockwise on the map; faces of no area there do not."""
+    starts = np.cumsum(face_sizes) - face_sizes
+    before = np.arange(len(uv)) - 1
+    before[starts] = starts + face_sizes - 1
+    strips = (uv[before, 0] - uv[:, 0]) * (uv[:, 1] + uv[before, 1])
+    return np.add.reduceat(strips, starts) < 0

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import cage, ids, native
+from .. import ids, native, rules
 from ..preferences import draw_unavailable
 
 
@@ -29,11 +29,16 @@ def _draw_rules(layout: bpy.types.UILayout, ob: bpy.types.Object | None) -> None
     if ob is None or ob.type != "MESH":
         layout.label(text="No active mesh", icon="INFO")
         return
-    subsurf = cage.find_subsurf(ob)
+    subsurf = rules.find_subsurf(ob)
     layout.label(text=ob.name, icon="OBJECT_DATA")
     if subsurf is None:
         layout.label(text="Rules: Subdivision's defaults", icon="MOD_SUBSURF")
         return
-    row = layout.row()
-    row.label(text=subsurf.name, icon="MOD_SUBSURF")
-    row.prop(subsurf, "boundary_smooth", text="")
+    layout.label(text=subsurf.name, icon="MOD_SUBSURF")
+    column = layout.column(align=True)
+    if subsurf.subdivision_type == "SIMPLE":
+        column.label(text="Simple: flat between edges")
+        return
+    column.prop(subsurf, "boundary_smooth", text="")
+    column.prop(subsurf, "uv_smooth", text="")
+    column.prop(subsurf, "use_creases")

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a Subdivision Surface modifier says about the limit surface, in limitsurf's words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+
+BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
+
+SCHEMES = {"CATMULL_CLARK": "catmark", "SIMPLE": "bilinear"}
+
+# Blender's names say what is preserved, OpenSubdiv's what is interpolated linearly: the same.
+UV_INTERPOLATIONS = {
+    "NONE": "all",
+    "PRESERVE_CORNERS": "corners_only",
+    "PRESERVE_CORNERS_AND_JUNCTIONS": "corners_plus1",
+    "PRESERVE_CORNERS_JUNCTIONS_AND_CONCAVE": "corners_plus2",
+    "PRESERVE_BOUNDARIES": "boundaries",
+    "SMOOTH_ALL": "none",
+}
+
+
+@dataclass(frozen=True)
+class Rules:
+    """The defaults are those of a new modifier: they hold for objects that have none."""
+
+    subsurf: str = ""  # the modifier's name
+    scheme: str = "catmark"
+    boundary: str = "smooth"
+    uv_interpolation: str = "boundaries"
+    use_creases: bool = True
+
+    def __str__(self) -> str:
+        if self.scheme == "bilinear":
+            return f"simple subdivision ({self.subsurf})"
+        creases = "" if self.use_creases else ", creases off"
+        whose = self.subsurf or "no Subdivision Surface, default rules"
+        return f"boundary {self.boundary}{creases} ({whose})"
+
+
+def find_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
+    """The modifier whose rules the limit surface follows: the first enabled in the viewport."""
+    return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_viewport), None)
+
+
+def read(subsurf: bpy.types.SubsurfModifier | None) -> Rules:
+    if subsurf is None:
+        return Rules()
+    scheme = SCHEMES[subsurf.subdivision_type]
+    return Rules(
+        subsurf=subsurf.name,
+        scheme=scheme,
+        boundary=BOUNDARIES[subsurf.boundary_smooth],
+        # Simple subdivision leaves UVs where they are, whatever the setting.
+        uv_interpolation="all" if scheme == "bilinear" else UV_INTERPOLATIONS[subsurf.uv_smooth],
+        use_creases=subsurf.use_creases,
+    )

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the vertices and face corners that Blender's Subdivision Surface makes lie on the cage.
+
+The modifier makes 2^levels x 2^levels polygons of a quad, and of any other face half as many along
+each side of each corner's part. Vertices come as the cage's own, then those inside its edges, then
+those inside its faces; polygons come cage face by cage face, in the order of `_quad_cells` and
+`_split_cells`. Behind a modifier that makes, drops or sorts elements none of this holds.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+#: (u, v) of a polygon's corners, in Blender's order: from the one nearest to (0, 0)
+_AROUND = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+
+
+class SurfaceLocations(NamedTuple):
+    face: np.ndarray  # (n,) Ptex faces; -1 where there is none
+    uv: np.ndarray  # (n, 2), multiples of a power of two
+
+
+class _Cells(NamedTuple):
+    """The polygons of one cage face, in Blender's order."""
+
+    part: np.ndarray  # (n,) Ptex face, counted from the cage face's first
+    cell: np.ndarray  # (n, 2) column along u, row along v
+
+
+def corner_locations(face_sizes: np.ndarray, levels: int) -> SurfaceLocations:
+    """Of every corner of every polygon, for a cage whose faces have so many corners."""
+    if levels < 1:
+        raise ValueError("Blender subdivides from level 1 on")
+    first_ptex_face = _starts(np.where(face_sizes == 4, 1, face_sizes))
+    polygons = np.where(face_sizes == 4, 4, face_sizes) * 4 ** (levels - 1)
+    first_polygon = _starts(polygons)
+    face = np.empty((polygons.sum(), 4), np.int32)
+    uv = np.empty((polygons.sum(), 4, 2))
+    for size in np.unique(face_sizes):
+        per_side = 2**levels if size == 4 else 2 ** (levels - 1)
+        cells = _quad_cells(per_side) if size == 4 else _split_cells(size, per_side)
+        alike = np.flatnonzero(face_sizes == size)
+        rows = first_polygon[alike, None] + np.arange(len(cells.part))
+        face[rows] = (first_ptex_face[alike, None] + cells.part)[:, :, None]
+        uv[rows] = (cells.cell[:, None, :] + _AROUND) / per_side
+    return SurfaceLocations(face.ravel(), uv.reshape(-1, 2))
+
+
+def vertex_locations(
+    corners: SurfaceLocations, corner_vertex: np.ndarray, vertex_count: int
+) -> SurfaceLocations:
+    """Of every vertex, from those of the corners that stand at it: its first corner's."""
+    face = np.full(vertex_count, -1, np.int32)
+    uv = np.zeros((vertex_count, 2))
+    vertex, corner = np.unique(corner_vertex, return_index=True)
+    face[vertex], uv[vertex] = corners.face[corner], corners.uv[corner]
+    return SurfaceLocations(face, uv)
+
+
+def _quad_cells(side: int) -> _Cells:
+    """The inner cells row by row, then those along each side in turn."""
+    inner, along, end = np.arange(1, side - 1), np.arange(side - 1), side - 1
+    return _joined(
+        _rows(0, inner, inner),
+        (0, along, 0),
+        (0, end, along),
+        (0, end - along, end),
+        (0, 0, end - along),
+    )
+
+
+def _split_cells(size: int, side: int) -> _Cells:
+    """Of a face that is split into a part for each corner: the inner cells of all parts, those
+    beside the lines between parts, those at the centre, then the cage face's boundary."""
+    parts = range(size)
+    inner, along, upwards, end = (
+        np.arange(1, side - 1),
+        np.arange(side),
+        np.arange(1, side),
+        side - 1,
+    )
+    return _joined(
+        *(_rows(part, upwards, inner) for part in parts),
+        *(((part + 1) % size, inner, end) for part in parts),
+        *((part, end, np.full(min(end, 1), end)) for part in parts),
+        *(strip for part in parts for strip in ((part, along, 0), (part, 0, upwards))),
+    )
+
+
+_Strip = tuple[int, np.ndarray | int, np.ndarray | int]  # part, columns, rows
+
+
+def _rows(part: int, columns: np.ndarray, rows: np.ndarray) -> _Strip:
+    return part, np.tile(columns, len(rows)), np.repeat(rows, len(columns))
+
+
+def _joined(*strips: _Strip) -> _Cells:
+    parts, columns, rows = zip(*(np.broadcast_arrays(*strip) for strip in strips), strict=True)
+    cell = np.stack([np.concatenate(columns), np.concatenate(rows)], axis=1)
+    return _Cells(np.concatenate(parts), cell)
+
+
+def _starts(counts: np.ndarray) -> np.ndarray:
+    return np.concatenate([[0], np.cumsum(counts)[:-1]])

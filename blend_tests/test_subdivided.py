@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which place of the cage each vertex and corner of Blender's subdivided mesh is.
+
+Blender says so itself: Simple subdivision leaves quads flat between their edges and UVs, not
+smoothed, bilinear on each Ptex face, so that positions and UVs name the place.
+"""
+
+import bpy
+import numpy as np
+import parity_zoo
+import pytest
+from limit_surface import attributes, subdivided
+
+
+def ptex_corners(ob, corner_values):
+    """Values at the four corners of every Ptex face, polygon by polygon."""
+    found = []
+    for polygon in ob.data.polygons:
+        p = corner_values[polygon.loop_start : polygon.loop_start + polygon.loop_total]
+        n, centre = len(p), p.mean(axis=0)
+        if n == 4:
+            found.append(p)
+            continue
+        for i in range(n):
+            found.append([p[i], (p[i] + p[(i + 1) % n]) / 2, centre, (p[i] + p[i - 1]) / 2])
+    return np.array(found)
+
+
+def bilinear(ptex, face, uv):
+    (u, v), ptex = uv.T[:, :, None], ptex[face]
+    weights = ((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v)
+    return sum(weight * ptex[:, i] for i, weight in enumerate(weights))
+
+
+@pytest.mark.parametrize("levels", [1, 2, 3, 4])
+@pytest.mark.parametrize("name", ["sheet", "polygons", "prism", "fans", "monkey"])
+def test_blender_agrees(name, levels):
+    ob = parity_zoo.add(name)
+    mesh, subsurf = ob.data, ob.modifiers[0]
+    subsurf.subdivision_type, subsurf.uv_smooth, subsurf.levels = "SIMPLE", "NONE", levels
+    subsurf.use_limit_surface = False  # with it, polygons that are no quads are not flat
+    _spread_uvs(mesh)
+    corner_vertex = attributes.column(mesh.loops, "vertex_index", np.int32)
+    at_corners = attributes.read(mesh, "position").astype(float)[corner_vertex]
+    positions = ptex_corners(ob, at_corners)
+    uvs = ptex_corners(ob, attributes.read(mesh, "UV").astype(float))
+
+    shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    sizes = attributes.column(mesh.polygons, "loop_total", np.int32)
+    corners = subdivided.corner_locations(sizes, levels)
+    np.testing.assert_allclose(
+        bilinear(uvs, *corners), attributes.read(shown, "UV"), atol=1e-5 * np.abs(uvs).max()
+    )
+    shown_vertex = attributes.column(shown.loops, "vertex_index", np.int32)
+    vertices = subdivided.vertex_locations(corners, shown_vertex, len(shown.vertices))
+    used = vertices.face >= 0
+    assert np.count_nonzero(~used) == (1 if name == "fans" else 0)  # an isolated vertex
+    expected = attributes.read(shown, "position")
+    np.testing.assert_allclose(
+        bilinear(positions, vertices.face[used], vertices.uv[used]), expected[used], atol=1e-5
+    )
+    # What stands at one vertex is one place, whichever face it is seen from.
+    np.testing.assert_allclose(bilinear(positions, *corners), expected[shown_vertex], atol=1e-5)
+
+
+def _spread_uvs(mesh):
+    """Each polygon to a place of its own, so that no corner looks like another."""
+    uv = []
+    for polygon in mesh.polygons:
+        angle = 2 * np.pi * np.arange(polygon.loop_total) / polygon.loop_total
+        place = 3 * (polygon.index % 16), 3 * (polygon.index // 16)
+        uv.append(np.stack([np.cos(angle), np.sin(angle)], axis=1) + place)
+    mesh.uv_layers["UV"].data.foreach_set("uv", np.concatenate(uv).astype(np.float32).ravel())
+
+
+def test_loose_edges_have_no_place():
+    ob = parity_zoo.add("sheet")
+    parity_zoo.crease(ob.data, "loose edges")
+    ob.modifiers[0].levels = 2
+    shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    sizes = attributes.column(ob.data.polygons, "loop_total", np.int32)
+    corners = subdivided.corner_locations(sizes, 2)
+    shown_vertex = attributes.column(shown.loops, "vertex_index", np.int32)
+    found = subdivided.vertex_locations(corners, shown_vertex, len(shown.vertices))
+    loose = len(ob.data.vertices) - 30
+    assert loose > 3
+    assert np.count_nonzero(found.face < 0) == loose * 4  # its end, and three along the edge
+
+
+def test_level_0_has_no_polygons_of_its_own():
+    with pytest.raises(ValueError, match="level 1"):
+        subdivided.corner_locations(np.array([4]), 0)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far Blender's subdivided mesh is from the limit surface: for `parity.py` and the tests."""
+
+from collections.abc import Callable
+
+import bpy
+import limitsurf
+import numpy as np
+from limit_surface import attributes, cage, subdivided
+from limit_surface.subdivided import SurfaceLocations
+
+
+class Comparison:
+    """An object whose first modifier is a Subdivision Surface, and its limit surface."""
+
+    def __init__(self, ob: bpy.types.Object, levels: int) -> None:
+        self._ob = ob
+        self._subsurf = ob.modifiers[0]
+        self._subsurf.use_limit_surface, self._subsurf.levels = True, levels
+        self.cage = cage.read(ob, bpy.context.evaluated_depsgraph_get())
+        self.surface = limitsurf.LimitSurface(self.cage.mesh)
+        self.corners = subdivided.corner_locations(self.cage.face_sizes, levels)
+        shown = self._shown(1)
+        corner_vertex = attributes.column(shown.loops, "vertex_index", np.int32)
+        self.vertices = subdivided.vertex_locations(
+            self.corners, corner_vertex, len(shown.vertices)
+        )
+
+    def positions(self, quality: int) -> np.ndarray:
+        """Each vertex's distance from its place, relative to the diagonal of the cage; NaN where
+        there is no surface."""
+        shown = attributes.read(self._shown(quality), "position")
+        diagonal = np.linalg.norm(np.ptp(self.cage.mesh.positions, axis=0))
+        expected = self._evaluate(self.vertices, lambda *at: self.surface.evaluate(*at).position)
+        return np.linalg.norm(shown - expected, axis=1) / diagonal
+
+    def uvs(self, quality: int) -> np.ndarray:
+        """Each face corner's distance from its place on the UV map; the same."""
+        found = self.cage.uv_map
+        smooth = self.surface.face_varying(
+            found.values, found.indices, self.cage.rules.uv_interpolation
+        )
+        expected = self._evaluate(self.corners, lambda *at: smooth.evaluate(*at).value)
+        shown = attributes.read(self._shown(quality), found.name)
+        return np.linalg.norm(shown - expected, axis=1)
+
+    def _shown(self, quality: int) -> bpy.types.Mesh:
+        self._subsurf.quality = quality
+        return self._ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+
+    def _evaluate(self, at: SurfaceLocations, evaluate: Callable[..., np.ndarray]) -> np.ndarray:
+        refused = np.fromiter(self.surface.refused, np.int64)
+        base_face = np.asarray(self.surface.base_face)
+        there = (at.face >= 0) & ~np.isin(base_face[at.face], refused)
+        values = evaluate(at.face[there], at.uv[there])
+        everywhere = np.full((len(at.face), values.shape[1]), np.nan)
+        everywhere[there] = values
+        return everywhere
