@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "support/corner_points.h"
 #include "support/meshes.h"
 #include "support/witness.h"
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "support/accuracy.h"
+#include "support/corner_points.h"
 #include "support/far_limit.h"
 #include "support/meshes.h"
 
@@ -31,7 +32,8 @@ void compare(const std::string& name, const Cage& cage, Worst& worst) {
   const double size = diagonal(cage.positions);
   for (int i = 0; i < static_cast<int>(far.at.size()); ++i) {
     const CornerPoint* corner = corners.at(far.at[i]);
-    const bool valence_two = corner != nullptr && !corner->boundary && corner->faces == 2;
+    const bool valence_two =
+        corner != nullptr && corner->rule == Rule::smooth && corner->faces == 2;
     if (valence_two) continue;
     const double error = (evaluation.position.row(i) - far.position.row(i)).norm() / size;
     worst.position = std::max(worst.position, error);
@@ -39,7 +41,7 @@ void compare(const std::string& name, const Cage& cage, Worst& worst) {
 
     const bool on_edge =
         far.at[i].u == 0 || far.at[i].u == 1 || far.at[i].v == 0 || far.at[i].v == 1;
-    const bool interior_vertex = corner != nullptr && !corner->boundary;
+    const bool interior_vertex = corner != nullptr && corner->rule == Rule::smooth;
     if (on_edge && !interior_vertex) continue;  // boundaries have masks of their own
     const Vector3 t1 = far.tangent1.row(i), t2 = far.tangent2.row(i);
     const Vector3 cross = t1.cross(t2);

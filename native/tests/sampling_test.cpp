@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "support/corner_points.h"
 #include "support/meshes.h"
 #include "support/witness.h"
 

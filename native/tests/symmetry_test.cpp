@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "support/corner_points.h"
 #include "support/meshes.h"
 #include "support/witness.h"
 
@@ -233,7 +234,7 @@ TEST(Symmetry, BoundaryCurvesDependOnBoundaryVerticesAlone) {
       for (int face = 0; face < static_cast<int>(ptex.size()); ++face) {
         for (int c = 0; c < 4; ++c) {
           const CornerPoint& point = corners.at(face, c);
-          if (point.boundary) on_boundary[point.vertex] = true;
+          if (!point.closed) on_boundary[point.vertex] = true;
         }
       }
       for (double t : {0.0, 1e-11, 0.1, 0.5, 0.9, 1.0}) {

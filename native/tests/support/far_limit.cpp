@@ -5,6 +5,7 @@
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -59,17 +60,38 @@ std::vector<Square> refinedSquares(const Far::TopologyLevel& parent,
   return refined;
 }
 
+std::vector<float> sharpness(const std::vector<double>& values) {
+  std::vector<float> result;
+  for (double value : values) result.push_back(static_cast<float>(std::min(value, 10.0)));
+  return result;
+}
+
 std::unique_ptr<Far::TopologyRefiner> refiner(const Cage& cage) {
-  std::vector<int> sizes, vertices;
+  std::vector<int> sizes, vertices, crease_ends, corners;
   for (const std::vector<int>& face : cage.faces) {
     sizes.push_back(static_cast<int>(face.size()));
     vertices.insert(vertices.end(), face.begin(), face.end());
   }
+  for (const auto& [a, b] : cage.options.edge_sharpness.edges) {
+    crease_ends.push_back(static_cast<int>(a));
+    crease_ends.push_back(static_cast<int>(b));
+  }
+  for (std::int64_t v : cage.options.vertex_sharpness.vertices) {
+    corners.push_back(static_cast<int>(v));
+  }
+  const std::vector<float> creases = sharpness(cage.options.edge_sharpness.values);
+  const std::vector<float> corner_weights = sharpness(cage.options.vertex_sharpness.values);
   Far::TopologyDescriptor descriptor;
   descriptor.numVertices = cage.vertexCount();
   descriptor.numFaces = static_cast<int>(sizes.size());
   descriptor.numVertsPerFace = sizes.data();
   descriptor.vertIndicesPerFace = vertices.data();
+  descriptor.numCreases = static_cast<int>(creases.size());
+  descriptor.creaseVertexIndexPairs = crease_ends.data();
+  descriptor.creaseWeights = creases.data();
+  descriptor.numCorners = static_cast<int>(corners.size());
+  descriptor.cornerVertexIndices = corners.data();
+  descriptor.cornerWeights = corner_weights.data();
   Sdc::Options options;
   options.SetVtxBoundaryInterpolation(cage.options.boundary == Boundary::smooth
                                           ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
@@ -77,9 +99,14 @@ std::unique_ptr<Far::TopologyRefiner> refiner(const Cage& cage) {
   options.SetTriangleSubdivision(cage.options.triangles == Triangles::smooth
                                      ? Sdc::Options::TRI_SUB_SMOOTH
                                      : Sdc::Options::TRI_SUB_CATMARK);
+  options.SetCreasingMethod(cage.options.creasing == Creasing::chaikin
+                                ? Sdc::Options::CREASE_CHAIKIN
+                                : Sdc::Options::CREASE_UNIFORM);
+  const Sdc::SchemeType scheme =
+      cage.options.scheme == Scheme::bilinear ? Sdc::SCHEME_BILINEAR : Sdc::SCHEME_CATMARK;
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
   return std::unique_ptr<Far::TopologyRefiner>(
-      Factory::Create(descriptor, Factory::Options(Sdc::SCHEME_CATMARK, options)));
+      Factory::Create(descriptor, Factory::Options(scheme, options)));
 }
 
 }  // namespace

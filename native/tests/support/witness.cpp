@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/witness.h"
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Geometry>
 #include <cmath>
 #include <set>
+
+#include "support/corner_points.h"
 
 namespace limitsurf::test {
 namespace {
@@ -14,6 +18,19 @@ constexpr double kScaleUv[][2] = {
     {0.5, 0.5},       {0.5, 0},     {0, 0.5},    {1, 0.5},
     {0.5, 1},         {0.25, 0.75},
 };
+
+/// Exactly at an irregular vertex, what has no limit is missing.
+void expectMissing(const std::string& where, const CornerPoint& corner, const Truth& got,
+                   const Truth& limit) {
+  for (int quantity = kDu; quantity <= kDvv; ++quantity) {
+    if (!limit[quantity].hasNaN()) continue;
+    EXPECT_TRUE(got[quantity].array().isNaN().all())
+        << where << ": " << kQuantityNames[quantity] << " has no limit, but is "
+        << got[quantity].transpose();
+  }
+  EXPECT_EQ(got[kNormal].allFinite(), corner.hasNormal())
+      << where << ": the normal is " << got[kNormal].transpose();
+}
 
 /// du and dv too parallel for the double nearest to each to fix their normal to kNormalError.
 bool almostParallel(const Vector3& du, const Vector3& dv) {
@@ -45,9 +62,8 @@ void compareWithSubdivision(const std::string& name, const Cage& cage,
     const CornerPoint* point = corners.at(at[i]);
     Truth truth;
     if (point != nullptr && !point->regular()) {
-      truth.values.fill(Vector3::Constant(NAN));
-      const int corner = at[i].v > 0 ? (at[i].u > 0 ? 2 : 3) : at[i].u > 0;
-      truth.values[kPosition] = deep.cornerPosition(at[i].face, corner);
+      truth = deep.corner(at[i].face, cornerAt(at[i]));
+      expectMissing(name + ", " + describe(at[i]), *point, rowOf(evaluations[2], i), truth);
     } else {
       truth = deep.evaluate(at[i]);
       if (corners.insideSmoothCorner(at[i]) || almostParallel(truth[kDu], truth[kDv])) {

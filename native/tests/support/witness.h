@@ -11,7 +11,8 @@
 namespace limitsurf::test {
 
 /// Holds LimitSurface to the promised accuracy against DeepSubdivision at all the locations; at
-/// irregular vertices themselves in position alone. Adds the worst figures to `all`.
+/// irregular vertices themselves also to what must be missing there. Adds the worst figures to
+/// `all`.
 void compareWithSubdivision(const std::string& name, const Cage& cage,
                             const std::vector<Location>& at, Accuracy& all);
 
