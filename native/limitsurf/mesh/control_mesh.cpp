@@ -56,9 +56,6 @@ void checkSharpness(const std::string& where, double value) {
   if (std::isnan(value) || value < 0) {
     refuse(where, " has sharpness ", value, "; sharpness is 0 or more");
   }
-  if (value > 0) {
-    refuse(where, " has sharpness ", value, "; sharpness above 0 is not supported yet");
-  }
 }
 
 void checkEdgeSharpness(const ControlMesh& mesh, const EdgeSharpness& sharpness) {
@@ -169,9 +166,6 @@ ControlMesh::ControlMesh(Points positions, const std::vector<std::int64_t>& face
   checkSizes(face_sizes, face_vertices.size());
   if (face_sizes.empty()) {
     refuse("the mesh has no faces");
-  }
-  if (options_.scheme == Scheme::bilinear) {
-    refuse("scheme 'bilinear' is not supported yet");
   }
 
   face_offsets_.reserve(face_sizes.size() + 1);

@@ -15,17 +15,25 @@ enum class Boundary {
   corners,  ///< boundary vertices with one face are pinned (EDGE_AND_CORNER)
 };
 
-enum class Creasing { uniform, chaikin };
+enum class Creasing {
+  uniform,  ///< a child edge's sharpness is its parent's less 1
+  chaikin,  ///< before that, it is averaged with the sharp edges at the end vertex
+};
 
 enum class Triangles {
   catmark,  ///< Catmull-Clark's own edge rule everywhere
   smooth,   ///< OpenSubdiv's TRI_SUB_SMOOTH: other edge weights beside triangles
 };
 
-enum class Scheme { catmark, bilinear };
+enum class Scheme {
+  catmark,
+  bilinear,  ///< vertices and edges stay: each Ptex face is a bilinear patch, sharpness means
+             ///< nothing
+};
 
 /// Sharpness of edges, each given by its two vertices: 0 is smooth, 10 and more (infinity included)
-/// infinitely sharp.
+/// infinitely sharp. Rounded to float, as OpenSubdiv has it. Of an edge that is given twice the
+/// last counts.
 struct EdgeSharpness {
   std::vector<std::pair<std::int64_t, std::int64_t>> edges;
   std::vector<double> values;
@@ -63,9 +71,6 @@ struct MeshOptions {
 /// What spoils some faces alone is accepted here and told by LimitSurface::refused(): a face that
 /// uses a vertex twice, non-manifold edges and vertices, neighbours of opposite winding. Isolated
 /// vertices belong to no face and change nothing.
-///
-/// Not supported yet, and refused with a MeshError that says so: sharpness above 0 and the bilinear
-/// scheme.
 class ControlMesh {
  public:
   ControlMesh(Points positions, const std::vector<std::int64_t>& face_sizes,
@@ -77,6 +82,8 @@ class ControlMesh {
   int vertexCount() const { return static_cast<int>(positions_.rows()); }
   int faceCount() const { return static_cast<int>(face_offsets_.size()) - 1; }
   int faceSize(int face) const { return face_offsets_[face + 1] - face_offsets_[face]; }
+  /// Where the face's vertices begin among faceVertices().
+  int firstCorner(int face) const { return face_offsets_[face]; }
   Span<int> faceVertices(int face) const {
     return Span<int>(face_vertices_).subspan(face_offsets_[face], faceSize(face));
   }

@@ -3,6 +3,7 @@
 
 #include <opensubdiv/sdc/catmarkScheme.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "limitsurf/mesh/control_mesh.h"
@@ -16,17 +17,40 @@ enum class VertexRule {
   corner,  ///< pinned
 };
 
+/// Sdc's view of a mesh's rules.
+inline OpenSubdiv::Sdc::Options sdcOptions(const MeshOptions& options) {
+  using OpenSubdiv::Sdc::Options;
+  Options sdc;
+  sdc.SetVtxBoundaryInterpolation(options.boundary == Boundary::smooth
+                                      ? Options::VTX_BOUNDARY_EDGE_ONLY
+                                      : Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+  sdc.SetTriangleSubdivision(options.triangles == Triangles::smooth ? Options::TRI_SUB_SMOOTH
+                                                                    : Options::TRI_SUB_CATMARK);
+  sdc.SetCreasingMethod(options.creasing == Creasing::chaikin ? Options::CREASE_CHAIKIN
+                                                              : Options::CREASE_UNIFORM);
+  return sdc;
+}
+
+inline bool isSharp(float sharpness) { return OpenSubdiv::Sdc::Crease::IsSharp(sharpness); }
+inline bool isSemiSharp(float sharpness) { return OpenSubdiv::Sdc::Crease::IsSemiSharp(sharpness); }
+inline bool isInfinitelySharp(float sharpness) {
+  return OpenSubdiv::Sdc::Crease::IsInfinite(sharpness);
+}
+constexpr float kInfinitelySharp = 10;  // Sdc's SHARPNESS_INFINITE, which has no address here
+
+/// A vertex's sharpness and that of its edges, before and after a step.
+struct SharpnessAround {
+  float vertex = 0, child_vertex = 0;
+  std::vector<float> edges, child_edges;
+};
+
 /// Weights of one Catmull-Clark step, taken from OpenSubdiv's Sdc, in any precision.
 /// Face weights apply to the new face points (Sdc's "face centers").
 template <typename Real>
 class SubdivisionRules {
  public:
-  explicit SubdivisionRules(Triangles triangles = Triangles::catmark) {
-    OpenSubdiv::Sdc::Options options;
-    if (triangles == Triangles::smooth) {
-      options.SetTriangleSubdivision(OpenSubdiv::Sdc::Options::TRI_SUB_SMOOTH);
-    }
-    scheme_.SetOptions(options);
+  explicit SubdivisionRules(const MeshOptions& options = {}) {
+    scheme_.SetOptions(sdcOptions(options));
   }
 
   struct VertexMask {
@@ -52,14 +76,27 @@ class SubdivisionRules {
     using OpenSubdiv::Sdc::Crease;
     Mask mask(2, 0, 2);
     const Crease::Rule rule = boundary ? Crease::RULE_CREASE : Crease::RULE_SMOOTH;
-    scheme_.ComputeEdgeVertexMask(Edge{boundary ? 1 : 2, {face_size_0, face_size_1}}, mask, rule,
-                                  rule);
-    EdgeMask result;
-    for (int i = 0; i < 2; ++i) {
-      result.vertices[i] = mask.VertexWeight(i);
-      result.faces[i] = mask.GetNumFaceWeights() ? mask.FaceWeight(i) : Real(0);
-    }
-    return result;
+    scheme_.ComputeEdgeVertexMask(Edge{boundary ? 1 : 2, {face_size_0, face_size_1}, 0, {0, 0}},
+                                  mask, rule, rule);
+    return edgeMaskOf(mask);
+  }
+
+  /// An edge between two faces whose sharpness decays to that of its children.
+  EdgeMask edgeMask(float sharpness, const float child_sharpness[2], int face_size_0,
+                    int face_size_1) const {
+    const Edge edge{
+        2, {face_size_0, face_size_1}, sharpness, {child_sharpness[0], child_sharpness[1]}};
+    Mask mask(2, 0, 2);
+    scheme_.ComputeEdgeVertexMask(edge, mask);
+    return edgeMaskOf(mask);
+  }
+
+  /// A vertex with `face_count` faces and sharp edges, or sharp itself.
+  VertexMask vertexMask(const SharpnessAround& around, int face_count) const {
+    const Vertex vertex{static_cast<int>(around.edges.size()), face_count, &around};
+    Mask mask(1, vertex.edge_count, vertex.edge_count);
+    scheme_.ComputeVertexVertexMask(vertex, mask);
+    return vertexMaskOf(mask);
   }
 
   /// Edges and faces are counted counter-clockwise; on a boundary the first and last edge lie on
@@ -80,16 +117,16 @@ class SubdivisionRules {
                                   : rule == VertexRule::crease ? Crease::RULE_CREASE
                                                                : Crease::RULE_CORNER;
     const bool smooth = rule == VertexRule::smooth;
-    scheme_.ComputeVertexVertexMask(Vertex{edge_count, smooth ? edge_count : edge_count - 1}, mask,
-                                    sdc_rule, sdc_rule);
-    result.vertex = mask.VertexWeight(0);
-    if (mask.GetNumEdgeWeights()) {
-      result.edges = mask.edges;
+    SharpnessAround around;
+    if (rule == VertexRule::crease) {
+      around.edges.assign(edge_count, 0);
+      around.edges.front() = around.edges.back() = kInfinitelySharp;
+      around.child_edges = around.edges;
     }
-    if (mask.GetNumFaceWeights()) {
-      result.faces = mask.faces;
-    }
-    return result;
+    scheme_.ComputeVertexVertexMask(
+        Vertex{edge_count, smooth ? edge_count : edge_count - 1, &around}, mask, sdc_rule,
+        sdc_rule);
+    return vertexMaskOf(mask);
   }
 
  private:
@@ -104,10 +141,13 @@ class SubdivisionRules {
   struct Edge {
     int face_count;
     int face_sizes[2];
+    float sharpness;
+    float child_sharpness[2];
     int GetNumFaces() const { return face_count; }
-    float GetSharpness() const { return 0; }
+    float GetSharpness() const { return sharpness; }
     void GetChildSharpnesses(const OpenSubdiv::Sdc::Crease&, float out[2]) const {
-      out[0] = out[1] = 0;
+      out[0] = child_sharpness[0];
+      out[1] = child_sharpness[1];
     }
     void GetNumVerticesPerFace(int out[]) const {
       out[0] = face_sizes[0];
@@ -117,19 +157,16 @@ class SubdivisionRules {
 
   struct Vertex {
     int edge_count, face_count;
+    const SharpnessAround* around;
     int GetNumEdges() const { return edge_count; }
     int GetNumFaces() const { return face_count; }
-    float GetSharpness() const { return 0; }
+    float GetSharpness() const { return around->vertex; }
     float* GetSharpnessPerEdge(float out[]) const {
-      for (int i = 0; i < edge_count; ++i) {
-        const bool on_boundary = face_count < edge_count && (i == 0 || i == edge_count - 1);
-        out[i] = on_boundary ? OpenSubdiv::Sdc::Crease::SHARPNESS_INFINITE : 0;
-      }
-      return out;
+      return std::copy(around->edges.begin(), around->edges.end(), out), out;
     }
-    float GetChildSharpness(const OpenSubdiv::Sdc::Crease&) const { return 0; }
+    float GetChildSharpness(const OpenSubdiv::Sdc::Crease&) const { return around->child_vertex; }
     float* GetChildSharpnessPerEdge(const OpenSubdiv::Sdc::Crease&, float out[]) const {
-      return GetSharpnessPerEdge(out);
+      return std::copy(around->child_edges.begin(), around->child_edges.end(), out), out;
     }
   };
 
@@ -154,6 +191,27 @@ class SubdivisionRules {
     const Real& EdgeWeight(int i) const { return edges[i]; }
     const Real& FaceWeight(int i) const { return faces[i]; }
   };
+
+  static EdgeMask edgeMaskOf(const Mask& mask) {
+    EdgeMask result;
+    for (int i = 0; i < 2; ++i) {
+      result.vertices[i] = mask.VertexWeight(i);
+      result.faces[i] = mask.GetNumFaceWeights() ? mask.FaceWeight(i) : Real(0);
+    }
+    return result;
+  }
+
+  static VertexMask vertexMaskOf(const Mask& mask) {
+    VertexMask result;
+    result.vertex = mask.VertexWeight(0);
+    if (mask.GetNumEdgeWeights()) {
+      result.edges = mask.edges;
+    }
+    if (mask.GetNumFaceWeights()) {
+      result.faces = mask.faces;
+    }
+    return result;
+  }
 
   OpenSubdiv::Sdc::Scheme<OpenSubdiv::Sdc::SCHEME_CATMARK> scheme_;
 };

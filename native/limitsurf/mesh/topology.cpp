@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <sstream>
 
+#include "limitsurf/mesh/subdivision_rules.h"
+
 namespace limitsurf {
 namespace {
 
 namespace Far = OpenSubdiv::Far;
-namespace Sdc = OpenSubdiv::Sdc;
 
 template <typename... Parts>
 std::string text(const Parts&... parts) {
@@ -35,115 +36,166 @@ int repeatedVertex(Span<int> vertices) {
   return twice == sorted.end() ? -1 : *twice;
 }
 
-/// What is wrong with one of the vertex's edges; empty if nothing is.
-std::string nonManifoldEdge(const Far::TopologyLevel& level, int vertex) {
-  for (const int edge : level.GetVertexEdges(vertex)) {
-    if (!level.IsEdgeNonManifold(edge)) {
-      continue;
+/// Sharpness in the form that Far's factory reads.
+struct Sharpness {
+  std::vector<int> edges, vertices;
+  std::vector<float> edge_values, vertex_values;
+
+  explicit Sharpness(const ControlMesh& mesh) {
+    const EdgeSharpness& edge = mesh.options().edge_sharpness;
+    const VertexSharpness& vertex = mesh.options().vertex_sharpness;
+    if (!edge.edges.empty()) {
+      // Far looks an edge up among those of its first vertex, of which a pole has many.
+      std::vector<int> faces_at(mesh.vertexCount(), 0);
+      for (const int v : mesh.faceVertices()) {
+        ++faces_at[v];
+      }
+      for (const auto& [a, b] : edge.edges) {
+        const int u = static_cast<int>(a), v = static_cast<int>(b);
+        const bool u_first = faces_at[u] <= faces_at[v];
+        edges.push_back(u_first ? u : v);
+        edges.push_back(u_first ? v : u);
+      }
     }
-    const auto ends = level.GetEdgeVertices(edge);
-    const auto faces = level.GetEdgeFaces(edge);
-    if (faces.size() == 2) {
-      return text("faces ", faces[0], " and ", faces[1], " have opposite windings along edge (",
-                  ends[0], ", ", ends[1], ")");
-    }
-    return text("edge (", ends[0], ", ", ends[1], ") has ", faces.size(), " faces");
+    vertices.assign(vertex.vertices.begin(), vertex.vertices.end());
+    const auto rounded = [](double sharpness) {
+      return std::min(static_cast<float>(sharpness), kInfinitelySharp);
+    };
+    std::transform(edge.values.begin(), edge.values.end(), std::back_inserter(edge_values),
+                   rounded);
+    std::transform(vertex.values.begin(), vertex.values.end(), std::back_inserter(vertex_values),
+                   rounded);
   }
-  return {};
-}
+
+  bool any() const {
+    return std::any_of(edge_values.begin(), edge_values.end(), isSharp) ||
+           std::any_of(vertex_values.begin(), vertex_values.end(), isSharp);
+  }
+};
 
 }  // namespace
 
 Topology::Topology(const ControlMesh& mesh) {
   std::vector<int> sizes = mesh.faceSizes();
+  const Sharpness sharpness(mesh);
   Far::TopologyDescriptor descriptor;
   descriptor.numVertices = mesh.vertexCount();
   descriptor.numFaces = mesh.faceCount();
   descriptor.numVertsPerFace = sizes.data();
   descriptor.vertIndicesPerFace = mesh.faceVertices().data();
+  descriptor.numCreases = static_cast<int>(sharpness.edge_values.size());
+  descriptor.creaseVertexIndexPairs = sharpness.edges.data();
+  descriptor.creaseWeights = sharpness.edge_values.data();
+  descriptor.numCorners = static_cast<int>(sharpness.vertex_values.size());
+  descriptor.cornerVertexIndices = sharpness.vertices.data();
+  descriptor.cornerWeights = sharpness.vertex_values.data();
 
-  Sdc::Options options;
-  options.SetVtxBoundaryInterpolation(mesh.options().boundary == Boundary::smooth
-                                          ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
-                                          : Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  refiner_.reset(
-      Factory::Create(descriptor, Factory::Options(OpenSubdiv::Sdc::SCHEME_CATMARK, options)));
+  refiner_.reset(Factory::Create(
+      descriptor, Factory::Options(OpenSubdiv::Sdc::SCHEME_CATMARK, sdcOptions(mesh.options()))));
   if (!refiner_) {
     throw MeshError("OpenSubdiv cannot represent the mesh's topology");
   }
-  refuseSpoiled(mesh);
+  has_sharpness_ = sharpness.any();
+  refuseFaces(mesh);
+  splitNonManifoldVertices(mesh);
 }
 
-void Topology::refuseSpoiled(const ControlMesh& mesh) {
+void Topology::refuseFaces(const ControlMesh& mesh) {
   for (const std::int64_t hole : mesh.options().holes) {
     refused_.emplace(static_cast<int>(hole), "it is a hole");
   }
-  std::map<int, std::string> spoiled;
   for (int face = 0; face < mesh.faceCount(); ++face) {
     const int twice = repeatedVertex(mesh.faceVertices(face));
     if (twice >= 0) {
       refused_.emplace(face, text("it uses vertex ", twice, " twice"));
-      for (const int vertex : mesh.faceVertices(face)) {
-        spoiled.emplace(
-            vertex, text("at vertex ", vertex, ", face ", face, " uses vertex ", twice, " twice"));
-      }
-    }
-  }
-  for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
-    if (!level().IsVertexNonManifold(vertex) || level().GetVertexFaces(vertex).size() == 0 ||
-        spoiled.count(vertex)) {
-      continue;
-    }
-    std::string reason = nonManifoldEdge(level(), vertex);
-    if (reason.empty() && !splitIntoFans(vertex)) {
-      reason = "a closed fan of faces meets others";
-    }
-    if (!reason.empty()) {
-      spoiled.emplace(vertex, text("at vertex ", vertex, ", ", reason));
-    }
-  }
-  for (const auto& [vertex, reason] : spoiled) {
-    for (const int face : level().GetVertexFaces(vertex)) {
-      refused_.emplace(face, reason);
     }
   }
 }
 
-bool Topology::splitIntoFans(int vertex) {
-  const auto faces = level().GetVertexFaces(vertex);
-  const auto corners = level().GetVertexFaceLocalIndices(vertex);
-  std::map<int, int> face_after;  // edge -> which of `faces` it is the first edge of
-  std::map<int, int> face_before;
-  for (int i = 0; i < faces.size(); ++i) {
-    const auto edges = level().GetFaceEdges(faces[i]);
-    face_after[edges[corners[i]]] = i;
-    face_before[edges[(corners[i] + edges.size() - 1) % edges.size()]] = i;
-  }
-  std::vector<SplitFan> fans;
-  int used = 0;
-  for (const auto& [first_edge, first] : face_after) {
-    if (face_before.count(first_edge)) {
-      continue;  // not where a fan begins
+void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
+  std::map<int, std::vector<std::pair<int, int>>> corners;  // (face, corner) at each
+  for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
+    if (level().IsVertexNonManifold(vertex)) {
+      corners[vertex];
     }
-    SplitFan fan{vertex, {}};
+  }
+  if (corners.empty()) {
+    return;
+  }
+  for (int face = 0; face < mesh.faceCount(); ++face) {
+    const Span<int> vertices = mesh.faceVertices(face);
+    for (int corner = 0; corner < static_cast<int>(vertices.size()); ++corner) {
+      if (level().IsVertexNonManifold(vertices[corner])) {
+        corners[vertices[corner]].emplace_back(face, corner);
+      }
+    }
+  }
+  for (const auto& [vertex, at] : corners) {
+    splitIntoFans(vertex, at);
+  }
+}
+
+void Topology::splitIntoFans(int vertex, const std::vector<std::pair<int, int>>& corners) {
+  // Manifold edge -> which corner it leads out of, and which it leads back to.
+  std::map<int, int> leaving, arriving;
+  std::vector<std::pair<int, int>> edges;  // of each corner: leaving, arriving
+  for (const auto& [face, corner] : corners) {
+    const auto of_face = level().GetFaceEdges(face);
+    edges.emplace_back(of_face[corner], of_face[(corner + of_face.size() - 1) % of_face.size()]);
+    const int i = static_cast<int>(edges.size()) - 1;
+    if (!level().IsEdgeNonManifold(edges[i].first)) {
+      leaving[edges[i].first] = i;
+    }
+    if (!level().IsEdgeNonManifold(edges[i].second)) {
+      arriving[edges[i].second] = i;
+    }
+  }
+  std::vector<bool> used(corners.size(), false);
+  const auto follow = [&](int first) {
+    SplitFan fan{vertex, false, {}};
     for (int i = first;;) {
-      fan.faces.emplace_back(faces[i], corners[i]);
-      ++used;
-      const auto edges = level().GetFaceEdges(faces[i]);
-      const auto next = face_after.find(edges[(corners[i] + edges.size() - 1) % edges.size()]);
-      if (next == face_after.end()) {
+      used[i] = true;
+      fan.faces.push_back(corners[i]);
+      const auto next = leaving.find(edges[i].second);
+      if (next == leaving.end() || used[next->second]) {
+        fan.closed = next != leaving.end();
         break;
       }
       i = next->second;
     }
-    fans.push_back(std::move(fan));
+    refuseStrangersToCrease(fan);
+    split_fans_.push_back(std::move(fan));
+  };
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!arriving.count(edges[i].first)) {
+      follow(static_cast<int>(i));
+    }
   }
-  if (used != faces.size()) {
-    return false;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!used[i]) {
+      follow(static_cast<int>(i));
+    }
   }
-  split_fans_.insert(split_fans_.end(), fans.begin(), fans.end());
-  return true;
+}
+
+void Topology::refuseStrangersToCrease(const SplitFan& fan) {
+  if (isInfinitelySharp(level().GetVertexSharpness(fan.vertex))) {
+    return;
+  }
+  const auto edgeOf = [&](const std::pair<int, int>& at, int back) {
+    const auto edges = level().GetFaceEdges(at.first);
+    return edges[(at.second + edges.size() - back) % edges.size()];
+  };
+  const bool between_two =
+      !fan.closed && edgeOf(fan.faces.front(), 0) != edgeOf(fan.faces.back(), 1);
+  if (between_two) {
+    return;
+  }
+  for (const auto& [face, corner] : fan.faces) {
+    refused_.emplace(face, text("at vertex ", fan.vertex,
+                                ", it touches a crease that runs between other faces"));
+  }
 }
 
 }  // namespace limitsurf

@@ -1,58 +1,117 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/patch/cage_mesh.h"
 
+#include <algorithm>
+
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
 
-CageMesh::CageMesh(const Topology& topology, const CageCorners& corners, Boundary boundary)
-    : level_(topology.level()),
+CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology)
+    : mesh_(mesh),
+      level_(topology.level()),
       fans_(topology.splitFans()),
-      corners_(corners),
-      boundary_(boundary),
-      marks_(level_.GetNumVertices() + fans_.size()) {
+      has_sharpness_(topology.hasSharpness()),
+      any_non_manifold_(!fans_.empty()),
+      marks_(static_cast<std::size_t>(vertexCount())) {
+  for (std::size_t fan = 0; fan < fans_.size(); ++fan) {
+    for (const auto& [face, corner] : fans_[fan].faces) {
+      fan_of_[cornerNumber({face, corner})] = static_cast<int>(fan);
+    }
+  }
   parallelFor(marks_.size(), 16384, 0, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      mark(static_cast<VertexId>(v));
+      mark(static_cast<int>(v));
     }
   });
-  for (VertexId v = 0; v < static_cast<VertexId>(marks_.size()); ++v) {
-    if (!isSplit(v) && (marks_[v] & kRegular)) {
-      continue;
-    }
-    for (int i = 0; i < fan(v).faces; ++i) {
-      const FaceId corner = corners_.number(faceAt(v, i));
-      positions_[corner] = i;
-      if (isSplit(v)) {
-        fan_of_[corner] = static_cast<int>(v - level_.GetNumVertices());
-      }
-    }
-  }
 }
 
-void CageMesh::mark(VertexId vertex) {
+void CageMesh::mark(int vertex) {
+  if (!isSplit(vertex) && any_non_manifold_ && level_.IsVertexNonManifold(vertex)) {
+    return;  // its fans stand for it
+  }
   const VertexFan around = fan(vertex);
   std::uint8_t marks = kQuads;
-  for (int i = 0; i < around.faces; ++i) {
-    if (faceSize(faceAt(vertex, i).face) != 4) {
+  const auto look = [&](int face) {
+    if (faceSize(face) != 4) {
       marks = 0;
-      break;
+    }
+  };
+  if (isSplit(vertex)) {
+    for (const auto& [face, corner] : splitFan(vertex).faces) {
+      look(face);
+    }
+  } else {
+    for (const int face : level_.GetVertexFaces(vertex)) {
+      look(face);
+    }
+    if (isRegular(vertex, around)) {
+      marks |= kRegular;
     }
   }
-  marks_[vertex] = static_cast<std::uint8_t>(marks | (around.regular() ? kRegular : 0));
+  marks_[vertex] = marks;
 }
 
-VertexFan CageMesh::fan(VertexId vertex) const {
-  if (isSplit(vertex)) {
-    return {static_cast<int>(splitFan(vertex).faces.size()), false, true};
+bool CageMesh::isRegular(int vertex, const VertexFan& around) const {
+  const int edges = around.closed ? 4 : isInfinitelySharp(around.sharpness) ? 2 : 3;
+  if (around.edges() != edges) {
+    return false;
   }
-  const int v = static_cast<int>(vertex);
-  const int faces = level_.GetVertexFaces(v).size();
-  const bool interior = !level_.IsVertexBoundary(v);
-  return {faces, interior, !interior && faces == 1 && boundary_ == Boundary::corners};
+  if (!has_sharpness_) {
+    return true;
+  }
+  if (around.closed || edges == 3 ? isSharp(around.sharpness) : false) {
+    return false;
+  }
+  // The first and last edge of a boundary are infinitely sharp by themselves.
+  const auto of_vertex = level_.GetVertexEdges(vertex);
+  const int skipped = around.closed ? 0 : 1;
+  for (int i = skipped; i < of_vertex.size() - skipped; ++i) {
+    if (isSharp(level_.GetEdgeSharpness(of_vertex[i]))) {
+      return false;
+    }
+  }
+  return true;
 }
 
-bool CageMesh::regularFace(FaceId face) const {
+VertexFan CageMesh::fan(int vertex) const {
+  if (isSplit(vertex)) {
+    const Topology::SplitFan& fan = splitFan(vertex);
+    return {{fan.faces[0].first, fan.faces[0].second},
+            static_cast<int>(fan.faces.size()),
+            fan.closed,
+            level_.GetVertexSharpness(fan.vertex)};
+  }
+  const auto faces = level_.GetVertexFaces(vertex);
+  VertexFan result{
+      {}, faces.size(), !level_.IsVertexBoundary(vertex), level_.GetVertexSharpness(vertex)};
+  if (faces.size() > 0) {
+    result.first = {faces[0], level_.GetVertexFaceLocalIndices(vertex)[0]};
+  }
+  return result;
+}
+
+std::vector<float> CageMesh::strangeEdges(int vertex) const {
+  std::vector<float> result;
+  if (!isSplit(vertex)) {
+    return result;
+  }
+  const Topology::SplitFan& fan = splitFan(vertex);
+  std::vector<int> own;
+  for (const auto& [face, corner] : fan.faces) {
+    const auto edges = level_.GetFaceEdges(face);
+    own.push_back(edges[corner]);
+    own.push_back(edges[(corner + edges.size() - 1) % edges.size()]);
+  }
+  for (const int edge : level_.GetVertexEdges(fan.vertex)) {
+    if (std::find(own.begin(), own.end(), edge) == own.end()) {
+      result.push_back(level_.GetEdgeSharpness(edge));
+    }
+  }
+  return result;
+}
+
+bool CageMesh::regularFace(int face) const {
   if (faceSize(face) != 4) {
     return false;
   }
@@ -62,6 +121,14 @@ bool CageMesh::regularFace(FaceId face) const {
     }
   }
   return true;
+}
+
+std::array<bool, 4> CageMesh::diagonals(int face) const {
+  std::array<bool, 4> result;
+  for (int corner = 0; corner < 4; ++corner) {
+    result[corner] = !level_.IsVertexBoundary(level_.GetFaceVertices(face)[corner]);
+  }
+  return result;
 }
 
 }  // namespace limitsurf

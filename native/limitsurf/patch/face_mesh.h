@@ -1,53 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include "limitsurf/mesh/subdivision_rules.h"
 
 namespace limitsurf {
 
-/// Ids of the faces and vertices of one level of refinement. A level is never built as a whole, so
-/// its ids need not be consecutive.
-using FaceId = std::int64_t;
-using VertexId = std::int64_t;
-
 /// A corner of a face. As a side of the face it stands for the edge from this corner to the next.
 struct FaceCorner {
-  FaceId face = -1;
+  int face = -1;
   int corner = 0;
 
   bool exists() const { return face >= 0; }
+  friend bool operator==(FaceCorner a, FaceCorner b) {
+    return a.face == b.face && a.corner == b.corner;
+  }
 };
 
-/// What surrounds a vertex.
+/// The faces around a vertex, as far as manifold edges link them.
 struct VertexFan {
+  FaceCorner first;  ///< the others follow by FaceMesh::turned(); on a boundary the first of all
   int faces;
-  bool interior;  ///< faces all around
-  bool pinned;    ///< on a boundary, and does not move
+  bool closed;  ///< faces all around
+  float sharpness;
 
-  /// Whether the surface around the vertex, if all its faces are quads, is a B-spline's.
-  bool regular() const { return faces == (interior ? 4 : pinned ? 1 : 2); }
+  int edges() const { return closed ? faces : faces + 1; }
 };
 
-/// The topology of one level of refinement, answered on demand. Only faces whose vertices are
-/// manifold may be asked about.
+/// One level of refinement: its topology and its sharpness.
 class FaceMesh {
  public:
   virtual ~FaceMesh() = default;
 
-  virtual int faceSize(FaceId face) const = 0;
-  virtual VertexId vertex(FaceCorner at) const = 0;
-  /// The same edge as a side of the face beyond it; does not exist on a boundary.
+  virtual int faceSize(int face) const = 0;
+  virtual int vertex(FaceCorner at) const = 0;
+  /// Consecutive numbers for all corners of all faces.
+  virtual int cornerNumber(FaceCorner at) const = 0;
+  virtual int cornerCount() const = 0;
+  virtual int vertexCount() const = 0;
+  /// The same edge as a side of the face beyond it; does not exist on a boundary, nor at an edge
+  /// that is not manifold.
   virtual FaceCorner twin(FaceCorner side) const = 0;
+  /// Of the edge; infinite where it has no twin.
+  virtual float sharpness(FaceCorner side) const = 0;
 
-  virtual VertexFan fan(VertexId vertex) const = 0;
-  virtual bool onlyQuadsAround(VertexId vertex) const = 0;
-  /// The faces around a vertex, counter-clockwise; on a boundary from the first to the last.
-  virtual FaceCorner faceAt(VertexId vertex, int i) const = 0;
-  /// The i for which faceAt(vertex(at), i) is `at`. Irregular vertices only.
-  virtual int positionOf(FaceCorner at) const = 0;
+  virtual VertexFan fan(int vertex) const = 0;
+  virtual bool onlyQuadsAround(int vertex) const = 0;
+  /// Sharpness of edges at the vertex that belong to none of its fan's faces.
+  virtual std::vector<float> strangeEdges(int vertex) const = 0;
 
   /// The number of the vertex's control point.
-  virtual int point(VertexId vertex) = 0;
+  virtual int point(int vertex) = 0;
 
   FaceCorner after(FaceCorner at, int steps) const {
     return {at.face, (at.corner + steps) % faceSize(at.face)};
@@ -55,15 +57,31 @@ class FaceMesh {
   FaceCorner before(FaceCorner at) const {
     return {at.face, (at.corner == 0 ? faceSize(at.face) : at.corner) - 1};
   }
-  VertexId vertexAfter(FaceCorner at, int steps) const { return vertex(after(at, steps)); }
+  int vertexAfter(FaceCorner at, int steps) const { return vertex(after(at, steps)); }
 
   /// The same vertex's corner in the next face around it, counter-clockwise.
   FaceCorner turned(FaceCorner at) const { return twin(before(at)); }
-  /// In the next face clockwise.
-  FaceCorner turnedBack(FaceCorner at) const {
-    const FaceCorner side = twin(at);
-    return side.exists() ? after(side, 1) : side;
+
+  /// The edge as a side of the face beyond it, unless it cuts the surface: a boundary or an
+  /// infinitely sharp edge.
+  FaceCorner across(FaceCorner side) const {
+    return isInfinitelySharp(sharpness(side)) ? FaceCorner{} : twin(side);
   }
+
+  /// Calls visit(corner) for the faces around a vertex, counter-clockwise.
+  template <typename Visit>
+  void forEachAround(const VertexFan& fan, const Visit& visit) const {
+    FaceCorner at = fan.first;
+    for (int i = 0; i < fan.faces; ++i) {
+      visit(at);
+      if (i + 1 < fan.faces) {
+        at = turned(at);
+      }
+    }
+  }
+
+  /// The sharpness around a vertex: its edges counter-clockwise, then strange ones.
+  SharpnessAround sharpnessAround(int vertex) const;
 };
 
 }  // namespace limitsurf

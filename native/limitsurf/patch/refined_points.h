@@ -14,22 +14,30 @@ namespace limitsurf {
 /// first and are numbered as its vertices; refined points follow in the order of their making.
 ///
 /// A point stores the numbers of its sources; the weights (the mask) depend on its neighbourhood's
-/// topology alone and are shared by all points that have the same.
+/// topology and sharpness alone and are shared by all points that have the same.
 class RefinedPoints {
  public:
-  RefinedPoints(int cage_points, Triangles triangles)
-      : cage_points_(cage_points), rules_(triangles) {}
+  RefinedPoints(int cage_points, const MeshOptions& options)
+      : cage_points_(cage_points), rules_(options) {}
 
   int cagePoints() const { return cage_points_; }
   int size() const { return cage_points_ + static_cast<int>(mask_of_.size()); }
 
   /// The new point of a face. Sources: its vertices.
   int addFacePoint(const std::vector<int>& sources);
-  /// Sources: the edge's ends and the points of its two faces (of the sizes given) or, on a
-  /// boundary, the ends alone.
+  /// The midpoint: the new point of a boundary or infinitely sharp edge. Sources: its ends.
+  int addMidpoint(int end_0, int end_1);
+  /// The new point of a smooth edge. Sources: its ends and the new points of its two faces (of the
+  /// sizes given).
   int addEdgePoint(const std::vector<int>& sources, int face_size_0, int face_size_1);
-  /// Sources: the vertex, the far ends of its edges and (smooth rule) the points of its faces.
+  /// The same of a semi-sharp edge.
+  int addEdgePoint(const std::vector<int>& sources, float sharpness, const float child_sharpness[2],
+                   int face_size_0, int face_size_1);
+  /// Sources: the vertex, the far ends of its edges and the points of its faces, as far as the rule
+  /// needs them: crease its first and last edge, corner none.
   int addVertexPoint(const std::vector<int>& sources, VertexRule rule, int edge_count);
+  /// Any mask; weights of 0 are left out.
+  int addPoint(const std::vector<int>& sources, const std::vector<double>& weights);
 
   /// 2 inner - next: the surface's linear continuation past a boundary (paper, figure 2).
   int addReflection(int inner, int next);
@@ -42,9 +50,12 @@ class RefinedPoints {
     return masks_[mask_of_[static_cast<std::size_t>(point - cage_points_)]];
   }
 
+  const SubdivisionRules<double>& rules() const { return rules_; }
+
  private:
   using MaskKey = std::tuple<int, int, int>;
   int add(const std::vector<int>& sources, const MaskKey& key);
+  int add(const std::vector<int>& sources, int mask);
   std::vector<double> mask(const MaskKey& key, std::size_t source_count) const;
 
   int cage_points_;
@@ -54,6 +65,7 @@ class RefinedPoints {
   std::vector<int> mask_of_;
   std::vector<std::vector<double>> masks_;
   std::map<MaskKey, int> known_masks_;
+  std::map<std::vector<double>, int> other_masks_;
 };
 
 }  // namespace limitsurf

@@ -3,54 +3,19 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "limitsurf/mesh/topology.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/patch/bilinear_tiles.h"
 #include "limitsurf/patch/cage_mesh.h"
-#include "limitsurf/patch/child_mesh.h"
+#include "limitsurf/patch/refined_mesh.h"
+#include "limitsurf/patch/sectors.h"
+#include "limitsurf/patch/window.h"
 
 namespace limitsurf {
 namespace {
-
-/// The vertices around a quad on the grid -1 <= x, y <= 2, as far as the corners' own faces hold
-/// them; -1 where there is none. Needs quads all around.
-class Window {
- public:
-  /// Corner `origin` of the quad is put at (0, 0), the next one at (1, 0).
-  Window(const FaceMesh& mesh, FaceId face, int origin) {
-    vertices_.fill(-1);
-    for (int i = 0; i < 4; ++i) {
-      const FaceCorner here = {face, (origin + i) % 4};
-      set(i, 0, 0, mesh.vertex(here));
-      const FaceCorner next = mesh.turned(here);
-      if (next.exists()) {
-        set(i, -1, 1, mesh.vertexAfter(next, 2));
-        set(i, -1, 0, mesh.vertexAfter(next, 3));
-        if (const VertexFan fan = mesh.fan(mesh.vertex(here)); fan.interior && fan.regular()) {
-          set(i, -1, -1, mesh.vertexAfter(mesh.turned(next), 2));
-        }
-      }
-      if (const FaceCorner previous = mesh.turnedBack(here); previous.exists()) {
-        set(i, 0, -1, mesh.vertexAfter(previous, 1));
-        set(i, 1, -1, mesh.vertexAfter(previous, 2));
-      }
-    }
-  }
-
-  VertexId at(int x, int y) const { return vertices_[(y + 1) * 4 + (x + 1)]; }
-
- private:
-  /// (x, y) as seen from corner i, with its next corner at (1, 0).
-  void set(int i, int x, int y, VertexId vertex) {
-    for (; i > 0; --i) {
-      std::tie(x, y) = std::pair(1 - y, x);
-    }
-    vertices_[(y + 1) * 4 + (x + 1)] = vertex;
-  }
-
-  std::array<VertexId, 16> vertices_;
-};
 
 class Builder {
  public:
@@ -58,20 +23,13 @@ class Builder {
       : mesh_(mesh),
         topology_(topology),
         ptex_(ptex),
-        table_{RefinedPoints(mesh.vertexCount(), mesh.options().triangles), {}, {}, {}, {}, {}},
-        cage_corners_(mesh),
-        levels_{CageMesh(topology, cage_corners_, mesh.options().boundary),
-                ChildMesh(levels_.cage, cage_corners_, table_.points),
-                ChildMesh(levels_.child, quad_corners_, table_.points)} {}
+        table_{RefinedPoints(mesh.vertexCount(), mesh.options()), {}, {}, {}, {}, {}},
+        cage_(mesh, topology) {}
 
   TileTable build() {
     table_.faces.assign(ptex_.base_face.size(), TileRef{TileRef::kNone, 0});
     addRegularFaces();
-    for (int face = 0; face < mesh_.faceCount(); ++face) {
-      if (kinds_[face] == kIrregular) {
-        addIrregularFace(face);
-      }
-    }
+    addIrregularFaces();
     groupByRing();
     return std::move(table_);
   }
@@ -79,42 +37,43 @@ class Builder {
  private:
   enum FaceKind : std::uint8_t { kRefused, kRegular, kIrregular };
 
-  struct Levels {
-    CageMesh cage;
-    ChildMesh child, grandchild;
+  /// A level of refinement with what is known of its vertices.
+  struct Level {
+    FaceMesh& mesh;
+    RefinedMesh* refined;  ///< the same mesh; none for the cage
+    Sectors sectors;
+    struct RingAge {
+      int ring = -1, steps = 0;
+    };
+    std::vector<RingAge> rings;  ///< per sector
+
+    Level(FaceMesh& mesh, RefinedMesh* refined, bool has_sharpness)
+        : mesh(mesh), refined(refined), sectors(mesh, has_sharpness) {}
   };
 
-  /// Corners with extraordinary vertices.
-  struct Irregular {
-    int count = 0, first = 0;
-
-    Irregular(const FaceMesh& mesh, FaceId face) {
-      for (int corner = 3; corner >= 0; --corner) {
-        if (!mesh.fan(mesh.vertex({face, corner})).regular()) {
-          ++count;
-          first = corner;
-        }
-      }
-    }
+  /// A face whose children are tiles, or split again.
+  struct Split {
+    int face;
+    int index;  ///< of the four children; -1: the children are an n-gon's Ptex faces
+    int depth;  ///< of the children
   };
 
-  static bool amongQuads(const FaceMesh& mesh, FaceId quad) {
-    for (int corner = 0; corner < 4; ++corner) {
-      if (!mesh.onlyQuadsAround(mesh.vertex({quad, corner}))) {
-        return false;
-      }
-    }
-    return true;
-  }
+  /// What decides whether a quad is one tile.
+  struct Corners {
+    std::array<bool, 4> diagonal = {false, false, false, false};
+    int irregular = 0, irregular_corner = -1;
+    int creases = 0, crease_side = -1;
+    bool tile = true;
+  };
 
-  /// The bulk of a mesh, on all cores: quads among quads without extraordinary vertices.
+  /// The bulk of a mesh, on all cores: quads among quads without extraordinary or sharp vertices.
   void addRegularFaces() {
     kinds_.assign(mesh_.faceCount(), kRefused);
     parallelFor(mesh_.faceCount(), 4096, 0, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
         const int face = static_cast<int>(f);
         if (topology_.refused().empty() || !topology_.refused().count(face)) {
-          kinds_[f] = levels_.cage.regularFace(face) ? kRegular : kIrregular;
+          kinds_[f] = cage_.regularFace(face) ? kRegular : kIrregular;
         }
       }
     });
@@ -128,53 +87,130 @@ class Builder {
     parallelFor(regular_faces.size(), 4096, 0, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const int face = regular_faces[i];
-        table_.bsplines[i] = bspline(levels_.cage, face);
+        table_.bsplines[i] = bspline(cage_, face, cage_.diagonals(face));
         table_.faces[ptex_.first[face]] = {TileRef::kBSpline, static_cast<std::uint32_t>(i)};
       }
     });
   }
 
-  void addIrregularFace(int face) {
-    if (mesh_.faceSize(face) == 4) {
-      const Irregular irregular(levels_.cage, face);
-      table_.faces[ptex_.first[face]] = amongQuads(levels_.cage, face) && irregular.count <= 1
-                                            ? tile(levels_.cage, 0, face, irregular, 0)
-                                            : split(levels_.child, 1, face);
+  void addIrregularFaces() {
+    if (std::find(kinds_.begin(), kinds_.end(), kIrregular) == kinds_.end()) {
       return;
     }
-    for (int corner = 0; corner < mesh_.faceSize(face); ++corner) {
-      const FaceId child = levels_.child.child({face, corner});
-      const Irregular irregular(levels_.child, child);
-      table_.faces[ptex_.first[face] + corner] = irregular.count <= 1
-                                                     ? tile(levels_.child, 1, child, irregular, 0)
-                                                     : split(levels_.grandchild, 2, child);
+    levels_.push_back(std::make_unique<Level>(cage_, nullptr, topology_.hasSharpness()));
+    std::vector<Split> splits;
+    for (int face = 0; face < mesh_.faceCount(); ++face) {
+      if (kinds_[face] == kIrregular && mesh_.faceSize(face) == 4) {
+        table_.faces[ptex_.first[face]] = tileOrSplit(0, face, 0, splits);
+      } else if (kinds_[face] == kIrregular) {
+        splits.push_back({face, -1, 0});
+      }
+    }
+    while (!splits.empty()) {
+      splits = refine(splits);
     }
   }
 
-  /// Four children of a quad of the level above `mesh`. None has more than one extraordinary
-  /// vertex.
-  TileRef split(ChildMesh& mesh, int level, FaceId parent) {
-    std::array<TileRef, 4> children;
-    for (int corner = 0; corner < 4; ++corner) {
-      const FaceId child = mesh.child({parent, corner});
-      children[corner] = tile(mesh, level, child, Irregular(mesh, child), 1);
+  /// Makes the children of the faces, and says which of them are to be split in their turn.
+  std::vector<Split> refine(const std::vector<Split>& splits) {
+    const int level = static_cast<int>(levels_.size());
+    if (level > TileTable::kMostDepth) {
+      throw std::logic_error("a face does not settle under subdivision");
     }
-    table_.splits.push_back(children);
-    return {TileRef::kSplit, static_cast<std::uint32_t>(table_.splits.size() - 1)};
+    InterruptionPoint::pass();
+    std::vector<int> faces;
+    for (const Split& split : splits) {
+      faces.push_back(split.face);
+    }
+    meshes_.push_back(std::make_unique<RefinedMesh>(levels_.back()->mesh, faces, mesh_.options(),
+                                                    topology_.hasSharpness(), table_.points));
+    RefinedMesh& mesh = *meshes_.back();
+    levels_.push_back(std::make_unique<Level>(mesh, &mesh, topology_.hasSharpness()));
+    std::vector<Split> next;
+    for (const Split& split : splits) {
+      const int corners = mesh.parent().faceSize(split.face);
+      for (int corner = 0; corner < corners; ++corner) {
+        const TileRef child =
+            tileOrSplit(level, mesh.child({split.face, corner}), split.depth, next);
+        if (split.index < 0) {
+          table_.faces[ptex_.first[split.face] + corner] = child;
+        } else {
+          table_.splits[split.index][corner] = child;
+        }
+      }
+    }
+    return next;
   }
 
-  TileRef tile(FaceMesh& mesh, int level, FaceId face, const Irregular& irregular, int depth) {
-    if (irregular.count > 0) {
-      table_.ring_tiles.push_back(ringTile(mesh, level, {face, irregular.first}));
+  TileRef tileOrSplit(int level, int face, int depth, std::vector<Split>& splits) {
+    const Corners corners = look(level, face);
+    FaceMesh& mesh = levels_[level]->mesh;
+    if (!corners.tile) {
+      table_.splits.emplace_back();
+      splits.push_back({face, static_cast<int>(table_.splits.size()) - 1, depth + 1});
+      return {TileRef::kSplit, static_cast<std::uint32_t>(table_.splits.size() - 1)};
+    }
+    if (corners.irregular > 0) {
+      table_.ring_tiles.push_back(ringTile(level, {face, corners.irregular_corner}, corners));
       table_.ring_tiles.back().depth = depth;
       return {TileRef::kRing, static_cast<std::uint32_t>(table_.ring_tiles.size() - 1)};
     }
-    table_.bsplines.push_back(bspline(mesh, face));
+    table_.bsplines.push_back(bspline(mesh, face, corners.diagonal));
+    if (corners.creases > 0) {
+      table_.bsplines.back().crease = mesh.sharpness({face, corners.crease_side});
+      table_.bsplines.back().crease_side = corners.crease_side;
+    }
     return {TileRef::kBSpline, static_cast<std::uint32_t>(table_.bsplines.size() - 1)};
   }
 
-  static BSplineTile bspline(FaceMesh& mesh, FaceId face) {
-    const Window window(mesh, face, 0);
+  Corners look(int level, int face) {
+    Level& at = *levels_[level];
+    Corners result;
+    for (int c = 0; c < 4; ++c) {
+      const int vertex = at.mesh.vertex({face, c});
+      if (level == 0) {
+        if (!cage_.onlyQuadsAround(vertex)) {
+          result.tile = false;
+          return result;
+        }
+        if (cage_.regularVertex(vertex)) {
+          result.diagonal[c] = cage_.fan(vertex).closed;
+          continue;
+        }
+      }
+      switch (at.sectors.state(vertex)) {
+        case Sectors::State::settled: {
+          const Sector& sector = at.sectors.sector(at.sectors.sectorOf({face, c}));
+          result.diagonal[c] = sector.regular() && sector.ring.kind == RingKind::interior;
+          if (!sector.regular()) {
+            ++result.irregular;
+            result.irregular_corner = c;
+          }
+          break;
+        }
+        case Sectors::State::crease:
+          result.diagonal[c] = true;
+          break;
+        default:
+          result.tile = false;
+          return result;
+      }
+    }
+    if (topology_.hasSharpness()) {
+      for (int side = 0; side < 4; ++side) {
+        if (isSemiSharp(at.mesh.sharpness({face, side}))) {
+          ++result.creases;
+          result.crease_side = side;
+        }
+      }
+    }
+    result.tile = result.irregular + result.creases <= 1;
+    return result;
+  }
+
+  template <typename Mesh>
+  static BSplineTile bspline(Mesh& mesh, int face, const std::array<bool, 4>& diagonal) {
+    const Window<Mesh> window(mesh, face, 0, diagonal);
     BSplineTile tile;
     tile.x_low = window.at(-1, 0) < 0;
     tile.x_high = window.at(2, 0) < 0;
@@ -183,34 +219,36 @@ class Builder {
     const int any = mesh.point(window.at(0, 0));
     for (int y = -1; y <= 2; ++y) {
       for (int x = -1; x <= 2; ++x) {
-        const VertexId vertex = window.at(x, y);
+        const int vertex = window.at(x, y);
         tile.points[(y + 1) * 4 + (x + 1)] = vertex < 0 ? any : mesh.point(vertex);
       }
     }
     return tile;
   }
 
-  RingTile ringTile(FaceMesh& mesh, int level, FaceCorner at) {
+  RingTile ringTile(int level, FaceCorner at, const Corners& corners) {
+    Level& here = *levels_[level];
     RingTile tile;
     tile.corner = at.corner;
-    const auto [ring, steps] = ringOf(mesh, level, mesh.vertex(at));
-    tile.ring = ring;
-    tile.ring_steps = steps;
-    tile.face = mesh.positionOf(at);
-    tile.sides = table_.rings[ring].basis->sides(tile.face);
-    const Window window(mesh, at.face, at.corner);
-    const std::vector<int>& cells = table_.rings[ring].basis->outerModes(tile.face).cells();
+    const Level::RingAge age = ringOf(level, here.sectors.sectorOf(at));
+    tile.ring = age.ring;
+    tile.ring_steps = age.steps;
+    tile.face = here.sectors.positionOf(at);
+    tile.sides = table_.rings[tile.ring].basis->sides(tile.face);
+    const Window<FaceMesh> window(here.mesh, at.face, at.corner, corners.diagonal);
+    const std::vector<int>& cells = table_.rings[tile.ring].basis->outerModes(tile.face).cells();
     tile.outer.fill(0);
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      tile.outer[i] = outerPoint(mesh, window, tile_grid::xOf(cells[i]), tile_grid::yOf(cells[i]));
+      tile.outer[i] =
+          outerPoint(here.mesh, window, tile_grid::xOf(cells[i]), tile_grid::yOf(cells[i]));
     }
     return tile;
   }
 
   /// A point of the window, continued linearly past the surface's boundary (paper, figure 2), which
   /// the vertices there, being regular, allow.
-  int outerPoint(FaceMesh& mesh, const Window& window, int x, int y) {
-    if (const VertexId vertex = window.at(x, y); vertex >= 0) {
+  int outerPoint(FaceMesh& mesh, const Window<FaceMesh>& window, int x, int y) {
+    if (const int vertex = window.at(x, y); vertex >= 0) {
       return mesh.point(vertex);
     }
     const bool beyond_x = x == 2 && window.at(2, 0) < 0 && window.at(2, 1) < 0;
@@ -225,42 +263,48 @@ class Builder {
     return known->second;
   }
 
-  /// The ring of a vertex, and how many steps before `level` it was built: at the coarsest level at
-  /// which the vertex has only quads around it.
-  std::pair<int, int> ringOf(FaceMesh& mesh, int level, VertexId vertex) {
-    if (level > 0) {
-      ChildMesh& child = static_cast<ChildMesh&>(mesh);
-      const VertexId above = child.parentVertex(vertex);
-      if (above >= 0 && child.parent().onlyQuadsAround(above)) {
-        const auto [ring, steps] = ringOf(child.parent(), level - 1, above);
-        return {ring, steps + 1};
-      }
+  /// A sector's ring, and how many steps before `level` it was built: at the coarsest level at
+  /// which the vertex is settled and has only quads around it.
+  Level::RingAge ringOf(int level, int sector) {
+    Level& at = *levels_[level];
+    at.rings.resize(at.sectors.sectorCount());
+    if (at.rings[sector].ring >= 0) {
+      return at.rings[sector];
     }
-    const auto [known, is_new] =
-        known_rings_.try_emplace({level, vertex}, static_cast<int>(table_.rings.size()));
-    if (is_new) {
-      table_.rings.push_back(makeRing(mesh, vertex));
+    Level::RingAge age;
+    const int vertex = at.mesh.vertex(at.sectors.sector(sector).first);
+    const int above = at.refined ? at.refined->parentVertex(vertex) : -1;
+    if (above >= 0 && at.refined->parent().onlyQuadsAround(above) &&
+        levels_[level - 1]->sectors.state(above) == Sectors::State::settled) {
+      const int which = sector - at.sectors.firstSector(vertex);
+      age = ringOf(level - 1, levels_[level - 1]->sectors.firstSector(above) + which);
+      ++age.steps;
+    } else {
+      age.ring = static_cast<int>(table_.rings.size());
+      table_.rings.push_back(makeRing(at.mesh, at.sectors.sector(sector)));
     }
-    return {known->second, 0};
+    at.rings[sector] = age;
+    return age;
   }
 
-  static RingPoints makeRing(FaceMesh& mesh, VertexId vertex) {
-    const VertexFan fan = mesh.fan(vertex);
-    const int faces = fan.faces;
-    const Ring ring{fan.interior ? RingKind::interior
-                    : fan.pinned ? RingKind::pinned
-                                 : RingKind::boundary,
-                    faces};
+  RingPoints makeRing(FaceMesh& mesh, const Sector& sector) {
+    const Ring& ring = sector.ring;
     RingPoints result;
-    result.basis = Eigenbasis::get(ring);
+    std::shared_ptr<const Eigenbasis>& basis = bases_[ring];
+    if (!basis) {
+      basis = Eigenbasis::get(ring);
+    }
+    result.basis = basis;
     result.points.resize(ring.size());
-    result.points[0] = mesh.point(vertex);
-    for (int j = 0; j < faces; ++j) {
-      const FaceCorner at = mesh.faceAt(vertex, j);
+    FaceCorner at = sector.first;
+    result.points[0] = mesh.point(mesh.vertex(at));
+    for (int j = 0; j < ring.faces; ++j) {
       result.points[ring.edge(j)] = mesh.point(mesh.vertexAfter(at, 1));
       result.points[ring.face(j)] = mesh.point(mesh.vertexAfter(at, 2));
-      if (!ring.closed() && j == faces - 1) {
-        result.points[ring.edge(faces)] = mesh.point(mesh.vertexAfter(at, 3));
+      if (j + 1 < ring.faces) {
+        at = mesh.turned(at);
+      } else if (ring.edges() > ring.faces) {
+        result.points[ring.edge(j + 1)] = mesh.point(mesh.vertexAfter(at, 3));
       }
     }
     return result;
@@ -296,11 +340,11 @@ class Builder {
   const Topology& topology_;
   const PtexFaces& ptex_;
   TileTable table_;
-  const CageCorners cage_corners_;
-  const QuadCorners quad_corners_;
-  Levels levels_;
+  CageMesh cage_;
+  std::vector<std::unique_ptr<RefinedMesh>> meshes_;
+  std::vector<std::unique_ptr<Level>> levels_;
   std::vector<FaceKind> kinds_;
-  std::map<std::pair<int, VertexId>, int> known_rings_;
+  std::map<Ring, std::shared_ptr<const Eigenbasis>> bases_;
   std::map<std::pair<int, int>, int> reflections_;
 };
 
@@ -319,7 +363,8 @@ PtexFaces::PtexFaces(const ControlMesh& mesh) {
 }
 
 TileTable buildTileTable(const ControlMesh& mesh, const Topology& topology, const PtexFaces& ptex) {
-  return Builder(mesh, topology, ptex).build();
+  return mesh.options().scheme == Scheme::bilinear ? buildBilinearTiles(mesh, topology, ptex)
+                                                   : Builder(mesh, topology, ptex).build();
 }
 
 }  // namespace limitsurf

@@ -15,12 +15,16 @@ namespace limitsurf {
 
 class Topology;
 
-/// A quad whose surface is one bicubic B-spline patch.
+/// A quad whose surface is one bicubic B-spline patch, or a few strips of one along a crease.
 struct BSplineTile {
   std::array<int, 16> points;  ///< row-major in (y, x), from (-1, -1) to (2, 2)
-  /// Sides with no points beyond them: the boundary of the surface. Their entries in `points`
-  /// repeat others and weigh nothing.
+  /// Sides with no points beyond them: boundaries of the surface and infinitely sharp edges. Their
+  /// entries in `points` repeat others and weigh nothing.
   bool x_low, x_high, y_low, y_high;
+  /// Sharpness of the one semi-sharp side (see SingleCrease), or 0; and which side that is: from
+  /// corner `crease_side` to the next.
+  float crease = 0;
+  int crease_side = 0;
 };
 
 /// A quad with an extraordinary vertex at one corner and regular ones at the others.
@@ -29,7 +33,7 @@ struct RingTile {
   int face;        ///< which of the ring's faces
   int ring_steps;  ///< how many subdivisions the ring's points are older than the outer points
   int corner;      ///< the quad's corner with the extraordinary vertex
-  int depth;       ///< 1 for a child of a split Ptex face, else 0
+  int depth;       ///< how many splits of the Ptex face led to the quad
   Sides sides;     ///< of the ring's face
   std::array<int, tile_grid::kOuter> outer;  ///< points, in the order of the basis's outer cells
 };
@@ -40,7 +44,7 @@ struct RingPoints {
   std::vector<int> points;  ///< in the order of Ring
 };
 
-/// What a Ptex face, or one of its four children, consists of.
+/// What a Ptex face, or one of the four children of a split quad, consists of.
 struct TileRef {
   enum Kind : std::uint32_t { kNone = 0, kBSpline = 1, kRing = 2, kSplit = 3 };
   std::uint32_t kind : 2;
@@ -50,8 +54,9 @@ struct TileRef {
 /// The surface as tiles: topology only, no positions.
 ///
 /// A Ptex face is one tile, or splits into four children, child c standing at its corner c with the
-/// orientation of ChildMesh; children are tiles. Splits happen where a tile could not serve: beside
-/// faces other than quads, and where a quad has several extraordinary vertices.
+/// orientation of RefinedMesh; children are tiles or split again. Splits happen where a tile could
+/// not serve: beside faces other than quads, where a quad has several extraordinary vertices, and
+/// where sharpness has yet to decay.
 struct TileTable {
   RefinedPoints points;
   std::vector<TileRef> faces;  ///< per Ptex face
@@ -59,6 +64,9 @@ struct TileTable {
   std::vector<BSplineTile> bsplines;
   std::vector<RingTile> ring_tiles;  ///< grouped by ring
   std::vector<RingPoints> rings;
+
+  /// The deepest split: sharpness decays in 10 steps, and one or two more part the vertices.
+  static constexpr int kMostDepth = 14;
 };
 
 /// Numbers the Ptex faces of a mesh.

@@ -19,58 +19,52 @@ constexpr double kWeight[kPoints] = {0.08566224618958525, 0.1803807865240693, 0.
 constexpr double kConverged = kAreaError / 10;
 constexpr int kMostHalvings = 10;
 
-/// Integral of |du x dv| over [0, 1]^2 of a bicubic patch.
+/// Integral of |du x dv| over a part of a bicubic patch. `weights(u, v)`: those of its window's
+/// points along each axis.
+template <typename Weights>
 class PatchArea {
  public:
-  PatchArea(const Padded* window, int stride, bool x_low, bool x_high, bool y_low, bool y_high)
-      : window_(window),
-        stride_(stride),
-        x_low_(x_low),
-        x_high_(x_high),
-        y_low_(y_low),
-        y_high_(y_high) {}
+  PatchArea(const Padded* window, int stride, const Weights& weights)
+      : window_(window), stride_(stride), weights_(weights) {}
 
-  double operator()(int halvings = kMostHalvings) const { return adaptive(0, 0, 1, halvings); }
-
- private:
-  double square(double u0, double v0, double size) const {
-    double sum = 0;
-    for (int j = 0; j < kPoints; ++j) {
-      const CubicWeights v(v0 + size * kAt[j], y_low_, y_high_);
-      for (int i = 0; i < kPoints; ++i) {
-        const CubicWeights u(u0 + size * kAt[i], x_low_, x_high_);
-        PatchValues<Padded> patch;
-        evaluateWindow<1>(window_, stride_, u, v, patch);
-        const Vector3 du = patch.du.head<3>(), dv = patch.dv.head<3>();
-        sum += kWeight[i] * kWeight[j] * du.cross(dv).norm();
-      }
-    }
-    return sum * size * size;
-  }
-
-  double adaptive(double u, double v, double size, int halvings) const {
-    const double whole = square(u, v, size);
+  double operator()(double u, double v, double width, double height, int halvings) const {
+    const double whole = quadrature(u, v, width, height);
     if (halvings == 0) {
       return whole;
     }
-    const double half = size / 2;
+    const double w = width / 2, h = height / 2;
     double sum = 0;
     for (int q = 0; q < 4; ++q) {
-      sum += square(u + (q & 1) * half, v + (q >> 1) * half, half);
+      sum += quadrature(u + (q & 1) * w, v + (q >> 1) * h, w, h);
     }
     if (std::abs(sum - whole) <= kConverged * sum) {
       return sum;
     }
     double refined = 0;
     for (int q = 0; q < 4; ++q) {
-      refined += adaptive(u + (q & 1) * half, v + (q >> 1) * half, half, halvings - 1);
+      refined += (*this)(u + (q & 1) * w, v + (q >> 1) * h, w, h, halvings - 1);
     }
     return refined;
   }
 
+ private:
+  double quadrature(double u0, double v0, double width, double height) const {
+    double sum = 0;
+    for (int j = 0; j < kPoints; ++j) {
+      for (int i = 0; i < kPoints; ++i) {
+        const auto w = weights_(u0 + width * kAt[i], v0 + height * kAt[j]);
+        PatchValues<Padded> patch;
+        evaluateWindow<1>(window_, stride_, w.u, w.v, patch);
+        const Vector3 du = patch.du.head<3>(), dv = patch.dv.head<3>();
+        sum += kWeight[i] * kWeight[j] * du.cross(dv).norm();
+      }
+    }
+    return sum * width * height;
+  }
+
   const Padded* window_;
   int stride_;
-  bool x_low_, x_high_, y_low_, y_high_;
+  const Weights& weights_;
 };
 
 double areaOf(const BSplineTile& tile, const Pose& pose) {
@@ -78,7 +72,15 @@ double areaOf(const BSplineTile& tile, const Pose& pose) {
   for (int i = 0; i < 16; ++i) {
     window[i] = pose.point(tile.points[i]) - pose.point(tile.points[5]);
   }
-  return PatchArea(window, 4, tile.x_low, tile.x_high, tile.y_low, tile.y_high)();
+  const auto weights = [&](double u, double v) { return TileWeights(tile, u, v); };
+  const PatchArea area(window, 4, weights);
+  double sum = 0;
+  const TileStrips strips(tile);
+  for (int i = 0; i < strips.count; ++i) {
+    const TileStrips::Strip s = strips.at(i);
+    sum += area(s.u0, s.v0, s.u1 - s.u0, s.v1 - s.v0, kMostHalvings);
+  }
+  return sum;
 }
 
 /// Quarter after quarter towards the extraordinary vertex, until the rest, which shrinks by a
@@ -94,10 +96,17 @@ double areaOf(const TileTable& table, const Pose& pose, int index) {
     basis.controlGrid(tile.face, steps, tile.ring_steps, pose.ring(tile.ring).coefficients,
                       pose.ringTile(index).outer, grid);
     double quarters = 0;
-    for (const auto& [a, b] : {std::pair{1, 0}, {1, 1}, {0, 1}}) {
-      quarters += PatchArea(grid + b * tile_grid::kSize + a, tile_grid::kSize,
-                            onRight(tile.sides) && a == 0, false, onLeft(tile.sides) && b == 0,
-                            false)(steps <= kAdaptiveSteps ? kMostHalvings : 1);
+    for (const auto& quarter : {std::pair{1, 0}, {1, 1}, {0, 1}}) {
+      const int a = quarter.first, b = quarter.second;
+      struct Weights {
+        CubicWeights u, v;
+      };
+      const bool x_low = onRight(tile.sides) && a == 0, y_low = onLeft(tile.sides) && b == 0;
+      const auto weights = [&](double u, double v) {
+        return Weights{CubicWeights(u, x_low, false), CubicWeights(v, y_low, false)};
+      };
+      quarters += PatchArea(grid + b * tile_grid::kSize + a, tile_grid::kSize, weights)(
+          0, 0, 1, 1, steps <= kAdaptiveSteps ? kMostHalvings : 1);
     }
     quarters = std::ldexp(quarters, 2 * (1 - steps));  // grids come magnified
     sum += quarters;

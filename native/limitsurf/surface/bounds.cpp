@@ -72,19 +72,21 @@ void raise(const Bezier& patch, double tolerance, int halvings, double& most) {
   }
 }
 
-/// `window`: 4 x 4 B-spline control points, all present.
-void includeWindow(const Padded window[16], const Padded& anchor, double tolerance,
-                   Extremes& extremes) {
+/// `values`: 4 x 4 numbers that determine the patch; `convert` turns four of them along an axis
+/// into Bezier coefficients.
+template <typename Convert>
+void includeBezier(const Padded values[16], const Padded& anchor, double tolerance,
+                   Extremes& extremes, const Convert& convert) {
   for (int axis = 0; axis < 3; ++axis) {
     Bezier patch;
     for (int i = 0; i < 16; ++i) {
-      patch[i] = window[i][axis];
+      patch[i] = values[i][axis];
     }
     for (int i = 0; i < 4; ++i) {
-      toBezier(&patch[4 * i], 1);
+      convert(&patch[4 * i], 1);
     }
     for (int i = 0; i < 4; ++i) {
-      toBezier(&patch[i], 4);
+      convert(&patch[i], 4);
     }
     for (const int sign : {1, -1}) {
       Bezier signed_patch = patch;
@@ -103,12 +105,42 @@ void continueLow(Padded* p, int along, int across) {
   }
 }
 
+/// Bezier coefficients of a cubic from its values at 0, 1/3, 2/3 and 1, `stride` apart.
+void interpolateBezier(double* p, int stride) {
+  const double p0 = p[0], p1 = p[stride], p2 = p[2 * stride], p3 = p[3 * stride];
+  p[stride] = (-5 * p0 + 18 * p1 - 9 * p2 + 2 * p3) / 6;
+  p[2 * stride] = (2 * p0 - 9 * p1 + 18 * p2 - 5 * p3) / 6;
+}
+
+/// A tile with a crease, strip by strip.
+void includeStrips(const BSplineTile& tile, const Padded window[16], const Padded& anchor,
+                   double tolerance, Extremes& extremes) {
+  const TileStrips strips(tile);
+  for (int i = 0; i < strips.count; ++i) {
+    const TileStrips::Strip s = strips.at(i);
+    Padded values[16];
+    for (int y = 0; y < 4; ++y) {
+      for (int x = 0; x < 4; ++x) {
+        const TileWeights w(tile, s.u0 + (s.u1 - s.u0) * x / 3, s.v0 + (s.v1 - s.v0) * y / 3);
+        PatchValues<Padded> patch;
+        evaluateWindow<0>(window, 4, w.u, w.v, patch);
+        values[4 * y + x] = patch.value;
+      }
+    }
+    includeBezier(values, anchor, tolerance, extremes, interpolateBezier);
+  }
+}
+
 void includeBSpline(const BSplineTile& tile, const Pose& pose, double tolerance,
                     Extremes& extremes) {
   const Padded anchor = pose.point(tile.points[5]);
   Padded window[16];
   for (int i = 0; i < 16; ++i) {
     window[i] = pose.point(tile.points[i]) - anchor;
+  }
+  if (tile.crease > 0) {
+    includeStrips(tile, window, anchor, tolerance, extremes);
+    return;
   }
   if (tile.x_low) {
     continueLow(window, 4, 1);
@@ -122,7 +154,7 @@ void includeBSpline(const BSplineTile& tile, const Pose& pose, double tolerance,
   if (tile.y_high) {
     continueLow(window + 12, 1, -4);
   }
-  includeWindow(window, anchor, tolerance, extremes);
+  includeBezier(window, anchor, tolerance, extremes, toBezier);
 }
 
 /// A ring tile, quarter after quarter towards its vertex, until what is left can no longer matter.
@@ -172,7 +204,7 @@ class RingTileBounds {
     if (onLeft(tile_.sides) && b == 0) {
       continueLow(window, 1, 4);
     }
-    includeWindow(window, ring_.limit, tolerance, extremes);
+    includeBezier(window, ring_.limit, tolerance, extremes, toBezier);
   }
 
   /// What a mode can contribute, at most, to a coordinate of a control point after n steps:

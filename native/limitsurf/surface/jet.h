@@ -46,11 +46,14 @@ struct Jet {
     }
   }
 
-  /// From the parameters of a child to those of its parent.
-  void zoomOut() {
-    patch.du *= 2;
-    patch.dv *= 2;
-    exponent += 2;
+  /// From the parameters of a child to those of its parent, so many levels up.
+  void zoomOut(int levels) {
+    if (levels > 0) {
+      const double scale = powerOfTwo(levels);
+      patch.du *= scale;
+      patch.dv *= scale;
+      exponent += 2 * levels;
+    }
   }
 };
 

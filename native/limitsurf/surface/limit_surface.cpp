@@ -24,7 +24,7 @@ LimitSurface::Data::Data(ControlMesh control_mesh)
     : Data(std::move(control_mesh), PtexFaces(control_mesh), Topology(control_mesh)) {}
 
 VertexApproach LimitSurface::Data::approachTo(const TileLocation& at) const {
-  return vertexApproach(table, pose, static_cast<int>(at.tile.index), at.turns[0] + at.turns[1]);
+  return vertexApproach(table, pose, static_cast<int>(at.tile.index), at.turns);
 }
 
 void LimitSurface::Data::check(Span<Location> at, int threads) const {

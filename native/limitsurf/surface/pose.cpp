@@ -29,15 +29,15 @@ Pose::Pose(const TileTable& table)
       rings_(table.rings.size()),
       ring_tiles_(table.ring_tiles.size()),
       first_tile_(table.rings.size() + 1, 0) {
-  std::size_t tiles[2] = {0, 0};
+  std::size_t tiles[TileTable::kMostDepth + 1] = {};
   for (const RingTile& tile : table.ring_tiles) {
     ++tiles[tile.depth];
   }
   std::size_t grids = 0;
-  for (int fewer = 0; fewer < kMostGridSteps[0]; ++fewer) {
+  for (int fewer = 0; fewer < kMostGridSteps; ++fewer) {
     grids = 0;
-    for (int depth = 0; depth < 2; ++depth) {
-      grid_steps_[depth] = std::max(1, kMostGridSteps[depth] - fewer);
+    for (int depth = 0; depth <= TileTable::kMostDepth; ++depth) {
+      grid_steps_[depth] = std::max(1, kMostGridSteps - depth - fewer);
       grids += tiles[depth] * static_cast<std::size_t>(grid_steps_[depth]);
     }
     if (grids * sizeof(Grid) <= kGridBytes) {

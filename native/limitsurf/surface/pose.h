@@ -16,9 +16,9 @@ namespace limitsurf {
 /// steps with probability 4^-n only.
 class Pose {
  public:
-  /// Steps whose grids are kept, in a whole Ptex face and in a child of one, as long as all grids
+  /// Steps whose grids are kept in a whole Ptex face, one less for each split, as long as all grids
   /// together stay below kGridBytes; else fewer, but at least one.
-  static constexpr int kMostGridSteps[2] = {4, 3};
+  static constexpr int kMostGridSteps = 4;
   static constexpr std::size_t kGridBytes = std::size_t{256} << 20;
 
   /// Control points relative to the ring's limit, which takes the place of cell (-1, -1).
@@ -61,7 +61,7 @@ class Pose {
   void setRingTile(int tile, const std::vector<Padded>& ring_levels);
 
   const TileTable* table_;
-  int grid_steps_[2];
+  int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
   std::vector<RingPose> rings_;
   std::vector<RingTilePose> ring_tiles_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -27,14 +28,11 @@ class Row {
       addRing(at, order);
     }
     for (auto& [point, w] : weights_) {
-      turn(at.turns[1], w[1], w[2]);
-      if (at.in_split) {
-        turn(at.turns[0], w[1], w[2]);
-        w[1] *= 2;
-        w[2] *= 2;
-      }
+      turn(at.turns, w[1], w[2]);
+      w[1] = std::ldexp(w[1], at.depth);
+      w[2] = std::ldexp(w[2], at.depth);
     }
-    if ((at.turns[0] + at.turns[1]) % 2 == 1) {
+    if (at.turns % 2 == 1) {
       std::swap(undefined_[0], undefined_[1]);
     }
     expandRefined();
@@ -64,7 +62,8 @@ class Row {
 
   void addBSpline(const TileLocation& at) {
     const BSplineTile& tile = table_.bsplines[at.tile.index];
-    const CubicWeights u(at.u, tile.x_low, tile.x_high), v(at.v, tile.y_low, tile.y_high);
+    const TileWeights w(tile, at.u, at.v);
+    const CubicWeights &u = w.u, &v = w.v;
     double du[4], dv[4];
     u.firstOnPoints(du);
     v.firstOnPoints(dv);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "limitsurf/patch/single_crease.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/vertex_limit.h"
 
@@ -39,27 +40,84 @@ GridWindow gridWindow(const Quarter& quarter, Sides sides, int order) {
           CubicWeights(quarter.v, onLeft(sides) && quarter.b == 0, false), order};
 }
 
+namespace {
+
+/// Across a crease along the low side, or along the high one, at t from the low side.
+CubicWeights acrossCrease(float sharpness, double t, bool high_side, bool cut) {
+  CubicWeights w = SingleCrease(sharpness).weights(high_side ? 1 - t : t, cut);
+  if (high_side) {
+    std::reverse(w.value, w.value + 4);
+    std::reverse(w.first, w.first + 3);
+    std::reverse(w.second, w.second + 2);
+  }
+  return w;
+}
+
+}  // namespace
+
+TileWeights::TileWeights(const BSplineTile& tile, double u_, double v_)
+    : u(u_, tile.x_low, tile.x_high), v(v_, tile.y_low, tile.y_high) {
+  if (tile.crease > 0) {
+    switch (tile.crease_side) {
+      case 0:
+        v = acrossCrease(tile.crease, v_, false, tile.y_high);
+        break;
+      case 1:
+        u = acrossCrease(tile.crease, u_, true, tile.x_low);
+        break;
+      case 2:
+        v = acrossCrease(tile.crease, v_, true, tile.y_low);
+        break;
+      default:
+        u = acrossCrease(tile.crease, u_, false, tile.x_high);
+    }
+  }
+}
+
+TileStrips::TileStrips(const BSplineTile& tile)
+    : count(1), side_(tile.crease_side), borders_{0, 1, 1, 1} {
+  static_assert(sizeof borders_ == (SingleCrease::kMostStrips + 1) * sizeof(double));
+  if (tile.crease > 0) {
+    count = SingleCrease(tile.crease).strips(borders_);
+  }
+}
+
+TileStrips::Strip TileStrips::at(int i) const {
+  const double near = borders_[i], far = borders_[i + 1];
+  switch (side_) {
+    case 0:
+      return {0, 1, near, far};
+    case 1:
+      return {1 - far, 1 - near, 0, 1};
+    case 2:
+      return {0, 1, 1 - far, 1 - near};
+    default:
+      return {near, far, 0, 1};
+  }
+}
+
 TileLocation TileEvaluator::locate(const Location& at) const {
   TileLocation result;
   result.tile = table_.faces[at.face];
   result.u = at.u;
   result.v = at.v;
-  result.turns[0] = result.turns[1] = 0;
-  result.in_split = result.tile.kind == TileRef::kSplit;
-  if (result.in_split) {
-    const bool right = at.u >= 0.5, top = at.v >= 0.5;
+  result.turns = result.depth = 0;
+  while (result.tile.kind == TileRef::kSplit) {
+    const bool right = result.u >= 0.5, top = result.v >= 0.5;
     const int child = top ? (right ? 2 : 3) : (right ? 1 : 0);
     result.tile = table_.splits[result.tile.index][child];
     turnParameters(child, result.u, result.v);
     result.u *= 2;
     result.v *= 2;
-    result.turns[0] = child;
+    result.turns += child;
+    ++result.depth;
   }
   if (result.tile.kind == TileRef::kRing) {
     const int corner = table_.ring_tiles[result.tile.index].corner;
     turnParameters(corner, result.u, result.v);
-    result.turns[1] = corner;
+    result.turns += corner;
   }
+  result.turns %= 4;
   return result;
 }
 
@@ -74,11 +132,8 @@ void TileEvaluator::evaluate(const TileLocation& at, Jet& jet) {
     evaluateRing<Order>(at, jet);
   }
   if (Order > 0) {
-    jet.turn(at.turns[1]);
-    if (at.in_split) {
-      jet.turn(at.turns[0]);
-      jet.zoomOut();
-    }
+    jet.turn(at.turns);
+    jet.zoomOut(at.depth);
   }
 }
 
@@ -87,10 +142,10 @@ void TileEvaluator::evaluateBSpline(const TileLocation& at, Jet& jet) {
   const int index = static_cast<int>(at.tile.index);
   const BSplineTile& tile = table_.bsplines[index];
   const Padded& anchor = pose_.point(tile.points[5]);
-  const CubicWeights u(at.u, tile.x_low, tile.x_high), v(at.v, tile.y_low, tile.y_high);
+  const TileWeights w(tile, at.u, at.v);
   jet.anchor = anchor;
   if (index == loaded_) {
-    evaluateWindow<Order>(window_, 4, u, v, jet.patch);
+    evaluateWindow<Order>(window_, 4, w.u, w.v, jet.patch);
     return;
   }
   const auto point = [&](int x, int y) -> Padded {
@@ -103,7 +158,7 @@ void TileEvaluator::evaluateBSpline(const TileLocation& at, Jet& jet) {
     }
   }
   last_ = index;
-  evaluatePatch<Order, Padded>(point, u, v, jet.patch);
+  evaluatePatch<Order, Padded>(point, w.u, w.v, jet.patch);
 }
 
 template <int Order>

@@ -10,12 +10,35 @@ namespace limitsurf {
 /// Where a location lies among the tiles.
 struct TileLocation {
   TileRef tile;
-  double u, v;   ///< in the tile's frame; of a ring tile turned so that its vertex is (0, 0)
-  int turns[2];  ///< corners by which the frame was turned: in the split, in the tile
-  bool in_split;
+  double u, v;  ///< in the tile's frame; of a ring tile turned so that its vertex is (0, 0)
+  int turns;    ///< corners by which that frame is turned against the Ptex face's, 0 to 3
+  int depth;    ///< splits on the way to the tile
 
   /// At the extraordinary vertex of a ring tile.
   bool atVertex() const { return tile.kind == TileRef::kRing && u == 0 && v == 0; }
+};
+
+/// Weights of a regular tile's points at (u, v), along each axis.
+struct TileWeights {
+  TileWeights(const BSplineTile& tile, double u, double v);
+  CubicWeights u, v;
+};
+
+/// The rectangles of a regular tile in which it is one bicubic patch: all of it, or strips along a
+/// crease.
+struct TileStrips {
+  explicit TileStrips(const BSplineTile& tile);
+
+  struct Strip {
+    double u0, u1, v0, v1;
+  };
+  Strip at(int i) const;
+
+  int count;
+
+ private:
+  int side_;
+  double borders_[4];  // distances from the crease
 };
 
 /// Evaluates single locations. Keeps the control points of a regular tile that is asked for twice
