@@ -84,7 +84,7 @@ def add_subsurf(ob: bpy.types.Object, boundary: str = "ALL") -> bpy.types.Subsur
 def add_uv_map(ob: bpy.types.Object, affine: Callable[[np.ndarray], np.ndarray]) -> None:
     """A UV map that is a function of the vertices' positions."""
     layer = ob.data.uv_layers.new(name="Flat")
-    corners = attributes.column(ob.data.loops, "vertex_index", np.int32)
+    corners = attributes.read(ob.data, ids.CORNER_VERTEX)
     positions = attributes.read(ob.data, "position")[corners]
     layer.data.foreach_set("uv", affine(positions).astype(np.float32).ravel())
 
@@ -112,6 +112,32 @@ def strands(hair: bpy.types.Object) -> np.ndarray:
 
 def locations(data: bpy.types.ID) -> tuple[np.ndarray, np.ndarray]:
     return attributes.read(data, ids.FACE), attributes.read(data, ids.UV).astype(np.float64)
+
+
+def ptex_corners(ob: bpy.types.Object, corner_values: np.ndarray) -> np.ndarray:
+    """Values at the four corners of every Ptex face, told polygon by polygon."""
+    found = []
+    for polygon in ob.data.polygons:
+        p = corner_values[polygon.loop_start : polygon.loop_start + polygon.loop_total]
+        n, centre = len(p), p.mean(axis=0)
+        if n == 4:
+            found.append(p)
+            continue
+        for i in range(n):
+            found.append([p[i], (p[i] + p[(i + 1) % n]) / 2, centre, (p[i] + p[i - 1]) / 2])
+    return np.array(found)
+
+
+def bilinear(ptex: np.ndarray, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
+    (u, v), ptex = uv.T[:, :, None], ptex[face]
+    weights = ((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v)
+    return sum(weight * ptex[:, i] for i, weight in enumerate(weights))
+
+
+def on_base_mesh(ob: bpy.types.Object, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
+    corner_vertex = attributes.read(ob.data, ids.CORNER_VERTEX)
+    positions = attributes.read(ob.data, "position").astype(np.float64)
+    return bilinear(ptex_corners(ob, positions[corner_vertex]), face, uv)
 
 
 def surface_without_addon(ob: bpy.types.Object, boundary: str = "ALL") -> limitsurf.LimitSurface:

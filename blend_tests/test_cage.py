@@ -77,6 +77,13 @@ def test_positions_that_are_not_finite():
     refusal(ob, "vertex 3 .*finite")
 
 
+@pytest.mark.parametrize("kind", ["edge", "vertex"])
+def test_creases_that_are_no_numbers(kind):
+    ob = scenes.cross()
+    getattr(ob.data, f"{kind}_creases_ensure")().data[2].value = np.nan
+    refusal(ob, f"{kind}_sharpness row 0.*nan")
+
+
 def test_hidden_by_animation():
     """Blender does not evaluate such an object: its mesh would be an old one."""
     ob = scenes.cross()

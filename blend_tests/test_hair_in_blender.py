@@ -14,32 +14,16 @@ def flat(positions):
 
 
 @pytest.mark.parametrize("scene", ["grid with holes", "mixed polygons"])
-def test_surface_uv_is_the_place_on_the_base_mesh(scene):
+def test_surface_uv_is_the_place_on_the_base_mesh_where_uvs_are_not_smoothed(scene):
     """On an affine map a place's UV is the map of its place: the bilinear one on the bare mesh."""
     ob = scenes.SCENES[scene]()
     add_uv_map(ob, flat)
-    add_subsurf(ob)
+    add_subsurf(ob).uv_smooth = "NONE"
     hair = add_hair(ob)
     assert hair.data.surface_uv_map == "Flat"
     stored = attributes.read(hair.data, ids.SURFACE_UV)
-    np.testing.assert_allclose(stored, flat(on_base_mesh(ob, hair)), atol=1e-6)
-
-
-def on_base_mesh(ob, hair):
-    """Bilinear places on the base mesh's Ptex faces, polygon by polygon."""
-    corners = []
-    for polygon in ob.data.polygons:
-        p = [np.array(ob.data.vertices[i].co) for i in polygon.vertices]
-        n, centre = len(p), np.mean(p, axis=0)
-        if n == 4:
-            corners.append(p)
-            continue
-        for i in range(n):
-            corners.append([p[i], (p[i] + p[(i + 1) % n]) / 2, centre, (p[i] + p[(i - 1) % n]) / 2])
-    face, uv = locations(hair.data)
-    corners, (u, v) = np.array(corners)[face], uv.T[:, :, None]
-    weights = ((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v)
-    return sum(weight * corners[:, i] for i, weight in enumerate(weights))
+    place = scenes.on_base_mesh(ob, *locations(hair.data))
+    np.testing.assert_allclose(stored, flat(place), atol=1e-6)
 
 
 def test_surface_uv_behind_a_modifier_that_makes_faces():
@@ -149,23 +133,22 @@ def test_report_has_the_counts(capfd):
 
 
 def test_faces_without_a_limit_surface_are_left_out_and_reported(capfd):
-    """Three faces at one edge: they and all that touch it have none."""
+    """A face that uses a vertex twice: it and all that touch it have none."""
     ob = scenes.grid_with_holes()
     n = len(ob.data.vertices)
     positions = [vertex.co[:] for vertex in ob.data.vertices] + [(2.5, 2.5, 5)]
-    faces = [polygon.vertices[:] for polygon in ob.data.polygons] + [(14, 15, n)]
+    faces = [polygon.vertices[:] for polygon in ob.data.polygons] + [(14, 15, n, 15)]
     hair = add_hair(add_mesh("Fin", positions, faces), per_side=2)
     reported = capfd.readouterr().out
     assert f"of {len(faces)} faces have no limit surface and were left out" in reported
-    assert "edge (14, 15) has 3 faces" in reported.replace("(15, 14)", "(14, 15)")
+    assert f"it uses vertex 15 twice (face {len(faces) - 1}; 1 in all)" in reported
     assert 0 < len(hair.data.curves) < 4 * len(faces)
 
 
 def test_nothing_left_to_grow_on():
-    add_mesh("Fin", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, -1, 0)],
-             [(0, 1, 2), (0, 1, 3), (0, 1, 4)])  # fmt: skip
+    add_mesh("Fold", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2, 1)])
     before = scenes.file_contents()
-    with pytest.raises(RuntimeError, match="No face has a limit surface.*3 faces"):
+    with pytest.raises(RuntimeError, match="No face has a limit surface.*uses vertex 1 twice"):
         bpy.ops.object.limit_hair_add()
     assert scenes.file_contents() == before
 

@@ -2,11 +2,12 @@
 """Each root lies exactly where its stored location says, whatever stands before the subdivision."""
 
 import bpy
+import limitsurf
 import numpy as np
 import pytest
 import scenes
 from limit_surface import attributes, ids
-from scenes import add_hair, add_subsurf, locations, strands, surface_without_addon
+from scenes import add_hair, add_points, add_subsurf, locations, strands, surface_without_addon
 
 
 def mirror(ob):
@@ -70,6 +71,51 @@ def test_modifiers_before_subdivision_are_applied(before):
     before(ob)
     add_subsurf(ob)
     check_roots(add_hair(ob), surface_without_addon(ob))
+
+
+def creased_sheet():
+    """With an edge of sharpness 3.6, an infinitely sharp one, and a vertex of 0.9."""
+    ob = scenes.grid_with_holes()
+    index = {frozenset(edge.vertices): edge.index for edge in ob.data.edges}
+    edges = ob.data.edge_creases_ensure().data
+    edges[index[frozenset((8, 9))]].value, edges[index[frozenset((1, 7))]].value = 0.6, 1
+    ob.data.vertex_creases_ensure().data[4].value = 0.3
+    ten = np.float32(10)
+    sharpness = [np.float32(c) * np.float32(c) * ten for c in (0.6, 1, 0.3)]
+    faces = [polygon.vertices[:] for polygon in ob.data.polygons]
+    cage = limitsurf.ControlMesh.from_faces(
+        attributes.read(ob.data, "position").astype(np.float64),
+        faces,
+        edge_sharpness=([(8, 9), (1, 7)], sharpness[:2]),
+        vertex_sharpness=([4], sharpness[2:]),
+    )
+    return ob, limitsurf.LimitSurface(cage)
+
+
+def test_creases():
+    ob, surface = creased_sheet()
+    subsurf = add_subsurf(ob)
+    hair = add_hair(ob)
+    check_roots(hair, surface)
+    for domain, data in (("CURVE", hair.data), ("POINT", add_points(ob).data)):
+        stored = data.attributes[ids.REST_ROOT]
+        assert stored.domain == domain
+        np.testing.assert_array_equal(
+            attributes.read(data, ids.REST_ROOT), strands(hair)[:, 0], err_msg=domain
+        )
+    subsurf.use_creases = False
+    smooth = add_hair(ob)
+    assert np.abs(strands(smooth) - strands(hair)).max() > 0.05
+    check_roots(smooth, surface_without_addon(ob))
+
+
+@pytest.mark.parametrize("scene", scenes.SCENES)
+def test_simple_subdivision_is_bilinear(scene):
+    ob = scenes.SCENES[scene]()
+    add_subsurf(ob).subdivision_type = "SIMPLE"
+    hair = add_hair(ob)
+    place = scenes.on_base_mesh(ob, *locations(hair.data))
+    np.testing.assert_allclose(strands(hair)[:, 0], place, atol=1e-6)
 
 
 def test_armature_at_the_current_frame():

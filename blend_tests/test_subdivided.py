@@ -9,27 +9,8 @@ import bpy
 import numpy as np
 import parity_zoo
 import pytest
-from limit_surface import attributes, subdivided
-
-
-def ptex_corners(ob, corner_values):
-    """Values at the four corners of every Ptex face, polygon by polygon."""
-    found = []
-    for polygon in ob.data.polygons:
-        p = corner_values[polygon.loop_start : polygon.loop_start + polygon.loop_total]
-        n, centre = len(p), p.mean(axis=0)
-        if n == 4:
-            found.append(p)
-            continue
-        for i in range(n):
-            found.append([p[i], (p[i] + p[(i + 1) % n]) / 2, centre, (p[i] + p[i - 1]) / 2])
-    return np.array(found)
-
-
-def bilinear(ptex, face, uv):
-    (u, v), ptex = uv.T[:, :, None], ptex[face]
-    weights = ((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v)
-    return sum(weight * ptex[:, i] for i, weight in enumerate(weights))
+from limit_surface import attributes, ids, subdivided
+from scenes import bilinear, ptex_corners
 
 
 @pytest.mark.parametrize("levels", [1, 2, 3, 4])
@@ -40,18 +21,18 @@ def test_blender_agrees(name, levels):
     subsurf.subdivision_type, subsurf.uv_smooth, subsurf.levels = "SIMPLE", "NONE", levels
     subsurf.use_limit_surface = False  # with it, polygons that are no quads are not flat
     _spread_uvs(mesh)
-    corner_vertex = attributes.column(mesh.loops, "vertex_index", np.int32)
+    corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)
     at_corners = attributes.read(mesh, "position").astype(float)[corner_vertex]
     positions = ptex_corners(ob, at_corners)
     uvs = ptex_corners(ob, attributes.read(mesh, "UV").astype(float))
 
     shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    sizes = attributes.column(mesh.polygons, "loop_total", np.int32)
+    sizes = attributes.face_sizes(mesh)
     corners = subdivided.corner_locations(sizes, levels)
     np.testing.assert_allclose(
         bilinear(uvs, *corners), attributes.read(shown, "UV"), atol=1e-5 * np.abs(uvs).max()
     )
-    shown_vertex = attributes.column(shown.loops, "vertex_index", np.int32)
+    shown_vertex = attributes.read(shown, ids.CORNER_VERTEX)
     vertices = subdivided.vertex_locations(corners, shown_vertex, len(shown.vertices))
     used = vertices.face >= 0
     assert np.count_nonzero(~used) == (1 if name == "fans" else 0)  # an isolated vertex
@@ -78,9 +59,9 @@ def test_loose_edges_have_no_place():
     parity_zoo.crease(ob.data, "loose edges")
     ob.modifiers[0].levels = 2
     shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    sizes = attributes.column(ob.data.polygons, "loop_total", np.int32)
+    sizes = attributes.face_sizes(ob.data)
     corners = subdivided.corner_locations(sizes, 2)
-    shown_vertex = attributes.column(shown.loops, "vertex_index", np.int32)
+    shown_vertex = attributes.read(shown, ids.CORNER_VERTEX)
     found = subdivided.vertex_locations(corners, shown_vertex, len(shown.vertices))
     loose = len(ob.data.vertices) - 30
     assert loose > 3

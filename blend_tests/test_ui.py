@@ -41,7 +41,7 @@ def test_panel_shows_whose_rules_count():
     subsurf.subdivision_type = "SIMPLE"
     layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
     assert shown_rules(layout, subsurf) == []
-    assert "Simple: flat between edges" in labels(layout.column())
+    assert "Simple: bilinear faces" in labels(layout.column())
 
 
 def shown_rules(layout, subsurf):

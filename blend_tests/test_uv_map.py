@@ -6,7 +6,7 @@ import pytest
 import scenes
 from hypothesis import given
 from hypothesis import strategies as st
-from limit_surface import attributes, uv_map
+from limit_surface import attributes, ids, uv_map
 
 
 def leaders(vertex, uv, mirrored):
@@ -45,7 +45,7 @@ def read(ob, uv):
 
 
 def from_vertices(ob):
-    corner_vertex = attributes.column(ob.data.loops, "vertex_index", np.int32)
+    corner_vertex = attributes.read(ob.data, ids.CORNER_VERTEX)
     return attributes.read(ob.data, "position")[corner_vertex][:, :2].copy()
 
 

@@ -6,25 +6,27 @@ from collections.abc import Callable
 import bpy
 import limitsurf
 import numpy as np
-from limit_surface import attributes, cage, subdivided
+from limit_surface import attributes, cage, ids, sharpness, subdivided
 from limit_surface.subdivided import SurfaceLocations
 
 
 class Comparison:
     """An object whose first modifier is a Subdivision Surface, and its limit surface."""
 
-    def __init__(self, ob: bpy.types.Object, levels: int) -> None:
+    def __init__(self, ob: bpy.types.Object, levels: int, use_limit_surface: bool = True) -> None:
         self._ob = ob
         self._subsurf = ob.modifiers[0]
-        self._subsurf.use_limit_surface, self._subsurf.levels = True, levels
+        self._subsurf.use_limit_surface, self._subsurf.levels = use_limit_surface, levels
         self.cage = cage.read(ob, bpy.context.evaluated_depsgraph_get())
         self.surface = limitsurf.LimitSurface(self.cage.mesh)
         self.corners = subdivided.corner_locations(self.cage.face_sizes, levels)
         shown = self._shown(1)
-        corner_vertex = attributes.column(shown.loops, "vertex_index", np.int32)
+        corner_vertex = attributes.read(shown, ids.CORNER_VERTEX)
         self.vertices = subdivided.vertex_locations(
             self.corners, corner_vertex, len(shown.vertices)
         )
+
+        self._corner_vertex = corner_vertex
 
     def positions(self, quality: int) -> np.ndarray:
         """Each vertex's distance from its place, relative to the diagonal of the cage; NaN where
@@ -43,6 +45,32 @@ class Comparison:
         expected = self._evaluate(self.corners, lambda *at: smooth.evaluate(*at).value)
         shown = attributes.read(self._shown(quality), found.name)
         return np.linalg.norm(shown - expected, axis=1)
+
+    def lagging(self) -> tuple[np.ndarray, np.ndarray]:
+        """Which vertices, and which corners, Blender shows short of the limit at any quality.
+
+        Its subdivision ends with a patch around the vertex, however small. At darts (the inner
+        end of a single sharp crease) that patch is off, and so it is, after as many steps as the
+        sharpness lasts, at a smooth corner of the surface or of the UV map.
+        """
+        mesh = self._ob.data
+        sharp = sharpness.read(mesh, self.cage.rules.use_creases)
+        ends = attributes.read(mesh, ids.EDGE_VERTICES)
+        faces = np.bincount(attributes.read(mesh, ids.CORNER_EDGE), minlength=len(mesh.edges))
+        count = len(self.vertices.face)
+
+        def meeting(some: np.ndarray) -> np.ndarray:
+            return np.bincount(some.ravel(), minlength=count)
+
+        infinite = sharp.edges[sharp.edge_values >= sharpness.INFINITE]
+        value = np.zeros(count)
+        value[sharp.vertices] = sharp.vertex_values
+        inner = meeting(ends[faces != 2]) == 0
+        held = value >= sharpness.INFINITE
+        dart = inner & ~held & (meeting(infinite) == 1)
+        decaying = (value > 0) & ~held
+        vertices = dart | (decaying & (meeting(ends[faces > 0]) == 2))
+        return vertices, (dart | decaying)[self._corner_vertex]
 
     def _shown(self, quality: int) -> bpy.types.Mesh:
         self._subsurf.quality = quality

@@ -74,6 +74,14 @@ def fans() -> tuple[np.ndarray, Faces]:
     return np.array(positions), [merged[list(face)].tolist() for face in faces]
 
 
+def fin() -> tuple[np.ndarray, Faces]:
+    """The sheet, with a third face at one of its edges and another face turned over."""
+    positions, faces = sheet()
+    faces.append((14, 15, len(positions) + 1, len(positions)))
+    faces[5] = faces[5][::-1]
+    return np.concatenate([positions, positions[14:16] + [0.1, 0.2, 1]]), faces
+
+
 def monkey() -> tuple[np.ndarray, Faces]:
     bpy.ops.mesh.primitive_monkey_add()
     ob = bpy.context.active_object
@@ -84,7 +92,7 @@ def monkey() -> tuple[np.ndarray, Faces]:
 
 
 MESHES: dict[str, Callable[[], tuple[np.ndarray, Faces]]] = {
-    f.__name__: f for f in (cross, sheet, polygons, prism, fans, monkey)
+    f.__name__: f for f in (cross, sheet, polygons, prism, fans, fin, monkey)
 }
 
 
@@ -127,10 +135,11 @@ def _fractional_edges(mesh: bpy.types.Mesh, rng: np.random.Generator) -> None:
 
 def _sharp_loops(mesh: bpy.types.Mesh, rng: np.random.Generator) -> None:
     """Infinitely sharp edges around every third face: no crease ends anywhere."""
-    values = np.zeros(len(mesh.edges))
-    for polygon in mesh.polygons[::3]:
-        values[[mesh.loops[i].edge_index for i in polygon.loop_indices]] = 1
-    mesh.edge_creases_ensure().data.foreach_set("value", values.astype(np.float32))
+    sizes = _column(mesh.polygons, "loop_total")
+    in_third_face = np.repeat(np.arange(len(sizes)) % 3 == 0, sizes)
+    values = np.zeros(len(mesh.edges), np.float32)
+    values[_column(mesh.loops, "edge_index")[in_third_face]] = 1
+    mesh.edge_creases_ensure().data.foreach_set("value", values)
 
 
 def _sharp_edges(mesh: bpy.types.Mesh, rng: np.random.Generator) -> None:

@@ -16,6 +16,7 @@ class Layout(NamedTuple):
 LAYOUTS = {
     "FLOAT": Layout("value", 1, np.float32),
     "INT": Layout("value", 1, np.int32),
+    "INT32_2D": Layout("value", 2, np.int32),
     "FLOAT2": Layout("vector", 2, np.float32),
     "FLOAT_VECTOR": Layout("vector", 3, np.float32),
     "QUATERNION": Layout("value", 4, np.float32),
@@ -45,8 +46,7 @@ def read(data: bpy.types.ID, name: str) -> np.ndarray:
     return values if layout.width == 1 else values.reshape(-1, layout.width)
 
 
-def column(collection: bpy.types.bpy_prop_collection, key: str, dtype: type) -> np.ndarray:
-    """One number of each element of a collection, such as every loop's vertex."""
-    values = np.empty(len(collection), dtype)
-    collection.foreach_get(key, values)
+def face_sizes(mesh: bpy.types.Mesh) -> np.ndarray:
+    values = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", values)
     return values

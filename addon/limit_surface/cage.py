@@ -61,7 +61,7 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
         return Cage(
             mesh=_control_mesh(mesh, found),
             rules=found,
-            face_sizes=attributes.column(mesh.polygons, "loop_total", np.int32),
+            face_sizes=attributes.face_sizes(mesh),
             matrix=np.array(evaluated.matrix_world, np.float64),
             uv_map=_read_uv_map(ob, mesh),
             ignored=tuple(m.name for m in ob.modifiers[cut + 1 :] if m.show_viewport),
@@ -75,8 +75,8 @@ def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules) -> limitsurf.Control
         sharp = sharpness.read(mesh, found.use_creases)
     return native.limitsurf.ControlMesh(
         attributes.read(mesh, "position").astype(np.float64),
-        attributes.column(mesh.polygons, "loop_total", np.int32),
-        attributes.column(mesh.loops, "vertex_index", np.int32),
+        attributes.face_sizes(mesh),
+        attributes.read(mesh, ids.CORNER_VERTEX),
         edge_sharpness=(sharp.edges, sharp.edge_values),
         vertex_sharpness=(sharp.vertices, sharp.vertex_values),
         boundary=found.boundary,

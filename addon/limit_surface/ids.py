@@ -20,6 +20,10 @@ TANGENT = "tangent"
 ROTATION = "rotation"
 
 # Attributes of the surface's mesh: Blender's own
+POSITION = "position"
+CORNER_VERTEX = ".corner_vert"
+CORNER_EDGE = ".corner_edge"
+EDGE_VERTICES = ".edge_verts"
 EDGE_CREASE = "crease_edge"
 VERTEX_CREASE = "crease_vert"
 

@@ -32,12 +32,10 @@ NOTHING = Sharpness(np.empty((0, 2), np.int32), np.empty(0), np.empty(0, np.int3
 
 def read(mesh: bpy.types.Mesh, use_creases: bool) -> Sharpness:
     """The edges of faces and the vertices in faces whose sharpness is not 0."""
-    ends = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", ends)
-    ends = ends.reshape(-1, 2)
+    ends = attributes.read(mesh, ids.EDGE_VERTICES)
     in_face, vertex_in_face = (np.zeros(len(c), bool) for c in (mesh.edges, mesh.vertices))
-    in_face[attributes.column(mesh.loops, "edge_index", np.int32)] = True
-    vertex_in_face[attributes.column(mesh.loops, "vertex_index", np.int32)] = True
+    in_face[attributes.read(mesh, ids.CORNER_EDGE)] = True
+    vertex_in_face[attributes.read(mesh, ids.CORNER_VERTEX)] = True
 
     edge, vertex = np.zeros(len(mesh.edges), np.float32), np.zeros(len(mesh.vertices), np.float32)
     if use_creases:

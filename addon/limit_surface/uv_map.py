@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from . import attributes
+from . import attributes, ids
 
 LIMIT = np.float32(1e-4)  # corners of a vertex that differ by less along each axis share a value
 
@@ -26,11 +26,11 @@ class UvMap:
 
 def read(mesh: bpy.types.Mesh, name: str) -> UvMap:
     uv = attributes.read(mesh, name)
-    corner_vertex = attributes.column(mesh.loops, "vertex_index", np.int32)
-    face_sizes = attributes.column(mesh.polygons, "loop_total", np.int32)
+    corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)
+    face_sizes = attributes.face_sizes(mesh)
     leader = _leaders(uv, corner_vertex, np.repeat(_is_mirrored(uv, face_sizes), face_sizes))
-    leaders, indices = np.unique(leader, return_inverse=True)
-    return UvMap(name, uv[leaders].astype(np.float64), indices.reshape(-1))
+    leads = leader == np.arange(len(uv))
+    return UvMap(name, uv[leads].astype(np.float64), (np.cumsum(leads) - 1)[leader])
 
 
 def _leaders(uv: np.ndarray, corner_vertex: np.ndarray, mirrored: np.ndarray) -> np.ndarray:

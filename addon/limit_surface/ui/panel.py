@@ -37,7 +37,7 @@ def _draw_rules(layout: bpy.types.UILayout, ob: bpy.types.Object | None) -> None
     layout.label(text=subsurf.name, icon="MOD_SUBSURF")
     column = layout.column(align=True)
     if subsurf.subdivision_type == "SIMPLE":
-        column.label(text="Simple: flat between edges")
+        column.label(text="Simple: bilinear faces")
         return
     column.prop(subsurf, "boundary_smooth", text="")
     column.prop(subsurf, "uv_smooth", text="")
