@@ -57,6 +57,12 @@ void findDefect(const Eigenbasis& basis, Line& line) {
   for (int mode = 0; mode < basis.modeCount(); ++mode) {
     lambda.push_back(basis.eigenvalue(mode));
   }
+  for (const ModePair& pair : basis.pairs()) {  // their size, where they are conjugate
+    const double square = pair.forth * pair.back;
+    lambda[pair.a] =
+        square < 0 ? std::sqrt(pair.mean * pair.mean - square) : pair.mean + std::sqrt(square);
+    lambda[pair.b] = square < 0 ? lambda[pair.a] : pair.mean - std::sqrt(square);
+  }
   std::sort(lambda.rbegin(), lambda.rend());
   const LongMatrix s = ringMatrix(basis.ring());
   for (std::size_t i = 0; i < lambda.size();) {
@@ -102,9 +108,13 @@ double factorisationError(const Eigenbasis& basis, int face) {
   for (const Eigenbasis::Chain& chain : basis.chains()) {
     j(chain.to, chain.from) = chain.rate;
   }
+  for (const ModePair& pair : basis.pairs()) {
+    j(pair.b, pair.a) = pair.forth;
+    j(pair.a, pair.b) = pair.back;
+  }
   for (int q = 0; q < outer.count(); ++q) {
     j(n + q, n + q) = outer.lambda(q);
-    j.block(n, 0, outer.count(), n).row(q) = basis.chainsToOuter(q).transpose();
+    j.block(n, 0, outer.count(), n).row(q) = basis.chainsToOuter(face, q).transpose();
   }
 
   a.topLeftCorner(n, n) = ringMatrix(ring).cast<double>();

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
-#include <stdexcept>
 
 #include "limitsurf/eigen/eigenbasis_builder.h"
 
@@ -23,20 +22,13 @@ std::shared_ptr<const Eigenbasis> Eigenbasis::get(const Ring& ring) {
   return basis;
 }
 
-Eigenbasis::Eigenbasis(const Ring& ring) : ring_(ring), step_(ring) {
-  if (ring.kind == RingKind::dart) {
-    throw std::logic_error("dart: no eigenbasis yet");
-  }
-  Builder(*this).build();
-}
-
-int Eigenbasis::firstMode(int m) const { return 3 + (ring_.closed() ? 4 : 2) * (m - 1); }
+Eigenbasis::Eigenbasis(const Ring& ring) : ring_(ring), step_(ring) { Builder(*this).build(); }
 
 int Eigenbasis::parts(int m, bool plus, int face, Part out[2]) const {
   const int first = firstMode(m);
   const long turn = 2L * m * face;
-  if (ring_.closed()) {
-    if (2 * m == ring_.faces) {  // spokes alternate, or faces do
+  if (rotates()) {
+    if (alternates(m)) {
       out[0] = plus ? Part{first, cosAt(turn), 0} : Part{first + 1, 0, cosAt(turn)};
       return 1;
     }
@@ -45,16 +37,16 @@ int Eigenbasis::parts(int m, bool plus, int face, Part out[2]) const {
     out[1] = {mode + 1, sinAt(turn), cosAt(turn)};
     return 2;
   }
-  if (m == ring_.faces && plus) {
+  if (alternates(m) && plus) {
     return 0;  // its spokes all vanish
   }
-  const int mode = m == ring_.faces || plus ? first : first + 1;
+  const int mode = alternates(m) || plus ? first : first + 1;
   switch (sides(face)) {
     case Sides::inner:
       out[0] = {mode, sinAt(turn), cosAt(turn)};
       break;
     case Sides::right:
-      out[0] = {mode, 0, m % 2 ? 1. : -1.};
+      out[0] = {mode, 0, !ring_.closed() && m % 2 ? 1. : -1.};
       break;
     default:
       out[0] = {mode, 0, 1};
@@ -67,10 +59,13 @@ std::vector<double> Eigenbasis::ringVector(int mode) const {
   if (mode == 0) {
     return ring;
   }
-  if (mode < 3 && !ring_.closed()) {
+  if (dart_ && mode >= firstSymmetric()) {
+    return dart_->ringVector(mode - firstSymmetric());
+  }
+  if (mode <= fixedCount() && !ring_.closed()) {
     return curve_ring_[mode - 1];
   }
-  if (mode < 3) {
+  if (mode <= fixedCount()) {
     const double v = radial_vertex_[mode - 1];
     ring[0] = v;
     for (int i = 0; i < ring_.faces; ++i) {
@@ -80,7 +75,7 @@ std::vector<double> Eigenbasis::ringVector(int mode) const {
     return ring;
   }
   ring[0] = 0;
-  const int m = 1 + (mode - 3) / (ring_.closed() ? 4 : 2);
+  const int m = spokeOf(mode);
   for (const bool plus : {true, false}) {
     Part part[2];
     const int count = parts(m, plus, 0, part);
@@ -110,11 +105,14 @@ Eigenbasis::Table Eigenbasis::table(int mode, int face) const {
     std::fill_n(result.outer, outerModes(face).count(), 1.);
     return result;
   }
-  if (mode < 3) {
+  if (dart_ && mode >= firstSymmetric()) {
+    return dart_->table(mode - firstSymmetric(), face);
+  }
+  if (mode <= fixedCount()) {
     return fixed(face).tables[mode - 1];
   }
   const FaceTables& t = tables(sides(face));
-  const int m = 1 + (mode - 3) / (ring_.closed() ? 4 : 2);
+  const int m = spokeOf(mode);
   for (const bool plus : {true, false}) {
     Part part[2];
     const int count = parts(m, plus, face, part);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "limitsurf/eigen/bspline_window.h"
+#include "limitsurf/eigen/dart_modes.h"
+#include "limitsurf/eigen/mode_table.h"
 #include "limitsurf/eigen/outer_modes.h"
 #include "limitsurf/eigen/ring.h"
 #include "limitsurf/types.h"
@@ -29,8 +31,11 @@ struct GridWindow {
 /// A ring's points are sums of modes, each of which subdivision multiplies by its eigenvalue; a
 /// defective mode feeds another one as well (Jordan normal form; paper, section 2). Modes:
 ///   0          the constant, eigenvalue 1: its coefficient is the limit position;
-///   1, 2       interior: the two other rotation-symmetric ones; sector: the curve modes;
-///   the rest   spoke modes, each a sine or cosine around the vertex (spoke_mode.h).
+///   1, 2       interior, cone: the two other rotation-symmetric ones; sector: the curve modes;
+///   then       spoke modes, each a sine or cosine around the vertex (spoke_mode.h), of a dart
+///   sines
+///              about the sharp spoke alone;
+///   the rest   of a dart: those symmetric about the sharp spoke (dart_modes.h).
 /// Coefficients belong to the vertex and serve all its faces. Because a spoke mode turns with the
 /// face, one pair of tables (for the sine and the cosine) serves all faces of the same Sides, so
 /// that a basis takes O(faces) memory. Tables are computed in long double and rounded once.
@@ -44,6 +49,7 @@ class Eigenbasis {
   const Ring& ring() const { return ring_; }
   const RingStep<double>& step() const { return step_; }
   int modeCount() const { return ring_.size(); }
+  /// Of the modes of a pair: the mean of their eigenvalues.
   double eigenvalue(int mode) const { return lambda_[mode]; }
 
   /// Jordan chains: A (mode `from`) = lambda (mode `from`) + rate (mode `to`).
@@ -52,11 +58,14 @@ class Eigenbasis {
     double rate = 0;
   };
   const std::vector<Chain>& chains() const { return chains_; }
-  /// What each mode feeds into outer mode `q`: nothing but at interior valence 2.
-  Eigen::VectorXd chainsToOuter(int q) const {
+  /// Modes that a step mixes: two of a dart's.
+  const std::vector<ModePair>& pairs() const { return pairs_; }
+  /// What each mode feeds into outer mode `q` of a face: nothing but at interior valence 2 and in
+  /// some darts.
+  Eigen::VectorXd chainsToOuter(int face, int q) const {
     Eigen::VectorXd rates = Eigen::VectorXd::Zero(modeCount());
     if (rest_mode_ >= 0) {
-      rates[rest_mode_] = rest_[q];
+      rates[rest_mode_] = rest(face, q);
     }
     return rates;
   }
@@ -74,11 +83,7 @@ class Eigenbasis {
   Sides sides(int face) const { return ring_.sides(face); }
   const OuterModes<double>& outerModes(int face) const { return tables(sides(face)).outer_modes; }
 
-  /// One mode on one face: its values at the outer cells before, on the whole grid after a step.
-  struct Table {
-    double outer[tile_grid::kOuter] = {};
-    double grid[tile_grid::kCells] = {};
-  };
+  using Table = ModeTable;
   Table table(int mode, int face) const;
 
   /// The face's control points after `steps` >= 1 steps less the constant mode, times 2^(steps - 1)
@@ -122,9 +127,18 @@ class Eigenbasis {
   /// Spoke mode m (>= 1), lambda+ or lambda-: index into tables, and its first mode's number.
   int pairIndex(int m, bool plus) const { return 2 * (m - 1) + (plus ? 0 : 1); }
   int spokeCount() const { return ring_.closed() ? ring_.faces / 2 : ring_.faces; }
+  /// Whether every turn by a face leaves the ring as it is, so that cosines are modes as well.
+  bool rotates() const { return ring_.closed() && ring_.kind != RingKind::dart; }
+  /// Spokes alternate in mode m, or faces do.
+  bool alternates(int m) const { return ring_.closed() ? 2 * m == ring_.faces : m == ring_.faces; }
+  /// The modes 1, 2 that are no spoke modes.
+  int fixedCount() const { return ring_.kind == RingKind::dart ? 0 : 2; }
+  /// The mode from which on a dart's are symmetric.
+  int firstSymmetric() const { return ring_.faces; }
   double cosAt(long i) const { return cos_[static_cast<std::size_t>(i % period_)]; }
   double sinAt(long i) const { return sin_[static_cast<std::size_t>(i % period_)]; }
   const Fixed& fixed(int face) const { return fixed_[ring_.closed() ? 0 : face]; }
+  double rest(int face, int q) const { return dart_ ? dart_->rest(face, q) : rest_[q]; }
 
   /// How the tables of pair (m, plus) combine into its modes on a face: each mode's number, and the
   /// factors of the cosine and the sine table.
@@ -133,8 +147,9 @@ class Eigenbasis {
     double cosine, sine;
   };
   int parts(int m, bool plus, int face, Part out[2]) const;
-  int firstMode(int m) const;
-  /// Calls body(table, lambda, coefficient) for all modes but the constant on one face.
+  int firstMode(int m) const { return 1 + fixedCount() + (rotates() ? 4 : 2) * (m - 1); }
+  int spokeOf(int mode) const { return 1 + (mode - 1 - fixedCount()) / (rotates() ? 4 : 2); }
+  /// Calls body(table, lambda, coefficient) for all modes but the constant and pairs on one face.
   template <typename Body>
   void forEachTable(int face, const Points& coefficients, const Body& body) const;
 
@@ -145,13 +160,15 @@ class Eigenbasis {
   std::vector<double> lambda_;
   std::vector<Spoke> spokes_;  // by pairIndex
   std::vector<Chain> chains_;
+  std::vector<ModePair> pairs_;
   std::vector<double> rest_;  // interior valence 2: what mode 1 or 2 feeds into outer modes
   int rest_mode_ = -1;
-  std::vector<Fixed> fixed_;                 // one for the interior, one per face of a sector
+  std::vector<Fixed> fixed_;                 // one for a closed ring, one per face of a sector
   std::vector<double> curve_ring_[2];        // sectors: modes 1 and 2 on the ring
-  Eigen::Matrix2d radial_, radial_inverse_;  // interior: modes 1 and 2 from mean e - v, f - v
+  Eigen::Matrix2d radial_, radial_inverse_;  // closed: modes 1 and 2 from mean e - v, f - v
   double radial_vertex_[2] = {0, 0};
   std::unique_ptr<FaceTables> face_tables_[4];
+  std::unique_ptr<const DartModes> dart_;
 };
 
 }  // namespace limitsurf

@@ -16,7 +16,7 @@ void Eigenbasis::Builder::build() {
   const bool one_face = !ring_.closed() && ring_.faces == 1;
   if (one_face) {
     buildOuterTables(Sides::both);
-  } else if (ring_.closed()) {
+  } else if (basis_.rotates()) {
     buildOuterTables(Sides::inner);
   } else {
     buildOuterTables(Sides::left);
@@ -26,14 +26,16 @@ void Eigenbasis::Builder::build() {
     }
   }
   buildSpokes();
-  if (ring_.closed()) {
+  if (ring_.kind == RingKind::dart) {
+    buildDart();
+  } else if (ring_.closed()) {
     buildRadial();
   } else {
     buildCurves();
   }
 }
 
-/// Interior: spoke i of mode m stands at the angle 2 pi m i / N = (2 pi / 2N) 2 m i, face j at
+/// Closed: spoke i of mode m stands at the angle 2 pi m i / N = (2 pi / 2N) 2 m i, face j at
 /// (2 pi / 2N) m (2 j + 1); sector: pi m i / k = (2 pi / 4k) 2 m i likewise.
 void Eigenbasis::Builder::buildCircle() {
   basis_.period_ = ring_.closed() ? 2L * ring_.faces : 4L * ring_.faces;
@@ -44,46 +46,8 @@ void Eigenbasis::Builder::buildCircle() {
   }
 }
 
-const Eigenbasis::Builder::Outer& Eigenbasis::Builder::outer(Sides sides) {
-  return outer_.try_emplace(sides, sides).first->second;
-}
-
-Eigenbasis::Table Eigenbasis::Builder::rounded(const Wide& wide) {
-  Table table;
-  for (Eigen::Index i = 0; i < wide.outer.size(); ++i) {
-    table.outer[i] = static_cast<double>(wide.outer[i]);
-  }
-  for (int c = 0; c < kCells; ++c) {
-    table.grid[c] = static_cast<double>(wide.grid[c]);
-  }
-  return table;
-}
-
-Eigenbasis::Builder::Wide Eigenbasis::Builder::continued(Sides sides, Real lambda,
-                                                         const Cells& ring_cells, Real feeds,
-                                                         const Wide* fed) {
-  const Outer& o = outer(sides);
-  Outer::Vector rhs = Outer::Vector::Zero(o.count());
-  if (fed) {
-    rhs = feeds * fed->outer;
-  }
-  Wide wide;
-  wide.outer = o.continuation(lambda, ring_cells, rhs, wide.rest);
-  Cells cells = ring_cells;
-  for (int i = 0; i < o.count(); ++i) {
-    cells[o.cells()[i]] = wide.outer[i];
-  }
-  wide.grid.fill(0);
-  o.step().apply(cells, wide.grid);
-  for (const int c : tile_grid::kRingCells) {
-    // The fed vector's grid holds its ring times lambda.
-    wide.grid[c] = lambda * ring_cells[c] + (fed ? feeds * fed->grid[c] / lambda : 0);
-  }
-  return wide;
-}
-
 void Eigenbasis::Builder::buildOuterTables(Sides sides) {
-  const Outer& o = outer(sides);
+  const ModeContinuation::Outer& o = continuation_.outer(sides);
   auto tables = std::make_unique<FaceTables>(o);
   for (int q = 0; q < o.count(); ++q) {
     Cells cells{};
@@ -94,7 +58,7 @@ void Eigenbasis::Builder::buildOuterTables(Sides sides) {
     wide.outer = o.vectors().col(q);
     wide.grid.fill(0);
     o.step().apply(cells, wide.grid);
-    tables->outer.push_back(rounded(wide));
+    tables->outer.push_back(ModeContinuation::rounded(wide));
   }
   basis_.face_tables_[static_cast<int>(sides)] = std::move(tables);
 }
@@ -139,7 +103,7 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bo
       cells[c] = 0;
     }
   }
-  return continued(sides, lambda, cells);
+  return continuation_.continued(sides, lambda, cells);
 }
 
 void Eigenbasis::Builder::buildSpokes() {
@@ -158,9 +122,9 @@ void Eigenbasis::Builder::buildSpokes() {
       }
       for (const Sides sides : {Sides::inner, Sides::left, Sides::right, Sides::both}) {
         if (FaceTables* tables = basis_.face_tables_[static_cast<int>(sides)].get()) {
-          tables->sine.push_back(rounded(spokeTable(sides, m, plus, true)));
+          tables->sine.push_back(ModeContinuation::rounded(spokeTable(sides, m, plus, true)));
           if (sides == Sides::inner) {
-            tables->cosine.push_back(rounded(spokeTable(sides, m, plus, false)));
+            tables->cosine.push_back(ModeContinuation::rounded(spokeTable(sides, m, plus, false)));
           }
         }
       }
@@ -194,10 +158,10 @@ void Eigenbasis::Builder::buildRadial() {
       const bool on_spoke = tile_grid::xOf(c) == 0 || tile_grid::yOf(c) == 0;
       cells[c] = c == cell(0, 0) ? v : v + (on_spoke ? x[0] : x[1]);
     }
-    const Wide wide = continued(Sides::inner, lambda, cells);
+    const Wide wide = continuation_.continued(Sides::inner, lambda, cells);
     basis_.lambda_[1 + i] = static_cast<double>(lambda);
     basis_.radial_vertex_[i] = static_cast<double>(v);
-    basis_.fixed_[0].tables[i] = rounded(wide);
+    basis_.fixed_[0].tables[i] = ModeContinuation::rounded(wide);
     if (moves && ring_.faces == 2 && i == 0) {  // eigenvalue 1/8, defective with S12's
       basis_.rest_mode_ = 1;
       for (Eigen::Index q = 0; q < wide.rest.size(); ++q) {
@@ -210,6 +174,22 @@ void Eigenbasis::Builder::buildRadial() {
   Eigen::Matrix<Real, 2, 2> inverse;
   inverse << vectors(1, 1), -vectors(0, 1), -vectors(1, 0), vectors(0, 0);
   basis_.radial_inverse_ = (inverse / determinant).cast<double>();
+}
+
+void Eigenbasis::Builder::buildDart() {
+  const int first = basis_.firstSymmetric();
+  auto modes = std::make_unique<DartModes>(ring_.faces, continuation_);
+  for (int mode = 0; mode < modes->count(); ++mode) {
+    basis_.lambda_[first + mode] = modes->lambda(mode);
+  }
+  ModePair pair = modes->pair();
+  pair.a += first;
+  pair.b += first;
+  basis_.pairs_.push_back(pair);
+  if (modes->restMode() >= 0) {
+    basis_.rest_mode_ = first + modes->restMode();
+  }
+  basis_.dart_ = std::move(modes);
 }
 
 Eigenbasis::Builder::Cells Eigenbasis::Builder::ringCells(const std::vector<Real>& ring,
@@ -231,8 +211,8 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeOnFace(int m, bool plus, int
     ring[ring_.face(j)] =
         (plus ? mode.facePlus() : mode.faceMinus()) * circle.sin(1L * m * (2 * j + 1));
   }
-  return continued(basis_.sides(face), plus ? mode.lambda_plus : mode.lambda_minus,
-                   ringCells(ring, face));
+  return continuation_.continued(basis_.sides(face), plus ? mode.lambda_plus : mode.lambda_minus,
+                                 ringCells(ring, face));
 }
 
 void Eigenbasis::Builder::buildCurves() {
@@ -246,10 +226,11 @@ void Eigenbasis::Builder::buildCurves() {
       const Cells cells = ringCells(mode.ring, j);
       if (mode.fed_mode) {
         const Wide fed = spokeOnFace(mode.fed_mode, mode.feeds_plus, j);
-        basis_.fixed_[j].tables[i] =
-            rounded(continued(basis_.sides(j), mode.lambda, cells, mode.feeds, &fed));
+        basis_.fixed_[j].tables[i] = ModeContinuation::rounded(
+            continuation_.continued(basis_.sides(j), mode.lambda, cells, mode.feeds, &fed));
       } else {
-        basis_.fixed_[j].tables[i] = rounded(continued(basis_.sides(j), mode.lambda, cells));
+        basis_.fixed_[j].tables[i] =
+            ModeContinuation::rounded(continuation_.continued(basis_.sides(j), mode.lambda, cells));
       }
     }
     if (mode.fed_mode) {

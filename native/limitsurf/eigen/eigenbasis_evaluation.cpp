@@ -9,29 +9,64 @@
 namespace limitsurf {
 namespace {
 
-double power(double base, int exponent) {
-  double result = 1;
-  for (; exponent > 0; exponent >>= 1, base *= base) {
+template <typename Number>
+Number power(Number base, int exponent, Number one) {
+  for (; exponent > 0; exponent >>= 1, base = base * base) {
     if (exponent & 1) {
-      result *= base;
+      one = one * base;
     }
   }
-  return result;
+  return one;
 }
+
+double power(double base, int exponent) { return power(base, exponent, 1.); }
 
 /// lambda^steps for values, first and second derivatives: times 1, 2^(steps + 1), 2^(steps + 2).
 /// (2 lambda)^steps stays within the range of double where lambda^steps does not.
 struct Powers {
   double by_order[3];
 
-  Powers(double lambda, int steps) {
-    const double scaled = power(2 * lambda, steps);
+  Powers(double lambda, int steps) : Powers(Scaled{power(2 * lambda, steps)}, steps) {}
+
+  struct Scaled {
+    double value;  ///< 2^steps times what it stands for
+  };
+  Powers(const Scaled& number, int steps) {
+    const double scaled = number.value;
     by_order[0] = std::ldexp(scaled, -steps);
     by_order[1] = 2 * scaled;
     by_order[2] = 4 * scaled;
   }
   double at(int functional) const { return by_order[functional == 0 ? 0 : functional < 3 ? 1 : 2]; }
 };
+
+/// p + q E: powers of what a step does to a pair of modes, mean + E with E^2 = forth back.
+struct PairNumber {
+  double p, q, square;
+
+  friend PairNumber operator*(const PairNumber& a, const PairNumber& b) {
+    return {a.p * b.p + a.square * a.q * b.q, a.p * b.q + a.q * b.p, a.square};
+  }
+};
+
+PairNumber pairPower(const ModePair& pair, double scale, int exponent) {
+  const double square = pair.forth * pair.back;
+  return power(PairNumber{scale * pair.mean, scale, square}, exponent, PairNumber{1, 0, square});
+}
+
+/// [lambda, feeds; 0, outer]: powers of what a step does to a mode that feeds an outer one.
+struct FeedNumber {
+  double lambda, feeds, outer;
+
+  friend FeedNumber operator*(const FeedNumber& a, const FeedNumber& b) {
+    return {a.lambda * b.lambda, a.lambda * b.feeds + a.feeds * b.outer, a.outer * b.outer};
+  }
+};
+
+/// 2^steps times what a mode has fed into an outer one after `steps` steps, at one a step.
+double scaledFeed(double lambda, double outer, int steps) {
+  return power(FeedNumber{2 * lambda, 2, 2 * outer}, steps, FeedNumber{1, 0, 1}).feeds;
+}
 
 using Functionals = Eigen::Array<double, GridWindow::kMaxCount, 1>;
 
@@ -69,7 +104,7 @@ Eigen::Array4d padded(const Points& points, int row) {
 template <typename Body>
 void Eigenbasis::forEachTable(int face, const Points& coefficients, const Body& body) const {
   const auto coefficient = [&](int mode) { return padded(coefficients, mode); };
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < fixedCount(); ++i) {
     body(fixed(face).tables[i], lambda_[1 + i], coefficient(1 + i));
   }
   const FaceTables& t = tables(sides(face));
@@ -89,6 +124,14 @@ void Eigenbasis::forEachTable(int face, const Points& coefficients, const Body& 
       body(t.sine[pairIndex(m, plus)], lambda, sine);
       if (!t.cosine.empty()) {
         body(t.cosine[pairIndex(m, plus)], lambda, cosine);
+      }
+    }
+  }
+  if (dart_) {
+    for (int i = 0; i < dart_->count(); ++i) {
+      if (i != dart_->pair().a && i != dart_->pair().b) {
+        const int mode = firstSymmetric() + i;
+        body(dart_->table(i, face), lambda_[mode], coefficient(mode));
       }
     }
   }
@@ -128,16 +171,26 @@ void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& 
     add(table(chain.to, face), (steps - 1 + ring_steps) * power(2 * lambda, steps - 1) * fed,
         ring_steps * fed);
   }
+  for (const ModePair& pair : pairs_) {
+    const PairNumber ring = pairPower(pair, 1, ring_steps);
+    const PairNumber all = ring * pairPower(pair, 2, steps - 1);
+    const Eigen::Array4d a = padded(coefficients, pair.a), b = padded(coefficients, pair.b);
+    add(table(pair.a, face), all.p * a + all.q * pair.back * b,
+        ring.p * a + ring.q * pair.back * b);
+    add(table(pair.b, face), all.p * b + all.q * pair.forth * a,
+        ring.p * b + ring.q * pair.forth * a);
+  }
   for (int q = 0; q < outer_count; ++q) {
     Eigen::Array4d coefficient = Eigen::Array4d::Zero();
     for (int i = 0; i < outer_count; ++i) {
       coefficient += outer.inverse()(q, i) * left_over[i];
     }
-    if (rest_mode_ >= 0) {
-      coefficient += (steps - 1) * rest_[q] / lambda_[rest_mode_] *
-                     power(lambda_[rest_mode_], ring_steps) * padded(coefficients, rest_mode_);
-    }
     coefficient *= power(2 * outer.lambda(q), steps - 1);
+    if (rest_mode_ >= 0) {
+      const double lambda = lambda_[rest_mode_];
+      coefficient += scaledFeed(lambda, outer.lambda(q), steps - 1) * rest(face, q) *
+                     power(lambda, ring_steps) * padded(coefficients, rest_mode_);
+    }
     for (int c = 0; c < tile_grid::kCells; ++c) {
       grid[c] += t.outer[q].grid[c] * coefficient;
     }
@@ -182,7 +235,7 @@ void Eigenbasis::weights(int face, int steps, int ring_steps, const GridWindow& 
   mode_weights.col(0) = -outer_weights.rowwise().sum();
   mode_weights(0, 0) += 1;
 
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < fixedCount(); ++i) {
     const Seen seen = see(fixed(face).tables[i], lambda_[1 + i]);
     mode_weights.col(1 + i) = (seen.grid - seen.outer).head(count);
   }
@@ -209,6 +262,37 @@ void Eigenbasis::weights(int face, int steps, int ring_steps, const GridWindow& 
     }
   }
 
+  if (dart_) {
+    for (int i = 0; i < dart_->count(); ++i) {
+      if (i != dart_->pair().a && i != dart_->pair().b) {
+        const int mode = firstSymmetric() + i;
+        const Seen seen = see(dart_->table(i, face), lambda_[mode]);
+        mode_weights.col(mode) = (seen.grid - seen.outer).head(count);
+      }
+    }
+  }
+  for (const ModePair& pair : pairs_) {
+    const PairNumber ring = pairPower(pair, 1, ring_steps);
+    const PairNumber all = ring * pairPower(pair, 2, steps - 1);
+    const Table tables[2] = {table(pair.a, face), table(pair.b, face)};
+    // A mode has become (p, q feeds) times itself and the other one.
+    const auto see = [&](int own, double feeds) -> Functionals {
+      Functionals result = Functionals::Zero();
+      for (const int i : {own, 1 - own}) {
+        const double factor = i == own ? 1 : feeds;
+        const Powers powers(Powers::Scaled{factor * (i == own ? all.p : all.q)}, steps - 1);
+        result += scaled(applied(window, tables[i].grid), powers, count);
+        for (int c = 0; c < outer_count; ++c) {
+          result -=
+              factor * (i == own ? ring.p : ring.q) * tables[i].outer[c] * on_outer.col(c).array();
+        }
+      }
+      return result;
+    };
+    mode_weights.col(pair.a) = see(0, pair.forth).head(count);
+    mode_weights.col(pair.b) = see(1, pair.back).head(count);
+  }
+
   // (lambda + nilpotent)^n = lambda^n + n lambda^(n - 1) (nilpotent)
   for (const Chain& chain : chains_) {
     const double lambda = lambda_[chain.from];
@@ -219,11 +303,13 @@ void Eigenbasis::weights(int face, int steps, int ring_steps, const GridWindow& 
             .head(count)
             .matrix();
   }
-  if (rest_mode_ >= 0 && steps > 1) {
-    const double lambda = lambda_[rest_mode_];
+  if (rest_mode_ >= 0) {
+    const double lambda = lambda_[rest_mode_], before = power(lambda, ring_steps);
     for (int q = 0; q < outer_count; ++q) {
-      mode_weights.col(rest_mode_) += power(lambda, ring_steps) * (steps - 1) / lambda * rest_[q] *
-                                      on_outer_modes.col(q).head(count);
+      const Powers fed(Powers::Scaled{scaledFeed(lambda, outer.lambda(q), steps - 1)}, steps - 1);
+      mode_weights.col(rest_mode_) +=
+          before * rest(face, q) *
+          scaled(applied(window, t.outer[q].grid), fed, count).head(count).matrix();
     }
   }
 }

@@ -10,7 +10,12 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
   const int faces = ring_.faces, edges = ring_.edges();
   coefficients.setZero(modeCount(), 3);
   Points rest = ring_points;
-  if (ring_.closed()) {
+  if (dart_) {
+    const Vector3 v = ring_points.row(0);
+    rest.rowwise() -= v.transpose();
+    dart_->project(rest, firstSymmetric(), coefficients);
+    coefficients.row(0) += v.transpose();
+  } else if (ring_.closed()) {
     const Vector3 v = ring_points.row(0);
     Vector3 edge_mean = Vector3::Zero(), face_mean = Vector3::Zero();
     for (int i = 0; i < faces; ++i) {
@@ -65,8 +70,7 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
       face_sin += sin_[face_angle] * f;
     }
     // 2 / faces normalises sines and cosines, 1 / faces those that alternate.
-    const bool alternating = ring_.closed() ? 2 * m == faces : m == faces;
-    const double norm = (alternating ? 1. : 2.) / faces;
+    const double norm = (alternates(m) ? 1. : 2.) / faces;
     for (const bool plus : {true, false}) {
       const Spoke& spoke = spokes_[pairIndex(m, plus)];
       const double e = norm * spoke.edge, f = norm * spoke.face / 4;
@@ -85,8 +89,7 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
   const int faces = ring_.faces, edges = ring_.edges();
   Eigen::MatrixXd ring = Eigen::MatrixXd::Zero(ring_.size(), mode_weights.cols());
   for (int m = 1; m <= spokeCount(); ++m) {
-    const bool alternating = ring_.closed() ? 2 * m == faces : m == faces;
-    const double norm = (alternating ? 1. : 2.) / faces;
+    const double norm = (alternates(m) ? 1. : 2.) / faces;
     for (const bool plus : {true, false}) {
       const Spoke& spoke = spokes_[pairIndex(m, plus)];
       Part part[2];
@@ -104,6 +107,10 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
     }
   }
 
+  if (dart_) {
+    dart_->projectTransposed(mode_weights, firstSymmetric(), ring);
+    return ring;
+  }
   if (ring_.closed()) {
     // The spoke modes saw e - v and f - v, but the sum of v over each wave is 0.
     const auto constant = mode_weights.row(0);

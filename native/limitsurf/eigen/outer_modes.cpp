@@ -61,22 +61,26 @@ OuterModes<Real>::OuterModes(Sides sides) : sides_(sides), step_(sides) {
 }
 
 template <typename Real>
-typename OuterModes<Real>::Vector OuterModes<Real>::continuation(Real lambda,
+typename OuterModes<Real>::Vector OuterModes<Real>::continuation(Real lambda, Real met,
                                                                  const Cells& ring_cells,
                                                                  const Vector& rhs,
                                                                  Vector& rest) const {
-  const Eigen::Map<const Vector> x(ring_cells.data(), tile_grid::kCells);
-  const Vector right = inverse_ * (rhs - s11_ * x);
+  const Vector right = inverse_ * (rhs - fromRing(ring_cells));
   Vector z = Vector::Zero(count());
   rest = Vector::Zero(count());
   for (int q = 0; q < count(); ++q) {
-    if (lambda_[q] == lambda) {
+    if (lambda_[q] == met) {
       rest[q] = -right[q];
     } else {
       z[q] = right[q] / (lambda_[q] - lambda);
     }
   }
   return vectors_ * z;
+}
+
+template <typename Real>
+typename OuterModes<Real>::Vector OuterModes<Real>::fromRing(const Cells& ring_cells) const {
+  return s11_ * Eigen::Map<const Vector>(ring_cells.data(), tile_grid::kCells);
 }
 
 template class OuterModes<double>;

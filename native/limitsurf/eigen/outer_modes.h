@@ -51,9 +51,14 @@ class OuterModes {
   /// The outer part y of a vector whose ring part is x: (S12 - lambda) y = -S11 x + rhs (paper,
   /// section 3.1).
   ///
-  /// Where lambda equals an eigenvalue of S12 the minimal solution is returned and what is left of
-  /// the right-hand side, in the basis W, goes to `rest`: it is 0 but for interior valence 2.
-  Vector continuation(Real lambda, const Cells& ring_cells, const Vector& rhs, Vector& rest) const;
+  /// The right-hand side's share of the modes with eigenvalue `met` is not solved for but goes to
+  /// `rest`, in the basis W: a step takes (x, y) to lambda (x, y) + rhs + W rest. Where lambda
+  /// equals an eigenvalue of S12, `met` has to: y is the minimal solution then, and the rest is 0
+  /// but for interior valence 2.
+  Vector continuation(Real lambda, Real met, const Cells& ring_cells, const Vector& rhs,
+                      Vector& rest) const;
+  /// S11 x.
+  Vector fromRing(const Cells& ring_cells) const;
 
  private:
   Sides sides_;

@@ -25,10 +25,31 @@ struct Term {
 
 bool dominates(double growth_a, int power_a, double growth_b, int power_b) {
   // Equal eigenvalues may differ by rounding when they come from different closed forms.
-  if (std::abs(growth_a - growth_b) > 1e-13) {
-    return growth_a > growth_b;
+  const double size_a = std::abs(growth_a), size_b = std::abs(growth_b);
+  if (std::abs(size_a - size_b) > 1e-13) {
+    return size_a > size_b;
+  }
+  if ((growth_a < 0) != (growth_b < 0)) {
+    return growth_b < 0;
   }
   return power_a > power_b;
+}
+
+/// The size of the larger eigenvalue of a pair.
+double largerSize(const ModePair& pair) {
+  const double square = pair.forth * pair.back;
+  return square < 0 ? std::sqrt(pair.mean * pair.mean - square)
+                    : std::abs(pair.mean) + std::sqrt(square);
+}
+
+/// The size of the eigenvalue that makes a mode matter.
+double sizeOf(const Eigenbasis& basis, int mode) {
+  for (const ModePair& pair : basis.pairs()) {
+    if (mode == pair.a || mode == pair.b) {
+      return largerSize(pair);
+    }
+  }
+  return std::abs(basis.eigenvalue(mode));
 }
 
 /// Terms of the derivatives at u = v = 2^-n, dominant ones first, like ones added up.
@@ -54,9 +75,31 @@ std::vector<Term> approachTerms(const Eigenbasis& basis, int face, const Points&
   constexpr std::size_t kSlowest = 24;
   const std::size_t kept = std::min(kSlowest, modes.size());
   std::partial_sort(modes.begin(), modes.begin() + static_cast<std::ptrdiff_t>(kept), modes.end(),
-                    [&](int a, int b) { return basis.eigenvalue(a) > basis.eigenvalue(b); });
+                    [&](int a, int b) { return sizeOf(basis, a) > sizeOf(basis, b); });
+  for (const ModePair& pair : basis.pairs()) {
+    const Vector3 a = coefficients.row(pair.a), b = coefficients.row(pair.b);
+    const double square = pair.forth * pair.back;
+    if (square < 0) {  // turned by whole circles: as they are
+      add(pair.a, largerSize(pair), 0, a);
+      add(pair.b, largerSize(pair), 0, b);
+      continue;
+    }
+    for (const double root : {std::sqrt(square), -std::sqrt(square)}) {
+      // The eigenvector to mean + root is a + (root / back) b.
+      const Vector3 share = (a + (pair.back / root) * b) / 2;
+      add(pair.a, pair.mean + root, 0, share);
+      add(pair.b, pair.mean + root, 0, (root / pair.back) * share);
+    }
+  }
+  const auto inPair = [&](int mode) {
+    return std::any_of(basis.pairs().begin(), basis.pairs().end(),
+                       [&](const ModePair& pair) { return mode == pair.a || mode == pair.b; });
+  };
   for (std::size_t i = 0; i < kept; ++i) {
     const int mode = modes[i];
+    if (inPair(mode)) {
+      continue;
+    }
     const Vector3 coefficient = coefficients.row(mode);
     add(mode, basis.eigenvalue(mode), 0, coefficient);
     for (const Eigenbasis::Chain& chain : basis.chains()) {
@@ -126,6 +169,7 @@ bool vertexIsStationary(const Ring& ring) {
 bool vertexHasNormal(const Ring& ring) {
   switch (ring.kind) {
     case RingKind::interior:
+    case RingKind::dart:
       return ring.faces >= 3;
     case RingKind::boundary:
       return ring.faces <= 3;

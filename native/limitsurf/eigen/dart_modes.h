@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "limitsurf/eigen/dart_spectrum.h"
+#include "limitsurf/eigen/dart_vectors.h"
+#include "limitsurf/eigen/mode_continuation.h"
+#include "limitsurf/eigen/mode_table.h"
+#include "limitsurf/types.h"
+
+namespace limitsurf {
+
+/// Two modes a and b that a step mixes: A a = mean a + forth b, A b = mean b + back a. They stand
+/// for two eigenvalues mean +- sqrt(forth back), conjugate or real, and stay a good basis where
+/// those become equal.
+struct ModePair {
+  int a = -1, b = -1;
+  double mean = 0, forth = 0, back = 0;
+};
+
+/// The modes of a dart that are symmetric about its sharp spoke.
+///
+/// N + 1 of them for N faces, besides the constant one: some are given point by point (the lowest,
+/// the pair, one that meets an outer mode), the others are waves around the vertex, whose tables
+/// serve all inner faces. O(N^1.5) memory in all.
+class DartModes {
+ public:
+  DartModes(int faces, ModeContinuation& continuation);
+
+  int count() const { return static_cast<int>(given_.size() + waves_.size()); }
+  /// Of the pair's modes: the mean of their eigenvalues.
+  double lambda(int mode) const;
+  const ModePair& pair() const { return pair_; }
+
+  /// The mode that feeds outer modes because its eigenvalue all but equals theirs, 1/8; -1: none.
+  /// It does for N = 6, 10, 14, ..., where a pole of the spectrum (dart_spectrum.h) is at 1/8.
+  int restMode() const { return rest_.empty() ? -1 : kRestMode; }
+  /// What it feeds into outer mode q of a face.
+  double rest(int face, int q) const { return rest_[face][q]; }
+
+  ModeTable table(int mode, int face) const;
+  /// One value per point.
+  std::vector<double> ringVector(int mode) const;
+
+  /// Coefficients of the ring's points, which are relative to the vertex: the constant's and, from
+  /// row `first` on, those of the modes.
+  void project(const Points& ring, int first, Points& coefficients) const;
+  /// The transpose, added to `ring`.
+  void projectTransposed(const Eigen::MatrixXd& mode_weights, int first,
+                         Eigen::MatrixXd& ring) const;
+
+ private:
+  using Real = long double;
+  class Builder;
+
+  // A vector by places n = 0, ..., N (dart_wave.h), and at the vertex.
+  struct Given {
+    double lambda;
+    double vertex;
+    std::vector<double> right, left;
+    std::vector<ModeTable> tables;  // one per face
+  };
+  struct Wave {
+    double lambda;
+    DartVector<double> right, left;
+    WavePowers<double> powers;
+    ModeTable constant, cosine, sine;  // on inner faces, with the wave's origin in their middle
+    ModeTable first, last;             // on the faces beside the sharp spoke
+  };
+  static constexpr int kPair = 1, kRestMode = 3;  // among given_; 0: the lowest
+
+  const Wave& wave(int mode) const { return waves_[mode - static_cast<int>(given_.size())]; }
+  bool isGiven(int mode) const { return mode < static_cast<int>(given_.size()); }
+
+  int faces_;
+  ModePair pair_;
+  std::vector<double> constant_left_;
+  std::vector<Given> given_;
+  std::vector<Wave> waves_;
+  std::vector<std::array<double, tile_grid::kOuter>> rest_;  // by face
+};
+
+}  // namespace limitsurf

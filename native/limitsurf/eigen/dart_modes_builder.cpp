@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "limitsurf/eigen/dart_modes.h"
+#include "limitsurf/eigen/ring_cells.h"
+
+namespace limitsurf {
+
+using tile_grid::cell;
+
+/// Fills DartModes, in long double.
+class DartModes::Builder {
+ public:
+  Builder(DartModes& modes, ModeContinuation& continuation)
+      : modes_(modes),
+        continuation_(continuation),
+        faces_(modes.faces_),
+        ring_{RingKind::dart, modes.faces_} {}
+
+  void build() {
+    DartSpectrum spectrum(faces_);
+    addConstant();
+    addGiven(DecayingWave<Real>(faces_, spectrum.lowest));
+    addPair(spectrum.pair);
+    if (faces_ % 4 == 2 && faces_ > 2) {
+      const auto met = std::min_element(
+          spectrum.waves.begin(), spectrum.waves.end(), [](const auto& a, const auto& b) {
+            return std::abs(a.lambda() - kMet) < std::abs(b.lambda() - kMet);
+          });
+      addMeeting(*met);
+      spectrum.waves.erase(met);
+    }
+    modes_.waves_.reserve(spectrum.waves.size());
+    for (const CircleWave<Real>& wave : spectrum.waves) {
+      addWave(wave);
+    }
+  }
+
+ private:
+  using Cells = ModeContinuation::Cells;
+  static constexpr Real kMet = Real(1) / 8;  // an eigenvalue of S12
+
+  /// A vector point by point: by place n, the vertex last.
+  using Places = std::vector<Real>;
+
+  template <typename Scalar, typename Wave>
+  std::vector<Scalar> places(const DartVector<Scalar>& vector, const Wave& wave) const {
+    std::vector<Scalar> result;
+    for (int n = 0; n <= faces_; ++n) {
+      result.push_back(vector.at(n, faces_, wave.value(n)));
+    }
+    result.push_back(vector.vertex);
+    return result;
+  }
+
+  /// How often the ring has a place: two points, but for those on the axis.
+  Real multiplicity(int n) const { return n == 0 || n >= faces_ ? 1 : 2; }
+
+  template <typename Scalar>
+  Scalar product(const std::vector<Scalar>& left, const std::vector<Scalar>& right) const {
+    Scalar sum = 0;
+    for (int n = 0; n <= faces_ + 1; ++n) {
+      sum += multiplicity(n) * left[n] * right[n];
+    }
+    return sum;
+  }
+
+  static Real largest(const Places& places) {
+    Real result = 0;
+    for (const Real value : places) {
+      result = std::max(result, std::abs(value));
+    }
+    return result;
+  }
+
+  template <typename Scalar, typename Factor>
+  static void scale(std::vector<Scalar>& values, const Factor& factor) {
+    for (Scalar& value : values) {
+      value *= factor;
+    }
+  }
+
+  std::vector<double> rounded(const Places& places) const {
+    return {places.begin(), places.end() - 1};
+  }
+
+  Cells ringCells(const Places& places, int face) const {
+    Cells cells{};
+    forEachRingCell(ring_, face, [&](int cell, int point) {
+      cells[cell] =
+          places[point == 0              ? faces_ + 1
+                 : point < ring_.face(0) ? std::abs(2 * (point - ring_.edge(0)) - faces_)
+                                         : std::abs(2 * (point - ring_.face(0)) + 1 - faces_)];
+    });
+    return cells;
+  }
+
+  /// The constant mode's left eigenvector: its mask of limit positions.
+  void addConstant() {
+    const DecayingWave<Real> wave(faces_, 1);
+    Places left = places(DartVectors(faces_, wave).left, wave);
+    scale(left, 1 / product(left, Places(left.size(), 1)));
+    modes_.constant_left_ = rounded(left);
+  }
+
+  struct Eigenvectors {
+    Places right, left;
+  };
+
+  template <typename Wave>
+  Eigenvectors eigenvectors(const Wave& wave) const {
+    const DartVectors<Wave> vectors(faces_, wave);
+    Eigenvectors result{places(vectors.right, wave), places(vectors.left, wave)};
+    scale(result.right, 1 / largest(result.right));
+    scale(result.left, 1 / product(result.left, result.right));
+    return result;
+  }
+
+  void addGiven(Real lambda, const Eigenvectors& vectors) {
+    modes_.given_.push_back({static_cast<double>(lambda),
+                             static_cast<double>(vectors.right.back()),
+                             rounded(vectors.right),
+                             rounded(vectors.left),
+                             {}});
+  }
+
+  template <typename Wave>
+  void addGiven(const Wave& wave) {
+    const Eigenvectors vectors = eigenvectors(wave);
+    addGiven(wave.lambda(), vectors);
+    for (int face = 0; face < faces_; ++face) {
+      modes_.given_.back().tables.push_back(ModeContinuation::rounded(continuation_.continued(
+          ring_.sides(face), wave.lambda(), ringCells(vectors.right, face))));
+    }
+  }
+
+  void addMeeting(const CircleWave<Real>& wave) {
+    const Eigenvectors vectors = eigenvectors(wave);
+    addGiven(wave.lambda(), vectors);
+    for (int face = 0; face < faces_; ++face) {
+      const auto wide = continuation_.continuedBeside(ring_.sides(face), wave.lambda(), kMet,
+                                                      ringCells(vectors.right, face));
+      modes_.given_.back().tables.push_back(ModeContinuation::rounded(wide));
+      modes_.rest_.push_back({});
+      for (Eigen::Index q = 0; q < wide.rest.size(); ++q) {
+        modes_.rest_.back()[q] = static_cast<double>(wide.rest[q]);
+      }
+    }
+  }
+
+  /// With eigenvectors w1 and w2 to mean +- d: a = (w1 + w2) / 2 and b = (w1 - w2) / (2 d), which
+  /// have a limit at d = 0; their coefficients c1 + c2 and (c1 - c2) d likewise.
+  void addPair(const std::vector<CircleWave<DartSpectrum::Complex>>& waves) {
+    using Complex = DartSpectrum::Complex;
+    const Complex lambda[2] = {waves[0].lambda(), waves[1].lambda()};
+    const Complex half = (lambda[0] - lambda[1]) / Real(2);
+    std::vector<Complex> right[2], left[2];
+    for (int i = 0; i < 2; ++i) {
+      const DartVectors<CircleWave<Complex>> vectors(faces_, waves[i]);
+      right[i] = places(vectors.right, waves[i]);
+      left[i] = places(vectors.left, waves[i]);
+      scale(left[i], Real(1) / product(left[i], right[i]));
+    }
+    Eigenvectors vectors[2];
+    for (std::size_t n = 0; n < right[0].size(); ++n) {
+      vectors[0].right.push_back((right[0][n] + right[1][n]).real() / 2);
+      vectors[1].right.push_back(((right[0][n] - right[1][n]) / (Real(2) * half)).real());
+      vectors[0].left.push_back((left[0][n] + left[1][n]).real());
+      vectors[1].left.push_back(((left[0][n] - left[1][n]) * half).real());
+    }
+    Real size[2];
+    for (int i = 0; i < 2; ++i) {
+      size[i] = largest(vectors[i].right);
+      scale(vectors[i].right, 1 / size[i]);
+      scale(vectors[i].left, size[i]);
+    }
+    const Real mean = (lambda[0] + lambda[1]).real() / 2, back = size[0] / size[1];
+    const Real forth = (half * half).real() / back;
+    modes_.pair_ = {kPair, kPair + 1, static_cast<double>(mean), static_cast<double>(forth),
+                    static_cast<double>(back)};
+    addGiven(mean, vectors[0]);
+    addGiven(mean, vectors[1]);
+    for (int face = 0; face < faces_; ++face) {
+      const auto wide = continuation_.continuedPair(
+          ring_.sides(face), mean, forth, back,
+          {ringCells(vectors[0].right, face), ringCells(vectors[1].right, face)});
+      for (int i = 0; i < 2; ++i) {
+        modes_.given_[kPair + i].tables.push_back(ModeContinuation::rounded(wide[i]));
+      }
+    }
+  }
+
+  static DartVector<double> rounded(const DartVector<Real>& v) {
+    return {static_cast<double>(v.vertex),        static_cast<double>(v.sharp),
+            static_cast<double>(v.edge_constant), static_cast<double>(v.edge_wave),
+            static_cast<double>(v.face_constant), static_cast<double>(v.face_wave)};
+  }
+
+  /// Calls visit(cell, n) for the ring cells of a face at place 0, the vertex apart.
+  template <typename Visit>
+  static void forEachPlace(const Visit& visit) {
+    visit(cell(0, -1), -3);
+    visit(cell(1, -1), -2);
+    visit(cell(1, 0), -1);
+    visit(cell(1, 1), 0);
+    visit(cell(0, 1), 1);
+    visit(cell(-1, 1), 2);
+    visit(cell(-1, 0), 3);
+  }
+
+  void addWave(const CircleWave<Real>& wave) {
+    const WavePowers<Real> powers(wave, faces_);
+    DartVectors<CircleWave<Real>> vectors(faces_, wave);
+    // From here on the wave is a cosine at faces as well.
+    for (DartVector<Real>* vector : {&vectors.right, &vectors.left}) {
+      vector->face_wave /= wave.root();
+    }
+    DartVector<Real>&right = vectors.right, &left = vectors.left;
+    Real size = std::abs(right.vertex), norm = right.vertex * left.vertex;
+    for (int n = 0; n <= faces_; ++n) {
+      const Real w = powers.at(n).cos, value = right.at(n, faces_, w);
+      size = std::max(size, std::abs(value));
+      norm += multiplicity(n) * value * left.at(n, faces_, w);
+    }
+    right.scale(1 / size);
+    left.scale(size / norm);
+
+    const auto continued = [&](Sides sides, const Cells& cells) {
+      return ModeContinuation::rounded(continuation_.continued(sides, wave.lambda(), cells));
+    };
+    Wave result{static_cast<double>(wave.lambda()),
+                rounded(right),
+                rounded(left),
+                WavePowers<double>(powers),
+                {},
+                {},
+                {},
+                {},
+                {}};
+    if (faces_ > 2) {
+      Cells constant{}, cosine{}, sine{};
+      constant[cell(0, 0)] = right.vertex;
+      forEachPlace([&](int cell, int n) {
+        const bool on_spoke = n % 2 != 0;
+        const auto power = powers.at(n);
+        constant[cell] = on_spoke ? right.edge_constant : right.face_constant;
+        cosine[cell] = (on_spoke ? right.edge_wave : right.face_wave) * power.cos;
+        sine[cell] = (on_spoke ? right.edge_wave : right.face_wave) * power.sin;
+      });
+      result.constant = continued(Sides::inner, constant);
+      result.cosine = continued(Sides::inner, cosine);
+      result.sine = continued(Sides::inner, sine);
+    }
+    for (const int face : {0, faces_ - 1}) {
+      Places places;
+      for (int n = 0; n <= faces_; ++n) {
+        places.push_back(n + 6 < faces_ ? 0 : right.at(n, faces_, powers.at(n).cos));
+      }
+      places.push_back(right.vertex);
+      (face == 0 ? result.first : result.last) =
+          continued(ring_.sides(face), ringCells(places, face));
+    }
+    modes_.waves_.push_back(std::move(result));
+  }
+
+  DartModes& modes_;
+  ModeContinuation& continuation_;
+  const int faces_;
+  const Ring ring_;
+};
+
+DartModes::DartModes(int faces, ModeContinuation& continuation) : faces_(faces) {
+  Builder(*this, continuation).build();
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/eigen/dart_spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace limitsurf {
+namespace {
+
+using Real = DartSpectrum::Real;
+using Complex = DartSpectrum::Complex;
+constexpr Real kPi = 3.14159265358979323846264338327950288L;
+
+/// The parts of the secular equation that are polynomials in s.
+template <typename Scalar>
+struct Polynomials {
+  Scalar smooth, smooth_slope;  ///< N (2 lambda - 1) (N Q), and its derivative by lambda
+  Scalar sharp, sharp_slope;    ///< (s / 2) (3/2 lambda - 1/4), and its derivative by s
+
+  Polynomials(int faces, const Scalar& s) {
+    const Real n = static_cast<Real>(faces);
+    const Scalar lambda = s * s;
+    const Scalar q = n * lambda * lambda - (3 * n - 7) / 4 * lambda + (n - 3) / 16;
+    const Scalar q_slope = 2 * n * lambda - (3 * n - 7) / 4;
+    const Scalar factor = Real(2) * lambda - Real(1);
+    smooth = n * factor * q;
+    smooth_slope = n * (Real(2) * q + factor * q_slope);
+    sharp = s * (Real(3) / 4 * lambda - Real(1) / 8);
+    sharp_slope = Real(9) / 4 * lambda - Real(1) / 8;
+  }
+};
+
+/// The difference of both sides, over the sign of sin(N psi) at the pole.
+template <typename Scalar>
+struct Secular {
+  Scalar value, slope;  ///< and its derivative by delta
+
+  Secular(int faces, const CircleWave<Scalar>& wave) {
+    const Real n = static_cast<Real>(faces);
+    const Scalar s = wave.root();
+    const Polynomials<Scalar> p(faces, s);
+    const Scalar cos_1 = wave.cos(1), sin_1 = wave.sin(1);
+    const Scalar cos_n = -std::sin(n * wave.delta()), sin_n = std::cos(n * wave.delta());
+    const Scalar ratio = sin_n / sin_1;
+    value = p.smooth * cos_n - p.sharp * ratio;
+    const Scalar s_slope = -sin_1 * s / (Real(4) * s - cos_1);
+    slope = p.smooth_slope * Real(2) * s * s_slope * cos_n - n * p.smooth * sin_n -
+            p.sharp_slope * s_slope * ratio - p.sharp * (n * cos_n - ratio * cos_1) / sin_1;
+  }
+};
+
+/// Where `value` changes its sign between a and b, to the last bit.
+template <typename Value>
+Real signChange(Real a, Real b, const Value& value) {
+  const bool rising = value(a) < 0;
+  if (rising == (value(b) < 0)) {
+    throw std::logic_error("dart: an eigenvalue is not where it should be");
+  }
+  for (;;) {
+    const Real middle = (a + b) / 2;
+    if (middle == a || middle == b) {
+      return middle;
+    }
+    ((value(middle) < 0) == rising ? a : b) = middle;
+  }
+}
+
+/// The eigenvalue between poles k and k + 1, seen from the closer one.
+CircleWave<Real> between(int faces, int k) {
+  const Real half = kPi / (2 * static_cast<Real>(faces));
+  const auto from = [&](int pole) {
+    return [=](Real delta) { return Secular<Real>(faces, {faces, pole, delta}).value; };
+  };
+  const bool left = (from(k)(0) < 0) != (from(k)(half) < 0);
+  const int pole = left ? k : k + 1;
+  return {faces, pole, left ? signChange(0, half, from(pole)) : signChange(-half, 0, from(pole))};
+}
+
+Real lowestEigenvalue(int faces) {
+  const Real end = (3 - std::sqrt(Real(5))) / 8;  // D = 0
+  return signChange(-Real(1) / 2, end - Real(1) / 100 / static_cast<Real>(faces), [=](Real lambda) {
+    const Real n = static_cast<Real>(faces);
+    const Real d = lambda * lambda - 3 * lambda / 4 + Real(1) / 16;
+    const Real q = n * d + 7 * lambda / 4 - Real(3) / 16;
+    return n * (2 * lambda - 1) * q + (3 * lambda / 2 - Real(1) / 4) * lambda / (4 * std::sqrt(d)) *
+                                          DecayingWave<Real>(faces, lambda).tangent();
+  });
+}
+
+/// The sums of all N + 2 eigenvalues and of their squares: those of the smooth ring's symmetric
+/// part and what the change u w^T of e_0's row adds: w u and 2 w S u + (w u)^2.
+struct Traces {
+  Real first, second;
+
+  explicit Traces(int faces) {
+    const Real n = static_cast<Real>(faces);
+    const Real radial = Real(3) / 4 - 7 / (4 * n), radial_product = Real(1) / 16 - 3 / (16 * n);
+    first = 1 + radial;
+    second = 1 + radial * radial - 2 * radial_product;
+    const Circle<Real> circle(faces);
+    for (int m = 1; 2 * m < faces; ++m) {
+      const Real sum = (5 + circle.cos(m)) / 8;
+      first += sum;
+      second += sum * sum - Real(1) / 8;
+    }
+    if (faces % 2 == 0) {
+      first += Real(1) / 4;
+      second += Real(1) / 16;
+    }
+    const Real w_u = Real(1) / 8;
+    // At valence 2 both neighbours of e_0 are one.
+    const Real w_s_u = 3 / (16 * n * n) + Real(1) / 128 - (faces == 2 ? Real(1) / 128 : 0);
+    first += w_u;
+    second += 2 * w_s_u + w_u * w_u;
+  }
+};
+
+/// A solution of the secular equation by Newton's method.
+CircleWave<Complex> refined(int faces, const Complex& lambda) {
+  const Complex psi = std::acos((Real(4) * lambda - Real(1)) / (Real(2) * std::sqrt(lambda)));
+  const Real spacing = kPi / static_cast<Real>(faces);
+  const int pole = std::clamp(static_cast<int>(std::floor(psi.real() / spacing)), 0, faces - 1);
+  Complex delta = psi - (static_cast<Real>(pole) + Real(1) / 2) * spacing;
+  for (int i = 0; i < 8; ++i) {
+    const Secular<Complex> at(faces, {faces, pole, delta});
+    delta -= at.value / at.slope;
+  }
+  return {faces, pole, delta};
+}
+
+}  // namespace
+
+DartSpectrum::DartSpectrum(int faces) : lowest(lowestEigenvalue(faces)) {
+  const auto lambdaOfPole = [&](int k) { return CircleWave<Real>(faces, k, 0).lambda(); };
+  for (int k = 0; k + 1 < faces; ++k) {
+    if (lambdaOfPole(k) > Real(1) / 6 && lambdaOfPole(k + 1) < Real(1) / 6) {
+      continue;
+    }
+    waves.push_back(between(faces, k));
+  }
+
+  Traces left(faces);
+  const auto take = [&](Real lambda) {
+    left.first -= lambda;
+    left.second -= lambda * lambda;
+  };
+  take(1);
+  take(lowest);
+  for (const CircleWave<Real>& wave : waves) {
+    take(wave.lambda());
+  }
+  const Real mean = left.first / 2;
+  const Complex half = std::sqrt(Complex(left.second / 2 - mean * mean));
+  pair = {refined(faces, mean + half), refined(faces, mean - half)};
+
+  const Complex sum = pair[0].lambda() + pair[1].lambda();
+  const Complex squares = pair[0].lambda() * pair[0].lambda() + pair[1].lambda() * pair[1].lambda();
+  if (static_cast<int>(waves.size()) != faces - 2 || !(std::abs(sum - left.first) < 1e-13L) ||
+      !(std::abs(squares - left.second) < 1e-13L)) {
+    throw std::logic_error("dart: eigenvalues are missing");
+  }
+
+  if (half.imag() != 0) {
+    return;
+  }
+  // All real: of the last two and the waves next to them the closest ones are the pair.
+  Real distance = std::abs(pair[0].lambda() - pair[1].lambda());
+  int exchanged = -1, wave = -1;
+  for (int i = 0; i < 2; ++i) {
+    for (int k = 0; k < static_cast<int>(waves.size()); ++k) {
+      const Real other = std::abs(pair[i].lambda() - waves[k].lambda());
+      if (other < distance) {
+        distance = other;
+        exchanged = 1 - i;
+        wave = k;
+      }
+    }
+  }
+  if (wave >= 0) {
+    const CircleWave<Real> joins = waves[wave];
+    waves[wave] = {faces, pair[exchanged].pole(), pair[exchanged].delta().real()};
+    pair[exchanged] = {faces, joins.pole(), joins.delta()};
+  }
+}
+
+}  // namespace limitsurf
