@@ -17,6 +17,15 @@ TopologyPointer farTopology(const Cage& cage) {
   descriptor.numFaces = cage.faceCount();
   descriptor.numVertsPerFace = sizes.data();
   descriptor.vertIndicesPerFace = vertices.data();
+  std::vector<int> sharp_edges;
+  for (const auto& [a, b] : cage.edge_sharpness.edges) {
+    sharp_edges.insert(sharp_edges.end(), {static_cast<int>(a), static_cast<int>(b)});
+  }
+  const std::vector<float> sharpness(cage.edge_sharpness.values.begin(),
+                                     cage.edge_sharpness.values.end());
+  descriptor.numCreases = static_cast<int>(sharpness.size());
+  descriptor.creaseVertexIndexPairs = sharp_edges.data();
+  descriptor.creaseWeights = sharpness.data();
   Sdc::Options rules;
   rules.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
   using Maker = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;

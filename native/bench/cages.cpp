@@ -270,4 +270,29 @@ Cage largeCage(int side) {
   return builder.build();
 }
 
+Cage semiSharpCage(int side) {
+  CageBuilder builder;
+  Random random(7);
+  for (int j = 0; j <= side; ++j) {
+    for (int i = 0; i <= side; ++i) builder.addVertex(i, j, random.between(-0.5, 0.5));
+  }
+  const auto at = [&](int i, int j) { return j * (side + 1) + i; };
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      builder.addFace({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  Cage cage = builder.build();
+  for (int j = 0; j <= side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      cage.edge_sharpness.edges.emplace_back(at(i, j), at(i + 1, j));
+      cage.edge_sharpness.edges.emplace_back(at(j, i), at(j, i + 1));
+    }
+  }
+  for (std::size_t i = 0; i < cage.edge_sharpness.edges.size(); ++i) {
+    cage.edge_sharpness.values.push_back(random.between(0.5, 4));
+  }
+  return cage;
+}
+
 }  // namespace limitsurf::bench

@@ -14,12 +14,17 @@ struct Cage {
   Points positions;
   std::vector<std::int64_t> face_sizes;
   std::vector<std::int64_t> face_vertices;
+  EdgeSharpness edge_sharpness;
 
   int faceCount() const { return static_cast<int>(face_sizes.size()); }
   int ptexFaceCount() const;
   /// Diagonal of the bounding box.
   double diagonal() const;
-  ControlMesh controlMesh() const { return ControlMesh(positions, face_sizes, face_vertices); }
+  ControlMesh controlMesh() const {
+    MeshOptions options;
+    options.edge_sharpness = edge_sharpness;
+    return ControlMesh(positions, face_sizes, face_vertices, options);
+  }
 };
 
 // The meshes below are open unless said otherwise, with random heights; the same on every call.
@@ -50,5 +55,8 @@ Cage cornersCage();
 /// side x side quads, of which about one in fifty is irregular: single faces are missing here and
 /// there (boundary EVs), single edges turned (interior EVs of valence 3 and 5).
 Cage largeCage(int side);
+
+/// side x side quads, every edge semi-sharp, of random sharpness from 0.5 to 4.
+Cage semiSharpCage(int side);
 
 }  // namespace limitsurf::bench

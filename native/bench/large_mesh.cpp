@@ -2,6 +2,7 @@
 #include "large_mesh.h"
 
 #include <malloc.h>
+#include <opensubdiv/far/patchTableFactory.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -85,15 +86,30 @@ bool measureApart(const Opening& open, Cost& cost) {
   return is_read && status == 0;
 }
 
-}  // namespace
+/// What it takes to evaluate with Far: the faces around features refined, and patches for them.
+struct FarAdaptive {
+  std::shared_ptr<OpenSubdiv::Far::TopologyRefiner> topology;
+  std::shared_ptr<const OpenSubdiv::Far::PatchTable> patches;
+};
 
-int measureLargeMesh(int side) {
-  const Cage cage = largeCage(side);
-  const std::vector<ClassifiedFace> classified = classifyFaces(cage);
-  const std::size_t regular = facesOf(classified, FaceClass::regular).size();
-  std::printf("%d quads, %.2f %% of them irregular; all threads; median of 3\n\n", cage.faceCount(),
-              100.0 * (1 - static_cast<double>(regular) / cage.faceCount()));
+FarAdaptive openFarAdaptive(const Cage& cage, bool with_patches = false) {
+  namespace Far = OpenSubdiv::Far;
+  constexpr int kLevel = 6;
+  FarAdaptive result;
+  result.topology = farTopology(cage);
+  Far::PatchTableFactory::Options options(kLevel);
+  options.useInfSharpPatch = true;
+  options.useSingleCreasePatch = true;
+  options.SetEndCapType(Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
+  result.topology->RefineAdaptive(options.GetRefineAdaptiveOptions());
+  if (with_patches) {
+    result.patches.reset(Far::PatchTableFactory::Create(*result.topology, options));
+  }
+  return result;
+}
 
+/// Prints a row for each library.
+int measureOpening(const Cage& cage) {
   struct Row {
     const char* name;
     Opening open;
@@ -115,6 +131,10 @@ int measureLargeMesh(int side) {
        {}},
       {"limitsurf ControlMesh + LimitSurface",
        [&] { return std::make_shared<LimitSurface>(cage.controlMesh()); },
+       {}},
+      {"Far adaptive refinement, level 6", [&] { return openFarAdaptive(cage).topology; }, {}},
+      {"the same with its patch table",
+       [&] { return std::make_shared<FarAdaptive>(openFarAdaptive(cage, true)); },
        {}},
       {"Far topology + Bfr 2 surfaces", [&] { return open_bfr(2); }, {}},
       {"Far topology + Bfr 10 surfaces", [&] { return open_bfr(10); }, {}},
@@ -138,6 +158,24 @@ int measureLargeMesh(int side) {
                 middle.cpu_seconds, middle.peak_mib, middle.kept_mib);
   }
   return 0;
+}
+
+}  // namespace
+
+int measureLargeMesh(int side) {
+  const Cage cage = largeCage(side);
+  const std::vector<ClassifiedFace> classified = classifyFaces(cage);
+  const std::size_t regular = facesOf(classified, FaceClass::regular).size();
+  std::printf("%d quads, %.2f %% of them irregular; all threads; median of 3\n\n", cage.faceCount(),
+              100.0 * (1 - static_cast<double>(regular) / cage.faceCount()));
+  return measureOpening(cage);
+}
+
+int measureSemiSharpMesh(int side) {
+  const Cage cage = semiSharpCage(side);
+  std::printf("%d quads, every edge of sharpness 0.5 to 4; all threads; median of 3\n\n",
+              cage.faceCount());
+  return measureOpening(cage);
 }
 
 }  // namespace limitsurf::bench

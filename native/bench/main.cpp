@@ -7,6 +7,7 @@
 //   limitsurf_bench --samples=20000       locations in a batch (default 100000)
 //   limitsurf_bench --fresh-memory        results in memory that the system has just handed out
 //   limitsurf_bench --large[=1000]        opening a grid of 1000 x 1000 quads: time and memory
+//   limitsurf_bench --semi-sharp[=100]    the same, every edge of 100 x 100 quads semi-sharp
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 #include <opensubdiv/version.h>
@@ -72,13 +73,15 @@ int main(int argc, char** argv) {
   static char time[] = "--benchmark_min_time=0.03";
   std::vector<char*> arguments = {argv[0], interleave, repetitions, time};
   int sample_count = 100000;
-  int large_side = 0;
+  int large_side = 0, semi_sharp_side = 0;
   bool is_memory_fresh = false;
   for (int i = 1; i < argc; ++i) {
     if (const int count = valueOf(argv[i], "--samples", 0)) {
       sample_count = count;
     } else if (const int side = valueOf(argv[i], "--large", 1000)) {
       large_side = side;
+    } else if (const int sharp_side = valueOf(argv[i], "--semi-sharp", 100)) {
+      semi_sharp_side = sharp_side;
     } else if (std::strcmp(argv[i], "--fresh-memory") == 0) {
       is_memory_fresh = true;
     } else {
@@ -87,6 +90,7 @@ int main(int argc, char** argv) {
   }
   try {
     if (large_side > 0) return limitsurf::bench::measureLargeMesh(large_side);
+    if (semi_sharp_side > 0) return limitsurf::bench::measureSemiSharpMesh(semi_sharp_side);
     if (!is_memory_fresh) recycleMemory();
     return runTables(static_cast<int>(arguments.size()), arguments.data(), sample_count);
   } catch (const std::exception& error) {
