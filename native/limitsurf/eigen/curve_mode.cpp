@@ -51,10 +51,9 @@ CurveMode<Real> halfMode(const Ring& ring, int end) {
         (1 - slope * (j + Real(1) / 2)) * cosFace<Real>(j) + (sine - slope / 6) * sinFace<Real>(j);
   }
   if (defective) {
-    const Real norm = std::sqrt(Real(3) / 2);  // of (1, sqrt 2) in (x_e, x_f / 2)
     mode.fed_mode = k / 2;
     mode.feeds_plus = true;
-    mode.feeds = slope / 6 * norm;
+    mode.feeds = slope / 6;
   }
   return mode;
 }

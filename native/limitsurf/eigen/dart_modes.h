@@ -24,8 +24,8 @@ struct ModePair {
 /// The modes of a dart that are symmetric about its sharp spoke.
 ///
 /// N + 1 of them for N faces, besides the constant one: some are given point by point (the lowest,
-/// the pair, one that meets an outer mode), the others are waves around the vertex, whose tables
-/// serve all inner faces. O(N^1.5) memory in all.
+/// the pair, one that meets an outer mode or is linear), the others are waves around the vertex,
+/// whose tables serve all inner faces. O(N^1.5) memory in all.
 class DartModes {
  public:
   DartModes(int faces, ModeContinuation& continuation);

@@ -23,11 +23,13 @@ class DartModes::Builder {
     addConstant();
     addGiven(DecayingWave<Real>(faces_, spectrum.lowest));
     addPair(spectrum.pair);
+    if (faces_ == 4) {
+      const auto half = closest(spectrum.waves, Real(1) / 2);
+      addLinear(*half);
+      spectrum.waves.erase(half);
+    }
     if (faces_ % 4 == 2 && faces_ > 2) {
-      const auto met = std::min_element(
-          spectrum.waves.begin(), spectrum.waves.end(), [](const auto& a, const auto& b) {
-            return std::abs(a.lambda() - kMet) < std::abs(b.lambda() - kMet);
-          });
+      const auto met = closest(spectrum.waves, kMet);
       addMeeting(*met);
       spectrum.waves.erase(met);
     }
@@ -40,6 +42,13 @@ class DartModes::Builder {
  private:
   using Cells = ModeContinuation::Cells;
   static constexpr Real kMet = Real(1) / 8;  // an eigenvalue of S12
+
+  static std::vector<CircleWave<Real>>::iterator closest(std::vector<CircleWave<Real>>& waves,
+                                                         Real lambda) {
+    return std::min_element(waves.begin(), waves.end(), [&](const auto& a, const auto& b) {
+      return std::abs(a.lambda() - lambda) < std::abs(b.lambda() - lambda);
+    });
+  }
 
   /// A vector point by point: by place n, the vertex last.
   using Places = std::vector<Real>;
@@ -132,6 +141,22 @@ class DartModes::Builder {
     for (int face = 0; face < faces_; ++face) {
       modes_.given_.back().tables.push_back(ModeContinuation::rounded(continuation_.continued(
           ring_.sides(face), wave.lambda(), ringCells(vectors.right, face))));
+    }
+  }
+
+  /// Valence 4, lambda = 1/2: linear on every face, cos(pi/2 (i - 2)) at e_i. No derivative grows
+  /// faster than this mode's first ones, so that its second ones have to be exactly 0.
+  void addLinear(const CircleWave<Real>& wave) {
+    Eigenvectors vectors = eigenvectors(wave);
+    for (Real& value : vectors.right) {
+      value = std::round(value);
+    }
+    scale(vectors.left, 1 / product(vectors.left, vectors.right));
+    addGiven(Real(1) / 2, vectors);
+    for (int face = 0; face < faces_; ++face) {
+      const Cells cells = ringCells(vectors.right, face);
+      modes_.given_.back().tables.push_back(ModeContinuation::rounded(
+          continuation_.linear(ring_.sides(face), cells[cell(1, 0)], cells[cell(0, 1)])));
     }
   }
 

@@ -118,6 +118,7 @@ class Eigenbasis {
   };
   struct Spoke {
     double edge, face;  // (x_e, x_f)
+    double scale;       // the dual vector is (x_e, x_f / 4) times this
   };
 
   class Builder;

@@ -64,21 +64,22 @@ void Eigenbasis::Builder::buildOuterTables(Sides sides) {
 }
 
 /// The ring cells of a spoke mode turned so that e_j of this face stands at angle 0.
-Eigenbasis::Builder::Cells Eigenbasis::Builder::spokeCells(Real m, Real edge, Real face,
+Eigenbasis::Builder::Cells Eigenbasis::Builder::spokeCells(int m,
+                                                           const SpokeMode<Real>::Vector& vector,
                                                            bool sine) const {
   const Circle<Real> circle(basis_.period_);
   const auto wave = [&](int twice_position) {
-    const long i = static_cast<long>(m) * twice_position;
+    const long i = 1L * m * twice_position;
     return sine ? circle.sin(i) : circle.cos(i);
   };
   Cells cells{};
-  cells[cell(0, -1)] = edge * wave(-2);
-  cells[cell(1, -1)] = face * wave(-1);
-  cells[cell(1, 0)] = edge * wave(0);
-  cells[cell(1, 1)] = face * wave(1);
-  cells[cell(0, 1)] = edge * wave(2);
-  cells[cell(-1, 1)] = face * wave(3);
-  cells[cell(-1, 0)] = edge * wave(4);
+  cells[cell(0, -1)] = vector.edge * wave(-2);
+  cells[cell(1, -1)] = vector.face * wave(-1);
+  cells[cell(1, 0)] = vector.edge * wave(0);
+  cells[cell(1, 1)] = vector.face * wave(1);
+  cells[cell(0, 1)] = vector.edge * wave(2);
+  cells[cell(-1, 1)] = vector.face * wave(3);
+  cells[cell(-1, 0)] = vector.edge * wave(4);
   return cells;
 }
 
@@ -86,10 +87,13 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bo
                                                           bool sine) {
   const auto mode = ring_.closed() ? SpokeMode<Real>::at(2L * m, ring_.faces)
                                    : SpokeMode<Real>::at(m, ring_.faces);
-  const Real lambda = plus ? mode.lambda_plus : mode.lambda_minus;
-  Cells cells = spokeCells(m, plus ? mode.edgePlus() : mode.edgeMinus(),
-                           plus ? mode.facePlus() : mode.faceMinus(), sine);
-  if (sides == Sides::right) {
+  const bool mirror = sides == Sides::right;
+  if (plus && mode.linear) {
+    const bool along_v = sine != mirror;
+    return continuation_.linear(sides, along_v ? 0 : 1, along_v ? 1 : 0);
+  }
+  Cells cells = spokeCells(m, mode.vector(plus), sine);
+  if (mirror) {
     // Counted from the last spoke, which lies on the boundary, the sine mode is itself again (up to
     // its sign), seen in a mirror that exchanges u and v.
     Cells mirrored{};
@@ -103,7 +107,7 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bo
       cells[c] = 0;
     }
   }
-  return continuation_.continued(sides, lambda, cells);
+  return continuation_.continued(sides, mode.lambda(plus), cells);
 }
 
 void Eigenbasis::Builder::buildSpokes() {
@@ -112,13 +116,13 @@ void Eigenbasis::Builder::buildSpokes() {
     const auto mode =
         interior ? SpokeMode<Real>::at(2L * m, ring_.faces) : SpokeMode<Real>::at(m, ring_.faces);
     for (const bool plus : {true, false}) {
-      basis_.spokes_.push_back({static_cast<double>(plus ? mode.edgePlus() : mode.edgeMinus()),
-                                static_cast<double>(plus ? mode.facePlus() : mode.faceMinus())});
+      const auto& vector = mode.vector(plus);
+      basis_.spokes_.push_back({static_cast<double>(vector.edge), static_cast<double>(vector.face),
+                                static_cast<double>(1 / vector.square)});
       Part part[2];
       const int parts = basis_.parts(m, plus, 0, part);
       for (int i = 0; i < parts; ++i) {
-        basis_.lambda_[part[i].mode] =
-            static_cast<double>(plus ? mode.lambda_plus : mode.lambda_minus);
+        basis_.lambda_[part[i].mode] = static_cast<double>(mode.lambda(plus));
       }
       for (const Sides sides : {Sides::inner, Sides::left, Sides::right, Sides::both}) {
         if (FaceTables* tables = basis_.face_tables_[static_cast<int>(sides)].get()) {
@@ -205,14 +209,12 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeOnFace(int m, bool plus, int
   const Circle<Real> circle(basis_.period_);
   std::vector<Real> ring(ring_.size(), 0);
   for (int i = 0; i <= ring_.faces; ++i) {
-    ring[ring_.edge(i)] = (plus ? mode.edgePlus() : mode.edgeMinus()) * circle.sin(2L * m * i);
+    ring[ring_.edge(i)] = mode.vector(plus).edge * circle.sin(2L * m * i);
   }
   for (int j = 0; j < ring_.faces; ++j) {
-    ring[ring_.face(j)] =
-        (plus ? mode.facePlus() : mode.faceMinus()) * circle.sin(1L * m * (2 * j + 1));
+    ring[ring_.face(j)] = mode.vector(plus).face * circle.sin(1L * m * (2 * j + 1));
   }
-  return continuation_.continued(basis_.sides(face), plus ? mode.lambda_plus : mode.lambda_minus,
-                                 ringCells(ring, face));
+  return continuation_.continued(basis_.sides(face), mode.lambda(plus), ringCells(ring, face));
 }
 
 void Eigenbasis::Builder::buildCurves() {

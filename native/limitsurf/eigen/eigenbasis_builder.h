@@ -27,7 +27,7 @@ class Eigenbasis::Builder {
   void buildDart();
   void buildOuterTables(Sides sides);
 
-  Cells spokeCells(Real angle_numerator, Real edge, Real face, bool sine) const;
+  Cells spokeCells(int m, const SpokeMode<Real>::Vector& vector, bool sine) const;
   Wide spokeTable(Sides sides, int m, bool plus, bool sine);
   Wide spokeOnFace(int m, bool plus, int face);
   Cells ringCells(const std::vector<Real>& ring, int face) const;

@@ -73,7 +73,8 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
     const double norm = (alternates(m) ? 1. : 2.) / faces;
     for (const bool plus : {true, false}) {
       const Spoke& spoke = spokes_[pairIndex(m, plus)];
-      const double e = norm * spoke.edge, f = norm * spoke.face / 4;
+      const double scale = norm * spoke.scale;
+      const double e = scale * spoke.edge, f = scale * spoke.face / 4;
       const Vector3 cosine = e * edge_cos + f * face_cos, sine = e * edge_sin + f * face_sin;
       // On face 0 of a ring the parts are the cosine and the sine mode themselves.
       Part part[2];
@@ -96,7 +97,7 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
       const int count = parts(m, plus, 0, part);
       for (int p = 0; p < count; ++p) {
         const std::vector<double>& wave = part[p].cosine != 0 ? cos_ : sin_;
-        const auto weight = norm * mode_weights.row(part[p].mode);
+        const auto weight = norm * spoke.scale * mode_weights.row(part[p].mode);
         for (int i = 0; i < edges; ++i) {
           ring.row(ring_.edge(i)) += spoke.edge * wave[2L * m * i % period_] * weight;
         }

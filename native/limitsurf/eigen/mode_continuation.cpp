@@ -81,6 +81,23 @@ std::array<ModeContinuation::Wide, 2> ModeContinuation::continuedPair(
   return result;
 }
 
+ModeContinuation::Wide ModeContinuation::linear(Sides sides, Real a, Real b) {
+  const Outer& o = outer(sides);
+  const auto value = [&](int c) {
+    return a * static_cast<Real>(tile_grid::xOf(c)) + b * static_cast<Real>(tile_grid::yOf(c));
+  };
+  Wide wide;
+  wide.outer.resize(o.count());
+  wide.rest = Outer::Vector::Zero(o.count());
+  for (int i = 0; i < o.count(); ++i) {
+    wide.outer[i] = value(o.cells()[i]);
+  }
+  for (int c = 0; c < tile_grid::kCells; ++c) {
+    wide.grid[c] = tile_grid::exists(sides, c) ? value(c) / 2 : 0;
+  }
+  return wide;
+}
+
 ModeTable ModeContinuation::rounded(const Wide& wide) {
   ModeTable table;
   for (Eigen::Index i = 0; i < wide.outer.size(); ++i) {

@@ -37,6 +37,9 @@ class ModeContinuation {
   std::array<Wide, 2> continuedPair(Sides sides, Real mean, Real forth, Real back,
                                     const std::array<Cells, 2>& ring_cells);
 
+  /// The function a x + b y, which a step halves: exactly, lest second derivatives see anything.
+  Wide linear(Sides sides, Real a, Real b);
+
   static ModeTable rounded(const Wide& wide);
 
  private:

@@ -13,18 +13,21 @@ SpokeMode<Real> SpokeMode<Real>::at(long numerator, long denominator) {
   const Real c = Circle<Real>(4 * denominator).cos(numerator);
   const Real s = std::sqrt(4 + c * c);
   const Real length = std::sqrt((c + s) * (c + s) + 4);
-  mode.cos_alpha = (c + s) / length;
-  mode.sin_alpha = 2 / length;
-  if (2 * numerator == denominator) {  // phi = pi/2: 1/8 meets an eigenvalue of S12
+  const Real cos_alpha = (c + s) / length, sin_alpha = 2 / length;
+  mode.plus = {cos_alpha, 2 * sin_alpha, 1};
+  mode.minus = {-sin_alpha, 2 * cos_alpha, 1};
+  mode.linear = 2 * numerator == denominator;
+  if (mode.linear) {  // phi = pi/2: 1/8 meets an eigenvalue of S12
     mode.lambda_plus = Real(1) / 2;
     mode.lambda_minus = Real(1) / 8;
+    mode.plus = {1, std::sqrt(Real(2)), Real(3) / 2};
   } else {
     mode.lambda_plus = Real(1) / 4 + c * (c + s) / 8;
     mode.lambda_minus = 1 / (16 * mode.lambda_plus);
   }
   if (numerator == denominator) {  // phi = pi: edges and faces do not see each other
-    mode.cos_alpha = 1;
-    mode.sin_alpha = 0;
+    mode.plus = {1, 0, 1};
+    mode.minus = {0, 2, 1};
   }
   return mode;
 }

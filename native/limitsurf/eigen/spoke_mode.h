@@ -10,17 +10,22 @@ namespace limitsurf {
 /// serve sectors as well. In (x_e, x_f / 2) it is symmetric, so its unit eigenvectors are
 /// orthogonal, and with s = sqrt(4 + c^2)
 ///     lambda+ = 1/4 + c (c + s) / 8,    lambda- = 1 / (16 lambda+),    tan(alpha) = 2 / (c + s),
-/// free of cancellation.
+/// free of cancellation. At phi = pi/2, where lambda+ = 1/2 and the mode is a linear function on
+/// every face, the eigenvector has the length sqrt(3/2), so that its values there are integers:
+/// second derivatives, multiplied by 4^n, have to vanish exactly.
 template <typename Real>
 struct SpokeMode {
   Real lambda_plus, lambda_minus;
-  Real cos_alpha, sin_alpha;
+  bool linear;  ///< whether that to lambda+ is
 
-  /// (x_e, x_f) of the eigenvector to lambda+ and of the one to lambda-.
-  Real edgePlus() const { return cos_alpha; }
-  Real facePlus() const { return 2 * sin_alpha; }
-  Real edgeMinus() const { return -sin_alpha; }
-  Real faceMinus() const { return 2 * cos_alpha; }
+  /// An eigenvector (x_e, x_f), and its length in (x_e, x_f / 2), squared.
+  struct Vector {
+    Real edge, face, square;
+  };
+  Vector plus, minus;
+
+  Real lambda(bool is_plus) const { return is_plus ? lambda_plus : lambda_minus; }
+  const Vector& vector(bool is_plus) const { return is_plus ? plus : minus; }
 
   /// For phi = angle with numerator and denominator of angle / pi known, so that the angles where
   /// an eigenvalue is rational are met exactly.
