@@ -67,8 +67,10 @@ struct Tessellation {
 /// Every batch call takes `threads`: 0 means all cores, n at most n. The result for a location does
 /// not depend on it, nor on what else is in the batch, to the last bit.
 ///
-/// Memory: the cage, 64 bytes a regular face, O(neighbourhood) an irregular one, O(valence) an
-/// extraordinary vertex.
+/// Memory: the cage, 76 bytes a regular face, O(neighbourhood) an irregular one, O(valence) an
+/// extraordinary vertex, and some 4 KiB for each step in which a semi-sharp vertex or edge decays;
+/// an edge that is one of a run of equal sharpness through regular vertices costs no more than a
+/// smooth one.
 class LimitSurface {
  public:
   /// Throws MeshError where OpenSubdiv cannot represent the topology.
