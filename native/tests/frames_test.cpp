@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "support/meshes.h"
+#include "support/sharp_meshes.h"
 #include "support/witness.h"
 
 namespace limitsurf::test {
@@ -86,13 +87,11 @@ std::optional<Frame> diagonalLimit(DeepSubdivision& deep, int face) {
 
 /// Compares the frame at the vertex with the limit along the diagonal, as far as that settles (it
 /// does not where two leading eigenvalues lie close together).
-void compareAtVertices(bool closed, Boundary boundary, const std::vector<int>& fans,
-                       int least_compared) {
+void compareAtVertices(const std::vector<Cage>& fans, int least_compared) {
   int compared = 0;
   double worst = 0;
-  for (int faces : fans) {
-    Cage cage = fan(faces, closed, 10 + faces);
-    cage.options.boundary = boundary;
+  for (const Cage& cage : fans) {
+    const int faces = static_cast<int>(cage.faces.size()) / 4;
     const LimitSurface surface = limitSurface(cage);
     DeepSubdivision deep(cage);
     for (int sector = 0; sector < faces; ++sector) {
@@ -110,16 +109,55 @@ void compareAtVertices(bool closed, Boundary boundary, const std::vector<int>& f
   EXPECT_GE(compared, least_compared);
 }
 
+std::vector<Cage> fans(bool closed, Boundary boundary, const std::vector<int>& faces) {
+  std::vector<Cage> cages;
+  for (int count : faces) {
+    cages.push_back(fan(count, closed, 10 + count));
+    cages.back().options.boundary = boundary;
+  }
+  return cages;
+}
+
+/// Closed fans with sharp edges at the given spokes, the vertex sharp or not.
+std::vector<Cage> sharpFans(const std::vector<int>& spokes, bool sharp_vertex,
+                            const std::vector<int>& faces) {
+  std::vector<Cage> cages = fans(true, Boundary::smooth, faces);
+  for (Cage& cage : cages) {
+    const int vertex = cage.faces[0][0];
+    for (int spoke : spokes) sharpenEdge(cage, vertex, cage.faces[4 * spoke][1], 10);
+    if (sharp_vertex) sharpenVertex(cage, vertex, 10);
+  }
+  return cages;
+}
+
 TEST(Frames, AtInteriorVerticesAreTheLimitAlongTheDiagonal) {
-  compareAtVertices(true, Boundary::smooth, {3, 4, 5, 6, 7, 8, 9}, 20);
+  compareAtVertices(fans(true, Boundary::smooth, {3, 4, 5, 6, 7, 8, 9}), 20);
 }
 
 TEST(Frames, AtSmoothBoundariesAreTheLimitAlongTheDiagonal) {
-  compareAtVertices(false, Boundary::smooth, {2, 3, 5, 6, 7}, 15);
+  compareAtVertices(fans(false, Boundary::smooth, {2, 3, 5, 6, 7}), 15);
 }
 
 TEST(Frames, AtPinnedBoundariesAreTheLimitAlongTheDiagonal) {
-  compareAtVertices(false, Boundary::corners, {1, 2, 3, 5, 6, 7}, 10);
+  compareAtVertices(fans(false, Boundary::corners, {1, 2, 3, 5, 6, 7}), 10);
+}
+
+TEST(Frames, AtDartsAreTheLimitAlongTheDiagonal) {
+  compareAtVertices(sharpFans({0}, false, {3, 4, 5, 6, 7, 8, 9, 10, 12}), 7);
+}
+
+TEST(Frames, AtConesAreTheLimitAlongTheDiagonal) {
+  compareAtVertices(sharpFans({}, true, {3, 4, 5, 6, 7}), 15);
+}
+
+TEST(Frames, AtCreasesAreTheLimitAlongTheDiagonal) {
+  compareAtVertices(sharpFans({0, 2}, false, {5, 6, 7}), 10);
+  compareAtVertices(sharpFans({0, 3}, false, {5, 6, 7}), 10);
+}
+
+TEST(Frames, AtSharpCornersAreTheLimitAlongTheDiagonal) {
+  compareAtVertices(sharpFans({0}, true, {3, 5, 6}), 5);
+  compareAtVertices(sharpFans({0, 1, 3}, false, {5, 6, 7, 9}), 6);
 }
 
 TEST(Frames, AtOtherCornersAreTheSameAsSeenFromTheVertex) {

@@ -12,21 +12,6 @@
 namespace limitsurf::test {
 namespace {
 
-/// Locations on every Ptex face: near and at each corner, and anywhere.
-std::vector<Location> everywhere(const Cage& cage, const std::vector<int>& levels, int random_count,
-                                 Random& random) {
-  std::vector<Location> at;
-  const int faces = static_cast<int>(ptexFaces(cage).size());
-  for (int face = 0; face < faces; ++face) {
-    for (int corner = 0; corner < 4; ++corner) {
-      at.push_back(cornerLocation(face, corner));
-      at += shells(face, corner, levels);
-    }
-    at += anywhere(face, random_count, random);
-  }
-  return at;
-}
-
 void compareUnderAllRules(const std::string& name, Cage cage, const std::vector<int>& levels,
                           Accuracy& all) {
   Random random(7);

@@ -119,16 +119,14 @@ TEST(MeshErrors, SharpnessIsNotNegativeOrNaN) {
   }
 }
 
-TEST(MeshErrors, SharpnessAboveZeroIsNotSupportedYet) {
-  MeshOptions options;
-  options.edge_sharpness = {{{1, 4}}, {0.5}};
-  expectThrow<MeshError>([&] { make(options); }, {"edge", "(1, 4)", "0.5", "not supported"});
-  options = {};
-  options.vertex_sharpness = {{3}, {10}};
-  expectThrow<MeshError>([&] { make(options); }, {"vertex 3", "10", "not supported"});
-  options = {};
-  options.vertex_sharpness = {{3}, {kInfinity}};
-  expectThrow<MeshError>([&] { make(options); }, {"vertex 3", "inf", "not supported"});
+TEST(MeshErrors, SharpnessIsAnyOtherNumber) {
+  for (double value : {0.0, 1e-300, 0.5, 9.999, 10.0, 1e300, kInfinity}) {
+    MeshOptions options;
+    options.edge_sharpness = {{{1, 4}}, {value}};
+    options.vertex_sharpness = {{3}, {value}};
+    EXPECT_EQ(make(options).options().edge_sharpness.values[0], value);
+    EXPECT_TRUE(LimitSurface(make(options)).refused().empty());
+  }
 }
 
 TEST(MeshErrors, SharpnessOfZeroIsNothing) {
@@ -175,12 +173,6 @@ TEST(MeshErrors, HolesAreFaces) {
     options.holes = {1, hole};
     expectThrow<MeshError>([&] { make(options); }, {"hole", std::to_string(hole)});
   }
-}
-
-TEST(MeshErrors, BilinearIsNotSupportedYet) {
-  MeshOptions options;
-  options.scheme = Scheme::bilinear;
-  expectThrow<MeshError>([&] { make(options); }, {"bilinear", "not supported"});
 }
 
 TEST(MeshErrors, AMeshWithoutFacesHasNoSurface) {

@@ -11,6 +11,8 @@
 #include "support/corner_points.h"
 #include "support/far_limit.h"
 #include "support/meshes.h"
+#include "support/random.h"
+#include "support/sharp_meshes.h"
 
 namespace limitsurf::test {
 namespace {
@@ -90,6 +92,32 @@ TEST(OpenSubdiv, AgreesOnRandomMixtures) {
     compareUnderAllRules("mixture " + std::to_string(seed), mixture(seed), worst);
   }
   std::printf("  worst position %.2e, normal %.2e\n", worst.position, worst.normal);
+}
+
+TEST(OpenSubdiv, AgreesOnSharpMixtures) {
+  // With sharpness that has decayed when OpenSubdiv's limit masks are applied.
+  Random random(1);
+  double worst = 0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    Cage cage = mixture(seed);
+    sharpenAtRandom(cage, random, 3, 5, {0.3, 1, 1.5, 2.75, 3, 4, 10});
+    const LimitSurface surface = limitSurface(cage);
+    const FarLimit far = farLimit(cage, kLevel);
+    const Points position = surface.evaluate(far.at).position;
+    const CornerPoints corners(cage);
+    for (int i = 0; i < static_cast<int>(far.at.size()); ++i) {
+      const CornerPoint* corner = corners.at(far.at[i]);
+      const bool wrong_mask =
+          corner != nullptr &&
+          (corner->rule == Rule::dart || (corner->rule == Rule::smooth && corner->faces == 2));
+      if (wrong_mask) continue;
+      const double error =
+          (position.row(i) - far.position.row(i)).norm() / diagonal(cage.positions);
+      worst = std::max(worst, error);
+      ASSERT_LE(error, kPositionError + kFarError) << seed << ", " << describe(far.at[i]);
+    }
+  }
+  std::printf("  worst position %.2e\n", worst);
 }
 
 TEST(OpenSubdiv, AgreesAroundHighValences) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -32,9 +33,11 @@ void expectMissing(const std::string& where, const CornerPoint& corner, const Tr
       << where << ": the normal is " << got[kNormal].transpose();
 }
 
-/// du and dv too parallel for the double nearest to each to fix their normal to kNormalError.
+/// du and dv too parallel, or of too different lengths (across a fold one vanishes), for the double
+/// nearest to each to fix their normal to kNormalError.
 bool almostParallel(const Vector3& du, const Vector3& dv) {
-  return du.normalized().cross(dv.normalized()).norm() < 1e-3;
+  const auto [shorter, longer] = std::minmax({du.stableNorm(), dv.stableNorm()});
+  return shorter < 1e-3 * longer || du.normalized().cross(dv.normalized()).norm() < 1e-3;
 }
 
 }  // namespace
@@ -101,6 +104,38 @@ std::vector<Location> anywhere(int face, int count, Random& random) {
     result.push_back({face, u, v});
   }
   return result;
+}
+
+std::vector<Location> everywhere(const Cage& cage, const std::vector<int>& levels, int random_count,
+                                 Random& random) {
+  std::vector<Location> at;
+  const int faces = static_cast<int>(ptexFaces(cage).size());
+  for (int face = 0; face < faces; ++face) {
+    for (int corner = 0; corner < 4; ++corner) {
+      at.push_back(cornerLocation(face, corner));
+      at += shells(face, corner, levels);
+    }
+    at += anywhere(face, random_count, random);
+  }
+  return at;
+}
+
+std::vector<Location> hereAndThere(const Cage& cage, const std::vector<int>& levels, int count,
+                                   Random& random) {
+  std::vector<Location> at;
+  const int faces = static_cast<int>(ptexFaces(cage).size());
+  for (int face = 0; face < faces; ++face) {
+    at.push_back(cornerLocation(face, random.below(4)));
+    const std::vector<Location> near = shells(face, random.below(4), levels);
+    for (int i = 0; i < count; ++i) {
+      at.push_back(near[random.below(static_cast<int>(near.size()))]);
+      const double side = random.below(2), along = random.uniform();
+      at.push_back(random.below(2) == 0 ? Location{face, along, side}
+                                        : Location{face, side, along});
+    }
+    at += anywhere(face, count, random);
+  }
+  return at;
 }
 
 void operator+=(std::vector<Location>& locations, const std::vector<Location>& more) {

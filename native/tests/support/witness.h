@@ -23,6 +23,15 @@ std::vector<Location> shells(int face, int corner, const std::vector<int>& n);
 /// `count` locations anywhere on the face.
 std::vector<Location> anywhere(int face, int count, Random& random);
 
+/// On every Ptex face: near and at each corner, and anywhere.
+std::vector<Location> everywhere(const Cage& cage, const std::vector<int>& levels, int random_count,
+                                 Random& random);
+
+/// On every Ptex face: at one of the corners, and `count` each near one of them (on shells of the
+/// given levels), on the sides and anywhere.
+std::vector<Location> hereAndThere(const Cage& cage, const std::vector<int>& levels, int count,
+                                   Random& random);
+
 /// Appends.
 void operator+=(std::vector<Location>& locations, const std::vector<Location>& more);
 
