@@ -117,7 +117,7 @@ TileLocation TileEvaluator::locate(const Location& at) const {
     turnParameters(corner, result.u, result.v);
     result.turns += corner;
   }
-  result.turns %= 4;
+  result.turns &= 3;
   return result;
 }
 
@@ -137,15 +137,17 @@ void TileEvaluator::evaluate(const TileLocation& at, Jet& jet) {
   }
 }
 
+// Always inline: a call would put the weights into memory, which costs a fifth of a position.
 template <int Order>
-void TileEvaluator::evaluateBSpline(const TileLocation& at, Jet& jet) {
+[[gnu::always_inline]] inline void TileEvaluator::evaluateBSpline(const TileLocation& at,
+                                                                  const CubicWeights& u,
+                                                                  const CubicWeights& v, Jet& jet) {
   const int index = static_cast<int>(at.tile.index);
   const BSplineTile& tile = table_.bsplines[index];
   const Padded& anchor = pose_.point(tile.points[5]);
-  const TileWeights w(tile, at.u, at.v);
   jet.anchor = anchor;
   if (index == loaded_) {
-    evaluateWindow<Order>(window_, 4, w.u, w.v, jet.patch);
+    evaluateWindow<Order>(window_, 4, u, v, jet.patch);
     return;
   }
   const auto point = [&](int x, int y) -> Padded {
@@ -158,7 +160,19 @@ void TileEvaluator::evaluateBSpline(const TileLocation& at, Jet& jet) {
     }
   }
   last_ = index;
-  evaluatePatch<Order, Padded>(point, w.u, w.v, jet.patch);
+  evaluatePatch<Order, Padded>(point, u, v, jet.patch);
+}
+
+template <int Order>
+void TileEvaluator::evaluateBSpline(const TileLocation& at, Jet& jet) {
+  const BSplineTile& tile = table_.bsplines[at.tile.index];
+  if (tile.crease > 0) {
+    const TileWeights weights(tile, at.u, at.v);
+    evaluateBSpline<Order>(at, weights.u, weights.v, jet);
+  } else {
+    evaluateBSpline<Order>(at, CubicWeights(at.u, tile.x_low, tile.x_high),
+                           CubicWeights(at.v, tile.y_low, tile.y_high), jet);
+  }
 }
 
 template <int Order>

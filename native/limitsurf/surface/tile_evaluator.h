@@ -69,6 +69,9 @@ class TileEvaluator {
   template <int Order>
   void evaluateBSpline(const TileLocation& at, Jet& jet);
   template <int Order>
+  void evaluateBSpline(const TileLocation& at, const CubicWeights& u, const CubicWeights& v,
+                       Jet& jet);
+  template <int Order>
   void evaluateRing(const TileLocation& at, Jet& jet);
   /// Each mode's derivatives on their own, for second derivatives deep in a ring tile.
   void evaluateByModes(const RingTile& tile, int index, int steps, const GridWindow& window,
