@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <utility>
@@ -44,6 +45,14 @@ struct Jet {
     if (c == 2 || c == 3) {
       patch.dv = -patch.dv;
     }
+  }
+
+  /// One of patch's second derivatives, multiplied out.
+  Padded second(const Padded& derivative) const {
+    if (exponent <= 1000) {
+      return derivative * powerOfTwo(exponent);
+    }
+    return derivative.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
   }
 
   /// From the parameters of a child to those of its parent, so many levels up.

@@ -1,59 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/surface/limit_surface.h"
 
-#include <cmath>
-#include <sstream>
+#include <limits>
 
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/limit_surface_data.h"
 
 namespace limitsurf {
 
-LimitSurface::Data::Data(ControlMesh&& control_mesh, PtexFaces&& ptex_faces,
-                         const Topology& topology)
+LimitSurface::Data::Data(ControlMesh control_mesh)
     : mesh(std::move(control_mesh)),
       positions(mesh.positions()),
-      ptex(std::move(ptex_faces)),
-      refused(topology.refused()),
-      table(buildTileTable(mesh, topology, ptex)),
+      tiles(std::make_shared<TiledSurface>(mesh)),
+      ptex(tiles->ptex),
+      refused(tiles->refused),
+      table(tiles->table),
       pose(table) {
   pose.set(positions, 0);
 }
 
-LimitSurface::Data::Data(ControlMesh control_mesh)
-    : Data(std::move(control_mesh), PtexFaces(control_mesh), Topology(control_mesh)) {}
-
 VertexApproach LimitSurface::Data::approachTo(const TileLocation& at) const {
   return vertexApproach(table, pose, static_cast<int>(at.tile.index), at.turns);
-}
-
-void LimitSurface::Data::check(Span<Location> at, int threads) const {
-  if (threads < 0) {
-    throw std::invalid_argument("threads is " + std::to_string(threads) +
-                                "; 0 means all cores, n at most n");
-  }
-  std::ostringstream message;
-  message.precision(17);
-  for (std::size_t row = 0; row < at.size(); ++row) {
-    const Location& location = at[row];
-    const auto inside = [](double t) { return t >= 0 && t <= 1; };  // false for NaN
-    if (location.face < 0 || location.face >= static_cast<int>(table.faces.size())) {
-      message << "row " << row << ": face " << location.face << " is not among the "
-              << table.faces.size() << " Ptex faces";
-      throw LocationError(message.str());
-    }
-    if (!inside(location.u) || !inside(location.v)) {
-      message << "row " << row << ": (u, v) = (" << location.u << ", " << location.v
-              << ") is outside [0, 1]";
-      throw LocationError(message.str());
-    }
-    if (table.faces[location.face].kind == TileRef::kNone) {
-      const int base = ptex.base_face[location.face];
-      message << "row " << row << ": Ptex face " << location.face << " belongs to face " << base
-              << ", which has no limit surface: " << refused.at(base);
-      throw MeshError(message.str());
-    }
-  }
 }
 
 LimitSurface::LimitSurface(ControlMesh mesh) : data_(std::make_unique<Data>(std::move(mesh))) {}
@@ -118,13 +85,7 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
   data_->forEach(at, threads,
                  [&](Eigen::Index row, const TileLocation& place, TileEvaluator& evaluator) {
                    Jet jet;
-                   if (derivatives == Derivatives::none) {
-                     evaluator.evaluate<0>(place, jet);
-                   } else if (derivatives == Derivatives::first) {
-                     evaluator.evaluate<1>(place, jet);
-                   } else {
-                     evaluator.evaluate<2>(place, jet);
-                   }
+                   evaluateJet(evaluator, place, derivatives, jet);
                    put(out.position, row, jet.anchor + jet.patch.value);
                    if (derivatives >= Derivatives::first) {
                      put(out.du, row, jet.patch.du);
@@ -134,15 +95,9 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
                      }
                    }
                    if (derivatives == Derivatives::second) {
-                     const auto whole = [&](const Padded& half) -> Padded {
-                       if (jet.exponent <= 1000) {
-                         return half * powerOfTwo(jet.exponent);
-                       }
-                       return half.unaryExpr([&](double x) { return std::ldexp(x, jet.exponent); });
-                     };
-                     put(out.duu, row, whole(jet.patch.duu));
-                     put(out.duv, row, whole(jet.patch.duv));
-                     put(out.dvv, row, whole(jet.patch.dvv));
+                     put(out.duu, row, jet.second(jet.patch.duu));
+                     put(out.duv, row, jet.second(jet.patch.duv));
+                     put(out.dvv, row, jet.second(jet.patch.dvv));
                    }
                  });
   return out;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "limitsurf/mesh/control_mesh.h"
+#include "limitsurf/mesh/interpolation.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -52,6 +53,11 @@ struct Stencils {
   std::vector<int> indices;
   std::vector<double> weights, du_weights, dv_weights;  ///< the latter two only if asked for
 };
+
+/// Data of any number of columns, one row per vertex or value.
+using DataRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+class SurfaceData;  // surface_data.h
 
 struct Tessellation {
   Points positions, normals;
@@ -133,6 +139,28 @@ class LimitSurface {
 
   /// The exact linear weights of position (and du, dv) on the cage's vertices.
   Stencils stencils(Span<Location> at, bool first_derivatives = false, int threads = 0) const;
+
+  /// Data that each corner of the mesh's faces picks for itself: `indices` holds a row of `values`
+  /// for every corner, one face after the other. Where the corners around a vertex pick the same
+  /// row the data are as smooth as the surface; edges between different ones are seams.
+  ///
+  /// The rules are OpenSubdiv's, for seams, their ends and junctions, boundaries and corners,
+  /// smooth and sharp. Faces that have no limit surface have no data either.
+  ///
+  /// Throws MeshError naming the first index that is no row of `values`, the first row that is not
+  /// finite, and vertices where a seam meets semi-sharp edges whose decay cannot be had
+  /// (face_varying_mesh.h tells which). Cost: as making a surface.
+  SurfaceData faceVarying(const DataRows& values, const std::vector<std::int64_t>& indices,
+                          Interpolation interpolation, int threads = 0) const;
+
+  /// Data at the vertices, one row each, interpolated as positions are. Throws MeshError for
+  /// another number of rows and for the first that is not finite. Cost: as setPositions(), for
+  /// every three columns.
+  SurfaceData vertexData(const DataRows& values, int threads = 0) const;
+
+  /// The same, but linear along edges and bilinear on each Ptex face: a sub-face of an n-gon has
+  /// the values of its corner, of its edges' midpoints and the mean of all corners.
+  SurfaceData varying(const DataRows& values, int threads = 0) const;
 
   /// One location per vertex of the control mesh; face = -1 for vertices that no face with a limit
   /// surface uses.

@@ -2,29 +2,41 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 
-#include "limitsurf/mesh/topology.h"
 #include "limitsurf/parallel.h"
-#include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/surface/pose.h"
 #include "limitsurf/surface/tile_evaluator.h"
+#include "limitsurf/surface/tiled_surface.h"
 #include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
 
+/// Rows that one thread takes at a time.
+constexpr std::size_t kRowsPerTask = 512;
+
+inline void evaluateJet(TileEvaluator& evaluator, const TileLocation& at, Derivatives derivatives,
+                        Jet& jet) {
+  if (derivatives == Derivatives::none) {
+    evaluator.evaluate<0>(at, jet);
+  } else if (derivatives == Derivatives::first) {
+    evaluator.evaluate<1>(at, jet);
+  } else {
+    evaluator.evaluate<2>(at, jet);
+  }
+}
+
 struct LimitSurface::Data {
   explicit Data(ControlMesh control_mesh);
 
-  /// Throws LocationError or MeshError for the first row that cannot be evaluated.
-  void check(Span<Location> at, int threads) const;
+  void check(Span<Location> at, int threads) const { tiles->check(at, threads); }
 
   /// Calls body(row, place among the tiles, evaluator) for each row, in parallel.
   template <typename Body>
   void forEach(Span<Location> at, int threads, const Body& body) const {
-    constexpr std::size_t kGrain = 512;
-    parallelFor(at.size(), kGrain, threads, [&](std::size_t begin, std::size_t end) {
+    parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
       TileEvaluator evaluator(table, pose);
       for (std::size_t row = begin; row < end; ++row) {
         body(static_cast<Eigen::Index>(row), evaluator.locate(at[row]), evaluator);
@@ -39,14 +51,11 @@ struct LimitSurface::Data {
 
   ControlMesh mesh;
   Points positions;
-  PtexFaces ptex;
-  std::map<int, std::string> refused;
-  TileTable table;
+  std::shared_ptr<const TiledSurface> tiles;
+  const PtexFaces& ptex;
+  const std::map<int, std::string>& refused;
+  const TileTable& table;
   Pose pose;
-
- private:
-  // The topology is only needed to build the tiles, and gone afterwards.
-  Data(ControlMesh&& control_mesh, PtexFaces&& ptex_faces, const Topology& topology);
 };
 
 }  // namespace limitsurf

@@ -8,22 +8,31 @@ boundaries included.
     here.position, here.du, here.dv, here.normal
 """
 
-from ._limitsurf import ControlMesh, LimitSurface, LocationError, MeshError, __version__
-from ._results import Curvature, Evaluation, Locations, Stencils, Tessellation
+from ._limitsurf import (
+    ControlMesh,
+    LimitSurface,
+    LocationError,
+    MeshError,
+    SurfaceData,
+    __version__,
+)
+from ._results import Curvature, DataEvaluation, Evaluation, Locations, Stencils, Tessellation
 
 __all__ = [
     "ControlMesh",
     "Curvature",
+    "DataEvaluation",
     "Evaluation",
     "LimitSurface",
     "LocationError",
     "Locations",
     "MeshError",
     "Stencils",
+    "SurfaceData",
     "Tessellation",
     "__version__",
 ]
 
-for _public in (ControlMesh, LimitSurface, LocationError, MeshError):
+for _public in (ControlMesh, LimitSurface, LocationError, MeshError, SurfaceData):
     _public.__module__ = __name__
 del _public

@@ -5,7 +5,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ._results import Curvature, Evaluation, Locations, Stencils, Tessellation
+from ._results import Curvature, DataEvaluation, Evaluation, Locations, Stencils, Tessellation
 
 __version__: str
 
@@ -49,6 +49,20 @@ class ControlMesh:
     @property
     def triangles(self) -> str: ...
 
+class SurfaceData:
+    @property
+    def shape(self) -> tuple[int, int]: ...
+    def set_values(self, values: ArrayLike, threads: int = 0) -> None: ...
+    def evaluate(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        derivatives: Literal[0, 1, 2] = 0,
+        *,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
+    ) -> DataEvaluation: ...
+
 class LimitSurface:
     def __init__(self, mesh: ControlMesh) -> None: ...
     @property
@@ -87,6 +101,18 @@ class LimitSurface:
         *,
         threads: int = 0,
     ) -> Stencils: ...
+    def face_varying(
+        self,
+        values: ArrayLike,
+        indices: ArrayLike,
+        interpolation: Literal[
+            "none", "corners_only", "corners_plus1", "corners_plus2", "boundaries", "all"
+        ],
+        *,
+        threads: int = 0,
+    ) -> SurfaceData: ...
+    def vertex_data(self, values: ArrayLike, *, threads: int = 0) -> SurfaceData: ...
+    def varying(self, values: ArrayLike, *, threads: int = 0) -> SurfaceData: ...
     def vertex_locations(self) -> Locations: ...
     def scatter_jittered(self, per_side: int, seed: int = 0, *, threads: int = 0) -> Locations: ...
     def tessellate(self, levels: int, *, threads: int = 0) -> Tessellation: ...

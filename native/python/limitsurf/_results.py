@@ -24,6 +24,18 @@ class Evaluation:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class DataEvaluation:
+    """Data and their derivatives, (n, d) each; None where they were not asked for."""
+
+    value: Array
+    du: Array | None
+    dv: Array | None
+    duu: Array | None
+    duv: Array | None
+    dvv: Array | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Curvature:
     """Principal curvatures k1 >= k2 with unit directions; mean and Gaussian curvature."""
 

@@ -4,35 +4,22 @@
 #include <map>
 
 #include "arrays.h"
+#include "choices.h"
 #include "docstrings.h"
 
 namespace limitsurf::python {
 namespace {
 
-template <typename Enum>
-Enum choice(const std::string& value, const char* name,
-            const std::vector<std::pair<const char*, Enum>>& choices) {
-  std::string known;
-  for (const auto& [text, result] : choices) {
-    if (value == text) {
-      return result;
-    }
-    known += std::string(known.empty() ? "'" : " or '") + text + "'";
-  }
-  throw MeshError(std::string(name) + " is '" + value + "'; expected " + known);
-}
-
-const std::vector<std::pair<const char*, Boundary>> kBoundaries = {{"smooth", Boundary::smooth},
-                                                                   {"corners", Boundary::corners}};
-const std::vector<std::pair<const char*, Creasing>> kCreasings = {{"uniform", Creasing::uniform},
-                                                                  {"chaikin", Creasing::chaikin}};
-const std::vector<std::pair<const char*, Triangles>> kTriangles = {{"catmark", Triangles::catmark},
-                                                                   {"smooth", Triangles::smooth}};
-const std::vector<std::pair<const char*, Scheme>> kSchemes = {{"catmark", Scheme::catmark},
-                                                              {"bilinear", Scheme::bilinear}};
+const Choices<Boundary> kBoundaries = {{"smooth", Boundary::smooth},
+                                       {"corners", Boundary::corners}};
+const Choices<Creasing> kCreasings = {{"uniform", Creasing::uniform},
+                                      {"chaikin", Creasing::chaikin}};
+const Choices<Triangles> kTriangles = {{"catmark", Triangles::catmark},
+                                       {"smooth", Triangles::smooth}};
+const Choices<Scheme> kSchemes = {{"catmark", Scheme::catmark}, {"bilinear", Scheme::bilinear}};
 
 template <typename Enum>
-std::string text(Enum value, const std::vector<std::pair<const char*, Enum>>& choices) {
+std::string text(Enum value, const Choices<Enum>& choices) {
   for (const auto& [name, known] : choices) {
     if (known == value) {
       return name;

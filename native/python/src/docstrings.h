@@ -16,14 +16,17 @@ face_vertices : (sum of face_sizes,) array of int
     Vertex indices of all faces, one face after the other, counter-clockwise seen from outside.
 edge_sharpness : (edges (E, 2) int, values (E,) float), optional
 vertex_sharpness : (vertices (n,) int, values (n,) float), optional
-    Sharpness above 0 is not supported yet and refused.
+    0 is smooth, 10 and more (inf included) infinitely sharp, and what lies between sharp for so many
+    steps of subdivision; rounded to float32. Of an edge that is given twice the last counts.
 boundary : 'smooth' or 'corners'
     'smooth': every boundary is a uniform cubic B-spline curve (OpenSubdiv's EDGE_ONLY, Blender's
     'ALL'); 'corners': boundary vertices with one face stay where they are.
 creasing : 'uniform' or 'chaikin'
+    'chaikin' averages sharpness with that of the other edges at a vertex, step by step.
 triangles : 'catmark' or 'smooth'
     'smooth': OpenSubdiv's TRI_SUB_SMOOTH.
-scheme : 'catmark'
+scheme : 'catmark' or 'bilinear'
+    'bilinear': each Ptex face is a bilinear patch, and sharpness means nothing.
 holes : (n,) array of int, optional
     Faces that have no surface, though their neighbours see them.
 
@@ -113,6 +116,84 @@ Returns Stencils in CSR form: row i is .indices[.offsets[i]:.offsets[i + 1]] wit
 a derivative has no limit its weights are NaN. Weights depend on topology alone: they serve all poses.
 
 Cost: as evaluate(), but O(valence^2) on tiles at an irregular vertex.
+)";
+
+constexpr const char* kFaceVaryingDoc =
+    R"(Data that every face corner picks for itself, such as a UV map: SurfaceData.
+
+Where all corners around a vertex pick the same row the data are as smooth as the surface; an edge
+whose two faces pick different rows, at either end, is a seam.
+
+Parameters
+----------
+values : (m, d) or (m,) array of float
+    Finite; (m,) is taken for (m, 1).
+indices : (sum of the mesh's face_sizes,) array of int
+    A row of values for each corner, one face after the other, as face_vertices.
+interpolation : str
+    Where the data are linear, by OpenSubdiv's FVAR_LINEAR_* rules:
+    'none': nowhere. Seams and boundaries are smooth curves, also around corners of one face.
+    'corners_only': values with one face at a vertex stay where they are.
+    'corners_plus1': so do those at junctions of more than two values, and those across a seam from
+    a value that a sharp edge pins.
+    'corners_plus2': so do those where a seam ends inside, and both at a vertex where one of two has
+    one face.
+    'boundaries': seams and boundaries are straight from value to value.
+    'all': bilinear on each Ptex face.
+threads : int
+
+Sharp edges and vertices are as sharp for the data as for the surface.
+
+Raises
+------
+MeshError
+    For an index out of range, naming the corner, or values that are not finite, naming the row;
+    also naming a vertex where seams meet semi-sharp edges that decay in a way that is not supported:
+    'chaikin' creases of different sharpness, or, with 'corners_plus1' and 'corners_plus2', several
+    edges on one side only that decay to an average which no float32 sharpness decays to.
+TypeError
+    For indices that are not integers.
+
+Cost: as making the surface.
+)";
+
+constexpr const char* kVertexDataDoc =
+    R"(Data at the vertices, (V, d) or (V,) float, interpolated exactly as positions are: SurfaceData.
+
+Raises MeshError for another number of rows and values that are not finite. Costs a set_positions()
+for every three columns.
+)";
+
+constexpr const char* kVaryingDoc =
+    R"(Data at the vertices, (V, d) or (V,) float, linear along edges and bilinear on each Ptex face.
+
+A sub-face of an n-gon has the values of its corner, of its edges' midpoints and the mean of all
+corners. Returns SurfaceData; raises as vertex_data(). Cost: as making the surface.
+)";
+
+constexpr const char* kSurfaceDataDoc =
+    R"(Data on a limit surface, evaluated exactly: what LimitSurface.face_varying(), .vertex_data() and
+.varying() return.
+
+It does not depend on the surface's positions and may outlive the surface. It does not pickle.
+)";
+
+constexpr const char* kEvaluateDataDoc =
+    R"(The data and their derivatives with respect to the face's own (u, v).
+
+Parameters are those of LimitSurface.evaluate(), and so are the errors raised. Returns
+DataEvaluation: .value and, as far as asked for (else None), .du .dv, .duu .duv .dvv; (n, d) each.
+Exactly at a vertex that is irregular for the data, derivatives without a limit are NaN.
+
+Error bounds are those of LimitSurface.evaluate(), relative to the values' bounding box. Cost: as
+that, for every three columns.
+)";
+
+constexpr const char* kSetValuesDoc =
+    R"(Other values, (m, d) or (m,) float as before, in the same places.
+
+Raises MeshError for another shape or values that are not finite, and then changes nothing. Costs a
+LimitSurface.set_positions() for every three columns; waits for evaluations in other threads.
 )";
 
 constexpr const char* kVertexLocationsDoc =

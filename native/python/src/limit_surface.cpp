@@ -10,10 +10,11 @@
 #include <utility>
 
 #include "arrays.h"
+#include "batches.h"
 #include "control_mesh.h"
 #include "docstrings.h"
-#include "limitsurf/parallel.h"
 #include "limitsurf/surface/limit_surface.h"
+#include "surface_data.h"
 
 namespace limitsurf::python {
 namespace {
@@ -41,82 +42,12 @@ struct SharedSurface : ZeroedMemory {
   std::unique_ptr<LimitSurface> surface_;
 };
 
-/// For a call that has let go of the GIL: lets Ctrl-C end it.
-InterruptionPoint interruptible() {
-  return InterruptionPoint([] {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) {
-      throw py::error_already_set();
-    }
-  });
-}
-
-/// Rows evaluated at a time, so that results are copied while they are in the cache.
-constexpr std::size_t kRowsPerChunk = std::size_t{1} << 17;
-
-using Locations = std::vector<Location>;
-
-Locations locationsOf(const SharedSurface& shared, const py::object& face, const py::object& uv) {
-  Doubles uvs = doubles(uv, "uv");
-  if (uvs.ndim() == 1 && uvs.size() == 0) {
-    uvs = Doubles(std::vector<py::ssize_t>{0, 2});  // []
-  }
-  requireRows<LocationError>(uvs, "uv", 2);
-  const Integers faces = integers<LocationError>(face, "face");
-  const std::size_t rows = static_cast<std::size_t>(uvs.shape(0));
-  if (faces.ndim() > 1 || (faces.ndim() == 1 && faces.shape(0) != uvs.shape(0))) {
-    throw LocationError("face has shape " + shapeText(faces) + " and uv " + shapeText(uvs) +
-                        "; expected one face, or (n,) and (n, 2)");
-  }
-  const std::int64_t* ids = faces.data();
-  const double* parameters = uvs.data();
-  const bool one = faces.ndim() == 0;
-  const std::int64_t face_count = shared.surface().faceCount();
-  Locations result(rows);
-  const py::gil_scoped_release release;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const std::int64_t id = ids[one ? 0 : row];
-    if (id < 0 || id >= face_count) {
-      std::ostringstream message;
-      message << "row " << row << ": face " << id << " is not among the " << face_count
-              << " Ptex faces";
-      throw LocationError(message.str());
-    }
-    result[row] = {static_cast<int>(id), parameters[2 * row], parameters[2 * row + 1]};
-  }
-  shared.surface().checkLocations(result);
-  return result;
-}
-
-void checkThreads(int threads) {
-  if (threads < 0) {
-    throw py::value_error("threads is " + std::to_string(threads) +
-                          "; 0 means all cores, n at most n");
-  }
-}
-
-/// Calls body(first row, the chunk's locations) for chunk after chunk, without the GIL, with the
-/// surface held still, and so that Ctrl-C ends it.
-template <typename Body>
-void inChunks(const SharedSurface& shared, const Locations& at, const Body& body) {
-  const py::gil_scoped_release release;
-  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
-  const InterruptionPoint point = interruptible();
-  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerChunk) {
-    body(begin, Span<Location>(at).subspan(begin, std::min(kRowsPerChunk, at.size() - begin)));
-  }
-}
-
-py::object result(const char* name) { return py::module_::import("limitsurf._results").attr(name); }
-
 py::object evaluate(const SharedSurface& shared, const py::object& face, const py::object& uv,
                     int derivatives, int threads, const py::object& dtype) {
-  if (derivatives < 0 || derivatives > 2) {
-    throw py::value_error("derivatives is " + std::to_string(derivatives) + "; expected 0, 1 or 2");
-  }
+  checkDerivatives(derivatives, 2);
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const Locations at = locationsOf(shared, face, uv);
+  const Locations at = locationsOn(shared.surface(), face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   // position, du, dv, normal, duu, duv, dvv
   Output outputs[7];
@@ -124,7 +55,7 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
   for (int i = 0; i < wanted; ++i) {
     outputs[i] = Output(type, {rows, 3});
   }
-  inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
     const Evaluation e = shared.surface().evaluate(chunk, static_cast<Derivatives>(derivatives),
                                                    derivatives > 0, threads);
     const Points* values[7] = {&e.position, &e.du, &e.dv, &e.normal, &e.duu, &e.duv, &e.dvv};
@@ -141,9 +72,9 @@ py::object frames(const SharedSurface& shared, const py::object& face, const py:
                   int threads, const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const Locations at = locationsOf(shared, face, uv);
+  const Locations at = locationsOn(shared.surface(), face, uv);
   Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
-  inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
     const auto rotations = shared.surface().frames(chunk, threads);
     output.put(9 * begin, rotations.data(), 9 * chunk.size());
   });
@@ -154,7 +85,7 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
                      int threads, const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const Locations at = locationsOf(shared, face, uv);
+  const Locations at = locationsOn(shared.surface(), face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   Output scalars[4], directions[2];
   for (Output& output : scalars) {
@@ -163,7 +94,7 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
   for (Output& output : directions) {
     output = Output(type, {rows, 3});
   }
-  inChunks(shared, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
     const Curvature c = shared.surface().curvature(chunk, threads);
     const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
     for (int i = 0; i < 4; ++i) {
@@ -178,14 +109,12 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
 
 py::object stencils(const SharedSurface& shared, const py::object& face, const py::object& uv,
                     int derivatives, int threads) {
-  if (derivatives < 0 || derivatives > 1) {
-    throw py::value_error("derivatives is " + std::to_string(derivatives) + "; expected 0 or 1");
-  }
+  checkDerivatives(derivatives, 1);
   checkThreads(threads);
-  const Locations at = locationsOf(shared, face, uv);
+  const Locations at = locationsOn(shared.surface(), face, uv);
   Stencils all;
   all.offsets.push_back(0);
-  inChunks(shared, at, [&](std::size_t, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t, Span<Location> chunk) {
     const Stencils part = shared.surface().stencils(chunk, derivatives > 0, threads);
     const std::int64_t before = all.offsets.back();
     for (std::size_t i = 1; i < part.offsets.size(); ++i) {
@@ -260,6 +189,35 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
   shared.surface().setPositions(points, threads);
 }
 
+std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::object& values,
+                                        const py::object& indices, const std::string& interpolation,
+                                        int threads) {
+  checkThreads(threads);
+  const Interpolation rule = interpolationOf(interpolation);
+  const DataRows rows = rowsOf(values);
+  const Integers picked = integers<MeshError>(indices, "indices");
+  requireVector<MeshError>(picked, "indices");
+  const std::vector<std::int64_t> corners(picked.data(), picked.data() + picked.size());
+  const py::gil_scoped_release release;
+  return std::make_unique<SharedData>(shared.surface().faceVarying(rows, corners, rule, threads));
+}
+
+std::unique_ptr<SharedData> vertexData(const SharedSurface& shared, const py::object& values,
+                                       int threads) {
+  checkThreads(threads);
+  const DataRows rows = rowsOf(values);
+  const py::gil_scoped_release release;
+  return std::make_unique<SharedData>(shared.surface().vertexData(rows, threads));
+}
+
+std::unique_ptr<SharedData> varying(const SharedSurface& shared, const py::object& values,
+                                    int threads) {
+  checkThreads(threads);
+  const DataRows rows = rowsOf(values);
+  const py::gil_scoped_release release;
+  return std::make_unique<SharedData>(shared.surface().varying(rows, threads));
+}
+
 std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {
   const py::gil_scoped_release release;
   return std::make_unique<SharedSurface>(mesh);
@@ -305,6 +263,10 @@ void bindLimitSurface(py::module_& module) {
            "dtype"_a = float64, kCurvatureDoc)
       .def("stencils", &stencils, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
            "threads"_a = 0, kStencilsDoc)
+      .def("face_varying", &faceVarying, "values"_a, "indices"_a, "interpolation"_a, py::kw_only(),
+           "threads"_a = 0, kFaceVaryingDoc)
+      .def("vertex_data", &vertexData, "values"_a, py::kw_only(), "threads"_a = 0, kVertexDataDoc)
+      .def("varying", &varying, "values"_a, py::kw_only(), "threads"_a = 0, kVaryingDoc)
       .def(
           "vertex_locations",
           [](const SharedSurface& s) { return locations(s.surface().vertexLocations()); },

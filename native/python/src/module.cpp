@@ -4,6 +4,7 @@
 #include "control_mesh.h"
 #include "limit_surface.h"
 #include "limitsurf/error.h"
+#include "surface_data.h"
 
 PYBIND11_MODULE(_limitsurf, module) {
   namespace py = pybind11;
@@ -15,5 +16,6 @@ PYBIND11_MODULE(_limitsurf, module) {
   py::register_exception<limitsurf::LocationError>(module, "LocationError", PyExc_ValueError)
       .doc() = "A location outside the surface's domain. The message names the row and the value.";
   limitsurf::python::bindControlMesh(module);
+  limitsurf::python::bindSurfaceData(module);
   limitsurf::python::bindLimitSurface(module);
 }

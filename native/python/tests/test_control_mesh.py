@@ -183,13 +183,21 @@ def test_unknown_options_are_quoted(option):
     assert option in str(error.value)
 
 
-def test_what_is_not_supported_yet_says_so():
-    with pytest.raises(ls.MeshError, match="not supported"):
-        ls.ControlMesh(POSITIONS, SIZES, VERTICES, scheme="bilinear")
-    with pytest.raises(ls.MeshError, match="not supported"):
-        ls.ControlMesh(POSITIONS, SIZES, VERTICES, edge_sharpness=([[1, 4]], [1.0]))
-    with pytest.raises(ls.MeshError, match="not supported"):
-        ls.ControlMesh(POSITIONS, SIZES, VERTICES, vertex_sharpness=([1], [np.inf]))
+def test_sharpness_and_scheme_reach_the_surface():
+    """Positions at the end of the edge that the two squares have in common."""
+    bent = POSITIONS.copy()
+    bent[1, 2] = 1
+
+    def corner(**options):
+        mesh = ls.ControlMesh(bent, SIZES, VERTICES, **options)
+        return ls.LimitSurface(mesh).evaluate(0, [[1, 0]]).position[0]
+
+    np.testing.assert_allclose(corner(), [1, 0, 2 / 3], atol=1e-15)
+    np.testing.assert_array_equal(corner(scheme="bilinear"), bent[1])
+    np.testing.assert_array_equal(corner(vertex_sharpness=([1], [np.inf])), bent[1])
+    np.testing.assert_array_equal(corner(edge_sharpness=([[1, 4]], [np.inf])), bent[1])
+    assert corner()[2] < corner(edge_sharpness=([[1, 4]], [0.5]))[2] < 1
+    assert corner()[2] < corner(vertex_sharpness=([1], [2.5]))[2] < 1
 
 
 @pytest.mark.parametrize(

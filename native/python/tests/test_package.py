@@ -24,7 +24,13 @@ def test_errors_are_value_errors():
 def test_all_names_exist_and_say_where_they_are_from():
     for name in ls.__all__:
         assert hasattr(ls, name)
-    for public in (ls.ControlMesh, ls.LimitSurface, ls.MeshError, ls.LocationError):
+    for public in (
+        ls.ControlMesh,
+        ls.LimitSurface,
+        ls.MeshError,
+        ls.LocationError,
+        ls.SurfaceData,
+    ):
         assert public.__module__ == "limitsurf"
 
 
@@ -32,13 +38,13 @@ def test_types_are_there_for_checkers():
     assert (PACKAGE / "py.typed").exists()
     stubs = ast.parse((PACKAGE / "_limitsurf.pyi").read_text())
     classes = {node.name: node for node in stubs.body if isinstance(node, ast.ClassDef)}
-    for name in ("ControlMesh", "LimitSurface"):
+    for name in ("ControlMesh", "LimitSurface", "SurfaceData"):
         stubbed = {n.name for n in classes[name].body if isinstance(n, ast.FunctionDef)}
         real = {n for n in vars(getattr(ls, name)) if not n.startswith("_")}
         assert stubbed - {"__init__"} == real
 
 
-@pytest.mark.parametrize("cls", [ls.ControlMesh, ls.LimitSurface])
+@pytest.mark.parametrize("cls", [ls.ControlMesh, ls.LimitSurface, ls.SurfaceData])
 def test_everything_public_has_a_docstring(cls):
     assert cls.__doc__
     for name, member in vars(cls).items():

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/mesh/face_varying_mesh.h"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "limitsurf/mesh/decaying_sharpness.h"
+#include "limitsurf/mesh/subdivision_rules.h"
+
+namespace limitsurf {
+namespace {
+
+namespace Far = OpenSubdiv::Far;
+
+template <typename... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+  std::ostringstream message;
+  (message << ... << parts);
+  throw MeshError(message.str());
+}
+
+void checkIndices(const ControlMesh& mesh, const std::vector<std::int64_t>& indices,
+                  std::int64_t value_count) {
+  if (indices.size() != mesh.faceVertices().size()) {
+    refuse("indices has ", indices.size(), " entries; the mesh has ", mesh.faceVertices().size(),
+           " face corners");
+  }
+  for (int face = 0; face < mesh.faceCount(); ++face) {
+    for (int i = 0; i < mesh.faceSize(face); ++i) {
+      const std::int64_t index = indices[mesh.firstCorner(face) + i];
+      if (index < 0 || index >= value_count) {
+        refuse("corner ", i, " of face ", face, " has value index ", index, "; there are ",
+               value_count, " values");
+      }
+    }
+  }
+}
+
+class Builder {
+ public:
+  Builder(const ControlMesh& mesh, const Topology& topology,
+          const std::vector<std::int64_t>& indices, Interpolation interpolation)
+      : mesh_(mesh), level_(topology.level()), interpolation_(interpolation) {
+    numberVertices(indices);
+    options_.triangles = mesh.options().triangles;
+    options_.creasing = mesh.options().creasing;
+    options_.scheme =
+        interpolation == Interpolation::all ? Scheme::bilinear : mesh.options().scheme;
+    for (const auto& [face, reason] : topology.refused()) {
+      options_.holes.push_back(face);
+    }
+    if (options_.scheme == Scheme::catmark) {
+      addEdges();
+      for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
+        addVertex(vertex);
+      }
+      return;
+    }
+    // Sharpness means nothing here, but keeps fans of faces from following a crease of others.
+    for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
+      if (level_.IsVertexNonManifold(vertex)) {
+        for (int derived = first_[vertex]; derived < first_[vertex + 1]; ++derived) {
+          setSharpness(derived, kInfinitelySharp);
+        }
+      }
+    }
+  }
+
+  FaceVaryingMesh build() {
+    const std::vector<int> sizes = mesh_.faceSizes();
+    return {ControlMesh(Points::Zero(static_cast<Eigen::Index>(values_.size()), 3),
+                        {sizes.begin(), sizes.end()}, {vertex_at_.begin(), vertex_at_.end()},
+                        std::move(options_)),
+            std::move(values_)};
+  }
+
+ private:
+  /// What a value at a vertex has around it.
+  struct Surroundings {
+    int faces = 0;
+    int inner_edges = 0;     ///< between two of its faces
+    int infinite_edges = 0;  ///< of these
+    int semi_sharp_edges = 0;
+
+    /// It lies in several fans of faces (all open: a closed one holds the vertex alone).
+    bool disjoint() const { return faces - inner_edges > 1; }
+  };
+
+  /// One vertex for each value at a vertex of the mesh.
+  void numberVertices(const std::vector<std::int64_t>& indices) {
+    vertex_at_.resize(indices.size());
+    std::map<int, std::vector<int>> non_manifold_corners;
+    for (std::size_t corner = 0; corner < indices.size(); ++corner) {
+      const int vertex = mesh_.faceVertices()[corner];
+      if (level_.IsVertexNonManifold(vertex)) {
+        non_manifold_corners[vertex].push_back(static_cast<int>(corner));
+      }
+    }
+    std::vector<int> corners;
+    for (int vertex = 0; vertex < mesh_.vertexCount(); ++vertex) {
+      first_.push_back(static_cast<int>(values_.size()));
+      if (level_.IsVertexNonManifold(vertex)) {
+        numberValues(indices, non_manifold_corners[vertex], false);
+        continue;
+      }
+      const auto faces = level_.GetVertexFaces(vertex);
+      const auto places = level_.GetVertexFaceLocalIndices(vertex);
+      corners.clear();
+      for (int i = 0; i < faces.size(); ++i) {
+        corners.push_back(mesh_.firstCorner(faces[i]) + places[i]);
+      }
+      numberValues(indices, corners, true);
+    }
+    first_.push_back(static_cast<int>(values_.size()));
+  }
+
+  /// `in_order`: the corners follow each other around the vertex. OpenSubdiv (3.0 to 3.6) then
+  /// counts the second value that it meets once more where it comes back and there was no third.
+  void numberValues(const std::vector<std::int64_t>& indices, const std::vector<int>& corners,
+                    bool in_order) {
+    const int first = first_.back();
+    std::map<std::int64_t, int> known;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const std::int64_t value = indices[corners[i]];
+      if (i > 0 && value == indices[corners[i - 1]]) {
+        vertex_at_[corners[i]] = vertex_at_[corners[i - 1]];
+      } else {
+        const int next = static_cast<int>(values_.size());
+        const auto [place, is_new] = known.try_emplace(value, next);
+        const bool again = in_order && next - first == 2 && place->second == first + 1;
+        vertex_at_[corners[i]] = again ? next : place->second;
+        if (is_new || again) {
+          values_.push_back(static_cast<int>(value));
+          around_.emplace_back();
+        }
+      }
+      ++around_[vertex_at_[corners[i]]].faces;
+    }
+  }
+
+  /// The ends of an edge, as one of its faces has them, in the order of Far's edge.
+  std::pair<int, int> endsIn(int edge, int i) const {
+    const int face = level_.GetEdgeFaces(edge)[i];
+    const int side = level_.GetEdgeFaceLocalIndices(edge)[i];
+    const int a = mesh_.firstCorner(face) + side;
+    const int b = mesh_.firstCorner(face) + (side + 1) % mesh_.faceSize(face);
+    const bool along = mesh_.faceVertices()[a] == level_.GetEdgeVertices(edge)[0];
+    return along ? std::pair(vertex_at_[a], vertex_at_[b])
+                 : std::pair(vertex_at_[b], vertex_at_[a]);
+  }
+
+  bool isSeam(int edge) const {
+    const int faces = level_.GetEdgeFaces(edge).size();
+    for (int i = 1; i < faces; ++i) {
+      if (endsIn(edge, i) != endsIn(edge, 0)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void addEdges() {
+    at_seam_.assign(mesh_.vertexCount(), false);
+    for (int edge = 0; edge < level_.GetNumEdges(); ++edge) {
+      if (level_.GetEdgeFaces(edge).size() < 2) {
+        continue;
+      }
+      if (isSeam(edge)) {
+        addSeam(edge);
+        continue;
+      }
+      const float sharpness = level_.GetEdgeSharpness(edge);
+      const auto ends = endsIn(edge, 0);
+      for (const int end : {ends.first, ends.second}) {
+        Surroundings& around = around_[end];
+        ++around.inner_edges;
+        around.infinite_edges += isInfinitelySharp(sharpness);
+        around.semi_sharp_edges += isSemiSharp(sharpness);
+      }
+      if (isSharp(sharpness)) {
+        addEdge(ends, sharpness);
+      }
+    }
+  }
+
+  void addSeam(int edge) {
+    const auto vertices = level_.GetEdgeVertices(edge);
+    at_seam_[vertices[0]] = at_seam_[vertices[1]] = true;
+    if (level_.IsEdgeNonManifold(edge)) {
+      // Of three faces, two may have the same values and yet must not join.
+      for (int i = 0; i < level_.GetEdgeFaces(edge).size(); ++i) {
+        addEdge(endsIn(edge, i), kInfinitelySharp);
+      }
+    }
+  }
+
+  void addEdge(std::pair<int, int> ends, double sharpness) {
+    options_.edge_sharpness.edges.emplace_back(ends);
+    options_.edge_sharpness.values.push_back(sharpness);
+  }
+
+  void setSharpness(int derived, double sharpness) {
+    if (sharpness > 0) {
+      options_.vertex_sharpness.vertices.push_back(derived);
+      options_.vertex_sharpness.values.push_back(sharpness);
+    }
+  }
+
+  void addVertex(int vertex) {
+    const int begin = first_[vertex], end = first_[vertex + 1];
+    if (begin == end) {
+      return;
+    }
+    const double own = level_.GetVertexSharpness(vertex);  // infinite at corners that are pinned
+    if (isDivided(vertex)) {
+      checkDecay(vertex);
+    }
+    const bool all_pinned = allPinned(vertex);
+    for (int derived = begin; derived < end; ++derived) {
+      const bool corner = around_[derived].faces == 1 && interpolation_ != Interpolation::none;
+      if (all_pinned || corner) {
+        setSharpness(derived, kInfinitelySharp);
+      } else if (own == 0 && dependsOnOther(vertex, derived)) {
+        setSharpness(derived, sharpnessAcross(vertex, begin + end - 1 - derived));
+      } else {
+        setSharpness(derived, own);
+      }
+    }
+  }
+
+  /// Whether the values divide what the mesh has around the vertex.
+  bool isDivided(int vertex) const {
+    return at_seam_[vertex] || first_[vertex + 1] - first_[vertex] > 1;
+  }
+
+  bool allPinned(int vertex) const {
+    const int begin = first_[vertex], end = first_[vertex + 1];
+    const bool on_boundary = level_.IsVertexBoundary(vertex);
+    if (interpolation_ == Interpolation::boundaries) {
+      return on_boundary || isDivided(vertex);
+    }
+    if (isDivided(vertex) && level_.IsVertexNonManifold(vertex)) {
+      return true;
+    }
+    if (!at_seam_[vertex] || !sharpensAcross()) {
+      return false;
+    }
+    const bool plus2 = interpolation_ == Interpolation::corners_plus2;
+    if (end - begin == 1) {
+      return plus2 && !on_boundary;
+    }
+    if (end - begin > 2) {
+      return true;
+    }
+    return std::any_of(&around_[begin], &around_[begin] + 2, [&](const Surroundings& around) {
+      return around.disjoint() || around.infinite_edges > 0 || (plus2 && around.faces == 1);
+    });
+  }
+
+  bool sharpensAcross() const {
+    return interpolation_ == Interpolation::corners_plus1 ||
+           interpolation_ == Interpolation::corners_plus2;
+  }
+
+  /// One of two values at a vertex, smooth itself, which stays a corner as long as the other.
+  bool dependsOnOther(int vertex, int derived) const {
+    const int begin = first_[vertex], end = first_[vertex + 1];
+    return sharpensAcross() && at_seam_[vertex] && end - begin == 2 &&
+           around_[derived].semi_sharp_edges == 0 &&
+           around_[begin + end - 1 - derived].semi_sharp_edges > 0;
+  }
+
+  /// Sharpness of the vertex's edges, those between faces with the value first. `count`: of these.
+  std::vector<float> sharpnessAround(int vertex, int derived, int& count) const {
+    std::vector<float> inner, others;
+    for (const int edge : level_.GetVertexEdges(vertex)) {
+      const auto ends = endsIn(edge, 0);
+      const bool is_inner = level_.GetEdgeFaces(edge).size() > 1 && !isSeam(edge) &&
+                            (ends.first == derived || ends.second == derived);
+      (is_inner ? inner : others).push_back(level_.GetEdgeSharpness(edge));
+    }
+    count = static_cast<int>(inner.size());
+    inner.insert(inner.end(), others.begin(), others.end());
+    return inner;
+  }
+
+  /// The vertex sharpness that keeps a value pinned for as long as the sharp edges of another do.
+  double sharpnessAcross(int vertex, int other) const {
+    int count;
+    DecayingSharpness around(mesh_.options(), sharpnessAround(vertex, other, count));
+    const auto sharp = [&](const std::vector<float>& edges) {
+      return std::any_of(edges.begin(), edges.begin() + count, isSharp);
+    };
+    int steps = 1;
+    for (; sharp(around.nextEdges()); ++steps) {
+      around.advance();
+    }
+    // While the seam itself is still sharp OpenSubdiv does not blend the two rules.
+    const float left = around.nextSemiSharp() ? 1 : around.weight(count);
+    float sharpness = static_cast<float>(steps - 1) + left;
+    const double result = sharpness;
+    for (int i = 1; i < steps; ++i) {
+      sharpness -= 1;
+    }
+    if (sharpness != left) {
+      refuse("vertex ", vertex, ": the sharpness of the edges on one side of the seam decays to ",
+             left, " after ", steps - 1, " steps, which no sharpness of the other side does");
+    }
+    return result;
+  }
+
+  /// Chaikin's rule averages sharpness over all edges at a vertex, seams included; a part of the
+  /// vertex on its own must come to the same.
+  void checkDecay(int vertex) const {
+    if (mesh_.options().creasing == Creasing::uniform) {
+      return;
+    }
+    for (int derived = first_[vertex]; derived < first_[vertex + 1]; ++derived) {
+      if (around_[derived].semi_sharp_edges == 0) {
+        continue;
+      }
+      int count;
+      const std::vector<float> edges = sharpnessAround(vertex, derived, count);
+      DecayingSharpness whole(mesh_.options(), edges);
+      DecayingSharpness part(mesh_.options(), {edges.begin(), edges.begin() + count});
+      const auto alike = [&] {
+        return std::equal(part.edges().begin(), part.edges().end(), whole.edges().begin());
+      };
+      for (; alike() && part.semiSharp(); part.advance()) {
+        whole.advance();
+      }
+      if (!alike()) {
+        refuse("vertex ", vertex, ": at a seam of face-varying values, chaikin creases of ",
+               "different sharpness meet, which is not supported");
+      }
+    }
+  }
+
+  const ControlMesh& mesh_;
+  const Far::TopologyLevel& level_;
+  const Interpolation interpolation_;
+  MeshOptions options_;
+  std::vector<int> first_;      // vertex of the mesh -> its first value's vertex; one more
+  std::vector<int> vertex_at_;  // corner -> vertex of the new mesh
+  std::vector<int> values_;     // per vertex of the new mesh
+  std::vector<Surroundings> around_;
+  std::vector<bool> at_seam_;  // per vertex of the mesh: a seam runs to it or through it
+};
+
+}  // namespace
+
+FaceVaryingMesh faceVaryingMesh(const ControlMesh& mesh, const Topology& topology,
+                                const std::vector<std::int64_t>& indices, std::int64_t value_count,
+                                Interpolation interpolation) {
+  checkIndices(mesh, indices, value_count);
+  return Builder(mesh, topology, indices, interpolation).build();
+}
+
+}  // namespace limitsurf

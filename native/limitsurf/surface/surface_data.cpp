@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/surface_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "limitsurf/mesh/face_varying_mesh.h"
+#include "limitsurf/mesh/limits.h"
+#include "limitsurf/parallel.h"
+#include "limitsurf/surface/limit_surface_data.h"
+
+namespace limitsurf {
+namespace {
+
+constexpr Eigen::Index kColumnsPerPose = 3;
+
+void checkValues(const DataRows& values) {
+  if (values.cols() < 1) {
+    throw MeshError("values has no columns");
+  }
+  if (values.rows() > kMaxCorners) {
+    throw MeshError("values has " + std::to_string(values.rows()) + " rows; the limit is " +
+                    std::to_string(kMaxCorners));
+  }
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (Eigen::Index column = 0; column < values.cols(); ++column) {
+      if (!std::isfinite(values(row, column))) {
+        std::ostringstream message;
+        message << "row " << row << " of values has " << values(row, column) << " in column "
+                << column << "; values must be finite";
+        throw MeshError(message.str());
+      }
+    }
+  }
+}
+
+void checkVertexValues(const DataRows& values, const ControlMesh& mesh) {
+  if (values.rows() != mesh.vertexCount()) {
+    throw MeshError("values has " + std::to_string(values.rows()) + " rows; the mesh has " +
+                    std::to_string(mesh.vertexCount()) + " vertices");
+  }
+  checkValues(values);
+}
+
+/// The mesh with its faces, flat between its edges.
+ControlMesh bilinearMesh(const ControlMesh& mesh, const std::map<int, std::string>& refused) {
+  const std::vector<int> sizes = mesh.faceSizes();
+  const std::vector<int>& vertices = mesh.faceVertices();
+  MeshOptions options;
+  options.scheme = Scheme::bilinear;
+  for (const auto& [face, reason] : refused) {
+    options.holes.push_back(face);
+  }
+  return ControlMesh(Points::Zero(mesh.vertexCount(), 3), {sizes.begin(), sizes.end()},
+                     {vertices.begin(), vertices.end()}, std::move(options));
+}
+
+/// The tiles of a mesh with the same faces, of which it refuses the same for the same reasons.
+std::shared_ptr<const TiledSurface> tilesOf(const ControlMesh& mesh,
+                                            std::map<int, std::string> refused) {
+  auto tiles = std::make_shared<TiledSurface>(mesh);
+  refused.merge(tiles->refused);
+  tiles->refused = std::move(refused);
+  return tiles;
+}
+
+}  // namespace
+
+struct SurfaceData::Data {
+  /// `rows`: per vertex of the tiles' mesh the row of its value; empty where they are the same.
+  Data(std::shared_ptr<const TiledSurface> surface, std::vector<int> vertex_rows,
+       const DataRows& values, int threads)
+      : tiles(std::move(surface)),
+        rows_of_vertices(std::move(vertex_rows)),
+        rows(values.rows()),
+        columns(values.cols()) {
+    for (Eigen::Index column = 0; column < columns; column += kColumnsPerPose) {
+      poses.emplace_back(tiles->table);
+    }
+    set(values, threads);
+  }
+
+  void set(const DataRows& values, int threads) {
+    const Eigen::Index vertices = rows_of_vertices.empty()
+                                      ? values.rows()
+                                      : static_cast<Eigen::Index>(rows_of_vertices.size());
+    Points points = Points::Zero(vertices, 3);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Eigen::Index first = static_cast<Eigen::Index>(i) * kColumnsPerPose;
+      const Eigen::Index count = std::min(kColumnsPerPose, columns - first);
+      points.rightCols(3 - count).setZero();
+      for (Eigen::Index vertex = 0; vertex < vertices; ++vertex) {
+        const Eigen::Index row =
+            rows_of_vertices.empty() ? vertex : rows_of_vertices[static_cast<std::size_t>(vertex)];
+        points.row(vertex).head(count) = values.row(row).segment(first, count);
+      }
+      poses[i].set(points, threads);
+    }
+  }
+
+  std::shared_ptr<const TiledSurface> tiles;
+  std::vector<int> rows_of_vertices;
+  Eigen::Index rows, columns;
+  std::vector<Pose> poses;  // one for every three columns
+};
+
+SurfaceData::SurfaceData(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+SurfaceData::~SurfaceData() = default;
+SurfaceData::SurfaceData(SurfaceData&&) noexcept = default;
+SurfaceData& SurfaceData::operator=(SurfaceData&&) noexcept = default;
+
+int SurfaceData::faceCount() const { return static_cast<int>(data_->tiles->table.faces.size()); }
+Eigen::Index SurfaceData::rows() const { return data_->rows; }
+Eigen::Index SurfaceData::columns() const { return data_->columns; }
+
+void SurfaceData::setValues(const DataRows& values, int threads) {
+  data_->tiles->check({}, threads);
+  if (values.rows() != rows() || values.cols() != columns()) {
+    std::ostringstream message;
+    message << "values has shape (" << values.rows() << ", " << values.cols() << "); expected ("
+            << rows() << ", " << columns() << ")";
+    throw MeshError(message.str());
+  }
+  checkValues(values);
+  data_->set(values, threads);
+}
+
+void SurfaceData::checkLocations(Span<Location> at) const { data_->tiles->check(at, 0); }
+
+DataEvaluation SurfaceData::evaluate(Span<Location> at, Derivatives derivatives,
+                                     int threads) const {
+  data_->tiles->check(at, threads);
+  const auto rows = static_cast<Eigen::Index>(at.size());
+  const Eigen::Index columns = data_->columns;
+  DataEvaluation out;
+  out.value.resize(rows, columns);
+  if (derivatives >= Derivatives::first) {
+    out.du.resize(rows, columns);
+    out.dv.resize(rows, columns);
+  }
+  if (derivatives == Derivatives::second) {
+    out.duu.resize(rows, columns);
+    out.duv.resize(rows, columns);
+    out.dvv.resize(rows, columns);
+  }
+
+  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    Eigen::Index first = 0, row = 0;
+    const auto put = [&](DataRows& to, const Padded& values) {
+      const Eigen::Index count = std::min(kColumnsPerPose, columns - first);
+      to.row(row).segment(first, count) = values.head(count).matrix().transpose();
+    };
+    for (const Pose& pose : data_->poses) {
+      TileEvaluator evaluator(data_->tiles->table, pose);
+      for (std::size_t i = begin; i < end; ++i) {
+        row = static_cast<Eigen::Index>(i);
+        Jet jet;
+        evaluateJet(evaluator, evaluator.locate(at[i]), derivatives, jet);
+        put(out.value, jet.anchor + jet.patch.value);
+        if (derivatives >= Derivatives::first) {
+          put(out.du, jet.patch.du);
+          put(out.dv, jet.patch.dv);
+        }
+        if (derivatives == Derivatives::second) {
+          put(out.duu, jet.second(jet.patch.duu));
+          put(out.duv, jet.second(jet.patch.duv));
+          put(out.dvv, jet.second(jet.patch.dvv));
+        }
+      }
+      first += kColumnsPerPose;
+    }
+  });
+  return out;
+}
+
+SurfaceData LimitSurface::faceVarying(const DataRows& values,
+                                      const std::vector<std::int64_t>& indices,
+                                      Interpolation interpolation, int threads) const {
+  data_->check({}, threads);
+  checkValues(values);
+  FaceVaryingMesh channel =
+      faceVaryingMesh(data_->mesh, Topology(data_->mesh), indices, values.rows(), interpolation);
+  return SurfaceData(std::make_unique<SurfaceData::Data>(
+      tilesOf(channel.mesh, data_->refused), std::move(channel.values), values, threads));
+}
+
+SurfaceData LimitSurface::vertexData(const DataRows& values, int threads) const {
+  data_->check({}, threads);
+  checkVertexValues(values, data_->mesh);
+  return SurfaceData(
+      std::make_unique<SurfaceData::Data>(data_->tiles, std::vector<int>{}, values, threads));
+}
+
+SurfaceData LimitSurface::varying(const DataRows& values, int threads) const {
+  data_->check({}, threads);
+  checkVertexValues(values, data_->mesh);
+  return SurfaceData(std::make_unique<SurfaceData::Data>(
+      tilesOf(bilinearMesh(data_->mesh, data_->refused), data_->refused), std::vector<int>{},
+      values, threads));
+}
+
+}  // namespace limitsurf

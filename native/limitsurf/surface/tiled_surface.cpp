@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/tiled_surface.h"
+
+#include <sstream>
+
+namespace limitsurf {
+
+TiledSurface::TiledSurface(const ControlMesh& mesh, const Topology& topology)
+    : ptex(mesh), refused(topology.refused()), table(buildTileTable(mesh, topology, ptex)) {}
+
+void TiledSurface::check(Span<Location> at, int threads) const {
+  if (threads < 0) {
+    throw std::invalid_argument("threads is " + std::to_string(threads) +
+                                "; 0 means all cores, n at most n");
+  }
+  std::ostringstream message;
+  message.precision(17);
+  for (std::size_t row = 0; row < at.size(); ++row) {
+    const Location& location = at[row];
+    const auto inside = [](double t) { return t >= 0 && t <= 1; };  // false for NaN
+    if (location.face < 0 || location.face >= static_cast<int>(table.faces.size())) {
+      message << "row " << row << ": face " << location.face << " is not among the "
+              << table.faces.size() << " Ptex faces";
+      throw LocationError(message.str());
+    }
+    if (!inside(location.u) || !inside(location.v)) {
+      message << "row " << row << ": (u, v) = (" << location.u << ", " << location.v
+              << ") is outside [0, 1]";
+      throw LocationError(message.str());
+    }
+    if (table.faces[location.face].kind == TileRef::kNone) {
+      const int base = ptex.base_face[location.face];
+      message << "row " << row << ": Ptex face " << location.face << " belongs to face " << base
+              << ", which has no limit surface: " << refused.at(base);
+      throw MeshError(message.str());
+    }
+  }
+}
+
+}  // namespace limitsurf

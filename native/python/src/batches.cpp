@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batches.h"
+
+#include <sstream>
+
+#include "limitsurf/error.h"
+
+namespace limitsurf::python {
+
+Locations locationsOf(int face_count, const py::object& face, const py::object& uv) {
+  Doubles uvs = doubles(uv, "uv");
+  if (uvs.ndim() == 1 && uvs.size() == 0) {
+    uvs = Doubles(std::vector<py::ssize_t>{0, 2});  // []
+  }
+  requireRows<LocationError>(uvs, "uv", 2);
+  const Integers faces = integers<LocationError>(face, "face");
+  const std::size_t rows = static_cast<std::size_t>(uvs.shape(0));
+  if (faces.ndim() > 1 || (faces.ndim() == 1 && faces.shape(0) != uvs.shape(0))) {
+    throw LocationError("face has shape " + shapeText(faces) + " and uv " + shapeText(uvs) +
+                        "; expected one face, or (n,) and (n, 2)");
+  }
+  const std::int64_t* ids = faces.data();
+  const double* parameters = uvs.data();
+  const bool one = faces.ndim() == 0;
+  Locations result(rows);
+  const py::gil_scoped_release release;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::int64_t id = ids[one ? 0 : row];
+    if (id < 0 || id >= face_count) {
+      std::ostringstream message;
+      message << "row " << row << ": face " << id << " is not among the " << face_count
+              << " Ptex faces";
+      throw LocationError(message.str());
+    }
+    result[row] = {static_cast<int>(id), parameters[2 * row], parameters[2 * row + 1]};
+  }
+  return result;
+}
+
+void checkThreads(int threads) {
+  if (threads < 0) {
+    throw py::value_error("threads is " + std::to_string(threads) +
+                          "; 0 means all cores, n at most n");
+  }
+}
+
+void checkDerivatives(int derivatives, int highest) {
+  if (derivatives < 0 || derivatives > highest) {
+    throw py::value_error("derivatives is " + std::to_string(derivatives) + "; expected " +
+                          (highest == 2 ? "0, 1 or 2" : "0 or 1"));
+  }
+}
+
+InterruptionPoint interruptible() {
+  return InterruptionPoint([] {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) {
+      throw py::error_already_set();
+    }
+  });
+}
+
+py::object result(const char* name) { return py::module_::import("limitsurf._results").attr(name); }
+
+}  // namespace limitsurf::python

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface_data.h"
+
+#include <utility>
+
+#include "batches.h"
+#include "choices.h"
+#include "docstrings.h"
+#include "limitsurf/error.h"
+
+namespace limitsurf::python {
+namespace {
+
+const Choices<Interpolation> kInterpolations = {{"none", Interpolation::none},
+                                                {"corners_only", Interpolation::corners_only},
+                                                {"corners_plus1", Interpolation::corners_plus1},
+                                                {"corners_plus2", Interpolation::corners_plus2},
+                                                {"boundaries", Interpolation::boundaries},
+                                                {"all", Interpolation::all}};
+
+py::object evaluate(const SharedData& shared, const py::object& face, const py::object& uv,
+                    int derivatives, int threads, const py::object& dtype) {
+  checkDerivatives(derivatives, 2);
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const SurfaceData& data = shared.data();
+  const Locations at = locationsOn(data, face, uv);
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  const auto columns = static_cast<py::ssize_t>(data.columns());
+  Output outputs[6];  // value, du, dv, duu, duv, dvv
+  const int wanted = derivatives == 0 ? 1 : derivatives == 1 ? 3 : 6;
+  for (int i = 0; i < wanted; ++i) {
+    outputs[i] = Output(type, {rows, columns});
+  }
+  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+    const DataEvaluation e = data.evaluate(chunk, static_cast<Derivatives>(derivatives), threads);
+    const DataRows* values[6] = {&e.value, &e.du, &e.dv, &e.duu, &e.duv, &e.dvv};
+    for (int i = 0; i < wanted; ++i) {
+      outputs[i].put(begin * static_cast<std::size_t>(columns), values[i]->data(),
+                     static_cast<std::size_t>(values[i]->size()));
+    }
+  });
+  return result("DataEvaluation")(outputs[0].object(), outputs[1].object(), outputs[2].object(),
+                                  outputs[3].object(), outputs[4].object(), outputs[5].object());
+}
+
+void setValues(SharedData& shared, const py::object& values, int threads) {
+  checkThreads(threads);
+  const DataRows rows = rowsOf(values);
+  SurfaceData& data = shared.data();
+  const py::gil_scoped_release release;
+  const std::unique_lock<std::shared_mutex> lock(shared.mutex);
+  data.setValues(rows, threads);
+}
+
+}  // namespace
+
+const SurfaceData& SharedData::data() const {
+  if (!data_) {
+    throw py::value_error("this SurfaceData was never initialised");
+  }
+  return *data_;
+}
+
+SurfaceData& SharedData::data() {
+  std::as_const(*this).data();
+  return *data_;
+}
+
+Interpolation interpolationOf(const std::string& name) {
+  return choice(name, "interpolation", kInterpolations);
+}
+
+DataRows rowsOf(const py::object& values) {
+  const Doubles array = doubles(values, "values");
+  if (array.ndim() < 1 || array.ndim() > 2) {
+    throw MeshError("values has shape " + shapeText(array) + "; expected (m, d) or (m,)");
+  }
+  return Eigen::Map<const DataRows>(array.data(), array.shape(0),
+                                    array.ndim() == 2 ? array.shape(1) : 1);
+}
+
+void bindSurfaceData(py::module_& module) {
+  using namespace py::literals;
+  py::class_<SharedData>(module, "SurfaceData", kSurfaceDataDoc)
+      .def_property_readonly(
+          "shape",
+          [](const SharedData& s) { return py::make_tuple(s.data().rows(), s.data().columns()); },
+          "(m, d) of the values that it was made of.")
+      .def("set_values", &setValues, "values"_a, "threads"_a = 0, kSetValuesDoc)
+      .def("evaluate", &evaluate, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
+           "threads"_a = 0, "dtype"_a = py::dtype("float64"), kEvaluateDataDoc)
+      .def("__repr__", [](const SharedData& s) {
+        return "SurfaceData(" + std::to_string(s.data().rows()) + " values of " +
+               std::to_string(s.data().columns()) + " columns)";
+      });
+}
+
+}  // namespace limitsurf::python
