@@ -21,12 +21,10 @@ class Comparison:
         self.surface = limitsurf.LimitSurface(self.cage.mesh)
         self.corners = subdivided.corner_locations(self.cage.face_sizes, levels)
         shown = self._shown(1)
-        corner_vertex = attributes.read(shown, ids.CORNER_VERTEX)
+        self._corner_vertex = attributes.read(shown, ids.CORNER_VERTEX)
         self.vertices = subdivided.vertex_locations(
-            self.corners, corner_vertex, len(shown.vertices)
+            self.corners, self._corner_vertex, len(shown.vertices)
         )
-
-        self._corner_vertex = corner_vertex
 
     def positions(self, quality: int) -> np.ndarray:
         """Each vertex's distance from its place, relative to the diagonal of the cage; NaN where

@@ -13,7 +13,6 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 from . import cage, native, roots
 from .errors import RefusalError
 from .progress import progress_bar
-from .ptex_map import PtexMap
 from .request import RequestSize
 
 if TYPE_CHECKING:
@@ -30,16 +29,15 @@ class Target:
     locations: roots.Locations
 
     def surface_uv(self) -> np.ndarray | None:
-        """The locations on the cage's own UV map, as Blender's hair tools look them up."""
-        if self.cage.uv_map is None:
+        """The locations on the UV map as the subdivision smooths it: where Blender's nodes look
+        for them, on the evaluated mesh."""
+        found = self.cage.uv_map
+        if found is None:
             return None
-        on_cage = PtexMap(
-            self.cage.face_sizes,
-            self.cage.uv_map.values[self.cage.uv_map.indices],
-            np.asarray(self.surface.base_face),
-            np.asarray(self.surface.corner),
+        smooth = self.surface.face_varying(
+            found.values, found.indices, self.cage.rules.uv_interpolation
         )
-        return on_cage.at(self.locations.face, self.locations.uv.astype(np.float64))
+        return smooth.evaluate(self.locations.face, self.locations.uv.astype(np.float64)).value
 
 
 class ScatterOperator:

@@ -16,6 +16,7 @@ from . import attributes, ids
 from .errors import CageError
 
 INFINITE = np.float32(10)  # and all that is above
+OF_CREASE_1 = np.float32(10)  # and otherwise its square's part of that
 LEAST = np.float32(1e-6)  # what is below counts as no sharpness, on edges
 
 
@@ -62,7 +63,7 @@ def _from_creases(
             f"{attribute.domain}, not FLOAT on {domain}"
         )
     crease = attributes.read(mesh, name)
-    return crease * crease * INFINITE
+    return crease * crease * OF_CREASE_1
 
 
 def _with_edges_of_two(vertex: np.ndarray, ends: np.ndarray, edge: np.ndarray) -> np.ndarray:

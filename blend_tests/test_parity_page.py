@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page of distances between Blender's meshes and the limit surface."""
+
+import re
+import subprocess
+import sys
+
+import parity_zoo
+import pytest
+from processes import ROOT
+
+PAGE = (ROOT / "docs/parity.md").read_text()
+NAMES = ("best positions", "best uvs", "default positions", "default uvs")
+
+
+def table(page, name):
+    """Its entries by mesh and kind of creases: the first number of each."""
+    (lines,) = re.findall(rf"<!-- {name} -->\n\n(.*?)\n\n<!-- end -->", page, re.DOTALL)
+    head, _, *rows = ([c.strip() for c in line.split("|")[1:-1]] for line in lines.splitlines())
+    return {
+        (row[0], kind): float(cell.split()[0])
+        for row in rows
+        for kind, cell in zip(head[1:], row[1:], strict=True)
+    }
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_tables_cover_the_zoo(name):
+    found = table(PAGE, name)
+    assert set(found) == {(m, k) for m in parity_zoo.MESHES for k in parity_zoo.CREASES}
+    if name.startswith("best"):
+        assert max(found.values()) <= 1e-6
+    else:
+        assert max(found.values()) > 5e-3
+
+
+@pytest.mark.slow
+def test_program_writes_the_page(tmp_path):
+    output = tmp_path / "parity.md"
+    program = (sys.executable, str(ROOT / "tools/parity.py"), "--output", str(output))
+    done = subprocess.run(program, capture_output=True, text=True, timeout=1800)
+    assert done.returncode == 0, done.stdout + done.stderr
+    written = output.read_text()
+    for name in NAMES:
+        fresh, kept = table(written, name), table(PAGE, name)
+        assert set(fresh) == set(kept)
+        if name.startswith("default"):
+            for key, value in fresh.items():
+                assert value == pytest.approx(kept[key], rel=0.5, abs=1e-6), (name, key)
+    text = re.compile(r"^\|.*\n", re.MULTILINE)
+    assert text.sub("", written) == text.sub("", PAGE)
