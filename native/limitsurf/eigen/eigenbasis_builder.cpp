@@ -226,14 +226,17 @@ void Eigenbasis::Builder::buildCurves() {
     basis_.curve_ring_[i].assign(mode.ring.begin(), mode.ring.end());
     for (int j = 0; j < ring_.faces; ++j) {
       const Cells cells = ringCells(mode.ring, j);
+      const Sides sides = basis_.sides(j);
+      Wide wide;
       if (mode.fed_mode) {
         const Wide fed = spokeOnFace(mode.fed_mode, mode.feeds_plus, j);
-        basis_.fixed_[j].tables[i] = ModeContinuation::rounded(
-            continuation_.continued(basis_.sides(j), mode.lambda, cells, mode.feeds, &fed));
+        wide = continuation_.continued(sides, mode.lambda, cells, mode.feeds, &fed);
+      } else if (mode.lambda == Real(1) / 2) {  // made of spoke modes to phi = pi/2
+        wide = continuation_.linear(sides, cells[cell(1, 0)], cells[cell(0, 1)]);
       } else {
-        basis_.fixed_[j].tables[i] =
-            ModeContinuation::rounded(continuation_.continued(basis_.sides(j), mode.lambda, cells));
+        wide = continuation_.continued(sides, mode.lambda, cells);
       }
+      basis_.fixed_[j].tables[i] = ModeContinuation::rounded(wide);
     }
     if (mode.fed_mode) {
       Part part[2];
