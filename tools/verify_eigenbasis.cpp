@@ -11,8 +11,8 @@
 //   verify_eigenbasis [boundary|interior|pinned|cone|dart] [--valences FIRST LAST] [--csv FILE]
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <set>
@@ -25,6 +25,7 @@
 #include "support/deep_subdivision.h"
 #include "support/meshes.h"
 #include "support/random.h"
+#include "support/sharp_meshes.h"
 
 namespace limitsurf {
 namespace {
@@ -36,8 +37,7 @@ struct Line {
   int index = -1;  // of the defective eigenvalue; -1: none
   double value = 0;
   double factorisation = 0;  // max |A - T J T^-1|
-  bool evaluated = false;
-  double position = 0;  // errors of the evaluator, as limit_surface.h measures them
+  double position = 0;       // errors of the evaluator, as limit_surface.h measures them
   double derivative = 0;
 };
 
@@ -125,13 +125,24 @@ double factorisationError(const Eigenbasis& basis, int face) {
   return (a - t * j * t_inverse).cwiseAbs().maxCoeff();
 }
 
-/// The evaluator on a fan of perturbed quads, at random and on shells down to 2^-40.
-void measureEvaluator(RingKind kind, int faces, Line& line) {
-  line.evaluated = true;
-  test::Cage cage = test::fan(faces, kind == RingKind::interior, 7 * faces + 1);
-  if (kind == RingKind::pinned) {
-    cage.options.boundary = Boundary::corners;
+/// A fan of perturbed quads around a vertex of that kind.
+test::Cage fanAround(const Ring& ring) {
+  test::Cage cage = test::fan(ring.faces, ring.closed(), 7 * ring.faces + 1);
+  const int vertex = cage.faces[0][0];
+  if (ring.rule() == VertexRule::corner) {
+    test::sharpenVertex(cage, vertex, INFINITY);
+  } else if (ring.kind == RingKind::dart) {  // as far as the boundary, lest its end be a dart too
+    const int middle = cage.faces[0][1];
+    test::sharpenEdge(cage, vertex, middle, INFINITY);
+    test::sharpenEdge(cage, middle, cage.faces[1][1], INFINITY);
   }
+  return cage;
+}
+
+/// The evaluator at random and on shells down to 2^-40.
+void measureEvaluator(const Ring& ring, Line& line) {
+  const int faces = ring.faces;
+  const test::Cage cage = fanAround(ring);
   const LimitSurface surface = test::limitSurface(cage);
   test::DeepSubdivision truth(cage);
   test::Random random(faces);
@@ -184,11 +195,7 @@ Line verified(RingKind kind, int valence) {
   for (const int face : someFaces(ring.faces)) {
     line.factorisation = std::max(line.factorisation, factorisationError(*basis, face));
   }
-  // The other kinds need sharpness, or a bow-tie.
-  if (kind == RingKind::interior || kind == RingKind::boundary ||
-      (kind == RingKind::pinned && ring.faces == 1)) {
-    measureEvaluator(kind, ring.faces, line);
-  }
+  measureEvaluator(ring, line);
   return line;
 }
 
@@ -237,12 +244,8 @@ int run(int argc, char** argv) {
     if (line.index >= 0) {
       std::snprintf(defect, sizeof defect, "index %3d: %g", line.index, line.value);
     }
-    std::printf("%7d  %-20s   %18.1e", valence, defect, line.factorisation);
-    if (line.evaluated) {
-      std::printf("   %17.1e   %9.1e\n", line.position, line.derivative);
-    } else {
-      std::printf("   %17s   %9s\n", "-", "-");
-    }
+    std::printf("%7d  %-20s   %18.1e   %17.1e   %9.1e\n", valence, defect, line.factorisation,
+                line.position, line.derivative);
     std::fflush(stdout);
     if (table.is_open()) {
       table << valence << ',' << line.index << ',' << line.value << ',' << line.factorisation << ','
