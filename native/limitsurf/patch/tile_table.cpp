@@ -145,6 +145,8 @@ class Builder {
   TileRef tileOrSplit(int level, int face, int depth, std::vector<Split>& splits) {
     const Corners corners = look(level, face);
     FaceMesh& mesh = levels_[level]->mesh;
+    const bool fine = depth >= TileTable::kFineDepth;
+    table_.fine = table_.fine || fine;
     if (!corners.tile) {
       table_.splits.emplace_back();
       splits.push_back({face, static_cast<int>(table_.splits.size()) - 1, depth + 1});
@@ -156,9 +158,10 @@ class Builder {
       return {TileRef::kRing, static_cast<std::uint32_t>(table_.ring_tiles.size() - 1)};
     }
     table_.bsplines.push_back(bspline(mesh, face, corners.diagonal));
+    table_.bsplines.back().fine = fine;
     if (corners.creases > 0) {
       table_.bsplines.back().crease = mesh.sharpness({face, corners.crease_side});
-      table_.bsplines.back().crease_side = corners.crease_side;
+      table_.bsplines.back().crease_side = static_cast<std::int8_t>(corners.crease_side);
     }
     return {TileRef::kBSpline, static_cast<std::uint32_t>(table_.bsplines.size() - 1)};
   }

@@ -24,7 +24,9 @@ struct BSplineTile {
   /// Sharpness of the one semi-sharp side (see SingleCrease), or 0; and which side that is: from
   /// corner `crease_side` to the next.
   float crease = 0;
-  int crease_side = 0;
+  std::int8_t crease_side = 0;
+  /// Whether the quad is so small that its points' own rounding matters (see TileTable::fine).
+  bool fine = false;
 };
 
 /// A quad with an extraordinary vertex at one corner and regular ones at the others.
@@ -64,6 +66,11 @@ struct TileTable {
   std::vector<BSplineTile> bsplines;
   std::vector<RingTile> ring_tiles;  ///< grouped by ring
   std::vector<RingPoints> rings;
+
+  /// Splits after which a point, rounded to double, is no longer a good one for second derivatives:
+  /// they count 4^depth. Tables with such tiles ask for points of twice the precision.
+  static constexpr int kFineDepth = 3;
+  bool fine = false;
 
   /// The deepest split: sharpness decays in 10 steps, and one or two more part the vertices.
   static constexpr int kMostDepth = 14;

@@ -70,7 +70,7 @@ class PatchArea {
 double areaOf(const BSplineTile& tile, const Pose& pose) {
   Padded window[16];
   for (int i = 0; i < 16; ++i) {
-    window[i] = pose.point(tile.points[i]) - pose.point(tile.points[5]);
+    window[i] = pose.difference(tile.points[i], tile.points[5]);
   }
   const auto weights = [&](double u, double v) { return TileWeights(tile, u, v); };
   const PatchArea area(window, 4, weights);

@@ -136,7 +136,7 @@ void includeBSpline(const BSplineTile& tile, const Pose& pose, double tolerance,
   const Padded anchor = pose.point(tile.points[5]);
   Padded window[16];
   for (int i = 0; i < 16; ++i) {
-    window[i] = pose.point(tile.points[i]) - anchor;
+    window[i] = pose.difference(tile.points[i], tile.points[5]);
   }
   if (tile.crease > 0) {
     includeStrips(tile, window, anchor, tolerance, extremes);

@@ -11,6 +11,12 @@ namespace {
 
 Padded padded(const Vector3& v) { return {v[0], v[1], v[2], 0}; }
 
+/// What was lost in rounding a + b to `sum`, whichever is the larger (Knuth's two-sum).
+Padded rounding(const Padded& a, const Padded& b, const Padded& sum) {
+  const Padded added = sum - a;
+  return (a - (sum - added)) + (b - added);
+}
+
 const TileStep<double>& tileStep(Sides sides) {
   static const TileStep<double> steps[4] = {
       TileStep<double>(Sides::inner), TileStep<double>(Sides::left), TileStep<double>(Sides::right),
@@ -66,23 +72,46 @@ void Pose::set(const Points& cage, int threads) {
                   points_[i] = padded(cage.row(static_cast<Eigen::Index>(i)).transpose());
                 }
               });
-  for (int i = refined.cagePoints(); i < refined.size(); ++i) {  // sources come first
-    const Span<int> sources = refined.sources(i);
-    const std::vector<double>& weights = refined.weights(i);
-    // Relative to one of the sources, to keep the digits of small faces far from the origin.
-    const Padded base = points_[sources[0]];
-    Padded sum = Padded::Zero();
-    for (std::size_t s = 1; s < sources.size(); ++s) {
-      sum += weights[s] * (points_[sources[s]] - base);
-    }
-    points_[i] = base + sum;
-  }
-
+  refinePoints();
   parallelFor(rings_.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
       setRing(static_cast<int>(ring));
     }
   });
+}
+
+void Pose::refinePoints() {
+  const RefinedPoints& refined = table_->points;
+  const int cage = refined.cagePoints();
+  residuals_.resize(table_->fine ? static_cast<std::size_t>(refined.size() - cage) : 0);
+  for (int i = cage; i < refined.size(); ++i) {  // sources come first
+    const Span<int> sources = refined.sources(i);
+    const std::vector<double>& weights = refined.weights(i);
+    Padded base, sum;
+    if (sources.size() == 2 && weights[0] == weights[1]) {
+      // A midpoint, the same to the last bit from either end: faces on different sides of a sharp
+      // edge may have made it twice.
+      base = points_[sources[0]] / 2;
+      sum = points_[sources[1]] / 2;
+      if (table_->fine) {
+        const Padded rest = residual(sources[0]) / 2 + residual(sources[1]) / 2;
+        points_[i] = base + sum;
+        residuals_[i - cage] = rounding(base, sum, points_[i]) + rest;
+        continue;
+      }
+    } else {
+      // Relative to one of the sources, to keep the digits of small faces far from the origin.
+      base = points_[sources[0]];
+      sum = residual(sources[0]);
+      for (std::size_t s = 1; s < sources.size(); ++s) {
+        sum += weights[s] * difference(sources[s], sources[0]);
+      }
+    }
+    points_[i] = base + sum;
+    if (table_->fine) {
+      residuals_[i - cage] = rounding(base, sum, points_[i]);
+    }
+  }
 }
 
 void Pose::setRing(int ring_index) {
@@ -91,13 +120,14 @@ void Pose::setRing(int ring_index) {
   const Padded vertex = points_[ring.points[0]];
   Points points(ring.points.size(), 3);
   for (std::size_t i = 0; i < ring.points.size(); ++i) {
-    points.row(i) = (points_[ring.points[i]] - vertex).head<3>().transpose();
+    points.row(i) = difference(ring.points[i], ring.points[0]).head<3>().transpose();
   }
   ring.basis->project(points, pose.coefficients);
   const Vector3 to_limit = pose.coefficients.row(0);
   pose.limit = vertex + padded(to_limit);
   // What rounding left between the limit as stored and the constant mode.
-  pose.coefficients.row(0) = ((vertex - pose.limit) + padded(to_limit)).head<3>().transpose();
+  pose.coefficients.row(0) =
+      ((vertex - pose.limit) + (padded(to_limit) + residual(ring.points[0]))).head<3>().transpose();
 
   // The ring's points after 0, 1, 2, ... steps, one ring after the other.
   std::vector<Padded> levels(ring.points.size());
@@ -123,6 +153,7 @@ void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
   const RingTile& tile = table_->ring_tiles[t];
   const Eigenbasis& basis = *table_->rings[tile.ring].basis;
   const Padded& limit = rings_[tile.ring].limit;
+  const Padded constant = rings_[tile.ring].constant();  // the ring's points are without it
   const std::size_t ring_size = table_->rings[tile.ring].points.size();
   const Padded* ring = &ring_levels[ring_size * static_cast<std::size_t>(tile.ring_steps)];
   RingTilePose& pose = ring_tiles_[t];
@@ -134,8 +165,8 @@ void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
   setRingCells(basis.ring(), tile.face, ring, start.points);
   const std::vector<int>& cells = basis.outerModes(tile.face).cells();
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    pose.outer[i] = points_[tile.outer[i]] - limit;
-    start.points[cells[i]] = pose.outer[i];
+    pose.outer[i] = (points_[tile.outer[i]] - limit) + residual(tile.outer[i]);
+    start.points[cells[i]] = pose.outer[i] - constant;
   }
   const TileStep<double>& step = tileStep(tile.sides);
   const Padded* before = start.points;

@@ -48,6 +48,16 @@ class Pose {
   void set(const Points& cage, int threads);
 
   const Padded& point(int i) const { return points_[i]; }
+  /// What rounding left of a point: point(i) + residual(i) has twice the digits. 0 unless the table
+  /// is fine.
+  Padded residual(int i) const {
+    const int refined = i - table_->points.cagePoints();
+    return refined < 0 || residuals_.empty() ? Padded(Padded::Zero()) : residuals_[refined];
+  }
+  /// The vector between two points, to its own precision.
+  Padded difference(int to, int from) const {
+    return (points_[to] - points_[from]) + (residual(to) - residual(from));
+  }
   const RingPose& ring(int i) const { return rings_[i]; }
   const RingTilePose& ringTile(int i) const { return ring_tiles_[i]; }
   /// The grid after `steps` >= 1 steps.
@@ -57,12 +67,14 @@ class Pose {
   int gridSteps(const RingTile& tile) const { return grid_steps_[tile.depth]; }
 
  private:
+  void refinePoints();
   void setRing(int ring);
   void setRingTile(int tile, const std::vector<Padded>& ring_levels);
 
   const TileTable* table_;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
+  std::vector<Padded> residuals_;  // of the refined ones
   std::vector<RingPose> rings_;
   std::vector<RingTilePose> ring_tiles_;
   std::vector<int> first_tile_;  // per ring, and one more

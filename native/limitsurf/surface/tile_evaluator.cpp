@@ -146,21 +146,22 @@ template <int Order>
   const BSplineTile& tile = table_.bsplines[index];
   const Padded& anchor = pose_.point(tile.points[5]);
   jet.anchor = anchor;
-  if (index == loaded_) {
-    evaluateWindow<Order>(window_, 4, u, v, jet.patch);
-    return;
-  }
   const auto point = [&](int x, int y) -> Padded {
     return pose_.point(tile.points[4 * y + x]) - anchor;
   };
-  if (index == last_) {  // asked for again: worth keeping
+  if (index != loaded_ && (index == last_ || tile.fine)) {  // asked for again: worth keeping
     loaded_ = index;
     for (int i = 0; i < 16; ++i) {
-      window_[i] = point(i % 4, i / 4);
+      window_[i] =
+          tile.fine ? pose_.difference(tile.points[i], tile.points[5]) : point(i % 4, i / 4);
     }
   }
   last_ = index;
-  evaluatePatch<Order, Padded>(point, u, v, jet.patch);
+  if (index == loaded_) {
+    evaluateWindow<Order>(window_, 4, u, v, jet.patch);
+  } else {
+    evaluatePatch<Order, Padded>(point, u, v, jet.patch);
+  }
 }
 
 template <int Order>
@@ -185,7 +186,10 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   if (quarter.steps > pose_.gridSteps(tile)) {
     const Eigenbasis& basis = *table_.rings[tile.ring].basis;
     jet.anchor = pose_.ring(tile.ring).limit;
-    if (Order < 2) {
+    // Around a cone the fastest mode vanishes across the spokes, by symmetry, and so must its share
+    // of the derivative before it is added to the others'.
+    const bool by_modes = Order == 2 || (Order == 1 && basis.ring().kind == RingKind::cone);
+    if (!by_modes) {
       Padded grid[tile_grid::kCells];
       basis.controlGrid(tile.face, quarter.steps, tile.ring_steps,
                         pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer, grid);
