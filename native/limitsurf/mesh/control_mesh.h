@@ -69,8 +69,10 @@ struct MeshOptions {
 ///   - a hole that is no face of the mesh.
 ///
 /// What spoils some faces alone is accepted here and told by LimitSurface::refused(): a face that
-/// uses a vertex twice, non-manifold edges and vertices, neighbours of opposite winding. Isolated
-/// vertices belong to no face and change nothing.
+/// uses a vertex twice, or that touches a crease between other faces. Edges of three and more
+/// faces, or of two of opposite winding, are infinitely sharp, and so are vertices at which they
+/// end or sheets meet, as OpenSubdiv has it. Isolated vertices belong to no face and change
+/// nothing.
 class ControlMesh {
  public:
   ControlMesh(Points positions, const std::vector<std::int64_t>& face_sizes,

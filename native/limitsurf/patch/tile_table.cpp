@@ -100,6 +100,7 @@ class Builder {
     levels_.push_back(std::make_unique<Level>(cage_, nullptr, topology_.hasSharpness()));
     std::vector<Split> splits;
     for (int face = 0; face < mesh_.faceCount(); ++face) {
+      passSometimes();
       if (kinds_[face] == kIrregular && mesh_.faceSize(face) == 4) {
         table_.faces[ptex_.first[face]] = tileOrSplit(0, face, 0, splits);
       } else if (kinds_[face] == kIrregular) {
@@ -111,13 +112,19 @@ class Builder {
     }
   }
 
+  void passSometimes() {
+    constexpr int kFacesBetween = 4096;
+    if (++faces_passed_ % kFacesBetween == 0) {
+      InterruptionPoint::pass();
+    }
+  }
+
   /// Makes the children of the faces, and says which of them are to be split in their turn.
   std::vector<Split> refine(const std::vector<Split>& splits) {
     const int level = static_cast<int>(levels_.size());
     if (level > TileTable::kMostDepth) {
       throw std::logic_error("a face does not settle under subdivision");
     }
-    InterruptionPoint::pass();
     std::vector<int> faces;
     for (const Split& split : splits) {
       faces.push_back(split.face);
@@ -128,6 +135,7 @@ class Builder {
     levels_.push_back(std::make_unique<Level>(mesh, &mesh, topology_.hasSharpness()));
     std::vector<Split> next;
     for (const Split& split : splits) {
+      passSometimes();
       const int corners = mesh.parent().faceSize(split.face);
       for (int corner = 0; corner < corners; ++corner) {
         const TileRef child =
@@ -347,6 +355,7 @@ class Builder {
   std::vector<std::unique_ptr<RefinedMesh>> meshes_;
   std::vector<std::unique_ptr<Level>> levels_;
   std::vector<FaceKind> kinds_;
+  unsigned faces_passed_ = 0;
   std::map<Ring, std::shared_ptr<const Eigenbasis>> bases_;
   std::map<std::pair<int, int>, int> reflections_;
 };

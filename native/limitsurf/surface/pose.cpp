@@ -84,7 +84,11 @@ void Pose::refinePoints() {
   const RefinedPoints& refined = table_->points;
   const int cage = refined.cagePoints();
   residuals_.resize(table_->fine ? static_cast<std::size_t>(refined.size() - cage) : 0);
+  constexpr int kPointsBetween = 1 << 18;
   for (int i = cage; i < refined.size(); ++i) {  // sources come first
+    if ((i - cage) % kPointsBetween == 0) {
+      InterruptionPoint::pass();
+    }
     const Span<int> sources = refined.sources(i);
     const std::vector<double>& weights = refined.weights(i);
     Padded base, sum;

@@ -199,6 +199,7 @@ std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::o
   requireVector<MeshError>(picked, "indices");
   const std::vector<std::int64_t> corners(picked.data(), picked.data() + picked.size());
   const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
   return std::make_unique<SharedData>(shared.surface().faceVarying(rows, corners, rule, threads));
 }
 
@@ -207,6 +208,7 @@ std::unique_ptr<SharedData> vertexData(const SharedSurface& shared, const py::ob
   checkThreads(threads);
   const DataRows rows = rowsOf(values);
   const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
   return std::make_unique<SharedData>(shared.surface().vertexData(rows, threads));
 }
 
@@ -215,11 +217,13 @@ std::unique_ptr<SharedData> varying(const SharedSurface& shared, const py::objec
   checkThreads(threads);
   const DataRows rows = rowsOf(values);
   const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
   return std::make_unique<SharedData>(shared.surface().varying(rows, threads));
 }
 
 std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {
   const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
   return std::make_unique<SharedSurface>(mesh);
 }
 
