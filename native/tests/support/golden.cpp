@@ -40,7 +40,7 @@ class Reader {
   std::vector<T> take(std::size_t count) {
     std::vector<T> result(count);
     if (next_ + count * sizeof(T) > bytes_.size()) throw std::runtime_error("truncated");
-    std::memcpy(result.data(), bytes_.data() + next_, count * sizeof(T));
+    if (count > 0) std::memcpy(result.data(), bytes_.data() + next_, count * sizeof(T));
     next_ += count * sizeof(T);
     return result;
   }
