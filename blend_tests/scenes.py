@@ -52,6 +52,14 @@ def grid_with_holes() -> bpy.types.Object:
     return add_mesh("Holes", positions, faces)
 
 
+def flat_grid(side: int) -> bpy.types.Object:
+    """Squares of size 1: away from the border the limit surface is the mesh itself."""
+    y, x = np.mgrid[: side + 1, : side + 1].reshape(2, -1)
+    first = (np.arange(side) * (side + 1))[:, None] + np.arange(side)
+    faces = first.reshape(-1, 1) + [0, 1, side + 2, side + 1]
+    return add_mesh("Flat", np.stack([x, y, 0 * x], axis=1), faces.tolist())
+
+
 def mixed_polygons() -> bpy.types.Object:
     """A triangle, a pentagon and quads around a vertex, open all around."""
     positions = [

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """surface_uv_coordinate leads Blender's nodes to the root: they look it up on the evaluated mesh,
-whose UV map the subdivision has smoothed."""
+whose UV map the subdivision has smoothed if there is one."""
 
 from pathlib import Path
 
@@ -74,17 +74,67 @@ def evaluated(ob):
     return ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
 
 
+def sampled(ob):
+    """How far from their roots Sample UV Surface finds strands, and which of them it finds."""
+    hair = add_hair(ob)
+    hair.modifiers.new("Nodes", "NODES").node_group = sampling_group(ob)
+    found = evaluated(hair)
+    roots = scenes.strands(hair)[:, 0]
+    distance = np.linalg.norm(attributes.read(found, "found Value") - roots, axis=1)
+    return distance, attributes.read(found, "found Is Valid") > 0
+
+
 @pytest.mark.parametrize("uv_smooth", rules.UV_INTERPOLATIONS)
 def test_sample_uv_surface_finds_the_root(sheet, uv_smooth):
     sheet.modifiers[0].uv_smooth = uv_smooth
-    hair = add_hair(sheet)
-    hair.modifiers.new("Nodes", "NODES").node_group = sampling_group(sheet)
-    found = evaluated(hair)
-    valid = attributes.read(found, "found Is Valid") > 0
+    distance, valid = sampled(sheet)
     assert valid.mean() > 0.99  # polygons cut the corners of round borders
-    roots = scenes.strands(hair)[:, 0]
-    distance = np.linalg.norm(attributes.read(found, "found Value") - roots, axis=1)
     assert distance[valid].max() < NEAR
+
+
+def switch_off(subsurf):
+    subsurf.show_viewport = False
+
+
+def level_0(subsurf):
+    subsurf.levels = 0
+
+
+def simplify(subsurf):
+    render = bpy.context.scene.render
+    render.use_simplify, render.simplify_subdivision = True, 0
+
+
+def take_away(subsurf):
+    subsurf.id_data.modifiers.remove(subsurf)
+
+
+def only_the_second(subsurf):
+    """Its map is smoothed by another rule than that of the first, which is at level 0."""
+    second = add_subsurf(subsurf.id_data, "PRESERVE_CORNERS")
+    second.levels, second.quality, second.uv_smooth = LEVELS, 10, "PRESERVE_CORNERS"
+    subsurf.levels, subsurf.uv_smooth = 0, "SMOOTH_ALL"
+
+
+STATES = (switch_off, level_0, simplify, take_away, only_the_second)
+
+
+@pytest.mark.parametrize("uv_smooth", ["SMOOTH_ALL", "PRESERVE_BOUNDARIES", "NONE"])
+@pytest.mark.parametrize("change", STATES)
+def test_sample_uv_surface_finds_the_root_where_nothing_is_subdivided(change, uv_smooth):
+    """A flat sheet of 6 x 6 squares, itself the limit surface away from its border. On the map
+    they are rectangles of unlike width, so that a smoothed map is far from the linear one."""
+    ob = scenes.flat_grid(6)
+    subsurf = add_subsurf(ob, "PRESERVE_CORNERS")
+    subsurf.levels, subsurf.quality, subsurf.uv_smooth = LEVELS, 10, uv_smooth
+    columns = np.array([0, 0.05, 0.3, 0.4, 0.65, 0.7, 1])
+    scenes.add_uv_map(ob, lambda p: np.stack([columns[p[:, 0].astype(int)], p[:, 1] / 8], axis=1))
+    change(subsurf)
+    distance, valid = sampled(ob)
+    face = np.repeat(np.arange(36), 16)
+    inner = (np.abs(face % 6 - 2.5) < 2) & (np.abs(face // 6 - 2.5) < 2)
+    assert valid[inner].all()
+    assert distance[inner].max() < NEAR
 
 
 def test_blenders_attach_hair_stores_the_same(sheet):

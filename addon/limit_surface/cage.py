@@ -41,6 +41,7 @@ class Cage:
     face_sizes: np.ndarray
     matrix: np.ndarray  # object to world, 4x4
     uv_map: uv_map.UvMap | None  # the active one, as it is on the cage
+    shown_uv_interpolation: str  # of the mesh that the viewport shows
     ignored: tuple[str, ...]  # enabled modifiers behind the subdivision
 
     @property
@@ -64,6 +65,7 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
             face_sizes=attributes.face_sizes(mesh),
             matrix=np.array(evaluated.matrix_world, np.float64),
             uv_map=_read_uv_map(ob, mesh),
+            shown_uv_interpolation=rules.shown_uv_interpolation(ob, depsgraph.scene),
             ignored=tuple(m.name for m in ob.modifiers[cut + 1 :] if m.show_viewport),
         )
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 
 BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
 
@@ -20,6 +21,7 @@ UV_INTERPOLATIONS = {
     "PRESERVE_BOUNDARIES": "boundaries",
     "SMOOTH_ALL": "none",
 }
+LINEAR = UV_INTERPOLATIONS["NONE"]
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Rules:
     subsurf: str = ""  # the modifier's name
     scheme: str = "catmark"
     boundary: str = "smooth"
-    uv_interpolation: str = "boundaries"
+    uv_interpolation: str = "boundaries"  # on the limit surface, whatever the viewport shows
     use_creases: bool = True
 
     def __str__(self) -> str:
@@ -45,6 +47,18 @@ def find_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
     return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_viewport), None)
 
 
+def shown_uv_interpolation(ob: bpy.types.Object, scene: bpy.types.Scene) -> str:
+    """That of the mesh which the viewport shows: only what is subdivided has smooth UVs."""
+    simplify = scene.render.simplify_subdivision if scene.render.use_simplify else np.inf
+    shown = (
+        m
+        for m in ob.modifiers
+        if m.type == "SUBSURF" and m.show_viewport and min(m.levels, simplify) > 0
+    )
+    subsurf = next(shown, None)
+    return read(subsurf).uv_interpolation if subsurf else LINEAR
+
+
 def read(subsurf: bpy.types.SubsurfModifier | None) -> Rules:
     if subsurf is None:
         return Rules()
@@ -54,6 +68,6 @@ def read(subsurf: bpy.types.SubsurfModifier | None) -> Rules:
         scheme=scheme,
         boundary=BOUNDARIES[subsurf.boundary_smooth],
         # Simple subdivision leaves UVs where they are, whatever the setting.
-        uv_interpolation="all" if scheme == "bilinear" else UV_INTERPOLATIONS[subsurf.uv_smooth],
+        uv_interpolation=LINEAR if scheme == "bilinear" else UV_INTERPOLATIONS[subsurf.uv_smooth],
         use_creases=subsurf.use_creases,
     )

@@ -29,15 +29,15 @@ class Target:
     locations: roots.Locations
 
     def surface_uv(self) -> np.ndarray | None:
-        """The locations on the UV map as the subdivision smooths it: where Blender's nodes look
-        for them, on the evaluated mesh."""
+        """The locations on the UV map of the mesh that the viewport shows, smoothed where that is
+        subdivided: where Blender's nodes look for them, on the evaluated mesh."""
         found = self.cage.uv_map
         if found is None:
             return None
-        smooth = self.surface.face_varying(
-            found.values, found.indices, self.cage.rules.uv_interpolation
+        shown = self.surface.face_varying(
+            found.values, found.indices, self.cage.shown_uv_interpolation
         )
-        return smooth.evaluate(self.locations.face, self.locations.uv.astype(np.float64)).value
+        return shown.evaluate(self.locations.face, self.locations.uv.astype(np.float64)).value
 
 
 class ScatterOperator:
