@@ -3,8 +3,10 @@
 
 The cage is the mesh after all modifiers that stand before the first enabled Subdivision Surface
 modifier; that modifier states the rules. No state of Blender's own evaluation shows the cage, so a
-private scene evaluates a copy of the object whose modifiers end there, at the frame of the caller's
-depsgraph and without calling frame-change handlers. Both are removed before anybody else sees them.
+private scene evaluates a copy of the object whose modifiers end there. That scene is a copy of the
+caller's without its objects: modifiers and drivers find the frame, its rate, the camera and custom
+properties there. Both are removed before anybody else sees them, and no frame-change handlers are
+called.
 """
 
 from __future__ import annotations
@@ -55,7 +57,7 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
     cut = ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
     _check_modifiers(ob, cut)
     found = rules.read(subsurf)
-    with _evaluated_copy(ob, cut, depsgraph.scene) as evaluated:
+    with _evaluated_copy(ob, cut, depsgraph) as evaluated:
         mesh = evaluated.data
         if not mesh.polygons:
             raise CageError(f"{ob.name} has no faces")
@@ -88,24 +90,21 @@ def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules) -> limitsurf.Control
 
 @contextmanager
 def _evaluated_copy(
-    ob: bpy.types.Object, cut: int, user_scene: bpy.types.Scene
+    ob: bpy.types.Object, cut: int, depsgraph: bpy.types.Depsgraph
 ) -> Iterator[bpy.types.Object]:
     """The object as it evaluates with its first `cut` modifiers."""
     global _busy
     copy = None
-    scene = bpy.data.scenes.new(ids.CAGE_SCENE)
+    scene = depsgraph.scene.copy()
     was_busy, _busy = _busy, True
     try:
-        # Assigned, not frame_set: that would call everybody's frame-change handlers.
-        scene.render.frame_map_old = user_scene.render.frame_map_old
-        scene.render.frame_map_new = user_scene.render.frame_map_new
-        scene.frame_float = user_scene.frame_float
+        _empty(scene)
         copy = ob.copy()
         copy.hide_viewport = False
         for modifier in copy.modifiers[cut:]:
             copy.modifiers.remove(modifier)
         scene.collection.objects.link(copy)
-        layer = scene.view_layers[0]
+        layer = scene.view_layers[depsgraph.view_layer.name]
         layer.update()
         evaluated = copy.evaluated_get(layer.depsgraph)
         if evaluated.hide_viewport:  # animated or driven: such an object is not evaluated
@@ -116,6 +115,22 @@ def _evaluated_copy(
             bpy.data.objects.remove(copy)
         bpy.data.scenes.remove(scene)
         _busy = was_busy
+
+
+def _empty(scene: bpy.types.Scene) -> None:
+    """Leaves what can be asked of a scene, and nothing that would be evaluated with it."""
+    scene.name = ids.CAGE_SCENE
+    # Assigned, animation is evaluated; frame_set would call everybody's frame-change handlers.
+    scene.frame_float = scene.frame_float
+    scene.background_set = None
+    scene.sequence_editor_clear()
+    if scene.rigidbody_world:
+        scene.rigidbody_world.collection = scene.rigidbody_world.constraints = None
+    scene.collection.hide_viewport = False
+    for child in scene.collection.children.values():
+        scene.collection.children.unlink(child)
+    for ob in scene.collection.objects.values():
+        scene.collection.objects.unlink(ob)
 
 
 def _check_modifiers(ob: bpy.types.Object, cut: int) -> None:

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Modifiers and drivers find in the private scene what they find in the user's."""
+
+import time
+
+import bpy
+import numpy as np
+import pytest
+import scenes
+from limit_surface import attributes, cage, ids
+from scenes import add_subsurf
+
+
+def read(ob):
+    return cage.read(ob, bpy.context.evaluated_depsgraph_get())
+
+
+def check_shift(ob, amount):
+    """The cage is where Blender shows the mesh, and that is shifted along z by so much."""
+    shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    expected = attributes.read(shown, ids.POSITION)
+    found = np.array(read(ob).mesh.positions)
+    np.testing.assert_array_equal(found, expected)
+    shift = found - attributes.read(ob.data, ids.POSITION)
+    np.testing.assert_allclose(shift, np.broadcast_to([0, 0, amount], shift.shape), atol=1e-6)
+
+
+def moved_by_nodes(node_type, output):
+    """A sheet that Geometry Nodes move along z by what the node says."""
+    ob = scenes.grid_with_holes()
+    group = bpy.data.node_groups.new("Move", "GeometryNodeTree")
+    group.is_modifier = True
+    for in_out in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
+    nodes, link = group.nodes, group.links.new
+    move = nodes.new("GeometryNodeSetPosition")
+    along_z = nodes.new("ShaderNodeVectorMath")
+    along_z.operation = "MULTIPLY"
+    along_z.inputs[1].default_value = (0, 0, 1)
+    link(nodes.new(node_type).outputs[output], along_z.inputs[0])
+    link(along_z.outputs[0], move.inputs["Offset"])
+    link(nodes.new("NodeGroupInput").outputs[0], move.inputs["Geometry"])
+    link(move.outputs[0], nodes.new("NodeGroupOutput").inputs[0])
+    ob.modifiers.new("Nodes", "NODES").node_group = group
+    return ob, group
+
+
+def test_seconds_of_scene_time():
+    ob, _ = moved_by_nodes("GeometryNodeInputSceneTime", "Seconds")
+    scene = bpy.context.scene
+    scene.render.fps, scene.render.fps_base = 60, 1.5
+    scene.frame_set(30)
+    check_shift(ob, 30 / 40)
+
+
+def test_active_camera():
+    ob, group = moved_by_nodes("GeometryNodeObjectInfo", "Location")
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location = (1, 2, 3)
+    bpy.context.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    info = next(n for n in group.nodes if n.bl_idname == "GeometryNodeObjectInfo")
+    active = group.nodes.new("GeometryNodeInputActiveCamera")
+    group.links.new(active.outputs[0], info.inputs["Object"])
+    check_shift(ob, 3)
+
+
+def displaced_by_driver(path, **target):
+    ob = scenes.grid_with_holes()
+    displace = ob.modifiers.new("Displace", "DISPLACE")
+    displace.direction, displace.mid_level = "Z", 0
+    driver = displace.driver_add("strength").driver
+    variable = driver.variables.new()
+    variable.type, variable.name = "CONTEXT_PROP", "amount"
+    variable.targets[0].data_path = path
+    for name, value in target.items():
+        setattr(variable.targets[0], name, value)
+    driver.expression = "amount"
+    return ob
+
+
+def test_custom_properties_of_the_scene():
+    bpy.context.scene["amount"] = 0.75
+    check_shift(displaced_by_driver('["amount"]'), 0.75)
+
+
+def test_animated_properties_of_the_scene():
+    scene = bpy.context.scene
+    for frame in (0, 10):
+        scene["amount"] = frame / 10
+        scene.keyframe_insert('["amount"]', frame=frame)
+    curve = scene.animation_data.action.fcurves[0]
+    for key in curve.keyframe_points:
+        key.interpolation = "LINEAR"
+    ob = displaced_by_driver('["amount"]')
+    scene.frame_set(3)
+    check_shift(ob, 0.3)
+
+
+def test_settings_of_the_scene():
+    bpy.context.scene.frame_end = 4
+    check_shift(displaced_by_driver("frame_end"), 4)
+
+
+def test_properties_of_the_view_layer():
+    """Not those of the first one."""
+    second = bpy.context.scene.view_layers.new("Second")
+    bpy.context.view_layer["amount"], second["amount"] = 0.25, 0.5
+    ob = displaced_by_driver('["amount"]', context_property="ACTIVE_VIEW_LAYER")
+    second.update()
+    found = cage.read(ob, second.depsgraph)
+    shift = np.array(found.mesh.positions) - attributes.read(ob.data, ids.POSITION)
+    np.testing.assert_allclose(shift[:, 2], 0.5, atol=1e-6)
+
+
+def rich_scene():
+    """With everything that a copy of a scene shares with it, or that would be evaluated with it."""
+    scene = bpy.context.scene
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    scene.collection.objects.link(camera)
+    scene.camera = scene.timeline_markers.new("Cut", frame=3).camera = camera
+    scene.world = bpy.data.worlds.new("World")
+    scene["amount"], scene["whose"] = 1.0, camera
+    scene.keyframe_insert('["amount"]', frame=1)
+    scene.keying_sets.new(idname="Keys", name="Keys")
+    scene.view_layers.new("Second")
+    scene.sequence_editor_create()
+    scene.background_set = bpy.data.scenes.new("Background")
+    scene.collection.children.link(bpy.data.collections.new("Props"))
+    ob = scenes.cross()
+    add_subsurf(ob)
+    assert bpy.ops.rigidbody.world_add() == bpy.ops.rigidbody.object_add() == {"FINISHED"}
+    return ob
+
+
+def users():
+    kinds = (p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION")
+    ids_ = (i for kind in kinds for i in getattr(bpy.data, kind) if isinstance(i, bpy.types.ID))
+    return {repr(i): (i.users, i.use_fake_user) for i in ids_}
+
+
+def test_nothing_is_left_and_nobody_counted():
+    ob = rich_scene()
+    read(ob)
+    scene = bpy.context.scene
+    before = users(), list(scene.objects), scene.rigidbody_world.collection, scene.background_set
+    for _ in range(3):
+        read(ob)
+    after = users(), list(scene.objects), scene.rigidbody_world.collection, scene.background_set
+    assert after == before
+    assert scene.sequence_editor is not None
+
+
+def test_nothing_else_is_evaluated():
+    ob = rich_scene()
+    for name in ("Prop", "Other prop"):
+        prop = bpy.data.objects.new(name, ob.data)
+        bpy.data.collections["Props"].objects.link(prop)
+        bpy.context.scene.rigidbody_world.collection.objects.link(prop)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    with cage._evaluated_copy(ob, 0, depsgraph) as copy:
+        layer = bpy.data.scenes[ids.CAGE_SCENE].view_layers[depsgraph.view_layer.name]
+        evaluated = {i.name for i in layer.depsgraph.ids if isinstance(i, bpy.types.Object)}
+        assert evaluated == {copy.name, "Camera"}
+
+
+@pytest.mark.parametrize("where", ["scene", "collection"])
+def test_large_files_are_not_slow(where):
+    ob = scenes.cross()
+    collection = bpy.context.scene.collection
+    if where == "collection":
+        collection = bpy.data.collections.new("All")
+        bpy.context.scene.collection.children.link(collection)
+    for _ in range(3000):
+        collection.objects.link(bpy.data.objects.new("Thing", None))
+    bpy.context.view_layer.update()
+    times = []
+    for _ in range(5):
+        start = time.perf_counter()
+        read(ob)
+        times.append(time.perf_counter() - start)
+    assert min(times) < 0.1
