@@ -81,7 +81,8 @@ def test_positions_that_are_not_finite():
 def test_creases_that_are_no_numbers(kind):
     ob = scenes.cross()
     getattr(ob.data, f"{kind}_creases_ensure")().data[2].value = np.nan
-    refusal(ob, f"{kind}_sharpness row 0.*nan")
+    attribute = {"edge": "crease_edge", "vertex": "crease_vert"}[kind]
+    refusal(ob, f"Cross: the crease of {kind} 2 is not a number .attribute {attribute}; 1 in all")
 
 
 def test_hidden_by_animation():

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import cage, native, rules
-from limit_surface.errors import CageError
 from scenes import add_mesh, add_subsurf
 
 
@@ -185,19 +184,11 @@ def test_every_choice_of_the_modifier_is_known():
         assert len(set(known.values())) == len(known)
 
 
-def test_an_attribute_that_only_has_the_name_of_a_crease():
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("crease", [1.5, 1e20, np.inf, -1e20, -np.inf])
+def test_creases_beyond_1_are_infinitely_sharp(told, crease):
     ob = block()
-    ob.data.attributes.new("crease_edge", "FLOAT", "POINT")
-    with pytest.raises(CageError, match="crease_edge is no crease: it is FLOAT on POINT"):
-        cage.read(ob, bpy.context.evaluated_depsgraph_get())
-
-
-@pytest.mark.parametrize("domain", ["edge", "vertex"])
-def test_creases_that_are_no_numbers(domain):
-    ob = block()
-    if domain == "edge":
-        crease_edges(ob, {(5, 6): np.nan})
-    else:
-        crease_vertices(ob, {5: np.nan})
-    with pytest.raises(limitsurf.MeshError, match=f"{domain}_sharpness.*nan"):
-        cage.read(ob, bpy.context.evaluated_depsgraph_get())
+    crease_edges(ob, {(5, 6): crease})
+    crease_vertices(ob, {9: crease})
+    found = told(ob)
+    assert (found.edges, found.vertices) == ({frozenset((5, 6)): 10}, {9: 10})

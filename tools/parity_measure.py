@@ -52,7 +52,7 @@ class Comparison:
         sharpness lasts, at a smooth corner of the surface or of the UV map.
         """
         mesh = self._ob.data
-        sharp = sharpness.read(mesh, self.cage.rules.use_creases)
+        sharp = sharpness.read(mesh, self.cage.rules.use_creases, mesh.name)
         ends = attributes.read(mesh, ids.EDGE_VERTICES)
         faces = np.bincount(attributes.read(mesh, ids.CORNER_EDGE), minlength=len(mesh.edges))
         count = len(self.vertices.face)

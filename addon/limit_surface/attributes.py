@@ -16,6 +16,8 @@ class Layout(NamedTuple):
 LAYOUTS = {
     "FLOAT": Layout("value", 1, np.float32),
     "INT": Layout("value", 1, np.int32),
+    "INT8": Layout("value", 1, np.int8),
+    "BOOLEAN": Layout("value", 1, bool),
     "INT32_2D": Layout("value", 2, np.int32),
     "FLOAT2": Layout("vector", 2, np.float32),
     "FLOAT_VECTOR": Layout("vector", 3, np.float32),

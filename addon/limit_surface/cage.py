@@ -62,7 +62,7 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
         if not mesh.polygons:
             raise CageError(f"{ob.name} has no faces")
         return Cage(
-            mesh=_control_mesh(mesh, found),
+            mesh=_control_mesh(mesh, found, ob.name),
             rules=found,
             face_sizes=attributes.face_sizes(mesh),
             matrix=np.array(evaluated.matrix_world, np.float64),
@@ -72,11 +72,11 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
         )
 
 
-def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules) -> limitsurf.ControlMesh:
+def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules, whose: str) -> limitsurf.ControlMesh:
     if found.scheme == "bilinear":
         sharp = sharpness.NOTHING  # all of it is as sharp as can be
     else:
-        sharp = sharpness.read(mesh, found.use_creases)
+        sharp = sharpness.read(mesh, found.use_creases, whose)
     return native.limitsurf.ControlMesh(
         attributes.read(mesh, "position").astype(np.float64),
         attributes.face_sizes(mesh),

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from . import attributes, ids
+from . import adapted, attributes, ids
 from .errors import CageError
 
 INFINITE = np.float32(10)  # and all that is above
@@ -31,8 +31,9 @@ class Sharpness:
 NOTHING = Sharpness(np.empty((0, 2), np.int32), np.empty(0), np.empty(0, np.int32), np.empty(0))
 
 
-def read(mesh: bpy.types.Mesh, use_creases: bool) -> Sharpness:
-    """The edges of faces and the vertices in faces whose sharpness is not 0."""
+def read(mesh: bpy.types.Mesh, use_creases: bool, whose: str) -> Sharpness:
+    """The edges of faces and the vertices in faces whose sharpness is not 0. CageError, which
+    says whose the mesh is, where creases are no numbers."""
     ends = attributes.read(mesh, ids.EDGE_VERTICES)
     in_face, vertex_in_face = (np.zeros(len(c), bool) for c in (mesh.edges, mesh.vertices))
     in_face[attributes.read(mesh, ids.CORNER_EDGE)] = True
@@ -40,8 +41,8 @@ def read(mesh: bpy.types.Mesh, use_creases: bool) -> Sharpness:
 
     edge, vertex = np.zeros(len(mesh.edges), np.float32), np.zeros(len(mesh.vertices), np.float32)
     if use_creases:
-        edge = _from_creases(mesh, ids.EDGE_CREASE, "EDGE", edge)
-        vertex = _from_creases(mesh, ids.VERTEX_CREASE, "POINT", vertex)
+        edge = _from_creases(mesh, whose, ids.EDGE_CREASE, "EDGE", edge)
+        vertex = _from_creases(mesh, whose, ids.VERTEX_CREASE, "POINT", vertex)
     edge[edge < LEAST] = 0
     vertex = _with_edges_of_two(vertex, ends[in_face], edge[in_face])
     vertex[ends[~in_face]] = INFINITE  # loose edges are no part of the surface, but hold it
@@ -52,17 +53,25 @@ def read(mesh: bpy.types.Mesh, use_creases: bool) -> Sharpness:
 
 
 def _from_creases(
-    mesh: bpy.types.Mesh, name: str, domain: str, uncreased: np.ndarray
+    mesh: bpy.types.Mesh, whose: str, name: str, domain: str, uncreased: np.ndarray
 ) -> np.ndarray:
     attribute = mesh.attributes.get(name)
-    if attribute is None:
+    if attribute is None or attribute.data_type in adapted.WITHOUT_NUMBERS:
         return uncreased
-    if (attribute.data_type, attribute.domain) != ("FLOAT", domain):
+    if attribute.data_type not in adapted.TYPES:
         raise CageError(
-            f"{mesh.name}: the attribute {name} is no crease: it is {attribute.data_type} on "
-            f"{attribute.domain}, not FLOAT on {domain}"
+            f"{whose}: the attribute {name} is of type {attribute.data_type}. Creases of that "
+            f"type are not supported: convert it to FLOAT on {domain}"
         )
-    crease = attributes.read(mesh, name)
+    crease = adapted.numbers(mesh, name, domain)
+    missing = np.flatnonzero(np.isnan(crease))
+    if missing.size:
+        element = "edge" if domain == "EDGE" else "vertex"
+        raise CageError(
+            f"{whose}: the crease of {element} {missing[0]} is not a number (attribute {name}; "
+            f"{missing.size} in all)"
+        )
+    crease = crease.clip(-1, 1)  # beyond, squares are as good as infinite too
     return crease * crease * OF_CREASE_1
 
 
