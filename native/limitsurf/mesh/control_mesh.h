@@ -33,12 +33,13 @@ enum class Scheme {
 
 /// Sharpness of edges, each given by its two vertices: 0 is smooth, 10 and more (infinity included)
 /// infinitely sharp. Rounded to float, as OpenSubdiv has it. Of an edge that is given twice the
-/// last counts.
+/// last value counts.
 struct EdgeSharpness {
   std::vector<std::pair<std::int64_t, std::int64_t>> edges;
   std::vector<double> values;
 };
 
+/// The same of vertices.
 struct VertexSharpness {
   std::vector<std::int64_t> vertices;
   std::vector<double> values;

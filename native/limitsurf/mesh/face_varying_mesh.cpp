@@ -56,15 +56,6 @@ class Builder {
       for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
         addVertex(vertex);
       }
-      return;
-    }
-    // Sharpness means nothing here, but keeps fans of faces from following a crease of others.
-    for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
-      if (level_.IsVertexNonManifold(vertex)) {
-        for (int derived = first_[vertex]; derived < first_[vertex + 1]; ++derived) {
-          setSharpness(derived, kInfinitelySharp);
-        }
-      }
     }
   }
 
@@ -73,7 +64,7 @@ class Builder {
     return {ControlMesh(Points::Zero(static_cast<Eigen::Index>(values_.size()), 3),
                         {sizes.begin(), sizes.end()}, {vertex_at_.begin(), vertex_at_.end()},
                         std::move(options_)),
-            std::move(values_)};
+            std::move(values_), std::move(refused_)};
   }
 
  private:
@@ -287,7 +278,7 @@ class Builder {
   }
 
   /// The vertex sharpness that keeps a value pinned for as long as the sharp edges of another do.
-  double sharpnessAcross(int vertex, int other) const {
+  double sharpnessAcross(int vertex, int other) {
     int count;
     DecayingSharpness around(mesh_.options(), sharpnessAround(vertex, other, count));
     const auto sharp = [&](const std::vector<float>& edges) {
@@ -305,15 +296,16 @@ class Builder {
       sharpness -= 1;
     }
     if (sharpness != left) {
-      refuse("vertex ", vertex, ": the sharpness of the edges on one side of the seam decays to ",
-             left, " after ", steps - 1, " steps, which no sharpness of the other side does");
+      refuseAround(vertex,
+                   "the sharpness of the edges on one side of a seam of values decays to a "
+                   "fraction that no sharpness of the other side decays to");
     }
     return result;
   }
 
   /// Chaikin's rule averages sharpness over all edges at a vertex, seams included; a part of the
   /// vertex on its own must come to the same.
-  void checkDecay(int vertex) const {
+  void checkDecay(int vertex) {
     if (mesh_.options().creasing == Creasing::uniform) {
       return;
     }
@@ -332,8 +324,24 @@ class Builder {
         whole.advance();
       }
       if (!alike()) {
-        refuse("vertex ", vertex, ": at a seam of face-varying values, chaikin creases of ",
-               "different sharpness meet, which is not supported");
+        refuseAround(vertex,
+                     "chaikin creases of different sharpness meet at a seam of values, which "
+                     "is not supported");
+      }
+    }
+  }
+
+  /// Refuses the faces that see the vertex: those that share a vertex with one of its own.
+  void refuseAround(int vertex, const char* reason) {
+    std::ostringstream text;
+    text << "at vertex " << vertex << ", " << reason;
+    for (const int own : level_.GetVertexFaces(vertex)) {
+      for (const int neighbour : level_.GetFaceVertices(own)) {
+        for (const int face : level_.GetVertexFaces(neighbour)) {
+          if (refused_.emplace(face, text.str()).second) {
+            options_.holes.push_back(face);
+          }
+        }
       }
     }
   }
@@ -346,6 +354,7 @@ class Builder {
   std::vector<int> vertex_at_;  // corner -> vertex of the new mesh
   std::vector<int> values_;     // per vertex of the new mesh
   std::vector<Surroundings> around_;
+  std::map<int, std::string> refused_;
   std::vector<bool> at_seam_;  // per vertex of the mesh: a seam runs to it or through it
 };
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "limitsurf/mesh/interpolation.h"
@@ -22,14 +24,18 @@ namespace limitsurf {
 struct FaceVaryingMesh {
   ControlMesh mesh;         ///< all positions are 0
   std::vector<int> values;  ///< per vertex of `mesh`: the row of its value
+  /// Faces whose values cannot be had in a mesh of their own, with the reason; holes of `mesh`.
+  std::map<int, std::string> refused;
 };
 
 /// `indices` holds the value of each corner of the faces of `mesh`, one face after the other.
 /// Faces that `topology`, that of `mesh`, refuses become holes.
 ///
 /// Throws MeshError naming corner and index where `indices` has another size than the mesh has
-/// corners, or an index is not below `value_count`; and where the decay of semi-sharp edges at a
-/// seam cannot be had in a mesh of its own:
+/// corners, or an index is not below `value_count`.
+///
+/// Refuses the faces around a seam's vertex where the decay of semi-sharp edges cannot be had in a
+/// mesh of its own:
 ///   - with Creasing::chaikin, if the average of sharpness around a vertex is not the same in each
 ///     of the parts into which seams divide it;
 ///   - with corners_plus1 and corners_plus2, if a value is to be as sharp as another across the

@@ -132,11 +132,12 @@ void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
     }
   }
   for (const auto& [vertex, at] : corners) {
-    splitIntoFans(vertex, at);
+    splitIntoFans(mesh, vertex, at);
   }
 }
 
-void Topology::splitIntoFans(int vertex, const std::vector<std::pair<int, int>>& corners) {
+void Topology::splitIntoFans(const ControlMesh& mesh, int vertex,
+                             const std::vector<std::pair<int, int>>& corners) {
   // Manifold edge -> which corner it leads out of, and which it leads back to.
   std::map<int, int> leaving, arriving;
   std::vector<std::pair<int, int>> edges;  // of each corner: leaving, arriving
@@ -164,7 +165,9 @@ void Topology::splitIntoFans(int vertex, const std::vector<std::pair<int, int>>&
       }
       i = next->second;
     }
-    refuseStrangersToCrease(fan);
+    if (mesh.options().scheme == Scheme::catmark) {
+      refuseStrangersToCrease(fan);
+    }
     split_fans_.push_back(std::move(fan));
   };
   for (std::size_t i = 0; i < corners.size(); ++i) {

@@ -27,9 +27,9 @@ class Topology {
   /// Whether any edge between two faces, or any vertex but a boundary's corner, is sharp.
   bool hasSharpness() const { return has_sharpness_; }
 
-  /// Faces without a limit surface, with the reason: holes; faces that use a vertex twice; closed
-  /// fans of faces, and fans that begin and end at one edge, at a vertex that follows a crease
-  /// between other faces.
+  /// Faces without a limit surface, with the reason: holes; faces that use a vertex twice. And
+  /// some that have one, but not yet here: closed fans of faces, and fans that begin and end at one
+  /// edge, at a vertex that follows a crease between other faces.
   const std::map<int, std::string>& refused() const { return refused_; }
 
   /// Faces around a non-manifold vertex that are linked by manifold edges. As OpenSubdiv has it,
@@ -45,7 +45,8 @@ class Topology {
  private:
   void refuseFaces(const ControlMesh& mesh);
   void splitNonManifoldVertices(const ControlMesh& mesh);
-  void splitIntoFans(int vertex, const std::vector<std::pair<int, int>>& corners);
+  void splitIntoFans(const ControlMesh& mesh, int vertex,
+                     const std::vector<std::pair<int, int>>& corners);
   void refuseStrangersToCrease(const SplitFan& fan);
 
   std::unique_ptr<const OpenSubdiv::Far::TopologyRefiner> refiner_;

@@ -78,7 +78,7 @@ double areaOf(const BSplineTile& tile, const Pose& pose) {
   const TileStrips strips(tile);
   for (int i = 0; i < strips.count; ++i) {
     const TileStrips::Strip s = strips.at(i);
-    sum += area(s.u0, s.v0, s.u1 - s.u0, s.v1 - s.v0, kMostHalvings);
+    sum += area(s.u0, s.v0, s.u1 - s.u0, s.v1 - s.v0, tile.fine ? 0 : kMostHalvings);
   }
   return sum;
 }
@@ -96,6 +96,8 @@ double areaOf(const TileTable& table, const Pose& pose, int index) {
     basis.controlGrid(tile.face, steps, tile.ring_steps, pose.ring(tile.ring).coefficients,
                       pose.ringTile(index).outer, grid);
     double quarters = 0;
+    const int depth = steps + tile.depth;
+    const int halvings = depth <= kAdaptiveSteps ? kMostHalvings : tile.depth > 0 ? 0 : 1;
     for (const auto& quarter : {std::pair{1, 0}, {1, 1}, {0, 1}}) {
       const int a = quarter.first, b = quarter.second;
       struct Weights {
@@ -105,12 +107,13 @@ double areaOf(const TileTable& table, const Pose& pose, int index) {
       const auto weights = [&](double u, double v) {
         return Weights{CubicWeights(u, x_low, false), CubicWeights(v, y_low, false)};
       };
-      quarters += PatchArea(grid + b * tile_grid::kSize + a, tile_grid::kSize, weights)(
-          0, 0, 1, 1, steps <= kAdaptiveSteps ? kMostHalvings : 1);
+      quarters += PatchArea(grid + b * tile_grid::kSize + a, tile_grid::kSize, weights)(0, 0, 1, 1,
+                                                                                        halvings);
     }
     quarters = std::ldexp(quarters, 2 * (1 - steps));  // grids come magnified
     sum += quarters;
-    if (!(quarters > kConverged / 100 * sum)) {
+    // A small tile's share of its face's area may be as much less exact.
+    if (!(quarters > std::ldexp(kConverged / 100, 2 * tile.depth) * sum)) {
       break;
     }
   }

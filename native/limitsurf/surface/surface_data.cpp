@@ -181,8 +181,10 @@ SurfaceData LimitSurface::faceVarying(const DataRows& values,
   checkValues(values);
   FaceVaryingMesh channel =
       faceVaryingMesh(data_->mesh, Topology(data_->mesh), indices, values.rows(), interpolation);
+  std::map<int, std::string> refused = data_->refused;
+  refused.merge(channel.refused);
   return SurfaceData(std::make_unique<SurfaceData::Data>(
-      tilesOf(channel.mesh, data_->refused), std::move(channel.values), values, threads));
+      tilesOf(channel.mesh, std::move(refused)), std::move(channel.values), values, threads));
 }
 
 SurfaceData LimitSurface::vertexData(const DataRows& values, int threads) const {

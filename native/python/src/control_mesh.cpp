@@ -140,12 +140,16 @@ py::object edgeSharpness(const ControlMesh& mesh) {
   return py::make_tuple(edges, arrayOf(sharpness.values));
 }
 
+py::object vertexSharpness(const ControlMesh& mesh) {
+  const VertexSharpness& sharpness = mesh.options().vertex_sharpness;
+  return py::make_tuple(arrayOf(sharpness.vertices), arrayOf(sharpness.values));
+}
+
 py::tuple state(const ControlMesh& mesh) {
   const MeshOptions& o = mesh.options();
   return py::make_tuple(
       positionArray(mesh.positions()), arrayOf(mesh.faceSizes()), arrayOf(mesh.faceVertices()),
-      edgeSharpness(mesh),
-      py::make_tuple(arrayOf(o.vertex_sharpness.vertices), arrayOf(o.vertex_sharpness.values)),
+      edgeSharpness(mesh), vertexSharpness(mesh),
       text(o.boundary, kBoundaries), text(o.creasing, kCreasings), text(o.triangles, kTriangles),
       text(o.scheme, kSchemes), arrayOf(o.holes));
 }
@@ -198,6 +202,22 @@ void bindControlMesh(py::module_& module) {
           "triangles",
           [](const BoundMesh& mesh) { return text(mesh.options().triangles, kTriangles); },
           "'catmark' or 'smooth'.")
+      .def_property_readonly(
+          "creasing",
+          [](const BoundMesh& mesh) { return text(mesh.options().creasing, kCreasings); },
+          "'uniform' or 'chaikin'.")
+      .def_property_readonly(
+          "scheme", [](const BoundMesh& mesh) { return text(mesh.options().scheme, kSchemes); },
+          "'catmark' or 'bilinear'.")
+      .def_property_readonly(
+          "edge_sharpness", [](const BoundMesh& mesh) { return edgeSharpness(mesh); },
+          "As it was given: edges (E, 2) int64 and values (E,) float64.")
+      .def_property_readonly(
+          "vertex_sharpness", [](const BoundMesh& mesh) { return vertexSharpness(mesh); },
+          "As it was given: vertices (n,) int64 and values (n,) float64.")
+      .def_property_readonly(
+          "holes", [](const BoundMesh& mesh) { return arrayOf(mesh.options().holes); },
+          "Faces that have no surface, int64.")
       .def("__repr__",
            [](const BoundMesh& mesh) {
              return "ControlMesh(" + std::to_string(mesh.vertexCount()) + " vertices, " +

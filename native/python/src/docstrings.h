@@ -52,7 +52,8 @@ at the corner, u towards the next vertex and (1,1) at the centre.
 
 Topology is analysed once, here; set_positions() re-poses cheaply. Every call on arrays releases the
 GIL, uses all cores (threads=0; threads=n at most n), can be interrupted, and gives the same bits for
-a location whatever the thread count and the rest of the batch.
+a location whatever the thread count and the rest of the batch. (Asking for more derivatives may
+change the last bits of the others.)
 
 The method is Stam 1998 inside and Lacewell & Burley 2007 at boundaries, at any valence.
 )";
@@ -142,15 +143,15 @@ interpolation : str
     'all': bilinear on each Ptex face.
 threads : int
 
-Sharp edges and vertices are as sharp for the data as for the surface.
+Sharp edges and vertices are as sharp for the data as for the surface. Faces around a vertex where
+seams meet semi-sharp edges that decay in a way that is not supported are refused when evaluated:
+'chaikin' creases of different sharpness, or, with 'corners_plus1' and 'corners_plus2', several
+edges on one side only that decay to an average which no float32 sharpness decays to.
 
 Raises
 ------
 MeshError
-    For an index out of range, naming the corner, or values that are not finite, naming the row;
-    also naming a vertex where seams meet semi-sharp edges that decay in a way that is not supported:
-    'chaikin' creases of different sharpness, or, with 'corners_plus1' and 'corners_plus2', several
-    edges on one side only that decay to an average which no float32 sharpness decays to.
+    For an index out of range, naming the corner, or values that are not finite, naming the row.
 TypeError
     For indices that are not integers.
 

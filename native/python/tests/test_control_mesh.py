@@ -257,3 +257,35 @@ def test_bad_holes_are_refused(holes):
 def test_holes_are_integers():
     with pytest.raises(TypeError):
         ls.ControlMesh(POSITIONS, SIZES, VERTICES, holes=[0.0])
+
+
+def test_a_mesh_says_what_it_was_made_of():
+    positions, faces = np.eye(4)[:, :3], [[0, 1, 2, 3]]
+    mesh = ls.ControlMesh.from_faces(
+        positions,
+        faces,
+        edge_sharpness=([[1, 0]], [np.inf]),
+        vertex_sharpness=([2], [0.5]),
+        creasing="chaikin",
+        scheme="bilinear",
+        holes=[0],
+    )
+    assert (mesh.creasing, mesh.scheme, mesh.boundary) == ("chaikin", "bilinear", "smooth")
+    edges, values = mesh.edge_sharpness
+    assert edges.tolist() == [[1, 0]] and values.tolist() == [np.inf]
+    vertices, values = mesh.vertex_sharpness
+    assert vertices.tolist() == [2] and values.tolist() == [0.5]
+    assert mesh.holes.tolist() == [0]
+    again = ls.ControlMesh(
+        mesh.positions,
+        mesh.face_sizes,
+        mesh.face_vertices,
+        mesh.edge_sharpness,
+        mesh.vertex_sharpness,
+        mesh.boundary,
+        mesh.creasing,
+        mesh.triangles,
+        mesh.scheme,
+        mesh.holes,
+    )
+    assert again.scheme == "bilinear" and again.holes.tolist() == [0]

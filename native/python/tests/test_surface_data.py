@@ -327,17 +327,42 @@ def test_faces_without_a_surface_have_no_data():
         assert np.isfinite(data.evaluate([0, 1, 8], [[0.5, 0.5]] * 3).value).all()
 
 
-def test_chaikin_creases_that_a_seam_cannot_follow_are_refused():
-    positions, faces = shapes.grid(2, 2)
+def test_faces_beside_chaikin_creases_that_a_seam_cannot_follow_are_refused():
+    positions, faces = shapes.grid(6, 2)
     mesh = ls.ControlMesh.from_faces(
-        positions, faces, edge_sharpness=([[1, 4], [4, 7]], [3.0, 1.5]), creasing="chaikin"
+        positions, faces, edge_sharpness=([[1, 8], [7, 8]], [3.0, 1.5]), creasing="chaikin"
     )
     surface = ls.LimitSurface(mesh)
-    indices = faces + 9 * (np.arange(4) >= 2)[:, None]
-    values = np.zeros((18, 2))
-    with pytest.raises(ls.MeshError, match="vertex 4.*chaikin"):
-        surface.face_varying(values, indices.ravel(), "none")
-    surface.face_varying(values, indices.ravel(), "all")
+    indices = faces + 21 * (np.arange(12) >= 6)[:, None]
+    values = np.random.default_rng(0).random((42, 2))
+    data = surface.face_varying(values, indices.ravel(), "none")
+    for face in (0, 2, 8):
+        with pytest.raises(ls.MeshError, match=f"face {face}.*vertex 8, chaikin"):
+            data.evaluate(face, [[0.5, 0.5]])
+    assert np.isfinite(data.evaluate([3, 5, 11], [[0.5, 0.5]] * 3).value).all()
+    surface.face_varying(values, indices.ravel(), "all").evaluate(0, [[0.5, 0.5]])
+
+
+def test_varying_data_on_faces_that_touch_a_crease_of_others():
+    positions, faces = [[0, 0, 0], [-1, 0, 0], [1, 0, 0]], []
+    for angle in 2 * np.pi / 3 * np.arange(3):  # three sheets on one line
+        first = len(positions)
+        positions += [[x, np.cos(angle), np.sin(angle)] for x in (-1, 0, 1)]
+        faces += [[1, 0, first + 1, first], [0, 2, first + 2, first + 1]]
+    first = len(positions)  # a pyramid with its apex on the line
+    positions += [[0.3, 0.3, 0.5], [-0.3, 0.3, 0.5], [-0.3, -0.3, 0.5], [0.3, -0.3, 0.5]]
+    faces += [[0, first + k, first + (k + 1) % 4] for k in range(4)]
+    positions = np.array(positions, float)
+    pinned = ls.LimitSurface(
+        ls.ControlMesh.from_faces(positions, faces, vertex_sharpness=([0], [10.0]))
+    )
+    assert not pinned.refused
+    face = int(np.flatnonzero(pinned.base_face == 6)[0])
+    corner = pinned.varying(positions).evaluate(face, [[0.0, 0.0]]).value
+    assert np.array_equal(corner, positions[:1])
+    flat = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces, scheme="bilinear"))
+    assert not flat.refused
+    assert np.array_equal(flat.evaluate(face, [[0.0, 0.0]]).position, positions[:1])
 
 
 def test_threads_do_not_matter(house, anywhere):
