@@ -147,11 +147,10 @@ py::object vertexSharpness(const ControlMesh& mesh) {
 
 py::tuple state(const ControlMesh& mesh) {
   const MeshOptions& o = mesh.options();
-  return py::make_tuple(
-      positionArray(mesh.positions()), arrayOf(mesh.faceSizes()), arrayOf(mesh.faceVertices()),
-      edgeSharpness(mesh), vertexSharpness(mesh),
-      text(o.boundary, kBoundaries), text(o.creasing, kCreasings), text(o.triangles, kTriangles),
-      text(o.scheme, kSchemes), arrayOf(o.holes));
+  return py::make_tuple(positionArray(mesh.positions()), arrayOf(mesh.faceSizes()),
+                        arrayOf(mesh.faceVertices()), edgeSharpness(mesh), vertexSharpness(mesh),
+                        text(o.boundary, kBoundaries), text(o.creasing, kCreasings),
+                        text(o.triangles, kTriangles), text(o.scheme, kSchemes), arrayOf(o.holes));
 }
 
 }  // namespace
