@@ -86,12 +86,9 @@ def test_custom_properties_of_the_scene():
 
 def test_animated_properties_of_the_scene():
     scene = bpy.context.scene
-    for frame in (0, 10):
+    for frame in (2, 3, 4):
         scene["amount"] = frame / 10
         scene.keyframe_insert('["amount"]', frame=frame)
-    curve = scene.animation_data.action.fcurves[0]
-    for key in curve.keyframe_points:
-        key.interpolation = "LINEAR"
     ob = displaced_by_driver('["amount"]')
     scene.frame_set(3)
     check_shift(ob, 0.3)
@@ -159,7 +156,7 @@ def test_nothing_else_is_evaluated():
         bpy.context.scene.rigidbody_world.collection.objects.link(prop)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     with cage._evaluated_copy(ob, 0, depsgraph) as copy:
-        layer = bpy.data.scenes[ids.CAGE_SCENE].view_layers[depsgraph.view_layer.name]
+        layer = bpy.data.scenes[ids.CAGE_SCENE].view_layers[0]
         evaluated = {i.name for i in layer.depsgraph.ids if isinstance(i, bpy.types.Object)}
         assert evaluated == {copy.name, "Camera"}
 

@@ -3,10 +3,8 @@
 
 The cage is the mesh after all modifiers that stand before the first enabled Subdivision Surface
 modifier; that modifier states the rules. No state of Blender's own evaluation shows the cage, so a
-private scene evaluates a copy of the object whose modifiers end there. That scene is a copy of the
-caller's without its objects: modifiers and drivers find the frame, its rate, the camera and custom
-properties there. Both are removed before anybody else sees them, and no frame-change handlers are
-called.
+private scene evaluates a copy of the object whose modifiers end there. Both are removed before
+anybody else sees them, and no frame-change handlers are called.
 """
 
 from __future__ import annotations
@@ -19,7 +17,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from . import attributes, ids, native, rules, sharpness, uv_map
+from . import attributes, ids, native, private_scene, rules, sharpness, uv_map
 from .errors import CageError
 
 if TYPE_CHECKING:
@@ -94,43 +92,23 @@ def _evaluated_copy(
 ) -> Iterator[bpy.types.Object]:
     """The object as it evaluates with its first `cut` modifiers."""
     global _busy
-    copy = None
-    scene = depsgraph.scene.copy()
+    copy = ob.copy()
     was_busy, _busy = _busy, True
     try:
-        _empty(scene)
-        copy = ob.copy()
         copy.hide_viewport = False
         for modifier in copy.modifiers[cut:]:
             copy.modifiers.remove(modifier)
-        scene.collection.objects.link(copy)
-        layer = scene.view_layers[depsgraph.view_layer.name]
-        layer.update()
-        evaluated = copy.evaluated_get(layer.depsgraph)
-        if evaluated.hide_viewport:  # animated or driven: such an object is not evaluated
-            raise CageError(f"{ob.name} is hidden in the viewport at this frame")
-        yield evaluated
+        with private_scene.like(depsgraph.scene) as scene:
+            scene.collection.objects.link(copy)
+            layer = private_scene.layer(scene, depsgraph.view_layer)
+            layer.update()
+            evaluated = copy.evaluated_get(layer.depsgraph)
+            if evaluated.hide_viewport:  # animated or driven: such an object is not evaluated
+                raise CageError(f"{ob.name} is hidden in the viewport at this frame")
+            yield evaluated
     finally:
-        if copy is not None:
-            bpy.data.objects.remove(copy)
-        bpy.data.scenes.remove(scene)
+        bpy.data.objects.remove(copy)
         _busy = was_busy
-
-
-def _empty(scene: bpy.types.Scene) -> None:
-    """Leaves what can be asked of a scene, and nothing that would be evaluated with it."""
-    scene.name = ids.CAGE_SCENE
-    # Assigned, animation is evaluated; frame_set would call everybody's frame-change handlers.
-    scene.frame_float = scene.frame_float
-    scene.background_set = None
-    scene.sequence_editor_clear()
-    if scene.rigidbody_world:
-        scene.rigidbody_world.collection = scene.rigidbody_world.constraints = None
-    scene.collection.hide_viewport = False
-    for child in scene.collection.children.values():
-        scene.collection.children.unlink(child)
-    for ob in scene.collection.objects.values():
-        scene.collection.objects.unlink(ob)
 
 
 def _check_modifiers(ob: bpy.types.Object, cut: int) -> None:
