@@ -92,13 +92,12 @@ def _evaluated_copy(
 ) -> Iterator[bpy.types.Object]:
     """The object as it evaluates with its first `cut` modifiers."""
     global _busy
-    copy = ob.copy()
     was_busy, _busy = _busy, True
     try:
-        copy.hide_viewport = False
-        for modifier in copy.modifiers[cut:]:
-            copy.modifiers.remove(modifier)
-        with private_scene.like(depsgraph.scene) as scene:
+        with private_scene.like(depsgraph.scene) as scene, _copied(ob) as copy:
+            copy.hide_viewport = False
+            for modifier in copy.modifiers[cut:]:
+                copy.modifiers.remove(modifier)
             scene.collection.objects.link(copy)
             layer = private_scene.layer(scene, depsgraph.view_layer)
             layer.update()
@@ -107,8 +106,16 @@ def _evaluated_copy(
                 raise CageError(f"{ob.name} is hidden in the viewport at this frame")
             yield evaluated
     finally:
-        bpy.data.objects.remove(copy)
         _busy = was_busy
+
+
+@contextmanager
+def _copied(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    copy = ob.copy()
+    try:
+        yield copy
+    finally:
+        bpy.data.objects.remove(copy)
 
 
 def _check_modifiers(ob: bpy.types.Object, cut: int) -> None:
