@@ -41,11 +41,36 @@ def test_creases(name, kind, boundary):
     found = Comparison(subdivided(name, kind, boundary), LEVELS)
     lagging, _ = found.lagging()
     assert np.nanmax(found.positions(BEST)[~lagging]) <= BOUND
+
+
+# Meshes and creases with darts, or with smooth corners that are sharp for some steps
+LAGGING = (
+    *((name, "sharp edges", "PRESERVE_CORNERS") for name in ("sheet", "prism", "fin", "monkey")),
+    *((name, "fractional edges", "ALL") for name in ("cross", "polygons", "fans")),
+    *((name, "vertices", "ALL") for name in ("cross", "sheet", "fans", "fin")),
+    *((name, "edges and vertices", "ALL") for name in ("cross", "polygons", "fans")),
+)
+
+
+@pytest.mark.parametrize(("name", "kind", "boundary"), LAGGING)
+def test_darts_and_decaying_corners_are_approached(name, kind, boundary):
+    found = Comparison(subdivided(name, kind, boundary), LEVELS)
+    lagging, _ = found.lagging()
+    assert np.count_nonzero(lagging) <= len(found.cage.mesh.positions) / 2
     check_shrinking([found.positions(quality)[lagging] for quality in (6, 8, 10)])
+
+
+@pytest.mark.parametrize("kind", ["none", "sharp loops", "loose edges"])
+def test_nothing_else_is_left_out(kind):
+    for name in parity_zoo.MESHES:
+        found = Comparison(subdivided(name, kind, uv_smooth="SMOOTH_ALL"), LEVELS)
+        assert not any(lagging.any() for lagging in found.lagging())
 
 
 def check_shrinking(distances):
     """From each quality to the next, until rounding is all that is left."""
+    assert distances[0].size
+    assert distances[0].max() > BOUND  # or nothing would have to shrink
     for before, after in zip(distances[:-1], distances[1:], strict=True):
         assert np.all(after <= np.maximum(before / 2, BOUND))
 
@@ -90,6 +115,15 @@ def test_uvs(name, uv_smooth, kind):
     found = Comparison(subdivided(name, kind, uv_smooth=uv_smooth), LEVELS)
     _, lagging = found.lagging()
     assert np.nanmax(found.uvs(BEST)[~lagging]) <= BOUND
+    assert lagging.any() == (uv_smooth == "SMOOTH_ALL" and kind == "edges and vertices")
+
+
+@pytest.mark.parametrize("kind", ["vertices", "edges and vertices"])
+@pytest.mark.parametrize("name", parity_zoo.MESHES)
+def test_uvs_at_decaying_corners_are_approached(name, kind):
+    found = Comparison(subdivided(name, kind, uv_smooth="SMOOTH_ALL"), LEVELS)
+    _, lagging = found.lagging()
+    assert np.count_nonzero(lagging) < len(lagging) / 20
     check_shrinking([found.uvs(quality)[lagging] for quality in (6, 8, 10)])
 
 

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import parity_zoo
 import pytest
-from limit_surface import attributes, ids, subdivided
+import subdivided
+from limit_surface import attributes, ids
 from scenes import bilinear, ptex_corners
 
 

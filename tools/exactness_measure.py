@@ -7,7 +7,8 @@ from typing import NamedTuple
 import bpy
 import limitsurf
 import numpy as np
-from limit_surface import attributes, cage, ids, subdivided
+import subdivided
+from limit_surface import attributes, cage, ids
 
 
 class Distance(NamedTuple):

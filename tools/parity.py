@@ -50,13 +50,14 @@ def measure(name: str, kind: str) -> Row:
         parity_zoo.crease(ob.data, kind)
         ob.modifiers[0].boundary_smooth = boundary
         found = Comparison(ob, LEVELS)
-        slow_vertices, slow_corners = found.lagging()
+        slow_vertices, _ = found.lagging()
         position.append(worst(found.positions(BEST)[~slow_vertices]))
         for quality in LAGGING_QUALITIES:
             lagging_position[quality].append(worst(found.positions(quality)[slow_vertices]))
         for uv_smooth in rules.UV_INTERPOLATIONS:
             ob.modifiers[0].uv_smooth = uv_smooth
             found = Comparison(ob, LEVELS)
+            _, slow_corners = found.lagging()
             uv.append(worst(found.uvs(BEST)[~slow_corners]))
             for quality in LAGGING_QUALITIES:
                 lagging_uv[quality].append(worst(found.uvs(quality)[slow_corners]))

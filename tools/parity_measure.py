@@ -6,8 +6,9 @@ from collections.abc import Callable
 import bpy
 import limitsurf
 import numpy as np
-from limit_surface import attributes, cage, ids, sharpness, subdivided
-from limit_surface.subdivided import SurfaceLocations
+import subdivided
+from limit_surface import attributes, cage, ids, sharpness
+from subdivided import SurfaceLocations
 
 
 class Comparison:
@@ -49,7 +50,8 @@ class Comparison:
 
         Its subdivision ends with a patch around the vertex, however small. At darts (the inner
         end of a single sharp crease) that patch is off, and so it is, after as many steps as the
-        sharpness lasts, at a smooth corner of the surface or of the UV map.
+        sharpness lasts, at a smooth corner of the surface. UVs are off only at corners of islands,
+        if they are smooth (under Smooth All) and the vertex has a fractional sharpness.
         """
         mesh = self._ob.data
         sharp = sharpness.read(mesh, self.cage.rules.use_creases, mesh.name)
@@ -67,8 +69,37 @@ class Comparison:
         held = value >= sharpness.INFINITE
         dart = inner & ~held & (meeting(infinite) == 1)
         decaying = (value > 0) & ~held
-        vertices = dart | (decaying & (meeting(ends[faces > 0]) == 2))
-        return vertices, (dart | decaying)[self._corner_vertex]
+        pinned = self.cage.rules.boundary == "corners"
+        corner = (meeting(ends[faces > 0]) == 2) & ~(pinned & ~inner)
+        return dart | (decaying & corner), self._at_lone_corners(decaying)
+
+    def _at_lone_corners(self, vertices: np.ndarray) -> np.ndarray:
+        """Which corners stand at one of these vertices between two edges that are seams."""
+        if self.cage.rules.uv_interpolation != "none":
+            return np.zeros(len(self._corner_vertex), bool)
+        cage_vertex = attributes.read(self._ob.data, ids.CORNER_VERTEX)
+        sizes = self.cage.face_sizes
+        corner, ends = np.arange(sizes.sum()), np.cumsum(sizes)
+        before = corner - 1
+        before[ends - sizes] = ends - 1
+        seam = self._seams(before)
+        lone = vertices[cage_vertex] & seam & seam[before]
+        cage_face = np.repeat(np.arange(len(sizes)), sizes)
+        shown_face = np.asarray(self.surface.base_face)[self.corners.face]
+        # A face and a vertex of it, as one number
+        return np.isin(
+            shown_face * len(vertices) + self._corner_vertex,
+            cage_face[lone] * len(vertices) + cage_vertex[lone],
+        )
+
+    def _seams(self, before: np.ndarray) -> np.ndarray:
+        """Whether no other face shares both UV values of the edge that leaves a corner."""
+        start = self.cage.uv_map.indices
+        end = np.empty_like(start)
+        end[before] = start
+        pairs = np.sort(np.stack([start, end], axis=1), axis=1)
+        _, which, count = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+        return count[which] != 2
 
     def _shown(self, quality: int) -> bpy.types.Mesh:
         self._subsurf.quality = quality

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 """Where the vertices and face corners that Blender's Subdivision Surface makes lie on the cage.
 
 The modifier makes 2^levels x 2^levels polygons of a quad, and of any other face half as many along
