@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Panel, menus and preferences, drawn into a layout that takes notes."""
 
+import os
+import subprocess
+import sys
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
 import bpy
 import limit_surface
 import limitsurf
+import pytest
 import scenes
 from limit_surface import ids
 from limit_surface.preferences import LimitSurfacePreferences
@@ -121,6 +125,22 @@ def check_reason_is_shown(spoil, reason):
         assert "does not load" in line
         assert reason in line
     assert "Traceback" not in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("again", ["", "limit_surface.unregister(); limit_surface.register()"])
+def test_scripts_that_do_not_unregister_end(again):
+    """Blender as a module does not by itself, with classes registered."""
+    program = f"import limit_surface; limit_surface.register(); {again}\nprint('made', flush=True)"
+    path = os.pathsep.join([str(ROOT / "addon"), os.environ.get("PYTHONPATH", "")])
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env=os.environ | {"PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert (done.returncode, done.stdout[:4]) == (0, "made"), done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_missing_native_module():

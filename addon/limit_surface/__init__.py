@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hair and points exactly on the limit surface of subdivided meshes."""
 
+import atexit
+
 import bpy
 
 from . import hair, points, preferences, ui
 
 _parts = (preferences, hair, points, ui)
+
+# Blender as a module hangs at the interpreter's exit if classes are registered then.
+_is_module = not bpy.app.binary_path
 
 
 def register() -> None:
@@ -13,9 +18,12 @@ def register() -> None:
         for cls in part.classes:
             bpy.utils.register_class(cls)
     ui.append_menus()
+    if _is_module:
+        atexit.register(unregister)
 
 
 def unregister() -> None:
+    atexit.unregister(unregister)
     ui.remove_menus()
     for part in reversed(_parts):
         for cls in reversed(part.classes):
