@@ -63,6 +63,21 @@ def test_a_uv_map_that_modifiers_drop_is_reported(capfd):
     assert ids.SURFACE_UV not in hair.data.attributes
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_a_uv_map_that_is_not_finite_is_left_out_and_reported(capfd, value):
+    ob = scenes.cross()
+    add_uv_map(ob, flat)
+    uv = attributes.read(ob.data, "Flat")
+    uv[[3, 5], 0] = value
+    attributes.write(ob.data, "Flat", "FLOAT2", "CORNER", uv)
+    hair = add_hair(ob, per_side=1)
+    expected = "no UVs stored: the UV map Flat has coordinates that are not finite numbers"
+    assert expected in capfd.readouterr().out
+    assert hair.data.surface_uv_map == ""
+    assert ids.SURFACE_UV not in hair.data.attributes
+
+
 def test_nothing_else_appears_in_the_file():
     ob = scenes.cross()
     add_subsurf(ob)

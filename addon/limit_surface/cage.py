@@ -41,6 +41,7 @@ class Cage:
     face_sizes: np.ndarray
     matrix: np.ndarray  # object to world, 4x4
     uv_map: uv_map.UvMap | None  # the active one, as it is on the cage
+    without_uv_map: str  # why, if there is an active one
     shown_uv_interpolation: str  # of the mesh that the viewport shows
     ignored: tuple[str, ...]  # enabled modifiers behind the subdivision
 
@@ -59,12 +60,14 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
         mesh = evaluated.data
         if not mesh.polygons:
             raise CageError(f"{ob.name} has no faces")
+        active, without = _read_uv_map(ob, mesh)
         return Cage(
             mesh=_control_mesh(mesh, found, ob.name),
             rules=found,
             face_sizes=attributes.face_sizes(mesh),
             matrix=np.array(evaluated.matrix_world, np.float64),
-            uv_map=_read_uv_map(ob, mesh),
+            uv_map=active,
+            without_uv_map=without,
             shown_uv_interpolation=rules.shown_uv_interpolation(ob, depsgraph.scene),
             ignored=tuple(m.name for m in ob.modifiers[cut + 1 :] if m.show_viewport),
         )
@@ -145,8 +148,13 @@ def _has_simulation(group: bpy.types.NodeTree | None) -> bool:
     )
 
 
-def _read_uv_map(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> uv_map.UvMap | None:
+def _read_uv_map(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[uv_map.UvMap | None, str]:
+    """The active one, or why there is none."""
     active = ob.data.uv_layers.active
-    if active is None or active.name not in mesh.uv_layers:
-        return None
-    return uv_map.read(mesh, active.name)
+    if active is None:
+        return None, ""
+    if active.name not in mesh.uv_layers:
+        return None, f"the UV map {active.name} does not outlast the modifiers"
+    if not np.isfinite(attributes.read(mesh, active.name)).all():
+        return None, f"the UV map {active.name} has coordinates that are not finite numbers"
+    return uv_map.read(mesh, active.name), ""

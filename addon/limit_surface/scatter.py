@@ -189,9 +189,8 @@ class ScatterOperator:
         notes = [f"{self.summary} of {target.ob.name}", str(found.rules)]
         if found.ignored:
             notes.append(f"ignored behind {found.rules.subsurf}: {', '.join(found.ignored)}")
-        if found.uv_map is None and target.ob.data.uv_layers.active:
-            lost = target.ob.data.uv_layers.active.name
-            notes.append(f"no UVs stored: the UV map {lost} does not outlast the modifiers")
+        if found.without_uv_map:
+            notes.append(f"no UVs stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))
 
 
