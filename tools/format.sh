@@ -3,6 +3,13 @@
 #
 # Formats the C++ and Python sources; with --check only says what is not as it should be.
 set -euo pipefail
+case ${1-} in
+  '' | --check) ;;
+  *)
+    sed -n '4s/^# //p' "$0"
+    exit 2
+    ;;
+esac
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 set_up
 cd "$ROOT"

@@ -272,9 +272,11 @@ def test_a_mesh_says_what_it_was_made_of():
     )
     assert (mesh.creasing, mesh.scheme, mesh.boundary) == ("chaikin", "bilinear", "smooth")
     edges, values = mesh.edge_sharpness
-    assert edges.tolist() == [[1, 0]] and values.tolist() == [np.inf]
+    assert edges.tolist() == [[1, 0]]
+    assert values.tolist() == [np.inf]
     vertices, values = mesh.vertex_sharpness
-    assert vertices.tolist() == [2] and values.tolist() == [0.5]
+    assert vertices.tolist() == [2]
+    assert values.tolist() == [0.5]
     assert mesh.holes.tolist() == [0]
     again = ls.ControlMesh(
         mesh.positions,
@@ -288,4 +290,5 @@ def test_a_mesh_says_what_it_was_made_of():
         mesh.scheme,
         mesh.holes,
     )
-    assert again.scheme == "bilinear" and again.holes.tolist() == [0]
+    assert again.scheme == "bilinear"
+    assert again.holes.tolist() == [0]
