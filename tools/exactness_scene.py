@@ -4,10 +4,7 @@
 Nothing here is left to chance: suns without a size and no bounces make pictures without noise.
 """
 
-import os
-import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 
 import bpy
@@ -15,6 +12,7 @@ import numpy as np
 from exactness_zoo import View
 from limit_surface import attributes
 from mathutils import Euler, Vector
+from quiet import quiet
 
 COLOUR = "colour"
 INK = (0.01, 0.01, 0.015)
@@ -150,17 +148,3 @@ def clear() -> None:
     """Takes away what `add_surface` and `add_lines` have put there."""
     for ob in [some for some in bpy.context.scene.objects if not some.hide_render]:
         bpy.data.batch_remove([ob.data, ob])
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Without the lines that Blender writes about each part of a render."""
-    sys.stdout.flush()
-    shown = os.dup(1)
-    with open(os.devnull, "w") as nowhere:
-        os.dup2(nowhere.fileno(), 1)
-    try:
-        yield
-    finally:
-        os.dup2(shown, 1)
-        os.close(shown)

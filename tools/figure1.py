@@ -9,11 +9,9 @@ each face. tools/demo.sh runs this in the environment that it sets up.
 
 import argparse
 import math
-import os
 import sys
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -24,6 +22,7 @@ import limit_surface  # noqa: E402
 import limitsurf  # noqa: E402
 import numpy as np  # noqa: E402
 from mathutils import Vector  # noqa: E402
+from quiet import quiet  # noqa: E402
 
 CROSS = ROOT / "native/tests/data/cross.obj"
 SPACING = 3.5  # between the three surfaces
@@ -72,20 +71,6 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--height", type=int, default=560)
     parser.add_argument("--samples", type=int, default=32, help="per pixel")
     return parser.parse_args()
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Without the lines that Blender writes about each part of a render."""
-    sys.stdout.flush()
-    shown = os.dup(1)
-    with open(os.devnull, "w") as nowhere:
-        os.dup2(nowhere.fileno(), 1)
-    try:
-        yield
-    finally:
-        os.dup2(shown, 1)
-        os.close(shown)
 
 
 def read_obj(path: Path) -> tuple[np.ndarray, list[list[int]]]:

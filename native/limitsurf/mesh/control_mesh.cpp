@@ -8,17 +8,10 @@
 #include <sstream>
 
 #include "limitsurf/mesh/limits.h"
+#include "limitsurf/mesh/messages.h"
 
 namespace limitsurf {
 namespace {
-
-template <typename... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
-  std::ostringstream message;
-  message.precision(17);
-  (message << ... << parts);
-  throw MeshError(message.str());
-}
 
 void checkSizes(const std::vector<std::int64_t>& sizes, std::size_t index_count) {
   std::size_t sum = 0;

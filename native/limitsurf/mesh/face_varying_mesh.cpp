@@ -3,23 +3,16 @@
 
 #include <algorithm>
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include "limitsurf/mesh/decaying_sharpness.h"
+#include "limitsurf/mesh/messages.h"
 #include "limitsurf/mesh/subdivision_rules.h"
 
 namespace limitsurf {
 namespace {
 
 namespace Far = OpenSubdiv::Far;
-
-template <typename... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
-  std::ostringstream message;
-  (message << ... << parts);
-  throw MeshError(message.str());
-}
 
 void checkIndices(const ControlMesh& mesh, const std::vector<std::int64_t>& indices,
                   std::int64_t value_count) {
@@ -333,12 +326,11 @@ class Builder {
 
   /// Refuses the faces that see the vertex: those that share a vertex with one of its own.
   void refuseAround(int vertex, const char* reason) {
-    std::ostringstream text;
-    text << "at vertex " << vertex << ", " << reason;
+    const std::string why = text("at vertex ", vertex, ", ", reason);
     for (const int own : level_.GetVertexFaces(vertex)) {
       for (const int neighbour : level_.GetFaceVertices(own)) {
         for (const int face : level_.GetVertexFaces(neighbour)) {
-          if (refused_.emplace(face, text.str()).second) {
+          if (refused_.emplace(face, why).second) {
             options_.holes.push_back(face);
           }
         }

@@ -4,21 +4,14 @@
 #include <opensubdiv/far/topologyDescriptor.h>
 
 #include <algorithm>
-#include <sstream>
 
+#include "limitsurf/mesh/messages.h"
 #include "limitsurf/mesh/subdivision_rules.h"
 
 namespace limitsurf {
 namespace {
 
 namespace Far = OpenSubdiv::Far;
-
-template <typename... Parts>
-std::string text(const Parts&... parts) {
-  std::ostringstream stream;
-  (stream << ... << parts);
-  return stream.str();
-}
 
 /// A vertex that the face names twice, or -1.
 int repeatedVertex(Span<int> vertices) {

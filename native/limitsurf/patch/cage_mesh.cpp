@@ -60,7 +60,7 @@ bool CageMesh::isRegular(int vertex, const VertexFan& around) const {
   if (!has_sharpness_) {
     return true;
   }
-  if (around.closed || edges == 3 ? isSharp(around.sharpness) : false) {
+  if (edges != 2 && isSharp(around.sharpness)) {
     return false;
   }
   // The first and last edge of a boundary are infinitely sharp by themselves.

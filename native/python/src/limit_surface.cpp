@@ -203,22 +203,15 @@ std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::o
   return std::make_unique<SharedData>(shared.surface().faceVarying(rows, corners, rule, threads));
 }
 
-std::unique_ptr<SharedData> vertexData(const SharedSurface& shared, const py::object& values,
-                                       int threads) {
+/// `make`: LimitSurface::vertexData() or varying().
+template <SurfaceData (LimitSurface::*make)(const DataRows&, int) const>
+std::unique_ptr<SharedData> perVertex(const SharedSurface& shared, const py::object& values,
+                                      int threads) {
   checkThreads(threads);
   const DataRows rows = rowsOf(values);
   const py::gil_scoped_release release;
   const InterruptionPoint point = interruptible();
-  return std::make_unique<SharedData>(shared.surface().vertexData(rows, threads));
-}
-
-std::unique_ptr<SharedData> varying(const SharedSurface& shared, const py::object& values,
-                                    int threads) {
-  checkThreads(threads);
-  const DataRows rows = rowsOf(values);
-  const py::gil_scoped_release release;
-  const InterruptionPoint point = interruptible();
-  return std::make_unique<SharedData>(shared.surface().varying(rows, threads));
+  return std::make_unique<SharedData>((shared.surface().*make)(rows, threads));
 }
 
 std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {
@@ -269,8 +262,10 @@ void bindLimitSurface(py::module_& module) {
            "threads"_a = 0, kStencilsDoc)
       .def("face_varying", &faceVarying, "values"_a, "indices"_a, "interpolation"_a, py::kw_only(),
            "threads"_a = 0, kFaceVaryingDoc)
-      .def("vertex_data", &vertexData, "values"_a, py::kw_only(), "threads"_a = 0, kVertexDataDoc)
-      .def("varying", &varying, "values"_a, py::kw_only(), "threads"_a = 0, kVaryingDoc)
+      .def("vertex_data", &perVertex<&LimitSurface::vertexData>, "values"_a, py::kw_only(),
+           "threads"_a = 0, kVertexDataDoc)
+      .def("varying", &perVertex<&LimitSurface::varying>, "values"_a, py::kw_only(),
+           "threads"_a = 0, kVaryingDoc)
       .def(
           "vertex_locations",
           [](const SharedSurface& s) { return locations(s.surface().vertexLocations()); },

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sstream>
+#include <string>
+
+#include "limitsurf/error.h"
+
+namespace limitsurf {
+
+/// The parts one after the other, numbers with all their digits.
+template <typename... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream stream;
+  stream.precision(17);
+  (stream << ... << parts);
+  return stream.str();
+}
+
+template <typename... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+  throw MeshError(text(parts...));
+}
+
+}  // namespace limitsurf
