@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <numeric>
 #include <ostream>
-#include <set>
 
 #include "support/meshes.h"
 #include "support/sharp_meshes.h"
@@ -57,15 +56,6 @@ constexpr Kind kBoundary = {"boundary with a sharp edge", false, false, inside, 
 constexpr Kind kBoundaryTwice = {"boundary with two sharp edges", false, false, twoInside, 3};
 constexpr Kind kSharpBoundary = {"sharp boundary vertex", false, true, none, 1};
 
-/// First, second, middle and last face around the vertex, which is their (0, 0).
-std::set<int> someFaces(int faces) {
-  std::set<int> result;
-  for (int sector : {0, 1, faces / 2, faces - 1}) {
-    if (sector < faces) result.insert(4 * sector);
-  }
-  return result;
-}
-
 Cage sharpFan(const Kind& kind, int faces, double sharpness) {
   Cage cage = fan(faces, kind.closed, 1000 + faces);
   const int vertex = cage.faces[0][0];
@@ -84,13 +74,7 @@ void compareSharpFan(const Kind& kind, int faces, double sharpness, const std::v
   Cage cage = sharpFan(kind, faces, sharpness);
   cage.options.creasing = faces % 2 == 0 ? Creasing::uniform : Creasing::chaikin;
   Random random(faces);
-  std::vector<Location> at;
-  for (int face : someFaces(faces)) {
-    at.push_back({face, 0, 0});
-    at += shells(face, 0, levels);
-    at += anywhere(face, random_locations, random);
-    for (int outer = 1; outer < 4; ++outer) at += anywhere(face + outer, 1, random);
-  }
+  const std::vector<Location> at = aroundFan(faces, levels, random_locations, random);
   compareWithSubdivision(std::string(kind.name) + " of " + std::to_string(sharpness) + ", faces " +
                              std::to_string(faces),
                          cage, at, accuracy);

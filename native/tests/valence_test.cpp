@@ -5,7 +5,6 @@
 
 #include <cstdio>
 #include <numeric>
-#include <set>
 
 #include "support/meshes.h"
 #include "support/witness.h"
@@ -15,28 +14,13 @@ namespace {
 
 enum class Kind { interior, smooth_boundary, pinned_boundary };
 
-/// First, second, middle and last face around the vertex, with the vertex at (0, 0).
-std::set<int> someFaces(int faces) {
-  std::set<int> result;
-  for (int sector : {0, 1, faces / 2, faces - 1}) {
-    if (sector < faces) result.insert(4 * sector);
-  }
-  return result;
-}
-
 void compareFan(Kind kind, int valence, const std::vector<int>& levels, int random_locations,
                 Accuracy& all) {
   const int faces = kind == Kind::interior ? valence : valence - 1;
   Cage cage = fan(faces, kind == Kind::interior, 1000 * static_cast<int>(kind) + valence);
   if (kind == Kind::pinned_boundary) cage.options.boundary = Boundary::corners;
   Random random(valence);
-  std::vector<Location> at;
-  for (int face : someFaces(faces)) {
-    at.push_back({face, 0, 0});
-    at += shells(face, 0, levels);
-    at += anywhere(face, random_locations, random);
-    for (int outer = 1; outer < 4; ++outer) at += anywhere(face + outer, 1, random);
-  }
+  const std::vector<Location> at = aroundFan(faces, levels, random_locations, random);
   const char* names[] = {"interior", "smooth boundary", "pinned boundary"};
   compareWithSubdivision(names[static_cast<int>(kind)] + (" valence " + std::to_string(valence)),
                          cage, at, all);

@@ -120,6 +120,23 @@ std::vector<Location> everywhere(const Cage& cage, const std::vector<int>& level
   return at;
 }
 
+std::vector<Location> aroundFan(int faces, const std::vector<int>& levels, int count,
+                                Random& random) {
+  std::set<int> sectors;
+  for (int sector : {0, 1, faces / 2, faces - 1}) {
+    if (sector < faces) sectors.insert(sector);
+  }
+  std::vector<Location> at;
+  for (int sector : sectors) {
+    const int face = 4 * sector;  // with the vertex at (0, 0)
+    at.push_back({face, 0, 0});
+    at += shells(face, 0, levels);
+    at += anywhere(face, count, random);
+    for (int outer = 1; outer < 4; ++outer) at += anywhere(face + outer, 1, random);
+  }
+  return at;
+}
+
 std::vector<Location> hereAndThere(const Cage& cage, const std::vector<int>& levels, int count,
                                    Random& random) {
   std::vector<Location> at;

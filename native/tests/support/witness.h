@@ -32,6 +32,11 @@ std::vector<Location> everywhere(const Cage& cage, const std::vector<int>& level
 std::vector<Location> hereAndThere(const Cage& cage, const std::vector<int>& levels, int count,
                                    Random& random);
 
+/// Around the vertex 0 of a fan() of so many faces, on the first, second, middle and last of them:
+/// at the vertex, on shells around it, and `count` anywhere; one anywhere on each face beyond.
+std::vector<Location> aroundFan(int faces, const std::vector<int>& levels, int count,
+                                Random& random);
+
 /// Appends.
 void operator+=(std::vector<Location>& locations, const std::vector<Location>& more);
 
