@@ -9,7 +9,7 @@ anybody else sees them, and no frame-change handlers are called.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -49,19 +49,50 @@ class Cage:
     def ptex_face_count(self) -> int:
         return int(np.where(self.face_sizes == 4, 1, self.face_sizes).sum())
 
+    def world_positions(self) -> np.ndarray:
+        """Of the vertices. They make the surface as it lies in the world, to the last digit."""
+        return self.mesh.positions @ self.matrix[:3, :3].T + self.matrix[:3, 3]
+
+    def with_holes(self, faces: np.ndarray) -> limitsurf.ControlMesh:
+        """The control mesh, some of whose faces have no surface."""
+        mesh = self.mesh
+        return native.limitsurf.ControlMesh(
+            mesh.positions,
+            mesh.face_sizes,
+            mesh.face_vertices,
+            edge_sharpness=mesh.edge_sharpness,
+            vertex_sharpness=mesh.vertex_sharpness,
+            boundary=mesh.boundary,
+            creasing=mesh.creasing,
+            triangles=mesh.triangles,
+            scheme=mesh.scheme,
+            holes=faces,
+        )
+
 
 def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
     """The object's cage at the depsgraph's frame. CageError where it has none."""
+    with opened(ob, depsgraph) as (found, _):
+        return found
+
+
+@contextmanager
+def opened(
+    ob: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
+) -> Iterator[tuple[Cage, bpy.types.Mesh]]:
+    """The cage, and the mesh that it is read from: that lasts as long as the context."""
     subsurf = rules.find_subsurf(ob)
     cut = ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
-    _check_modifiers(ob, cut)
+    check_modifiers(ob, cut)
     found = rules.read(subsurf)
-    with _evaluated_copy(ob, cut, depsgraph) as evaluated:
+    with evaluated_copy(ob, cut, depsgraph, adjust) as evaluated:
         mesh = evaluated.data
         if not mesh.polygons:
             raise CageError(f"{ob.name} has no faces")
         active, without = _read_uv_map(ob, mesh)
-        return Cage(
+        read_cage = Cage(
             mesh=_control_mesh(mesh, found, ob.name),
             rules=found,
             face_sizes=attributes.face_sizes(mesh),
@@ -71,6 +102,7 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
             shown_uv_interpolation=rules.shown_uv_interpolation(ob, depsgraph.scene),
             ignored=tuple(m.name for m in ob.modifiers[cut + 1 :] if m.show_viewport),
         )
+        yield read_cage, mesh
 
 
 def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules, whose: str) -> limitsurf.ControlMesh:
@@ -90,10 +122,14 @@ def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules, whose: str) -> limit
 
 
 @contextmanager
-def _evaluated_copy(
-    ob: bpy.types.Object, cut: int, depsgraph: bpy.types.Depsgraph
+def evaluated_copy(
+    ob: bpy.types.Object,
+    cut: int,
+    depsgraph: bpy.types.Depsgraph,
+    adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
 ) -> Iterator[bpy.types.Object]:
-    """The object as it evaluates with its first `cut` modifiers."""
+    """The object as it evaluates with its first `cut` modifiers; `adjust` may change the copy and
+    its private scene before that."""
     global _busy
     was_busy, _busy = _busy, True
     try:
@@ -101,6 +137,8 @@ def _evaluated_copy(
             copy.hide_viewport = False
             for modifier in copy.modifiers[cut:]:
                 copy.modifiers.remove(modifier)
+            if adjust:
+                adjust(copy, scene)
             scene.collection.objects.link(copy)
             layer = private_scene.layer(scene, depsgraph.view_layer)
             layer.update()
@@ -121,9 +159,10 @@ def _copied(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
         bpy.data.objects.remove(copy)
 
 
-def _check_modifiers(ob: bpy.types.Object, cut: int) -> None:
+def check_modifiers(ob: bpy.types.Object, cut: int, shown: str = "show_viewport") -> None:
+    """CageError if one of the first `cut` that are shown cannot be evaluated on a copy."""
     for modifier in ob.modifiers[:cut]:
-        if not modifier.show_viewport:
+        if not getattr(modifier, shown):
             continue
         if modifier.type == "MULTIRES":
             raise CageError(

@@ -33,3 +33,5 @@ INSTANCES_GROUP = "Limit Instances"
 INSTANCES_MARK = "limit_surface_instances"  # custom property of that node group: its version
 
 CAGE_SCENE = ".limit_cage"
+WEIGHTS_GROUP = ".limit_weights"
+VERTEX_WEIGHT = ".limit_weight"  # attribute of the private scene's meshes
