@@ -5,9 +5,9 @@ import atexit
 
 import bpy
 
-from . import hair, points, preferences, ui
+from . import hair, points, preferences, snap, ui
 
-_parts = (preferences, hair, points, ui)
+_parts = (preferences, hair, points, snap, ui)
 
 # Blender as a module hangs at the interpreter's exit if classes are registered then.
 _is_module = not bpy.app.binary_path
@@ -17,6 +17,7 @@ def register() -> None:
     for part in _parts:
         for cls in part.classes:
             bpy.utils.register_class(cls)
+    snap.attach_settings()
     ui.append_menus()
     if _is_module:
         atexit.register(unregister)
@@ -25,6 +26,7 @@ def register() -> None:
 def unregister() -> None:
     atexit.unregister(unregister)
     ui.remove_menus()
+    snap.detach_settings()
     for part in reversed(_parts):
         for cls in reversed(part.classes):
             bpy.utils.unregister_class(cls)
