@@ -9,8 +9,7 @@ import bpy
 import numpy as np
 import parity_zoo
 import pytest
-import subdivided
-from limit_surface import attributes, ids
+from limit_surface import attributes, ids, subdivided
 from scenes import bilinear, ptex_corners
 
 

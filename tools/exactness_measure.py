@@ -7,8 +7,7 @@ from typing import NamedTuple
 import bpy
 import limitsurf
 import numpy as np
-import subdivided
-from limit_surface import attributes, cage, ids
+from limit_surface import attributes, cage, ids, subdivided
 
 
 class Distance(NamedTuple):

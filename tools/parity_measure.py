@@ -6,9 +6,8 @@ from collections.abc import Callable
 import bpy
 import limitsurf
 import numpy as np
-import subdivided
-from limit_surface import attributes, cage, ids, sharpness
-from subdivided import SurfaceLocations
+from limit_surface import attributes, cage, ids, sharpness, subdivided
+from limit_surface.subdivided import SurfaceLocations
 
 
 class Comparison:

@@ -10,5 +10,9 @@ class CageError(RefusalError):
     """The object has no control mesh that can be evaluated."""
 
 
+class DisplayedError(RefusalError):
+    """The polygons that Blender shows cannot be had, or are not those of the subdivided cage."""
+
+
 class TooLargeError(RefusalError):
     """More elements than anyone should get without having been asked."""

@@ -1,5 +1,6 @@
-# SPDX-License-Identifier: Apache-2.0
-"""Where the vertices and face corners that Blender's Subdivision Surface makes lie on the cage.
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the vertices and face corners that Blender's Subdivision Surface makes lie on the cage, and
+on which of its polygons a place of the cage lies.
 
 The modifier makes 2^levels x 2^levels polygons of a quad, and of any other face half as many along
 each side of each corner's part. Vertices come as the cage's own, then those inside its edges, then
@@ -31,14 +32,14 @@ def corner_locations(face_sizes: np.ndarray, levels: int) -> SurfaceLocations:
     """Of every corner of every polygon, for a cage whose faces have so many corners."""
     if levels < 1:
         raise ValueError("Blender subdivides from level 1 on")
-    first_ptex_face = _starts(np.where(face_sizes == 4, 1, face_sizes))
-    polygons = np.where(face_sizes == 4, 4, face_sizes) * 4 ** (levels - 1)
+    first_ptex_face = _starts(ptex_face_counts(face_sizes))
+    polygons = polygon_counts(face_sizes, levels)
     first_polygon = _starts(polygons)
     face = np.empty((polygons.sum(), 4), np.int32)
     uv = np.empty((polygons.sum(), 4, 2))
     for size in np.unique(face_sizes):
-        per_side = 2**levels if size == 4 else 2 ** (levels - 1)
-        cells = _quad_cells(per_side) if size == 4 else _split_cells(size, per_side)
+        per_side = _per_side(size, levels)
+        cells = _cells(size, per_side)
         alike = np.flatnonzero(face_sizes == size)
         rows = first_polygon[alike, None] + np.arange(len(cells.part))
         face[rows] = (first_ptex_face[alike, None] + cells.part)[:, :, None]
@@ -55,6 +56,64 @@ def vertex_locations(
     vertex, corner = np.unique(corner_vertex, return_index=True)
     face[vertex], uv[vertex] = corners.face[corner], corners.uv[corner]
     return SurfaceLocations(face, uv)
+
+
+def cage_corners(face_sizes: np.ndarray) -> SurfaceLocations:
+    """Of every corner of every face of the cage."""
+    size_at = np.repeat(face_sizes, face_sizes)
+    corner = np.arange(len(size_at)) - np.repeat(_starts(face_sizes), face_sizes)
+    parts = ptex_face_counts(face_sizes)
+    first = np.repeat(_starts(parts), face_sizes)
+    is_quad = size_at == 4
+    face = np.where(is_quad, first, first + corner)
+    return SurfaceLocations(face, _AROUND[np.where(is_quad, corner, 0)].astype(np.float64))
+
+
+def ptex_face_counts(face_sizes: np.ndarray) -> np.ndarray:
+    return np.where(face_sizes == 4, 1, face_sizes)
+
+
+def polygon_counts(face_sizes: np.ndarray, levels: int) -> np.ndarray:
+    """Of each cage face, from level 1 on."""
+    return np.where(face_sizes == 4, 4, face_sizes).astype(np.int64) * 4 ** (levels - 1)
+
+
+class PolygonFinder:
+    """The polygon at a place of the cage, for a cage whose faces have so many corners."""
+
+    def __init__(self, face_sizes: np.ndarray, levels: int) -> None:
+        parts = ptex_face_counts(face_sizes)
+        self._sizes, self._levels = face_sizes, levels
+        self._base = np.repeat(np.arange(len(face_sizes)), parts)
+        self._part = np.arange(parts.sum()) - np.repeat(_starts(parts), parts)
+        self._first_polygon = _starts(polygon_counts(face_sizes, levels))
+
+    def find(self, face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Polygons (n,), and how far along them (n, 2): (0, 0) at their first corner, (1, 0) at
+        the second, (0, 1) at the last. Of polygons that meet there, the one towards (1, 1)."""
+        base, part = self._base[face], self._part[face]
+        size_at = self._sizes[base]
+        polygon, within = np.empty(len(face), np.int64), np.empty((len(face), 2))
+        for size in np.unique(size_at):
+            per_side = _per_side(size, self._levels)
+            cells = _cells(size, per_side)
+            order = np.empty((size, per_side, per_side), np.int64)
+            order[cells.part, cells.cell[:, 0], cells.cell[:, 1]] = np.arange(len(cells.part))
+            at = np.flatnonzero(size_at == size)
+            along = uv[at] * per_side
+            cell = np.minimum(along.astype(np.int64), per_side - 1)
+            polygon[at] = self._first_polygon[base[at]] + order[part[at], cell[:, 0], cell[:, 1]]
+            within[at] = along - cell
+        return polygon, within
+
+
+def _per_side(face_size: int, levels: int) -> int:
+    """Polygons along each side of a Ptex face."""
+    return 2**levels if face_size == 4 else 2 ** (levels - 1)
+
+
+def _cells(face_size: int, per_side: int) -> _Cells:
+    return _quad_cells(per_side) if face_size == 4 else _split_cells(face_size, per_side)
 
 
 def _quad_cells(side: int) -> _Cells:
