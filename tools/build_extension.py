@@ -10,13 +10,13 @@ executable is needed.
 
 import argparse
 import importlib.util
-import os
 import shutil
-import subprocess
 import sys
 import tempfile
 import tomllib
 from pathlib import Path
+
+import wheels
 
 ROOT = Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon/limit_surface"
@@ -29,17 +29,17 @@ def main() -> None:
     arguments = parse_arguments()
     version = tomllib.loads((ADDON / MANIFEST).read_text())["version"]
     if arguments.build_wheel:
-        build_wheel(arguments.wheels)
-    wheels = find_wheels(arguments.wheels, version)
+        wheels.build(arguments.wheels, arguments.python_headers)
+    found = find_wheels(arguments.wheels, version)
     arguments.output.mkdir(parents=True, exist_ok=True)
     package = arguments.output / f"limit_surface-{version}.zip"
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "limit_surface"
-        lay_out(source, wheels)
+        lay_out(source, found)
         blender_extension("build", "--source-dir", source, "--output-filepath", package)
     blender_extension("validate", package)
     print(f"{package}: {package.stat().st_size / 2**20:.1f} MiB with")
-    for wheel in wheels:
+    for wheel in found:
         print(f"  {wheel.name}")
 
 
@@ -58,26 +58,23 @@ def parse_arguments() -> argparse.Namespace:
         action="store_true",
         help="first build and repair this Python's wheel into the folder of wheels",
     )
+    parser.add_argument(
+        "--python-headers",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="INCLUDE",
+        help="with --build-wheel: another wheel, for the Python of these headers "
+        "(/usr/include/python3.13, say); may be repeated",
+    )
     return parser.parse_args()
 
 
-def build_wheel(folder: Path) -> None:
-    """Builds without isolation: with what this environment holds, and no network."""
-    programs = Path(sys.executable).parent  # not resolved: the environment's, not the system's
-    environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
-    with tempfile.TemporaryDirectory() as raw:
-        pip = (sys.executable, "-m", "pip", "--disable-pip-version-check")
-        run(*pip, "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", raw, ROOT)
-        (wheel,) = Path(raw).glob("limitsurf-*.whl")
-        auditwheel = (sys.executable, "-m", "auditwheel")
-        run(*auditwheel, "repair", "-w", folder, wheel, environment=environment)
-
-
 def find_wheels(folder: Path, version: str) -> list[Path]:
-    wheels = sorted(folder.glob("limitsurf-*.whl"))
-    if not wheels:
+    found = sorted(folder.glob("limitsurf-*.whl"))
+    if not found:
         fail(f"no limitsurf wheel in {folder}: make one with --build-wheel")
-    for wheel in wheels:
+    for wheel in found:
         wheel_version, platform = wheel.stem.split("-")[1], wheel.stem.split("-")[-1]
         if wheel_version != version:
             fail(f"{wheel} is not version {version}, the extension's: rebuild or delete it")
@@ -86,21 +83,21 @@ def find_wheels(folder: Path, version: str) -> list[Path]:
                 f"{wheel} relies on libraries of the system that built it: run `auditwheel repair` "
                 "on it, and keep only what that writes"
             )
-    return wheels
+    return found
 
 
-def lay_out(source: Path, wheels: list[Path]) -> None:
+def lay_out(source: Path, packed: list[Path]) -> None:
     """A copy of the add-on with its licence, and the wheels in it and in its manifest."""
     shutil.copytree(ADDON, source, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(LICENCE, source / "LICENSE")
     (source / "wheels").mkdir()
-    for wheel in wheels:
+    for wheel in packed:
         shutil.copy(wheel, source / "wheels")
     manifest = source / MANIFEST
     text = manifest.read_text()
     if NO_WHEELS not in text:
         fail(f"{ADDON / MANIFEST} has no line `{NO_WHEELS.strip()}` to fill in")
-    lines = "".join(f'  "./wheels/{wheel.name}",\n' for wheel in wheels)
+    lines = "".join(f'  "./wheels/{wheel.name}",\n' for wheel in packed)
     manifest.write_text(text.replace(NO_WHEELS, f"wheels = [\n{lines}]\n"))
 
 
@@ -111,15 +108,7 @@ def blender_extension(*arguments: str | Path) -> None:
         fail(f"{sys.executable} has no bpy: run this by the environment's Python")
     bpy = Path(spec.origin).parent
     (tool,) = bpy.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
-    run(sys.executable, tool, *arguments)
-
-
-def run(*command: str | Path, environment: dict[str, str] | None = None) -> None:
-    """Shows what the program says only where it fails."""
-    done = subprocess.run(command, env=environment, capture_output=True, text=True)
-    if done.returncode:
-        print(done.stdout + done.stderr, file=sys.stderr, end="")
-        fail(f"{' '.join(map(str, command))} ended with {done.returncode}")
+    wheels.run(sys.executable, tool, *arguments)
 
 
 def fail(message: str) -> None:
@@ -127,4 +116,7 @@ def fail(message: str) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except wheels.BuildError as error:
+        fail(str(error))

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# A Debian 13 with its own Blender, beside this system: sourced by tools/gui_test.sh.
+#
+#   chroot_obstacle          prints why there can be none here, if so
+#   make_chroot              makes it where it is missing (two minutes, 2.5 GB)
+#   in_chroot COMMAND...     runs something in it, without network
+#
+# It lies in build/window and is kept. Everything is mounted in a namespace of its own, so that
+# nothing stays mounted and no process survives, however the command ends.
+
+CHROOT=$ROOT/build/window/trixie
+CHROOT_OUT=$ROOT/build/window/out # /out inside; the checkout is /project, read-only
+
+CHROOT_PACKAGES=(
+  blender python3-numpy libgl1-mesa-dri libegl-mesa0 # a window on a machine without graphics
+  xvfb xauth xdotool imagemagick                     # a screen, a mouse, pictures of the screen
+  python3-pytest
+  libpython3.13-dev # headers for the module that this Blender loads
+)
+
+chroot_obstacle() {
+  local program
+  if [[ $(uname -sm) != "Linux x86_64" ]]; then
+    echo "they need Linux on x86-64"
+  elif ((EUID != 0)); then
+    echo "a chroot takes root"
+  elif ! unshare --mount --pid --net --fork true 2>/dev/null; then
+    echo "this system allows no namespaces (unshare), as in a container without privileges"
+  elif ! command -v debootstrap >/dev/null && ! command -v apt-get >/dev/null; then
+    echo "debootstrap is missing, and there is no apt to install it"
+  fi
+}
+
+chroot_stamp() {
+  echo "${CHROOT_PACKAGES[*]}"
+}
+
+chroot_is_ready() {
+  [[ $(cat "$CHROOT/etc/limit-surface" 2>/dev/null) == "$(chroot_stamp)" ]]
+}
+
+make_chroot() {
+  mkdir -p "$CHROOT_OUT"
+  chroot_is_ready && return
+  local partial=$CHROOT.partial
+  say "A Debian 13 with Blender for the window tests (two minutes, 2.5 GB)"
+  rm -rf --one-file-system "$partial" "$CHROOT"
+  install_debootstrap
+  use_proxy_of_apt
+  unshare --mount --fork --kill-child --propagation private \
+    debootstrap --variant=minbase trixie "$partial" "$(debian_mirror)" || return
+  # It can be made anew: no waiting for the disk. Nobody reads manuals in it.
+  echo force-unsafe-io >"$partial/etc/dpkg/dpkg.cfg.d/limit-surface"
+  printf 'path-exclude=/usr/share/%s/*\n' doc man locale info \
+    >>"$partial/etc/dpkg/dpkg.cfg.d/limit-surface"
+  enter "$partial" env DEBIAN_FRONTEND=noninteractive sh -c \
+    'apt-get -qq update && apt-get -qq install -y --no-install-recommends "$@" && apt-get clean' \
+    sh "${CHROOT_PACKAGES[@]}" </dev/null || return
+  chroot_stamp >"$partial/etc/limit-surface"
+  mv "$partial" "$CHROOT"
+}
+
+in_chroot() {
+  enter "$CHROOT" --net "$@"
+}
+
+# enter FOLDER [--net] COMMAND...: --net for a network of its own, with nobody in it
+enter() {
+  local folder=$1 options=(--mount --pid --fork --kill-child --propagation private)
+  shift
+  if [[ $1 == --net ]]; then
+    options+=(--net)
+    shift
+  fi
+  unshare "${options[@]}" bash -ec '
+    folder=$1 project=$2 out=$3
+    shift 3
+    mkdir -p "$folder"/{project,out}
+    mount --bind "$project" "$folder/project"
+    mount -o remount,bind,ro "$folder/project"
+    mount --bind "$out" "$folder/out"
+    mount -t proc proc "$folder/proc"
+    mount --rbind /dev "$folder/dev"
+    mount --rbind /sys "$folder/sys"
+    exec chroot "$folder" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
+      ${http_proxy:+http_proxy="$http_proxy"} "$@"
+  ' bash "$folder" "$ROOT" "$CHROOT_OUT" "$@"
+}
+
+install_debootstrap() {
+  command -v debootstrap >/dev/null && return
+  apt-get -o DPkg::Lock::Timeout=300 -qq update </dev/null || true
+  DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 \
+    -qq install -y --no-install-recommends debootstrap </dev/null
+}
+
+# The one that this system's own apt uses.
+debian_mirror() {
+  local found
+  found=$(apt-get indextargets --format '$(ORIGIN) $(SITE) $(RELEASE) $(COMPONENT)' \
+    'Created-By: Packages' 2>/dev/null |
+    awk '$1 == "Debian" && $3 !~ /security/ && $4 == "main" { print $2; exit }')
+  echo "${found:-http://deb.debian.org/debian}"
+}
+
+use_proxy_of_apt() {
+  local proxy=${http_proxy-}
+  command -v apt-config >/dev/null && eval "$(apt-config shell proxy Acquire::http::Proxy)"
+  [[ $proxy ]] && export http_proxy=$proxy
+  return 0
+}
