@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A Blender with a window and a real mouse, driven from outside.
+
+`session.call("name", ...)` runs a function of inside.py within Blender; mouse and keys are X11's.
+"""
+
+import os
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing.connection import Client
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+OUT = Path("/out")
+PACKAGES = OUT
+WIDTH, HEIGHT = 1280, 800
+TAB_STRIP = 22  # pixels at the sidebar's right edge
+ADDON = "bl_ext.user_default.limit_surface"
+
+
+@contextmanager
+def virtual_screen() -> Iterator[str]:
+    read, write = os.pipe()
+    size = f"{WIDTH}x{HEIGHT}x24"
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(write), "-screen", "0", size, "+extension", "GLX"],
+        pass_fds=[write],
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(write)
+    try:
+        with os.fdopen(read) as display:
+            yield f":{display.readline().strip()}"
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def install_extension(user: Path) -> str:
+    """As *Install from Disk* does it; what Blender says about it."""
+    (package,) = PACKAGES.glob("limit_surface-*.zip")
+    command = ("blender", "--command", "extension", "install-file", "-r", "user_default")
+    done = subprocess.run(
+        [*command, "--enable", package],
+        env={**os.environ, "BLENDER_USER_RESOURCES": str(user)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+class BlenderSession:
+    def __init__(self, display: str, user: Path) -> None:
+        self.installed = install_extension(user)
+        address = user / "socket"
+        self._environment = {
+            **os.environ,
+            "DISPLAY": display,
+            "LIBGL_ALWAYS_SOFTWARE": "1",
+            "BLENDER_USER_RESOURCES": str(user),
+            "LIMIT_SURFACE_SOCKET": str(address),
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
+        self._log = (OUT / "blender.log").open("w")
+        geometry = ("--window-geometry", "0", "0", str(WIDTH), str(HEIGHT))
+        self._process = subprocess.Popen(
+            ["blender", *geometry, "--addons", ADDON, "--python", HERE / "inside.py"],
+            env=self._environment,
+            stdout=self._log,
+            stderr=subprocess.STDOUT,
+        )
+        self._connection = self._connect(str(address))
+
+    def _connect(self, address: str) -> Any:
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline:
+            assert self._process.poll() is None, "Blender ended: see blender.log"
+            try:
+                return Client(address)
+            except (FileNotFoundError, ConnectionRefusedError):
+                time.sleep(0.2)
+        raise TimeoutError("Blender does not answer: see blender.log")
+
+    def __enter__(self) -> "BlenderSession":
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._process.kill()
+        self._process.wait()
+        self._log.close()
+
+    def call(self, name: str, *arguments: Any, timeout: float = 60) -> Any:
+        """What the function of inside.py returns, once Blender has nothing else to do."""
+        self._connection.send((name, arguments))
+        if not self._connection.poll(timeout):
+            raise TimeoutError(f"{name} in Blender has not ended after {timeout} s")
+        raised, value = self._connection.recv()
+        assert not raised, value
+        return value
+
+    def new_file(self) -> None:
+        self.key("Escape")
+        self.call("new_file")
+        self.settle()
+        self.move(*self.call("view_centre"))
+
+    def settle(self) -> None:
+        """Waits until everything that was sent has been dealt with and drawn."""
+        time.sleep(0.1)
+        for _ in range(2):
+            self.call("redraw")
+
+    # Mouse positions are Blender's: from the window's lower left.
+
+    def move(self, x: float, y: float) -> None:
+        self._xdotool("mousemove", round(x), HEIGHT - 1 - round(y))
+        self.settle()
+
+    def click(self, x: float, y: float, button: int = 1) -> None:
+        self.move(x, y)
+        self.press(button)
+
+    def press(self, button: int = 1) -> None:
+        self._xdotool("click", button)
+        self.settle()
+
+    def wheel(self, steps: int) -> None:
+        for _ in range(abs(steps)):
+            self.press(4 if steps > 0 else 5)
+
+    def key(self, *names: str) -> None:
+        """X11's names, such as ctrl+z, F9, Escape, period."""
+        for name in names:
+            self._xdotool("key", name)
+            self.settle()
+
+    def open_tab(self) -> None:
+        """Shows the sidebar's tab Limit, by clicking down the strip of tabs until it opens."""
+        self.call("show_sidebar")
+        self.settle()
+        bar = self.call("sidebar")
+        for y in range(bar["top"] - 20, bar["bottom"], -20):
+            self.click(bar["right"] - TAB_STRIP / 2, y)
+            if self.call("sidebar")["tab"] == "Limit":
+                return
+        raise AssertionError("no tab Limit in the sidebar")
+
+    def find_button(self, command: str) -> tuple[float, float]:
+        """Where in the open tab the button is that runs an operator, by what it copies."""
+        bar = self.call("sidebar")
+        x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
+        for y in range(bar["top"] - 10, bar["bottom"], -10):
+            self.move(x, y)
+            self.key("ctrl+c")
+            if self.call("clipboard").startswith(f"bpy.ops.{command}("):
+                return x, y
+        raise AssertionError(f"no button {command} in the tab")
+
+    def screenshot(self, name: str) -> Path:
+        path = OUT / f"{name}.png"
+        self._run("import", "-window", "root", path)
+        return path
+
+    def _xdotool(self, *words: object) -> None:
+        self._run("xdotool", *map(str, words))
+
+    def _run(self, *command: object) -> None:
+        subprocess.run(command, env=self._environment, check=True, timeout=30)
