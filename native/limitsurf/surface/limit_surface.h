@@ -57,7 +57,8 @@ struct Stencils {
 /// Data of any number of columns, one row per vertex or value.
 using DataRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-class SurfaceData;  // surface_data.h
+class SurfaceData;     // surface_data.h
+class SurfacePatches;  // surface_patches.h
 
 struct Tessellation {
   Points positions, normals;
@@ -184,6 +185,7 @@ class LimitSurface {
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> bounds(int threads = 0) const;
 
  private:
+  friend class SurfacePatches;
   struct Data;
   std::unique_ptr<Data> data_;
 };
