@@ -5,9 +5,9 @@ import atexit
 
 import bpy
 
-from . import hair, points, preferences, snap, ui
+from . import hair, points, preferences, report, snap, ui
 
-_parts = (preferences, hair, points, snap, ui)
+_parts = (preferences, hair, points, snap, ui, report)
 
 # Blender as a module hangs at the interpreter's exit if classes are registered then.
 _is_module = not bpy.app.binary_path

@@ -22,6 +22,8 @@ LAYOUTS = {
     "FLOAT2": Layout("vector", 2, np.float32),
     "FLOAT_VECTOR": Layout("vector", 3, np.float32),
     "QUATERNION": Layout("value", 4, np.float32),
+    "FLOAT_COLOR": Layout("color", 4, np.float32),
+    "BYTE_COLOR": Layout("color", 4, np.float32),
 }
 
 

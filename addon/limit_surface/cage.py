@@ -51,7 +51,10 @@ class Cage:
 
     def world_positions(self) -> np.ndarray:
         """Of the vertices. They make the surface as it lies in the world, to the last digit."""
-        return self.mesh.positions @ self.matrix[:3, :3].T + self.matrix[:3, 3]
+        return self.to_world(self.mesh.positions)
+
+    def to_world(self, points: np.ndarray) -> np.ndarray:
+        return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
 
     def with_holes(self, faces: np.ndarray) -> limitsurf.ControlMesh:
         """The control mesh, some of whose faces have no surface."""

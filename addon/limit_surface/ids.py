@@ -5,8 +5,10 @@ TAB = "Limit"
 
 HAIR_ADD = "object.limit_hair_add"
 POINTS_ADD = "object.limit_points_add"
+REPORT_OPERATOR = "object.limit_report"
 
 PANEL = "VIEW3D_PT_limit_surface"
+REPORT_PANEL = "VIEW3D_PT_limit_report"
 OBJECT_MENU = "VIEW3D_MT_object_limit_surface"
 
 # Attributes of generated curves and points
@@ -19,6 +21,10 @@ NORMAL = "normal"
 TANGENT = "tangent"
 ROTATION = "rotation"
 
+# Attributes of the surface's mesh
+DISTANCE = "limit_distance"
+DISTANCE_COLOR = "limit_distance_color"
+
 # Attributes of the surface's mesh: Blender's own
 POSITION = "position"
 CORNER_VERTEX = ".corner_vert"
@@ -26,6 +32,8 @@ CORNER_EDGE = ".corner_edge"
 EDGE_VERTICES = ".edge_verts"
 EDGE_CREASE = "crease_edge"
 VERTEX_CREASE = "crease_vert"
+
+REPORT = "limit_report"  # custom property of the surface's object
 
 HAIR_OBJECT = "Limit Hair"
 POINTS_OBJECT = "Limit Points"

@@ -38,7 +38,7 @@ def corner_locations(face_sizes: np.ndarray, levels: int) -> SurfaceLocations:
     face = np.empty((polygons.sum(), 4), np.int32)
     uv = np.empty((polygons.sum(), 4, 2))
     for size in np.unique(face_sizes):
-        per_side = _per_side(size, levels)
+        per_side = polygons_per_side(size, levels)
         cells = _cells(size, per_side)
         alike = np.flatnonzero(face_sizes == size)
         rows = first_polygon[alike, None] + np.arange(len(cells.part))
@@ -95,7 +95,7 @@ class PolygonFinder:
         size_at = self._sizes[base]
         polygon, within = np.empty(len(face), np.int64), np.empty((len(face), 2))
         for size in np.unique(size_at):
-            per_side = _per_side(size, self._levels)
+            per_side = polygons_per_side(size, self._levels)
             cells = _cells(size, per_side)
             order = np.empty((size, per_side, per_side), np.int64)
             order[cells.part, cells.cell[:, 0], cells.cell[:, 1]] = np.arange(len(cells.part))
@@ -107,9 +107,9 @@ class PolygonFinder:
         return polygon, within
 
 
-def _per_side(face_size: int, levels: int) -> int:
-    """Polygons along each side of a Ptex face."""
-    return 2**levels if face_size == 4 else 2 ** (levels - 1)
+def polygons_per_side(face_size: int, levels: int) -> int:
+    """Of a Ptex face; 1 at level 0."""
+    return 2**levels if face_size == 4 else 2 ** max(levels - 1, 0)
 
 
 def _cells(face_size: int, per_side: int) -> _Cells:

@@ -13,6 +13,7 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
     def draw(self, _context: bpy.types.Context) -> None:
         self.layout.operator(ids.HAIR_ADD, icon="CURVES")
         self.layout.operator(ids.POINTS_ADD, icon="POINTCLOUD_DATA")
+        self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
 
 
 def _draw_in_add_curve(self: bpy.types.Menu, _context: bpy.types.Context) -> None:

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far the mesh that Blender shows is from the limit surface."""
+
+from .operator import OBJECT_OT_limit_report
+from .panel import VIEW3D_PT_limit_report
+
+classes = (OBJECT_OT_limit_report, VIEW3D_PT_limit_report)

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the report's results stay: numbers on the object, distances on its mesh."""
+
+import bpy
+import numpy as np
+
+from .. import attributes, cage, ids
+from ..errors import RefusalError
+from . import colours
+
+
+def store_numbers(ob: bpy.types.Object, results: dict[str, dict[str, float]]) -> None:
+    """A custom property: for each displayed mesh its level and its distances in world units."""
+    ob[ids.REPORT] = results
+
+
+def why_not_on_mesh(ob: bpy.types.Object, found: cage.Cage) -> str:
+    """Why the mesh cannot hold what the cage's vertices have, if so."""
+    mesh = ob.data
+    if not mesh.is_editable:
+        return f"the mesh {mesh.name} is linked from another file"
+    if len(mesh.vertices) != len(found.mesh.positions) or not np.array_equal(
+        attributes.read(mesh, ids.CORNER_VERTEX), found.mesh.face_vertices
+    ):
+        return "modifiers before the subdivision make other vertices than the mesh has"
+    return ""
+
+
+def check_attributes(mesh: bpy.types.Mesh) -> None:
+    """RefusalError where somebody else's have these names."""
+    for name, kind in ((ids.DISTANCE, "FLOAT"), (ids.DISTANCE_COLOR, "FLOAT_COLOR")):
+        there = mesh.attributes.get(name)
+        if there and (there.data_type, there.domain) != (kind, "POINT"):
+            raise RefusalError(
+                f"{mesh.name} has an attribute {name} of another kind "
+                f"({there.data_type} on {there.domain}): rename or remove it"
+            )
+
+
+def store_on_mesh(mesh: bpy.types.Mesh, distance: np.ndarray, full: float) -> None:
+    attributes.write(mesh, ids.DISTANCE, "FLOAT", "POINT", distance)
+    color = colours.of_distances(distance, full)
+    attributes.write(mesh, ids.DISTANCE_COLOR, "FLOAT_COLOR", "POINT", color)
+    mesh.color_attributes.active_color = mesh.color_attributes[ids.DISTANCE_COLOR]
+    mesh.update()

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The report in words."""
+
+from collections.abc import Mapping
+
+from .distances import Distances
+
+MESHES = {"VIEWPORT": "Viewport", "RENDER": "Render", "LEVEL": "Mesh"}
+
+
+def numbers(found: Distances) -> dict[str, float]:
+    """What is kept of it: world units."""
+    return {
+        "level": found.level,
+        "max": found.apart.largest,
+        "mean": found.apart.mean,
+        "slide_max": found.slide.largest,
+        "slide_mean": found.slide.mean,
+    }
+
+
+def sentence(mesh: str, kept: Mapping[str, float]) -> str:
+    return (
+        f"{MESHES[mesh]}, level {kept['level']}: {spread(kept, '')} from the surface; "
+        f"{spread(kept, 'slide_')} from the same place on it"
+    )
+
+
+def spread(kept: Mapping[str, float], of: str) -> str:
+    return f"at most {kept[f'{of}max']:.4g}, {kept[f'{of}mean']:.4g} in the mean"
