@@ -9,7 +9,9 @@ def new_file() -> None:
 
 
 def redraw() -> None:
-    bpy.ops.wm.redraw_timer(type="DRAW_WIN", iterations=1)
+    """The main loop draws before it calls the tests' timer again."""
+    for area in bpy.context.window.screen.areas:
+        area.tag_redraw()
 
 
 def view() -> tuple[bpy.types.Area, bpy.types.Region]:
@@ -54,6 +56,10 @@ def sidebar() -> dict[str, object]:
         "top": ui.y + ui.height,
         "tab": ui.active_panel_category,
     }
+
+
+def clear_clipboard() -> None:
+    bpy.context.window_manager.clipboard = " "
 
 
 def clipboard() -> str:

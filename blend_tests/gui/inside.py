@@ -10,8 +10,9 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).parent))
-bpy.context.preferences.view.show_splash = False  # it would swallow the first click
-bpy.context.preferences.view.ui_scale = 1.0
+# Both would swallow clicks.
+bpy.context.preferences.view.show_splash = False
+bpy.context.preferences.view.show_tooltips = False
 
 import actions  # noqa: E402
 

@@ -126,10 +126,11 @@ class BlenderSession:
         self.press(button)
 
     def press(self, button: int = 1) -> None:
-        self._xdotool("click", button)
+        self._xdotool("mousedown", button, "sleep", 0.05, "mouseup", button)
         self.settle()
 
     def wheel(self, steps: int) -> None:
+        """Upwards, or down if negative."""
         for _ in range(abs(steps)):
             self.press(4 if steps > 0 else 5)
 
@@ -154,12 +155,28 @@ class BlenderSession:
         """Where in the open tab the button is that runs an operator, by what it copies."""
         bar = self.call("sidebar")
         x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
-        for y in range(bar["top"] - 10, bar["bottom"], -10):
+        return self._find(x, bar["top"] - 10, bar["bottom"], f"bpy.ops.{command}(")
+
+    def open_redo_panel(self) -> tuple[float, float]:
+        """By F9 in the middle of the viewport; where the column of its fields begins."""
+        x, y = self.call("view_centre")
+        self.move(x, y)
+        self.key("F9")
+        return x + 200, y
+
+    def find_field(self, x: float, y: float, value: str) -> tuple[float, float]:
+        """Where below (x, y) a field is that holds a value."""
+        return self._find(x, y, y - 400, value)
+
+    def _find(self, x: float, top: float, bottom: float, copied: str) -> tuple[float, float]:
+        """What Ctrl+C copies tells what is under the mouse."""
+        for y in range(round(top), round(bottom), -10):
             self.move(x, y)
+            self.call("clear_clipboard")
             self.key("ctrl+c")
-            if self.call("clipboard").startswith(f"bpy.ops.{command}("):
+            if self.call("clipboard").startswith(copied):
                 return x, y
-        raise AssertionError(f"no button {command} in the tab")
+        raise AssertionError(f"nothing that copies {copied!r} between {top} and {bottom} at {x}")
 
     def screenshot(self, name: str) -> Path:
         path = OUT / f"{name}.png"

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The installed extension in its window: tab, button, undo, redo panel."""
 
+import pytest
+
 ADD_HAIR = "object.limit_hair_add"
+HAIR = "Limit Hair"
+FACES = 6
 START = ["Camera", "Cube", "Light"]
 
 
@@ -15,19 +19,23 @@ def test_installed_with_its_native_module(blender):
 def test_hair_by_a_click_and_ctrl_z(blender):
     blender.open_tab()
     blender.click(*blender.find_button(ADD_HAIR))
-    assert blender.call("objects") == [*START[:2], "Light", "Limit Hair"]
-    assert blender.call("curve_count", "Limit Hair") == 6 * 400
+    assert blender.call("objects") == [*START, HAIR]
+    assert blender.call("curve_count", HAIR) == FACES * 20**2
     blender.screenshot("hair")
     blender.move(*blender.call("view_centre"))
     blender.key("ctrl+z")
     assert blender.call("objects") == START
     blender.key("ctrl+shift+z")
-    assert blender.call("curve_count", "Limit Hair") == 6 * 400
+    assert blender.call("curve_count", HAIR) == FACES * 20**2
 
 
-def test_redo_panel_changes_the_count(blender):
+@pytest.mark.xfail(reason="the new hair is active, and the operator's poll asks for a mesh")
+def test_redo_panel_makes_it_anew(blender):
     blender.open_tab()
     blender.click(*blender.find_button(ADD_HAIR))
-    blender.move(*blender.call("view_centre"))
-    blender.key("F9")
+    fields = blender.open_redo_panel()
     blender.screenshot("redo")
+    blender.move(*blender.find_field(*fields, value="20"))
+    blender.key("Return", "ctrl+a", "2", "1", "Return")
+    assert blender.call("curve_count", HAIR) == FACES * 21**2
+    assert blender.call("objects") == [*START, HAIR]
