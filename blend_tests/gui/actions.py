@@ -36,7 +36,7 @@ def modules() -> dict[str, str]:
     """Where the extension and its native module were loaded from."""
     import limitsurf
 
-    addon = next(name for name in bpy.context.preferences.addons.keys() if "limit_surface" in name)
+    addon = next(name for name in bpy.context.preferences.addons if "limit_surface" in name)
     return {"addon": addon, "limitsurf": limitsurf._limitsurf.__file__}
 
 
