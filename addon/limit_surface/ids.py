@@ -5,6 +5,7 @@ TAB = "Limit"
 
 HAIR_ADD = "object.limit_hair_add"
 POINTS_ADD = "object.limit_points_add"
+SNAP = "object.limit_snap"
 REPORT_OPERATOR = "object.limit_report"
 
 PANEL = "VIEW3D_PT_limit_surface"
