@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where on the target's surface elements go: the closest point, or the first along a line."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .surface import TargetSurface
+from .turns import unit
+
+WAYS = {"BOTH": (1.0, -1.0), "POSITIVE": (1.0,), "NEGATIVE": (-1.0,)}
+
+# Of the largest coordinate: what lies on the surface as exactly as Blender's single precision
+# allows may lie behind it, and is still met by its line.
+SLACK = 1e-6
+
+
+@dataclass(frozen=True)
+class Elements:
+    """What is to be snapped, in world space."""
+
+    points: np.ndarray  # (n, 3)
+    normals: np.ndarray  # (n, 3) unit vectors, NaN where an element has none
+    axes: np.ndarray  # (3, 3), or (n, 3, 3): columns are the local X, Y and Z as unit vectors
+
+
+@dataclass(frozen=True)
+class View:
+    """Of the 3D viewport."""
+
+    axes: np.ndarray  # (3, 3) columns X, Y, Z, the last one towards the viewer
+    eye: np.ndarray | None  # of a perspective view
+
+
+@dataclass(frozen=True)
+class Placement:
+    rows: np.ndarray  # (k,) which elements have a place
+    face: np.ndarray  # (k,)
+    uv: np.ndarray  # (k, 2)
+    position: np.ndarray  # (k, 3) world, offset included
+    frame: np.ndarray  # (k, 3, 3) world
+    failures: Counter[str]  # reason -> number of elements
+
+
+@dataclass(frozen=True)
+class Aim:
+    mode: str  # NEAREST, AXIS, NORMAL
+    axis: int
+    orientation: str  # GLOBAL, LOCAL, VIEW
+    direction: str  # BOTH, POSITIVE, NEGATIVE
+    max_distance: float  # world units
+    max_angle: float | None  # between an element's own normal and the surface's
+    offset: float
+    view: View | None
+
+    def place(
+        self,
+        surface: TargetSurface,
+        elements: Elements,
+        single_precision: bool,
+        progress: Callable[[float], None],
+    ) -> Placement:
+        """`single_precision`: (u, v) will be stored so, and is rounded before it is evaluated."""
+        finite = np.isfinite(elements.points).all(axis=1)
+        directions = self._directions(elements)
+        directed = np.isfinite(directions).all(axis=1)
+        usable = np.flatnonzero(finite & directed)
+        search = self._closest if self.mode == "NEAREST" else self._on_lines
+        face, uv = search(surface, elements.points[usable], directions[usable], progress)
+        hit = face >= 0
+        face, uv = face[hit], uv[hit]
+        if single_precision:
+            uv = uv.astype(np.float32).astype(np.float64)
+        position, frame = surface.places(face, uv, np.eye(4))
+        return Placement(
+            rows=usable[hit],
+            face=face,
+            uv=uv,
+            position=position + self.offset * frame[:, :, 2],
+            frame=frame,
+            failures=+Counter(
+                {
+                    "have coordinates that are not finite": np.count_nonzero(~finite),
+                    "have no direction of their own": np.count_nonzero(finite & ~directed),
+                    self._missed(): np.count_nonzero(~hit),
+                }
+            ),
+        )
+
+    def _directions(self, elements: Elements) -> np.ndarray:
+        """(n, 3) unit vectors that the search goes by; NaN where an element has none."""
+        if self.mode == "NORMAL" or (self.mode == "NEAREST" and self.max_angle is not None):
+            return elements.normals
+        axes = np.eye(3)
+        if self.mode == "AXIS" and self.orientation == "LOCAL":
+            axes = elements.axes
+        elif self.mode == "AXIS" and self.orientation == "VIEW":
+            axes = self.view.axes
+            if self.axis == 2 and self.view.eye is not None:
+                return unit(self.view.eye - elements.points)
+        return np.broadcast_to(axes[..., self.axis], elements.points.shape)
+
+    def _closest(
+        self,
+        surface: TargetSurface,
+        points: np.ndarray,
+        directions: np.ndarray,
+        progress: Callable[[float], None],
+    ) -> tuple[np.ndarray, np.ndarray]:
+        facing = {}
+        if self.max_angle is not None:
+            facing = {"facing": surface.outward * directions, "max_angle": self.max_angle}
+        hits = surface.in_world.closest(points, self.max_distance, progress=progress, **facing)
+        return hits.face, hits.uv
+
+    def _on_lines(
+        self,
+        surface: TargetSurface,
+        points: np.ndarray,
+        directions: np.ndarray,
+        progress: Callable[[float], None],
+    ) -> tuple[np.ndarray, np.ndarray]:
+        slack = SLACK * max(surface.size(), np.abs(points).max(initial=0.0))
+        face, uv = np.full(len(points), -1, np.int32), np.full((len(points), 2), np.nan)
+        best = np.full(len(points), np.inf)
+        ways = WAYS[self.direction]
+        for i, sign in enumerate(ways):
+            hits = surface.in_world.ray_cast(
+                points - slack * sign * directions,
+                sign * directions,
+                self.max_distance + slack,
+                progress=lambda part, i=i: progress((i + part) / len(ways)),
+            )
+            distance = np.where(hits.face >= 0, np.abs(hits.distance - slack), np.inf)
+            closer = distance < best
+            best[closer] = distance[closer]
+            face[closer], uv[closer] = hits.face[closer], hits.uv[closer]
+        return face, uv
+
+    def _missed(self) -> str:
+        within = "" if np.isinf(self.max_distance) else f" within {self.max_distance:.6g}"
+        if self.mode != "NEAREST":
+            return f"have no surface on their line{within}"
+        return f"have no surface{' that faces them' if self.max_angle is not None else ''}{within}"

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Control points of curves and surfaces in Edit Mode; the handles of Bezier points come along."""
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError
+from .element_points import SnappedPoints
+
+
+class SnappedCurvePoints(SnappedPoints):
+    noun = "control points"
+
+    def __init__(self, ob: bpy.types.Object) -> None:
+        if ob.type == "CURVE" and ob.data.dimensions == "2D":
+            raise RefusalError(f"{ob.name} is a 2D curve, which stays in its plane: make it 3D")
+        super().__init__(ob)
+
+    def read(self) -> tuple[np.ndarray, np.ndarray]:
+        parts = [_read(spline) for spline in self.ob.data.splines]
+        points, selected = zip(*parts, strict=True) if parts else ([], [])
+        return (
+            np.concatenate([np.empty((0, 3), np.float32), *points]),
+            np.concatenate([np.empty(0, bool), *selected]),
+        )
+
+    def move(self, rows: np.ndarray, moves: np.ndarray) -> None:
+        splines = self.ob.data.splines
+        ends = np.cumsum([len(_points(spline)) for spline in splines])
+        first = np.searchsorted(rows, ends - [len(_points(spline)) for spline in splines])
+        last = np.searchsorted(rows, ends)
+        for spline, begin, end, behind in zip(splines, first, last, ends, strict=True):
+            if begin < end:
+                own = rows[begin:end] - (behind - len(_points(spline)))
+                _move(spline, own, moves[begin:end])
+        self.ob.data.update_tag()
+
+
+def _points(spline: bpy.types.Spline) -> bpy.types.bpy_prop_collection:
+    return spline.bezier_points if spline.type == "BEZIER" else spline.points
+
+
+def _names(spline: bpy.types.Spline) -> tuple[str, ...]:
+    return ("co", "handle_left", "handle_right") if spline.type == "BEZIER" else ("co",)
+
+
+def _read(spline: bpy.types.Spline) -> tuple[np.ndarray, np.ndarray]:
+    points = _points(spline)
+    selected, hidden = np.empty((2, len(points)), bool)
+    is_bezier = spline.type == "BEZIER"
+    points.foreach_get("select_control_point" if is_bezier else "select", selected)
+    points.foreach_get("hide", hidden)
+    return _values(points, "co")[:, :3], selected & ~hidden
+
+
+def _move(spline: bpy.types.Spline, rows: np.ndarray, moves: np.ndarray) -> None:
+    points = _points(spline)
+    for name in _names(spline):
+        values = _values(points, name)
+        values[rows, :3] = values[rows, :3].astype(np.float64) + moves
+        points.foreach_set(name, values.ravel())
+    # Assigning one by one has Blender calculate the automatic handles of the whole spline.
+    points[0].co = points[0].co
+
+
+def _values(points: bpy.types.bpy_prop_collection, name: str) -> np.ndarray:
+    """(n, 3), or (n, 4) with weights."""
+    values = np.empty((len(points), len(getattr(points[0], name))), np.float32)
+    points.foreach_get(name, values.ravel())
+    return values

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is to be snapped in the mode that the user is in, and what cannot be."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple, Protocol
+
+import bpy
+
+from ..errors import RefusalError
+from .aim import Elements, Placement
+from .bones import SnappedBones
+from .choices import Choices, Outcome
+from .curve_points import SnappedCurvePoints
+from .hair import SnappedHair
+from .lattice_points import SnappedLatticePoints
+from .mesh_vertices import SnappedVertices
+from .objects import SnappedObjects
+from .surface import TargetSurface
+
+POINTS = {
+    "EDIT_MESH": SnappedVertices,
+    "EDIT_CURVE": SnappedCurvePoints,
+    "EDIT_SURFACE": SnappedCurvePoints,
+    "EDIT_LATTICE": SnappedLatticePoints,
+}
+HAIR_MODES = ("EDIT_CURVES", "SCULPT_CURVES")
+MODES = ("OBJECT", "EDIT_ARMATURE", *POINTS, *HAIR_MODES)
+_LINKED = "are linked from another file"
+
+
+class Snapped(Protocol):
+    noun: str  # plural
+    stores_location: bool
+
+    def elements(self) -> Elements: ...
+    def place(self, placement: Placement, choices: Choices) -> Outcome: ...
+
+
+class Selection(NamedTuple):
+    parts: list[Snapped]
+    failures: Counter[str]  # of whole objects
+
+
+def find_target(context: bpy.types.Context) -> bpy.types.Object | None:
+    if context.mode == "OBJECT":
+        return context.active_object
+    return context.scene.limit_surface.target
+
+
+def gather(context: bpy.types.Context, surface: TargetSurface) -> Selection:
+    selection = Selection([], Counter())
+    collect = _objects if context.mode == "OBJECT" else _edited
+    for make in collect(context, surface, selection.failures):
+        try:
+            selection.parts.append(make())
+        except RefusalError as error:
+            selection.failures[f"refused ({error})"] += 1
+    return selection
+
+
+def _objects(
+    context: bpy.types.Context, surface: TargetSurface, failures: Counter[str]
+) -> Iterator[Callable[[], Snapped]]:
+    target = surface.ob
+    carriers = set(_ancestors(target))
+    movable, curves = [], set()
+    for ob in context.selected_objects:
+        if ob == target:
+            continue
+        if ob in carriers:
+            failures[f"would take {target.name} along"] += 1
+        elif not (ob.data if ob.type == "CURVES" else ob).is_editable:
+            failures[_LINKED] += 1
+        elif ob.type != "CURVES":
+            movable.append(ob)
+        elif ob.data in curves:
+            failures["share their curves with others"] += 1
+        else:
+            curves.add(ob.data)
+            yield partial(SnappedHair, ob, surface, selected_only=False)
+    if movable:
+        yield partial(SnappedObjects, movable)
+
+
+def _edited(
+    context: bpy.types.Context, surface: TargetSurface, failures: Counter[str]
+) -> Iterator[Callable[[], Snapped]]:
+    mode = context.mode
+    for ob in context.objects_in_mode_unique_data:
+        if ob.data == surface.ob.data:
+            raise RefusalError(f"{ob.name} cannot be snapped to itself: choose another target")
+        if mode in HAIR_MODES:
+            yield partial(SnappedHair, ob, surface, selected_only=True)
+        elif mode == "EDIT_ARMATURE":
+            bones = SnappedBones(ob)
+            failures["are locked"] += bones.locked_count
+            yield lambda bones=bones: bones
+        else:
+            yield partial(POINTS[mode], ob)
+
+
+def _ancestors(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    while ob.parent:
+        ob = ob.parent
+        yield ob

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hair curves: their roots are put on the surface, and bound to it as new hair is."""
+
+import bpy
+import numpy as np
+
+from .. import attributes, ids
+from ..rotations import WorldSpace
+from .aim import Elements, Placement
+from .choices import Choices, Outcome
+from .hair_binding import HairBinding
+from .strands import Strands
+from .surface import TargetSurface, transformed
+from .turns import shortest, unit
+
+_SELECTION = ".selection"  # Blender's own; where it is missing all is selected
+_HANDLES = ("handle_left", "handle_right")  # of Bezier hair
+
+
+class SnappedHair:
+    """The strands of a Curves object: all, or in its own modes those that are selected."""
+
+    noun = "strands"
+    stores_location = True
+
+    def __init__(self, ob: bpy.types.Object, surface: TargetSurface, selected_only: bool) -> None:
+        self._ob = ob
+        self._matrix = np.array(ob.matrix_world, np.float64)
+        self._space = WorldSpace(self._matrix)
+        self._sizes = np.empty(len(ob.data.curves), np.int32)
+        ob.data.curves.foreach_get("points_length", self._sizes)
+        chosen = np.ones(len(self._sizes), bool)
+        if selected_only:
+            chosen = _selected(ob.data, self._sizes)
+        self._chosen = np.flatnonzero(chosen)
+        self._binding = HairBinding(ob.data, surface, is_whole=bool(chosen.all()))
+
+    def elements(self) -> Elements:
+        strands, _rows = self._strands(self._chosen)
+        axes = unit(self._matrix[:3, :3].T).T
+        return Elements(strands.points[strands.root], strands.directions(), axes)
+
+    def place(self, placement: Placement, choices: Choices) -> Outcome:
+        outcome = Outcome(self.noun)
+        curves = self._chosen[placement.rows]
+        strands, rows = self._strands(curves)
+        outcome.distances.append(
+            np.linalg.norm(placement.position - strands.points[strands.root], axis=1)
+        )
+        turn = self._turns(curves, strands, placement, choices.align, outcome)
+        self._move(strands, rows, placement, turn, choices)
+        outcome.notes += self._binding.write(curves, placement.face, placement.uv, self._matrix)
+        self._ob.data.update_tag()
+        return outcome
+
+    def _strands(self, curves: np.ndarray) -> tuple[Strands, np.ndarray]:
+        """In world space, and the rows of their points."""
+        taken = np.zeros(len(self._sizes), bool)
+        taken[curves] = True
+        rows = np.flatnonzero(np.repeat(taken, self._sizes))
+        points = attributes.read(self._ob.data, ids.POSITION)[rows].astype(np.float64)
+        return Strands(transformed(self._matrix, points), self._sizes[curves]), rows
+
+    def _turns(
+        self,
+        curves: np.ndarray,
+        strands: Strands,
+        placement: Placement,
+        align: str,
+        outcome: Outcome,
+    ) -> np.ndarray:
+        """(m, 3, 3) in world space."""
+        if align == "NONE":
+            return np.broadcast_to(np.eye(3), (len(curves), 3, 3))
+        turn = shortest(strands.directions(), placement.frame[:, :, 2])
+        if align == "NORMAL_DU":
+            bound, rest = self._binding.rest_frames(curves)
+            place = self._binding.places(placement.face, placement.uv, self._matrix)
+            old, new = (self._space.frames(frame[bound]) for frame in (rest, place.frame))
+            turn[bound] = new @ np.swapaxes(old, 1, 2)
+            if not bound.all():
+                outcome.notes.append(
+                    f"{np.count_nonzero(~bound):,} strands that were on no surface were turned to "
+                    "the normal alone"
+                )
+        return turn
+
+    def _move(
+        self,
+        strands: Strands,
+        rows: np.ndarray,
+        placement: Placement,
+        turn: np.ndarray,
+        choices: Choices,
+    ) -> None:
+        weights = strands.weights(choices.hair)
+        moves = strands.moves(strands.points, placement.position, turn, weights)
+        regained = np.zeros_like(moves)
+        if choices.keep_length and choices.hair != "STRAND":
+            moved = strands.points + moves
+            regained = strands.restored_lengths(moved) - moved
+        for name in _HANDLES:
+            if name in self._ob.data.attributes:
+                handles = attributes.read(self._ob.data, name).astype(np.float64)
+                own = transformed(self._matrix, handles[rows])
+                own_moves = strands.moves(own, placement.position, turn, weights)
+                handles[rows] += self._space.to_local(own_moves + regained)
+                attributes.write(self._ob.data, name, "FLOAT_VECTOR", "POINT", handles)
+
+        points = attributes.read(self._ob.data, ids.POSITION).astype(np.float64)
+        points[rows] += self._space.to_local(moves + regained)
+        # Exactly where the stored locations say, to the bit.
+        bound = self._binding.places(placement.face, placement.uv, self._matrix).position
+        off = placement.position - transformed(self._matrix, bound)
+        points[rows[strands.root]] = bound + self._space.to_local(off)
+        attributes.write(self._ob.data, ids.POSITION, "FLOAT_VECTOR", "POINT", points)
+
+
+def _selected(data: bpy.types.Curves, sizes: np.ndarray) -> np.ndarray:
+    """(m,) whether anything of each curve is."""
+    if _SELECTION not in data.attributes:
+        return np.ones(len(sizes), bool)
+    selected = attributes.read(data, _SELECTION) > 0
+    if data.attributes[_SELECTION].domain == "CURVE":
+        return selected
+    return np.logical_or.reduceat(selected, np.cumsum(sizes) - sizes)

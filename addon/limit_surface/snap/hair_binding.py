@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What snapped hair stores of its places: the same as new hair does."""
+
+import bpy
+import numpy as np
+
+from .. import attributes, ids
+from ..errors import RefusalError
+from ..rotations import quaternions
+from .surface import Places, TargetSurface
+from .turns import matrices
+
+_KINDS = {
+    ids.FACE: "INT",
+    ids.UV: "FLOAT2",
+    ids.REST_ROOT: "FLOAT_VECTOR",
+    ids.REST_ROTATION: "QUATERNION",
+    ids.SURFACE_UV: "FLOAT2",
+}
+NOWHERE = -1  # the face of strands that were never on a surface
+
+
+class HairBinding:
+    """`is_whole`: all strands of the hair are snapped, so that it can change to another surface."""
+
+    def __init__(self, data: bpy.types.Curves, surface: TargetSurface, is_whole: bool) -> None:
+        self._data, self._surface, self._is_whole = data, surface, is_whole
+        for name, kind in _KINDS.items():
+            attribute = data.attributes.get(name)
+            if attribute and (attribute.data_type, attribute.domain) != (kind, "CURVE"):
+                raise RefusalError(f"{data.name}: the attribute {name} exists as another kind")
+        if not is_whole and data.surface not in (None, surface.ob):
+            raise RefusalError(
+                f"{data.name} is hair of {data.surface.name}: select all its strands to have it on "
+                f"{surface.ob.name}"
+            )
+
+    def places(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> Places:
+        return self._surface.places(face, uv, space)
+
+    def rest_frames(self, curves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Which of the curves are on a surface already, and the frames (m, 3, 3) there."""
+        if not {ids.FACE, ids.REST_ROTATION} <= set(self._data.attributes.keys()):
+            return np.zeros(len(curves), bool), np.tile(np.eye(3), (len(curves), 1, 1))
+        rotation = attributes.read(self._data, ids.REST_ROTATION)[curves].astype(np.float64)
+        bound = attributes.read(self._data, ids.FACE)[curves] != NOWHERE
+        return bound, matrices(rotation)
+
+    def write(
+        self, curves: np.ndarray, face: np.ndarray, uv: np.ndarray, space: np.ndarray
+    ) -> list[str]:
+        """What is worth knowing about it."""
+        places = self.places(face, uv, space)
+        self._store(ids.FACE, NOWHERE, curves, face)
+        self._store(ids.UV, 0, curves, uv)
+        self._store(ids.REST_ROOT, 0, curves, places.position)
+        self._store(ids.REST_ROTATION, (1, 0, 0, 0), curves, quaternions(places.frame))
+        self._data.surface = self._surface.ob
+        without = self._why_no_uvs()
+        if without:
+            return [f"no UVs stored: {without}"]
+        self._data.surface_uv_map = self._surface.cage.uv_map.name
+        self._store(ids.SURFACE_UV, 0, curves, self._surface.surface_uv(face, uv))
+        return []
+
+    def _why_no_uvs(self) -> str:
+        found = self._surface.cage.uv_map
+        if found is None:
+            return self._surface.cage.without_uv_map or f"{self._surface.ob.name} has no UV map"
+        used = self._data.surface_uv_map
+        if not self._is_whole and used not in ("", found.name):
+            return f"the other strands are on the UV map {used}, and {found.name} is active"
+        return ""
+
+    def _store(
+        self, name: str, nothing: float | tuple[float, ...], curves: np.ndarray, values: np.ndarray
+    ) -> None:
+        kind = _KINDS[name]
+        if name in self._data.attributes:
+            stored = attributes.read(self._data, name)
+        else:
+            stored = np.empty((len(self._data.curves), *np.shape(values)[1:]))
+            stored[:] = nothing
+        stored[curves] = values
+        attributes.write(self._data, name, kind, "CURVE", stored)

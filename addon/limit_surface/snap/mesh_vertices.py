@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Vertices of meshes in Edit Mode.
+
+Arrays reach a mesh only outside Edit Mode, so it is left for a moment; what its vertices' moves
+mean for shape keys is done as Blender does it when it leaves that mode.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bmesh
+import bpy
+import numpy as np
+
+from .element_points import SnappedPoints
+
+
+class SnappedVertices(SnappedPoints):
+    noun = "vertices"
+
+    def read(self) -> tuple[np.ndarray, np.ndarray]:
+        mesh = bpy.data.meshes.new("Edited")
+        try:
+            bmesh.from_edit_mesh(self.ob.data).to_mesh(mesh)
+            points, normals = np.empty((2, len(mesh.vertices), 3), np.float32)
+            selected, hidden = np.empty((2, len(mesh.vertices)), bool)
+            mesh.vertices.foreach_get("co", points.ravel())
+            mesh.vertices.foreach_get("normal", normals.ravel())
+            mesh.vertices.foreach_get("select", selected)
+            mesh.vertices.foreach_get("hide", hidden)
+        finally:
+            bpy.data.meshes.remove(mesh)
+        self._normals = normals.astype(np.float64)
+        return points, selected & ~hidden
+
+    def normals(self, rows: np.ndarray) -> np.ndarray:
+        return self.normals_in_world(self._normals[rows])
+
+    def move(self, rows: np.ndarray, moves: np.ndarray) -> None:
+        with _outside_edit_mode():
+            mesh, key = self.ob.data, self.ob.active_shape_key
+            if key is None:
+                _add(mesh.vertices, rows, moves)
+            else:
+                blocks = mesh.shape_keys.key_blocks
+                for block in (key, *_dependent(key, blocks)):
+                    _add(block.data, rows, moves)
+                if key == mesh.shape_keys.reference_key:
+                    _add(mesh.vertices, rows, moves)
+            mesh.update()
+
+
+def _add(points: bpy.types.bpy_prop_collection, rows: np.ndarray, moves: np.ndarray) -> None:
+    values = np.empty((len(points), 3), np.float32)
+    points.foreach_get("co", values.ravel())
+    values[rows] = values[rows].astype(np.float64) + moves
+    points.foreach_set("co", values.ravel())
+
+
+def _dependent(
+    key: bpy.types.ShapeKey, blocks: bpy.types.bpy_prop_collection
+) -> list[bpy.types.ShapeKey]:
+    """Keys that are relative to this one, or to one that is: they move along with it."""
+    found: list[bpy.types.ShapeKey] = []
+    pending = [key]
+    while pending:
+        basis = pending.pop()
+        relative = [
+            block
+            for block in blocks
+            if block.relative_key == basis and block != key and block not in found
+        ]
+        found += relative
+        pending += relative
+    return found
+
+
+@contextmanager
+def _outside_edit_mode() -> Iterator[None]:
+    context = bpy.context
+    edited = list(context.objects_in_mode)
+    selected = {ob: ob.select_get() for ob in context.view_layer.objects}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        yield
+    finally:
+        for ob in selected:
+            ob.select_set(ob in edited)
+        bpy.ops.object.mode_set(mode="EDIT")
+        for ob, was_selected in selected.items():
+            ob.select_set(was_selected)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One object moved to a place in the world through its own location and rotation.
+
+Scale, delta transforms and parents stay what they are. What else has a say (locks, constraints,
+drivers) shows when Blender has evaluated the object again: `finish` looks where it stands then, and
+puts everything back if that is somewhere else.
+"""
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from .turns import shortest, unit
+
+# Blender's matrices are in single precision: of the largest coordinate, and an angle
+ELSEWHERE = 1e-5
+ASKEW = 1e-3
+
+_ROTATIONS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
+_LOCKED_TOGETHER = {"rotation_quaternion", "rotation_axis_angle"}
+
+
+class ObjectMove:
+    def __init__(
+        self, ob: bpy.types.Object, position: np.ndarray, frame: np.ndarray, align: str
+    ) -> None:
+        self._ob, self._position, self._frame, self._align = ob, position, frame, align
+        self._before = _array(ob.matrix_world)
+        self._rotation = _ROTATIONS.get(ob.rotation_mode, "rotation_euler")
+        self._kept = {name: getattr(ob, name).copy() for name in ("location", self._rotation)}
+
+    @property
+    def distance(self) -> float:
+        return float(np.linalg.norm(self._position - self._before[:3, 3]))
+
+    def begin(self) -> None:
+        ob = self._ob
+        basis = _array(ob.matrix_basis)[:3, :3]
+        parent = self._before[:3, :3] @ np.linalg.pinv(basis) if ob.parent else np.eye(3)
+        into_parent = np.linalg.pinv(parent)
+        move = into_parent @ (self._position - self._before[:3, 3])
+        ob.location = np.add(ob.location, move)
+        scale = np.multiply(ob.scale, ob.delta_scale)
+        if self._align != "NONE" and scale.all():
+            rotation = basis / scale
+            wanted = self._turned(rotation, into_parent @ self._frame, np.sign(scale))
+            self._rotate(np.linalg.solve(rotation, wanted))
+
+    def finish(self) -> str:
+        """Once Blender has evaluated the object: why it is not where it should be, if so."""
+        reason = self._obstacle()
+        if reason:
+            for name, value in self._kept.items():
+                setattr(self._ob, name, value)
+        return reason
+
+    def matrix_of_move(self) -> np.ndarray:
+        """From where the object was to where it is, in world space."""
+        return _array(self._ob.matrix_world) @ np.linalg.pinv(self._before)
+
+    def _turned(self, rotation: np.ndarray, frame: np.ndarray, sign: np.ndarray) -> np.ndarray:
+        """The rotation that has the object's Z along the normal, all in its parent's space."""
+        normal = unit(frame[:, 2])
+        if self._align == "NORMAL":
+            return shortest((sign[2] * rotation[:, 2])[None], normal[None])[0] @ rotation
+        z = sign[2] * normal
+        x = sign[0] * unit(frame[:, 0] - (frame[:, 0] @ normal) * normal)
+        return np.stack([x, np.cross(z, x), z], axis=1)
+
+    def _rotate(self, turn: np.ndarray) -> None:
+        """In the space of the object's rotation, which delta rotations come after."""
+        ob = self._ob
+        was = getattr(ob, self._rotation)
+        if self._rotation == "rotation_euler":
+            turned = was.to_matrix() @ Matrix(turn)
+            ob.rotation_euler = turned.to_euler(ob.rotation_mode, was)
+        elif self._rotation == "rotation_quaternion":
+            turned = (was.normalized().to_matrix() @ Matrix(turn)).to_quaternion()
+            turned.make_compatible(was)
+            ob.rotation_quaternion = turned
+        else:
+            angle, *axis = was
+            turned = Matrix.Rotation(angle, 3, axis) @ Matrix(turn)
+            axis, angle = turned.to_quaternion().to_axis_angle()
+            ob.rotation_axis_angle = (angle, *axis)
+
+    def _obstacle(self) -> str:
+        if self._changes_what_is_locked():
+            return "are locked"
+        now = _array(self._ob.matrix_world)
+        size = max(np.abs(self._position).max(), np.abs(self._before[:3, 3]).max())
+        if not np.abs(now[:3, 3] - self._position).max() <= ELSEWHERE * size:
+            return "are held elsewhere by constraints or drivers"
+        if self._align != "NONE":
+            askew = np.cross(unit(now[:3, 2]), self._frame[:, 2])
+            if not np.linalg.norm(askew) <= ASKEW:
+                return "cannot be turned to the normal"
+        return ""
+
+    def _changes_what_is_locked(self) -> bool:
+        locks = {"location": self._ob.lock_location}
+        if self._align != "NONE":
+            locks[self._rotation] = self._rotation_locks()
+        for name, lock in locks.items():
+            old, new = (np.array(value) for value in (self._kept[name], getattr(self._ob, name)))
+            size = max(np.abs(old).max(), np.abs(new).max())
+            if (np.abs(new - old) > ELSEWHERE * size)[np.array(lock)].any():
+                return True
+        return False
+
+    def _rotation_locks(self) -> list[bool]:
+        locks = list(self._ob.lock_rotation)
+        if self._rotation in _LOCKED_TOGETHER:
+            return [self._ob.lock_rotation_w, *locks]
+        return locks
+
+
+def _array(matrix: Matrix) -> np.ndarray:
+    return np.array(matrix, np.float64)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whole objects: their origins are put on the surface, and their Z along its normal."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from .aim import Elements, Placement
+from .choices import Choices, Outcome
+from .object_move import ELSEWHERE, ObjectMove
+from .turns import unit
+
+_NOTHING_BETWEEN = ("OBJECT", "ARMATURE", "LATTICE")  # the parent's own matrix is what counts
+
+
+class SnappedObjects:
+    noun = "objects"
+    stores_location = False
+
+    def __init__(self, objects: list[bpy.types.Object]) -> None:
+        self._objects = objects
+
+    def elements(self) -> Elements:
+        matrix = np.array([ob.matrix_world for ob in self._objects], np.float64)
+        axes = np.swapaxes(unit(np.swapaxes(matrix[:, :3, :3], 1, 2)), 1, 2)
+        return Elements(matrix[:, :3, 3], axes[:, :, 2], axes)
+
+    def place(self, placement: Placement, choices: Choices) -> Outcome:
+        """Parents before their children, which can then be seen from where those have gone."""
+        objects = [self._objects[row] for row in placement.rows]
+        children = _children() if choices.keep_children else {}
+        depths = np.array([_depth(ob) for ob in objects], int)
+        outcome = Outcome(self.noun)
+        unkept = 0
+        for depth in np.unique(depths):
+            moves = {}
+            for i in np.flatnonzero(depths == depth):
+                move = ObjectMove(
+                    objects[i], placement.position[i], placement.frame[i], choices.align
+                )
+                moves[move] = [_KeptChild(child) for child in children.get(objects[i], ())]
+            for move in moves:
+                move.begin()
+            bpy.context.view_layer.update()
+            for move, kept in moves.items():
+                reason = move.finish()
+                if reason:
+                    outcome.failures[reason] += 1
+                    continue
+                outcome.distances.append(np.array([move.distance]))
+                for child in kept:
+                    child.hold(move.matrix_of_move())
+            bpy.context.view_layer.update()
+            unkept += sum(not child.is_in_place() for kept in moves.values() for child in kept)
+        if unkept:
+            outcome.notes.append(f"{unkept:,} children could not be kept in place")
+        return outcome
+
+
+class _KeptChild:
+    """Kept in place by its parent inverse: its own transform may be locked or animated."""
+
+    def __init__(self, ob: bpy.types.Object) -> None:
+        self._ob = ob
+        self._before = np.array(ob.matrix_world, np.float64)
+        self._parent = np.array(ob.parent.matrix_world, np.float64)
+
+    def hold(self, move_of_parent: np.ndarray) -> None:
+        ob, parent = self._ob, self._parent
+        inverse = np.array(ob.matrix_parent_inverse, np.float64)
+        if ob.parent_type not in _NOTHING_BETWEEN:
+            own = inverse @ np.array(ob.matrix_basis, np.float64)
+            parent = self._before @ np.linalg.pinv(own)
+        back = np.linalg.pinv(move_of_parent @ parent) @ parent
+        ob.matrix_parent_inverse = Matrix(back @ inverse)
+
+    def is_in_place(self) -> bool:
+        now = np.array(self._ob.matrix_world, np.float64)
+        return np.abs(now - self._before).max() <= ELSEWHERE * np.abs(self._before).max()
+
+
+def _depth(ob: bpy.types.Object) -> int:
+    return 1 + _depth(ob.parent) if ob.parent else 0
+
+
+def _children() -> dict[bpy.types.Object, list[bpy.types.Object]]:
+    found = {}
+    for ob in bpy.data.objects:
+        if ob.parent:
+            found.setdefault(ob.parent, []).append(ob)
+    return found

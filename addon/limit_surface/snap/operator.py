@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_snap."""
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
+
+from .. import ids, native
+from ..errors import RefusalError
+from ..progress import progress_bar
+from .aim import Aim, View
+from .choices import Choices, Outcome, merged
+from .gather import HAIR_MODES, MODES, find_target, gather
+from .surface import TargetSurface
+
+
+class OBJECT_OT_limit_snap(bpy.types.Operator):
+    """Snap to the exact limit surface: selected objects and hair to that of the active mesh, or
+    outside Object Mode what is selected to that of the target chosen in the tab Limit"""
+
+    bl_idname = ids.SNAP
+    bl_label = "Snap to Limit Surface"
+    bl_options = {"REGISTER", "UNDO"}
+
+    mode: EnumProperty(
+        name="Mode",
+        description="Where on the surface things go",
+        items=(
+            ("NEAREST", "Nearest", "To the closest point in world space", 0),
+            ("AXIS", "Axis", "Along an axis", 1),
+            (
+                "NORMAL",
+                "Own Normal",
+                "Along each element's own direction: an object's Z, a vertex's normal, a strand's "
+                "direction at its root, a bone's direction; the object's Z for other points",
+                2,
+            ),
+        ),
+    )
+    axis: EnumProperty(
+        name="Axis",
+        description="The axis to move along",
+        items=tuple((name, name, "", i) for i, name in enumerate("XYZ")),
+        default="Z",
+    )
+    orientation: EnumProperty(
+        name="Orientation",
+        description="Whose axis it is",
+        items=(
+            ("GLOBAL", "Global", "The world's", 0),
+            ("LOCAL", "Local", "The object's own, or that of each bone", 1),
+            ("VIEW", "View", "The 3D viewport's; Z is the line of sight through each element", 2),
+        ),
+    )
+    direction: EnumProperty(
+        name="Direction",
+        description="Which way along the axis or normal to look for the surface",
+        items=(
+            ("BOTH", "Both", "To whichever point is closer", 0),
+            ("POSITIVE", "Positive", "Along it", 1),
+            ("NEGATIVE", "Negative", "Against it", 2),
+        ),
+    )
+    max_distance: FloatProperty(
+        name="Maximum Distance",
+        description="What is further from the surface stays where it is; 0 sets no limit",
+        default=0.0,
+        min=0.0,
+        subtype="DISTANCE",
+    )
+    use_facing: BoolProperty(
+        name="Facing",
+        description="Only to places where the surface's normal is close to the element's own: not "
+        "through thin sheets to the other side",
+        default=False,
+    )
+    max_angle: FloatProperty(
+        name="Maximum Angle",
+        description="Between the surface's normal and the element's own",
+        default=np.pi / 2,
+        min=0.0,
+        max=np.pi,
+        subtype="ANGLE",
+    )
+    offset: FloatProperty(
+        name="Offset",
+        description="Distance from the surface along its normal, in world units",
+        default=0.0,
+        subtype="DISTANCE",
+    )
+    align: EnumProperty(
+        name="Align",
+        description="Rotation of objects, strands and bones",
+        items=(
+            ("NONE", "None", "As it is", 0),
+            ("NORMAL", "Normal", "Turned to the surface's normal by the smallest angle", 1),
+            (
+                "NORMAL_DU",
+                "Normal and U",
+                "To the normal, and X along growing u of the face. Strands that are on a surface "
+                "already turn as much as its frame does",
+                2,
+            ),
+        ),
+    )
+    children: EnumProperty(
+        name="Children",
+        description="Those of the objects that move",
+        items=(
+            ("MOVE", "Move", "They come along", 0),
+            ("KEEP", "Keep", "They stay where they are", 1),
+        ),
+    )
+    hair: EnumProperty(
+        name="Hair",
+        description="What of a strand moves",
+        items=(
+            ("ROOT", "Root", "The root alone", 0),
+            ("STRAND", "Strand", "All of it", 1),
+            ("BLEND", "Blend", "The root fully, the tip not at all", 2),
+        ),
+        default="STRAND",
+    )
+    keep_length: BoolProperty(
+        name="Keep Length",
+        description="Strands keep their length, and that of each of their segments",
+        default=False,
+    )
+    target: EnumProperty(
+        name="Put On",
+        description="The surface is searched in any case; things can be put at the same place of "
+        "the polygons that are shown instead",
+        items=(
+            ("LIMIT", "Limit Surface", "The exact surface", 0),
+            ("VIEWPORT", "Viewport Mesh", "The polygons that the viewport shows", 1),
+            ("RENDER", "Render Mesh", "The polygons that are rendered", 2),
+        ),
+    )
+    view_matrix: FloatVectorProperty(
+        name="View Matrix",
+        description="From world to view, for the view's axes; the 3D viewport's if it is not set",
+        size=16,
+        subtype="MATRIX",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    view_is_perspective: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+    summary: StringProperty(
+        name="Result",
+        description="What the operator did",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = _obstacle(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
+        try:
+            return self._run(context)
+        except (RefusalError, *native.errors) as error:
+            self.report({"ERROR"}, str(error))
+        except MemoryError:
+            self.report({"ERROR"}, "Not enough memory for so much")
+        return {"CANCELLED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "mode")
+        if self.mode == "AXIS":
+            layout.prop(self, "axis", expand=True)
+            layout.prop(self, "orientation")
+        if self.mode != "NEAREST":
+            layout.prop(self, "direction")
+        layout.prop(self, "max_distance")
+        if self.mode == "NEAREST":
+            layout.prop(self, "use_facing")
+            row = layout.row()
+            row.active = self.use_facing
+            row.prop(self, "max_angle")
+        layout.prop(self, "offset")
+        layout.prop(self, "align")
+        if context.mode == "OBJECT":
+            layout.prop(self, "children")
+        if context.mode in ("OBJECT", *HAIR_MODES):
+            layout.prop(self, "hair")
+            row = layout.row()
+            row.active = self.hair != "STRAND"
+            row.prop(self, "keep_length")
+        layout.prop(self, "target")
+        if self.summary:
+            layout.label(text=self.summary, icon="INFO")
+
+    def _run(self, context: bpy.types.Context) -> set[str]:
+        aim = self._aim(context)
+        choices = Choices(self.align, self.children == "KEEP", self.hair, self.keep_length)
+        surface = TargetSurface(
+            find_target(context), context.evaluated_depsgraph_get(), self.target
+        )
+        selection = gather(context, surface)
+        parts = selection.parts
+        with progress_bar(context.window_manager) as progress:
+            placements = [
+                aim.place(
+                    surface,
+                    part.elements(),
+                    part.stores_location,
+                    lambda done, i=i: progress((i + done) / len(parts)),
+                )
+                for i, part in enumerate(parts)
+            ]
+        outcomes = [Outcome("objects", failures=+selection.failures)]
+        for part, placement in zip(parts, placements, strict=True):
+            placed = len(placement.rows) > 0
+            outcome = part.place(placement, choices) if placed else Outcome(part.noun)
+            outcome.failures += placement.failures
+            outcomes.append(outcome)
+        return self._report(surface, merged(outcomes))
+
+    def _aim(self, context: bpy.types.Context) -> Aim:
+        by_view = self.mode == "AXIS" and self.orientation == "VIEW"
+        return Aim(
+            mode=self.mode,
+            axis="XYZ".index(self.axis),
+            orientation=self.orientation,
+            direction=self.direction,
+            max_distance=self.max_distance or np.inf,
+            max_angle=self.max_angle if self.use_facing else None,
+            offset=self.offset,
+            view=self._view(context) if by_view else None,
+        )
+
+    def _view(self, context: bpy.types.Context) -> View:
+        region = context.region_data
+        if not np.any(self.view_matrix) and region is not None:
+            self.view_matrix = region.view_matrix
+            self.view_is_perspective = region.is_perspective
+        if not np.any(self.view_matrix):
+            raise RefusalError("There is no 3D viewport whose axes could be meant")
+        matrix = np.linalg.inv(np.array(self.view_matrix, np.float64))
+        return View(matrix[:3, :3], matrix[:3, 3] if self.view_is_perspective else None)
+
+    def _report(self, surface: TargetSurface, outcomes: list[Outcome]) -> set[str]:
+        failed = [
+            f"{outcome.failed:,} {outcome.noun} not snapped: {outcome.reasons()}"
+            for outcome in outcomes
+            if outcome.failed
+        ]
+        done = [str(outcome) for outcome in outcomes if outcome.placed]
+        if not done:
+            raise RefusalError("; ".join(failed) or "Nothing is selected that could be snapped")
+        self.summary = "; ".join(done)
+        if failed:
+            self.report({"WARNING"}, "; ".join(failed))
+        found = surface.cage
+        notes = [f"{self.summary} (to {surface.ob.name})", str(found.rules)]
+        if found.ignored:
+            notes.append(f"ignored behind {found.rules.subsurf}: {', '.join(found.ignored)}")
+        notes += [note for outcome in outcomes for note in outcome.notes]
+        self.report({"INFO"}, "; ".join(notes))
+        return {"FINISHED"}
+
+
+def _obstacle(context: bpy.types.Context) -> str:
+    """Why there is nothing to do, if so."""
+    if not native.available():
+        return f"The native module does not load: {native.reason}"
+    if context.mode not in MODES:
+        return "Not in this mode"
+    target = find_target(context)
+    if context.mode == "OBJECT":
+        if target is None or target.type != "MESH":
+            return "Make the mesh to snap to active, and select what is to be snapped besides"
+        if all(ob == target for ob in context.selected_objects):
+            return "Select what is to be snapped besides the active mesh"
+    elif target is None:
+        return "Choose a target in the tab Limit"
+    elif target.type != "MESH":
+        return "The target in the tab Limit is not a mesh"
+    return ""

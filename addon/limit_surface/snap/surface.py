@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The limit surface that things are snapped to, as it stands in the world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import bpy
+import numpy as np
+
+from .. import cage, displayed, native
+from ..errors import RefusalError
+from ..rotations import WorldSpace
+
+if TYPE_CHECKING:
+    import limitsurf
+
+
+class Places(NamedTuple):
+    position: np.ndarray  # (n, 3)
+    frame: np.ndarray  # (n, 3, 3) rotations: columns tangent, normal x tangent, outward normal
+
+
+class TargetSurface:
+    """Queries are made on the surface of the cage's world-space positions: closest and at right
+    angles mean something else in the space of a stretched object, and subdivision does not mind."""
+
+    def __init__(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: str) -> None:
+        self.ob = ob
+        self.cage = cage.read(ob, depsgraph)
+        WorldSpace(self.cage.matrix)  # refuses what is flattened to nothing
+        self._in_world = native.limitsurf.LimitSurface(self.cage.mesh)
+        if len(self._in_world.refused) == len(self.cage.face_sizes):
+            raise RefusalError(f"No face of {ob.name} has a limit surface")
+        self._in_world.set_positions(transformed(self.cage.matrix, self.cage.mesh.positions))
+        self._in_object = native.limitsurf.LimitSurface(self.cage.mesh)
+        self._shown = None if kind == "LIMIT" else displayed.read(ob, depsgraph, self.cage, kind)
+        # du x dv points inwards in the world if the object is mirrored there.
+        self.outward = np.sign(np.linalg.det(self.cage.matrix[:3, :3]))
+
+    @property
+    def in_world(self) -> limitsurf.LimitSurface:
+        return self._in_world
+
+    def size(self) -> float:
+        """Of the largest coordinate that positions in the world are calculated with."""
+        return float(np.abs(self._in_world.positions).max())
+
+    def places(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> Places:
+        """Where things are put, in the space that the matrix `space` leads from to the world.
+
+        Frames are the limit surface's even on polygons, which would have kinks between them.
+        """
+        surface = self._in_object
+        position = self._positions(face, uv)
+        frame = surface.frames(face, uv)
+        if np.array_equal(space, self.cage.matrix):
+            return Places(position, frame)
+        relation = np.linalg.solve(space, self.cage.matrix)
+        seen = WorldSpace(relation).frames(frame)
+        seen[:, :, 1] = np.cross(seen[:, :, 2], seen[:, :, 0])
+        return Places(transformed(relation, position), seen)
+
+    def surface_uv(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray | None:
+        """On the UV map of the mesh that the viewport shows, as new hair stores it."""
+        found = self.cage.uv_map
+        if found is None:
+            return None
+        shown = self._in_object.face_varying(
+            found.values, found.indices, self.cage.shown_uv_interpolation
+        )
+        return shown.evaluate(face, uv).value
+
+    def _positions(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
+        if self._shown is None:
+            return self._in_object.evaluate(face, uv).position
+        return self._shown.positions(face, uv)
+
+
+def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
