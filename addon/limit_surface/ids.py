@@ -10,6 +10,7 @@ REPORT_OPERATOR = "object.limit_report"
 
 PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
+SNAP_PANEL = "VIEW3D_PT_limit_snap"
 OBJECT_MENU = "VIEW3D_MT_object_limit_surface"
 
 # Attributes of generated curves and points

@@ -32,7 +32,7 @@ def _least_aligned_axis(vectors: np.ndarray) -> np.ndarray:
 
 
 def matrices(quaternions: np.ndarray) -> np.ndarray:
-    """Rotations (n, 3, 3) of unit quaternions (n, 4), w x y z: the columns are where the axes go."""
+    """Rotations (n, 3, 3) of unit quaternions (n, 4), w x y z."""
     w, axis = quaternions[:, None, :1], quaternions[:, None, 1:]
     across = np.cross(axis, np.eye(3))
     return np.swapaxes(np.eye(3) + 2 * (w * across + np.cross(axis, across)), 1, 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries in Blender's own menus: Add > Curve, and Object > Limit Surface."""
+"""Entries in Blender's own menus: Add > Curve, Object > Limit Surface, and where things snap."""
 
 import bpy
 
@@ -13,6 +13,7 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
     def draw(self, _context: bpy.types.Context) -> None:
         self.layout.operator(ids.HAIR_ADD, icon="CURVES")
         self.layout.operator(ids.POINTS_ADD, icon="POINTCLOUD_DATA")
+        self.layout.operator(ids.SNAP, icon="SNAP_ON")
         self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
 
 
@@ -26,9 +27,17 @@ def _draw_in_object(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.menu(ids.OBJECT_MENU)
 
 
+def _draw_in_snap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.operator(ids.SNAP, text="Selection to Limit Surface")
+
+
 _ENTRIES = (
     (bpy.types.VIEW3D_MT_curve_add, _draw_in_add_curve),
     (bpy.types.VIEW3D_MT_object, _draw_in_object),
+    (bpy.types.VIEW3D_MT_snap, _draw_in_snap),
+    (bpy.types.VIEW3D_MT_edit_curves, _draw_in_snap),
+    (bpy.types.VIEW3D_MT_sculpt_curves, _draw_in_snap),
 )
 
 

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The part of the sidebar tab that snaps, and chooses the target for it."""
+
+import bpy
+
+from .. import ids, native
+from .gather import find_target
+
+
+class VIEW3D_PT_limit_snap(bpy.types.Panel):
+    bl_idname = ids.SNAP_PANEL
+    bl_label = "Snap"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = ids.TAB
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(context.scene.limit_surface, "target")
+        if context.mode == "OBJECT":
+            target = find_target(context)
+            is_mesh = target is not None and target.type == "MESH"
+            layout.label(
+                text=f"Now to the active mesh: {target.name}" if is_mesh else "No active mesh",
+                icon="INFO",
+            )
+        row = layout.row()
+        row.enabled = native.available()
+        row.operator(ids.SNAP, icon="SNAP_ON")
