@@ -47,6 +47,10 @@ class DisplayedMesh:
         """(n,) the vertices at locations where there is one."""
         return self.quads.vertices_at(*self._find(face, uv))
 
+    def are_flipped(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
+        """(n,) whether the polygons there are cut from their second corner to the last."""
+        return self.quads.flipped[self._find(face, uv)[0]]
+
     def _find(self, face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         face, uv = np.asarray(face), np.asarray(uv, np.float64)
         return self._finder.find(face, uv) if self._finder else (face, uv)
