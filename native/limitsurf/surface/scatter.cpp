@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <stdexcept>
 
+#include "limitsurf/random_bits.h"
 #include "limitsurf/surface/limit_surface_data.h"
 
 namespace limitsurf {
 namespace {
 
-/// SplitMix64's output function (Steele, Lea, Flood 2014): random bits by counter, so that a sample
-/// depends on its seed and number alone.
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
 /// More than any machine's memory holds today.
 constexpr std::size_t kMostLocations = std::size_t{1} << 40;
-
-/// Uniform in [0, 1).
-double uniform(std::uint64_t bits) { return std::ldexp(static_cast<double>(bits >> 11), -53); }
 
 }  // namespace
 
@@ -51,8 +39,8 @@ std::vector<Location> LimitSurface::scatterJittered(int per_side, std::uint64_t 
       const int face = faces[i / per_face];
       const std::uint64_t number = static_cast<std::uint64_t>(face) * per_face + cell;
       const std::uint64_t bits = mixed(key ^ mixed(number));
-      const double u = (static_cast<double>(cell % side) + uniform(bits)) / per_side;
-      const double v = (static_cast<double>(cell / side) + uniform(mixed(bits))) / per_side;
+      const double u = (static_cast<double>(cell % side) + uniformIn01(bits)) / per_side;
+      const double v = (static_cast<double>(cell / side) + uniformIn01(mixed(bits))) / per_side;
       result[i] = {face, std::min(u, 1.), std::min(v, 1.)};
     }
   });
