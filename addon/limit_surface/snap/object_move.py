@@ -27,7 +27,7 @@ class ObjectMove:
         self._ob, self._position, self._frame, self._align = ob, position, frame, align
         self._before = _array(ob.matrix_world)
         self._rotation = _ROTATIONS.get(ob.rotation_mode, "rotation_euler")
-        self._kept = {name: getattr(ob, name).copy() for name in ("location", self._rotation)}
+        self._kept = {name: tuple(getattr(ob, name)) for name in ("location", self._rotation)}
 
     @property
     def distance(self) -> float:
@@ -53,10 +53,6 @@ class ObjectMove:
             for name, value in self._kept.items():
                 setattr(self._ob, name, value)
         return reason
-
-    def matrix_of_move(self) -> np.ndarray:
-        """From where the object was to where it is, in world space."""
-        return _array(self._ob.matrix_world) @ np.linalg.pinv(self._before)
 
     def _turned(self, rotation: np.ndarray, frame: np.ndarray, sign: np.ndarray) -> np.ndarray:
         """The rotation that has the object's Z along the normal, all in its parent's space."""

@@ -49,7 +49,7 @@ class SnappedObjects:
                     continue
                 outcome.distances.append(np.array([move.distance]))
                 for child in kept:
-                    child.hold(move.matrix_of_move())
+                    child.hold()
             bpy.context.view_layer.update()
             unkept += sum(not child.is_in_place() for kept in moves.values() for child in kept)
         if unkept:
@@ -62,21 +62,27 @@ class _KeptChild:
 
     def __init__(self, ob: bpy.types.Object) -> None:
         self._ob = ob
-        self._before = np.array(ob.matrix_world, np.float64)
-        self._parent = np.array(ob.parent.matrix_world, np.float64)
+        self._before = _array(ob.matrix_world)
+        self._parent = _array(ob.parent.matrix_world)
 
-    def hold(self, move_of_parent: np.ndarray) -> None:
-        ob, parent = self._ob, self._parent
-        inverse = np.array(ob.matrix_parent_inverse, np.float64)
-        if ob.parent_type not in _NOTHING_BETWEEN:
-            own = inverse @ np.array(ob.matrix_basis, np.float64)
-            parent = self._before @ np.linalg.pinv(own)
-        back = np.linalg.pinv(move_of_parent @ parent) @ parent
-        ob.matrix_parent_inverse = Matrix(back @ inverse)
+    def hold(self) -> None:
+        """Once Blender has moved the child with its parent."""
+        ob = self._ob
+        inverse = _array(ob.matrix_parent_inverse)
+        if ob.parent_type in _NOTHING_BETWEEN:
+            was, now = self._parent, _array(ob.parent.matrix_world)
+        else:
+            own = np.linalg.pinv(inverse @ _array(ob.matrix_basis))
+            was, now = self._before @ own, _array(ob.matrix_world) @ own
+        ob.matrix_parent_inverse = Matrix(np.linalg.pinv(now) @ was @ inverse)
 
     def is_in_place(self) -> bool:
-        now = np.array(self._ob.matrix_world, np.float64)
+        now = _array(self._ob.matrix_world)
         return np.abs(now - self._before).max() <= ELSEWHERE * np.abs(self._before).max()
+
+
+def _array(matrix: Matrix) -> np.ndarray:
+    return np.array(matrix, np.float64)
 
 
 def _depth(ob: bpy.types.Object) -> int:
