@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nearest points and rays in Blender: the limit surface beside `mathutils.bvhtree.BVHTree`, which
+asks the polygons that Blender shows. Prints a table in Markdown: times, and each one's errors.
+
+    .venv/bin/python tools/bench_blender.py
+
+BVHTree takes one point or ray at a time: its times include the loop in Python, as they do for
+everybody who uses it. Ours are for one call with an array.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import limitsurf
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "addon"))
+
+import bench_blender_truth as truth  # noqa: E402
+from limit_surface import cage  # noqa: E402
+from mathutils.bvhtree import BVHTree  # noqa: E402
+
+#: The viewport's levels of a new modifier, and a fine mesh
+TREE_LEVELS = (1, 4)
+#: Queries whose right answers are found by brute force
+CHECKED = 500
+
+
+@dataclass
+class Row:
+    what: str
+    set_up: float  # seconds
+    nearest: float  # a second
+    nearest_errors: "Errors"
+    rays: float  # a second
+    ray_errors: "Errors"
+
+
+@dataclass
+class Errors:
+    """Relative to the diagonal of the mesh."""
+
+    largest: float  # of the distance
+    rms: float
+    position: float  # the largest
+    missed: int
+
+    def __str__(self) -> str:
+        missed = f"; {self.missed} missed" if self.missed else ""
+        return f"{self.largest:.1e} | {self.rms:.1e} | {self.position:.1e}{missed}"
+
+
+class Bench:
+    def __init__(self, side: int, queries: int, tree_queries: int) -> None:
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        self.ob = truth.add_sheet(side)
+        self.cage = cage.read(self.ob, bpy.context.evaluated_depsgraph_get())
+        self.surface = limitsurf.LimitSurface(self.cage.mesh)
+        self.diagonal = np.linalg.norm(np.ptp(self.cage.mesh.positions, axis=0))
+        self.points = truth.points_nearby(self.surface, queries)
+        self.rays = truth.rays(self.surface, queries)
+        self.tree_queries = tree_queries
+        finest = BVHTree.FromObject(self.ob, self._shown(4))
+        self.nearest = truth.nearest(
+            self.surface, self.cage.face_sizes, finest, self.points[:CHECKED]
+        )
+
+    def _shown(self, levels: int) -> bpy.types.Depsgraph:
+        self.ob.modifiers[0].levels = levels
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        depsgraph.update()
+        return depsgraph
+
+    def limit_surface(self, threads: int) -> Row:
+        surface, set_up = timed(self._searched)
+        nearest, nearest_time = timed(lambda: surface.closest(self.points, threads=threads))
+        hits, ray_time = timed(
+            lambda: surface.ray_cast(self.rays.origin, self.rays.direction, threads=threads)
+        )
+        count = len(self.points)
+        return Row(
+            f"limit surface, {'one thread' if threads == 1 else 'all cores'}",
+            set_up,
+            count / nearest_time,
+            self._nearest_errors(nearest.position, nearest.distance),
+            count / ray_time,
+            self._ray_errors(hits.position, hits.distance),
+        )
+
+    def _searched(self) -> limitsurf.LimitSurface:
+        """A surface that is ready to be asked."""
+        surface = limitsurf.LimitSurface(self.cage.mesh)
+        surface.closest(self.points[:1])
+        return surface
+
+    def tree(self, levels: int) -> Row:
+        depsgraph = self._shown(levels)
+        tree, set_up = timed(lambda: BVHTree.FromObject(self.ob, depsgraph))
+        count = self.tree_queries
+        points = self.points[:count].tolist()
+        found, nearest_time = timed(lambda: [tree.find_nearest(point) for point in points])
+        pairs = list(
+            zip(
+                self.rays.origin[:count].tolist(), self.rays.direction[:count].tolist(), strict=True
+            )
+        )
+        hits, ray_time = timed(lambda: [tree.ray_cast(*ray) for ray in pairs])
+        return Row(
+            f"BVHTree, level {levels}",
+            set_up,
+            count / nearest_time,
+            self._nearest_errors(*_positions_and_distances(found)),
+            count / ray_time,
+            self._ray_errors(*_positions_and_distances(hits)),
+        )
+
+    def _nearest_errors(self, position: np.ndarray, distance: np.ndarray) -> Errors:
+        points = self.points[:CHECKED]
+        right = np.linalg.norm(self.nearest - points, axis=1)
+        return self._errors(position[:CHECKED], distance[:CHECKED], self.nearest, right)
+
+    def _ray_errors(self, position: np.ndarray, distance: np.ndarray) -> Errors:
+        count = len(position)
+        hit = self.rays.hit[:count]
+        right = np.linalg.norm(hit - self.rays.origin[:count], axis=1)
+        return self._errors(position, distance, hit, right)
+
+    def _errors(
+        self,
+        position: np.ndarray,
+        distance: np.ndarray,
+        right_position: np.ndarray,
+        right_distance: np.ndarray,
+    ) -> Errors:
+        found = np.isfinite(distance)
+        off = np.abs(distance - right_distance)[found] / self.diagonal
+        moved = np.linalg.norm(position - right_position, axis=1)[found] / self.diagonal
+        return Errors(off.max(), np.sqrt(np.mean(off**2)), moved.max(), int((~found).sum()))
+
+
+def _positions_and_distances(found: list[tuple]) -> tuple[np.ndarray, np.ndarray]:
+    """NaN where nothing was found."""
+    position = [hit[0][:] if hit[0] else (np.nan,) * 3 for hit in found]
+    return np.array(position), np.array([np.nan if hit[3] is None else hit[3] for hit in found])
+
+
+def timed(work: Callable[[], object]) -> tuple:
+    begin = time.perf_counter()
+    result = work()
+    return result, time.perf_counter() - begin
+
+
+def table(rows: list[Row]) -> str:
+    lines = []
+    for title, speed, errors in (
+        ("nearest points", "nearest", "nearest_errors"),
+        ("rays", "rays", "ray_errors"),
+    ):
+        lines += [
+            f"| {title} | set-up | a second | distance: max | RMS | position: max |",
+            "|---|---:|---:|---:|---:|---:|",
+        ]
+        lines += [
+            f"| {row.what} | {row.set_up:.3f} s | {getattr(row, speed):,.0f} "
+            f"| {getattr(row, errors)} |"
+            for row in rows
+        ]
+        lines.append("")
+    return "\n".join(lines)
+
+
+def main(arguments: list[str]) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--faces", type=int, default=10_000, help="about so many")
+    parser.add_argument("--queries", type=int, default=1_000_000, help="asked of the limit surface")
+    parser.add_argument("--tree-queries", type=int, default=100_000, help="asked of each BVHTree")
+    options = parser.parse_args(arguments)
+    bench = Bench(round(options.faces**0.5), options.queries, options.tree_queries)
+    print(
+        f"Blender {bpy.app.version_string}, {len(bench.cage.face_sizes):,} faces; "
+        f"{options.queries:,} queries, {options.tree_queries:,} of each BVHTree; errors relative "
+        "to the diagonal\n"
+    )
+    rows = [bench.limit_surface(threads) for threads in (1, 0)]
+    rows += [bench.tree(levels) for levels in TREE_LEVELS]
+    print(table(rows))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
