@@ -16,17 +16,28 @@ from ._limitsurf import (
     SurfaceData,
     __version__,
 )
-from ._results import Curvature, DataEvaluation, Evaluation, Locations, Stencils, Tessellation
+from ._results import (
+    Curvature,
+    DataEvaluation,
+    Evaluation,
+    Hits,
+    Locations,
+    RayHits,
+    Stencils,
+    Tessellation,
+)
 
 __all__ = [
     "ControlMesh",
     "Curvature",
     "DataEvaluation",
     "Evaluation",
+    "Hits",
     "LimitSurface",
     "LocationError",
     "Locations",
     "MeshError",
+    "RayHits",
     "Stencils",
     "SurfaceData",
     "Tessellation",

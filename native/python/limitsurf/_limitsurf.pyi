@@ -1,11 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ._results import Curvature, DataEvaluation, Evaluation, Locations, Stencils, Tessellation
+from ._results import (
+    Curvature,
+    DataEvaluation,
+    Evaluation,
+    Hits,
+    Locations,
+    RayHits,
+    Stencils,
+    Tessellation,
+)
 
 __version__: str
 
@@ -124,6 +133,37 @@ class LimitSurface:
     def vertex_data(self, values: ArrayLike, *, threads: int = 0) -> SurfaceData: ...
     def varying(self, values: ArrayLike, *, threads: int = 0) -> SurfaceData: ...
     def vertex_locations(self) -> Locations: ...
+    def closest(
+        self,
+        points: ArrayLike,
+        max_distance: float = ...,
+        *,
+        facing: ArrayLike | None = None,
+        max_angle: float = ...,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
+        progress: Callable[[float], object] | None = None,
+    ) -> Hits: ...
+    def ray_cast(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        max_distance: float = ...,
+        *,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
+        progress: Callable[[float], object] | None = None,
+    ) -> Hits: ...
+    def ray_cast_all(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        max_distance: float = ...,
+        *,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
+        progress: Callable[[float], object] | None = None,
+    ) -> RayHits: ...
     def scatter_jittered(self, per_side: int, seed: int = 0, *, threads: int = 0) -> Locations: ...
     def tessellate(self, levels: int, *, threads: int = 0) -> Tessellation: ...
     def area(self, *, threads: int = 0) -> float: ...

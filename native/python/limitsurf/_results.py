@@ -70,6 +70,27 @@ class Locations:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Hits:
+    """Points found on the surface, one a row; where there is none, face is -1 and the rest NaN."""
+
+    face: NDArray[np.int32]
+    uv: Array
+    position: Array
+    distance: Array
+    normal: Array
+
+    def __len__(self) -> int:
+        return len(self.face)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RayHits(Hits):
+    """All hits of rays: those of ray i are rows offsets[i] to offsets[i + 1] - 1."""
+
+    offsets: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Tessellation:
     """Quads on the limit surface and where their points lie."""
 

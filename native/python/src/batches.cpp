@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "batches.h"
 
+#include <limits>
 #include <sstream>
 
 #include "limitsurf/error.h"
@@ -58,6 +59,21 @@ InterruptionPoint interruptible() {
       throw py::error_already_set();
     }
   });
+}
+
+py::object locations(const Locations& at) {
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  py::array_t<int> face(rows);
+  py::array_t<double> uv({rows, py::ssize_t{2}});
+  int* faces = face.mutable_data();
+  double* uvs = uv.mutable_data();
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    faces[i] = at[i].face;
+    uvs[2 * i] = at[i].face < 0 ? kNaN : at[i].u;
+    uvs[2 * i + 1] = at[i].face < 0 ? kNaN : at[i].v;
+  }
+  return result("Locations")(face, uv);
 }
 
 py::object result(const char* name) { return py::module_::import("limitsurf._results").attr(name); }

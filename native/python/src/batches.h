@@ -52,6 +52,9 @@ void inChunks(std::shared_mutex& mutex, const Locations& at, const Body& body) {
   }
 }
 
+/// limitsurf.Locations; rows whose face is -1 have NaN for (u, v).
+py::object locations(const Locations& at);
+
 /// A class of limitsurf._results.
 py::object result(const char* name);
 

@@ -210,6 +210,46 @@ Lacewell & Burley 2007, figure 1. Locations (.face, .uv) in face order; refused 
 same seed (0 to 2^64 - 1) gives the same locations on every machine.
 )";
 
+constexpr const char* kClosestDoc =
+    R"(The closest point of the limit surface, itself and not of polygons, for each of (n, 3) points.
+
+Boundaries, creases and corners are part of the surface. max_distance leaves out what is farther.
+facing, (n, 3) or (3,) directions, accepts only feet whose normal is within max_angle (radians) of
+them; a foot is where the distance over its smooth sheet (boundaries and infinitely sharp edges end
+one) is smallest in its neighbourhood. progress, a function, is called now and then with the part
+done, 0 to 1; what it raises ends the call.
+
+Returns Hits: .face (n,) int32, .uv (n, 2), .position and .normal (n, 3), which are what evaluate()
+gives there, and .distance (n,). Where there is none face is -1 and the rest NaN.
+
+Error: the distance is within 1e-12 of the cage's diagonal of the true minimum, for points within
+1,000 diagonals. Branch and bound over control hulls, then Newton's iteration where the distance is
+convex; microseconds a point. The first call builds a search tree that is kept until
+set_positions().
+
+Raises ValueError for other shapes, points that are not finite and options without meaning.
+)";
+
+constexpr const char* kRayCastDoc =
+    R"(The first point at which each ray meets the limit surface, from either side.
+
+origins and directions, (n, 3) each; directions need not be unit vectors. Rays that graze the
+surface within 1e-12 of the cage's diagonal hit it; none slip through between faces. Returns Hits
+(see closest()); .distance counts along the normalised direction, is at least 0 and at most
+max_distance. Error of hits: 1e-12 of the diagonal, for origins within 1,000 diagonals.
+
+Raises ValueError for other shapes, rows that are not finite and directions without length.
+)";
+
+constexpr const char* kRayCastAllDoc =
+    R"(All points at which each ray meets the limit surface, sorted along it.
+
+As ray_cast(), but RayHits: the fields of Hits with one row for each hit, and .offsets (n + 1,)
+int64: the hits of ray i are rows offsets[i] to offsets[i + 1] - 1. A hit on the border of several
+faces counts once; of a stretch on which a ray runs within the surface, the first point of each
+patch is given.
+)";
+
 constexpr const char* kTessellateDoc =
     R"(Watertight quads on the limit surface: 2^levels x 2^levels a quad face.
 

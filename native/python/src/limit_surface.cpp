@@ -11,36 +11,12 @@
 
 #include "arrays.h"
 #include "batches.h"
-#include "control_mesh.h"
 #include "docstrings.h"
-#include "limitsurf/surface/limit_surface.h"
+#include "shared_surface.h"
 #include "surface_data.h"
 
 namespace limitsurf::python {
 namespace {
-
-/// A surface that may be re-posed while other Python threads, without the GIL, evaluate it.
-struct SharedSurface : ZeroedMemory {
-  explicit SharedSurface(std::shared_ptr<BoundMesh> m)
-      : mesh(std::move(m)), surface_(std::make_unique<LimitSurface>(*mesh)) {}
-
-  const LimitSurface& surface() const {
-    if (!surface_) {
-      throw py::value_error("this LimitSurface was never initialised");
-    }
-    return *surface_;
-  }
-  LimitSurface& surface() {
-    std::as_const(*this).surface();
-    return *surface_;
-  }
-
-  std::shared_ptr<BoundMesh> mesh;
-  mutable std::shared_mutex mutex;
-
- private:
-  std::unique_ptr<LimitSurface> surface_;
-};
 
 py::object evaluate(const SharedSurface& shared, const py::object& face, const py::object& uv,
                     int derivatives, int threads, const py::object& dtype) {
@@ -135,21 +111,6 @@ py::object stencils(const SharedSurface& shared, const py::object& face, const p
                             optional(all.du_weights), optional(all.dv_weights));
 }
 
-py::object locations(const Locations& at) {
-  const auto rows = static_cast<py::ssize_t>(at.size());
-  py::array_t<int> face(rows);
-  py::array_t<double> uv({rows, py::ssize_t{2}});
-  int* faces = face.mutable_data();
-  double* uvs = uv.mutable_data();
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    faces[i] = at[i].face;
-    uvs[2 * i] = at[i].face < 0 ? kNaN : at[i].u;
-    uvs[2 * i + 1] = at[i].face < 0 ? kNaN : at[i].v;
-  }
-  return result("Locations")(face, uv);
-}
-
 py::array_t<double> pointArray(const Points& points) {
   return py::array_t<double>({points.rows(), Eigen::Index{3}}, points.data());
 }
@@ -187,6 +148,7 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
   const py::gil_scoped_release release;
   const std::unique_lock<std::shared_mutex> lock(shared.mutex);
   shared.surface().setPositions(points, threads);
+  shared.forgetPose();
 }
 
 std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::object& values,
@@ -225,8 +187,9 @@ std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mes
 void bindLimitSurface(py::module_& module) {
   using namespace py::literals;
   const py::object float64 = py::dtype("float64");
-  py::class_<SharedSurface>(module, "LimitSurface", kLimitSurfaceDoc)
-      .def(py::init(&makeSurface), "mesh"_a.none(false))
+  py::class_<SharedSurface> type(module, "LimitSurface", kLimitSurfaceDoc);
+  bindQueries(type);
+  type.def(py::init(&makeSurface), "mesh"_a.none(false))
       .def_readonly("mesh", &SharedSurface::mesh, "The ControlMesh, in the pose it was made with.")
       .def_property_readonly(
           "positions",

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace limitsurf {
+
+/// A polynomial of degree N in s and in t on the unit square, by its Bernstein coefficients, i
+/// along s and j along t: they bound it, and those at the corners are its values there.
+template <int N>
+class Bernstein {
+ public:
+  static constexpr int kSize = N + 1;
+  /// Rows are as long as whole registers; what is left over repeats the last coefficient.
+  static constexpr int kStride = kSize + (kSize & 1);
+
+  double& at(int i, int j) { return c_[kStride * j + i]; }
+  double at(int i, int j) const { return c_[kStride * j + i]; }
+  void pad() {
+    for (int j = 0; j < kSize; ++j) {
+      c_[kStride * j + kStride - 1] = c_[kStride * j + N];
+    }
+  }
+
+  double least() const { return all().minCoeff(); }
+  double largest() const { return all().maxCoeff(); }
+
+  /// The polynomial on the square's quarters: out[0] at (0, 0), out[1] at (1/2, 0), out[2] at (0,
+  /// 1/2), out[3] at (1/2, 1/2). De Casteljau.
+  void quarter(Bernstein out[4]) const {
+    for (int j = 0; j < kSize; ++j) {
+      double p[kSize];
+      for (int i = 0; i < kSize; ++i) {
+        p[i] = at(i, j);
+      }
+      halve(
+          p, [&](int i, double x) { out[0].at(i, j) = x; },
+          [&](int i, double x) { out[1].at(i, j) = x; });
+    }
+    out[0].pad();
+    out[1].pad();
+    for (int half = 0; half < 2; ++half) {
+      Row p[kSize];
+      for (int j = 0; j < kSize; ++j) {
+        p[j] = out[half].row(j);
+      }
+      halve(
+          p, [&](int j, const Row& x) { out[half].row(j) = x; },
+          [&](int j, const Row& x) { out[half + 2].row(j) = x; });
+    }
+  }
+
+ private:
+  using Row = Eigen::Array<double, kStride, 1>;
+
+  Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16> all() const {
+    return Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16>(c_);
+  }
+  Eigen::Map<Row, Eigen::Aligned16> row(int j) {
+    return Eigen::Map<Row, Eigen::Aligned16>(c_ + kStride * j);
+  }
+
+  template <typename Value, typename Low, typename High>
+  [[gnu::always_inline]] static inline void halve(Value p[kSize], const Low& low,
+                                                  const High& high) {
+#pragma GCC unroll 8
+    for (int level = 0; level <= N; ++level) {
+      low(level, p[0]);
+      high(N - level, p[N - level]);
+#pragma GCC unroll 8
+      for (int i = 0; i < N - level; ++i) {
+        p[i] = 0.5 * (p[i] + p[i + 1]);
+      }
+    }
+  }
+
+  alignas(16) double c_[kStride * kSize];
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <optional>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/query/checks.h"
+#include "limitsurf/query/closest_on_patch.h"
+#include "limitsurf/query/search_tree.h"
+
+namespace limitsurf {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double squaredDistance(const BoxF& box, const Vector3& point) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double beyond = std::max({0., box.low[i] - point[i], point[i] - box.high[i]});
+    sum += beyond * beyond;
+  }
+  return sum;
+}
+
+double squaredDistance(const Box& box, const Vector3& point) {
+  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.).squaredNorm();
+}
+
+/// The search for one point after the other.
+class ClosestSearch {
+ public:
+  explicit ClosestSearch(const SearchTree& data) : data_(data), cache_(data) {}
+
+  /// The closest location; face = -1 where there is none within `max_distance`.
+  Location find(const Vector3& point, double max_distance, const Facing* facing) {
+    point_ = point;
+    facing_ = facing;
+    best_ = {};
+    best_.tolerance = data_.tolerance;
+    // A point at max_distance itself counts.
+    best_.distance = max_distance * (1 + 1e-15) + data_.tolerance;
+    if (!data_.tree->empty()) {
+      descend(point - data_.middle);
+    }
+    return best_.at;
+  }
+
+ private:
+  void descend(const Vector3& point) {
+    struct Entry {
+      std::int32_t node;
+      double squared;
+    };
+    Entry stack[BoxTree::kMostDepth + 1];
+    int height = 0;
+    Entry next{0, 0};
+    while (true) {
+      if (next.squared < best_.enough() || best_.distance == kInfinity) {
+        if (BoxTree::isLeaf(next.node)) {
+          visitLeaf(BoxTree::leaf(next.node), point);
+        } else {
+          const BoxTree::Node& node = data_.tree->node(next.node);
+          const double near[2] = {squaredDistance(node.boxes[0], point),
+                                  squaredDistance(node.boxes[1], point)};
+          const int first = near[1] < near[0] ? 1 : 0;
+          if (near[1 - first] < kInfinity) {
+            stack[height++] = {node.children[1 - first], near[1 - first]};
+          }
+          next = {node.children[first], near[first]};
+          continue;
+        }
+      }
+      if (height == 0) {
+        return;
+      }
+      next = stack[--height];
+    }
+  }
+
+  void visitLeaf(std::int32_t leaf, const Vector3& point) {
+    const SearchLeaf& found = data_.leaves[leaf];
+    if (!(found.box.squaredDistance(point) < best_.enough())) {
+      return;
+    }
+    if (found.piece.isCore()) {
+      visitCore(found.piece);
+    } else {
+      closestOnPatch(cache_.patch(leaf), point_, facing_, best_);
+    }
+  }
+
+  void visitCore(SurfacePiece core) {
+    const Vector3 vertex = data_.patches.coreVertex(core);
+    if (!facing_) {
+      best_.offer((vertex - point_).norm(), data_.patches.rectangle(core).at(0, 0));
+    }
+    SurfacePatches::SplitCore split;
+    while (true) {
+      data_.patches.split(core, split);
+      for (const BezierPatch& patch : split.patches) {
+        closestOnPatch(patch, point_, facing_, best_);
+      }
+      core = split.core;
+      if (!(squaredDistance(split.core_box, point_) < best_.enough())) {
+        return;
+      }
+      if (data_.patches.coreRadius(core) <= data_.tolerance ||
+          core.steps >= SurfacePatches::kMostSteps) {
+        offerVertex(core, vertex);
+        return;
+      }
+    }
+  }
+
+  /// The vertex stands for what is left of a core around it.
+  void offerVertex(const SurfacePiece& core, const Vector3& vertex) {
+    const Location at = data_.patches.rectangle(core).at(0, 0);
+    if (facing_) {
+      const auto frame = data_.surface.frames({&at, 1}, 1);
+      if (!facing_->accepts({frame(0, 2), frame(0, 5), frame(0, 8)})) {
+        return;
+      }
+    }
+    best_.offer((vertex - point_).norm(), at);
+  }
+
+  const SearchTree& data_;
+  PatchCache cache_;
+  Vector3 point_;
+  const Facing* facing_ = nullptr;
+  ClosestSoFar best_;
+};
+
+}  // namespace
+
+Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
+                            int threads) const {
+  checkThreads(threads);
+  checkFinite(points, "point");
+  checkDistance(options.max_distance);
+  const bool facing = options.facing.rows() > 0;
+  if (facing) {
+    checkRows(options.facing, points.rows(), "facing");
+    checkDirections(options.facing);
+  }
+  if (!(options.max_angle >= 0 && options.max_angle <= 3.1415926535897936)) {
+    throw std::invalid_argument("max_angle is " + std::to_string(options.max_angle) +
+                                "; it must be between 0 and pi");
+  }
+  // Half a turn accepts all, but for rounding.
+  const double least_cosine =
+      options.max_angle >= 3.1415926535897 ? -2. : std::cos(options.max_angle);
+  std::vector<Location> at(static_cast<std::size_t>(points.rows()));
+  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    ClosestSearch search(*data_);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      std::optional<Facing> filter;
+      if (facing) {
+        filter = Facing{options.facing.row(row).transpose(), least_cosine};
+      }
+      at[i] = search.find(points.row(row).transpose(), options.max_distance,
+                          filter ? &*filter : nullptr);
+    }
+  });
+  Hits hits = hitsAt(data_->surface, std::move(at), threads);
+  hits.distance.resize(points.rows());
+  for (Eigen::Index row = 0; row < points.rows(); ++row) {
+    hits.distance[row] = (hits.position.row(row) - points.row(row)).norm();
+  }
+  return hits;
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/query/closest_on_patch.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace limitsurf {
+namespace {
+
+/// A square cell of a patch.
+struct Cell {
+  double s, t, size;
+  int depth;
+};
+
+class PatchSearch {
+ public:
+  PatchSearch(const BezierPatch& patch, const Vector3& point, const Facing* facing,
+              ClosestSoFar& best)
+      : patch_(patch), facing_(facing), best_(best) {
+    const BezierPatch::Point offset =
+        patch.anchor - BezierPatch::Point(point[0], point[1], point[2], 0);
+    relative_.anchor.setZero();
+    for (int i = 0; i < 16; ++i) {
+      relative_.points[i] = patch.points[i] + offset;
+    }
+  }
+
+  void run() {
+    BezierPatch::Point low = relative_.points[0], high = low;
+    for (int i = 1; i < 16; ++i) {
+      low = low.min(relative_.points[i]);
+      high = high.max(relative_.points[i]);
+    }
+    const BezierPatch::Point beyond = low.max(-high).max(0.);
+    if (!isBetter(beyond.square().sum())) {
+      return;
+    }
+    const SquaredDistance f(relative_.points);
+    if (isBetter(f.least())) {
+      visit(f, {0, 0, 1, 0});
+    }
+  }
+
+ private:
+  /// Cells so small that the distance over one varies by less than rounding.
+  static constexpr int kMostDepth = 40;
+  static constexpr int kMostIterations = 40;
+
+  using Values = BezierPatch::Values;
+
+  static double dot(const BezierPatch::Point& a, const BezierPatch::Point& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+
+  bool isBetter(double squared_distance) const { return squared_distance < best_.enough(); }
+
+  void visit(const SquaredDistance& f, const Cell& cell) {
+    if (!facing_) {
+      for (int corner = 0; corner < 4; ++corner) {
+        const double squared = f.corner(corner & 1, corner >> 1);
+        if (isBetter(squared)) {
+          // Its own rounding decides between points at hand.
+          offer(cell.s + (corner & 1) * cell.size, cell.t + (corner >> 1) * cell.size);
+        }
+      }
+    }
+    const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., f.least())));
+    const SquaredDistance::Shape shape = f.shape(reach * best_.tolerance);
+    double s, t;
+    f.guess(s, t);
+    s = cell.s + sideOr(shape.s_side, s) * cell.size;
+    t = cell.t + sideOr(shape.t_side, t) * cell.size;
+    const bool corner = shape.s_side != 0 && shape.t_side != 0;
+    if (cell.depth == kMostDepth || corner || (shape.convex && minimize(cell, s, t))) {
+      if (!facing_ || isFoot(cell, s, t)) {
+        offer(s, t);
+      }
+      return;
+    }
+    SquaredDistance quarters[4];
+    f.quarter(quarters);
+    double least[4];
+    int order[4] = {0, 1, 2, 3};
+    for (int q = 0; q < 4; ++q) {
+      least[q] = quarters[q].least();
+    }
+    std::sort(order, order + 4,
+              [&](int a, int b) { return least[a] != least[b] ? least[a] < least[b] : a < b; });
+    const double half = cell.size / 2;
+    for (const int q : order) {
+      if (isBetter(least[q])) {
+        visit(quarters[q],
+              {cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half, cell.depth + 1});
+      }
+    }
+  }
+
+  static double sideOr(int side, double other) { return side < 0 ? 0 : side > 0 ? 1 : other; }
+
+  void offer(double s, double t) {
+    Values at;
+    relative_.evaluate<0>(s, t, at);
+    best_.offer(std::sqrt(dot(at.value, at.value)), patch_.on.at(s, t));
+  }
+
+  /// Newton's iteration within the cell, by an active set of its sides. Whether it arrived at a
+  /// point where no direction leads down.
+  bool minimize(const Cell& cell, double& s, double& t) const {
+    const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
+    Values at, next;
+    relative_.evaluate<2>(s, t, at);
+    double f = dot(at.value, at.value);
+    for (int i = 0; i < kMostIterations; ++i) {
+      const double gs = dot(at.value, at.ds), gt = dot(at.value, at.dt);
+      const double ss = dot(at.ds, at.ds), tt = dot(at.dt, at.dt), st = dot(at.ds, at.dt);
+      double hss = ss + dot(at.value, at.dss), htt = tt + dot(at.value, at.dtt),
+             hst = st + dot(at.value, at.dst);
+      const bool free_s = !((s <= cell.s && gs >= 0) || (s >= s1 && gs <= 0));
+      const bool free_t = !((t <= cell.t && gt >= 0) || (t >= t1 && gt <= 0));
+      if (!free_s && !free_t) {
+        return true;
+      }
+      double ds = 0, dt = 0;
+      bool newton = hss > 0 && htt > 0;
+      if (free_s && free_t) {
+        double determinant = hss * htt - hst * hst;
+        if (!(hss > 0 && determinant > 1e-12 * hss * htt)) {  // Gauss and Newton's
+          newton = false;
+          hss = ss;
+          htt = tt;
+          hst = st;
+          determinant = hss * htt - hst * hst;
+        }
+        if (determinant > 1e-14 * hss * htt) {
+          ds = (hst * gt - htt * gs) / determinant;
+          dt = (hst * gs - hss * gt) / determinant;
+        } else if (hss > 0 || htt > 0) {  // along the steepest side
+          (hss > htt ? ds : dt) = hss > htt ? -gs / hss : -gt / htt;
+        }
+      }
+      // A side on which the iteration stands, and out of which the step leads, stays active.
+      if (!free_s || (free_t && leadsOut(s, ds, cell.s, s1))) {
+        ds = 0;
+        dt = htt > 0 ? -gt / htt : 0;
+      } else if (!free_t || leadsOut(t, dt, cell.t, t1)) {
+        dt = 0;
+        ds = hss > 0 ? -gs / hss : 0;
+      }
+      // A step that leads out of the cell is cut off where it leaves; the side then becomes active.
+      double part = 1;
+      const auto cut = [&](double from, double step, double low, double high) {
+        if (step > 0 && from + step > high) {
+          part = std::min(part, (high - from) / step);
+        } else if (step < 0 && from + step < low) {
+          part = std::min(part, (low - from) / step);
+        }
+      };
+      cut(s, ds, cell.s, s1);
+      cut(t, dt, cell.t, t1);
+      // Newton's next step would be the square of this one.
+      const bool last = newton && part == 1 && std::abs(ds) + std::abs(dt) < kLastStep;
+      bool lower = false;
+      for (int halvings = 0; halvings < kMostHalvings && !lower; ++halvings, part /= 2) {
+        const double next_s = std::clamp(s + part * ds, cell.s, s1),
+                     next_t = std::clamp(t + part * dt, cell.t, t1);
+        if (next_s == s && next_t == t) {
+          return true;
+        }
+        relative_.evaluate<2>(next_s, next_t, next);
+        const double next_f = dot(next.value, next.value);
+        lower = next_f <= f || (last && next_f <= f * (1 + kRounding));
+        if (lower) {
+          s = next_s;
+          t = next_t;
+          f = next_f;
+          at = next;
+        }
+      }
+      if (last || !lower) {
+        return last;
+      }
+    }
+    return false;
+  }
+
+  static constexpr int kMostHalvings = 30;
+  static constexpr double kLastStep = 1e-7;
+  static constexpr double kRounding = 1e-12;
+
+  static bool leadsOut(double x, double step, double low, double high) {
+    return (x <= low && step < 0) || (x >= high && step > 0);
+  }
+
+  /// Whether the minimum over a convex cell is one over the smooth sheet around it as well, with a
+  /// normal that counts. On a side of the cell beyond which the sheet goes on, the distance must
+  /// not fall across it.
+  bool isFoot(const Cell& cell, double s, double t) const {
+    Values at;
+    relative_.evaluate<1>(s, t, at);
+    const double value = std::sqrt(dot(at.value, at.value));
+    const auto falls = [&](const BezierPatch::Point& tangent, double outwards) {
+      const double slope = outwards * dot(at.value, tangent);
+      return slope < -kFlat * (value * std::sqrt(dot(tangent, tangent)));
+    };
+    const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
+    const auto ends = [&](unsigned side, double x, double border) {
+      return x == border && (patch_.borders & side) != 0;
+    };
+    if ((s == cell.s && !ends(kSideS0, s, 0) && falls(at.ds, -1)) ||
+        (s == s1 && !ends(kSideS1, s, 1) && falls(at.ds, 1)) ||
+        (t == cell.t && !ends(kSideT0, t, 0) && falls(at.dt, -1)) ||
+        (t == t1 && !ends(kSideT1, t, 1) && falls(at.dt, 1))) {
+      return false;
+    }
+    // Patches keep the orientation of their face, turned by right angles.
+    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>();
+    return facing_->accepts(ds.cross(dt));
+  }
+
+  /// The sine of an angle that rounding may bring about.
+  static constexpr double kFlat = 1e-9;
+
+  const BezierPatch& patch_;
+  const Facing* facing_;
+  ClosestSoFar& best_;
+  BezierPatch relative_;
+};
+
+}  // namespace
+
+void closestOnPatch(const BezierPatch& patch, const Vector3& point, const Facing* facing,
+                    ClosestSoFar& best) {
+  PatchSearch(patch, point, facing, best).run();
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "limitsurf/query/squared_distance.h"
+#include "limitsurf/surface/bezier_patch.h"
+#include "limitsurf/types.h"
+
+namespace limitsurf {
+
+/// The closest point so far of one search.
+struct ClosestSoFar {
+  double distance = std::numeric_limits<double>::infinity();
+  Location at;
+
+  /// A tenth of kSearchError; points that are nearer by less than that are not looked for.
+  double tolerance = 0;
+
+  /// What may be left out: whose squared distance is at least this.
+  double enough() const {
+    const double least = distance - tolerance;
+    return least > 0 ? least * least : 0;
+  }
+  void offer(double found, const Location& where) {
+    if (found < distance) {
+      distance = found;
+      at = where;
+    }
+  }
+};
+
+/// Which feet count: those whose normals are within an angle of a direction.
+struct Facing {
+  Vector3 direction;
+  double least_cosine;
+
+  bool accepts(const Vector3& normal) const {
+    return normal.dot(direction) >= least_cosine * normal.norm() * direction.norm();
+  }
+};
+
+/// Improves `best` by the closest point of the patch, or with `facing` by its closest foot that
+/// counts: exact branch and bound on the squared distance, ended by Newton's iteration wherever
+/// that is convex.
+void closestOnPatch(const BezierPatch& patch, const Vector3& point, const Facing* facing,
+                    ClosestSoFar& best);
+
+}  // namespace limitsurf

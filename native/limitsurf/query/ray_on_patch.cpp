@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/query/ray_on_patch.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "limitsurf/query/bernstein.h"
+
+namespace limitsurf {
+
+RayFrame::RayFrame(const Ray& ray) : origin(ray.origin), direction(ray.direction) {
+  int least;
+  direction.cwiseAbs().minCoeff(&least);
+  across[0] = direction.cross(Vector3::Unit(least)).normalized();
+  across[1] = direction.cross(across[0]);
+}
+
+void CollectedHits::add(const RayHit& hit) {
+  if (!first_only) {
+    hits.push_back(hit);
+  } else if (hit.distance < nearest) {
+    nearest = hit.distance;
+    hits.assign(1, hit);
+  }
+}
+
+namespace {
+
+using Cubic = Bernstein<3>;
+
+/// A cell of the patch as the ray sees it.
+struct Cell {
+  double s, t, size;
+  int depth;
+  Cubic x, y;  ///< across the ray
+  Cubic z;     ///< along it
+};
+
+/// The patch's mean derivatives on a cell, from the differences of its corners, and what makes the
+/// unit matrix of them.
+struct Precondition {
+  explicit Precondition(const Cell& cell) {
+    xs = mean(cell.x, true);
+    xt = mean(cell.x, false);
+    ys = mean(cell.y, true);
+    yt = mean(cell.y, false);
+    determinant = xs * yt - xt * ys;
+    scale = std::hypot(xs, ys) * std::hypot(xt, yt);
+  }
+
+  bool isSingular() const { return !(std::abs(determinant) > 1e-9 * scale); }
+
+  static double mean(const Cubic& f, bool along_s) {
+    return along_s ? ((f.at(3, 0) - f.at(0, 0)) + (f.at(3, 3) - f.at(0, 3))) / 2
+                   : ((f.at(0, 3) - f.at(0, 0)) + (f.at(3, 3) - f.at(3, 0))) / 2;
+  }
+
+  double xs, xt, ys, yt, determinant, scale;
+};
+
+class PatchRay {
+ public:
+  PatchRay(const BezierPatch& patch, const RayFrame& ray, CollectedHits& out)
+      : patch_(patch), ray_(ray), out_(out) {}
+
+  void run() {
+    Cell whole{0, 0, 1, 0, {}, {}, {}};
+    const Vector3 offset = patch_.anchor.head<3>().matrix() - ray_.origin;
+    const double x0 = offset.dot(ray_.across[0]), y0 = offset.dot(ray_.across[1]),
+                 z0 = offset.dot(ray_.direction);
+    for (int i = 0; i < 16; ++i) {
+      const Vector3 point = patch_.points[i].head<3>();
+      whole.x.at(i & 3, i >> 2) = x_[i] = x0 + point.dot(ray_.across[0]);
+      whole.y.at(i & 3, i >> 2) = y_[i] = y0 + point.dot(ray_.across[1]);
+      whole.z.at(i & 3, i >> 2) = z_[i] = z0 + point.dot(ray_.direction);
+    }
+    visit(whole);
+  }
+
+ private:
+  /// Cells in which a patch's second differences are below rounding.
+  static constexpr int kMostDepth = 26;
+  /// From here on a cell may be the place where the ray touches the patch.
+  static constexpr int kTouchDepth = 8;
+  /// A ray at such an angle to the surface is deep in it by less than kSearchError of a patch.
+  static constexpr double kTouchingSine = 2e-6;
+
+  bool misses(const Cubic& f, double margin) const {
+    return f.least() > margin || f.largest() < -margin;
+  }
+
+  bool isBeyond(const Cell& cell) const {
+    return cell.z.least() > out_.nearest || cell.z.largest() < out_.from - out_.tolerance;
+  }
+
+  void visit(const Cell& cell) {
+    if (misses(cell.x, out_.tolerance) || misses(cell.y, out_.tolerance) || isBeyond(cell)) {
+      return;
+    }
+    const Precondition p(cell);
+    if (!p.isSingular()) {
+      // As seen by its own parameters: nearly s - s0 and t - t0, the hit being (s0, t0).
+      Cubic a, b;
+      const double inverse = 1 / p.determinant;
+      for (int j = 0; j < 4; ++j) {
+        for (int i = 0; i < 4; ++i) {
+          const double x = cell.x.at(i, j), y = cell.y.at(i, j);
+          a.at(i, j) = (p.yt * x - p.xt * y) * inverse;
+          b.at(i, j) = (p.xs * y - p.ys * x) * inverse;
+        }
+      }
+      const double margin = out_.tolerance * std::abs(inverse);
+      if (misses(a, margin * (std::abs(p.yt) + std::abs(p.xt))) ||
+          misses(b, margin * (std::abs(p.ys) + std::abs(p.xs)))) {
+        return;
+      }
+      if (isInjective(a, b)) {
+        double s = cell.s + cell.size / 2, t = cell.t + cell.size / 2;
+        if (solve(cell, s, t)) {
+          report(s, t);
+          return;
+        }
+      }
+    }
+    if (cell.depth >= kTouchDepth && touchesIn(cell)) {
+      return;
+    }
+    if (cell.depth == kMostDepth) {
+      return;
+    }
+    divide(cell);
+  }
+
+  void divide(const Cell& cell) {
+    Cubic x[4], y[4], z[4];
+    cell.x.quarter(x);
+    cell.y.quarter(y);
+    cell.z.quarter(z);
+    double near[4];
+    int order[4] = {0, 1, 2, 3};
+    for (int q = 0; q < 4; ++q) {
+      near[q] = z[q].least();
+    }
+    std::sort(order, order + 4,
+              [&](int i, int j) { return near[i] != near[j] ? near[i] < near[j] : i < j; });
+    const double half = cell.size / 2;
+    for (const int q : order) {
+      visit({cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half, cell.depth + 1, x[q], y[q],
+             z[q]});
+    }
+  }
+
+  /// Whether no two points of the cell are seen at the same place: the preconditioned derivatives
+  /// stay near the unit matrix.
+  static bool isInjective(const Cubic& a, const Cubic& b) {
+    double as = kFar, bt = kFar, at = 0, bs = 0;
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        as = std::min(as, a.at(i + 1, j) - a.at(i, j));
+        bs = std::max(bs, std::abs(b.at(i + 1, j) - b.at(i, j)));
+        bt = std::min(bt, b.at(j, i + 1) - b.at(j, i));
+        at = std::max(at, std::abs(a.at(j, i + 1) - a.at(j, i)));
+      }
+    }
+    return as > 0 && bt > 0 && as * bt > at * bs;
+  }
+
+  struct Seen {
+    double x, y, xs, ys, xt, yt;
+  };
+
+  static void bernstein(double t, double value[4], double first[3]) {
+    const double s = 1 - t;
+    value[0] = s * s * s;
+    value[1] = 3 * s * s * t;
+    value[2] = 3 * s * t * t;
+    value[3] = t * t * t;
+    first[0] = 3 * s * s;
+    first[1] = 6 * s * t;
+    first[2] = 3 * t * t;
+  }
+
+  Seen look(double s, double t) const {
+    double vs[4], ds[3], vt[4], dt[3];
+    bernstein(s, vs, ds);
+    bernstein(t, vt, dt);
+    Seen seen{};
+    double rows_x[4], rows_y[4];
+    for (int j = 0; j < 4; ++j) {
+      const double *x = x_ + 4 * j, *y = y_ + 4 * j;
+      rows_x[j] = vs[0] * x[0] + vs[1] * x[1] + vs[2] * x[2] + vs[3] * x[3];
+      rows_y[j] = vs[0] * y[0] + vs[1] * y[1] + vs[2] * y[2] + vs[3] * y[3];
+      seen.xs += vt[j] * (ds[0] * (x[1] - x[0]) + ds[1] * (x[2] - x[1]) + ds[2] * (x[3] - x[2]));
+      seen.ys += vt[j] * (ds[0] * (y[1] - y[0]) + ds[1] * (y[2] - y[1]) + ds[2] * (y[3] - y[2]));
+      seen.x += vt[j] * rows_x[j];
+      seen.y += vt[j] * rows_y[j];
+    }
+    for (int j = 0; j < 3; ++j) {
+      seen.xt += dt[j] * (rows_x[j + 1] - rows_x[j]);
+      seen.yt += dt[j] * (rows_y[j + 1] - rows_y[j]);
+    }
+    return seen;
+  }
+
+  /// Newton's iteration, kept within the cell. Whether the ray passes within the tolerance of where
+  /// it ends.
+  bool solve(const Cell& cell, double& s, double& t) const {
+    constexpr int kMostIterations = 24;
+    double before = kFar;
+    for (int i = 0; i < kMostIterations; ++i) {
+      const Seen f = look(s, t);
+      const double residual = f.x * f.x + f.y * f.y;
+      const double determinant = f.xs * f.yt - f.xt * f.ys;
+      const double next_s = std::clamp(s - (f.yt * f.x - f.xt * f.y) / determinant, cell.s,
+                                       cell.s + cell.size),
+                   next_t = std::clamp(t - (f.xs * f.y - f.ys * f.x) / determinant, cell.t,
+                                       cell.t + cell.size);
+      const bool close = residual <= out_.tolerance * out_.tolerance;
+      if (!(std::isfinite(next_s) && std::isfinite(next_t)) || (close && residual >= before)) {
+        return close;
+      }
+      // Steps of 1e-8 leave an error of their square.
+      const bool last = std::abs(next_s - s) + std::abs(next_t - t) < 1e-8;
+      s = next_s;
+      t = next_t;
+      before = residual;
+      if (last) {
+        const Seen end = look(s, t);
+        return end.x * end.x + end.y * end.y <= out_.tolerance * out_.tolerance;
+      }
+    }
+    return false;
+  }
+
+  /// Whether the ray touches the surface in the cell without crossing it, or runs within it.
+  ///
+  /// Then cells around that place cannot be told from it by their hulls. The cell is done with but
+  /// for what is nearer along the ray.
+  bool touchesIn(const Cell& cell) {
+    double s = cell.s + cell.size / 2, t = cell.t + cell.size / 2;
+    if (!approach(cell, s, t)) {
+      return false;
+    }
+    const Seen f = look(s, t);
+    const double determinant = f.xs * f.yt - f.xt * f.ys,
+                 scale = std::hypot(f.xs, f.ys) * std::hypot(f.xt, f.yt);
+    if (std::abs(determinant) > kTouchingSine * scale) {
+      return false;
+    }
+    const double z = along(s, t);
+    if (z < touched_) {
+      touched_ = z;
+      replaceTouch(s, t, z);
+    }
+    // What runs within the surface enters it at the cell's nearest end: look closer there.
+    return cell.depth >= kMostDepth || cell.z.least() >= touched_ - out_.tolerance;
+  }
+
+  /// Levenberg and Marquardt's iteration for the least distance from the ray, within the cell.
+  /// Whether that is within the tolerance.
+  bool approach(const Cell& cell, double& s, double& t) const {
+    constexpr int kMostIterations = 40;
+    const double enough = out_.tolerance * out_.tolerance;
+    double damping = 1e-3;
+    Seen f = look(s, t);
+    double residual = f.x * f.x + f.y * f.y;
+    for (int i = 0; i < kMostIterations && residual > enough; ++i) {
+      const double gs = f.x * f.xs + f.y * f.ys, gt = f.x * f.xt + f.y * f.yt;
+      const double ss = f.xs * f.xs + f.ys * f.ys, tt = f.xt * f.xt + f.yt * f.yt,
+                   st = f.xs * f.xt + f.ys * f.yt;
+      const double a = ss * (1 + damping), b = tt * (1 + damping);
+      const double determinant = a * b - st * st;
+      if (!(determinant > 0)) {
+        return false;
+      }
+      const double next_s =
+          std::clamp(s + (st * gt - b * gs) / determinant, cell.s, cell.s + cell.size);
+      const double next_t =
+          std::clamp(t + (st * gs - a * gt) / determinant, cell.t, cell.t + cell.size);
+      const Seen next = look(next_s, next_t);
+      const double next_residual = next.x * next.x + next.y * next.y;
+      if (next_residual < residual) {
+        s = next_s;
+        t = next_t;
+        f = next;
+        residual = next_residual;
+        damping = std::max(damping / 8, 1e-12);
+      } else if (damping > 1e8 || (next_s == s && next_t == t)) {
+        return false;
+      } else {
+        damping *= 8;
+      }
+    }
+    return residual <= enough;
+  }
+
+  double along(double s, double t) const {
+    double vs[4], vt[4], unused[3];
+    bernstein(s, vs, unused);
+    bernstein(t, vt, unused);
+    double z = 0;
+    for (int j = 0; j < 4; ++j) {
+      const double* row = z_ + 4 * j;
+      z += vt[j] * (vs[0] * row[0] + vs[1] * row[1] + vs[2] * row[2] + vs[3] * row[3]);
+    }
+    return z;
+  }
+
+  RayHit hitAt(double s, double t, double z) const {
+    BezierPatch::Values at;
+    patch_.evaluate<0>(s, t, at);
+    const auto onBorder = [](double x) { return x < kBorder || x > 1 - kBorder; };
+    return {z, patch_.on.at(s, t), (patch_.anchor + at.value).head<3>().matrix(),
+            onBorder(s) || onBorder(t)};
+  }
+
+  bool counts(double z) const { return z >= out_.from - out_.tolerance && z <= out_.nearest; }
+
+  void report(double s, double t) {
+    const double z = along(s, t);
+    if (counts(z)) {
+      out_.add(hitAt(s, t, z));
+    }
+  }
+
+  /// Of the touches on a patch only the first along the ray is kept.
+  void replaceTouch(double s, double t, double z) {
+    if (!counts(z)) {
+      return;
+    }
+    if (!out_.first_only && touch_ < out_.hits.size()) {
+      out_.hits[touch_] = hitAt(s, t, z);
+      return;
+    }
+    touch_ = out_.hits.size();
+    out_.add(hitAt(s, t, z));
+  }
+
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  static constexpr double kBorder = 1e-9;
+
+  const BezierPatch& patch_;
+  const RayFrame& ray_;
+  CollectedHits& out_;
+  double x_[16], y_[16], z_[16];  // the whole patch as seen along the ray
+  double touched_ = kFar;
+  std::size_t touch_ = static_cast<std::size_t>(-1);
+};
+
+}  // namespace
+
+void rayOnPatch(const BezierPatch& patch, const RayFrame& ray, CollectedHits& out) {
+  PatchRay(patch, ray, out).run();
+}
+
+}  // namespace limitsurf

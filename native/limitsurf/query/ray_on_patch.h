@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limitsurf/query/oriented_box.h"
+#include "limitsurf/surface/bezier_patch.h"
+
+namespace limitsurf {
+
+/// A place where a ray meets the surface.
+struct RayHit {
+  double distance;
+  Location at;
+  Vector3 position;
+  /// On the border of a patch, where the next patch finds it as well.
+  bool on_border;
+};
+
+/// A ray with two axes across it, in coordinates of which the surface is near the origin.
+struct RayFrame {
+  explicit RayFrame(const Ray& ray);
+  Vector3 origin, direction, across[2];
+};
+
+/// Collects what one ray meets.
+struct CollectedHits {
+  bool first_only;
+  /// Where the ray begins.
+  double from;
+  /// Hits farther away are not looked for; with first_only the nearest so far.
+  double nearest;
+  /// How near the ray has to be to the surface, a tenth of kSearchError.
+  double tolerance;
+  std::vector<RayHit> hits;
+
+  void add(const RayHit& hit);
+};
+
+/// The places where the ray meets the patch: exact subdivision of the patch as seen along the ray,
+/// preconditioned so that its parameters are nearly the coordinates, ended by Newton's iteration
+/// wherever at most one root is possible; where the ray only touches the patch, by the point that
+/// is nearest to it.
+void rayOnPatch(const BezierPatch& patch, const RayFrame& ray, CollectedHits& out);
+
+}  // namespace limitsurf

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "limitsurf/query/box_tree.h"
+#include "limitsurf/query/oriented_box.h"
+#include "limitsurf/query/surface_search.h"
+#include "limitsurf/surface/surface_patches.h"
+
+namespace limitsurf {
+
+/// A leaf of the search tree: a bicubic patch, or a core that searches split as they come to it.
+struct SearchLeaf {
+  OrientedBox box;
+  SurfacePiece piece;
+};
+
+/// A surface's patches under a tree of boxes. All coordinates in boxes are relative to `middle`.
+struct SearchTree {
+  SearchTree(const LimitSurface& limit_surface, int threads);
+
+  const LimitSurface& surface;
+  SurfacePatches patches;
+  Vector3 middle;
+  double diagonal;
+  /// What a search may leave undone: a tenth of kSearchError.
+  double tolerance;
+  std::vector<SearchLeaf> leaves;  ///< in the order of the tree
+  std::unique_ptr<BoxTree> tree;
+
+ private:
+  /// A tile's pieces with boxes around them, cores split so far that they fit closely.
+  void addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
+};
+
+/// The patches of leaves, of which searches near each other need the same ones again and again.
+/// One cache belongs to one thread.
+class PatchCache {
+ public:
+  explicit PatchCache(const SearchTree& data) : data_(data), patches_(new BezierPatch[kSize]) {
+    std::fill(leaves_, leaves_ + kSize, -1);
+  }
+
+  const BezierPatch& patch(std::int32_t leaf) {
+    const std::size_t slot = static_cast<std::uint32_t>(leaf) % kSize;
+    if (leaves_[slot] != leaf) {
+      patches_[slot] = data_.patches.patch(data_.leaves[leaf].piece);
+      leaves_[slot] = leaf;
+    }
+    return patches_[slot];
+  }
+
+ private:
+  static constexpr std::size_t kSize = 256;
+  const SearchTree& data_;
+  std::unique_ptr<BezierPatch[]> patches_;
+  std::int32_t leaves_[kSize];
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/functional.h>
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "batches.h"
+#include "docstrings.h"
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+namespace {
+
+/// Rows searched at a time: a progress bar moves, and Ctrl-C is heard.
+constexpr Eigen::Index kRowsPerSearch = Eigen::Index{1} << 15;
+
+/// An (n, 3) array; [] counts as empty.
+Points rowsOfThree(const py::object& object, const char* name) {
+  Doubles array = doubles(object, name);
+  if (array.ndim() == 1 && array.size() == 0) {
+    array = Doubles(std::vector<py::ssize_t>{0, 3});
+  }
+  requireRows<std::invalid_argument>(array, name, 3);
+  return pointsOf(array);
+}
+
+void requireAsMany(const Points& rows, const char* name, const Points& others,
+                   const char* others_name) {
+  if (rows.rows() != others.rows()) {
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows.rows()) +
+                                " rows and " + others_name + " " + std::to_string(others.rows()));
+  }
+}
+
+/// A direction for each point, or one for all, or none.
+Points facingOf(const py::object& facing, const Points& points) {
+  if (facing.is_none()) {
+    return Points(0, 3);
+  }
+  const Doubles array = doubles(facing, "facing");
+  if (array.ndim() == 1 && array.shape(0) == 3) {
+    return Eigen::Map<const Eigen::RowVector3d>(array.data()).replicate(points.rows(), 1);
+  }
+  requireRows<std::invalid_argument>(array, "facing", 3);
+  Points rows = pointsOf(array);
+  requireAsMany(rows, "facing", points, "points");
+  return rows;
+}
+
+/// What Python asks to be told: called with the GIL on the calling thread, and what it raises ends
+/// the call.
+class Progress {
+ public:
+  explicit Progress(const py::object& report) : report_(report) {
+    if (!report.is_none() && !PyCallable_Check(report.ptr())) {
+      throw py::type_error("progress is not callable");
+    }
+  }
+  void operator()(double part) const {
+    if (!report_.is_none()) {
+      const py::gil_scoped_acquire acquire;
+      report_(part);
+    }
+  }
+
+ private:
+  const py::object& report_;
+};
+
+/// Hits row by row, as numpy arrays.
+class HitArrays {
+ public:
+  HitArrays() = default;
+  HitArrays(py::ssize_t rows, const py::dtype& type)
+      : face_(rows),
+        uv_(type, {rows, 2}),
+        position_(type, {rows, 3}),
+        distance_(type, {rows}),
+        normal_(type, {rows, 3}),
+        faces_(face_.mutable_data()) {}
+
+  /// Without the GIL.
+  void put(std::size_t begin, const Hits& hits) {
+    for (std::size_t i = 0; i < hits.at.size(); ++i) {
+      faces_[begin + i] = hits.at[i].face;
+      uv_.put(2 * (begin + i), &hits.at[i].u, 1);
+      uv_.put(2 * (begin + i) + 1, &hits.at[i].v, 1);
+    }
+    position_.put(3 * begin, hits.position.data(), 3 * hits.at.size());
+    distance_.put(begin, hits.distance.data(), hits.at.size());
+    normal_.put(3 * begin, hits.normal.data(), 3 * hits.at.size());
+  }
+
+  template <typename... More>
+  py::object object(const char* type, const More&... more) const {
+    return result(type)(face_, uv_.object(), position_.object(), distance_.object(),
+                        normal_.object(), more...);
+  }
+
+ private:
+  py::array_t<int> face_;
+  Output uv_, position_, distance_, normal_;
+  int* faces_ = nullptr;
+};
+
+/// Calls body(search, first row, number of rows) for one part of the rows after the other.
+template <typename Body>
+void searchInParts(const SharedSurface& shared, Eigen::Index rows, int threads,
+                   const py::object& progress, const Body& body) {
+  const Progress report(progress);
+  const py::gil_scoped_release release;
+  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  const InterruptionPoint point = interruptible();
+  const SurfaceSearch& search = shared.search.get(shared.surface(), threads);
+  for (Eigen::Index begin = 0; begin < rows; begin += kRowsPerSearch) {
+    const Eigen::Index count = std::min(kRowsPerSearch, rows - begin);
+    body(search, begin, count);
+    report(static_cast<double>(begin + count) / static_cast<double>(rows));
+  }
+}
+
+py::object closest(const SharedSurface& shared, const py::object& points, double max_distance,
+                   const py::object& facing, double max_angle, int threads, const py::object& dtype,
+                   const py::object& progress) {
+  checkThreads(threads);
+  const Points all = rowsOfThree(points, "points");
+  const Points directions = facingOf(facing, all);
+  HitArrays arrays(all.rows(), floatType(dtype));
+  ClosestOptions options;
+  options.max_distance = max_distance;
+  options.max_angle = max_angle;
+  searchInParts(shared, all.rows(), threads, progress,
+                [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
+                  if (directions.rows() > 0) {
+                    options.facing = directions.middleRows(begin, count);
+                  }
+                  arrays.put(static_cast<std::size_t>(begin),
+                             search.closest(all.middleRows(begin, count), options, threads));
+                });
+  return arrays.object("Hits");
+}
+
+py::object rayCast(const SharedSurface& shared, const py::object& origins,
+                   const py::object& directions, double max_distance, int threads,
+                   const py::object& dtype, const py::object& progress) {
+  checkThreads(threads);
+  const Points from = rowsOfThree(origins, "origins");
+  const Points along = rowsOfThree(directions, "directions");
+  requireAsMany(along, "directions", from, "origins");
+  HitArrays arrays(from.rows(), floatType(dtype));
+  searchInParts(shared, from.rows(), threads, progress,
+                [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
+                  arrays.put(static_cast<std::size_t>(begin),
+                             search.rayCast(from.middleRows(begin, count),
+                                            along.middleRows(begin, count), max_distance, threads));
+                });
+  return arrays.object("Hits");
+}
+
+py::object rayCastAll(const SharedSurface& shared, const py::object& origins,
+                      const py::object& directions, double max_distance, int threads,
+                      const py::object& dtype, const py::object& progress) {
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const Points from = rowsOfThree(origins, "origins");
+  const Points along = rowsOfThree(directions, "directions");
+  requireAsMany(along, "directions", from, "origins");
+  std::vector<RayHits> parts;
+  std::vector<std::int64_t> offsets{0};
+  searchInParts(
+      shared, from.rows(), threads, progress,
+      [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
+        parts.push_back(search.rayCastAll(from.middleRows(begin, count),
+                                          along.middleRows(begin, count), max_distance, threads));
+        const std::int64_t before = offsets.back();
+        const std::vector<std::int64_t>& own = parts.back().offsets;
+        for (std::size_t ray = 1; ray < own.size(); ++ray) {
+          offsets.push_back(before + own[ray]);
+        }
+      });
+  HitArrays arrays(offsets.back(), type);
+  std::size_t begin = 0;
+  for (const RayHits& part : parts) {
+    arrays.put(begin, part);
+    begin += part.at.size();
+  }
+  return arrays.object("RayHits", arrayOf(offsets));
+}
+
+}  // namespace
+
+void bindQueries(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const py::object float64 = py::dtype("float64");
+  type.def("closest", &closest, "points"_a, "max_distance"_a = kInfinity, py::kw_only(),
+           "facing"_a = py::none(), "max_angle"_a = ClosestOptions().max_angle, "threads"_a = 0,
+           "dtype"_a = float64, "progress"_a = py::none(), kClosestDoc)
+      .def("ray_cast", &rayCast, "origins"_a, "directions"_a, "max_distance"_a = kInfinity,
+           py::kw_only(), "threads"_a = 0, "dtype"_a = float64, "progress"_a = py::none(),
+           kRayCastDoc)
+      .def("ray_cast_all", &rayCastAll, "origins"_a, "directions"_a, "max_distance"_a = kInfinity,
+           py::kw_only(), "threads"_a = 0, "dtype"_a = float64, "progress"_a = py::none(),
+           kRayCastAllDoc);
+}
+
+}  // namespace limitsurf::python

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <utility>
+
+#include "arrays.h"
+#include "control_mesh.h"
+#include "limitsurf/query/surface_search.h"
+#include "limitsurf/surface/limit_surface.h"
+
+namespace limitsurf::python {
+
+/// What is made of a surface's pose at the first call that needs it, and kept for the next.
+template <typename T>
+class Lazily {
+ public:
+  /// To be called while the pose is held still.
+  const T& get(const LimitSurface& surface, int threads) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!made_) {
+      made_ = std::make_unique<T>(surface, threads);
+    }
+    return *made_;
+  }
+  void forget() { made_.reset(); }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<T> made_;
+};
+
+/// A surface that may be re-posed while other Python threads, without the GIL, evaluate it.
+struct SharedSurface : ZeroedMemory {
+  explicit SharedSurface(std::shared_ptr<BoundMesh> m)
+      : mesh(std::move(m)), surface_(std::make_unique<LimitSurface>(*mesh)) {}
+
+  const LimitSurface& surface() const {
+    if (!surface_) {
+      throw py::value_error("this LimitSurface was never initialised");
+    }
+    return *surface_;
+  }
+  LimitSurface& surface() {
+    std::as_const(*this).surface();
+    return *surface_;
+  }
+
+  /// With the mutex held alone.
+  void forgetPose() { search.forget(); }
+
+  std::shared_ptr<BoundMesh> mesh;
+  mutable std::shared_mutex mutex;
+  Lazily<SurfaceSearch> search;
+
+ private:
+  std::unique_ptr<LimitSurface> surface_;
+};
+
+void bindQueries(py::class_<SharedSurface>& type);
+
+}  // namespace limitsurf::python
