@@ -114,11 +114,8 @@ class ClosestSearch {
   /// The vertex stands for what is left of a core around it.
   void offerVertex(const SurfacePiece& core, const Vector3& vertex) {
     const Location at = data_.patches.rectangle(core).at(0, 0);
-    if (facing_) {
-      const auto frame = data_.surface.frames({&at, 1}, 1);
-      if (!facing_->accepts({frame(0, 2), frame(0, 5), frame(0, 8)})) {
-        return;
-      }
+    if (facing_ && !facing_->accepts(at)) {
+      return;
     }
     best_.offer((vertex - point_).norm(), at);
   }
@@ -156,7 +153,7 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
       const auto row = static_cast<Eigen::Index>(i);
       std::optional<Facing> filter;
       if (facing) {
-        filter = Facing{options.facing.row(row).transpose(), least_cosine};
+        filter.emplace(Facing{data_->surface, options.facing.row(row).transpose(), least_cosine});
       }
       at[i] = search.find(points.row(row).transpose(), options.max_distance,
                           filter ? &*filter : nullptr);

@@ -215,12 +215,15 @@ class PatchSearch {
       return false;
     }
     // Patches keep the orientation of their face, turned by right angles.
-    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>();
-    return facing_->accepts(ds.cross(dt));
+    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
+    return normal.norm() > kParallel * ds.norm() * dt.norm() ? facing_->accepts(normal)
+                                                             : facing_->accepts(patch_.on.at(s, t));
   }
 
   /// The sine of an angle that rounding may bring about.
   static constexpr double kFlat = 1e-9;
+  /// The sine of an angle between tangents below which rounding may turn the normal.
+  static constexpr double kParallel = 1e-6;
 
   const BezierPatch& patch_;
   const Facing* facing_;

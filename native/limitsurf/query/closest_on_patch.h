@@ -5,6 +5,7 @@
 
 #include "limitsurf/query/squared_distance.h"
 #include "limitsurf/surface/bezier_patch.h"
+#include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -32,11 +33,17 @@ struct ClosestSoFar {
 
 /// Which feet count: those whose normals are within an angle of a direction.
 struct Facing {
+  const LimitSurface& surface;
   Vector3 direction;
   double least_cosine;
 
   bool accepts(const Vector3& normal) const {
     return normal.dot(direction) >= least_cosine * normal.norm() * direction.norm();
+  }
+  /// Where the tangents do not tell the normal.
+  bool accepts(const Location& at) const {
+    const auto frame = surface.frames({&at, 1}, 1);
+    return accepts(Vector3(frame(0, 2), frame(0, 5), frame(0, 8)));
   }
 };
 
