@@ -52,7 +52,7 @@ def compose(panels: Sequence[Panel], notes: Sequence[str], output: Path) -> None
     left = GAP
     for panel, picture in zip(panels, pictures, strict=True):
         sheet.paste(picture, (left, TOP), picture)
-        draw.text((left + picture.width / 2, 10), panel.title, INK, _font(17), anchor="ma")
+        draw.text((left + picture.width / 2, 10), panel.title, INK, font(17), anchor="ma")
         if panel.circle:
             x, y, r = (picture.width * number for number in panel.circle)
             box = (left + x - r, TOP + y - r, left + x + r, TOP + y + r)
@@ -65,7 +65,7 @@ def compose(panels: Sequence[Panel], notes: Sequence[str], output: Path) -> None
     _scale(sheet, draw, GAP + 20, TOP + height + 14, min(380, total // 3))
     at = max(GAP + widths[0] + GAP, 460)
     for i, note in enumerate(notes):
-        draw.text((at, TOP + height + 10 + 20 * i), note, INK, _font(14))
+        draw.text((at, TOP + height + 10 + 20 * i), note, INK, font(14))
     _with_few_colours(sheet).save(output, optimize=True)
 
 
@@ -99,10 +99,10 @@ def _scale(sheet: Image.Image, draw: ImageDraw.ImageDraw, x: int, y: int, width:
     for value in TICKS:
         tick = x + width * np.log(value / LEAST) / np.log(MOST / LEAST)
         draw.line((tick, y + 14, tick, y + 19), fill=GREY)
-        draw.text((tick, y + 21), f"{100 * value:g} %", INK, _font(13), anchor="ma")
+        draw.text((tick, y + 21), f"{100 * value:g} %", INK, font(13), anchor="ma")
     said = "distance from the limit surface, relative to an edge"
-    draw.text((x + width / 2, y + 39), said, GREY, _font(13), anchor="ma")
+    draw.text((x + width / 2, y + 39), said, GREY, font(13), anchor="ma")
 
 
-def _font(size: int) -> ImageFont.FreeTypeFont:
+def font(size: int) -> ImageFont.FreeTypeFont:
     return ImageFont.truetype(font_manager.findfont("DejaVu Sans"), size)
