@@ -171,8 +171,8 @@ def test_maximum_distance_and_report(capfd):
     snap(target, max_distance=2)
     np.testing.assert_allclose([t.location.z for t in things], [0, 0, 3], atol=1e-6)
     said = capfd.readouterr().out
-    assert "2 objects snapped, moved by 0.75 on average, 1 at most (to Flat)" in said
-    assert "1 objects not snapped: 1 have no surface within 2" in said
+    assert "2 of 3 objects snapped, moved by 0.75 on average, 1 at most (to Flat)" in said
+    assert "1 objects not snapped: 1 with no surface within 2" in said
 
 
 def test_facing():
@@ -307,12 +307,12 @@ def test_locked_channels():
     target = scenes.flat_grid(4)
     thing = add_object((2, 2.2, 1))
     thing.lock_location[2] = True
-    refused_and_unchanged(target, thing, "1 are locked")
+    refused_and_unchanged(target, thing, "1 locked")
     thing.lock_location = (True, True, False)
     snap(target)  # straight down, which is free
     np.testing.assert_allclose(thing.location, (2, 2.2, 0), atol=1e-6)
     thing.rotation_euler, thing.lock_rotation = (0.5, 0, 0), (True, False, False)
-    refused_and_unchanged(target, thing, "1 are locked", align="NORMAL")
+    refused_and_unchanged(target, thing, "1 locked", align="NORMAL")
 
 
 def test_constraints_and_drivers():
@@ -333,14 +333,14 @@ def test_those_that_can_be_moved_are(capfd):
     held.lock_location = (True, True, True)
     snap(target)
     assert [round(ob.location.z, 6) for ob in (free, held)] == [0, 1]
-    assert "1 objects not snapped: 1 are locked" in capfd.readouterr().out
+    assert "1 objects not snapped: 1 locked" in capfd.readouterr().out
 
 
 def test_what_carries_the_target():
     target = scenes.flat_grid(4)
     carrier = add_object((0, 0, 1))
     target.parent = carrier
-    refused_and_unchanged(target, carrier, "1 would take Flat along")
+    refused_and_unchanged(target, carrier, "1 that would take Flat along")
 
 
 def test_linked_objects(tmp_path):
@@ -354,7 +354,7 @@ def test_linked_objects(tmp_path):
     linked = found.objects[0]
     bpy.context.collection.objects.link(linked)
     linked.select_set(True)
-    refused_and_unchanged(target, linked, "1 are linked from another file")
+    refused_and_unchanged(target, linked, "1 linked from another file")
 
 
 @pytest.mark.parametrize("kind", ["VIEWPORT", "RENDER"])

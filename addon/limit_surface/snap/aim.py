@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,6 +26,7 @@ class Elements:
     points: np.ndarray  # (n, 3)
     normals: np.ndarray  # (n, 3) unit vectors, NaN where an element has none
     axes: np.ndarray  # (3, 3), or (n, 3, 3): columns are the local X, Y and Z as unit vectors
+    left_out: Counter[str] = field(default_factory=Counter)  # reason -> number of others
 
 
 @dataclass(frozen=True)
@@ -82,10 +83,11 @@ class Aim:
             uv=uv,
             position=position + self.offset * frame[:, :, 2],
             frame=frame,
-            failures=+Counter(
+            failures=elements.left_out
+            + Counter(
                 {
-                    "have coordinates that are not finite": np.count_nonzero(~finite),
-                    "have no direction of their own": np.count_nonzero(finite & ~directed),
+                    "with coordinates that are not finite": np.count_nonzero(~finite),
+                    "with no direction of their own": np.count_nonzero(finite & ~directed),
                     self._missed(): np.count_nonzero(~hit),
                 }
             ),
@@ -144,5 +146,5 @@ class Aim:
     def _missed(self) -> str:
         within = "" if np.isinf(self.max_distance) else f" within {self.max_distance:.6g}"
         if self.mode != "NEAREST":
-            return f"have no surface on their line{within}"
-        return f"have no surface{' that faces them' if self.max_angle is not None else ''}{within}"
+            return f"with no surface on their line{within}"
+        return f"with no surface{' that faces them' if self.max_angle is not None else ''}{within}"

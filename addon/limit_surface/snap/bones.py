@@ -6,6 +6,7 @@ stays, and the length changes. A joint of connected bones is the head of the chi
 the child is selected, or the joint by itself, and otherwise comes along with the parent.
 """
 
+from collections import Counter
 from collections.abc import Iterable
 
 import bpy
@@ -27,7 +28,7 @@ class SnappedBones:
         self._space = WorldSpace(self._matrix)
         chosen = [b for b in _parents_first(ob.data) if _is_shown(b) and _is_head_chosen(b)]
         self._bones = [bone for bone in chosen if not bone.lock]
-        self.locked_count = len(chosen) - len(self._bones)
+        self._left_out = Counter({"locked": len(chosen) - len(self._bones)})
         ends = np.array([(bone.head, bone.tail) for bone in self._bones], np.float64)
         self._heads, self._tails = ends.reshape(-1, 2, 3).swapaxes(0, 1)
 
@@ -36,7 +37,7 @@ class SnappedBones:
         matrices = np.array([bone.matrix.to_3x3() for bone in self._bones], np.float64)
         columns = self._matrix[:3, :3] @ matrices.reshape(-1, 3, 3)
         axes = unit(columns.swapaxes(1, 2)).swapaxes(1, 2)
-        return Elements(heads, unit(tails - heads), axes)
+        return Elements(heads, unit(tails - heads), axes, self._left_out)
 
     def place(self, placement: Placement, choices: Choices) -> Outcome:
         elements, rows = self.elements(), placement.rows

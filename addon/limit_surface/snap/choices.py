@@ -36,8 +36,8 @@ class Outcome:
     def __str__(self) -> str:
         moved = np.concatenate(self.distances)
         return (
-            f"{len(moved):,} {self.noun} snapped, moved by {moved.mean():.4g} on average, "
-            f"{moved.max():.4g} at most"
+            f"{len(moved):,} of {len(moved) + self.failed:,} {self.noun} snapped, "
+            f"moved by {moved.mean():.4g} on average, {moved.max():.4g} at most"
         )
 
 

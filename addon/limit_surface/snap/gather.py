@@ -29,7 +29,6 @@ POINTS = {
 }
 HAIR_MODES = ("EDIT_CURVES", "SCULPT_CURVES")
 MODES = ("OBJECT", "EDIT_ARMATURE", *POINTS, *HAIR_MODES)
-_LINKED = "are linked from another file"
 
 
 class Snapped(Protocol):
@@ -51,10 +50,18 @@ def find_target(context: bpy.types.Context) -> bpy.types.Object | None:
     return context.scene.limit_surface.target
 
 
+def check_target(context: bpy.types.Context, target: bpy.types.Object) -> None:
+    if target.mode == "EDIT" or any(ob.data == target.data for ob in context.objects_in_mode):
+        raise RefusalError(f"{target.name} is being edited: choose another target")
+
+
 def gather(context: bpy.types.Context, surface: TargetSurface) -> Selection:
     selection = Selection([], Counter())
-    collect = _objects if context.mode == "OBJECT" else _edited
-    for make in collect(context, surface, selection.failures):
+    if context.mode == "OBJECT":
+        makers = _objects(context, surface, selection.failures)
+    else:
+        makers = _edited(context, surface)
+    for make in makers:
         try:
             selection.parts.append(make())
         except RefusalError as error:
@@ -72,13 +79,13 @@ def _objects(
         if ob == target:
             continue
         if ob in carriers:
-            failures[f"would take {target.name} along"] += 1
+            failures[f"that would take {target.name} along"] += 1
         elif not (ob.data if ob.type == "CURVES" else ob).is_editable:
-            failures[_LINKED] += 1
+            failures["linked from another file"] += 1
         elif ob.type != "CURVES":
             movable.append(ob)
         elif ob.data in curves:
-            failures["share their curves with others"] += 1
+            failures["sharing curves with another"] += 1
         else:
             curves.add(ob.data)
             yield partial(SnappedHair, ob, surface, selected_only=False)
@@ -86,19 +93,13 @@ def _objects(
         yield partial(SnappedObjects, movable)
 
 
-def _edited(
-    context: bpy.types.Context, surface: TargetSurface, failures: Counter[str]
-) -> Iterator[Callable[[], Snapped]]:
+def _edited(context: bpy.types.Context, surface: TargetSurface) -> Iterator[Callable[[], Snapped]]:
     mode = context.mode
     for ob in context.objects_in_mode_unique_data:
-        if ob.data == surface.ob.data:
-            raise RefusalError(f"{ob.name} cannot be snapped to itself: choose another target")
         if mode in HAIR_MODES:
             yield partial(SnappedHair, ob, surface, selected_only=True)
         elif mode == "EDIT_ARMATURE":
-            bones = SnappedBones(ob)
-            failures["are locked"] += bones.locked_count
-            yield lambda bones=bones: bones
+            yield partial(SnappedBones, ob)
         else:
             yield partial(POINTS[mode], ob)
 

@@ -10,7 +10,7 @@ from ..errors import RefusalError
 from ..progress import progress_bar
 from .aim import Aim, View
 from .choices import Choices, Outcome, merged
-from .gather import HAIR_MODES, MODES, find_target, gather
+from .gather import HAIR_MODES, MODES, check_target, find_target, gather
 from .surface import TargetSurface
 
 
@@ -198,9 +198,9 @@ class OBJECT_OT_limit_snap(bpy.types.Operator):
     def _run(self, context: bpy.types.Context) -> set[str]:
         aim = self._aim(context)
         choices = Choices(self.align, self.children == "KEEP", self.hair, self.keep_length)
-        surface = TargetSurface(
-            find_target(context), context.evaluated_depsgraph_get(), self.target
-        )
+        target = find_target(context)
+        check_target(context, target)
+        surface = TargetSurface(target, context.evaluated_depsgraph_get(), self.target)
         selection = gather(context, surface)
         parts = selection.parts
         with progress_bar(context.window_manager) as progress:

@@ -25,6 +25,7 @@ class VIEW3D_PT_limit_snap(bpy.types.Panel):
                 text=f"Now to the active mesh: {target.name}" if is_mesh else "No active mesh",
                 icon="INFO",
             )
-        row = layout.row()
-        row.enabled = native.available()
-        row.operator(ids.SNAP, icon="SNAP_ON")
+        column = layout.column()
+        column.enabled = native.available()
+        column.operator(ids.SNAP, icon="SNAP_ON")
+        column.operator(ids.SNAP_MODAL, icon="VIEW_PAN")
