@@ -223,7 +223,7 @@ class PatchSearch {
   /// The sine of an angle that rounding may bring about.
   static constexpr double kFlat = 1e-9;
   /// The sine of an angle between tangents below which rounding may turn the normal.
-  static constexpr double kParallel = 1e-6;
+  static constexpr double kParallel = 1e-3;
 
   const BezierPatch& patch_;
   const Facing* facing_;
