@@ -2,6 +2,7 @@
 """The distances that are reported, against a crowd of points on the triangles that Blender draws
 and a fine tessellation of the limit surface."""
 
+import re
 from types import SimpleNamespace
 from typing import NamedTuple
 from unittest.mock import MagicMock
@@ -15,6 +16,7 @@ import scenes
 from limit_surface import attributes, cage, ids, subdivided
 from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
+from processes import ROOT
 
 AMONG = 8  # parts along a side of each triangle
 SINGLE = 1e-6  # what Blender rounds coordinates up to 5 by
@@ -169,9 +171,9 @@ def test_colours_tell_distances():
     distance, colour = attributes.read(ob.data, ids.DISTANCE), colours(ob.data)
     brightness = colour[:, :3] @ [0.2126, 0.7152, 0.0722]
     assert (np.diff(brightness[np.argsort(distance)]) >= -1e-6).all()
-    yellow, blue = colour[distance.argmax()], colour[distance.argmin()]
+    yellow, violet = colour[distance.argmax()], colour[distance.argmin()]
     assert yellow[:2].min() > 0.7 > 0.1 > yellow[2]
-    assert blue[2] > 2 * max(blue[1], 0.02)
+    assert violet[2] > 2 * max(violet[1], 0.02)
     assert ob.data.color_attributes.active_color.name == ids.DISTANCE_COLOR
     # What is seen is the subdivided mesh, which has it too.
     shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
@@ -331,3 +333,24 @@ def test_redo_panel_shows_what_was_found():
         layout = drawn(operator, levels=levels, summary="one\ntwo")
         assert [call.args[1] for call in layout.prop.call_args_list] == shown
         assert [call.kwargs["text"] for call in layout.label.call_args_list] == ["one", "two"]
+
+
+PAGE = (ROOT / "docs/report.md").read_text()
+
+
+def test_page_lists_the_properties_and_their_defaults():
+    rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]+?)`? \|", PAGE, re.MULTILINE))
+    properties = bpy.ops.object.limit_report.get_rna_type().properties
+    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
+    assert set(rows) == set(shown)
+    for name, said in rows.items():
+        default = shown[name].default
+        assert said == (default if isinstance(default, str) else f"{default:g}")
+
+
+def test_page_has_an_example_that_runs(capsys):
+    scenes.activate(parity_zoo.add("sheet"))
+    example = re.search(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL).group(1)
+    exec(example, {})
+    largest, mean = (float(number) for number in capsys.readouterr().out.split()[-2:])
+    assert largest > mean > 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distances as colours: dark blue for none, then green, and yellow for the largest.
+"""Distances as colours: dark violet for none, then blue, green, and yellow for the largest.
 
 The steps are those of the map viridis, which the colour-blind can read too, in the linear values
 that Blender's colour attributes hold.
