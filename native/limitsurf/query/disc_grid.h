@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "limitsurf/random_bits.h"
+#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/types.h"
+
+namespace limitsurf {
+
+/// Discs of radius `smallest` and more, to be found by where they are: a hashed grid of cubes for
+/// each power of two of the radius.
+///
+/// A disc is kept on the level of its radius. For the larger ones around it, eight cubes of each
+/// higher level hold all; for smaller ones, of which there may be any number, eight cubes of its
+/// own level are searched downwards, and a cube knows whether there is anything below it.
+class DiscGrid {
+ public:
+  /// All positions are within `box`, all radii from `smallest` to `largest`.
+  DiscGrid(const Box& box, double smallest, double largest) : origin_(box.low) {
+    sides_.push_back(2 * smallest);
+    while (2 * largest > sides_.back()) {
+      sides_.push_back(2 * sides_.back());
+    }
+    clear();
+  }
+
+  /// The smallest radius for which positions in the box have numbers.
+  static double smallestRadius(const Box& box) {
+    return (box.high - box.low).maxCoeff() / (std::uint32_t{1} << 30);
+  }
+
+  std::size_t size() const { return discs_.size(); }
+
+  void clear() {
+    discs_.clear();
+    on_level_.assign(sides_.size(), 0);
+    // What it held last is a fair guess at what it will hold next.
+    std::size_t cubes = kFewestCubes;
+    while (cubes < 2 * used_) {
+      cubes *= 2;
+    }
+    cubes_.assign(cubes, {});
+    used_ = 0;
+  }
+
+  /// Numbered in the order in which they come.
+  void insert(const Vector3& position, double radius) {
+    const int level = levelOf(radius);
+    Index at[3];
+    indexOf(position, level, 0, at);
+    Cube& cube = made(level, at);
+    discs_.push_back({{position[0], position[1], position[2]}, radius, cube.first});
+    cube.first = static_cast<std::int32_t>(discs_.size() - 1);
+    ++on_level_[level];
+    for (int above = level + 1; above < static_cast<int>(sides_.size()); ++above) {
+      indexOf(position, above, 0, at);
+      Cube& parent = made(above, at);
+      if (parent.has_below) {
+        break;
+      }
+      parent.has_below = true;
+    }
+  }
+
+  /// Calls visit(number) for the discs whose centre is closer to the position than the mean of both
+  /// radii, until it returns true; whether it did.
+  template <typename Visit>
+  bool any(const Vector3& position, double radius, const Visit& visit) const {
+    const int own = levelOf(radius);
+    for (int level = own; level < static_cast<int>(sides_.size()); ++level) {
+      if (on_level_[level] == 0 && !(level == own && level > 0)) {
+        continue;
+      }
+      Index low[3];
+      indexOf(position, level, 0.5, low);
+      for (int corner = 0; corner < 8; ++corner) {
+        const Index at[3] = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
+                             low[2] + (corner >> 2)};
+        if (anyIn(level, at, level == own, position, radius, visit)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  using Index = std::int32_t;
+
+  struct Disc {
+    double position[3];
+    double radius;
+    std::int32_t next;  // of the same cube
+  };
+  struct Cube {
+    Index at[3] = {0, 0, 0};
+    std::int8_t level = -1;  // -1: none
+    bool has_below = false;
+    std::int32_t first = -1;
+  };
+  static constexpr std::size_t kFewestCubes = 1024;
+
+  int levelOf(double radius) const {
+    int level = 0;
+    while (2 * radius > sides_[level]) {
+      ++level;
+    }
+    return level;
+  }
+
+  /// Of the cube that holds the position moved down by a part of a cube's side.
+  void indexOf(const Vector3& position, int level, double down, Index at[3]) const {
+    for (int i = 0; i < 3; ++i) {
+      at[i] = static_cast<Index>(std::floor((position[i] - origin_[i]) / sides_[level] - down));
+    }
+  }
+
+  std::size_t slot(int level, const Index at[3]) const {
+    const std::uint64_t bits =
+        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[0])) |
+         static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[1])) << 32) ^
+        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[2])) * 0x9e3779b97f4a7c15u +
+         static_cast<std::uint64_t>(level));
+    return mixed(bits) & (cubes_.size() - 1);
+  }
+  static bool isSame(const Cube& cube, int level, const Index at[3]) {
+    return cube.level == level && cube.at[0] == at[0] && cube.at[1] == at[1] && cube.at[2] == at[2];
+  }
+
+  const Cube* find(int level, const Index at[3]) const {
+    for (std::size_t i = slot(level, at);; i = (i + 1) & (cubes_.size() - 1)) {
+      const Cube& cube = cubes_[i];
+      if (cube.level < 0) {
+        return nullptr;
+      }
+      if (isSame(cube, level, at)) {
+        return &cube;
+      }
+    }
+  }
+
+  Cube& made(int level, const Index at[3]) {
+    if (2 * used_ >= cubes_.size()) {
+      grow();
+    }
+    for (std::size_t i = slot(level, at);; i = (i + 1) & (cubes_.size() - 1)) {
+      Cube& cube = cubes_[i];
+      if (cube.level < 0) {
+        ++used_;
+        std::copy(at, at + 3, cube.at);
+        cube.level = static_cast<std::int8_t>(level);
+        return cube;
+      }
+      if (isSame(cube, level, at)) {
+        return cube;
+      }
+    }
+  }
+
+  void grow() {
+    std::vector<Cube> old(2 * cubes_.size());
+    old.swap(cubes_);
+    for (const Cube& cube : old) {
+      if (cube.level >= 0) {
+        std::size_t i = slot(cube.level, cube.at);
+        while (cubes_[i].level >= 0) {
+          i = (i + 1) & (cubes_.size() - 1);
+        }
+        cubes_[i] = cube;
+      }
+    }
+  }
+
+  template <typename Visit>
+  bool anyIn(int level, const Index at[3], bool downwards, const Vector3& position, double radius,
+             const Visit& visit) const {
+    const Cube* cube = find(level, at);
+    if (!cube) {
+      return false;
+    }
+    for (std::int32_t i = cube->first; i >= 0; i = discs_[i].next) {
+      const Disc& disc = discs_[i];
+      const double reach = (disc.radius + radius) / 2;
+      if (squaredDistance(position, disc.position) < reach * reach && visit(i)) {
+        return true;
+      }
+    }
+    if (!downwards || !cube->has_below) {
+      return false;
+    }
+    const double side = sides_[level - 1];
+    // Discs of the level below are no larger than half its cubes' side.
+    const double reach = (side / 2 + radius) / 2;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Index child[3] = {2 * at[0] + (corner & 1), 2 * at[1] + (corner >> 1 & 1),
+                              2 * at[2] + (corner >> 2)};
+      double squared = 0;
+      for (int i = 0; i < 3; ++i) {
+        const double low = origin_[i] + child[i] * side - position[i];
+        const double outside = std::max({low, -(low + side), 0.});
+        squared += outside * outside;
+      }
+      // A little more, for the rounding of the cubes' sides.
+      if (squared <= reach * reach * (1 + 1e-9) &&
+          anyIn(level - 1, child, true, position, radius, visit)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  static double squaredDistance(const Vector3& a, const double b[3]) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+  }
+
+  Vector3 origin_;
+  std::vector<double> sides_;  // of the cubes of each level
+  std::vector<std::size_t> on_level_;
+  std::vector<Disc> discs_;
+  std::vector<Cube> cubes_;  // hashed, open addressing
+  std::size_t used_ = 0;
+};
+
+}  // namespace limitsurf

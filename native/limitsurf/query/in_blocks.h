@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "limitsurf/parallel.h"
+
+namespace limitsurf {
+
+/// Calls make(begin, end, results) for ranges of at most `block` that cover [0, count), in
+/// parallel, and puts their results one after the other. `block` decides how the range is cut, the
+/// threads do not.
+template <typename T, typename Make>
+std::vector<T> concatenated(std::size_t count, std::size_t block, int threads, const Make& make) {
+  const std::size_t blocks = (count + block - 1) / block;
+  std::vector<std::vector<T>> parts(blocks);
+  parallelFor(blocks, 1, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      make(i * block, std::min(count, (i + 1) * block), parts[i]);
+    }
+  });
+  std::size_t size = 0;
+  for (const std::vector<T>& part : parts) {
+    size += part.size();
+  }
+  std::vector<T> all;
+  all.reserve(size);
+  for (const std::vector<T>& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+}  // namespace limitsurf
