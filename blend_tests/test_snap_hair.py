@@ -288,6 +288,17 @@ def test_an_attribute_of_that_name_in_the_way():
     np.testing.assert_array_equal(attributes.read(hair.data, "position"), before)
 
 
+def test_hair_without_strands():
+    target = scenes.cross()
+    data = bpy.data.hair_curves.new("Bald")
+    ob = bpy.data.objects.new("Bald", data)
+    bpy.context.collection.objects.link(ob)
+    ob.select_set(True)
+    scenes.activate(target)
+    with pytest.raises(RuntimeError, match="Nothing is selected"):
+        bpy.ops.object.limit_snap()
+
+
 def test_bezier_handles_come_along():
     target = stretched(scenes.cross())
     hair = add_hair(target)

@@ -76,7 +76,7 @@ def test_along_an_axis(orientation, axis):
         mode="AXIS",
         axis=axis,
         orientation=orientation,
-        view_matrix=[x for column in VIEW.col for x in column],
+        view_matrix=VIEW,
     )
     after = world_locations(things)
     check_along_lines(truth, before, after, directions)
@@ -126,7 +126,7 @@ def test_along_the_line_of_sight():
         target,
         mode="AXIS",
         orientation="VIEW",
-        view_matrix=[x for column in view.col for x in column],
+        view_matrix=view,
         view_is_perspective=True,
     )
     sight = eye - before

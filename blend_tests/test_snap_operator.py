@@ -136,7 +136,7 @@ def test_needs_an_active_mesh_and_something_else():
     add_object((0, 0, 1))
     assert bpy.ops.object.limit_snap.poll()
     bpy.ops.object.mode_set(mode="VERTEX_PAINT")
-    refused("Not in this mode")
+    refused("Only in Object Mode, and Edit Mode of")
 
 
 def test_nothing_within_reach_changes_nothing():

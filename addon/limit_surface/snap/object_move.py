@@ -36,15 +36,16 @@ class ObjectMove:
     def begin(self) -> None:
         ob = self._ob
         basis = _array(ob.matrix_basis)[:3, :3]
-        parent = self._before[:3, :3] @ np.linalg.pinv(basis) if ob.parent else np.eye(3)
-        into_parent = np.linalg.pinv(parent)
+        into_parent = np.eye(3)
+        if ob.parent:
+            into_parent = np.linalg.pinv(self._before[:3, :3] @ np.linalg.pinv(basis))
         move = into_parent @ (self._position - self._before[:3, 3])
         ob.location = np.add(ob.location, move)
         scale = np.multiply(ob.scale, ob.delta_scale)
         if self._align != "NONE" and scale.all():
             rotation = basis / scale
             wanted = self._turned(rotation, into_parent @ self._frame, np.sign(scale))
-            self._rotate(np.linalg.solve(rotation, wanted))
+            self._rotate(rotation.T @ wanted)
 
     def finish(self) -> str:
         """Once Blender has evaluated the object: why it is not where it should be, if so."""

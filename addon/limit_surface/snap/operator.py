@@ -139,7 +139,7 @@ class OBJECT_OT_limit_snap(bpy.types.Operator):
     view_matrix: FloatVectorProperty(
         name="View Matrix",
         description="From world to view, for the view's axes; the 3D viewport's if it is not set",
-        size=16,
+        size=(4, 4),
         subtype="MATRIX",
         options={"HIDDEN", "SKIP_SAVE"},
     )
@@ -270,7 +270,7 @@ def _obstacle(context: bpy.types.Context) -> str:
     if not native.available():
         return f"The native module does not load: {native.reason}"
     if context.mode not in MODES:
-        return "Not in this mode"
+        return "Only in Object Mode, and Edit Mode of meshes, curves, hair, lattices and armatures"
     target = find_target(context)
     if context.mode == "OBJECT":
         if target is None or target.type != "MESH":
