@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limitsurf/query/bernstein.h"
+#include "limitsurf/bernstein.h"
 
 namespace limitsurf {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limitsurf/query/bernstein.h"
+#include "limitsurf/bernstein.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
