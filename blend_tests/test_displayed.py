@@ -108,9 +108,10 @@ def test_any_level_without_changing_the_modifier():
         np.testing.assert_array_equal(shown.positions(face, uv), expected)
 
 
-def test_level_0_is_the_mesh_itself():
+@pytest.mark.parametrize("name", ["polygons", "fans"])
+def test_level_0_is_the_mesh_itself(name):
     """Quads are cut in two triangles; parts of other polygons meet in the mean of their corners."""
-    ob = parity_zoo.add("polygons")
+    ob = parity_zoo.add(name)
     ob.modifiers[0].levels = 0
     shown = read(ob, "VIEWPORT")
     assert shown.level == 0
@@ -122,7 +123,10 @@ def test_level_0_is_the_mesh_itself():
     sizes = np.array([len(p.vertices) for p in ob.data.polygons])
     on_pentagon = np.repeat(sizes, np.where(sizes == 4, 1, sizes))[face] == 5
     for place in shown.positions(face[~on_pentagon], uv[~on_pentagon]):
-        np.testing.assert_allclose(ob.closest_point_on_mesh(place)[1], place, atol=1e-6)
+        _, nearest, normal, _ = ob.closest_point_on_mesh(place)
+        off = np.array(nearest) - place  # Blender finds it in single precision
+        assert np.linalg.norm(off) < 3e-5
+        assert abs(off @ normal) < 3e-6
 
 
 def test_without_a_modifier_it_is_the_mesh_itself():

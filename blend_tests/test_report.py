@@ -91,7 +91,7 @@ def stretched(ob):
 
 
 @pytest.mark.parametrize("level", [1, 2])
-@pytest.mark.parametrize("name", ["cross", "sheet", "polygons", "prism"])
+@pytest.mark.parametrize("name", ["cross", "sheet", "polygons", "prism", "fans"])
 def test_distances_are_those_of_a_crowd_of_points(name, level):
     ob = stretched(parity_zoo.add(name))
     ob.modifiers[0].levels = level

@@ -17,7 +17,7 @@ import numpy as np
 from .. import cage, displayed, subdivided
 
 PART = 1 << 17  # so many places are looked at at once: a progress bar moves, memory stays small
-ENOUGH = 200_000  # polygons are looked at as one cell each where that makes so many places
+ENOUGH = 100_000  # polygons are looked at as one cell each where that makes so many places
 MOST_CELLS = 8  # along each side of a polygon
 
 CORNER_WEIGHT, MIDDLE_WEIGHT, CENTRE_WEIGHT = 1 / 20, 2 / 15, 9 / 20
