@@ -17,6 +17,7 @@ from ._limitsurf import (
     __version__,
 )
 from ._results import (
+    BlueNoise,
     Curvature,
     DataEvaluation,
     Evaluation,
@@ -28,6 +29,7 @@ from ._results import (
 )
 
 __all__ = [
+    "BlueNoise",
     "ControlMesh",
     "Curvature",
     "DataEvaluation",

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._results import (
+    BlueNoise,
     Curvature,
     DataEvaluation,
     Evaluation,
@@ -165,6 +166,29 @@ class LimitSurface:
         progress: Callable[[float], object] | None = None,
     ) -> RayHits: ...
     def scatter_jittered(self, per_side: int, seed: int = 0, *, threads: int = 0) -> Locations: ...
+    def scatter_uniform(
+        self,
+        count: int,
+        seed: int = 0,
+        density: ArrayLike
+        | Callable[[NDArray[np.int32], NDArray[np.float64]], ArrayLike]
+        | None = None,
+        *,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> Locations: ...
+    def scatter_blue_noise(
+        self,
+        *,
+        count: int | None = None,
+        radius: float | None = None,
+        seed: int = 0,
+        density: ArrayLike
+        | Callable[[NDArray[np.int32], NDArray[np.float64]], ArrayLike]
+        | None = None,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> BlueNoise: ...
     def tessellate(self, levels: int, *, threads: int = 0) -> Tessellation: ...
     def area(self, *, threads: int = 0) -> float: ...
     def bounds(self, *, threads: int = 0) -> NDArray[np.float64]: ...

@@ -70,6 +70,13 @@ class Locations:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class BlueNoise(Locations):
+    """Locations, and the distance that they keep from each other where the density is largest."""
+
+    radius: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Hits:
     """Points found on the surface, one a row; where there is none, face is -1 and the rest NaN."""
 

@@ -210,6 +210,41 @@ Lacewell & Burley 2007, figure 1. Locations (.face, .uv) in face order; refused 
 same seed (0 to 2^64 - 1) gives the same locations on every machine.
 )";
 
+constexpr const char* kScatterUniformDoc =
+    R"(Independent random locations, uniform by limit area, or in proportion to area times density.
+
+Exactly so, inside each face as well: |du x dv| decides, not (u, v). Returns Locations (.face, .uv)
+in random order; the first n of a longer sequence are what a count of n gives. The same seed (0 to
+2^64 - 1) gives the same locations on every machine and with any number of threads.
+
+density: (V,) weights of the vertices, linear over each Ptex face, or a function of (face, uv),
+arrays (n,) int32 and (n, 2), that returns (n,) weights. Weights are relative, finite and at least
+0; where they are 0 there is nothing. The function must not call set_positions(); the larger its
+largest value is than its mean, the longer it takes. progress, a function, is called now and then
+with the part done, 0 to 1; what it raises ends the call.
+
+Raises ValueError for a negative count, densities that are negative, not finite, of another shape or
+0 everywhere, and a surface without area. Some 0.3 microseconds a location; the first call builds a
+table that is kept until set_positions().
+)";
+
+constexpr const char* kScatterBlueNoiseDoc =
+    R"(Random points that keep a distance from each other (Poisson-disk sampling, blue noise).
+
+Exactly one of count and radius. Two points are in conflict if the chord between them is shorter
+than the radius and the normals there are less than 90 degrees apart: the sides of a thin sheet do
+not see each other. With a radius the points are maximal: nowhere is there place for one more, to
+1/512 of the radius. With a count there are exactly so many, as far apart as such random points get.
+Returns BlueNoise: .face, .uv in face order and .radius, the distance that the points keep.
+
+density, seed and progress: as for scatter_uniform(). The radius grows as 1 / sqrt(density / largest
+density), and two points keep the mean of theirs. A function is read once on a grid of each face
+whose squares are at most a radius wide, and is linear between; where it is 0 there are no points.
+
+Raises ValueError as scatter_uniform(), and for a radius that is not above 0 and finite or of which
+more than 2^31 points would come. Some 10 microseconds a point.
+)";
+
 constexpr const char* kClosestDoc =
     R"(The closest point of the limit surface, itself and not of polygons, for each of (n, 3) points.
 

@@ -189,6 +189,7 @@ void bindLimitSurface(py::module_& module) {
   const py::object float64 = py::dtype("float64");
   py::class_<SharedSurface> type(module, "LimitSurface", kLimitSurfaceDoc);
   bindQueries(type);
+  bindScatter(type);
   type.def(py::init(&makeSurface), "mesh"_a.none(false))
       .def_readonly("mesh", &SharedSurface::mesh, "The ControlMesh, in the pose it was made with.")
       .def_property_readonly(

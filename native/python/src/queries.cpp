@@ -7,6 +7,7 @@
 
 #include "batches.h"
 #include "docstrings.h"
+#include "progress.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -48,26 +49,6 @@ Points facingOf(const py::object& facing, const Points& points) {
   return rows;
 }
 
-/// What Python asks to be told: called with the GIL on the calling thread, and what it raises ends
-/// the call.
-class Progress {
- public:
-  explicit Progress(const py::object& report) : report_(report) {
-    if (!report.is_none() && !PyCallable_Check(report.ptr())) {
-      throw py::type_error("progress is not callable");
-    }
-  }
-  void operator()(double part) const {
-    if (!report_.is_none()) {
-      const py::gil_scoped_acquire acquire;
-      report_(part);
-    }
-  }
-
- private:
-  const py::object& report_;
-};
-
 /// Hits row by row, as numpy arrays.
 class HitArrays {
  public:
@@ -108,7 +89,7 @@ class HitArrays {
 template <typename Body>
 void searchInParts(const SharedSurface& shared, Eigen::Index rows, int threads,
                    const py::object& progress, const Body& body) {
-  const Progress report(progress);
+  const ProgressReport report(progress);
   const py::gil_scoped_release release;
   const std::shared_lock<std::shared_mutex> lock(shared.mutex);
   const InterruptionPoint point = interruptible();

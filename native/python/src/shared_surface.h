@@ -8,6 +8,7 @@
 
 #include "arrays.h"
 #include "control_mesh.h"
+#include "limitsurf/query/area_sampler.h"
 #include "limitsurf/query/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
 
@@ -49,16 +50,21 @@ struct SharedSurface : ZeroedMemory {
   }
 
   /// With the mutex held alone.
-  void forgetPose() { search.forget(); }
+  void forgetPose() {
+    search.forget();
+    sampler.forget();
+  }
 
   std::shared_ptr<BoundMesh> mesh;
   mutable std::shared_mutex mutex;
   Lazily<SurfaceSearch> search;
+  Lazily<AreaSampler> sampler;
 
  private:
   std::unique_ptr<LimitSurface> surface_;
 };
 
 void bindQueries(py::class_<SharedSurface>& type);
+void bindScatter(py::class_<SharedSurface>& type);
 
 }  // namespace limitsurf::python

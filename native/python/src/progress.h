@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "arrays.h"
+
+namespace limitsurf::python {
+
+/// What Python asks to be told: called with the GIL on the calling thread, and what it raises ends
+/// the call.
+class ProgressReport {
+ public:
+  explicit ProgressReport(const py::object& report) : report_(report) {
+    if (!report.is_none() && !PyCallable_Check(report.ptr())) {
+      throw py::type_error("progress is not callable");
+    }
+  }
+  void operator()(double part) const {
+    if (!report_.is_none()) {
+      const py::gil_scoped_acquire acquire;
+      report_(part);
+    }
+  }
+
+ private:
+  const py::object& report_;
+};
+
+}  // namespace limitsurf::python
