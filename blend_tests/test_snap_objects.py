@@ -175,14 +175,17 @@ def test_maximum_distance_and_report(capfd):
     assert "1 objects not snapped: 1 with no surface within 2" in said
 
 
-def test_facing():
-    """Two sheets that face each other: the closer one is passed over if it faces away."""
+@pytest.mark.parametrize("side", [1, -1])
+def test_facing(side):
+    """Two sheets that face each other: the closer one is passed over if it faces away. A mirrored
+    object is the same two sheets."""
     y, x = np.mgrid[:5, :5].reshape(2, -1)
     sheet = np.stack([x, y, 0 * x], axis=1).astype(float)
     first = (np.arange(4) * 5)[:, None] + np.arange(4)
     up = (first.reshape(-1, 1) + [0, 1, 6, 5]).tolist()
     down = [[25 + i for i in reversed(face)] for face in up]
     target = scenes.add_mesh("Sheets", np.concatenate([sheet, sheet + (0, 0, 1)]), up + down)
+    target.scale.x, target.location.x = side, 4 * (side < 0)
     thing = add_object((2, 2.3, 0.7))
     snap(target, use_facing=True, max_angle=1.0)
     np.testing.assert_allclose(thing.location, (2, 2.3, 0), atol=1e-6)
