@@ -6,10 +6,13 @@ TAB = "Limit"
 HAIR_ADD = "object.limit_hair_add"
 POINTS_ADD = "object.limit_points_add"
 SNAP = "object.limit_snap"
+SNAP_MODAL = "view3d.limit_snap_modal"
 REPORT_OPERATOR = "object.limit_report"
 
 PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
+HAIR_PANEL = "VIEW3D_PT_limit_hair"
+POINTS_PANEL = "VIEW3D_PT_limit_points"
 SNAP_PANEL = "VIEW3D_PT_limit_snap"
 OBJECT_MENU = "VIEW3D_MT_object_limit_surface"
 
