@@ -306,7 +306,7 @@ def test_animated_levels():
     driver.expression = "2"
     assert read(ob, "VIEWPORT").level == 2
     refusal(ob, "RENDER", "cannot be had: display settings of Subdivision are animated")
-    refusal(ob, 4, "the mesh that level 4 shows cannot be had")
+    refusal(ob, 4, "the mesh of level 4 cannot be had")
 
 
 def test_adaptive_subdivision():

@@ -23,7 +23,7 @@ from .triangulated import TriangulatedQuads
 
 Kind = Literal["VIEWPORT", "RENDER"] | int
 
-_CALLED = {"VIEWPORT": "the viewport", "RENDER": "a render"}
+_CALLED = {"VIEWPORT": "the mesh that the viewport shows", "RENDER": "the mesh that a render shows"}
 
 
 class DisplayedMesh:
@@ -65,14 +65,14 @@ def read(
     cut = ob.modifiers.find(subsurf.name) + 1 if subsurf else len(ob.modifiers)
     if kind == "RENDER":
         _check_dicing(ob, subsurf, depsgraph.scene)
-        cage.check_modifiers(ob, max(cut - 1, 0) if subsurf else cut, "show_render")
+        cage.check_modifiers(ob, cut - 1 if subsurf else cut, "show_render")
 
     def adjust(copy: bpy.types.Object, scene: bpy.types.Scene) -> None:
         _carry_simplify(depsgraph.scene, scene, kind)
         _show(copy, subsurf.name if subsurf else "", kind)
 
     with cage.evaluated_copy(ob, cut, depsgraph, adjust) as evaluated:
-        whose = f"{ob.name}: the mesh that {_called(kind)} shows"
+        whose = f"{ob.name}: {_called(kind)}"
         modifier = evaluated.modifiers[subsurf.name] if subsurf else None
         _check_settings(whose, evaluated, modifier, kind)
         level = _level(modifier, depsgraph.scene, kind)
@@ -203,4 +203,4 @@ def _check_corners(whose: str, shown: DisplayedMesh, found: cage.Cage) -> None:
 
 
 def _called(kind: Kind) -> str:
-    return _CALLED[kind] if isinstance(kind, str) else f"level {kind}"
+    return _CALLED[kind] if isinstance(kind, str) else f"the mesh of level {kind}"
