@@ -5,9 +5,9 @@ import atexit
 
 import bpy
 
-from . import hair, points, preferences, report, snap, ui
+from . import distribution, hair, points, preferences, report, snap, ui
 
-_parts = (preferences, hair, points, snap, ui, report)
+_parts = (preferences, hair, points, snap, ui, distribution, report)
 
 # Blender as a module hangs at the interpreter's exit if classes are registered then.
 _is_module = not bpy.app.binary_path
@@ -18,6 +18,7 @@ def register() -> None:
         for cls in part.classes:
             bpy.utils.register_class(cls)
     snap.attach_settings()
+    distribution.attach_handlers()
     ui.append_menus()
     if _is_module:
         atexit.register(unregister)
@@ -26,6 +27,7 @@ def register() -> None:
 def unregister() -> None:
     atexit.unregister(unregister)
     ui.remove_menus()
+    distribution.detach_handlers()
     snap.detach_settings()
     for part in reversed(_parts):
         for cls in reversed(part.classes):

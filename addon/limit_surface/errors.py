@@ -16,3 +16,7 @@ class DisplayedError(RefusalError):
 
 class TooLargeError(RefusalError):
     """More elements than anyone should get without having been asked."""
+
+
+class CancelledError(RefusalError):
+    """The user did not want to wait."""

@@ -1,17 +1,44 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The progress bar at the mouse."""
+"""Showing how far work has got."""
+
+from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import bpy
 
+TICK = 0.1  # seconds
+
 
 @contextmanager
 def progress_bar(window_manager: bpy.types.WindowManager) -> Iterator[Callable[[float], None]]:
-    """Gives a function to call with the part that is done, 0 to 1."""
+    """At the mouse, while nothing else happens. Gives a function to call with the part that is
+    done, 0 to 1."""
     window_manager.progress_begin(0, 100)
     try:
         yield lambda part: window_manager.progress_update(int(100 * part))
     finally:
         window_manager.progress_end()
+
+
+class Waiting:
+    """At the mouse and in the status bar, while Blender goes on: timer events tell the operator
+    when to look."""
+
+    def __init__(self, context: bpy.types.Context, text: str) -> None:
+        self._text = text
+        self._workspace = context.workspace
+        self._window_manager = context.window_manager
+        self._timer = self._window_manager.event_timer_add(TICK, window=context.window)
+        self._window_manager.progress_begin(0, 100)
+        self.show(0.0)
+
+    def show(self, part: float) -> None:
+        self._window_manager.progress_update(int(100 * part))
+        self._workspace.status_text_set(f"{self._text}: {part:.0%}    ESC: Cancel")
+
+    def end(self) -> None:
+        self._window_manager.event_timer_remove(self._timer)
+        self._window_manager.progress_end()
+        self._workspace.status_text_set(None)

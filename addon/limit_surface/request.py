@@ -20,6 +20,7 @@ class RequestSize:
     noun: str
     count: int
     elements_per_location: int
+    is_exact: bool = True
 
     @property
     def elements(self) -> int:
@@ -42,4 +43,6 @@ class RequestSize:
 
     def __str__(self) -> str:
         many = f" of {self.elements_per_location} points" if self.elements_per_location > 1 else ""
-        return f"{self.count:,} {self.noun}{many} (about {self.memory / 2**30:.1f} GiB of memory)"
+        about = "" if self.is_exact else "about "
+        memory = f"about {self.memory / 2**30:.1f} GiB of memory"
+        return f"{about}{self.count:,} {self.noun}{many} ({memory})"

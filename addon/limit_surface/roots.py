@@ -5,14 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    import limitsurf
+from .job import Progress
 
 PART = 1 << 16  # so many are evaluated at once: a progress bar moves, memory stays small
+
+#: From Ptex faces (n,) and uv (n, 2) to positions (n, 3) and frames (n, 3, 3)
+Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True)
@@ -33,21 +34,9 @@ class Roots:
     frame: np.ndarray  # (n, 3, 3): columns tangent, normal x tangent, normal
 
 
-def scatter_jittered(surface: limitsurf.LimitSurface, per_side: int, seed: int) -> Locations:
-    """per_side x per_side locations on each Ptex face.
-
-    Files hold (u, v) in single precision, so it is rounded here, before anything is evaluated:
-    a root lies exactly where its stored location says.
-    """
-    found = surface.scatter_jittered(per_side, seed)
-    return Locations(np.asarray(found.face, np.int32), np.asarray(found.uv, np.float32))
-
-
-def evaluate(
-    surface: limitsurf.LimitSurface, locations: Locations, progress: Callable[[float], None]
-) -> Iterator[Roots]:
+def evaluate(on: Evaluate, locations: Locations, progress: Progress) -> Iterator[Roots]:
     for begin in range(0, len(locations), PART):
         rows = slice(begin, min(begin + PART, len(locations)))
         face, uv = locations.face[rows], locations.uv[rows].astype(np.float64)
-        yield Roots(rows, surface.evaluate(face, uv).position, surface.frames(face, uv))
+        yield Roots(rows, *on(face, uv))
         progress(rows.stop / len(locations))

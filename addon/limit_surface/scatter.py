@@ -1,32 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the operators that scatter things over a limit surface have in common."""
 
-from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, StringProperty
 
-from . import cage, native, roots
+from . import cage, displayed, native, roots
+from .distribution import properties, region
+from .distribution.spread import Scattered, Spread
 from .errors import RefusalError
-from .progress import progress_bar
+from .job import Job, Progress, part_of
+from .progress import Waiting, progress_bar
 from .request import RequestSize
 
-if TYPE_CHECKING:
-    import limitsurf
+SCATTERED = 0.5  # of the progress, when the locations are there
+
+#: Long work lets the user wait, and watch it, from here on
+PATIENCE = 0.3  # seconds
+
+VIEW_NAVIGATION = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION"}
 
 
 @dataclass(frozen=True)
-class Target:
-    """The surface that an operator works on."""
+class Ground:
+    """What things are scattered over, as plain arrays, with their places."""
 
-    ob: bpy.types.Object
     cage: cage.Cage
-    surface: "limitsurf.LimitSurface"
-    locations: roots.Locations
+    region: region.Region
+    scattered: Scattered
+    shown: displayed.DisplayedMesh | None  # None: things stand on the surface itself
+
+    @property
+    def locations(self) -> roots.Locations:
+        return self.scattered.locations
+
+    def evaluate(self, face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Positions and frames. On the polygons that are shown frames are the surface's all the
+        same: there are no kinks in them."""
+        surface = self.region.surface
+        on = self.shown.positions(face, uv) if self.shown else surface.evaluate(face, uv).position
+        return on, surface.frames(face, uv)
 
     def surface_uv(self) -> np.ndarray | None:
         """The locations on the UV map of the mesh that the viewport shows, smoothed where that is
@@ -34,51 +50,40 @@ class Target:
         found = self.cage.uv_map
         if found is None:
             return None
-        shown = self.surface.face_varying(
+        smoothed = self.region.surface.face_varying(
             found.values, found.indices, self.cage.shown_uv_interpolation
         )
-        return shown.evaluate(self.locations.face, self.locations.uv.astype(np.float64)).value
+        return smoothed.evaluate(self.locations.face, self.locations.uv.astype(np.float64)).value
 
 
-class ScatterOperator:
-    """Mixin: locations by one of the distributions, and the rules of asking and reporting.
+@dataclass(frozen=True)
+class Order:
+    """All that is asked for, read from Blender: the rest needs arrays alone."""
 
-    A subclass names what it makes (`noun`, plural) and makes it (`build`); until `build` returns
-    it cleans up after itself.
+    surface: str  # the object's name
+    region: region.Region
+    spread: Spread
+    shown: displayed.DisplayedMesh | None
+    size: RequestSize
+
+    def ground(self, progress: Progress) -> Ground:
+        scattered = self.spread.scatter(self.region, progress)
+        if not len(scattered.locations):
+            raise RefusalError("The density is too low: nothing is made")
+        return Ground(self.region.cage, self.region, scattered, self.shown)
+
+
+class ScatterOperator(properties.DistributionProperties):
+    """Mixin: locations by one of the distributions, and the rules of asking, waiting and reporting.
+
+    A subclass names what it makes (`noun`, plural) and makes it in two steps: `maker` gives a
+    function that makes arrays, which may run in a thread of its own, and `add` puts them into the
+    file. Until `add` returns it cleans up after itself.
     """
 
     bl_options = {"REGISTER", "UNDO"}
     noun = ""
 
-    distribution: EnumProperty(
-        name="Distribution",
-        description="How locations are spread over the surface",
-        items=(
-            (
-                "JITTERED",
-                "Jittered",
-                "The same number on each face: one at a random place in each cell of a grid",
-                "",
-                0,
-            ),
-        ),
-        default="JITTERED",
-    )
-    per_side: IntProperty(
-        name="Per Side",
-        description="Cells along each side of a face: 20 makes 400 on every face with four "
-        "corners, and as many at each corner of any other",
-        default=20,
-        min=1,
-        max=10_000,
-        soft_max=100,
-    )
-    seed: IntProperty(
-        name="Seed",
-        description="Another seed gives another random arrangement",
-        default=0,
-        min=0,
-    )
     allow_large: BoolProperty(
         name="Allow Large Counts",
         description="Make millions of elements without asking. Scripts need it, as nobody can "
@@ -91,6 +96,8 @@ class ScatterOperator:
         description="What the operator made",
         options={"HIDDEN", "SKIP_SAVE"},
     )
+
+    _someone_waits = False
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -106,28 +113,38 @@ class ScatterOperator:
         return False
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        try:
-            size = self._size(_read_cage(context))
-        except (RefusalError, *native.errors) as error:
-            return self._refuse(error)
-        if size.is_large and not self.allow_large:
-            self.allow_large = True  # what the dialog asks for; declining it runs nothing
-            return context.window_manager.invoke_confirm(
-                self, event, title=self.bl_label, message=f"Make {size}?", confirm_text="Make"
-            )
-        return self.execute(context)
+        return self._guarded(self._invoke, context, event)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            return self._run(context)
-        except (RefusalError, *native.errors) as error:
-            return self._refuse(error)
-        except MemoryError:
-            return self._refuse(f"Not enough memory for so many {self.noun}")
+        return self._guarded(self._execute, context)
 
-    def build(
-        self, context: bpy.types.Context, target: Target, progress: Callable[[float], None]
-    ) -> None:
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type == "ESC" and event.value == "PRESS":
+            self._job.cancel()
+            self._waiting.end()
+            self.report({"INFO"}, f"Cancelled: no {self.noun} were made")
+            return {"CANCELLED"}
+        if event.type in VIEW_NAVIGATION:
+            return {"PASS_THROUGH"}
+        if event.type != "TIMER":
+            return {"RUNNING_MODAL"}
+        self._waiting.show(self._job.part)
+        if not self._job.is_done:
+            return {"RUNNING_MODAL"}
+        self._waiting.end()
+        return self._guarded(self._finish, context, self._job)
+
+    def cancel(self, _context: bpy.types.Context) -> None:
+        """Another file is loaded, or Blender quits, while somebody waits."""
+        self._job.cancel()
+        self._waiting.end()
+
+    def maker(self, found: cage.Cage) -> Any:
+        """A function of the ground and of progress, that makes what `add` gets. It is called
+        where nothing of Blender may be touched."""
+        raise NotImplementedError
+
+    def add(self, context: bpy.types.Context, surface: bpy.types.Object, made: Any) -> None:
         raise NotImplementedError
 
     def elements_per_location(self) -> int:
@@ -137,12 +154,10 @@ class ScatterOperator:
     def check_properties(self) -> None:
         """Refuses properties that make no sense together."""
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
-        layout.prop(self, "distribution")
-        layout.prop(self, "per_side")
-        layout.prop(self, "seed")
+        properties.draw(layout, self.properties, context)
         self.draw_own(layout)
         layout.prop(self, "allow_large")
         if self.summary:
@@ -151,58 +166,97 @@ class ScatterOperator:
     def draw_own(self, layout: bpy.types.UILayout) -> None:
         """The subclass's own properties."""
 
-    def _run(self, context: bpy.types.Context) -> set[str]:
-        self.summary = ""
-        self.check_properties()
-        found = _read_cage(context)
-        size = self._size(found)
-        size.check(self.allow_large)
-        surface = native.limitsurf.LimitSurface(found.mesh)
-        locations = roots.scatter_jittered(surface, self.per_side, self.seed)
-        if not len(locations):
-            raise RefusalError(f"No face has a limit surface: {_reasons(dict(surface.refused))}")
-        target = Target(context.active_object, found, surface, locations)
-        with progress_bar(context.window_manager) as progress:
-            self.build(context, target, progress)
-        self._report(target)
+    def _guarded(self, step: Any, *arguments: Any) -> set[str]:
+        try:
+            return step(*arguments)
+        except (RefusalError, *native.errors) as error:
+            return self._refuse(error)
+        except MemoryError:
+            return self._refuse(f"Not enough memory for so many {self.noun}")
+
+    def _invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        order = self._order(context)
+        self._someone_waits = True
+        if order.size.is_large and not self.allow_large:
+            self.allow_large = True  # what the dialog asks for; declining it runs nothing
+            return context.window_manager.invoke_confirm(
+                self, event, title=self.bl_label, message=f"Make {order.size}?", confirm_text="Make"
+            )
+        return self._start(context, order)
+
+    def _execute(self, context: bpy.types.Context) -> set[str]:
+        order = self._order(context)
+        order.size.check(self.allow_large)
+        return self._start(context, order)
+
+    def _start(self, context: bpy.types.Context, order: Order) -> set[str]:
+        self.summary, self.surface = "", order.surface
+        make = self.maker(order.region.cage)
+
+        def work(progress: Progress) -> tuple[Ground, Any]:
+            ground = order.ground(part_of(progress, 0, SCATTERED))
+            return ground, make(ground, part_of(progress, SCATTERED, 1))
+
+        job = Job(work)
+        someone_waits, self._someone_waits = self._someone_waits, False
+        if not (someone_waits and context.window):
+            with progress_bar(context.window_manager) as show:
+                job.run(show)
+            return self._finish(context, job)
+        job.start()
+        if job.wait(PATIENCE):
+            return self._finish(context, job)
+        self._job, self._waiting = job, Waiting(context, f"Making {order.size}")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def _finish(self, context: bpy.types.Context, job: Job) -> set[str]:
+        ground, made = job.result()
+        surface = bpy.data.objects.get(self.surface)
+        if surface is None:
+            raise RefusalError(f"{self.surface} is not there any more")
+        self.add(context, surface, made)
+        self._report(ground)
         return {"FINISHED"}
 
-    def _size(self, found: cage.Cage) -> RequestSize:
-        count = found.ptex_face_count * self.per_side**2
-        return RequestSize(self.noun, count, self.elements_per_location())
+    def _order(self, context: bpy.types.Context) -> Order:
+        self.check_properties()
+        ob, depsgraph = context.active_object, context.evaluated_depsgraph_get()
+        spread = properties.spread(self.properties)
+        covered = region.read(
+            ob,
+            depsgraph,
+            properties.density_choice(self.properties),
+            properties.mask_choice(self.properties),
+        )
+        expected = spread.expected(covered)
+        size = RequestSize(
+            self.noun, expected.count, self.elements_per_location(), expected.is_exact
+        )
+        shown = None
+        if self.target != "LIMIT":
+            shown = displayed.read(ob, depsgraph, covered.cage, self.target)
+        return Order(ob.name, covered, spread, shown, size)
 
     def _refuse(self, reason: object) -> set[str]:
         self.report({"ERROR"}, str(reason))
         return {"CANCELLED"}
 
-    def _report(self, target: Target) -> None:
-        refused = dict(target.surface.refused)
-        found = target.cage
-        faces = len(found.face_sizes) - len(refused)
-        self.summary = f"{len(target.locations):,} {self.noun} on {faces:,} faces"
+    def _report(self, ground: Ground) -> None:
+        found, refused = ground.cage, ground.region.refused
+        faces = ground.region.face_count
+        self.summary = f"{len(ground.locations):,} {self.noun} on {faces:,} faces"
+        if ground.scattered.distance is not None:
+            self.summary += f", at least {ground.scattered.distance:.4g} apart"
         if refused:
             self.report(
                 {"WARNING"},
                 f"{len(refused):,} of {len(found.face_sizes):,} faces have no limit surface and "
-                f"were left out: {_reasons(refused)}",
+                f"were left out: {region.reasons(refused)}",
             )
-        notes = [f"{self.summary} of {target.ob.name}", str(found.rules)]
+        notes = [f"{self.summary} of {self.surface}", str(found.rules)]
         if found.ignored:
             notes.append(f"ignored behind {found.rules.subsurf}: {', '.join(found.ignored)}")
         if found.without_uv_map:
             notes.append(f"no UVs stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))
-
-
-def _read_cage(context: bpy.types.Context) -> cage.Cage:
-    return cage.read(context.active_object, context.evaluated_depsgraph_get())
-
-
-def _reasons(refused: dict[int, str]) -> str:
-    """The commonest reasons, each with a face for example."""
-    example = {reason: face for face, reason in reversed(refused.items())}
-    counted = Counter(refused.values()).most_common()
-    parts = [f"{reason} (face {example[reason]}; {n} in all)" for reason, n in counted[:3]]
-    if len(counted) > 3:
-        parts.append(f"{len(counted) - 3} more reasons")
-    return "; ".join(parts)

@@ -2,17 +2,28 @@
 """Operator object.limit_hair_add."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 from bpy.props import FloatProperty, FloatVectorProperty, IntProperty
 
-from .. import attributes, ids, roots
+from .. import attributes, cage, ids, roots
 from ..binding import Binding
+from ..job import Progress
 from ..objects import add_on_surface
 from ..rotations import WorldSpace
-from ..scatter import ScatterOperator, Target
+from ..scatter import Ground, ScatterOperator
 from .strands import Shape
+
+
+@dataclass(frozen=True)
+class Strands:
+    binding: Binding
+    position: np.ndarray  # (strands, points, 3) float32
+    radius: float
+    surface_uv: np.ndarray | None
+    uv_map: str
 
 
 class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
@@ -74,32 +85,37 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
         for name in ("length", "points", "tilt", "random", "radius"):
             layout.prop(self, name)
 
-    def build(
-        self, context: bpy.types.Context, target: Target, progress: Callable[[float], None]
-    ) -> None:
-        count = len(target.locations)
-        space = WorldSpace(target.cage.matrix)
+    def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Strands]:
+        space = WorldSpace(found.matrix)
         shape = Shape(self.length, self.points, tuple(self.tilt), self.random)
-        rng = np.random.default_rng(self.seed)
-        binding = Binding(target.locations)
-        position = np.empty((count, self.points, 3), np.float32)
-        for part in roots.evaluate(target.surface, target.locations, progress):
-            binding.fill(part)
-            position[part.rows] = shape.strands(part.position, part.frame, space, rng)
+        seed, radius = self.seed, self.radius / space.mean_scale
+        uv_map = found.uv_map.name if found.uv_map else ""
 
+        def make(ground: Ground, progress: Progress) -> Strands:
+            rng = np.random.default_rng(seed)
+            binding = Binding(ground.locations)
+            position = np.empty((len(ground.locations), shape.points, 3), np.float32)
+            for part in roots.evaluate(ground.evaluate, ground.locations, progress):
+                binding.fill(part)
+                position[part.rows] = shape.strands(part.position, part.frame, space, rng)
+            return Strands(binding, position, radius, ground.surface_uv(), uv_map)
+
+        return make
+
+    def add(self, context: bpy.types.Context, surface: bpy.types.Object, made: Strands) -> None:
+        count, points = made.position.shape[:2]
         curves = bpy.data.hair_curves.new(ids.HAIR_OBJECT)
         try:
-            curves.add_curves([self.points] * count)
-            curves.points.foreach_set("position", position.ravel())
-            radius = np.full(count * self.points, self.radius / space.mean_scale)
+            curves.add_curves([points] * count)
+            curves.points.foreach_set("position", made.position.ravel())
+            radius = np.full(count * points, made.radius)
             attributes.write(curves, "radius", "FLOAT", "POINT", radius)
-            binding.write(curves, "CURVE")
-            curves.surface = target.ob
-            surface_uv = target.surface_uv()
-            if surface_uv is not None:
-                curves.surface_uv_map = target.cage.uv_map.name
-                attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", surface_uv)
-            add_on_surface(context, ids.HAIR_OBJECT, curves, target.ob)
+            made.binding.write(curves, "CURVE")
+            curves.surface = surface
+            if made.surface_uv is not None:
+                curves.surface_uv_map = made.uv_map
+                attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", made.surface_uv)
+            add_on_surface(context, ids.HAIR_OBJECT, curves, surface)
         except BaseException:
             bpy.data.hair_curves.remove(curves)
             raise

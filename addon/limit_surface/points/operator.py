@@ -2,17 +2,26 @@
 """Operator object.limit_points_add."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 from bpy.props import StringProperty
 
-from .. import attributes, ids, roots
+from .. import attributes, cage, ids, roots
 from ..binding import Binding
 from ..errors import RefusalError
+from ..job import Progress
 from ..objects import add_on_surface
-from ..scatter import ScatterOperator, Target
+from ..scatter import Ground, ScatterOperator
 from .instances import put_instances
+
+
+@dataclass(frozen=True)
+class Points:
+    binding: Binding
+    normal: np.ndarray  # (n, 3) float32
+    tangent: np.ndarray
 
 
 class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
@@ -36,27 +45,30 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
     def draw_own(self, layout: bpy.types.UILayout) -> None:
         layout.prop_search(self, "instance", bpy.data, "objects")
 
-    def build(
-        self, context: bpy.types.Context, target: Target, progress: Callable[[float], None]
-    ) -> None:
-        count = len(target.locations)
-        binding = Binding(target.locations)
-        normal, tangent = (np.empty((count, 3), np.float32) for _ in range(2))
-        for part in roots.evaluate(target.surface, target.locations, progress):
-            binding.fill(part)
-            tangent[part.rows] = part.frame[:, :, 0]
-            normal[part.rows] = part.frame[:, :, 2]
+    def maker(self, _found: cage.Cage) -> Callable[[Ground, Progress], Points]:
+        def make(ground: Ground, progress: Progress) -> Points:
+            count = len(ground.locations)
+            binding = Binding(ground.locations)
+            normal, tangent = (np.empty((count, 3), np.float32) for _ in range(2))
+            for part in roots.evaluate(ground.evaluate, ground.locations, progress):
+                binding.fill(part)
+                tangent[part.rows] = part.frame[:, :, 0]
+                normal[part.rows] = part.frame[:, :, 2]
+            return Points(binding, normal, tangent)
 
+        return make
+
+    def add(self, context: bpy.types.Context, surface: bpy.types.Object, made: Points) -> None:
         mesh = bpy.data.meshes.new(ids.POINTS_OBJECT)
         try:
-            mesh.vertices.add(count)
-            attributes.write(mesh, "position", "FLOAT_VECTOR", "POINT", binding.root)
-            binding.write(mesh, "POINT")
-            attributes.write(mesh, ids.NORMAL, "FLOAT_VECTOR", "POINT", normal)
-            attributes.write(mesh, ids.TANGENT, "FLOAT_VECTOR", "POINT", tangent)
-            attributes.write(mesh, ids.ROTATION, "QUATERNION", "POINT", binding.rotation)
+            mesh.vertices.add(len(made.normal))
+            attributes.write(mesh, "position", "FLOAT_VECTOR", "POINT", made.binding.root)
+            made.binding.write(mesh, "POINT")
+            attributes.write(mesh, ids.NORMAL, "FLOAT_VECTOR", "POINT", made.normal)
+            attributes.write(mesh, ids.TANGENT, "FLOAT_VECTOR", "POINT", made.tangent)
+            attributes.write(mesh, ids.ROTATION, "QUATERNION", "POINT", made.binding.rotation)
             mesh.update()
-            ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, target.ob)
+            ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, surface)
             if self.instance:
                 put_instances(ob, bpy.data.objects[self.instance])
         except BaseException:
