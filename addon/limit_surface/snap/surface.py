@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The limit surface that things are snapped to, as it stands in the world."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -11,10 +9,6 @@ import numpy as np
 from .. import cage, displayed, native
 from ..errors import RefusalError
 from ..rotations import WorldSpace
-
-if TYPE_CHECKING:
-    import limitsurf
-
 
 class Places(NamedTuple):
     position: np.ndarray  # (n, 3)
@@ -29,22 +23,18 @@ class TargetSurface:
         self.ob = ob
         self.cage = cage.read(ob, depsgraph)
         WorldSpace(self.cage.matrix)  # refuses what is flattened to nothing
-        self._in_world = native.limitsurf.LimitSurface(self.cage.mesh)
-        if len(self._in_world.refused) == len(self.cage.face_sizes):
+        self.in_world = native.limitsurf.LimitSurface(self.cage.mesh)
+        if len(self.in_world.refused) == len(self.cage.face_sizes):
             raise RefusalError(f"No face of {ob.name} has a limit surface")
-        self._in_world.set_positions(transformed(self.cage.matrix, self.cage.mesh.positions))
+        self.in_world.set_positions(transformed(self.cage.matrix, self.cage.mesh.positions))
         self._in_object = native.limitsurf.LimitSurface(self.cage.mesh)
         self._shown = None if kind == "LIMIT" else displayed.read(ob, depsgraph, self.cage, kind)
         # du x dv points inwards in the world if the object is mirrored there.
         self.outward = np.sign(np.linalg.det(self.cage.matrix[:3, :3]))
 
-    @property
-    def in_world(self) -> limitsurf.LimitSurface:
-        return self._in_world
-
     def size(self) -> float:
         """Of the largest coordinate that positions in the world are calculated with."""
-        return float(np.abs(self._in_world.positions).max())
+        return float(np.abs(self.in_world.positions).max())
 
     def places(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> Places:
         """Where things are put, in the space that the matrix `space` leads from to the world.
