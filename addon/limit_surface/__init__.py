@@ -5,9 +5,9 @@ import atexit
 
 import bpy
 
-from . import distribution, hair, points, preferences, report, snap, ui
+from . import distribution, hair, points, preferences, report, snap, snap_modal, ui
 
-_parts = (preferences, hair, points, snap, ui, distribution, report)
+_parts = (preferences, hair, points, snap, snap_modal, ui, distribution, report)
 
 # Blender as a module hangs at the interpreter's exit if classes are registered then.
 _is_module = not bpy.app.binary_path

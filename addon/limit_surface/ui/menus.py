@@ -14,6 +14,7 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
         self.layout.operator(ids.HAIR_ADD, icon="CURVES")
         self.layout.operator(ids.POINTS_ADD, icon="POINTCLOUD_DATA")
         self.layout.operator(ids.SNAP, icon="SNAP_ON")
+        self.layout.operator(ids.SNAP_MODAL, icon="VIEW_PAN")
         self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
 
 
@@ -30,6 +31,7 @@ def _draw_in_object(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
 def _draw_in_snap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.separator()
     self.layout.operator(ids.SNAP, text="Selection to Limit Surface")
+    self.layout.operator(ids.SNAP_MODAL)
 
 
 _ENTRIES = (

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one thing that is dragged: put somewhere again and again, then put back or confirmed."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import bmesh
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..rotations import WorldSpace
+from ..snap.hair_binding import HairBinding
+from ..snap.object_move import ObjectMove
+from ..snap.strands import Strands
+from ..snap.surface import TargetSurface, transformed
+from ..snap.turns import shortest
+
+_TRANSFORM = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle")
+_CURVE_POINTS = (ids.POSITION, "handle_left", "handle_right")
+
+
+@dataclass(frozen=True)
+class Place:
+    face: int
+    uv: np.ndarray  # (2,) representable in single precision
+    position: np.ndarray  # (3,) world, offset included
+    frame: np.ndarray  # (3, 3) world: columns tangent, normal x tangent, outward normal
+
+
+class Handle(Protocol):
+    name: str
+    can_turn: bool
+    has_strand: bool
+
+    def put(self, place: Place, align: str, hair: str) -> None: ...
+    def restore(self) -> None: ...
+    def confirm(self, place: Place) -> None:
+        """RefusalError if it cannot stay there."""
+
+
+class DraggedObject:
+    can_turn, has_strand = True, False
+
+    def __init__(self, ob: bpy.types.Object) -> None:
+        self.name = ob.name
+        self._ob = ob
+        self._kept = {name: np.array(getattr(ob, name)) for name in _TRANSFORM}
+        self._move: ObjectMove | None = None
+
+    def put(self, place: Place, align: str, hair: str) -> None:
+        """From where it was in the beginning: the way there leaves no trace."""
+        self.restore()
+        bpy.context.view_layer.update()
+        self._move = ObjectMove(self._ob, place.position, place.frame, align)
+        self._move.begin()
+
+    def restore(self) -> None:
+        for name, value in self._kept.items():
+            setattr(self._ob, name, value)
+
+    def confirm(self, place: Place) -> None:
+        bpy.context.view_layer.update()
+        reason = self._move.finish()
+        if reason:
+            raise RefusalError(f"{self.name}: its transform channels {reason}")
+
+
+class DraggedVertex:
+    can_turn, has_strand = False, False
+
+    def __init__(self, ob: bpy.types.Object, index: int) -> None:
+        self.name = f"vertex {index} of {ob.name}"
+        self._mesh = ob.data
+        self._into_object = np.linalg.inv(np.array(ob.matrix_world, np.float64))
+        self._edited = bmesh.from_edit_mesh(self._mesh)
+        self._edited.verts.ensure_lookup_table()
+        self._vertex = self._edited.verts[index]
+        self._kept = self._vertex.co.copy()
+
+    def put(self, place: Place, align: str, hair: str) -> None:
+        self._set(transformed(self._into_object, place.position))
+
+    def restore(self) -> None:
+        self._set(self._kept)
+
+    def confirm(self, place: Place) -> None:
+        pass
+
+    def _set(self, position: np.ndarray) -> None:
+        self._vertex.co = position
+        bmesh.update_edit_mesh(self._mesh, loop_triangles=True, destructive=False)
+
+
+class DraggedStrand:
+    can_turn, has_strand = True, True
+
+    def __init__(self, ob: bpy.types.Object, curve: int, surface: TargetSurface) -> None:
+        self.name = f"strand {curve} of {ob.name}"
+        self._data, self._curve = ob.data, np.array([curve])
+        self._matrix = np.array(ob.matrix_world, np.float64)
+        self._space = WorldSpace(self._matrix)
+        self._binding = HairBinding(ob.data, surface, is_whole=len(ob.data.curves) == 1)
+        info = ob.data.curves[curve]
+        self._rows = range(info.first_point_index, info.first_point_index + info.points_length)
+        self._kept = {
+            name: np.array([ob.data.attributes[name].data[i].vector for i in self._rows])
+            for name in _CURVE_POINTS
+            if name in ob.data.attributes
+        }
+        points = transformed(self._matrix, self._kept[ids.POSITION].astype(np.float64))
+        self._strand = Strands(points, np.array([len(points)]))
+
+    def put(self, place: Place, align: str, hair: str) -> None:
+        root, weights = place.position[None], self._strand.weights(hair)
+        turn = self._turn(place, align)
+        for name, kept in self._kept.items():
+            points = transformed(self._matrix, kept.astype(np.float64))
+            moves = self._strand.moves(points, root, turn, weights)
+            values = kept + self._space.to_local(moves)
+            if name == ids.POSITION:
+                values[0] = self._root(place)
+            self._write(name, values)
+
+    def restore(self) -> None:
+        for name, kept in self._kept.items():
+            self._write(name, kept)
+
+    def confirm(self, place: Place) -> None:
+        self._binding.write(self._curve, np.array([place.face]), place.uv[None], self._matrix)
+        self._data.update_tag()
+
+    def _turn(self, place: Place, align: str) -> np.ndarray:
+        """(1, 3, 3) in world space."""
+        if align == "NONE":
+            return np.eye(3)[None]
+        if align == "NORMAL_DU":
+            bound, rest = self._binding.rest_frames(self._curve)
+            if bound.all():
+                new = self._bound_place(place).frame
+                return self._space.frames(new) @ np.swapaxes(self._space.frames(rest), 1, 2)
+        return shortest(self._strand.directions(), place.frame[None, :, 2])
+
+    def _root(self, place: Place) -> np.ndarray:
+        """Where the stored location says to the bit, plus the offset."""
+        bound = self._bound_place(place).position
+        return (bound + self._space.to_local(place.position - transformed(self._matrix, bound)))[0]
+
+    def _bound_place(self, place: Place):
+        return self._binding.places(np.array([place.face]), place.uv[None], self._matrix)
+
+    def _write(self, name: str, values: np.ndarray) -> None:
+        data = self._data.attributes[name].data
+        for i, value in zip(self._rows, values, strict=True):
+            data[i].vector = value
+        self._data.update_tag()

@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator view3d.limit_snap_modal."""
+
+import bpy
+import numpy as np
+from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty
+
+from .. import ids, native
+from ..errors import RefusalError
+from ..snap.surface import TargetSurface
+from . import ray
+from .drag import Drag, Glide, nearest_in_sight, offset_step
+from .drawing import Drawing, Mark
+from .subject import Subject, find_subject
+from .typed_number import TypedNumber
+
+ALIGNMENTS = (
+    ("NONE", "None", "As it is", 0),
+    ("NORMAL", "Normal", "Turned to the surface's normal by the smallest angle", 1),
+    (
+        "NORMAL_DU",
+        "Normal and U",
+        "To the normal, and X along growing u of the face. Strands that are on a surface already "
+        "turn as much as its frame does",
+        2,
+    ),
+)
+HAIR = (
+    ("ROOT", "Root", "The root alone", 0),
+    ("STRAND", "Strand", "All of it", 1),
+    ("BLEND", "Blend", "The root fully, the tip not at all", 2),
+)
+
+LOCK_KEYS = {"X": "BORDER", "Y": "BOUNDARY", "Z": "FREE"}
+LOCK_NAMES = {"FREE": "Free", "BORDER": "Along the face's border", "BOUNDARY": "Along the boundary"}
+NAVIGATION = {"MIDDLEMOUSE", "NDOF_MOTION", "TRACKPADPAN", "TRACKPADZOOM"}
+MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
+WHEEL = {"WHEELUPMOUSE": 1, "WHEELDOWNMOUSE": -1}
+CLICK = 3  # pixels: a mouse that moves less while it is pressed does not drag
+FINE = 0.1  # of a step of the wheel, with Shift
+
+
+class VIEW3D_OT_limit_snap_modal(bpy.types.Operator):
+    """Drag over the exact limit surface with the mouse: the selected object over the active mesh; a
+    vertex in Edit Mode, or a strand of hair by its root, over the target chosen in the tab Limit"""
+
+    bl_idname = ids.SNAP_MODAL
+    bl_label = "Drag on Limit Surface"
+    bl_options = {"REGISTER", "UNDO", "BLOCKING"}
+
+    offset: FloatProperty(
+        name="Offset",
+        description="Distance from the surface along its normal, in world units",
+        default=0.0,
+        subtype="DISTANCE",
+    )
+    align: EnumProperty(
+        name="Align",
+        description="Rotation of objects and strands",
+        items=ALIGNMENTS,
+    )
+    hair: EnumProperty(
+        name="Hair",
+        description="What of a strand moves",
+        items=HAIR,
+        default="STRAND",
+    )
+    element: IntProperty(
+        name="Element",
+        description="Vertex or strand that is dragged",
+        default=-1,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    face: IntProperty(
+        name="Face",
+        description="Ptex face that it is put on: with `uv` a location for scripts, and for what "
+        "is adjusted afterwards",
+        default=-1,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    uv: FloatVectorProperty(
+        name="UV",
+        description="Where on the face",
+        size=2,
+        min=0.0,
+        max=1.0,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not native.available():
+            cls.poll_message_set(f"The native module does not load: {native.reason}")
+            return False
+        try:
+            find_subject(context)
+        except RefusalError as error:
+            cls.poll_message_set(str(error))
+            return False
+        return True
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "offset")
+        if context.mode != "EDIT_MESH":
+            layout.prop(self, "align")
+        if self.element >= 0 and context.mode != "EDIT_MESH":
+            layout.prop(self, "hair")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """At a stored location; without one there is nothing to do."""
+        if self.face < 0:
+            return self._refuse(
+                "The mouse is needed, and with it a window: set `face` and `uv`, or use "
+                "object.limit_snap"
+            )
+        try:
+            subject = find_subject(context)
+            surface = TargetSurface(subject.target, context.evaluated_depsgraph_get(), "LIMIT")
+            self._check_element(subject)
+            glide = Glide(surface)
+            glide.go_to(self.face, self.uv)
+            drag = Drag(glide, subject.handle(self.element, surface))
+            drag.put(self.offset, self.align, self.hair)
+            drag.confirm()
+        except (RefusalError, *native.errors) as error:
+            return self._refuse(error)
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if context.area is None or context.area.type != "VIEW_3D":
+            return self._refuse("Only in a 3D viewport")
+        try:
+            self._subject = find_subject(context)
+            depsgraph = context.evaluated_depsgraph_get()
+            self._glide = Glide(TargetSurface(self._subject.target, depsgraph, "LIMIT"))
+            self._glide.prepare()
+            self._candidates = self._hovered = self._drag = None
+            if self._subject.is_picked:
+                self._candidates = self._subject.candidates()
+            else:
+                self._take(-1)
+        except (RefusalError, *native.errors) as error:
+            return self._refuse(error)
+        self._area = context.area
+        self._step = offset_step(self._glide.surface)
+        self._typed, self._offset_before_typing = TypedNumber(), self.offset
+        self._pressed_at = None
+        self._is_astray = False
+        self._drawing = Drawing()
+        context.window_manager.modal_handler_add(self)
+        self._show_keys(context)
+        self._follow(context, event)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        try:
+            result = self._handle(context, event)
+        except (RefusalError, *native.errors) as error:
+            self._restore()
+            result = self._refuse(error)
+        except BaseException:
+            self._restore()
+            self._clean_up(context)
+            raise
+        if result & {"FINISHED", "CANCELLED"}:
+            self._clean_up(context)
+        return result
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender ends it: another file is being opened, say."""
+        self._restore()
+        self._clean_up(context)
+
+    def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        kind, is_press = event.type, event.value == "PRESS"
+        if kind in NAVIGATION or (kind in WHEEL and (event.ctrl or self._drag is None)):
+            return {"PASS_THROUGH"}
+        if kind in MOVES:
+            self._follow(context, event)
+        elif kind in {"ESC", "RIGHTMOUSE"} and is_press:
+            self._restore()
+            return {"CANCELLED"}
+        elif kind == "LEFTMOUSE":
+            return self._click(context, event)
+        elif self._drag is None or not is_press:
+            pass
+        elif kind in {"RET", "NUMPAD_ENTER"}:
+            return self._confirm()
+        elif kind in WHEEL:
+            self._typed = TypedNumber()
+            self.offset += WHEEL[kind] * self._step * (FINE if event.shift else 1)
+            self._put()
+        elif kind in LOCK_KEYS:
+            self._lock(LOCK_KEYS[kind])
+            self._follow(context, event)
+        elif kind == "A" and self._drag.handle.can_turn:
+            self.align = _next(ALIGNMENTS, self.align)
+            self._put()
+        elif kind == "H" and self._drag.handle.has_strand:
+            self.hair = _next(HAIR, self.hair)
+            self._put()
+        else:
+            self._type(event)
+        self._show_state(context)
+        return {"RUNNING_MODAL"}
+
+    def _click(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """The mouse picks an element and drags it, or drags after a click; a click confirms."""
+        at = (event.mouse_x, event.mouse_y)
+        if event.value == "PRESS":
+            if self._drag is not None:
+                return self._confirm()
+            self._follow(context, event)
+            if self._hovered is not None:
+                self._take(self._hovered)
+                self._pressed_at = at
+        elif event.value == "RELEASE" and self._pressed_at is not None:
+            dragged = np.hypot(*np.subtract(at, self._pressed_at)) > CLICK
+            self._pressed_at = None
+            if dragged:
+                return self._confirm()
+        self._show_state(context)
+        return {"RUNNING_MODAL"}
+
+    def _take(self, element: int) -> None:
+        self.element = element
+        handle = self._subject.handle(element, self._glide.surface)
+        self._drag = Drag(self._glide, handle)
+
+    def _follow(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        sight = self._sight(event)
+        if sight is None:
+            return
+        if self._drag is None:
+            self._hover(sight)
+        else:
+            self._is_astray = not self._glide.follow(sight)
+            self._put()
+        self._area.tag_redraw()
+
+    def _sight(self, event: bpy.types.Event) -> ray.Ray | None:
+        for region in self._area.regions:
+            x, y = event.mouse_x - region.x, event.mouse_y - region.y
+            if region.type == "WINDOW" and 0 <= x < region.width and 0 <= y < region.height:
+                return ray.through(region, region.data, event.mouse_x, event.mouse_y)
+        return None
+
+    def _hover(self, sight: ray.Ray) -> None:
+        self._hovered = nearest_in_sight(self._candidates, sight, self._glide.surface)
+        self._drawing.mark = None
+        if self._hovered is not None:
+            across = np.linalg.svd(sight.direction[None])[2].T[:, [1, 2, 0]]
+            self._drawing.mark = Mark(self._candidates[self._hovered], across, None, ())
+
+    def _put(self) -> None:
+        self._drag.put(self.offset, self.align, self.hair)
+        place = self._drag.place
+        if place is not None:
+            directions = self._glide.bending().directions
+            self._drawing.mark = Mark(place.position, place.frame, place.frame[:, 2], directions)
+        self._area.tag_redraw()
+
+    def _lock(self, lock: str) -> None:
+        """The same key again sets it free."""
+        glide = self._glide
+        if lock == "BOUNDARY" and not glide.borders.has_boundary:
+            self.report({"WARNING"}, f"{glide.surface.ob.name} has no boundary")
+            return
+        glide.lock = "FREE" if glide.lock == lock else lock
+
+    def _type(self, event: bpy.types.Event) -> None:
+        was_typing = bool(self._typed)
+        if event.type == "BACK_SPACE":
+            self._typed.erase()
+        elif not (event.unicode and self._typed.take(event.unicode)):
+            return
+        if not was_typing:
+            self._offset_before_typing = self.offset
+        self.offset = self._typed.value if self._typed else self._offset_before_typing
+        self._put()
+
+    def _confirm(self) -> set[str]:
+        if self._drag.place is None:
+            self.report({"WARNING"}, "Nothing moved: the mouse was never over the surface")
+            return {"CANCELLED"}
+        self._drag.confirm()
+        self.face, self.uv = self._glide.face, self._glide.uv
+        return {"FINISHED"}
+
+    def _restore(self) -> None:
+        if self._drag is not None:
+            self._drag.handle.restore()
+
+    def _clean_up(self, context: bpy.types.Context) -> None:
+        self._drawing.remove()
+        self._area.header_text_set(None)
+        context.workspace.status_text_set(None)
+        self._area.tag_redraw()
+
+    def _check_element(self, subject: Subject) -> None:
+        if subject.is_picked and not 0 <= self.element < len(subject.candidates()):
+            raise RefusalError(f"{subject.ob.name} has no element {self.element}")
+
+    def _refuse(self, reason: object) -> set[str]:
+        self.report({"ERROR"}, str(reason))
+        return {"CANCELLED"}
+
+    def _show_state(self, context: bpy.types.Context) -> None:
+        if self._drag is None:
+            noun = "vertex" if self._subject.kind == "VERTEX" else "strand"
+            self._area.header_text_set(f"Press on a {noun} and drag it, or click it")
+            return
+        offset = self._typed.text or f"{self.offset:.6g}"
+        parts = [f"Offset: {offset}", LOCK_NAMES[self._glide.lock]]
+        handle = self._drag.handle
+        if handle.can_turn:
+            parts.append(f"Align: {_label(ALIGNMENTS, self.align)}")
+        if handle.has_strand:
+            parts.append(f"Hair: {_label(HAIR, self.hair)}")
+        if self._is_astray:
+            parts.append("no surface under the mouse")
+        self._area.header_text_set("   ".join(parts))
+
+    def _show_keys(self, context: bpy.types.Context) -> None:
+        context.workspace.status_text_set(
+            "Click or Enter: confirm   Esc or right click: cancel   Wheel or number: offset "
+            "(Shift: fine)   X: face border   Y: boundary   Z: free   A: align   H: hair   "
+            "Ctrl Wheel, middle mouse: view"
+        )
+        self._show_state(context)
+
+
+def _next(items: tuple[tuple[str, str, str, int], ...], chosen: str) -> str:
+    names = [name for name, *_rest in items]
+    return names[(names.index(chosen) + 1) % len(names)]
+
+
+def _label(items: tuple[tuple[str, str, str, int], ...], chosen: str) -> str:
+    return next(label for name, label, *_rest in items if name == chosen)

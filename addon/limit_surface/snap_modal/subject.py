@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What can be dragged in the mode that the user is in, and over whose surface."""
+
+from dataclasses import dataclass
+
+import bmesh
+import bpy
+import numpy as np
+
+from .. import attributes, ids
+from ..errors import RefusalError
+from ..snap.surface import TargetSurface, transformed
+from .handles import DraggedObject, DraggedStrand, DraggedVertex, Handle
+
+HAIR_MODES = ("OBJECT", "EDIT_CURVES", "SCULPT_CURVES")
+
+
+@dataclass(frozen=True)
+class Subject:
+    kind: str  # OBJECT, VERTEX, STRAND
+    ob: bpy.types.Object
+    target: bpy.types.Object
+
+    @property
+    def is_picked(self) -> bool:
+        """Whether the mouse has to choose among elements first."""
+        return self.kind != "OBJECT"
+
+    def candidates(self) -> np.ndarray:
+        """World positions (n, 3) of the elements; NaN for those that cannot be chosen."""
+        matrix = np.array(self.ob.matrix_world, np.float64)
+        if self.kind == "VERTEX":
+            return transformed(matrix, _vertices(self.ob.data))
+        data = self.ob.data
+        first = np.empty(len(data.curves), np.int32)
+        data.curves.foreach_get("first_point_index", first)
+        return transformed(matrix, attributes.read(data, ids.POSITION)[first].astype(np.float64))
+
+    def handle(self, element: int, surface: TargetSurface) -> Handle:
+        if self.kind == "OBJECT":
+            return DraggedObject(self.ob)
+        if self.kind == "VERTEX":
+            return DraggedVertex(self.ob, element)
+        return DraggedStrand(self.ob, element, surface)
+
+
+def find_subject(context: bpy.types.Context) -> Subject:
+    """RefusalError where there is none."""
+    active, mode = context.active_object, context.mode
+    if mode == "OBJECT" and active is not None and active.type == "MESH":
+        return _object(context, active)
+    target = context.scene.limit_surface.target
+    if mode in HAIR_MODES and active is not None and active.type == "CURVES":
+        target = target or active.data.surface
+        kind = "STRAND"
+    elif mode == "EDIT_MESH":
+        kind = "VERTEX"
+    elif mode == "OBJECT":
+        raise RefusalError("Select the object to drag, then the mesh; or make hair curves active")
+    else:
+        raise RefusalError("Not in this mode")
+    if target is None:
+        raise RefusalError("Choose a target in the tab Limit")
+    if target.type != "MESH":
+        raise RefusalError(f"The target {target.name} is not a mesh")
+    if target.data == active.data:
+        raise RefusalError(f"{active.name} cannot be dragged over itself: choose another target")
+    if not active.data.is_editable:
+        raise RefusalError(f"{active.name} is linked from another file")
+    return Subject(kind, active, target)
+
+
+def _object(context: bpy.types.Context, target: bpy.types.Object) -> Subject:
+    others = [ob for ob in context.selected_objects if ob != target]
+    if len(others) != 1:
+        raise RefusalError("Select one object to drag, then the mesh to drag it over")
+    (ob,) = others
+    if not ob.is_editable:
+        raise RefusalError(f"{ob.name} is linked from another file")
+    carrier = target.parent
+    while carrier is not None:
+        if carrier == ob:
+            raise RefusalError(f"{ob.name} would take {target.name} along")
+        carrier = carrier.parent
+    return Subject("OBJECT", ob, target)
+
+
+def _vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    copy = bpy.data.meshes.new("Edited")
+    try:
+        bmesh.from_edit_mesh(mesh).to_mesh(copy)
+        points, hidden = (
+            np.empty((len(copy.vertices), 3), np.float32),
+            np.empty(len(copy.vertices), bool),
+        )
+        copy.vertices.foreach_get("co", points.ravel())
+        copy.vertices.foreach_get("hide", hidden)
+    finally:
+        bpy.data.meshes.remove(copy)
+    points = points.astype(np.float64)
+    points[hidden] = np.nan
+    return points
