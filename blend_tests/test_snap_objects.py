@@ -155,14 +155,16 @@ def test_one_way_along_the_own_normal():
     )
 
 
-def test_an_object_on_the_surface_stays_there_whichever_way():
+def test_an_object_on_the_surface_stays_there_whichever_way(capfd):
+    """On its border too, where a line might miss it."""
     target = stretched(scenes.mixed_polygons())
-    things = [add_object(point) for point in near(target, 10, 0.2)]
+    things = [add_object(point) for point in near(target, 30, 0.5)]
     snap(target)
     before = world_locations(things)
     for direction in ("POSITIVE", "NEGATIVE", "BOTH"):
         snap(target, mode="AXIS", axis="Z", direction=direction)
         np.testing.assert_allclose(world_locations(things), before, atol=EXACT)
+    assert capfd.readouterr().out.count("30 of 30 objects snapped") == 4
 
 
 def test_maximum_distance_and_report(capfd):

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import attributes, ids
+from mathutils import Matrix
 from snap_truth import Truth, add_object, near, snap, stretched, world_locations
 from test_snap_bones import BONES
 from test_snap_hair import add_hair, roots, world_strands
@@ -69,15 +70,17 @@ SELECT_ALL = {
 }
 
 
-@pytest.mark.parametrize("kind", EDITED)
-def test_undo_redo_and_adjusting_in_edit_mode(kind):
+@pytest.mark.parametrize(
+    ("kind", "mode"), [*((kind, "EDIT") for kind in EDITED), ("hair", "SCULPT_CURVES")]
+)
+def test_undo_redo_and_adjusting_in_edit_mode(kind, mode):
     """As Blender runs an operator again with other properties: undone, then called anew."""
     make, points = EDITED[kind]
     ob = make(choose_target(stretched(scenes.cross())))
     ob.name = "Edited"
     scenes.activate(ob)
     bpy.ops.ed.undo_push(message="object mode")
-    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.object.mode_set(mode=mode)
     getattr(bpy.ops, SELECT_ALL[kind]).select_all(action="SELECT")
     bpy.ops.ed.undo_push(message="before")
     edited = lambda: points(bpy.data.objects["Edited"])  # noqa: E731
@@ -224,6 +227,17 @@ def test_properties_are_where_the_result_is_adjusted():
         calls = layout.prop.call_args_list + layout.row().prop.call_args_list
         shown |= {call.args[1] for call in calls}
     assert shown == properties
+
+
+def test_the_view_is_the_3d_viewports():
+    """And it is kept, for adjusting the result when the viewport has turned."""
+    turned = Matrix.Rotation(0.3, 4, "X") @ Matrix.Translation((1, 2, -20))
+    region = SimpleNamespace(view_matrix=turned, is_perspective=True)
+    operator = SimpleNamespace(view_matrix=Matrix.Diagonal((0,) * 4), view_is_perspective=False)
+    view = bpy.types.OBJECT_OT_limit_snap._view(operator, SimpleNamespace(region_data=region))
+    np.testing.assert_allclose(view.axes.T, turned.to_3x3(), atol=1e-6)
+    np.testing.assert_allclose(view.eye, turned.inverted().translation, atol=1e-5)
+    assert (operator.view_matrix, operator.view_is_perspective) == (turned, True)
 
 
 def test_panel_chooses_the_target():

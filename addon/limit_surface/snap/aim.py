@@ -14,9 +14,9 @@ from .turns import unit
 
 WAYS = {"BOTH": (1.0, -1.0), "POSITIVE": (1.0,), "NEGATIVE": (-1.0,)}
 
-# Of the largest coordinate: what lies on the surface as exactly as Blender's single precision
-# allows may lie behind it, and is still met by its line.
-SLACK = 1e-6
+# Of the largest coordinate: what is as close to the surface is on it as exactly as Blender's single
+# precision allows. Its line might miss the surface, at a border, or meet another part of it.
+ON_SURFACE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -126,21 +126,23 @@ class Aim:
         directions: np.ndarray,
         progress: Callable[[float], None],
     ) -> tuple[np.ndarray, np.ndarray]:
-        slack = SLACK * max(surface.size(), np.abs(points).max(initial=0.0))
-        face, uv = np.full(len(points), -1, np.int32), np.full((len(points), 2), np.nan)
-        best = np.full(len(points), np.inf)
+        size = max(surface.size(), np.abs(points).max(initial=0.0))
+        there = surface.in_world.closest(points, ON_SURFACE * size)
+        face, uv = np.array(there.face), np.array(there.uv)
+        away = np.flatnonzero(face < 0)
+        best = np.full(len(away), np.inf)
         ways = WAYS[self.direction]
         for i, sign in enumerate(ways):
             hits = surface.in_world.ray_cast(
-                points - slack * sign * directions,
-                sign * directions,
-                self.max_distance + slack,
+                points[away],
+                sign * directions[away],
+                self.max_distance,
                 progress=lambda part, i=i: progress((i + part) / len(ways)),
             )
-            distance = np.where(hits.face >= 0, np.abs(hits.distance - slack), np.inf)
+            distance = np.where(hits.face >= 0, hits.distance, np.inf)
             closer = distance < best
             best[closer] = distance[closer]
-            face[closer], uv[closer] = hits.face[closer], hits.uv[closer]
+            face[away[closer]], uv[away[closer]] = hits.face[closer], hits.uv[closer]
         return face, uv
 
     def _missed(self) -> str:

@@ -10,6 +10,7 @@ from .. import cage, displayed, native
 from ..errors import RefusalError
 from ..rotations import WorldSpace
 
+
 class Places(NamedTuple):
     position: np.ndarray  # (n, 3)
     frame: np.ndarray  # (n, 3, 3) rotations: columns tangent, normal x tangent, outward normal
