@@ -59,7 +59,7 @@ def test_table(capsys):
     rows = [line.split("|")[1:-1] for line in printed.splitlines() if line.startswith("|")]
     largest = [(row[0].strip(), float(row[3])) for row in rows if "e-" in row[3]]
     assert [name for name, _ in largest] == 2 * [
-        "limit surface, one thread",
+        "limit surface, one core",
         "limit surface, all cores",
         "BVHTree, level 1",
         "BVHTree, level 4",
