@@ -64,18 +64,47 @@ def test_menu_offers_the_operators():
     assert offered == [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.REPORT_OPERATOR]
 
 
-def test_redo_panel_shows_every_property_and_the_count():
-    ob = scenes.cross()
-    scenes.add_hair(ob)
+def choices(name):
+    return properties_of(ids.HAIR_ADD)[name].enum_items.keys()
+
+
+def properties_of(operator):
+    area, name = operator.split(".")
+    return getattr(getattr(bpy.ops, area), name).get_rna_type().properties
+
+
+def shown_in_redo_panel(**chosen):
+    """Names of properties, where these are chosen."""
     last = bpy.types.OBJECT_OT_limit_hair_add
-    layout = MagicMock()
-    self = MagicMock(layout=layout, summary="80 strands on 5 faces")
+    names = properties_of(ids.HAIR_ADD).keys()
+    values = {name: chosen.get(name, "") for name in names}
+    self = MagicMock(summary="80 strands on 5 faces", properties=SimpleNamespace(**values))
     self.draw_own = lambda layout: last.draw_own(self, layout)
     last.draw(self, bpy.context)
-    shown = {call.args[1] for call in layout.prop.call_args_list}
-    properties = {p.identifier for p in bpy.ops.object.limit_hair_add.get_rna_type().properties}
-    assert shown == properties - {"rna_type", "summary"}
-    assert "80 strands on 5 faces" in labels(layout)
+    assert "80 strands on 5 faces" in labels(self.layout)
+    laid_out = self.layout.prop.call_args_list + self.layout.column().prop.call_args_list
+    return {call.args[1] for call in laid_out + self.layout.prop_search.call_args_list}
+
+
+def test_redo_panel_shows_every_property_where_it_counts():
+    ob = scenes.cross()
+    for name in "AB":
+        ob.data.materials.append(bpy.data.materials.new(name))
+    distribution = {"distribution": "JITTERED", "density_source": "NONE", "faces": "ALL"}
+    jittered = shown_in_redo_panel(**distribution)
+    assert {"per_side", "seed", "target", "length", "points", "allow_large"} <= jittered
+    assert not {"amount", "count", "density", "distance", "image"} & jittered
+    every = set(jittered)
+    for name in ("density_source", "faces"):
+        for choice in choices(name):
+            every |= shown_in_redo_panel(**distribution | {name: choice})
+    for amount in choices("amount"):
+        shown = shown_in_redo_panel(
+            **distribution | {"distribution": "BLUE_NOISE", "amount": amount}
+        )
+        assert {"count", "density", "distance"} & shown == {amount.lower()}
+        every |= shown
+    assert every == set(properties_of(ids.HAIR_ADD).keys()) - {"rna_type", "summary", "surface"}
 
 
 def test_registering_again():
@@ -157,34 +186,3 @@ def test_a_folder_of_that_name_is_not_the_module(tmp_path):
     spoil = f"sys.path = [{str(tmp_path)!r}, *(p for p in sys.path if 'site-packages' not in p)]"
     # Blender itself comes from site-packages, and is found before they are taken away.
     check_reason_is_shown(f"import bpy, numpy; {spoil}", "is not the native module")
-
-
-def invoked(operator_class, **properties):
-    """What invoke() does with a window manager that only takes notes."""
-    context = SimpleNamespace(
-        active_object=bpy.context.active_object,
-        evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get,
-        window_manager=MagicMock(),
-    )
-    self = MagicMock(allow_large=False, noun="strands", bl_label="Hair", **properties)
-    self.elements_per_location.return_value = 5
-    self._size = lambda cage: operator_class._size(self, cage)
-    operator_class.invoke(self, context, None)
-    return self, context.window_manager.invoke_confirm
-
-
-def test_large_counts_are_asked_about():
-    scenes.cross()
-    self, confirm = invoked(bpy.types.OBJECT_OT_limit_hair_add, per_side=1000)
-    self.execute.assert_not_called()
-    assert confirm.call_args.kwargs["message"].startswith("Make 5,000,000 strands of 5 points")
-    known = bpy.types.WindowManager.bl_rna.functions["invoke_confirm"].parameters.keys()
-    assert set(confirm.call_args.kwargs) <= set(known)
-    assert self.allow_large  # for the execution that follows consent
-
-
-def test_small_counts_are_not_asked_about():
-    scenes.cross()
-    self, confirm = invoked(bpy.types.OBJECT_OT_limit_hair_add, per_side=10)
-    self.execute.assert_called_once()
-    confirm.assert_not_called()

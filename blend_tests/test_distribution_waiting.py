@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Long work: asked about, shown, cancelled by ESC, and nothing is left then.
+
+Blender calls these methods of the operators where there is a window; here a stand-in of plain
+Python that has them is called in its place.
+"""
+
+import threading
+import time
+from types import SimpleNamespace
+from unittest.mock import MagicMock
+
+import bpy
+import numpy as np
+import pytest
+import scenes
+from limit_surface import attributes, ids, scatter
+from limit_surface.errors import CancelledError
+from limit_surface.job import Job, part_of
+
+OPERATORS = {"hair": "limit_hair_add", "points": "limit_points_add"}
+
+
+def stand_in(name, **chosen):
+    kind = getattr(bpy.ops.object, OPERATORS[name]).get_rna_type()
+    operator = getattr(bpy.types, kind.identifier)
+    own = ("maker", "add", "noun", "bl_label", "elements_per_location", "check_properties")
+    cls = type("StandIn", (scatter.ScatterOperator,), {n: getattr(operator, n) for n in own})
+    made = cls()
+    for prop in kind.properties:
+        if prop.identifier != "rna_type":
+            value = prop.default_array[:] if getattr(prop, "is_array", False) else None
+            if value is None:
+                is_flag = prop.type == "ENUM" and prop.is_enum_flag
+                value = set() if is_flag else prop.default
+            setattr(made, prop.identifier, chosen.get(prop.identifier, value))
+    made.is_property_set = chosen.__contains__
+    made.properties = made
+    made.report = MagicMock()
+    return made
+
+
+def window_context():
+    """As a user's, with a window manager and a workspace that only take notes."""
+    context = MagicMock(wraps=bpy.context)
+    for name in ("active_object", "scene", "view_layer", "selected_objects", "space_data"):
+        setattr(context, name, getattr(bpy.context, name))
+    context.window_manager, context.workspace = MagicMock(), MagicMock()
+    context.window = MagicMock()
+    return context
+
+
+def event(kind, value="PRESS"):
+    return SimpleNamespace(type=kind, value=value)
+
+
+@pytest.fixture
+def slowly(monkeypatch):
+    """Evaluation that waits until it is let go on."""
+    go_on = threading.Event()
+    evaluate = scatter.Ground.evaluate
+
+    def wait(self, face, uv):
+        assert go_on.wait(20)
+        return evaluate(self, face, uv)
+
+    monkeypatch.setattr(scatter.Ground, "evaluate", wait)
+    monkeypatch.setattr(scatter, "PATIENCE", 0.01)
+    yield go_on
+    go_on.set()
+
+
+def wait_for(job):
+    assert job.wait(20)
+
+
+@pytest.mark.parametrize("name", OPERATORS)
+def test_long_work_is_waited_for(name, slowly):
+    scenes.cross()
+    operator, context = stand_in(name, per_side=4), window_context()
+    before = scenes.file_contents()
+    assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    context.window_manager.modal_handler_add.assert_called_once_with(operator)
+    assert "ESC: Cancel" in context.workspace.status_text_set.call_args.args[0]
+    for what in ("TIMER", "MOUSEMOVE", "A"):
+        assert operator.modal(context, event(what)) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}
+    assert scenes.file_contents() == before
+    slowly.set()
+    wait_for(operator._job)
+    assert operator.modal(context, event("TIMER")) == {"FINISHED"}
+    context.workspace.status_text_set.assert_called_with(None)
+    timer = context.window_manager.event_timer_add.return_value
+    context.window_manager.event_timer_remove.assert_called_once_with(timer)
+    made = bpy.context.active_object
+    assert made.parent.name == "Cross"
+    in_time = (scenes.add_hair if name == "hair" else scenes.add_points)(made.parent)
+    for attribute in (ids.FACE, ids.UV, ids.REST_ROOT, "position"):
+        np.testing.assert_array_equal(
+            attributes.read(made.data, attribute), attributes.read(in_time.data, attribute)
+        )
+
+
+@pytest.mark.parametrize("name", OPERATORS)
+def test_esc_leaves_nothing(name, slowly):
+    scenes.cross()
+    before, active = scenes.file_contents(), bpy.context.active_object
+    operator, context = stand_in(name), window_context()
+    assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    context.workspace.status_text_set.assert_called_with(None)
+    context.window_manager.event_timer_remove.assert_called_once()
+    slowly.set()
+    wait_for(operator._job)
+    with pytest.raises(CancelledError):
+        operator._job.result()
+    assert scenes.file_contents() == before
+    assert bpy.context.active_object == active
+    assert "Cancelled" in operator.report.call_args.args[1]
+
+
+def test_a_new_file_while_somebody_waits(slowly):
+    scenes.cross()
+    operator, context = stand_in("hair"), window_context()
+    operator.invoke(context, None)
+    operator.cancel(context)
+    slowly.set()
+    wait_for(operator._job)
+    with pytest.raises(CancelledError):
+        operator._job.result()
+
+
+def test_the_surface_is_gone_meanwhile(slowly):
+    ob = scenes.cross()
+    operator, context = stand_in("hair", per_side=3), window_context()
+    operator.invoke(context, None)
+    bpy.data.objects.remove(ob)
+    slowly.set()
+    wait_for(operator._job)
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    operator.report.assert_called_with({"ERROR"}, "Cross is not there any more")
+    assert not bpy.data.hair_curves
+
+
+def failed(monkeypatch, error):
+    """An operator that waits for work which ends in an error, and its context."""
+    scenes.cross()
+
+    def fail(*_arguments):
+        raise error
+
+    monkeypatch.setattr(scatter.Ground, "evaluate", fail)
+    operator, context = stand_in("hair"), window_context()
+    monkeypatch.setattr(Job, "wait", lambda self, seconds: self._done.wait(20) and seconds > 1)
+    assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    wait_for(operator._job)
+    return operator, context
+
+
+def test_memory_that_runs_out_in_the_thread(monkeypatch):
+    operator, context = failed(monkeypatch, MemoryError())
+    before = scenes.file_contents()
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    assert "Not enough memory" in operator.report.call_args.args[1]
+    assert scenes.file_contents() == before
+
+
+def test_mistakes_in_the_thread_keep_their_traceback(monkeypatch):
+    operator, context = failed(monkeypatch, ZeroDivisionError("of mine"))
+    with pytest.raises(ZeroDivisionError, match="of mine"):
+        operator.modal(context, event("TIMER"))
+
+
+def test_short_work_is_not_waited_for():
+    scenes.cross()
+    operator, context = stand_in("hair", per_side=3), window_context()
+    assert operator.invoke(context, None) == {"FINISHED"}
+    context.window_manager.modal_handler_add.assert_not_called()
+    context.workspace.status_text_set.assert_not_called()
+    assert len(bpy.context.active_object.data.curves) == 45
+
+
+def test_scripts_wait_without_events(slowly):
+    slowly.set()
+    scenes.cross()
+    operator, context = stand_in("hair", per_side=3), window_context()
+    assert operator.execute(context) == {"FINISHED"}
+    context.window_manager.modal_handler_add.assert_not_called()
+    context.window_manager.progress_end.assert_called_once()
+
+
+def test_large_counts_are_asked_about_first(slowly):
+    scenes.cross()
+    operator, context = stand_in("hair", per_side=1000), window_context()
+    operator.invoke(context, None)
+    confirm = context.window_manager.invoke_confirm
+    assert confirm.call_args.kwargs["message"].startswith("Make 5,000,000 strands of 5 points")
+    known = bpy.types.WindowManager.bl_rna.functions["invoke_confirm"].parameters.keys()
+    assert set(confirm.call_args.kwargs) <= set(known)
+    assert operator.allow_large  # for the execution that follows consent
+    operator.per_side = 3  # the rest of the test is no faster for millions
+    assert operator.execute(context) == {"RUNNING_MODAL"}
+    operator.modal(context, event("ESC"))
+
+
+def test_estimates_are_called_so_when_asking():
+    scenes.cross()
+    operator = stand_in("hair", distribution="BLUE_NOISE", amount="DISTANCE", distance=5e-4)
+    context = window_context()
+    operator.invoke(context, None)
+    message = context.window_manager.invoke_confirm.call_args.kwargs["message"]
+    assert message.startswith("Make about ")
+
+
+def test_progress_goes_from_0_to_1():
+    seen = []
+
+    def work(progress):
+        part_of(progress, 0, 0.5)(0.5)
+        part_of(progress, 0.5, 1)(0.5)
+        return "made"
+
+    assert Job(work).run(seen.append) == "made"
+    assert seen == [0.25, 0.75, 1.0]
+
+
+def test_a_cancelled_job_ends_where_it_tells_its_progress():
+    reached = []
+
+    def work(progress):
+        for step in range(1000):
+            progress(step / 1000)
+            reached.append(step)
+            time.sleep(0.005)
+
+    job = Job(work)
+    job.start()
+    while not reached:
+        time.sleep(0.001)
+    job.cancel()
+    wait_for(job)
+    with pytest.raises(CancelledError):
+        job.result()
+    assert len(reached) < 1000
