@@ -2,6 +2,7 @@
 """What the window tests ask Blender to do and to tell."""
 
 import bpy
+from mathutils import Euler
 
 
 def new_file() -> None:
@@ -72,3 +73,122 @@ def objects() -> list[str]:
 
 def curve_count(name: str) -> int:
     return len(bpy.data.objects[name].data.curves)
+
+
+def sheet() -> list[list[float]]:
+    """An open sheet of 6 x 5 squares over the integers, bent as a quadric, alone in the file and seen
+    from above; its matrix turns, stretches and moves it."""
+    bpy.data.batch_remove(bpy.data.objects)
+    rows, columns = 6, 7
+    grid = [(x, y) for y in range(rows) for x in range(columns)]
+    mesh = bpy.data.meshes.new("Sheet")
+    mesh.from_pydata(
+        [(x, y, bend(x, y)) for x, y in grid],
+        [],
+        [
+            (i, i + 1, i + 1 + columns, i + columns)
+            for i, (x, y) in enumerate(grid)
+            if x < columns - 1 and y < rows - 1
+        ],
+    )
+    ob = bpy.data.objects.new("Sheet", mesh)
+    ob.location, ob.rotation_euler, ob.scale = (-3, -1.5, 0.5), (0.2, -0.1, 0.3), (1.2, 0.9, 1.1)
+    bpy.context.scene.collection.objects.link(ob)
+    bpy.context.scene.limit_surface.target = ob
+    activate(ob)
+    _, window = view()
+    window.data.view_rotation = Euler((0.5, 0.1, 0.4)).to_quaternion()
+    window.data.view_distance = 11
+    return [list(row) for row in ob.matrix_world]
+
+
+def bend(x: float, y: float) -> float:
+    return 0.06 * x * x - 0.08 * y * y + 0.03 * x * y
+
+
+def activate(*objects: bpy.types.Object) -> None:
+    """The last one active, all of them selected."""
+    bpy.context.view_layer.update()
+    for ob in bpy.context.view_layer.objects:
+        ob.select_set(ob in objects)
+    bpy.context.view_layer.objects.active = objects[-1]
+
+
+def pin() -> None:
+    """A cone to be dragged over the sheet, which is active."""
+    mesh = bpy.data.meshes.new("Pin")
+    ring = [
+        (0.2, 0.1, 0),
+        (0, 0.2, 0),
+        (-0.2, 0.1, 0),
+        (-0.2, -0.1, 0),
+        (0, -0.2, 0),
+        (0.2, -0.1, 0),
+    ]
+    mesh.from_pydata([*ring, (0, 0, 0.7)], [], [(i, (i + 1) % 6, 6) for i in range(6)])
+    ob = bpy.data.objects.new("Pin", mesh)
+    ob.location, ob.rotation_euler, ob.scale = (0.1, 0.7, 2), (0.3, 0.2, 0.1), (1, 0.7, 1.3)
+    bpy.context.scene.collection.objects.link(ob)
+    activate(ob, bpy.data.objects["Sheet"])
+
+
+def hair(per_side: int) -> None:
+    bpy.ops.object.limit_hair_add(per_side=per_side, length=0.5)
+    bpy.context.active_object.name = "Hair"
+
+
+def loose_vertices() -> None:
+    """A triangle in Edit Mode, above the sheet."""
+    mesh = bpy.data.meshes.new("Triangle")
+    mesh.from_pydata([(-1, 0, 1.5), (0.5, -0.5, 1.5), (0.3, 1, 1.5)], [], [(0, 1, 2)])
+    ob = bpy.data.objects.new("Triangle", mesh)
+    ob.scale = (1, 1.5, 1)
+    bpy.context.scene.collection.objects.link(ob)
+    activate(ob)
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def start_drag(**properties: object) -> None:
+    bpy.ops.ed.undo_push(message="Before dragging")  # as any step by the user would
+    area, window = view()
+    with bpy.context.temp_override(area=area, region=window):
+        bpy.ops.view3d.limit_snap_modal("INVOKE_DEFAULT", **properties)
+
+
+def running() -> list[str]:
+    return [operator.bl_idname for operator in bpy.context.window.modal_operators]
+
+
+def camera() -> dict[str, object]:
+    """Where in the window the view is, and its matrix from the world to [-1, 1]^3."""
+    _, window = view()
+    return {
+        "corner": (window.x, window.y),
+        "size": (window.width, window.height),
+        "matrix": [list(row) for row in window.data.perspective_matrix],
+    }
+
+
+def matrix(name: str) -> list[list[float]]:
+    bpy.context.view_layer.update()
+    return [list(row) for row in bpy.data.objects[name].matrix_world]
+
+
+def transform(name: str) -> list[tuple[float, ...]]:
+    ob = bpy.data.objects[name]
+    return [tuple(ob.location), tuple(ob.rotation_euler), tuple(ob.scale)]
+
+
+def vertices(name: str) -> list[tuple[float, ...]]:
+    ob = bpy.data.objects[name]
+    ob.update_from_editmode()
+    return [tuple(vertex.co) for vertex in ob.data.vertices]
+
+
+def strand(name: str, curve: int) -> list[tuple[float, ...]]:
+    return [tuple(point.position) for point in bpy.data.objects[name].data.curves[curve].points]
+
+
+def attribute(name: str, attribute: str, index: int) -> object:
+    item = bpy.data.objects[name].data.attributes[attribute].data[index]
+    return tuple(item.vector) if hasattr(item, "vector") else item.value

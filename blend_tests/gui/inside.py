@@ -28,19 +28,19 @@ def serve() -> None:
         if connection is None:
             connection = listener.accept()
         while connection.poll():
-            name, arguments = connection.recv()
-            connection.send(outcome(name, arguments))
+            name, arguments, keywords = connection.recv()
+            connection.send(outcome(name, arguments, keywords))
         return POLL
 
     bpy.app.timers.register(tick, first_interval=1.0, persistent=True)
 
 
-def outcome(name: str, arguments: tuple) -> tuple[bool, object]:
+def outcome(name: str, arguments: tuple, keywords: dict) -> tuple[bool, object]:
     """Whether it failed, and what came of it."""
     try:
         window = bpy.context.window_manager.windows[0]
         with bpy.context.temp_override(window=window):
-            return False, getattr(actions, name)(*arguments)
+            return False, getattr(actions, name)(*arguments, **keywords)
     except BaseException:
         return True, traceback.format_exc()
 

@@ -7,7 +7,7 @@
 import os
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from multiprocessing.connection import Client
 from pathlib import Path
@@ -94,9 +94,9 @@ class BlenderSession:
         self._process.wait()
         self._log.close()
 
-    def call(self, name: str, *arguments: Any, timeout: float = 60) -> Any:
+    def call(self, name: str, *arguments: Any, timeout: float = 60, **keywords: Any) -> Any:
         """What the function of inside.py returns, once Blender has nothing else to do."""
-        self._connection.send((name, arguments))
+        self._connection.send((name, arguments, keywords))
         if not self._connection.poll(timeout):
             raise TimeoutError(f"{name} in Blender has not ended after {timeout} s")
         raised, value = self._connection.recv()
@@ -127,6 +127,15 @@ class BlenderSession:
 
     def press(self, button: int = 1) -> None:
         self._xdotool("mousedown", button, "sleep", 0.05, "mouseup", button)
+        self.settle()
+
+    def drag(self, start: Sequence[float], end: Sequence[float]) -> None:
+        """With the left button held down."""
+        self.move(*start)
+        self._xdotool("mousedown", 1)
+        self.settle()
+        self.move(*end)
+        self._xdotool("mouseup", 1)
         self.settle()
 
     def wheel(self, steps: int) -> None:

@@ -68,9 +68,10 @@ def _pixel_size(region: bpy.types.Region, matrix: np.ndarray, position: np.ndarr
 def _line(
     region: bpy.types.Region, points: np.ndarray, colour: tuple[float, float, float, float]
 ) -> None:
+    pos = np.ascontiguousarray(points, np.float32)
     shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
     shader.bind()
     shader.uniform_float("viewportSize", (region.width, region.height))
     shader.uniform_float("lineWidth", LINE_WIDTH)
     shader.uniform_float("color", colour)
-    batch_for_shader(shader, "LINE_STRIP", {"pos": points.astype(np.float32)}).draw(shader)
+    batch_for_shader(shader, "LINE_STRIP", {"pos": pos}).draw(shader)

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""view3d.limit_snap_modal by real mouse, wheel and keys."""
+
+import numpy as np
+import pytest
+from quadric import Camera, Sheet, boundary_height, height
+
+ON_SURFACE = 1e-6  # Blender's single precision, of coordinates up to 4
+PIXEL = 0.1  # what single precision makes of the view's inverted matrix
+
+
+@pytest.fixture
+def sheet(blender):
+    found = Sheet(blender.call("sheet"))
+    blender.settle()
+    return found
+
+
+@pytest.fixture
+def seen(blender, sheet):
+    """Pixel, in whole numbers, at which a local point of the sheet is seen."""
+    camera = Camera(**blender.call("camera"))
+    return lambda x, y: np.round(camera.pixel(sheet.world(np.array([x, y, height(x, y)]))))
+
+
+def position(blender, name):
+    return np.array(blender.call("matrix", name))[:3, 3]
+
+
+def pixel(blender, point):
+    return Camera(**blender.call("camera")).pixel(point)
+
+
+def assert_under_mouse(blender, point, at):
+    np.testing.assert_allclose(pixel(blender, point), at, atol=PIXEL)
+
+
+def test_object_follows_the_mouse_until_a_click(blender, sheet, seen):
+    blender.call("pin")
+    before = blender.call("transform", "Pin")
+    blender.call("start_drag")
+    for place in ((2.3, 1.4), (3.7, 2.9), (4.4, 3.1)):
+        at = seen(*place)
+        blender.move(*at)
+        found = position(blender, "Pin")
+        assert abs(sheet.above(found)) < ON_SURFACE
+        assert_under_mouse(blender, found, at)
+    assert blender.call("running")
+    blender.press()
+    assert not blender.call("running")
+    np.testing.assert_array_equal(position(blender, "Pin"), found)
+    after = blender.call("transform", "Pin")
+    assert after[1:] == before[1:]
+    assert blender.call("objects") == ["Pin", "Sheet"]
+    blender.key("ctrl+z")
+    assert blender.call("transform", "Pin") == before
+    blender.key("ctrl+shift+z")
+    assert blender.call("transform", "Pin") == after
+
+
+@pytest.mark.parametrize("way_out", ["Escape", "right click"])
+def test_all_is_restored(blender, sheet, seen, way_out):
+    blender.call("pin")
+    before = blender.call("transform", "Pin")
+    blender.call("start_drag", align="NORMAL_DU")
+    blender.move(*seen(3.2, 2.2))
+    blender.wheel(3)
+    assert blender.call("transform", "Pin") != before
+    if way_out == "Escape":
+        blender.key("Escape")
+    else:
+        blender.press(3)
+    assert not blender.call("running")
+    assert blender.call("transform", "Pin") == before
+
+
+def test_wheel_and_numbers_offset_along_the_normal(blender, sheet, seen):
+    blender.call("pin")
+    blender.call("start_drag")
+    blender.move(*seen(3.2, 2.2))
+    foot = position(blender, "Pin")
+    normal = sheet.world_normal(sheet.local(foot))
+    blender.wheel(3)
+    step = np.linalg.norm(position(blender, "Pin") - foot) / 3
+    assert step == pytest.approx(0.1, abs=ON_SURFACE)  # the sheet's diagonal is a bit over 10
+    np.testing.assert_allclose(position(blender, "Pin"), foot + 3 * step * normal, atol=ON_SURFACE)
+    blender.wheel(-1)
+    np.testing.assert_allclose(position(blender, "Pin"), foot + 2 * step * normal, atol=ON_SURFACE)
+    blender.key("0", "period", "2", "5")
+    np.testing.assert_allclose(position(blender, "Pin"), foot + 0.25 * normal, atol=ON_SURFACE)
+    blender.key("minus", "BackSpace")
+    np.testing.assert_allclose(position(blender, "Pin"), foot - 0.2 * normal, atol=ON_SURFACE)
+    blender.key("Return")
+    assert not blender.call("running")
+    np.testing.assert_allclose(position(blender, "Pin"), foot - 0.2 * normal, atol=ON_SURFACE)
+
+
+def test_align(blender, sheet, seen):
+    blender.call("pin")
+    blender.call("start_drag")
+    blender.move(*seen(3.2, 2.2))
+    normal = sheet.world_normal(sheet.local(position(blender, "Pin")))
+    before = np.array(blender.call("matrix", "Pin"))
+    blender.key("a")
+    after = np.array(blender.call("matrix", "Pin"))
+    np.testing.assert_allclose(after[:3, 2] / np.linalg.norm(after[:3, 2]), normal, atol=1e-6)
+    np.testing.assert_allclose(
+        np.linalg.norm(after[:3, :3], axis=0), np.linalg.norm(before[:3, :3], axis=0), rtol=1e-6
+    )
+    blender.key("a", "a")
+    np.testing.assert_array_equal(np.array(blender.call("matrix", "Pin")), before)
+    blender.key("Escape")
+
+
+def test_along_a_face_border(blender, sheet, seen):
+    blender.call("pin")
+    blender.call("start_drag")
+    blender.move(*seen(3.2, 2.45))
+    blender.key("x")
+    x, y, z = sheet.local(position(blender, "Pin"))
+    assert abs(x - 3) < ON_SURFACE
+    assert abs(z - height(x, y)) < ON_SURFACE
+    blender.move(*seen(3.6, 2.1))
+    x, y, z = sheet.local(position(blender, "Pin"))
+    assert abs(y - 2) < ON_SURFACE
+    assert abs(z - height(x, y)) < ON_SURFACE
+    blender.key("x")
+    assert_under_mouse(blender, position(blender, "Pin"), seen(3.6, 2.1))
+    blender.key("Escape")
+
+
+def test_along_the_boundary(blender, sheet, seen):
+    """Also where the mouse is beside the surface: the nearest point of the curve on screen."""
+    blender.call("pin")
+    blender.call("start_drag")
+    blender.move(*seen(2.8, 1.2))
+    blender.key("y")
+    camera = Camera(**blender.call("camera"))
+    curve_x = np.linspace(1, 5, 4001)
+    curve = [sheet.world(np.array([x, 0, boundary_height(x)])) for x in curve_x]
+    on_screen = np.array([camera.pixel(point) for point in curve])
+    for at in (seen(2.8, 0.3), np.round(on_screen[2000] + [0, -40])):
+        blender.move(*at)
+        found = sheet.local(position(blender, "Pin"))
+        assert abs(found[1]) < ON_SURFACE
+        assert abs(found[2] - boundary_height(found[0])) < ON_SURFACE
+        nearest = np.argmin(np.linalg.norm(on_screen - at, axis=1))
+        assert abs(found[0] - curve_x[nearest]) < 0.01
+    blender.key("z")
+    blender.move(*seen(2.8, 1.2))
+    assert_under_mouse(blender, position(blender, "Pin"), seen(2.8, 1.2))
+    blender.key("Escape")
+
+
+def test_vertex_is_pressed_and_dragged(blender, sheet, seen):
+    blender.call("loose_vertices")
+    before = blender.call("vertices", "Triangle")
+    blender.call("start_drag")
+    matrix = np.array(blender.call("matrix", "Triangle"))
+    start = matrix[:3, :3] @ before[1] + matrix[:3, 3]
+    at = seen(4.1, 2.4)
+    blender.drag(pixel(blender, start) + [4, 3], at)
+    assert not blender.call("running")
+    after = blender.call("vertices", "Triangle")
+    assert [after[0], after[2]] == [before[0], before[2]]
+    found = matrix[:3, :3] @ after[1] + matrix[:3, 3]
+    assert abs(sheet.above(found)) < ON_SURFACE
+    assert_under_mouse(blender, found, at)
+    blender.key("ctrl+z")
+    assert blender.call("vertices", "Triangle") == before
+
+
+def test_strand_is_clicked_and_dragged_by_its_root(blender, sheet, seen):
+    blender.call("hair", 2)
+    curve = 57
+    before = np.array(blender.call("strand", "Hair", curve))
+    others = blender.call("strand", "Hair", curve + 1)
+    blender.call("start_drag")
+    blender.click(*np.round(pixel(blender, sheet.world(before[0]))))
+    assert blender.call("running")
+    at = seen(4.1, 2.4)
+    blender.move(*at)
+    blender.screenshot("snap_modal_strand")
+    blender.press()
+    assert not blender.call("running")
+    after = np.array(blender.call("strand", "Hair", curve))
+    root = sheet.world(after[0])
+    assert abs(sheet.above(root)) < ON_SURFACE
+    assert_under_mouse(blender, root, at)
+    np.testing.assert_allclose(after - after[0], before - before[0], atol=ON_SURFACE)
+    assert blender.call("strand", "Hair", curve + 1) == others
+    columns = 6
+    face, uv = (
+        blender.call("attribute", "Hair", name, curve) for name in ("limit_face", "limit_uv")
+    )
+    np.testing.assert_allclose(
+        [face % columns + uv[0], face // columns + uv[1]], after[0, :2], atol=ON_SURFACE
+    )
+
+
+def test_mouse_beside_the_surface_leaves_it_where_it_was(blender, sheet, seen):
+    blender.call("pin")
+    blender.call("start_drag")
+    blender.move(*seen(3.2, 2.2))
+    found = position(blender, "Pin")
+    blender.move(200, 600)
+    np.testing.assert_array_equal(position(blender, "Pin"), found)
+    blender.key("Escape")
