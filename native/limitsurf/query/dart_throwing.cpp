@@ -14,8 +14,8 @@ namespace {
 
 /// Cells that one thread takes at a time, and between two reports.
 constexpr std::size_t kCellsPerTask = 1024, kCellsPerSlab = 64 * kCellsPerTask;
-/// Cells begin with a reach below so many radii.
-constexpr double kFirstReach = 0.75;
+/// Cells begin with a reach of at most so many radii.
+constexpr double kFirstReach = 1;
 /// A cell is cut one way alone if it is so many times as long as wide.
 constexpr double kOblong = 1.5;
 

@@ -76,9 +76,13 @@ class DiscGrid {
       if (on_level_[level] == 0 && !(level == own && level > 0)) {
         continue;
       }
-      Index low[3];
+      Index low[3], middle[3];
       indexOf(position, level, 0.5, low);
-      for (int corner = 0; corner < 8; ++corner) {
+      indexOf(position, level, 0, middle);
+      const int own_corner =
+          (middle[0] - low[0]) | (middle[1] - low[1]) << 1 | (middle[2] - low[2]) << 2;
+      for (int i = 0; i < 8; ++i) {
+        const int corner = i ^ own_corner;  // the position's own cube first: what ends the search
         const Index at[3] = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
                              low[2] + (corner >> 2)};
         if (anyIn(level, at, level == own, position, radius, visit)) {
