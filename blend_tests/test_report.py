@@ -3,6 +3,7 @@
 and a fine tessellation of the limit surface."""
 
 import re
+import threading
 from types import SimpleNamespace
 from typing import NamedTuple
 from unittest.mock import MagicMock
@@ -14,6 +15,10 @@ import parity_zoo
 import pytest
 import scenes
 from limit_surface import attributes, cage, ids, subdivided
+from limit_surface import watched as watched_module
+from limit_surface.errors import CancelledError
+from limit_surface.report import distances
+from limit_surface.watched import WatchedOperator
 from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
 from processes import ROOT
@@ -255,7 +260,7 @@ def test_faces_without_a_limit_surface(capfd):
     assert "1 of 2 faces have no limit surface and were left out" in reported
     ob = scenes.add_mesh("Fold", positions, [fold])
     scenes.add_subsurf(ob).levels = 0
-    refusal(ob, "No face of Fold has a limit surface", levels="VIEWPORT")
+    refusal(ob, "No face has a limit surface: .*uses vertex 5 twice", levels="VIEWPORT")
 
 
 def test_only_on_a_mesh_in_object_mode():
@@ -354,3 +359,95 @@ def test_page_has_an_example_that_runs(capsys):
     exec(example, {})
     largest, mean = (float(number) for number in capsys.readouterr().out.split()[-2:])
     assert largest > mean > 0
+
+
+def watched(**chosen):
+    """The operator as a user has it who waits: a stand-in of plain Python, as Blender makes no
+    operators without a window, and a context whose window only takes notes."""
+    kind = bpy.types.OBJECT_OT_limit_report
+    own = ("start", "finish", "_kinds", "_report", "too_large", "cancelled")
+    cls = type("StandIn", (WatchedOperator,), {name: getattr(kind, name) for name in own})
+    operator = cls()
+    operator.levels, operator.level, operator.full_color = "VIEWPORT", 3, 0.0
+    operator.report = MagicMock()
+    context = MagicMock(wraps=bpy.context)
+    context.active_object = bpy.context.active_object
+    context.window_manager, context.workspace = MagicMock(), MagicMock()
+    return operator, context
+
+
+@pytest.fixture
+def slowly(monkeypatch):
+    """Measuring that waits, half way, until it is let go on."""
+    go_on = threading.Event()
+    measure = distances.measure
+
+    def wait(surface, found, shown, progress):
+        progress(0.5)
+        assert go_on.wait(20)
+        return measure(surface, found, shown, progress)
+
+    monkeypatch.setattr(distances, "measure", wait)
+    monkeypatch.setattr(watched_module, "PATIENCE", 0.01)
+    yield go_on
+    go_on.set()
+
+
+def event(kind):
+    return SimpleNamespace(type=kind, value="PRESS")
+
+
+def test_long_work_is_waited_for(slowly):
+    ob = parity_zoo.add("sheet")
+    scenes.activate(ob)
+    operator, context = watched()
+    assert operator.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
+    assert "Measuring sheet: 50%" in context.workspace.status_text_set.call_args.args[0]
+    assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}
+    assert ids.DISTANCE not in ob.data.attributes
+    slowly.set()
+    assert operator._job.wait(20)
+    assert operator.modal(context, event("TIMER")) == {"FINISHED"}
+    context.window_manager.event_timer_remove.assert_called_once()
+    waited_for = dict(ob[ids.REPORT]["VIEWPORT"])
+    assert waited_for == report(ob, levels="VIEWPORT")["VIEWPORT"]
+
+
+def test_escape_leaves_nothing(slowly):
+    ob = parity_zoo.add("sheet")
+    scenes.activate(ob)
+    before = scenes.file_contents(), sorted(ob.data.attributes.keys())
+    operator, context = watched()
+    assert operator.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    operator.report.assert_called_with({"INFO"}, "Cancelled: nothing was measured")
+    context.window_manager.event_timer_remove.assert_called_once()
+    slowly.set()
+    assert operator._job.wait(20)
+    with pytest.raises(CancelledError):
+        operator._job.result()
+    assert (scenes.file_contents(), sorted(ob.data.attributes.keys())) == before
+    assert ids.REPORT not in ob
+
+
+def test_what_has_gone_meanwhile(slowly):
+    ob = parity_zoo.add("sheet")
+    scenes.activate(ob)
+    operator, context = watched()
+    assert operator.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
+    bpy.data.objects.remove(ob)
+    slowly.set()
+    assert operator._job.wait(20)
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    operator.report.assert_called_with({"ERROR"}, "sheet is not there any more")
+
+
+def test_little_work_is_done_at_once():
+    ob = scenes.flat_grid(1)
+    scenes.activate(ob)
+    operator, context = watched()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(watched_module, "PATIENCE", 20)
+        assert operator.invoke(context, event("LEFTMOUSE")) == {"FINISHED"}
+    assert ids.REPORT in ob

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import cage, displayed
+from .. import cage, displayed, native
+from ..errors import RefusalError
+from ..job import Progress, part_of
 from .places import Patches, patches
 
 if TYPE_CHECKING:
@@ -42,11 +44,28 @@ class Distances:
     at_vertices: np.ndarray  # (v,) the largest `apart` around each vertex of the cage
 
 
+def measure_all(
+    found: cage.Cage, meshes: Mapping[str, displayed.DisplayedMesh], progress: Progress
+) -> tuple[dict[str, Distances], int]:
+    """Of each mesh; and how many faces of the cage have no limit surface. Nothing of Blender is
+    touched."""
+    surface = native.limitsurf.LimitSurface(found.mesh)
+    surface.set_positions(found.world_positions())
+    refused = len(surface.refused)
+    if refused == len(found.face_sizes):
+        raise RefusalError(f"No face has a limit surface: {next(iter(surface.refused.values()))}")
+    results = {}
+    for i, (name, shown) in enumerate(meshes.items()):
+        here = part_of(progress, i / len(meshes), (i + 1) / len(meshes))
+        results[name] = measure(surface, found, shown, here)
+    return results, refused
+
+
 def measure(
     surface: limitsurf.LimitSurface,
     found: cage.Cage,
     shown: displayed.DisplayedMesh,
-    progress: Callable[[float], None],
+    progress: Progress,
 ) -> Distances:
     """Of all faces that have a limit surface; `surface` is that of the cage in the world."""
     groups = patches(found, shown, surface.refused)

@@ -1,24 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operator object.limit_report."""
 
+from dataclasses import dataclass
+
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from .. import cage, displayed, ids, native, polling
+from .. import cage, displayed, ids, polling
 from ..errors import RefusalError
-from ..progress import progress_bar
-from .distances import measure
+from ..job import Job, Progress
+from ..watched import WatchedOperator
+from .distances import Distances, measure_all
 from .storing import check_attributes, store_numbers, store_on_mesh, why_not_on_mesh
 from .text import numbers, sentence
 
 
-class OBJECT_OT_limit_report(bpy.types.Operator):
+@dataclass(frozen=True)
+class Measured:
+    name: str  # of the object, and of its library
+    cage: cage.Cage
+    results: dict[str, Distances]
+    refused: int
+
+
+class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
     """Measure how far the mesh that Blender shows is from the limit surface, and store it as an
     attribute and as colors"""
 
     bl_idname = ids.REPORT_OPERATOR
     bl_label = "Report Distance to Limit Surface"
     bl_options = {"REGISTER", "UNDO"}
+    too_large = "Not enough memory for so many polygons"
+    cancelled = "Cancelled: nothing was measured"
 
     levels: EnumProperty(
         name="Levels",
@@ -58,16 +71,6 @@ class OBJECT_OT_limit_report(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return polling.active_mesh(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            return self._run(context)
-        except (RefusalError, *native.errors) as error:
-            reason = str(error)
-        except MemoryError:
-            reason = "Not enough memory for so many polygons"
-        self.report({"ERROR"}, reason)
-        return {"CANCELLED"}
-
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
@@ -78,35 +81,37 @@ class OBJECT_OT_limit_report(bpy.types.Operator):
         for line in self.summary.splitlines():
             layout.label(text=line, icon="INFO")
 
-    def _run(self, context: bpy.types.Context) -> set[str]:
+    def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
         ob, depsgraph = context.active_object, context.evaluated_depsgraph_get()
         found = cage.read(ob, depsgraph)
-        not_stored = why_not_on_mesh(ob, found)
-        if not not_stored:
+        if not why_not_on_mesh(ob, found):
             check_attributes(ob.data)
         meshes = {
             name: displayed.read(ob, depsgraph, found, kind) for name, kind in self._kinds().items()
         }
-        surface = native.limitsurf.LimitSurface(found.mesh)
-        surface.set_positions(found.world_positions())
-        if len(surface.refused) == len(found.face_sizes):
-            raise RefusalError(f"No face of {ob.name} has a limit surface")
-        results = {}
-        with progress_bar(context.window_manager) as progress:
-            for i, (name, shown) in enumerate(meshes.items()):
-                results[name] = measure(
-                    surface, found, shown, lambda part, i=i: progress((i + part) / len(meshes))
-                )
+        name = ob.name_full
+
+        def work(progress: Progress) -> Measured:
+            return Measured(name, found, *measure_all(found, meshes, progress))
+
+        return self.watch(context, Job(work), f"Measuring {ob.name}")
+
+    def finish(self, context: bpy.types.Context, made: Measured) -> set[str]:
+        ob = next((o for o in bpy.data.objects if o.name_full == made.name), None)
+        if ob is None:
+            raise RefusalError(f"{made.name} is not there any more")
+        not_stored = why_not_on_mesh(ob, made.cage)
         if not_stored:
             self.report({"WARNING"}, f"Attributes are not stored: {not_stored}")
         else:
-            at_vertices = next(iter(results.values())).at_vertices
+            check_attributes(ob.data)
+            at_vertices = next(iter(made.results.values())).at_vertices
             store_on_mesh(ob.data, at_vertices, self.full_color or float(at_vertices.max()))
-        kept = {name: numbers(result) for name, result in results.items()}
+        kept = {name: numbers(result) for name, result in made.results.items()}
         if ob.is_editable:
             store_numbers(ob, kept)
-        self._report(ob, found, kept, len(surface.refused))
+        self._report(ob, made.cage, kept, made.refused)
         return {"FINISHED"}
 
     def _kinds(self) -> dict[str, displayed.Kind]:
