@@ -101,10 +101,9 @@ class ScatterOperator(properties.DistributionProperties):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        ob = context.active_object
         if not native.available():
             cls.poll_message_set(f"The native module does not load: {native.reason}")
-        elif ob is None or ob.type != "MESH":
+        elif _surface_object(context) is None:
             cls.poll_message_set("Make a mesh object active first")
         elif context.mode != "OBJECT":
             cls.poll_message_set("Only in Object Mode")
@@ -191,6 +190,7 @@ class ScatterOperator(properties.DistributionProperties):
 
     def _start(self, context: bpy.types.Context, order: Order) -> set[str]:
         self.summary, self.surface = "", order.surface
+        self.amount = order.spread.amount  # the redo panel shows it
         make = self.maker(order.region.cage)
 
         def work(progress: Progress) -> tuple[Ground, Any]:
@@ -221,7 +221,7 @@ class ScatterOperator(properties.DistributionProperties):
 
     def _order(self, context: bpy.types.Context) -> Order:
         self.check_properties()
-        ob, depsgraph = context.active_object, context.evaluated_depsgraph_get()
+        ob, depsgraph = _surface_object(context), context.evaluated_depsgraph_get()
         spread = properties.spread(self.properties)
         covered = region.read(
             ob,
@@ -260,3 +260,12 @@ class ScatterOperator(properties.DistributionProperties):
         if found.without_uv_map:
             notes.append(f"no UVs stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))
+
+
+def _surface_object(context: bpy.types.Context) -> bpy.types.Object | None:
+    """The active mesh, or the one that the active hair is on: new hair is active, and Blender asks
+    `poll` before it undoes what is to be made anew with other settings."""
+    ob = context.active_object
+    if ob is not None and ob.type == "CURVES":
+        ob = ob.data.surface
+    return ob if ob is not None and ob.type == "MESH" else None

@@ -37,7 +37,8 @@ def modules() -> dict[str, str]:
     """Where the extension and its native module were loaded from."""
     import limitsurf
 
-    addon = next(name for name in bpy.context.preferences.addons if "limit_surface" in name)
+    addons = bpy.context.preferences.addons.keys()
+    addon = next(name for name in addons if "limit_surface" in name)
     return {"addon": addon, "limitsurf": limitsurf._limitsurf.__file__}
 
 
@@ -76,8 +77,8 @@ def curve_count(name: str) -> int:
 
 
 def sheet() -> list[list[float]]:
-    """An open sheet of 6 x 5 squares over the integers, bent as a quadric, alone in the file and seen
-    from above; its matrix turns, stretches and moves it."""
+    """An open sheet of 6 x 5 squares over the integers, bent as a quadric, alone in the file and
+    seen from above; its matrix turns, stretches and moves it."""
     bpy.data.batch_remove(bpy.data.objects)
     rows, columns = 6, 7
     grid = [(x, y) for y in range(rows) for x in range(columns)]
