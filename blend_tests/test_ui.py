@@ -61,7 +61,7 @@ def test_preferences_show_the_version():
 def test_menu_offers_the_operators():
     layout = drawn(bpy.types.VIEW3D_MT_object_limit_surface)
     offered = [call.args[0] for call in layout.operator.call_args_list]
-    assert offered == [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.REPORT_OPERATOR]
+    assert offered == [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.SNAP_MODAL, ids.REPORT_OPERATOR]
 
 
 def choices(name):
