@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 #
-# Sets up, builds, and runs every test that needs no window.
+# Sets up, builds, and runs every test, those in a real window included.
 #
 #   tools/test.sh [--slow] [--blender VERSION]
 #
@@ -10,12 +10,13 @@
 #            5.0.1, say) in an environment of its own
 #
 # The last line counts the tests. A part that is no test, or did not get as far as its tests, counts
-# as one failure if it fails and not at all if it succeeds.
+# as one failure if it fails and not at all if it succeeds. The window tests count as one skipped
+# test where they cannot be run (tools/gui_test.sh says why).
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 usage() {
-  sed -n '4,13s/^# \{0,1\}//p' "$0"
+  sed -n '4,14s/^# \{0,1\}//p' "$0"
   exit 2
 }
 
@@ -29,13 +30,21 @@ while (($#)); do
   shift
 done
 
+# The Blender for the window tests is fetched meanwhile.
+if [[ $blender == "$DEFAULT_BLENDER" ]]; then
+  mkdir -p "$ROOT/build"
+  setsid "$ROOT/tools/gui_test.sh" --prepare >"$ROOT/build/window.log" 2>&1 </dev/null &
+  fetching=$!
+  trap 'kill -- -$fetching 2>/dev/null || true' EXIT
+fi
+
 set_up "$blender"
 cd "$ROOT"
 results=$ROOT/build/test-results
 rm -rf "$results"
 mkdir -p "$results"
 
-# part NAME COMMAND...: runs it and remembers how it ended.
+# part NAME COMMAND...: runs it and remembers how it ended; 77 means that it cannot be run here.
 outcomes=()
 part() {
   local name=$1 status=0 start=$SECONDS
@@ -78,6 +87,7 @@ fi
 part "Python tests" run_pytest "Python tests" native/python/tests tools/tests || true
 part "Blender tests" run_pytest "Blender tests" blend_tests || true
 if [[ $blender == "$DEFAULT_BLENDER" ]]; then
+  part "Window tests" tools/gui_test.sh || true
   part "Style" tools/format.sh --check || true
 fi
 

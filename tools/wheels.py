@@ -78,7 +78,8 @@ def compiled(headers: Path) -> Path:
     }
     options = [f"-D{key}={value}" for key, value in definitions.items()]
     run("cmake", "-S", ROOT, "-B", build_folder, "-G", "Ninja", *options)
-    run("cmake", "--build", build_folder, "--parallel", os.environ.get("LIMITSURF_JOBS", ""))
+    jobs = os.environ.get("LIMITSURF_JOBS") or str(os.cpu_count())
+    run("cmake", "--build", build_folder, "--parallel", jobs)
     return build_folder / f"native/python/_limitsurf{suffix}"
 
 

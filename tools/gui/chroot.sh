@@ -3,7 +3,7 @@
 # A Debian 13 with its own Blender, beside this system: sourced by tools/gui_test.sh.
 #
 #   chroot_obstacle          prints why there can be none here, if so
-#   make_chroot              makes it where it is missing (two minutes, 2.5 GB)
+#   make_chroot              makes it where it is missing (a minute or two, 1.3 GB)
 #   in_chroot COMMAND...     runs something in it, without network
 #
 # It lies in build/window and is kept. Everything is mounted in a namespace of its own, so that
@@ -44,7 +44,7 @@ make_chroot() {
   mkdir -p "$CHROOT_OUT"
   chroot_is_ready && return
   local partial=$CHROOT.partial
-  say "A Debian 13 with Blender for the window tests (two minutes, 2.5 GB)"
+  say "A Debian 13 with Blender for the window tests (a minute or two, 1.3 GB)"
   rm -rf --one-file-system "$partial" "$CHROOT"
   install_debootstrap
   use_proxy_of_apt

@@ -2,7 +2,8 @@
 """Adds up what tools/test.sh ran: `summary.py RESULTS < parts`.
 
 Each line of the input is a part's name, exit status and seconds, separated by tabs. A part that ran
-tests left RESULTS/<name>.xml (JUnit's format, as CTest and pytest write it).
+tests left RESULTS/<name>.xml (JUnit's format, as CTest and pytest write it); one that could not be
+run on this machine ended with 77.
 """
 
 import sys
@@ -23,6 +24,10 @@ def count(report: Path) -> tuple[int, int, int]:
     return passed, failed, skipped
 
 
+CANNOT_RUN = "77"
+OUTCOMES = {"0": "ok", CANNOT_RUN: "SKIPPED"}
+
+
 def main() -> int:
     results = Path(sys.argv[1])
     total = [0, 0, 0]
@@ -30,10 +35,12 @@ def main() -> int:
         name, status, seconds = line.rstrip("\n").split("\t")
         report = results / f"{name}.xml"
         counts = count(report) if report.exists() else (0, 0, 0)
-        if status != "0" and counts[1] == 0:
+        if status == CANNOT_RUN:
+            counts = (0, 0, 1)
+        elif status != "0" and counts[1] == 0:
             counts = (counts[0], 1, counts[2])
         total = [a + b for a, b in zip(total, counts, strict=True)]
-        outcome = "ok" if status == "0" else "FAILED"
+        outcome = OUTCOMES.get(status, "FAILED")
         tests = "{} passed, {} failed, {} skipped".format(*counts) if report.exists() else ""
         print(f"{name:<15} {outcome:<7} {seconds:>4} s  {tests}")
     print("{} passed, {} failed, {} skipped".format(*total))
