@@ -30,6 +30,12 @@ void setRingCells(const Ring& ring, int face, const Padded points[], Padded cell
 
 }  // namespace
 
+void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
+              Padded after[]) {
+  tileStep(ring.sides(face)).apply(before, after);
+  setRingCells(ring, face, ring_points, after);
+}
+
 Pose::Pose(const TileTable& table)
     : table_(&table),
       rings_(table.rings.size()),
@@ -172,13 +178,11 @@ void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
     pose.outer[i] = (points_[tile.outer[i]] - limit) + residual(tile.outer[i]);
     start.points[cells[i]] = pose.outer[i] - constant;
   }
-  const TileStep<double>& step = tileStep(tile.sides);
   const Padded* before = start.points;
   for (int n = 1; n <= gridSteps(tile); ++n) {
     Padded* after = grids_[pose.first_grid + n - 1].points;
     ring += ring_size;
-    step.apply(before, after);
-    setRingCells(basis.ring(), tile.face, ring, after);
+    stepGrid(basis.ring(), tile.face, ring, before, after);
     after[tile_grid::cell(-1, -1)] = limit;
     before = after;
   }

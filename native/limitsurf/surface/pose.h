@@ -81,4 +81,9 @@ class Pose {
   std::vector<Grid> grids_;
 };
 
+/// One subdivision of the control grid of a ring's face: `ring_points` are the ring's after it.
+/// Cells that do not exist are left as they are.
+void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
+              Padded after[]);
+
 }  // namespace limitsurf

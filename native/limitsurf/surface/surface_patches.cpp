@@ -112,8 +112,23 @@ struct SurfacePatches::Data {
     }
   }
 
-  /// How far a ring's points are from its limit after 0, 1, ... steps.
-  void setRadii(int ring_index) {
+  /// Where the levels of rings with many faces begin.
+  void reserveLevels() {
+    radii.resize(table.rings.size() * (kMostSteps + 1));
+    first_level.resize(table.rings.size(), kNotKept);
+    std::size_t size = 0;
+    for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
+      if (table.rings[ring].basis->ring().faces > kFewFaces) {
+        first_level[ring] = size;
+        size += table.rings[ring].points.size() * (kMostSteps + 1);
+      }
+    }
+    levels.resize(size);
+  }
+
+  /// How far a ring's points are from its limit after 0, 1, ... steps; and of rings with many faces
+  /// the points.
+  void setLevels(int ring_index) {
     const RingPoints& ring = table.rings[ring_index];
     const Padded limit = pose.ring(ring_index).limit;
     std::vector<Padded> points(ring.points.size()), next(ring.points.size());
@@ -127,6 +142,10 @@ struct SurfacePatches::Data {
         squared = std::max(squared, point.square().sum());
       }
       out[step] = static_cast<float>(std::sqrt(squared) * (1 + kFloatMargin));
+      if (first_level[ring_index] != kNotKept) {
+        std::copy(points.begin(), points.end(),
+                  &levels[first_level[ring_index] + points.size() * step]);
+      }
       ring.basis->step().apply([&](int i) -> const Padded& { return points[i]; },
                                [&](int i) -> Padded& { return next[i]; });
       points.swap(next);
@@ -213,6 +232,32 @@ struct SurfacePatches::Data {
     return ring.limit;
   }
 
+  /// The same, for a core that is split step by step: `grid` holds that before the core's last step
+  /// if `chained`.
+  Padded nextGrid(const SurfacePiece& core, bool chained, Padded grid[tile_grid::kCells]) const {
+    const RingTile& tile = ringTile(core);
+    const int steps = core.steps + 1;
+    const std::size_t first = first_level[tile.ring];
+    if (steps <= pose.gridSteps(tile) || first == kNotKept) {
+      return ringGrid(core, steps, grid);
+    }
+    const RingPoints& ring = table.rings[tile.ring];
+    int done = core.steps;
+    if (!chained) {
+      done = pose.gridSteps(tile);
+      ringGrid(core, done, grid);
+    }
+    Padded after[tile_grid::kCells];
+    std::fill_n(after, tile_grid::kCells, Padded::Zero());
+    for (; done < steps; ++done) {
+      const std::size_t level = std::min(done + 1 + tile.ring_steps, kMostSteps);
+      stepGrid(ring.basis->ring(), tile.face, &levels[first + ring.points.size() * level], grid,
+               after);
+      std::copy(after, after + tile_grid::kCells, grid);
+    }
+    return pose.ring(tile.ring).limit;
+  }
+
   void quarterPatch(const RingTile& tile, const Padded* grid, int quarter, BezierPatch& out) const {
     const int a = kQuarters[quarter][0], b = kQuarters[quarter][1];
     for (int y = 0; y < 4; ++y) {
@@ -227,20 +272,23 @@ struct SurfacePatches::Data {
   }
 
   static constexpr double kFloatMargin = 1e-6;
+  static constexpr std::size_t kNotKept = static_cast<std::size_t>(-1);
 
   const TileTable& table;
   const Pose& pose;
   std::vector<Tile> tiles;
-  std::vector<float> radii;  // kMostSteps + 1 of each ring
+  std::vector<float> radii;              // kMostSteps + 1 of each ring
+  std::vector<std::size_t> first_level;  // of each ring
+  std::vector<Padded> levels;            // relative to the rings' limits
   Box cage_box;
 };
 
 SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads)
     : data_(std::make_unique<Data>(*surface.data_)) {
-  data_->radii.resize(data_->table.rings.size() * (kMostSteps + 1));
+  data_->reserveLevels();
   parallelFor(data_->table.rings.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
-      data_->setRadii(static_cast<int>(ring));
+      data_->setLevels(static_cast<int>(ring));
     }
   });
 }
@@ -286,8 +334,10 @@ BezierPatch SurfacePatches::patch(const SurfacePiece& piece) const {
 void SurfacePatches::split(const SurfacePiece& core, SplitCore& out) const {
   const int steps = core.steps + 1;
   const RingTile& tile = data_->ringTile(core);
-  Padded grid[tile_grid::kCells];
-  const Padded anchor = data_->ringGrid(core, steps, grid);
+  static_assert(sizeof out.grid_ == sizeof(Padded) * tile_grid::kCells);
+  const bool chained = core.steps > 0 && out.core.tile == core.tile && out.core.steps == core.steps;
+  Padded* grid = out.grid_;
+  const Padded anchor = data_->nextGrid(core, chained, grid);
   for (int quarter = 0; quarter < 3; ++quarter) {
     out.pieces[quarter] = {core.tile, static_cast<std::int16_t>(steps),
                            static_cast<std::int16_t>(quarter)};

@@ -45,12 +45,14 @@ struct SurfacePiece {
 /// patches and a core of half its size, as often as the search asks; nothing is kept of those.
 ///
 /// Refers to the surface, which must live on and keep its pose. All members may be called from many
-/// threads at once. Memory: 60 bytes a tile, and 4 kMostSteps bytes an extraordinary vertex.
+/// threads at once. Memory: 60 bytes a tile, and 4 kMostSteps bytes an extraordinary
+/// vertex, 64 kMostSteps for each of its faces where these are more than kFewFaces.
 class SurfacePatches {
  public:
   /// After so many steps, and with so small a core that positions in it are kPositionError from
   /// the vertex, it need not be split any more.
   static constexpr int kMostSteps = 72;
+  static constexpr int kFewFaces = 16;
 
   explicit SurfacePatches(const LimitSurface& surface, int threads = 0);
   ~SurfacePatches();
@@ -75,8 +77,13 @@ class SurfacePatches {
     SurfacePiece pieces[3];  ///< the same
     SurfacePiece core;       ///< the rest
     Box core_box;            ///< around the rest
+
+   private:
+    friend class SurfacePatches;
+    BezierPatch::Point grid_[25];  ///< the control points that the rest is split from
   };
-  /// Cost: O(1) for the first few steps, then O(valence).
+  /// Cost: O(1) for the first few steps, then O(valence) for valences to kFewFaces; with more faces
+  /// O(1) where `out` holds the split that `core` came from.
   void split(const SurfacePiece& core, SplitCore& out) const;
 
   /// A box around the surface on a tile's whole core (steps = 0).
