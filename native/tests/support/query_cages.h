@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "support/random.h"
+#include "support/strange_meshes.h"
+
+namespace limitsurf::test {
+
+/// Small cages with everything that makes a surface hard to search: creases of all kinds, darts,
+/// corners, boundaries, extraordinary vertices of valence 2 to 100, polygons, pinned sectors, holes
+/// and refused faces, sheets that meet, the bilinear scheme, planes.
+NamedCages queryCages();
+
+/// Those of them without boundaries.
+NamedCages closedCages();
+
+/// Cages that are no surface at all, or hardly: points, lines, faces without area.
+NamedCages degenerateCages();
+
+/// `count` locations on faces that have a surface: anywhere, on sides, at corners and within 2^-5
+/// to 2^-40 of these.
+std::vector<Location> searchedLocations(const LimitSurface& surface, int count, Random& random);
+
+/// All coordinates times `factor`, plus `offset`.
+Cage placed(Cage cage, double factor, const Vector3& offset = Vector3::Zero());
+
+}  // namespace limitsurf::test
