@@ -14,7 +14,7 @@ import bpy
 
 from .. import cage, native
 from ..errors import RefusalError
-from ..job import Job
+from ..job import Job, Progress
 from . import properties, region
 from .density import DensityChoice
 from .mask import MaskChoice
@@ -24,106 +24,113 @@ PAUSE = 0.2  # seconds until something is looked at that was asked for, or waite
 
 
 @dataclass(frozen=True)
-class _Asked:
+class Question:
+    """What has to be read from Blender to know how many there will be."""
+
     surface: str  # the object's name
     density: DensityChoice
     mask: MaskChoice
 
+    def read(self) -> region.Region:
+        ob = bpy.data.objects.get(self.surface)
+        if ob is None:
+            raise RefusalError(f"{self.surface} is not there any more")
+        return region.read(ob, bpy.context.evaluated_depsgraph_get(), self.density, self.mask)
+
 
 class LiveCount:
-    """Of one region at a time: the last that was asked for."""
+    """The answer to the question that was asked last, and again when things have changed."""
 
     def __init__(self) -> None:
-        self._asked: _Asked | None = None
-        self._region: region.Region | None = None
-        self._trouble = ""
-        self._job: Job | None = None
-        self._is_stale = False
+        self._look_later = self._look  # one object, by which Blender knows it again
+        self.forget()
 
-    def text(self, asked: _Asked, spread: Spread, noun: str) -> str:
-        if asked != self._asked:
+    def text(self, question: Question, spread: Spread, noun: str) -> str:
+        """How many, or why there is no telling."""
+        if question != self._question:
             self.forget()
-            self._asked = asked
+            self._question = question
+        if self._is_stale and not bpy.app.timers.is_registered(self._look_later):
+            bpy.app.timers.register(self._look_later, first_interval=PAUSE)
         if self._trouble:
-            return ""
-        if self._region is None or self._is_stale:
-            self._ask()
+            return self._trouble
         if self._region is None:
-            return "..."
+            return "Counting"
         expected = spread.expected(self._region)
-        about = "" if expected.is_exact else "about "
+        about = "" if expected.is_exact else "About "
         return f"{about}{expected.count:,} {noun}"
 
-    def forget(self) -> None:
-        if self._job:
-            self._job.cancel()
-        self._asked = self._region = self._job = None
-        self._trouble, self._is_stale = "", False
-
     def notice(self, changed: set[str]) -> None:
-        """These have changed."""
-        if self._asked and (self._asked.surface in changed or self._asked.density.image in changed):
-            self._is_stale, self._trouble = True, ""
+        """Things of these names have changed."""
+        question = self._question
+        if question and {question.surface, question.density.image} & changed:
+            self._is_stale = True
 
-    def look(self) -> float | None:
-        """What a timer calls: seconds until the next call, or None."""
-        if self._asked is None:
+    def forget(self) -> None:
+        self._question: Question | None = None
+        self._region: region.Region | None = None
+        self._job: Job | None = None
+        self._trouble = ""
+        self._is_stale = True
+
+    def _look(self) -> float | None:
+        """What a timer calls: gives the seconds until the next call, or None."""
+        if self._question is None:
             return None
-        if self._job is None:
-            try:
-                self._read()
-            except (RefusalError, *native.errors) as error:
-                self._trouble = str(error)
-                _redraw()
-                return None
-        if not self._job.is_done:
-            return PAUSE
-        self._region = self._job.result()
+        try:
+            if self._job is None:
+                self._is_stale = False
+                self._job = _add_up(self._question.read())
+            if not self._job.is_done:
+                return PAUSE
+            self._region, self._trouble = self._job.result(), ""
+        except (RefusalError, *native.errors) as error:
+            self._trouble = str(error)
         self._job = None
         _redraw()
         return None
 
-    def _ask(self) -> None:
-        if self._job is None and not bpy.app.timers.is_registered(self.look):
-            bpy.app.timers.register(self.look, first_interval=PAUSE)
 
-    def _read(self) -> None:
-        asked, self._is_stale = self._asked, False
-        ob = bpy.data.objects.get(asked.surface)
-        if ob is None:
-            raise RefusalError(f"{asked.surface} is not there any more")
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        found = region.read(ob, depsgraph, asked.density, asked.mask)
+def _add_up(found: region.Region) -> Job:
+    def work(_progress: Progress) -> region.Region:
+        found.sums  # noqa: B018 - asked for here, kept there
+        return found
 
-        def add_up(_progress: object) -> region.Region:
-            found.sums  # noqa: B018 - kept there
-            return found
-
-        self._job = Job(add_up)
-        self._job.start()
+    job = Job(work)
+    job.start()
+    return job
 
 
-_live_count = LiveCount()
+_counts: dict[str, LiveCount] = {}
 
 
-def text(ob: bpy.types.Object, settings: bpy.types.OperatorProperties, noun: str) -> str:
-    """Nothing where there is no telling."""
-    asked = _Asked(ob.name, properties.density_choice(settings), properties.mask_choice(settings))
+def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, noun: str) -> str:
+    """For the panel about things of that name."""
+    if context.screen and context.screen.is_animation_playing:
+        return "Not counted during playback"
+    question = Question(
+        context.active_object.name,
+        properties.density_choice(settings),
+        properties.mask_choice(settings),
+    )
     try:
-        return _live_count.text(asked, properties.spread(settings), noun)
-    except RefusalError:
-        return ""
+        count = _counts.setdefault(noun, LiveCount())
+        return count.text(question, properties.spread(settings), noun)
+    except RefusalError as error:
+        return str(error)
 
 
 @bpy.app.handlers.persistent
 def _notice(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     if not cage.is_busy():
-        _live_count.notice({update.id.name for update in depsgraph.updates})
+        changed = {update.id.name for update in depsgraph.updates}
+        for count in _counts.values():
+            count.notice(changed)
 
 
 @bpy.app.handlers.persistent
 def _forget(*_arguments: object) -> None:
-    _live_count.forget()
+    _counts.clear()
 
 
 def _redraw() -> None:
@@ -147,6 +154,6 @@ def attach_handlers() -> None:
 
 
 def detach_handlers() -> None:
-    _live_count.forget()
+    _counts.clear()
     for handlers, handler in _HANDLERS:
         handlers.remove(handler)

@@ -27,15 +27,12 @@ class _DistributionPanel:
             native.available() and ob and ob.type == "MESH" and context.mode == "OBJECT"
         ) or False
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
-        settings = context.window_manager.operator_properties_last(self.operator)
-        self.layout.label(text=live_count.text(context.active_object, settings, self.noun))
-
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         settings = context.window_manager.operator_properties_last(self.operator)
         properties.draw(layout, settings, context)
+        layout.label(text=live_count.text(context, settings, self.noun), icon="INFO")
         layout.operator(self.operator)
 
 

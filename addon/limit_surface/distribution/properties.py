@@ -229,14 +229,17 @@ class DistributionProperties:
 
 def spread(properties: bpy.types.OperatorProperties) -> Spread:
     """RefusalError where nobody could know what is meant."""
-    if properties.distribution != "JITTERED" and not properties.is_property_set("amount"):
-        given = [n for n in ("count", "density", "distance") if properties.is_property_set(n)]
-        if len(given) > 1:
-            raise RefusalError(f"{' and '.join(given)} are given: say by amount which one counts")
-        if given:
-            properties.amount = given[0].upper()
-    names = ("distribution", "amount", "per_side", "count", "density", "distance", "seed")
-    return Spread(**{name: getattr(properties, name) for name in names})
+    names = ("distribution", "per_side", "count", "density", "distance", "seed")
+    return Spread(amount=_amount(properties), **{name: getattr(properties, name) for name in names})
+
+
+def _amount(properties: bpy.types.OperatorProperties) -> str:
+    if properties.distribution == "JITTERED" or properties.is_property_set("amount"):
+        return properties.amount
+    given = [n for n in ("count", "density", "distance") if properties.is_property_set(n)]
+    if len(given) > 1:
+        raise RefusalError(f"{' and '.join(given)} are given: say by amount which one counts")
+    return given[0].upper() if given else properties.amount
 
 
 def density_choice(properties: bpy.types.OperatorProperties) -> DensityChoice:

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""In the tab: the next run's settings, and how many it will make."""
+
+import re
+import time
+from types import SimpleNamespace
+from unittest.mock import MagicMock
+
+import bpy
+import pytest
+import scenes
+from limit_surface import ids
+from limit_surface.distribution import live_count
+from scenes import add_hair, add_points, add_subsurf
+
+
+@pytest.fixture(autouse=True)
+def _forget():
+    live_count._forget()
+
+
+def settings_of(operator, **chosen):
+    settings = bpy.context.window_manager.operator_properties_last(operator)
+    names = [prop.identifier for prop in settings.bl_rna.properties]
+    for name in names:
+        if name != "rna_type":
+            settings.property_unset(name)
+    for name, value in chosen.items():
+        setattr(settings, name, value)
+    return settings
+
+
+def drawn(panel):
+    layout = MagicMock()
+    getattr(bpy.types, panel).draw(
+        SimpleNamespace(
+            layout=layout,
+            operator=getattr(bpy.types, panel).operator,
+            noun=getattr(bpy.types, panel).noun,
+        ),
+        bpy.context,
+    )
+    return layout
+
+
+def shown_count(panel):
+    return drawn(panel).label.call_args.kwargs["text"]
+
+
+def answered(panel):
+    """What is shown when Blender's timers have run."""
+    said = shown_count(panel)
+    for count in live_count._counts.values():
+        if not bpy.app.timers.is_registered(count._look_later):
+            continue
+        bpy.app.timers.unregister(count._look_later)
+        while count._look() is not None:
+            time.sleep(0.01)
+        said = shown_count(panel)
+    return said
+
+
+SPREADS = [
+    {"per_side": 7},
+    {"distribution": "UNIFORM", "amount": "COUNT", "count": 1234},
+    {"distribution": "BLUE_NOISE", "amount": "COUNT", "count": 321},
+    {"distribution": "UNIFORM", "amount": "DENSITY", "density": 123.4},
+    {"distribution": "BLUE_NOISE", "amount": "DENSITY", "density": 70.0},
+    {"distribution": "BLUE_NOISE", "amount": "DISTANCE", "distance": 0.07},
+    {"per_side": 9, "faces": "SELECTED"},
+    {"per_side": 9, "density_source": "VERTEX_GROUP", "vertex_group": "Some"},
+    {
+        "distribution": "BLUE_NOISE",
+        "amount": "DISTANCE",
+        "distance": 0.05,
+        "density_source": "VERTEX_GROUP",
+        "vertex_group": "Some",
+        "faces": "SELECTED",
+    },
+]
+
+
+@pytest.mark.parametrize("spread", SPREADS)
+def test_so_many_are_made(spread):
+    ob = scenes.grid_with_holes()
+    ob.scale = (0.7, 1.2, 1)
+    ob.vertex_groups.new(name="Some").add(list(range(14)), 0.8, "REPLACE")
+    ob.data.polygons.foreach_set("select", [i % 2 == 0 for i in range(len(ob.data.polygons))])
+    add_subsurf(ob)
+    settings_of(ids.POINTS_ADD, **spread)
+    said = answered(ids.POINTS_PANEL)
+    count = int(re.search(r"([\d,]+) points$", said)[1].replace(",", ""))
+    made = len(add_points(ob, **spread).data.vertices)
+    if said.startswith("About"):
+        assert made == pytest.approx(count, rel=0.1)
+        assert "DISTANCE" in spread.values() or "density_source" in spread
+    else:
+        assert made == count
+
+
+def test_settings_are_those_of_the_next_run():
+    scenes.cross()
+    settings = settings_of(ids.HAIR_ADD, per_side=3)
+    offered = [call.args for call in drawn(ids.HAIR_PANEL).prop.call_args_list]
+    assert (settings, "per_side") in offered
+    assert answered(ids.HAIR_PANEL) == "45 strands"
+    assert answered(ids.POINTS_PANEL) != "45 strands"
+
+
+def test_counting_touches_nothing():
+    ob = scenes.cross()
+    add_subsurf(ob)
+    settings_of(ids.HAIR_ADD)
+    before = scenes.file_contents()
+    assert shown_count(ids.HAIR_PANEL) == "Counting"
+    assert answered(ids.HAIR_PANEL) == "2,000 strands"
+    assert scenes.file_contents() == before
+
+
+def test_changes_are_noticed():
+    ob = scenes.cross()
+    settings_of(ids.HAIR_ADD, distribution="UNIFORM", amount="DENSITY", density=100.0)
+    first = answered(ids.HAIR_PANEL)
+    assert answered(ids.HAIR_PANEL) == first
+    ob.scale = (2, 2, 2)
+    bpy.context.view_layer.update()
+    assert answered(ids.HAIR_PANEL) != first
+    settings_of(ids.HAIR_ADD, per_side=2, faces="SELECTED")
+    ob.data.polygons.foreach_set("select", [True, True, False, False, False])
+    assert answered(ids.HAIR_PANEL) == "8 strands"
+
+
+def test_both_panels_at_once():
+    scenes.cross()
+    settings_of(ids.HAIR_ADD, per_side=2)
+    settings_of(ids.POINTS_ADD, per_side=3)
+    for _ in range(2):
+        assert answered(ids.HAIR_PANEL) == "20 strands"
+        assert answered(ids.POINTS_PANEL) == "45 points"
+    assert shown_count(ids.HAIR_PANEL) == "20 strands"
+
+
+def test_why_there_is_no_telling():
+    ob = scenes.cross()
+    settings_of(ids.HAIR_ADD, density_source="VERTEX_GROUP", vertex_group="Nix")
+    assert answered(ids.HAIR_PANEL) == "Cross has no vertex group 'Nix'"
+    ob.vertex_groups.new(name="Nix").add([0, 1], 1.0, "REPLACE")
+    ob.update_tag()
+    bpy.context.view_layer.update()
+    assert answered(ids.HAIR_PANEL).startswith("About ")
+
+
+def test_no_panel_without_a_mesh():
+    for panel in (ids.HAIR_PANEL, ids.POINTS_PANEL):
+        assert not getattr(bpy.types, panel).poll(bpy.context)
+        ob = scenes.cross()
+        assert getattr(bpy.types, panel).poll(bpy.context)
+        bpy.data.objects.remove(ob)
+
+
+def test_the_redo_panel_finds_the_surface_of_what_was_made():
+    """Right after, the hair is active; vertex groups are still the mesh's."""
+    ob = scenes.cross()
+    ob.vertex_groups.new(name="Some").add([0, 1], 1.0, "REPLACE")
+    hair = add_hair(ob, density_source="VERTEX_GROUP", vertex_group="Some")
+    assert bpy.context.active_object == hair
+    properties = live_count.properties
+    found = properties.surface_object(SimpleNamespace(surface="Cross"), bpy.context)
+    assert found == ob
