@@ -62,6 +62,19 @@ class AreaForm {
     return std::sqrt(squared) * (1 + 1e-12);  // the form's own rounding
   }
 
+  /// Bound on its derivative along s or t.
+  double derivativeBound(bool along_t) const {
+    const int step = along_t ? 6 : 1, across = along_t ? 1 : 6;
+    double bound = 0;
+    for (int line = 0; line < 6; ++line) {
+      for (int i = 0; i < 5; ++i) {
+        const Vector3* p = points_ + across * line + step * i;
+        bound = std::max(bound, length(Vector3(p[step] - p[0])));
+      }
+    }
+    return 5 * bound;
+  }
+
   /// Its lower (0) or upper (1) half along s or t.
   AreaForm half(bool along_t, int which) const {
     AreaForm result = *this;

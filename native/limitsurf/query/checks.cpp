@@ -8,6 +8,9 @@
 namespace limitsurf {
 namespace {
 
+/// Beyond, squared distances overflow.
+constexpr double kFarthest = 1e150;
+
 [[noreturn]] void refuse(const char* name, Eigen::Index row, const Points& rows,
                          const char* reason) {
   std::ostringstream message;
@@ -31,12 +34,17 @@ void checkFinite(const Points& rows, const char* name) {
     if (!rows.row(row).allFinite()) {
       refuse(name, row, rows, "is not finite");
     }
+    if (rows.row(row).cwiseAbs().maxCoeff() > kFarthest) {
+      refuse(name, row, rows, "is too far away: coordinates may go up to 1e150");
+    }
   }
 }
 
 void checkDirections(const Points& rows) {
-  checkFinite(rows, "direction");
   for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    if (!rows.row(row).allFinite()) {
+      refuse("direction", row, rows, "is not finite");
+    }
     if ((rows.row(row).array() == 0).all()) {
       refuse("direction", row, rows, "has no length");
     }
@@ -54,6 +62,13 @@ void checkDistance(double max_distance) {
   if (!(max_distance >= 0)) {
     throw std::invalid_argument("max_distance is " + std::to_string(max_distance) +
                                 "; it must be 0 or more");
+  }
+}
+
+void checkAngle(double max_angle) {
+  if (!(max_angle >= 0 && max_angle <= 3.1415926535897936)) {
+    throw std::invalid_argument("max_angle is " + std::to_string(max_angle) +
+                                "; it must be between 0 and pi");
   }
 }
 

@@ -10,12 +10,14 @@ constexpr std::size_t kRowsPerTask = 512;
 
 /// Throw std::invalid_argument that quotes what is wrong and in which row.
 void checkThreads(int threads);
-/// `name`: of one row, as in "point".
+/// Finite, and not so far away that squares overflow. `name`: of one row, as in "point".
 void checkFinite(const Points& rows, const char* name);
 void checkDirections(const Points& rows);
 void checkRows(const Points& rows, Eigen::Index expected, const char* name);
 /// Not NaN and not negative.
 void checkDistance(double max_distance);
+/// Between 0 and pi.
+void checkAngle(double max_angle);
 
 /// Position and normal at the locations, NaN where the face is -1; distances are left to the
 /// caller.

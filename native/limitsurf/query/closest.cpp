@@ -36,8 +36,8 @@ class ClosestSearch {
     facing_ = facing;
     best_ = {};
     best_.tolerance = data_.tolerance;
-    // A point at max_distance itself counts.
-    best_.distance = max_distance * (1 + 1e-15) + data_.tolerance;
+    // Points at max_distance itself count, whatever rounding makes of it.
+    best_.distance = max_distance * (1 + 1e-15) + 2 * data_.tolerance;
     if (!data_.tree->empty()) {
       descend(point - data_.middle);
     }
@@ -91,7 +91,7 @@ class ClosestSearch {
   void visitCore(SurfacePiece core) {
     const Vector3 vertex = data_.patches.coreVertex(core);
     if (!facing_) {
-      best_.offer((vertex - point_).norm(), data_.patches.rectangle(core).at(0, 0));
+      best_.offer(vertex - point_, data_.patches.rectangle(core).at(0, 0));
     }
     SurfacePatches::SplitCore split;
     while (true) {
@@ -117,7 +117,7 @@ class ClosestSearch {
     if (facing_ && !facing_->accepts(at)) {
       return;
     }
-    best_.offer((vertex - point_).norm(), at);
+    best_.offer(vertex - point_, at);
   }
 
   const SearchTree& data_;
@@ -139,10 +139,7 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
     checkRows(options.facing, points.rows(), "facing");
     checkDirections(options.facing);
   }
-  if (!(options.max_angle >= 0 && options.max_angle <= 3.1415926535897936)) {
-    throw std::invalid_argument("max_angle is " + std::to_string(options.max_angle) +
-                                "; it must be between 0 and pi");
-  }
+  checkAngle(options.max_angle);
   // Half a turn accepts all, but for rounding.
   const double least_cosine =
       options.max_angle >= 3.1415926535897 ? -2. : std::cos(options.max_angle);

@@ -34,7 +34,7 @@ class PatchSearch {
       high = high.max(relative_.points[i]);
     }
     const BezierPatch::Point beyond = low.max(-high).max(0.);
-    if (!isBetter(beyond.square().sum())) {
+    if (!isBetter(beyond.square().sum()) || isBehindFoot() || facesAway()) {
       return;
     }
     const SquaredDistance f(relative_.points);
@@ -56,6 +56,57 @@ class PatchSearch {
 
   bool isBetter(double squared_distance) const { return squared_distance < best_.enough(); }
 
+  /// Whether the whole patch lies beyond the plane through the closest point so far, at right
+  /// angles to the way there: the tightest bound on flat patches, and on those of no area.
+  bool isBehindFoot() const {
+    const double enough = best_.distance - best_.tolerance;
+    const Vector3& n = best_.direction;
+    for (const BezierPatch::Point& q : relative_.points) {
+      if (n[0] * q[0] + n[1] * q[1] + n[2] * q[2] < enough) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Whether no normal counts: where all products of tangents look away, sums of them do.
+  bool facesAway() const {
+    if (!facing_ || !(facing_->least_cosine > 0)) {
+      return false;
+    }
+    bool any = false;
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        const BezierPatch::Point* p = patch_.points;
+        const Vector3 ds = (p[4 * j + i + 1] - p[4 * j + i]).head<3>();
+        const Vector3 across = facing_->direction.cross(ds);
+        for (int x = 0; x < 4; ++x) {
+          for (int y = 0; y < 3; ++y) {
+            const BezierPatch::Point dt = p[4 * (y + 1) + x] - p[4 * y + x];
+            const double towards = across[0] * dt[0] + across[1] * dt[1] + across[2] * dt[2];
+            if (towards > 0) {
+              return false;
+            }
+            any |= towards < 0 || (ds != Vector3::Zero() && (dt != 0).any());
+          }
+        }
+      }
+    }
+    return any;
+  }
+
+  /// Whether the distance falls towards sides of the cell beyond which the sheet goes on: then no
+  /// foot is in it.
+  bool fallsOutwards(const Cell& cell, const SquaredDistance::Shape& shape) const {
+    const auto ends = [&](unsigned side, bool at_border) {
+      return at_border && (patch_.borders & side) != 0;
+    };
+    return (shape.s_strictly && !(shape.s_side < 0 ? ends(kSideS0, cell.s == 0)
+                                                   : ends(kSideS1, cell.s + cell.size == 1))) ||
+           (shape.t_strictly && !(shape.t_side < 0 ? ends(kSideT0, cell.t == 0)
+                                                   : ends(kSideT1, cell.t + cell.size == 1)));
+  }
+
   void visit(const SquaredDistance& f, const Cell& cell) {
     if (!facing_) {
       for (int corner = 0; corner < 4; ++corner) {
@@ -68,6 +119,9 @@ class PatchSearch {
     }
     const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., f.least())));
     const SquaredDistance::Shape shape = f.shape(reach * best_.tolerance);
+    if (facing_ && fallsOutwards(cell, shape)) {
+      return;
+    }
     double s, t;
     f.guess(s, t);
     s = cell.s + sideOr(shape.s_side, s) * cell.size;
@@ -90,7 +144,7 @@ class PatchSearch {
               [&](int a, int b) { return least[a] != least[b] ? least[a] < least[b] : a < b; });
     const double half = cell.size / 2;
     for (const int q : order) {
-      if (isBetter(least[q])) {
+      if (isBetter(least[q]) && !isBehindFoot()) {
         visit(quarters[q],
               {cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half, cell.depth + 1});
       }
@@ -102,7 +156,7 @@ class PatchSearch {
   void offer(double s, double t) {
     Values at;
     relative_.evaluate<0>(s, t, at);
-    best_.offer(std::sqrt(dot(at.value, at.value)), patch_.on.at(s, t));
+    best_.offer(at.value.head<3>().matrix(), patch_.on.at(s, t));
   }
 
   /// Newton's iteration within the cell, by an active set of its sides. Whether it arrived at a
@@ -140,13 +194,18 @@ class PatchSearch {
           (hss > htt ? ds : dt) = hss > htt ? -gs / hss : -gt / htt;
         }
       }
-      // A side on which the iteration stands, and out of which the step leads, stays active.
-      if (!free_s || (free_t && leadsOut(s, ds, cell.s, s1))) {
-        ds = 0;
-        dt = htt > 0 ? -gt / htt : 0;
-      } else if (!free_t || leadsOut(t, dt, cell.t, t1)) {
-        dt = 0;
-        ds = hss > 0 ? -gs / hss : 0;
+      // A side on which the iteration stands, and out of which the step leads, stays active for
+      // this step: the other parameter moves, or where it has arrived, this one inwards.
+      if (free_s && free_t) {
+        if (leadsOut(s, ds, cell.s, s1)) {
+          along(gs, gt, hss, htt, ds, dt);
+        } else if (leadsOut(t, dt, cell.t, t1)) {
+          along(gt, gs, htt, hss, dt, ds);
+        }
+      } else if (free_s) {
+        along(gt, gs, htt, hss, dt, ds);
+      } else {
+        along(gs, gt, hss, htt, ds, dt);
       }
       // A step that leads out of the cell is cut off where it leaves; the side then becomes active.
       double part = 1;
@@ -178,12 +237,34 @@ class PatchSearch {
           at = next;
         }
       }
-      if (last || !lower) {
+      if (!lower) {
         return last;
+      }
+      if (last && !fallsFromSide(cell, s, t, at)) {
+        return true;
       }
     }
     return false;
   }
+
+  /// A step for the second parameter alone; where it has arrived, one for the first.
+  static void along(double g1, double g2, double h1, double h2, double& d1, double& d2) {
+    d1 = 0;
+    d2 = h2 > 0 ? -g2 / h2 : 0;
+    if (std::abs(d2) < kArrived) {
+      d2 = 0;
+      d1 = h1 > 0 ? -g1 / h1 : 0;
+    }
+  }
+
+  /// Whether on a side of the cell the distance falls towards its inside.
+  static bool fallsFromSide(const Cell& cell, double s, double t, const Values& at) {
+    const double gs = dot(at.value, at.ds), gt = dot(at.value, at.dt);
+    return (s == cell.s && gs < 0) || (s == cell.s + cell.size && gs > 0) ||
+           (t == cell.t && gt < 0) || (t == cell.t + cell.size && gt > 0);
+  }
+
+  static constexpr double kArrived = 1e-15;
 
   static constexpr int kMostHalvings = 30;
   static constexpr double kLastStep = 1e-7;

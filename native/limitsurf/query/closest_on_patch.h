@@ -14,6 +14,7 @@ namespace limitsurf {
 struct ClosestSoFar {
   double distance = std::numeric_limits<double>::infinity();
   Location at;
+  Vector3 direction = Vector3::Zero();  ///< of unit length, from the searching point to it
 
   /// A tenth of kSearchError; points that are nearer by less than that are not looked for.
   double tolerance = 0;
@@ -23,10 +24,13 @@ struct ClosestSoFar {
     const double least = distance - tolerance;
     return least > 0 ? least * least : 0;
   }
-  void offer(double found, const Location& where) {
+  /// `offset`: from the searching point to the one found at `where`.
+  void offer(const Vector3& offset, const Location& where) {
+    const double found = offset.norm();
     if (found < distance) {
       distance = found;
       at = where;
+      direction = found > 0 ? Vector3(offset / found) : Vector3::Zero();
     }
   }
 };

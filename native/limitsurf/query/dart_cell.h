@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "limitsurf/query/area_form.h"
 #include "limitsurf/random_bits.h"
@@ -107,6 +108,10 @@ class BoundedPatch {
   }
   /// Whether ds x dt is no more than rounding errors.
   bool vanishes(double area) const { return !(area > 1e-12 * ds_ * dt_); }
+  /// On all of a cell.
+  bool vanishes(const CellExtent& extent) const {
+    return vanishes(length(extent.normal) + extent.normal_reach);
+  }
 
   /// By the derivatives in its middle, and bounds on how far they change.
   CellExtent extent(const DartCell& cell) const {
@@ -123,13 +128,34 @@ class BoundedPatch {
         std::max(length(BezierPatch::Point(s + t)), length(BezierPatch::Point(s - t)));
     result.reach = corner + a * a / 2 * dss_ + a * b * dst_ + b * b / 2 * dtt_;
     result.normal_reach = a * (dss_ * dt_ + ds_ * dst_) + b * (dst_ * dt_ + ds_ * dtt_);
+    if (result.normal_reach > kLoose * length(result.normal)) {
+      const Slopes& slopes = normalSlopes();
+      result.normal_reach = a * slopes.along_s + b * slopes.along_t;
+    }
     return result;
   }
 
  private:
   static void raise(double& bound, double value) { bound = std::max(bound, value); }
 
+  /// Bounds on the derivatives of ds x dt.
+  struct Slopes {
+    double along_s, along_t;
+  };
+  /// Products of bounds are quicker than ds x dt's own form: they do where they say that it changes
+  /// by no more than this part.
+  static constexpr double kLoose = 0.25;
+
+  const Slopes& normalSlopes() const {
+    if (!slopes_) {
+      const AreaForm form(patch_);
+      slopes_ = Slopes{form.derivativeBound(false), form.derivativeBound(true)};
+    }
+    return *slopes_;
+  }
+
   BezierPatch patch_;
+  mutable std::optional<Slopes> slopes_;
   double ds_ = 0, dt_ = 0, dss_ = 0, dst_ = 0, dtt_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <cstdio>
 #include <optional>
 
 #include "limitsurf/parallel.h"
@@ -65,7 +66,10 @@ class DartThrowing::Thrower {
     dart.at = patch.patch().on.at(s, t);
     const double area = length(dart.normal), weight = all_.density_.at(dart.at);
     if (patch.vanishes(area) || !(weight > 0)) {
-      split(cell, patch.extent(cell), smallest, out.parts);
+      const CellExtent extent = patch.extent(cell);
+      if (!patch.vanishes(extent)) {
+        split(cell, extent, smallest, out.parts);
+      }
       return;
     }
     dart.normal /= area;
@@ -276,6 +280,7 @@ void DartThrowing::run(const std::function<void(std::size_t darts)>& report) {
     std::vector<Proposal> proposals;
     std::vector<DartCell> parts;
     throwDarts(report, proposals, parts);
+    { double r=0; int lv=0,lt=0; for (auto& c: parts) {lv=std::max(lv,int(c.s_level)); lt=std::max(lt,int(c.t_level));} std::printf("round %d cells %zu proposals %zu parts %zu darts %zu r %g lev %d %d\n", round_, cells_.size(), proposals.size(), parts.size(), darts_.size(),radius_,lv,lt); (void)r;}
     accept(proposals, parts);
     cells_.swap(parts);
   }

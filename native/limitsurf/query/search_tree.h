@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -29,14 +30,18 @@ struct SearchTree {
   double tolerance;
   std::vector<SearchLeaf> leaves;  ///< in the order of the tree
   std::unique_ptr<BoxTree> tree;
+  /// The leaves' patches, as long as all together stay below kPatchBytes; those of cores are unset.
+  std::vector<BezierPatch> kept;
 
  private:
+  static constexpr std::size_t kPatchBytes = std::size_t{64} << 20;
+
   /// A tile's pieces with boxes around them, cores split so far that they fit closely.
   void addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
 };
 
-/// The patches of leaves, of which searches near each other need the same ones again and again.
-/// One cache belongs to one thread.
+/// The patches of leaves. Where they are not kept, searches near each other need the same ones
+/// again and again. One cache belongs to one thread.
 class PatchCache {
  public:
   explicit PatchCache(const SearchTree& data) : data_(data), patches_(new BezierPatch[kSize]) {

@@ -9,6 +9,7 @@ namespace limitsurf {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-14;
 constexpr double kBinomial3[4] = {1, 3, 3, 1};
 constexpr double kInverse6[7] = {1,       1. / 6, 1. / 15, 1. / 20,  // of the binomials
                                  1. / 15, 1. / 6, 1};
@@ -83,7 +84,9 @@ SquaredDistance::Shape SquaredDistance::shape(double slack) const {
       high = std::max(high, d);
     }
   }
+  const double rounding = kRounding * f_.largest();
   shape.s_side = low >= 0 ? -1 : high <= 0 ? 1 : 0;
+  shape.s_strictly = low > rounding || high < -rounding;
   low = kInfinity;
   high = -kInfinity;
   for (int j = 0; j < 6; ++j) {
@@ -94,6 +97,7 @@ SquaredDistance::Shape SquaredDistance::shape(double slack) const {
     }
   }
   shape.t_side = low >= 0 ? -1 : high <= 0 ? 1 : 0;
+  shape.t_strictly = low > rounding || high < -rounding;
 
   if (shape.s_side != 0 && shape.t_side != 0) {
     shape.convex = true;

@@ -28,6 +28,8 @@ class SquaredDistance {
   struct Shape {
     /// It lies on the side at the low (-1) or high (1) end of s or t; 0: who knows.
     int s_side = 0, t_side = 0;
+    /// It falls towards that side everywhere, by more than rounding.
+    bool s_strictly = false, t_strictly = false;
     /// A point of the square, or of the sides named, that is the minimum to first order exceeds the
     /// true one by `slack` at most.
     bool convex = false;

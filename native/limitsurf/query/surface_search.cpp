@@ -67,6 +67,16 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
   for (const std::int32_t leaf : order) {
     leaves.push_back(unordered[leaf]);
   }
+  if (leaves.size() * sizeof(BezierPatch) <= kPatchBytes) {
+    kept.resize(leaves.size());
+    parallelFor(leaves.size(), 1024, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t leaf = begin; leaf < end; ++leaf) {
+        if (!leaves[leaf].piece.isCore()) {
+          kept[leaf] = patches.patch(leaves[leaf].piece);
+        }
+      }
+    });
+  }
 }
 
 void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const {

@@ -7,6 +7,7 @@
 
 #include "batches.h"
 #include "docstrings.h"
+#include "limitsurf/query/checks.h"
 #include "progress.h"
 #include "shared_surface.h"
 
@@ -108,6 +109,10 @@ py::object closest(const SharedSurface& shared, const py::object& points, double
   const Points all = rowsOfThree(points, "points");
   const Points directions = facingOf(facing, all);
   HitArrays arrays(all.rows(), floatType(dtype));
+  checkFinite(all, "point");
+  checkDirections(directions);
+  checkDistance(max_distance);
+  checkAngle(max_angle);
   ClosestOptions options;
   options.max_distance = max_distance;
   options.max_angle = max_angle;
@@ -122,20 +127,31 @@ py::object closest(const SharedSurface& shared, const py::object& points, double
   return arrays.object("Hits");
 }
 
+/// The rays of a call, checked as a whole, so that errors name its rows.
+struct Rays {
+  Rays(const py::object& from, const py::object& along, double max_distance)
+      : origins(rowsOfThree(from, "origins")), directions(rowsOfThree(along, "directions")) {
+    requireAsMany(directions, "directions", origins, "origins");
+    checkFinite(origins, "origin");
+    checkDirections(directions);
+    checkDistance(max_distance);
+  }
+  Points origins, directions;
+};
+
 py::object rayCast(const SharedSurface& shared, const py::object& origins,
                    const py::object& directions, double max_distance, int threads,
                    const py::object& dtype, const py::object& progress) {
   checkThreads(threads);
-  const Points from = rowsOfThree(origins, "origins");
-  const Points along = rowsOfThree(directions, "directions");
-  requireAsMany(along, "directions", from, "origins");
-  HitArrays arrays(from.rows(), floatType(dtype));
-  searchInParts(shared, from.rows(), threads, progress,
-                [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
-                  arrays.put(static_cast<std::size_t>(begin),
-                             search.rayCast(from.middleRows(begin, count),
-                                            along.middleRows(begin, count), max_distance, threads));
-                });
+  const Rays rays(origins, directions, max_distance);
+  HitArrays arrays(rays.origins.rows(), floatType(dtype));
+  searchInParts(
+      shared, rays.origins.rows(), threads, progress,
+      [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
+        arrays.put(static_cast<std::size_t>(begin),
+                   search.rayCast(rays.origins.middleRows(begin, count),
+                                  rays.directions.middleRows(begin, count), max_distance, threads));
+      });
   return arrays.object("Hits");
 }
 
@@ -144,22 +160,20 @@ py::object rayCastAll(const SharedSurface& shared, const py::object& origins,
                       const py::object& dtype, const py::object& progress) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const Points from = rowsOfThree(origins, "origins");
-  const Points along = rowsOfThree(directions, "directions");
-  requireAsMany(along, "directions", from, "origins");
+  const Rays rays(origins, directions, max_distance);
   std::vector<RayHits> parts;
   std::vector<std::int64_t> offsets{0};
-  searchInParts(
-      shared, from.rows(), threads, progress,
-      [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
-        parts.push_back(search.rayCastAll(from.middleRows(begin, count),
-                                          along.middleRows(begin, count), max_distance, threads));
-        const std::int64_t before = offsets.back();
-        const std::vector<std::int64_t>& own = parts.back().offsets;
-        for (std::size_t ray = 1; ray < own.size(); ++ray) {
-          offsets.push_back(before + own[ray]);
-        }
-      });
+  searchInParts(shared, rays.origins.rows(), threads, progress,
+                [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
+                  parts.push_back(search.rayCastAll(rays.origins.middleRows(begin, count),
+                                                    rays.directions.middleRows(begin, count),
+                                                    max_distance, threads));
+                  const std::int64_t before = offsets.back();
+                  const std::vector<std::int64_t>& own = parts.back().offsets;
+                  for (std::size_t ray = 1; ray < own.size(); ++ray) {
+                    offsets.push_back(before + own[ray]);
+                  }
+                });
   HitArrays arrays(offsets.back(), type);
   std::size_t begin = 0;
   for (const RayHits& part : parts) {

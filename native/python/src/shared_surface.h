@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
@@ -53,7 +55,10 @@ struct SharedSurface : ZeroedMemory {
   void forgetPose() {
     search.forget();
     sampler.forget();
+    ++pose_;
   }
+  /// Another number after every set_positions().
+  std::uint64_t pose() const { return pose_; }
 
   std::shared_ptr<BoundMesh> mesh;
   mutable std::shared_mutex mutex;
@@ -62,6 +67,7 @@ struct SharedSurface : ZeroedMemory {
 
  private:
   std::unique_ptr<LimitSurface> surface_;
+  std::atomic<std::uint64_t> pose_{0};
 };
 
 void bindQueries(py::class_<SharedSurface>& type);
