@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from quadric import Sheet
+from quadric import Sheet, boundary_height
 
 SNAP = "object.limit_snap"
 ON_SURFACE = 1e-6
@@ -21,6 +21,8 @@ def position(blender):
 
 
 def snap(blender):
+    """All that is there, selected by steps that can be undone."""
+    blender.key("alt+a", "a")
     blender.open_tab()
     blender.click(*blender.find_button(SNAP))
 
@@ -65,8 +67,11 @@ def test_vertices_in_edit_mode(blender, sheet):
     before = corners(blender, sheet)
     snap(blender)
     after = corners(blender, sheet)
-    assert max(abs(sheet.above(corner)) for corner in after) < ON_SURFACE
     assert np.linalg.norm(after - before, axis=1).min() > 0.1
+    _, beyond, above = after
+    assert abs(sheet.above(above)) < ON_SURFACE
+    x, y, z = sheet.local(beyond)
+    np.testing.assert_allclose((y, z), (0, boundary_height(x)), atol=ON_SURFACE)
     blender.move(*blender.call("view_centre"))
     blender.key("ctrl+z")
     np.testing.assert_array_equal(corners(blender, sheet), before)

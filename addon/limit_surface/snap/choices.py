@@ -33,11 +33,12 @@ class Outcome:
     def reasons(self) -> str:
         return ", ".join(f"{count:,} {reason}" for reason, count in self.failures.most_common())
 
-    def __str__(self) -> str:
+    def lines(self) -> tuple[str, str]:
+        """Where something was placed."""
         moved = np.concatenate(self.distances)
         return (
-            f"{len(moved):,} of {len(moved) + self.failed:,} {self.noun} snapped, "
-            f"moved by {moved.mean():.4g} on average, {moved.max():.4g} at most"
+            f"{len(moved):,} of {len(moved) + self.failed:,} {self.noun} snapped",
+            f"moved by {moved.mean():.4g} on average, {moved.max():.4g} at most",
         )
 
 

@@ -192,8 +192,8 @@ class OBJECT_OT_limit_snap(bpy.types.Operator):
             row.active = self.hair != "STRAND"
             row.prop(self, "keep_length")
         layout.prop(self, "target")
-        if self.summary:
-            layout.label(text=self.summary, icon="INFO")
+        for line in self.summary.splitlines():
+            layout.label(text=line, icon="INFO")
 
     def _run(self, context: bpy.types.Context) -> set[str]:
         aim = self._aim(context)
@@ -250,14 +250,15 @@ class OBJECT_OT_limit_snap(bpy.types.Operator):
             for outcome in outcomes
             if outcome.failed
         ]
-        done = [str(outcome) for outcome in outcomes if outcome.placed]
+        done = [outcome for outcome in outcomes if outcome.placed]
         if not done:
             raise RefusalError("; ".join(failed) or "Nothing is selected that could be snapped")
-        self.summary = "; ".join(done)
+        self.summary = "\n".join(line for outcome in done for line in outcome.lines())
         if failed:
             self.report({"WARNING"}, "; ".join(failed))
         found = surface.cage
-        notes = [f"{self.summary} (to {surface.ob.name})", str(found.rules)]
+        notes = [f"{', '.join(outcome.lines())} (to {surface.ob.name})" for outcome in done]
+        notes.append(str(found.rules))
         if found.ignored:
             notes.append(f"ignored behind {found.rules.subsurf}: {', '.join(found.ignored)}")
         notes += [note for outcome in outcomes for note in outcome.notes]
