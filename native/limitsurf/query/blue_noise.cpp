@@ -167,7 +167,7 @@ class BlueNoiseMaker {
 
   std::vector<Dart> thrown(double radius) {
     DartThrowing throwing(patches_, box_, density_, radius * (1 + 1e-12) + margin_,
-                          AreaSampler::kGap, options_.seed, threads_);
+                          AreaSampler::kGap, expected_, options_.seed, threads_);
     throwing.run([&](std::size_t darts) {
       done_ = std::max(done_, std::min(static_cast<double>(darts) / expected_, 1.));
       if (progress_) {

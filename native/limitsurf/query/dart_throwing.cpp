@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <cstdio>
 #include <optional>
+#include <stdexcept>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/query/core_descent.h"
 #include "limitsurf/query/core_tail.h"
 #include "limitsurf/query/in_blocks.h"
 
@@ -17,16 +18,11 @@ namespace {
 constexpr std::size_t kCellsPerTask = 1024, kCellsPerSlab = 64 * kCellsPerTask;
 /// Cells begin with a reach of at most so many radii.
 constexpr double kFirstReach = 1;
+/// So many cells to begin with for each dart, and some, are too many: with good parameters it is
+/// one.
+constexpr double kMostCellsPerDart = 64, kSomeCells = 1 << 24;
 /// A cell is cut one way alone if it is so many times as long as wide.
 constexpr double kOblong = 1.5;
-
-Box hull(const BezierPatch& patch) {
-  Box box;
-  for (const BezierPatch::Point& p : patch.points) {
-    box.include((patch.anchor + p).head<3>().matrix());
-  }
-  return box;
-}
 
 }  // namespace
 
@@ -166,6 +162,12 @@ class DartThrowing::Thrower {
     const CellExtent extent = patch.extent(cell);
     if (extent.reach <= kFirstReach * smallest) {
       cells.push_back(cell);
+      if (static_cast<double>(cells.size()) + static_cast<double>(all_.first_cells_) >
+          all_.most_cells_) {
+        throw std::invalid_argument(
+            "faces are sheared or stretched so strongly that blue noise of this density would "
+            "need more memory than its points are worth");
+      }
       return;
     }
     std::vector<DartCell> parts;
@@ -204,34 +206,20 @@ class DartThrowing::Thrower {
     }
   }
 
-  /// A disc that covers the three patches around a core, and the core by its place, is taken to
-  /// cover it: the normals of the patches within come ever closer to repeating themselves.
   void splitCore(const DartCell& cell, std::vector<DartCell>& parts) const {
     double smallest;
     if (cell.piece.steps >= SurfacePatches::kMostSteps ||
         !smallestRadius(all_.patches_.rectangle(cell.piece), smallest)) {
       return;
     }
-    SurfacePatches::SplitCore split;
-    all_.patches_.split(cell.piece, split);
-    Box box = split.core_box;
-    CellExtent extents[3];
-    for (int quarter = 0; quarter < 3; ++quarter) {
-      box.include(hull(split.patches[quarter]));
-      DartCell whole;
-      whole.piece = split.pieces[quarter];
-      extents[quarter] = BoundedPatch(split.patches[quarter]).extent(whole);
-    }
-    const Vector3 vertex = all_.patches_.coreVertex(cell.piece);
-    const double reach = CoreTail::farthest(vertex, box);
-    const bool covered = all_.accepted_.any(vertex, smallest, [&](int other) {
+    CoreDescent descent(all_.patches_, cell.piece, all_.gap_ * smallest);
+    const bool covered = all_.accepted_.any(descent.vertex(), smallest, [&](int other) {
       const Dart& disc = all_.darts_[other];
-      return isCloser(disc, vertex, reach, smallest) &&
-             std::all_of(extents, extents + 3,
-                         [&](const CellExtent& extent) { return extent.facesAll(disc.normal); });
+      return isCloser(disc, descent.vertex(), descent.reach(), smallest) &&
+             descent.facesAll(disc.normal);
     });
     if (!covered) {
-      beginSplit(split, smallest, parts);
+      beginSplit(descent.firstSplit(), smallest, parts);
     }
   }
 
@@ -241,7 +229,7 @@ class DartThrowing::Thrower {
 };
 
 DartThrowing::DartThrowing(const SurfacePatches& patches, const Box& box,
-                           const DensityField& density, double radius, double gap,
+                           const DensityField& density, double radius, double gap, double expected,
                            std::uint64_t seed, int threads)
     : patches_(patches),
       density_(density),
@@ -249,6 +237,7 @@ DartThrowing::DartThrowing(const SurfacePatches& patches, const Box& box,
       // Beyond the surface's own size it makes no difference.
       largest_radius_(density.isConstant() ? radius : std::max(radius, 4 * patches.diagonal())),
       gap_(gap),
+      most_cells_(kMostCellsPerDart * expected + kSomeCells),
       key_(mixed(seed)),
       threads_(threads),
       accepted_(box, radius_, largest_radius_),
@@ -258,18 +247,20 @@ double DartThrowing::radiusOf(double weight) const {
   return weight >= 1 ? radius_ : std::min(radius_ / std::sqrt(weight), largest_radius_);
 }
 
-std::vector<DartCell> DartThrowing::firstCells() const {
+std::vector<DartCell> DartThrowing::firstCells() {
   return concatenated<DartCell>(
       static_cast<std::size_t>(patches_.tileCount()), 64, threads_,
       [&](std::size_t begin, std::size_t end, std::vector<DartCell>& cells) {
         Thrower thrower(*this);
         std::vector<SurfacePiece> pieces;
         for (std::size_t tile = begin; tile < end; ++tile) {
-          pieces.clear();
           patches_.appendPieces(static_cast<int>(tile), pieces);
-          for (const SurfacePiece& piece : pieces) {
-            thrower.begin(piece, cells);
-          }
+        }
+        for (const SurfacePiece& piece : pieces) {
+          const std::size_t before = cells.size();
+          thrower.begin(piece, cells);
+          // Counted piece by piece: one alone may have too many.
+          first_cells_ += cells.size() - before;
         }
       });
 }
@@ -280,7 +271,6 @@ void DartThrowing::run(const std::function<void(std::size_t darts)>& report) {
     std::vector<Proposal> proposals;
     std::vector<DartCell> parts;
     throwDarts(report, proposals, parts);
-    { double r=0; int lv=0,lt=0; for (auto& c: parts) {lv=std::max(lv,int(c.s_level)); lt=std::max(lt,int(c.t_level));} std::printf("round %d cells %zu proposals %zu parts %zu darts %zu r %g lev %d %d\n", round_, cells_.size(), proposals.size(), parts.size(), darts_.size(),radius_,lv,lt); (void)r;}
     accept(proposals, parts);
     cells_.swap(parts);
   }

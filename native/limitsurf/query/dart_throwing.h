@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -29,9 +30,12 @@ struct Dart {
 class DartThrowing {
  public:
   /// `radius`: of the discs where the density is largest. `gap`: cells that are smaller than so
-  /// many radii are given up.
+  /// many radii are given up. `expected`: about so many darts will be accepted.
+  ///
+  /// Cells are rectangles of (u, v). Where these are sheared so strongly that there would be far
+  /// more cells than darts, run() throws std::invalid_argument.
   DartThrowing(const SurfacePatches& patches, const Box& box, const DensityField& density,
-               double radius, double gap, std::uint64_t seed, int threads);
+               double radius, double gap, double expected, std::uint64_t seed, int threads);
 
   /// Until no place is left. Tells now and then how many darts there are.
   void run(const std::function<void(std::size_t darts)>& report);
@@ -51,7 +55,7 @@ class DartThrowing {
   class Thrower;
 
   double radiusOf(double weight) const;
-  std::vector<DartCell> firstCells() const;
+  std::vector<DartCell> firstCells();
   void throwDarts(const std::function<void(std::size_t)>& report, std::vector<Proposal>& proposals,
                   std::vector<DartCell>& parts) const;
   /// Accepts the winners and lists the cells of all whose places are still open.
@@ -59,11 +63,12 @@ class DartThrowing {
 
   const SurfacePatches& patches_;
   const DensityField& density_;
-  double radius_, largest_radius_, gap_;
+  double radius_, largest_radius_, gap_, most_cells_;
   std::uint64_t key_;
   int threads_;
 
   int round_ = 0;
+  std::atomic<std::size_t> first_cells_{0};
   std::vector<DartCell> cells_;
   std::vector<Dart> darts_;
   DiscGrid accepted_, proposed_;
