@@ -185,4 +185,6 @@ def test_a_folder_of_that_name_is_not_the_module(tmp_path):
     (tmp_path / "limitsurf").mkdir()
     spoil = f"sys.path = [{str(tmp_path)!r}, *(p for p in sys.path if 'site-packages' not in p)]"
     # Blender itself comes from site-packages, and is found before they are taken away.
-    check_reason_is_shown(f"import bpy, numpy; {spoil}", "is not the native module")
+    check_reason_is_shown(
+        f"import bpy, gpu_extras.batch, numpy; {spoil}", "is not the native module"
+    )
