@@ -155,7 +155,7 @@ def test_nothing_else_is_evaluated():
         bpy.data.collections["Props"].objects.link(prop)
         bpy.context.scene.rigidbody_world.collection.objects.link(prop)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    with cage._evaluated_copy(ob, 0, depsgraph) as copy:
+    with cage.evaluated_copy(ob, 0, depsgraph) as copy:
         layer = bpy.data.scenes[ids.CAGE_SCENE].view_layers[0]
         evaluated = {i.name for i in layer.depsgraph.ids if isinstance(i, bpy.types.Object)}
         assert evaluated == {copy.name, "Camera"}

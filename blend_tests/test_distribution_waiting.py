@@ -107,13 +107,14 @@ def test_esc_leaves_nothing(name, slowly):
     before, active = scenes.file_contents(), bpy.context.active_object
     operator, context = stand_in(name), window_context()
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    job = operator._job
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
     context.workspace.status_text_set.assert_called_with(None)
     context.window_manager.event_timer_remove.assert_called_once()
     slowly.set()
-    wait_for(operator._job)
+    wait_for(job)
     with pytest.raises(CancelledError):
-        operator._job.result()
+        job.result()
     assert scenes.file_contents() == before
     assert bpy.context.active_object == active
     assert "Cancelled" in operator.report.call_args.args[1]
@@ -123,11 +124,12 @@ def test_a_new_file_while_somebody_waits(slowly):
     scenes.cross()
     operator, context = stand_in("hair"), window_context()
     operator.invoke(context, None)
+    job = operator._job
     operator.cancel(context)
     slowly.set()
-    wait_for(operator._job)
+    wait_for(job)
     with pytest.raises(CancelledError):
-        operator._job.result()
+        job.result()
 
 
 def test_the_surface_is_gone_meanwhile(slowly):

@@ -3,6 +3,8 @@
 
 import bpy
 
+from .errors import RefusalError
+
 
 def add_on_surface(
     context: bpy.types.Context, name: str, data: bpy.types.ID, surface: bpy.types.Object
@@ -18,6 +20,19 @@ def add_on_surface(
     ob.select_set(True)
     context.view_layer.objects.active = ob
     context.view_layer.update()
+    return ob
+
+
+def key(ob: bpy.types.Object) -> tuple[str, str | None]:
+    """By which `find` tells it from those of the same name in other files."""
+    return ob.name, ob.library.filepath if ob.library else None
+
+
+def find(known: tuple[str, str | None]) -> bpy.types.Object:
+    """RefusalError if it has been removed."""
+    ob = bpy.data.objects.get(known)
+    if ob is None:
+        raise RefusalError(f"{known[0]} is not there any more")
     return ob
 
 

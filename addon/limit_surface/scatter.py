@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, StringProperty
 
-from . import cage, displayed, native, roots
+from . import cage, displayed, native, objects, roots
 from .distribution import properties, region
 from .distribution.spread import Scattered, Spread
 from .errors import RefusalError
@@ -60,7 +60,7 @@ class Ground:
 class Order:
     """All that is asked for, read from Blender: the rest needs arrays alone."""
 
-    surface: str  # the object's name
+    surface: tuple[str, str | None]  # the object's key
     region: region.Region
     spread: Spread
     shown: displayed.DisplayedMesh | None
@@ -119,8 +119,7 @@ class ScatterOperator(properties.DistributionProperties):
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type == "ESC" and event.value == "PRESS":
-            self._job.cancel()
-            self._waiting.end()
+            self.cancel(context)
             self.report({"INFO"}, f"Cancelled: no {self.noun} were made")
             return {"CANCELLED"}
         if event.type in VIEW_NAVIGATION:
@@ -131,11 +130,12 @@ class ScatterOperator(properties.DistributionProperties):
         if not self._job.is_done:
             return {"RUNNING_MODAL"}
         self._waiting.end()
-        return self._guarded(self._finish, context, self._job)
+        return self._guarded(self._finish, context)
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """Another file is loaded, or Blender quits, while somebody waits."""
+        """By the user; also if another file is loaded, or Blender quits."""
         self._job.cancel()
+        self._job = None
         self._waiting.end()
 
     def maker(self, found: cage.Cage) -> Any:
@@ -189,7 +189,7 @@ class ScatterOperator(properties.DistributionProperties):
         return self._start(context, order)
 
     def _start(self, context: bpy.types.Context, order: Order) -> set[str]:
-        self.summary, self.surface = "", order.surface
+        self.summary, self.surface = "", order.surface[0]
         self.amount = order.spread.amount  # the redo panel shows it
         make = self.maker(order.region.cage)
 
@@ -199,23 +199,22 @@ class ScatterOperator(properties.DistributionProperties):
 
         job = Job(work)
         someone_waits, self._someone_waits = self._someone_waits, False
+        self._job, self._surface_key = job, order.surface
         if not (someone_waits and context.window):
             with progress_bar(context.window_manager) as show:
                 job.run(show)
-            return self._finish(context, job)
+            return self._finish(context)
         job.start()
         if job.wait(PATIENCE):
-            return self._finish(context, job)
-        self._job, self._waiting = job, Waiting(context, f"Making {order.size}")
+            return self._finish(context)
+        self._waiting = Waiting(context, f"Making {order.size}")
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def _finish(self, context: bpy.types.Context, job: Job) -> set[str]:
+    def _finish(self, context: bpy.types.Context) -> set[str]:
+        job, self._job = self._job, None  # Blender keeps operators, for the redo panel
         ground, made = job.result()
-        surface = bpy.data.objects.get(self.surface)
-        if surface is None:
-            raise RefusalError(f"{self.surface} is not there any more")
-        self.add(context, surface, made)
+        self.add(context, objects.find(self._surface_key), made)
         self._report(ground)
         return {"FINISHED"}
 
@@ -236,7 +235,7 @@ class ScatterOperator(properties.DistributionProperties):
         shown = None
         if self.target != "LIMIT":
             shown = displayed.read(ob, depsgraph, covered.cage, self.target)
-        return Order(ob.name, covered, spread, shown, size)
+        return Order(objects.key(ob), covered, spread, shown, size)
 
     def _refuse(self, reason: object) -> set[str]:
         self.report({"ERROR"}, str(reason))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from .. import cage, native
+from .. import cage, native, objects
 from ..errors import RefusalError
 from ..job import Job, Progress
 from . import properties, region
@@ -27,14 +27,12 @@ PAUSE = 0.2  # seconds until something is looked at that was asked for, or waite
 class Question:
     """What has to be read from Blender to know how many there will be."""
 
-    surface: str  # the object's name
+    surface: tuple[str, str | None]  # the object's key
     density: DensityChoice
     mask: MaskChoice
 
     def read(self) -> region.Region:
-        ob = bpy.data.objects.get(self.surface)
-        if ob is None:
-            raise RefusalError(f"{self.surface} is not there any more")
+        ob = objects.find(self.surface)
         return region.read(ob, bpy.context.evaluated_depsgraph_get(), self.density, self.mask)
 
 
@@ -63,7 +61,7 @@ class LiveCount:
     def notice(self, changed: set[str]) -> None:
         """Things of these names have changed."""
         question = self._question
-        if question and {question.surface, question.density.image} & changed:
+        if question and {question.surface[0], question.density.image} & changed:
             self._is_stale = True
 
     def forget(self) -> None:
@@ -109,7 +107,7 @@ def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, nou
     if context.screen and context.screen.is_animation_playing:
         return "Not counted during playback"
     question = Question(
-        context.active_object.name,
+        objects.key(context.active_object),
         properties.density_choice(settings),
         properties.mask_choice(settings),
     )
