@@ -31,6 +31,9 @@ def test_table_lists_the_properties_and_their_defaults():
         prop = shown[name]
         if prop.type == "BOOLEAN":
             assert said == ("on" if prop.default else "off")
+        elif prop.type == "STRING" or (prop.type == "ENUM" and prop.is_enum_flag):
+            assert said == "none"
+            assert not prop.default
         elif prop.type == "ENUM":
             assert said == prop.default
         elif prop.is_array:
