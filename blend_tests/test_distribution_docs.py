@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page about distributions: its examples run one after the other."""
+
+import re
+
+import bpy
+import numpy as np
+from limit_surface import ids
+from processes import ROOT
+from scenes import locations
+
+PAGE = (ROOT / "docs/distribution.md").read_text()
+
+
+def test_examples_run():
+    known, made = {}, []
+    for example in re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL):
+        exec(example, known)
+        made.append(bpy.context.active_object)
+    hair, points = made
+    assert len(hair.data.curves) > 500
+    assert ids.REST_ROOT in hair.data.attributes
+    assert len(points.data.vertices) == 500
+    assert not (np.unique(locations(points.data)[0]) % 2).any()
+
+
+def test_every_choice_is_named():
+    properties = bpy.ops.object.limit_hair_add.get_rna_type().properties
+    for name in ("amount", "density_source", "faces", "target"):
+        for choice in properties[name].enum_items.keys()[1:]:
+            assert f"`{choice}`" in PAGE, choice
