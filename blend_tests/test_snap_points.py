@@ -277,6 +277,26 @@ def test_lattice_points():
     np.testing.assert_array_equal(after[rest], before[rest])
 
 
+@pytest.mark.parametrize("kind", ["curve", "lattice"])
+def test_the_active_shape_key_alone_is_changed(kind):
+    choose_target(scenes.flat_grid(4))
+    if kind == "curve":
+        ob = add_curve("BEZIER", [(1, 1, 0.5), (2, 1, 0.6)])
+    else:
+        ob = add_object((2, 2, 0.3), bpy.data.lattices.new("Lattice"))
+    for name in ("Basis", "Raised"):
+        ob.shape_key_add(name=name)
+    ob.active_shape_key_index = 1
+    before = keys(ob)
+    with edit_mode(ob):
+        getattr(bpy.ops, kind).select_all(action="SELECT")
+        snap(mode="AXIS")
+    after = keys(ob)
+    np.testing.assert_array_equal(after["Basis"], before["Basis"])
+    heights = scenes.transformed(ob.matrix_world, after["Raised"])[:, 2]
+    np.testing.assert_allclose(heights, 0, atol=1e-6)
+
+
 def test_nothing_selected():
     target = choose_target(scenes.cross())
     cloud = add_cloud(target)
