@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the window tests ask Blender to do and to tell."""
 
+import sys
+import time
+
 import bpy
+import numpy as np
 from mathutils import Euler
+
+TIMES = []  # see time_moves
 
 
 def new_file() -> None:
@@ -138,6 +144,10 @@ def hair(per_side: int) -> None:
     bpy.context.active_object.name = "Hair"
 
 
+def lock_location(name: str) -> None:
+    bpy.data.objects[name].lock_location = (True, True, True)
+
+
 def loose_vertices() -> None:
     """A triangle in Edit Mode, above the sheet."""
     mesh = bpy.data.meshes.new("Triangle")
@@ -149,8 +159,13 @@ def loose_vertices() -> None:
     bpy.ops.object.mode_set(mode="EDIT")
 
 
+def remember() -> None:
+    """As any step of the user is, for what was done by a script."""
+    bpy.ops.ed.undo_push(message="Before")
+
+
 def start_drag(**properties: object) -> None:
-    bpy.ops.ed.undo_push(message="Before dragging")  # as any step by the user would
+    remember()
     area, window = view()
     with bpy.context.temp_override(area=area, region=window):
         bpy.ops.view3d.limit_snap_modal("INVOKE_DEFAULT", **properties)
@@ -193,3 +208,49 @@ def strand(name: str, curve: int) -> list[tuple[float, ...]]:
 def attribute(name: str, attribute: str, index: int) -> object:
     item = bpy.data.objects[name].data.attributes[attribute].data[index]
     return tuple(item.vector) if hasattr(item, "vector") else item.value
+
+
+def large_sheet(side: int) -> int:
+    """A wavy sheet of side x side faces that fills the view, active; the number of its faces."""
+    y, x = np.mgrid[: side + 1, : side + 1].reshape(2, -1) * (8 / side) - 4
+    first = np.arange(side)[:, None] * (side + 1) + np.arange(side)
+    faces = first.reshape(-1, 1) + [0, 1, side + 2, side + 1]
+    bpy.data.batch_remove(bpy.data.objects)
+    mesh = bpy.data.meshes.new("Sheet")
+    mesh.from_pydata(np.stack([x, y, 0.2 * np.sin(3 * x) * np.cos(2 * y)], 1), [], faces.tolist())
+    ob = bpy.data.objects.new("Sheet", mesh)
+    bpy.context.scene.collection.objects.link(ob)
+    activate(ob)
+    return len(mesh.polygons)
+
+
+def time_moves() -> None:
+    """From now on TIMES holds the seconds that the operator spends at each move of the mouse."""
+    operator = sys.modules["bl_ext.user_default.limit_surface.snap_modal.operator"]
+    cls, follow = operator.VIEW3D_OT_limit_snap_modal, operator.VIEW3D_OT_limit_snap_modal._follow
+
+    def timed(self, context, event):
+        start = time.perf_counter()
+        follow(self, context, event)
+        TIMES.append(time.perf_counter() - start)
+
+    cls._follow = timed
+
+
+def times() -> list[float]:
+    return TIMES
+
+
+def set_next(operator: str, **settings: object) -> None:
+    """What a button or menu entry will call the operator with."""
+    last = bpy.context.window_manager.operator_properties_last(operator)
+    for name, value in settings.items():
+        setattr(last, name, value)
+
+
+def vertex_count(name: str) -> int:
+    return len(bpy.data.objects[name].data.vertices)
+
+
+def last_operator() -> str:
+    return bpy.context.window_manager.operators[-1].bl_idname

@@ -8,6 +8,8 @@ from quadric import Camera, Sheet, boundary_height, height
 ON_SURFACE = 1e-6  # Blender's single precision, of coordinates up to 4
 PIXEL = 0.1  # what single precision makes of the view's inverted matrix
 
+STORED = ("limit_face", "limit_uv", "rest_root")
+
 
 @pytest.fixture
 def sheet(blender):
@@ -206,3 +208,58 @@ def test_mouse_beside_the_surface_leaves_it_where_it_was(blender, sheet, seen):
     blender.move(200, 600)
     np.testing.assert_array_equal(position(blender, "Pin"), found)
     blender.key("Escape")
+
+
+def test_vertex_goes_back(blender, sheet, seen):
+    blender.call("loose_vertices")
+    before = blender.call("vertices", "Triangle")
+    blender.call("start_drag")
+    matrix = np.array(blender.call("matrix", "Triangle"))
+    blender.click(*pixel(blender, matrix[:3, :3] @ before[1] + matrix[:3, 3]))
+    blender.move(*seen(4.1, 2.4))
+    assert blender.call("vertices", "Triangle") != before
+    blender.key("Escape")
+    assert not blender.call("running")
+    assert blender.call("vertices", "Triangle") == before
+
+
+def test_strand_goes_back(blender, sheet, seen):
+    blender.call("hair", 2)
+    before = blender.call("strand", "Hair", 57)
+    location = [blender.call("attribute", "Hair", name, 57) for name in STORED]
+    blender.call("start_drag", align="NORMAL_DU")
+    blender.click(*pixel(blender, sheet.world(np.array(before[0]))))
+    blender.move(*seen(4.1, 2.4))
+    assert blender.call("strand", "Hair", 57) != before
+    blender.press(3)
+    assert not blender.call("running")
+    assert blender.call("strand", "Hair", 57) == before
+    assert [blender.call("attribute", "Hair", name, 57) for name in STORED] == location
+
+
+def test_begun_by_the_button_and_adjusted_afterwards(blender, sheet, seen):
+    blender.call("pin")
+    blender.call("remember")
+    blender.open_tab()
+    blender.click(*blender.find_button("view3d.limit_snap_modal"))
+    blender.move(*seen(2.3, 1.4))
+    foot = position(blender, "Pin")
+    assert abs(sheet.above(foot)) < ON_SURFACE
+    blender.press()
+    fields = blender.open_redo_panel()
+    blender.move(*blender.find_field(*fields, value="0"))
+    blender.key("Return", "ctrl+a", "0", "period", "5", "Return")
+    blender.settle()
+    normal = sheet.world_normal(sheet.local(foot))
+    np.testing.assert_allclose(position(blender, "Pin"), foot + 0.5 * normal, atol=ON_SURFACE)
+
+
+def test_what_is_locked_stays(blender, sheet, seen):
+    blender.call("pin")
+    blender.call("lock_location", "Pin")
+    before = blender.call("transform", "Pin")
+    blender.call("start_drag")
+    blender.move(*seen(2.3, 1.4))
+    blender.press()
+    assert not blender.call("running")
+    assert blender.call("transform", "Pin") == before

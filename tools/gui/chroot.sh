@@ -41,24 +41,37 @@ chroot_is_ready() {
 }
 
 make_chroot() {
+  local log=$ROOT/build/window/setup.log
   mkdir -p "$CHROOT_OUT"
   chroot_is_ready && return
-  local partial=$CHROOT.partial
   say "A Debian 13 with Blender for the window tests (a minute or two, 1.3 GB)"
-  rm -rf --one-file-system "$partial" "$CHROOT"
-  install_debootstrap
-  use_proxy_of_apt
-  unshare --mount --fork --kill-child --propagation private \
-    debootstrap --variant=minbase trixie "$partial" "$(debian_mirror)" || return
-  # It can be made anew: no waiting for the disk. Nobody reads manuals in it.
-  echo force-unsafe-io >"$partial/etc/dpkg/dpkg.cfg.d/limit-surface"
-  printf 'path-exclude=/usr/share/%s/*\n' doc man locale info \
-    >>"$partial/etc/dpkg/dpkg.cfg.d/limit-surface"
-  enter "$partial" env DEBIAN_FRONTEND=noninteractive sh -c \
-    'apt-get -qq update && apt-get -qq install -y --no-install-recommends "$@" && apt-get clean' \
-    sh "${CHROOT_PACKAGES[@]}" </dev/null || return
-  chroot_stamp >"$partial/etc/limit-surface"
-  mv "$partial" "$CHROOT"
+  if ! fetch_debian "$CHROOT.partial" >"$log" 2>&1 </dev/null; then
+    tail -n 40 "$log" >&2
+    fail "The Debian for the window tests could not be fetched." "(The whole output: $log)"
+  fi
+  rm -rf --one-file-system "$CHROOT"
+  mv "$CHROOT.partial" "$CHROOT"
+}
+
+# Steps are joined, as nothing stops a function that is asked whether it succeeds.
+fetch_debian() {
+  local folder=$1
+  rm -rf --one-file-system "$folder" &&
+    install_debootstrap &&
+    use_proxy_of_apt &&
+    unshare --mount --fork --kill-child --propagation private \
+      debootstrap --variant=minbase trixie "$folder" "$(debian_mirror)" &&
+    hasten_dpkg "$folder" &&
+    enter "$folder" env DEBIAN_FRONTEND=noninteractive sh -c \
+      'apt-get -qq update && apt-get -qq install -y --no-install-recommends "$@" && apt-get clean' \
+      sh "${CHROOT_PACKAGES[@]}" &&
+    chroot_stamp >"$folder/etc/limit-surface"
+}
+
+hasten_dpkg() {
+  local settings=$1/etc/dpkg/dpkg.cfg.d/limit-surface
+  echo force-unsafe-io >"$settings" # it can be made anew: no waiting for the disk
+  printf 'path-exclude=/usr/share/%s/*\n' doc man locale info >>"$settings"
 }
 
 in_chroot() {
@@ -90,9 +103,9 @@ enter() {
 
 install_debootstrap() {
   command -v debootstrap >/dev/null && return
-  apt-get -o DPkg::Lock::Timeout=300 -qq update </dev/null || true
-  DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 \
-    -qq install -y --no-install-recommends debootstrap </dev/null
+  apt-get -o DPkg::Lock::Timeout=300 update || true
+  DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 install -y \
+    --no-install-recommends debootstrap
 }
 
 # The one that this system's own apt uses.
