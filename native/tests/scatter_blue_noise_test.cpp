@@ -281,10 +281,12 @@ TEST(BlueNoise, EndsOnDegenerateSurfaces) {
   }
   Cage line = grid(6, 6);
   line.positions.block(0, 1, 14, 1).setZero();
+  Cage flat = torus(6, 5);
+  flat.positions.col(2).setZero();
   Cage spike = grid(4, 4);
   spike.positions.row(12) << 2, 2, 100;
-  for (const auto& [name, cage] :
-       NamedCages{{"folded", folded}, {"without area in parts", line}, {"spike", spike}}) {
+  for (const auto& [name, cage] : NamedCages{
+           {"folded", folded}, {"without area in parts", line}, {"flat", flat}, {"spike", spike}}) {
     SCOPED_TRACE(name);
     const LimitSurface surface = limitSurface(cage);
     const BlueNoise noise = AreaSampler(surface).blueNoise(byCount(500));

@@ -269,7 +269,7 @@ std::vector<Location> AreaSampler::uniform(std::int64_t count, std::uint64_t see
   if (count == 0) {
     return {};
   }
-  if (!(data_->plain.total() > 0)) {
+  if (!data_->hasArea()) {
     throw std::invalid_argument("the surface has no area");
   }
   const std::size_t samples = static_cast<std::size_t>(count);

@@ -16,6 +16,8 @@ struct AreaSampler::Data {
         cells(areaCells(patches, threads)),
         plain(patches, cells, DensityField(), threads) {}
 
+  /// More than rounding errors.
+  bool hasArea() const { return plain.total() > 1e-14 * patches.diagonal() * patches.diagonal(); }
   /// Whether each Ptex face has a surface, with area or not.
   std::vector<bool> hasSurface() const;
 

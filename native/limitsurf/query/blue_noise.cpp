@@ -250,7 +250,7 @@ BlueNoise AreaSampler::blueNoise(const BlueNoiseOptions& options, int threads,
   if (count == 0) {
     return {{}, std::numeric_limits<double>::infinity()};
   }
-  if (!(data_->plain.total() > 0)) {
+  if (!data_->hasArea()) {
     throw std::invalid_argument("the surface has no area");
   }
   const std::vector<bool> has_surface = data_->hasSurface();

@@ -59,7 +59,7 @@ struct CellExtent {
   double reach;  ///< nothing is farther from the middle
   Vector3 normal;
   double normal_reach;      ///< no ds x dt is farther from this one, of the middle
-  double along_s, along_t;  ///< rough sizes
+  double along_s, along_t;  ///< how much of the reach comes from s and from t
 
   /// Whether all normals are less than 90 degrees from this one, of unit length.
   bool facesAll(const Vector3& unit) const {
@@ -122,8 +122,9 @@ class BoundedPatch {
     result.middle = (values.value + patch_.anchor).head<3>().matrix();
     result.normal = cross(values.ds, values.dt);
     const BezierPatch::Point s = a * values.ds, t = b * values.dt;
-    result.along_s = length(s);
-    result.along_t = length(t);
+    // Where ds vanishes in the middle it may be large elsewhere.
+    result.along_s = length(s) + a * a / 2 * dss_ + a * b / 2 * dst_;
+    result.along_t = length(t) + b * b / 2 * dtt_ + a * b / 2 * dst_;
     const double corner =
         std::max(length(BezierPatch::Point(s + t)), length(BezierPatch::Point(s - t)));
     result.reach = corner + a * a / 2 * dss_ + a * b * dst_ + b * b / 2 * dtt_;
