@@ -9,11 +9,12 @@
 namespace limitsurf {
 
 BoxF::BoxF() {
-  std::fill(low, low + 3, std::numeric_limits<float>::infinity());
-  std::fill(high, high + 3, -std::numeric_limits<float>::infinity());
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  low << kInfinity, kInfinity, kInfinity, 0;
+  high << -kInfinity, -kInfinity, -kInfinity, 0;
 }
 
-BoxF::BoxF(const Box& box) {
+BoxF::BoxF(const Box& box) : BoxF() {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (int i = 0; i < 3; ++i) {
     low[i] = std::nextafter(static_cast<float>(box.low[i]), -kInfinity);
@@ -22,15 +23,13 @@ BoxF::BoxF(const Box& box) {
 }
 
 void BoxF::include(const BoxF& box) {
-  for (int i = 0; i < 3; ++i) {
-    low[i] = std::min(low[i], box.low[i]);
-    high[i] = std::max(high[i], box.high[i]);
-  }
+  low = low.min(box.low);
+  high = high.max(box.high);
 }
 
 float BoxF::halfArea() const {
-  const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
-  return x < 0 ? 0 : x * y + y * z + z * x;
+  const Corner size = high - low;
+  return size[0] < 0 ? 0 : size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
 }
 
 class BoxTree::Builder {

@@ -10,7 +10,8 @@ namespace limitsurf {
 
 /// A box in single precision, rounded outwards.
 struct BoxF {
-  float low[3], high[3];
+  using Corner = Eigen::Array4f;  // padded to a register; the fourth is 0
+  Corner low, high;
 
   BoxF();  ///< empty
   explicit BoxF(const Box& box);

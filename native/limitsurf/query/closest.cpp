@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/query/checks.h"
@@ -10,16 +12,26 @@
 namespace limitsurf {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double squaredDistance(const BoxF& box, const Vector3& point) {
-  double sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double beyond = std::max({0., box.low[i] - point[i], point[i] - box.high[i]});
-    sum += beyond * beyond;
+/// A point for the boxes of the tree: in single precision, as the little box that rounding makes of
+/// it.
+struct BoxPoint {
+  explicit BoxPoint(const Vector3& point) {
+    const double margin = 2.5e-7 * (point.cwiseAbs().maxCoeff() + 1);
+    low << static_cast<float>(point[0] - margin), static_cast<float>(point[1] - margin),
+        static_cast<float>(point[2] - margin), 0;
+    high << static_cast<float>(point[0] + margin), static_cast<float>(point[1] + margin),
+        static_cast<float>(point[2] + margin), 0;
   }
-  return sum;
-}
+
+  /// No point of the box is nearer than the root of this.
+  float squaredDistance(const BoxF& box) const {
+    constexpr float kNearlyOne = 1 - 1e-6f;
+    const float squared = (box.low - high).max(low - box.high).max(0.f).square().sum();
+    return std::min(squared * kNearlyOne, std::numeric_limits<float>::max());
+  }
+
+  BoxF::Corner low, high;
+};
 
 double squaredDistance(const Box& box, const Vector3& point) {
   return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.).squaredNorm();
@@ -39,34 +51,38 @@ class ClosestSearch {
     // Points at max_distance itself count, whatever rounding makes of it.
     best_.distance = max_distance * (1 + 1e-15) + 2 * data_.tolerance;
     if (!data_.tree->empty()) {
-      descend(point - data_.middle);
+      descend(data_.inBoxes(point));
     }
     return best_.at;
   }
 
  private:
+  double enoughInBoxes() const { return best_.enough() * (data_.scale * data_.scale); }
+
+  /// `point`: in the coordinates of boxes.
   void descend(const Vector3& point) {
     struct Entry {
       std::int32_t node;
-      double squared;
+      float squared;
     };
+    const BoxPoint box_point(point);
     Entry stack[BoxTree::kMostDepth + 1];
     int height = 0;
     Entry next{0, 0};
     while (true) {
-      if (next.squared < best_.enough() || best_.distance == kInfinity) {
-        if (BoxTree::isLeaf(next.node)) {
-          visitLeaf(BoxTree::leaf(next.node), point);
-        } else {
+      if (next.squared < enoughInBoxes()) {
+        if (!BoxTree::isLeaf(next.node)) {
           const BoxTree::Node& node = data_.tree->node(next.node);
-          const double near[2] = {squaredDistance(node.boxes[0], point),
-                                  squaredDistance(node.boxes[1], point)};
+          const float near[2] = {box_point.squaredDistance(node.boxes[0]),
+                                 box_point.squaredDistance(node.boxes[1])};
           const int first = near[1] < near[0] ? 1 : 0;
-          if (near[1 - first] < kInfinity) {
-            stack[height++] = {node.children[1 - first], near[1 - first]};
-          }
+          stack[height++] = {node.children[1 - first], near[1 - first]};
           next = {node.children[first], near[first]};
           continue;
+        }
+        const std::int32_t leaf = BoxTree::leaf(next.node);
+        if (data_.leaves[leaf].box.squaredDistance(point) < enoughInBoxes()) {
+          visitLeaf(leaf);
         }
       }
       if (height == 0) {
@@ -76,11 +92,8 @@ class ClosestSearch {
     }
   }
 
-  void visitLeaf(std::int32_t leaf, const Vector3& point) {
+  void visitLeaf(std::int32_t leaf) {
     const SearchLeaf& found = data_.leaves[leaf];
-    if (!(found.box.squaredDistance(point) < best_.enough())) {
-      return;
-    }
     if (found.piece.isCore()) {
       visitCore(found.piece);
     } else {

@@ -108,15 +108,6 @@ class PatchSearch {
   }
 
   void visit(const SquaredDistance& f, const Cell& cell) {
-    if (!facing_) {
-      for (int corner = 0; corner < 4; ++corner) {
-        const double squared = f.corner(corner & 1, corner >> 1);
-        if (isBetter(squared)) {
-          // Its own rounding decides between points at hand.
-          offer(cell.s + (corner & 1) * cell.size, cell.t + (corner >> 1) * cell.size);
-        }
-      }
-    }
     const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., f.least())));
     const SquaredDistance::Shape shape = f.shape(reach * best_.tolerance);
     if (facing_ && fallsOutwards(cell, shape)) {
@@ -132,6 +123,14 @@ class PatchSearch {
         offer(s, t);
       }
       return;
+    }
+    if (!facing_) {
+      for (int corner = 0; corner < 4; ++corner) {
+        const double squared = f.corner(corner & 1, corner >> 1);
+        if (isBetter(squared)) {
+          offer(cell.s + (corner & 1) * cell.size, cell.t + (corner >> 1) * cell.size);
+        }
+      }
     }
     SquaredDistance quarters[4];
     f.quarter(quarters);

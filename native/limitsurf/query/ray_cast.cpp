@@ -65,6 +65,7 @@ class RaySearch {
     found_.nearest = start + max_distance;
     RayFrame frame(ray);
     frame.origin += data_.middle;
+    ray.origin *= data_.scale;
     descend(ray, frame);
     for (RayHit& hit : found_.hits) {
       hit.distance = std::max(0., hit.distance - start);
@@ -76,18 +77,24 @@ class RaySearch {
   }
 
  private:
+  /// The tolerance, and the part of the ray that matters, as boxes measure.
+  double margin() const { return found_.tolerance * data_.scale; }
+  double start() const { return (found_.from - found_.tolerance) * data_.scale; }
+  double end() const { return found_.nearest * data_.scale; }
+
+  /// `ray`: in the coordinates of boxes.
   void descend(const Ray& ray, const RayFrame& frame) {
     struct Entry {
       std::int32_t node;
       double from;
     };
-    const BoxRay box_ray(ray, found_.tolerance);
+    const BoxRay box_ray(ray, margin());
     Entry stack[BoxTree::kMostDepth + 1];
     int height = 0;
-    stack[height++] = {0, found_.from};
+    stack[height++] = {0, start()};
     while (height > 0) {
       const Entry next = stack[--height];
-      if (next.from > found_.nearest) {
+      if (next.from > end()) {
         continue;
       }
       if (BoxTree::isLeaf(next.node)) {
@@ -98,8 +105,8 @@ class RaySearch {
       double from[2];
       bool met[2];
       for (int side = 0; side < 2; ++side) {
-        from[side] = found_.from - found_.tolerance;
-        met[side] = box_ray.meets(node.boxes[side], from[side], found_.nearest);
+        from[side] = start();
+        met[side] = box_ray.meets(node.boxes[side], from[side], end());
       }
       const int first = met[1] && (!met[0] || from[1] < from[0]) ? 1 : 0;
       for (const int side : {1 - first, first}) {
@@ -112,8 +119,8 @@ class RaySearch {
 
   void visitLeaf(std::int32_t leaf, const Ray& ray, const RayFrame& frame) {
     const SearchLeaf& found = data_.leaves[leaf];
-    double from = found_.from - found_.tolerance;
-    if (!found.box.meets(ray, found_.tolerance, from, found_.nearest)) {
+    double from = start();
+    if (!found.box.meets(ray, margin(), from, end())) {
       return;
     }
     if (found.piece.isCore()) {
@@ -131,10 +138,8 @@ class RaySearch {
         rayOnPatch(patch, frame, found_);
       }
       core = split.core;
-      const OrientedBox box(
-          Box{split.core_box.low - data_.middle, split.core_box.high - data_.middle});
-      double from = found_.from - found_.tolerance;
-      if (!box.meets(ray, found_.tolerance, from, found_.nearest)) {
+      double from = start();
+      if (!OrientedBox(data_.inBoxes(split.core_box)).meets(ray, margin(), from, end())) {
         return;
       }
       if (data_.patches.coreRadius(core) <= found_.tolerance ||

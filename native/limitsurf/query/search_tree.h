@@ -18,7 +18,9 @@ struct SearchLeaf {
   SurfacePiece piece;
 };
 
-/// A surface's patches under a tree of boxes. All coordinates in boxes are relative to `middle`.
+/// A surface's patches under a tree of boxes. Boxes have coordinates of their own, of which single
+/// precision can hold squares: relative to `middle`, times `scale`, which makes the diagonal about
+/// 1.
 struct SearchTree {
   SearchTree(const LimitSurface& limit_surface, int threads);
 
@@ -26,8 +28,12 @@ struct SearchTree {
   SurfacePatches patches;
   Vector3 middle;
   double diagonal;
+  double scale;  ///< a power of two
   /// What a search may leave undone: a tenth of kSearchError.
   double tolerance;
+  Vector3 inBoxes(const Vector3& point) const { return scale * (point - middle); }
+  Box inBoxes(const Box& box) const { return {inBoxes(box.low), inBoxes(box.high)}; }
+
   std::vector<SearchLeaf> leaves;  ///< in the order of the tree
   std::unique_ptr<BoxTree> tree;
   /// The leaves' patches, as long as all together stay below kPatchBytes; those of cores are unset.
@@ -44,11 +50,17 @@ struct SearchTree {
 /// again and again. One cache belongs to one thread.
 class PatchCache {
  public:
-  explicit PatchCache(const SearchTree& data) : data_(data), patches_(new BezierPatch[kSize]) {
-    std::fill(leaves_, leaves_ + kSize, -1);
+  explicit PatchCache(const SearchTree& data) : data_(data) {
+    if (data.kept.empty()) {
+      patches_.reset(new BezierPatch[kSize]);
+      std::fill(leaves_, leaves_ + kSize, -1);
+    }
   }
 
   const BezierPatch& patch(std::int32_t leaf) {
+    if (!data_.kept.empty()) {
+      return data_.kept[static_cast<std::size_t>(leaf)];
+    }
     const std::size_t slot = static_cast<std::uint32_t>(leaf) % kSize;
     if (leaves_[slot] != leaf) {
       patches_[slot] = data_.patches.patch(data_.leaves[leaf].piece);

@@ -11,11 +11,11 @@ namespace {
 
 using PatchPoints = Eigen::Matrix<double, 16, 3, Eigen::RowMajor>;
 
-PatchPoints pointsOf(const BezierPatch& patch, const Vector3& middle) {
+PatchPoints pointsOf(const BezierPatch& patch, const Vector3& middle, double scale) {
   PatchPoints points;
   const Vector3 anchor = patch.anchor.head<3>().matrix() - middle;
   for (int i = 0; i < 16; ++i) {
-    points.row(i) = patch.points[i].head<3>().matrix().transpose() + anchor.transpose();
+    points.row(i) = scale * (patch.points[i].head<3>().matrix() + anchor).transpose();
   }
   return points;
 }
@@ -38,6 +38,7 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
       patches(limit_surface, threads),
       middle(patches.middle()),
       diagonal(patches.diagonal()),
+      scale(diagonal > 0 ? std::ldexp(1., -std::ilogb(diagonal)) : 1),
       tolerance(kSearchError / 10 * diagonal) {
   constexpr std::size_t kBlock = 1024;
   const std::size_t tiles = static_cast<std::size_t>(patches.tileCount());
@@ -83,7 +84,7 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
   std::vector<SurfacePiece> pieces;
   patches.appendPieces(tile, pieces);
   const auto addPatch = [&](const SurfacePiece& piece, const BezierPatch& patch) {
-    const PatchPoints points = pointsOf(patch, middle);
+    const PatchPoints points = pointsOf(patch, middle, scale);
     out.push_back({orientedBox(points), piece});
     boxes.emplace_back(boxOf(points));
   };
@@ -105,14 +106,14 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
         if (step <= steps) {
           addPatch(split.pieces[quarter], split.patches[quarter]);
         } else {
-          box.include(boxOf(pointsOf(split.patches[quarter], middle)));
+          box.include(boxOf(pointsOf(split.patches[quarter], middle, scale)));
         }
       }
       if (step == steps) {
         core = rest;
       }
     }
-    box.include(Box{split.core_box.low - middle, split.core_box.high - middle});
+    box.include(inBoxes(split.core_box));
     out.push_back({OrientedBox(box), core});
     boxes.emplace_back(box);
   }

@@ -112,22 +112,24 @@ struct SurfacePatches::Data {
     }
   }
 
-  /// Where the levels of rings with many faces begin.
+  /// Up to which step a ring's points are kept.
+  int keptSteps(int ring) const {
+    return table.rings[ring].basis->ring().faces > kFewFaces ? kMostSteps : kFewSteps;
+  }
+
   void reserveLevels() {
     radii.resize(table.rings.size() * (kMostSteps + 1));
-    first_level.resize(table.rings.size(), kNotKept);
+    first_level.resize(table.rings.size());
     std::size_t size = 0;
     for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
-      if (table.rings[ring].basis->ring().faces > kFewFaces) {
-        first_level[ring] = size;
-        size += table.rings[ring].points.size() * (kMostSteps + 1);
-      }
+      first_level[ring] = size;
+      size += table.rings[ring].points.size() * (keptSteps(static_cast<int>(ring)) + 1);
     }
     levels.resize(size);
   }
 
-  /// How far a ring's points are from its limit after 0, 1, ... steps; and of rings with many faces
-  /// the points.
+  /// How far a ring's points are from its limit after 0, 1, ... steps, and the
+  /// points.
   void setLevels(int ring_index) {
     const RingPoints& ring = table.rings[ring_index];
     const Padded limit = pose.ring(ring_index).limit;
@@ -135,6 +137,7 @@ struct SurfacePatches::Data {
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i] = (pose.point(ring.points[i]) - limit) + pose.residual(ring.points[i]);
     }
+    const int kept_steps = keptSteps(ring_index);
     float* out = &radii[static_cast<std::size_t>(ring_index) * (kMostSteps + 1)];
     for (int step = 0; step <= kMostSteps; ++step) {
       double squared = 0;
@@ -142,7 +145,7 @@ struct SurfacePatches::Data {
         squared = std::max(squared, point.square().sum());
       }
       out[step] = static_cast<float>(std::sqrt(squared) * (1 + kFloatMargin));
-      if (first_level[ring_index] != kNotKept) {
+      if (step <= kept_steps) {
         std::copy(points.begin(), points.end(),
                   &levels[first_level[ring_index] + points.size() * step]);
       }
@@ -238,7 +241,8 @@ struct SurfacePatches::Data {
     const RingTile& tile = ringTile(core);
     const int steps = core.steps + 1;
     const std::size_t first = first_level[tile.ring];
-    if (steps <= pose.gridSteps(tile) || first == kNotKept) {
+    const int kept = keptSteps(tile.ring);
+    if (steps <= pose.gridSteps(tile) || (kept < kMostSteps && steps + tile.ring_steps > kept)) {
       return ringGrid(core, steps, grid);
     }
     const RingPoints& ring = table.rings[tile.ring];
@@ -272,7 +276,7 @@ struct SurfacePatches::Data {
   }
 
   static constexpr double kFloatMargin = 1e-6;
-  static constexpr std::size_t kNotKept = static_cast<std::size_t>(-1);
+  static constexpr int kFewSteps = 12;
 
   const TileTable& table;
   const Pose& pose;

@@ -45,8 +45,8 @@ struct SurfacePiece {
 /// patches and a core of half its size, as often as the search asks; nothing is kept of those.
 ///
 /// Refers to the surface, which must live on and keep its pose. All members may be called from many
-/// threads at once. Memory: 60 bytes a tile, and 4 kMostSteps bytes an extraordinary
-/// vertex, 64 kMostSteps for each of its faces where these are more than kFewFaces.
+/// threads at once. Memory: 60 bytes a tile; around an extraordinary vertex
+/// 800 bytes a face, with more than kFewFaces of them 4,600.
 class SurfacePatches {
  public:
   /// After so many steps, and with so small a core that positions in it are kPositionError from
