@@ -150,10 +150,22 @@ Rays raysAround(const LimitSurface& surface, int count, Random& random) {
   return rays;
 }
 
-/// Every root that brute force finds is found, and no more than these.
+void expectNoneTwice(const std::string& where, const RayHits& hits, std::size_t ray) {
+  for (std::int64_t a = hits.offsets[ray]; a < hits.offsets[ray + 1]; ++a) {
+    for (std::int64_t b = hits.offsets[ray]; b < a; ++b) {
+      const Location &one = hits.at[static_cast<std::size_t>(a)],
+                     &other = hits.at[static_cast<std::size_t>(b)];
+      EXPECT_FALSE(one.face == other.face &&
+                   std::abs(one.u - other.u) + std::abs(one.v - other.v) < 1e-10)
+          << where << " has " << describe(one) << " twice";
+    }
+  }
+}
+
+/// Every root that brute force finds is found, and none twice.
 void compareWithBruteForce(const NamedCages& cages, int count, int per_side) {
   Random random(1);
-  long found = 0, counted = 0;
+  long found = 0;
   for (const auto& [name, cage] : cages) {
     const LimitSurface surface = limitSurface(cage);
     const SurfaceSearch search(surface);
@@ -165,37 +177,25 @@ void compareWithBruteForce(const NamedCages& cages, int count, int per_side) {
     const double unit = truth.diagonal();
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const std::string where = name + ", " + textOf(rays.origins[i], rays.directions[i]);
-      bool certain = true;
-      std::size_t expected = 0;
       for (const BruteForce::Root& root :
            truth.roots(LongRay(rays.origins[i], rays.directions[i]))) {
         const double distance = static_cast<double>(root.distance);
-        certain = certain && root.sine > 1e-2 && std::abs(distance) > 1e-9 * unit;
         if (distance < 1e-9 * unit) continue;
-        ++expected;
         EXPECT_TRUE(anyAt(all, i, distance, 2 * kSearchError * unit / std::max(root.sine, 1e-5)))
             << where << ": " << describe(root.at) << " at " << distance << " (sine " << root.sine
             << ") was not found";
         ++found;
       }
-      for (std::int64_t row = all.offsets[i]; certain && row < all.offsets[i + 1]; ++row) {
-        const double sine = std::abs(rays.directions[i].normalized().dot(all.normal.row(row)));
-        certain = sine > 1e-2;  // neither did brute force miss a touch
-      }
-      if (certain) {
-        ++counted;
-        EXPECT_EQ(all.offsets[i + 1] - all.offsets[i], static_cast<std::int64_t>(expected))
-            << where;
-      }
+      expectNoneTwice(where, all, i);
     }
     secondsOfSlowest(search, rays, name);
   }
-  std::printf("%ld roots found, %ld rays counted\n", found, counted);
+  std::printf("%ld roots found\n", found);
 }
 
 TEST(RayCast, FindsWhatBruteForceFinds) { compareWithBruteForce(queryCages(), 12, 16); }
 
-TEST(SlowRayCast, FindsWhatBruteForceFinds) { compareWithBruteForce(queryCages(), 150, 32); }
+TEST(SlowRayCast, FindsWhatBruteForceFinds) { compareWithBruteForce(queryCages(), 1500, 32); }
 
 TEST(RayCast, FindsThePointsItIsSentThrough) {
   // Anywhere, on edges, at vertices, on boundaries; from all sides, at distances up to 1000.
@@ -327,7 +327,7 @@ TEST(RayCast, MissesWhatItPasses) {
         return anyAt(hits, 0, 0.3 * size, 1e-6 * size);
       };
       // Only where no neighbour goes on.
-      if (countAt(1e-4)) continue;
+      if (countAt(1e-4) || countAt(1e-6)) continue;
       EXPECT_FALSE(countAt(1e-8)) << name << ", " << describe(b);
       EXPECT_TRUE(countAt(-1e-9)) << name << ", " << describe(b);
       EXPECT_TRUE(countAt(0)) << name << ", " << describe(b);

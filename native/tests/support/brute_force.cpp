@@ -12,8 +12,7 @@ using Long = LongRay::Vector;
 
 Long toLong(const Vector3& v) { return v.cast<long double>(); }
 
-/// Where an ascent of the distance along -(gs, gt) by Newton's step leads; {0, 0} where there is
-/// none.
+/// Newton's step towards the least distance, or Gauss and Newton's; {0, 0} where there is none.
 Eigen::Vector2d newtonStep(const Vector3& offset, const Evaluation& e, bool gauss) {
   const Vector3 du = e.du.row(0), dv = e.dv.row(0);
   if (!du.allFinite() || !dv.allFinite()) return {0, 0};
@@ -29,6 +28,11 @@ Eigen::Vector2d newtonStep(const Vector3& offset, const Evaluation& e, bool gaus
   const Eigen::Vector2d gradient(offset.dot(du), offset.dot(dv));
   const Eigen::Vector2d step = -hessian.inverse() * gradient;
   return step.allFinite() ? step : Eigen::Vector2d(0, 0);
+}
+
+bool onSide(const Location& at) {
+  const auto atEnd = [](double x) { return x < 1e-9 || x > 1 - 1e-9; };
+  return atEnd(at.u) || atEnd(at.v);
 }
 
 }  // namespace
@@ -204,7 +208,11 @@ std::vector<BruteForce::Root> BruteForce::roots(const LongRay& ray) const {
   std::vector<Root> once;
   for (const Root& root : found) {
     const auto same = [&](const Root& other) {
-      return (root.position - other.position).norm() <= 1e-12 * diagonal_ / root.sine;
+      const bool one_place =
+          root.at.face == other.at.face
+              ? std::abs(root.at.u - other.at.u) + std::abs(root.at.v - other.at.v) < 1e-6
+              : onSide(root.at) && onSide(other.at);
+      return one_place && (root.position - other.position).norm() <= 1e-12 * diagonal_ / root.sine;
     };
     if (std::none_of(once.begin(), once.end(), same)) once.push_back(root);
   }
