@@ -41,8 +41,10 @@ class RequestSize:
         if self.is_large and not allow_large:
             raise TooLargeError(f"{self}: set Allow Large Counts (allow_large) to make them")
 
+    @property
+    def how_many(self) -> str:
+        return f"{'' if self.is_exact else 'about '}{self.count:,} {self.noun}"
+
     def __str__(self) -> str:
         many = f" of {self.elements_per_location} points" if self.elements_per_location > 1 else ""
-        about = "" if self.is_exact else "about "
-        memory = f"about {self.memory / 2**30:.1f} GiB of memory"
-        return f"{about}{self.count:,} {self.noun}{many} ({memory})"
+        return f"{self.how_many}{many} (about {self.memory / 2**30:.1f} GiB of memory)"

@@ -207,7 +207,7 @@ class ScatterOperator(properties.DistributionProperties):
         job.start()
         if job.wait(PATIENCE):
             return self._finish(context)
-        self._waiting = Waiting(context, f"Making {order.size}")
+        self._waiting = Waiting(context, f"Making {order.size.how_many}")
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
