@@ -22,7 +22,7 @@ def position(blender):
 
 def snap(blender):
     """All that is there, selected by steps that can be undone."""
-    blender.key("alt+a", "a")
+    blender.key("alt+a", "ctrl+i")
     blender.open_tab()
     blender.click(*blender.find_button(SNAP))
 
