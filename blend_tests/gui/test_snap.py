@@ -54,7 +54,6 @@ def test_offset_in_the_redo_panel(blender, sheet):
     snap(blender)
     flush = position(blender)
     x, y = blender.open_redo_panel()
-    blender.screenshot("snap_redo")
     _, below = blender.find_field(x, y, value="90")
     blender.move(*blender.find_field(x, below, value="0"))
     blender.key("Return", "ctrl+a", "period", "5", "Return")

@@ -13,6 +13,7 @@ class VIEW3D_PT_limit_snap(bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = ids.TAB
+    bl_order = 1  # below the panel that says whose surface it is
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
