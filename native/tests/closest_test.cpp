@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "limitsurf/query/surface_search.h"
 #include "support/brute_force.h"
@@ -330,13 +331,15 @@ TEST(Closest, KeepsToTheGreatestDistance) {
 }
 
 TEST(Closest, FacingLeavesOutFeetThatLookElsewhere) {
-  // Truth: minima inside faces, where no edge and no neighbour has a say.
+  // Truth: minima inside faces and on borders, where no neighbour has a say.
   Random random(7);
   int kept = 0, elsewhere = 0;
   for (const auto& [name, cage] : queryCages()) {
     const LimitSurface surface = limitSurface(cage);
     const SurfaceSearch search(surface);
     const BruteForce truth(surface, 10);
+    std::optional<CornerPoints> corners;
+    if (cage.options.scheme == Scheme::catmark && name != "refused face") corners.emplace(cage);
     const Points points = pointsAround(surface, 2, random).topRows(12);
     ClosestOptions options;
     options.facing.resize(points.rows(), 3);
@@ -353,7 +356,9 @@ TEST(Closest, FacingLeavesOutFeetThatLookElsewhere) {
         const Vector3 normal =
             surface.evaluate({&at, 1}, Derivatives::first, true, 1).normal.row(0);
         const auto inside = [](double x) { return x > 1e-6 && x < 1 - 1e-6; };
-        return inside(at.u) && inside(at.v) && angle(normal, facing) < options.max_angle - 1e-6;
+        return ((inside(at.u) && inside(at.v)) ||
+                ((inside(at.u) || inside(at.v)) && corners && isOnBorder(*corners, at))) &&
+               angle(normal, facing) < options.max_angle - 1e-6;
       };
       const BruteForce::Foot foot = truth.closest(point, accepts);
       const Location& found = hits.at[static_cast<std::size_t>(i)];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "support/corner_points.h"
 #include "support/random.h"
 #include "support/strange_meshes.h"
 
@@ -20,6 +21,10 @@ NamedCages degenerateCages();
 /// `count` locations on faces that have a surface: anywhere, on sides, at corners and within 2^-5
 /// to 2^-40 of these.
 std::vector<Location> searchedLocations(const LimitSurface& surface, int count, Random& random);
+
+/// Whether the location lies within a side of its face, corners apart, that is a boundary or an
+/// infinitely sharp edge. Not for the bilinear scheme.
+bool isOnBorder(const CornerPoints& corners, const Location& at);
 
 /// All coordinates times `factor`, plus `offset`.
 Cage placed(Cage cage, double factor, const Vector3& offset = Vector3::Zero());
