@@ -301,11 +301,18 @@ def test_density_0_everywhere(distribution):
     )
 
 
-@pytest.mark.parametrize("distribution", ["JITTERED", "UNIFORM", "BLUE_NOISE"])
-@pytest.mark.parametrize("amount", ["COUNT", "DENSITY", "DISTANCE"])
+@pytest.mark.parametrize(
+    ("distribution", "amount"),
+    [
+        ("JITTERED", "COUNT"),
+        ("UNIFORM", "COUNT"),
+        ("UNIFORM", "DENSITY"),
+        ("BLUE_NOISE", "COUNT"),
+        ("BLUE_NOISE", "DENSITY"),
+        ("BLUE_NOISE", "DISTANCE"),
+    ],
+)
 def test_an_image_that_is_black_where_the_surface_is(distribution, amount):
-    if (distribution, amount) == ("UNIFORM", "DISTANCE"):
-        pytest.skip("refused for another reason")
     ob = scenes.cross()
     add_uv_map(ob, lambda p: 0.1 + 0.01 * p[:, :2])
     values = np.zeros((8, 8), np.float32)
@@ -319,6 +326,20 @@ def test_an_image_that_is_black_where_the_surface_is(distribution, amount):
         image="Spots",
         extension="EXTEND",
     )
+
+
+def test_outside_a_clipped_image_inverted():
+    """The image is white, so only what is outside it counts."""
+    ob = scenes.grid_with_holes()
+    add_uv_map(ob, large)
+    add_subsurf(ob).uv_smooth = "NONE"
+    image(np.ones((4, 4), np.float32))
+    points = add_points(
+        ob, density_source="IMAGE", image="Spots", extension="CLIP", invert=True, per_side=10
+    )
+    uv = large(scenes.on_base_mesh(ob, *locations(points.data)))
+    assert ((uv < 0) | (uv > 1)).any(axis=1).all()
+    assert len(uv) > 100
 
 
 def test_values_that_are_not_finite():

@@ -133,6 +133,17 @@ def test_a_slot_that_does_not_exist():
         bpy.ops.object.limit_hair_add(material_slots={"7"})
 
 
+def test_more_slots_than_can_be_chosen():
+    ob = scenes.grid_with_holes()
+    slot = with_materials(ob, 40)
+    slot[:] = np.arange(len(slot)) + 17
+    ob.data.polygons.foreach_set("material_index", slot)
+    points = add_points(ob, per_side=2, material_slots={"30", "18"})
+    np.testing.assert_array_equal(covered_polygons(ob, points), [1, 13])
+    with pytest.raises((TypeError, ValueError), match="'31' not found"):
+        bpy.ops.object.limit_points_add(material_slots={"31"})
+
+
 def test_attributes_that_choose_no_faces():
     ob = scenes.cross()
     chosen_by = {"faces": "ATTRIBUTE", "face_attribute": "scalp"}

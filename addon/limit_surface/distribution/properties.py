@@ -15,7 +15,7 @@ from .density import DensityChoice
 from .mask import MaskChoice
 from .spread import Spread
 
-_MOST_SLOTS = 32  # that a set of choices can hold
+_MOST_SLOTS = 31  # choices that a property can hold at once
 _slot_items: list[tuple[str, str, str, int]] = []  # Blender does not keep the strings
 
 

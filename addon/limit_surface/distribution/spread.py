@@ -42,7 +42,9 @@ class Spread:
     def expected(self, region: Region) -> Expected:
         if self.distribution == "JITTERED":
             cells = region.ptex_face_count * self.per_side**2
-            return Expected(round(cells * region.sums.weight), region.density is None)
+            if region.density is None:
+                return Expected(cells, True)
+            return Expected(round(cells * region.sums.weight), False)
         if self.amount == "COUNT":
             return Expected(self.count, True)
         if self.amount == "DENSITY":
