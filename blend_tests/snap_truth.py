@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What snapping is measured against: dense samples of the surface, refined by bisection.
+"""What snapping is measured against: dense samples of the surface, refined in ever smaller strides.
 
 Nothing but evaluation is asked of limitsurf here.
 """
@@ -49,10 +49,12 @@ class Truth:
             tried = np.clip(uv[:, None] + reach * steps, 0, 1)
             positions = self.positions(np.repeat(face, len(steps)), tried.reshape(-1, 2))
             off = np.linalg.norm(positions - point, axis=1).reshape(tried.shape[:2])
-            uv = tried[np.arange(len(face)), off.argmin(axis=1)]
-            reach *= 0.6
-        best = off.min(axis=1).argmin()
-        return int(face[best]), uv[best], float(off.min())
+            best = tried[np.arange(len(face)), off.argmin(axis=1)]
+            if np.array_equal(best, uv):  # else there may be more to gain in the same strides
+                reach *= 0.5
+            uv = best
+        closest = off.min(axis=1).argmin()
+        return int(face[closest]), uv[closest], float(off.min())
 
     def normals_at(self, points: np.ndarray) -> np.ndarray:
         """Of the closest points."""

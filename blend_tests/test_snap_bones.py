@@ -7,7 +7,7 @@ import pytest
 import scenes
 from snap_truth import Truth, add_object, stretched
 
-EXACT = 3e-6
+EXACT = 1e-6
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import scenes
 from limit_surface import attributes, ids
 from snap_truth import Truth, mirrored, near, snap, stretched
 
-EXACT = 3e-6
+EXACT = 1e-6
 SIZES = [4, 2, 5, 1, 3, 4]
 
 

@@ -8,7 +8,7 @@ import scenes
 from mathutils import Matrix, Vector
 from snap_truth import Truth, add_object, mirrored, near, snap, stretched, world_locations
 
-EXACT = 3e-6  # in single precision, of objects some units away from the origin
+EXACT = 1e-6  # in single precision, of objects some units away from the origin
 
 
 @pytest.mark.parametrize("scene", ["cross", "grid with holes", "mixed polygons"])

@@ -16,7 +16,7 @@ from test_snap_bones import BONES
 from test_snap_hair import add_hair, roots, world_strands
 from test_snap_points import add_cloud, add_curve, choose_target, world_vertices
 
-EXACT = 3e-6
+EXACT = 1e-6
 
 
 def mesh_points(ob):

@@ -11,7 +11,7 @@ import scenes
 from limit_surface import attributes
 from snap_truth import Truth, add_object, near, stretched
 
-EXACT = 3e-6
+EXACT = 1e-6
 
 
 def choose_target(ob):
