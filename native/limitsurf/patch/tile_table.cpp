@@ -248,6 +248,8 @@ class Builder {
     tile.sides = table_.rings[tile.ring].basis->sides(tile.face);
     const Window<FaceMesh> window(here.mesh, at.face, at.corner, corners.diagonal);
     const std::vector<int>& cells = table_.rings[tile.ring].basis->outerModes(tile.face).cells();
+    tile.u_high = window.at(2, 0) < 0 && window.at(2, 1) < 0;
+    tile.v_high = window.at(0, 2) < 0 && window.at(1, 2) < 0;
     tile.outer.fill(0);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       tile.outer[i] =

@@ -37,6 +37,9 @@ struct RingTile {
   int corner;      ///< the quad's corner with the extraordinary vertex
   int depth;       ///< how many splits of the Ptex face led to the quad
   Sides sides;     ///< of the ring's face
+  /// Whether the sides across from the vertex, seen from it at u = 1 and v = 1, have no points
+  /// beyond them; their entries in `outer` continue the surface linearly.
+  bool u_high, v_high;
   std::array<int, tile_grid::kOuter> outer;  ///< points, in the order of the basis's outer cells
 };
 

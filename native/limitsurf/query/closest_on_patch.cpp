@@ -38,8 +38,9 @@ class PatchSearch {
       return;
     }
     const SquaredDistance f(relative_.points);
-    if (isBetter(f.least())) {
-      visit(f, {0, 0, 1, 0});
+    const double noise = noiseOf(f);
+    if (isBetter(f.least() - noise)) {
+      visit(f, noise, {0, 0, 1, 0});
     }
   }
 
@@ -47,6 +48,9 @@ class PatchSearch {
   /// Cells so small that the distance over one varies by less than rounding.
   static constexpr int kMostDepth = 40;
   static constexpr int kMostIterations = 40;
+  /// Every so many halvings the squared distance is made anew.
+  static constexpr int kFreshDepths = 4;
+  static constexpr double kRounding = 1e-15;
 
   using Values = BezierPatch::Values;
 
@@ -107,9 +111,25 @@ class PatchSearch {
                                                    : ends(kSideT1, cell.t + cell.size == 1)));
   }
 
-  void visit(const SquaredDistance& f, const Cell& cell) {
+  /// What rounding may have done to the coefficients, and to those of its quarters.
+  static double noiseOf(const SquaredDistance& f) { return kRounding * f.largest(); }
+
+  /// The patch's control points on a cell, less the point.
+  void pointsOf(const Cell& cell, BezierPatch::Point out[16]) const {
+    std::copy(relative_.points, relative_.points + 16, out);
+    for (int i = 0; i < 4; ++i) {
+      bezier::cut(out + 4 * i, 1, cell.s, cell.s + cell.size);
+    }
+    for (int i = 0; i < 4; ++i) {
+      bezier::cut(out + i, 4, cell.t, cell.t + cell.size);
+    }
+  }
+
+  void visit(const SquaredDistance& f, double noise, const Cell& cell) {
     const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., f.least())));
-    const SquaredDistance::Shape shape = f.shape(reach * best_.tolerance);
+    const double least_slack = reach * best_.tolerance;
+    const double slack = noise <= 4 * least_slack ? 5 * least_slack : least_slack;
+    const SquaredDistance::Shape shape = f.shape(slack);
     if (facing_ && fallsOutwards(cell, shape)) {
       return;
     }
@@ -118,7 +138,7 @@ class PatchSearch {
     s = cell.s + sideOr(shape.s_side, s) * cell.size;
     t = cell.t + sideOr(shape.t_side, t) * cell.size;
     const bool corner = shape.s_side != 0 && shape.t_side != 0;
-    if (cell.depth == kMostDepth || corner || (shape.convex && minimize(cell, s, t))) {
+    if (cell.depth == kMostDepth || corner || (shape.convex && minimize(cell, slack, s, t))) {
       if (!facing_ || isFoot(cell, s, t)) {
         offer(s, t);
       }
@@ -143,9 +163,18 @@ class PatchSearch {
               [&](int a, int b) { return least[a] != least[b] ? least[a] < least[b] : a < b; });
     const double half = cell.size / 2;
     for (const int q : order) {
-      if (isBetter(least[q]) && !isBehindFoot()) {
-        visit(quarters[q],
-              {cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half, cell.depth + 1});
+      if (!isBetter(least[q] - noise) || isBehindFoot()) {
+        continue;
+      }
+      const Cell next{cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half, cell.depth + 1};
+      if (next.depth % kFreshDepths == 0) {
+        // Quarters inherit the rounding of the whole: those of the points are as small as they.
+        BezierPatch::Point points[16];
+        pointsOf(next, points);
+        const SquaredDistance fresh(points);
+        visit(fresh, noiseOf(fresh), next);
+      } else {
+        visit(quarters[q], noise, next);
       }
     }
   }
@@ -159,8 +188,9 @@ class PatchSearch {
   }
 
   /// Newton's iteration within the cell, by an active set of its sides. Whether it arrived at a
-  /// point where no direction leads down.
-  bool minimize(const Cell& cell, double& s, double& t) const {
+  /// point where no direction leads down, or none so far that the squared distance would fall by
+  /// more than `slack`.
+  bool minimize(const Cell& cell, double slack, double& s, double& t) const {
     const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
     Values at, next;
     relative_.evaluate<2>(s, t, at);
@@ -228,7 +258,7 @@ class PatchSearch {
         }
         relative_.evaluate<2>(next_s, next_t, next);
         const double next_f = dot(next.value, next.value);
-        lower = next_f <= f || (last && next_f <= f * (1 + kRounding));
+        lower = next_f <= f || (last && next_f <= f * (1 + kStepRounding));
         if (lower) {
           s = next_s;
           t = next_t;
@@ -237,7 +267,7 @@ class PatchSearch {
         }
       }
       if (!lower) {
-        return last;
+        return last || (std::abs(free_s ? gs : 0) + std::abs(free_t ? gt : 0)) * cell.size <= slack;
       }
       if (last && !fallsFromSide(cell, s, t, at)) {
         return true;
@@ -267,7 +297,7 @@ class PatchSearch {
 
   static constexpr int kMostHalvings = 30;
   static constexpr double kLastStep = 1e-7;
-  static constexpr double kRounding = 1e-12;
+  static constexpr double kStepRounding = 1e-12;
 
   static bool leadsOut(double x, double step, double low, double high) {
     return (x <= low && step < 0) || (x >= high && step > 0);
@@ -277,11 +307,13 @@ class PatchSearch {
   /// normal that counts. On a side of the cell beyond which the sheet goes on, the distance must
   /// not fall across it.
   bool isFoot(const Cell& cell, double s, double t) const {
-    Values at;
-    relative_.evaluate<1>(s, t, at);
-    const double value = std::sqrt(dot(at.value, at.value));
+    // The patch's own points give tangents all their digits, however far away the point is.
+    Values at, to_foot;
+    patch_.evaluate<1>(s, t, at);
+    relative_.evaluate<0>(s, t, to_foot);
+    const double value = std::sqrt(dot(to_foot.value, to_foot.value));
     const auto falls = [&](const BezierPatch::Point& tangent, double outwards) {
-      const double slope = outwards * dot(at.value, tangent);
+      const double slope = outwards * dot(to_foot.value, tangent);
       return slope < -kFlat * (value * std::sqrt(dot(tangent, tangent)));
     };
     const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;

@@ -27,7 +27,7 @@ class BoxRay {
       from = std::max(from, std::min(a, b));
       to = std::min(to, std::max(a, b));
     }
-    return from <= to;
+    return from <= to && box.low[0] <= box.high[0];  // an empty box is met by none
   }
 
  private:
@@ -158,23 +158,26 @@ class RaySearch {
     const double aside = (to_vertex - z * frame.direction).norm();
     if (aside <= found_.tolerance + data_.patches.coreRadius(core) &&
         z >= found_.from - found_.tolerance && z <= found_.nearest) {
-      found_.add({z, data_.patches.rectangle(core).at(0, 0), vertex, true});
+      found_.add({z, data_.patches.rectangle(core).at(0, 0), vertex, false});
     }
   }
 
-  /// Patches find hits on their common borders, each for itself: one of them is enough.
+  /// Patches find hits on their common borders, each for itself, and cells of a patch the same
+  /// touch: one of them is enough.
   void sortAndMerge() {
     std::vector<RayHit>& hits = found_.hits;
     std::stable_sort(hits.begin(), hits.end(),
                      [](const RayHit& a, const RayHit& b) { return a.distance < b.distance; });
-    const double same = kSame * data_.diagonal;
+    const double same = kSame * data_.diagonal, same_touch = kSameTouch * data_.diagonal;
     std::vector<RayHit> merged;
     for (const RayHit& hit : hits) {
       bool known = false;
       for (auto other = merged.rbegin();
-           !known && other != merged.rend() && hit.distance - other->distance <= same; ++other) {
-        known =
-            hit.on_border && other->on_border && (hit.position - other->position).norm() <= same;
+           !known && other != merged.rend() && hit.distance - other->distance <= same_touch;
+           ++other) {
+        const double apart = (hit.position - other->position).norm();
+        known = apart <= (hit.grazes && other->grazes ? same_touch : same) &&
+                areNeighbours(hit.at.face, other->at.face);
       }
       if (!known) {
         merged.push_back(hit);
@@ -183,9 +186,20 @@ class RaySearch {
     hits.swap(merged);
   }
 
-  /// Relative to the diagonal: a ray that grazes a border finds it at places that differ by the
-  /// root of the tolerance.
-  static constexpr double kSame = 1e-7;
+  /// Whether the faces have a vertex in common: sheets that only lie upon each other have none.
+  bool areNeighbours(int face, int other) const {
+    const std::vector<int>& base = data_.surface.baseFace();
+    if (base[face] == base[other]) {
+      return true;
+    }
+    const Span<int> a = data_.surface.mesh().faceVertices(base[face]),
+                    b = data_.surface.mesh().faceVertices(base[other]);
+    return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+  }
+
+  /// Relative to the diagonal. A touch is found wherever the ray is within the tolerance of the
+  /// surface: along the root of that.
+  static constexpr double kSame = 1e-10, kSameTouch = 4e-6;
 
   const SearchTree& data_;
   PatchCache cache_;

@@ -83,10 +83,18 @@ class PatchRay {
   static constexpr int kMostDepth = 26;
   /// From here on a cell may be the place where the ray touches the patch.
   static constexpr int kTouchDepth = 8;
+  /// Rays that stay within the tolerance of a patch for long are not followed any further.
+  static constexpr int kMostDeepCells = 1 << 13;
   /// A ray at such an angle to the surface is deep in it by less than kSearchError of a patch.
   static constexpr double kTouchingSine = 2e-6;
+  /// Hits at such an angle may be one touch, come upon in several cells.
+  static constexpr double kGrazingSine = 1e-5;
 
-  bool misses(const Cubic& f, double margin) const {
+  static bool isWithin(const Cubic& f, double margin) {
+    return f.least() >= -margin && f.largest() <= margin;
+  }
+
+  static bool misses(const Cubic& f, double margin) {
     return f.least() > margin || f.largest() < -margin;
   }
 
@@ -95,7 +103,11 @@ class PatchRay {
   }
 
   void visit(const Cell& cell) {
-    if (misses(cell.x, out_.tolerance) || misses(cell.y, out_.tolerance) || isBeyond(cell)) {
+    if (misses(cell.x, out_.margin()) || misses(cell.y, out_.margin()) || isBeyond(cell)) {
+      return;
+    }
+    if (isWithin(cell.x, out_.tolerance) && isWithin(cell.y, out_.tolerance)) {
+      touchCorner(cell);
       return;
     }
     const Precondition p(cell);
@@ -110,7 +122,7 @@ class PatchRay {
           b.at(i, j) = (p.xs * y - p.ys * x) * inverse;
         }
       }
-      const double margin = out_.tolerance * std::abs(inverse);
+      const double margin = out_.margin() * std::abs(inverse);
       if (misses(a, margin * (std::abs(p.yt) + std::abs(p.xt))) ||
           misses(b, margin * (std::abs(p.ys) + std::abs(p.xs)))) {
         return;
@@ -126,10 +138,25 @@ class PatchRay {
     if (cell.depth >= kTouchDepth && touchesIn(cell)) {
       return;
     }
-    if (cell.depth == kMostDepth) {
+    if (cell.depth == kMostDepth || (cell.depth >= kTouchDepth && ++deep_cells_ > kMostDeepCells)) {
       return;
     }
     divide(cell);
+  }
+
+  /// All of the cell is as near to the ray as matters.
+  void touchCorner(const Cell& cell) {
+    for (int corner = 0; corner < 4; ++corner) {
+      const double s = cell.s + (corner & 1) * cell.size, t = cell.t + (corner >> 1) * cell.size;
+      touch(s, t, along(s, t));
+    }
+  }
+
+  void touch(double s, double t, double z) {
+    if (z < touched_ && counts(z)) {
+      touched_ = z;
+      replaceTouch(s, t, z);
+    }
   }
 
   void divide(const Cell& cell) {
@@ -233,6 +260,15 @@ class PatchRay {
     return false;
   }
 
+  /// Of the angle between the ray and the surface; 0 where the tangents are parallel.
+  double sineAt(double s, double t) const {
+    BezierPatch::Values at;
+    patch_.evaluate<1>(s, t, at);
+    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
+    const double length = normal.norm();
+    return length > 0 ? std::abs(normal.dot(ray_.direction)) / length : 0;
+  }
+
   /// Whether the ray touches the surface in the cell without crossing it, or runs within it.
   ///
   /// Then cells around that place cannot be told from it by their hulls. The cell is done with but
@@ -242,20 +278,39 @@ class PatchRay {
     if (!approach(cell, s, t)) {
       return false;
     }
-    const Seen f = look(s, t);
-    const double determinant = f.xs * f.yt - f.xt * f.ys,
-                 scale = std::hypot(f.xs, f.ys) * std::hypot(f.xt, f.yt);
-    if (std::abs(determinant) > kTouchingSine * scale) {
+    if (sineAt(s, t) > kTouchingSine) {
       return false;
     }
-    const double z = along(s, t);
-    if (z < touched_) {
-      touched_ = z;
-      replaceTouch(s, t, z);
+    touch(s, t, along(s, t));
+    for (int side = 0; side < 4; ++side) {
+      touchSide(cell, side);
     }
     // What runs within the surface enters it at the cell's nearest end: look closer there.
     return cell.depth >= kMostDepth || cell.z.least() >= touched_ - out_.tolerance;
   }
+
+  /// A ray within the surface comes into the cell across one of its sides.
+  void touchSide(const Cell& cell, int side) {
+    const bool along_s = side < 2;
+    const double low = along_s ? cell.s : cell.t, high = low + cell.size;
+    double s = cell.s + (side == 3 ? cell.size : 0), t = cell.t + (side == 1 ? cell.size : 0);
+    double& w = along_s ? s : t;
+    w = low + cell.size / 2;
+    for (int i = 0; i < kSideIterations; ++i) {
+      const Seen f = look(s, t);
+      const double dx = along_s ? f.xs : f.xt, dy = along_s ? f.ys : f.yt;
+      const double squared = dx * dx + dy * dy;
+      if (squared > 0) {
+        w = std::clamp(w - (f.x * dx + f.y * dy) / squared, low, high);
+      }
+    }
+    const Seen f = look(s, t);
+    if (f.x * f.x + f.y * f.y <= out_.tolerance * out_.tolerance) {
+      touch(s, t, along(s, t));
+    }
+  }
+
+  static constexpr int kSideIterations = 6;
 
   /// Levenberg and Marquardt's iteration for the least distance from the ray, within the cell.
   /// Whether that is within the tolerance.
@@ -269,7 +324,7 @@ class PatchRay {
       const double gs = f.x * f.xs + f.y * f.ys, gt = f.x * f.xt + f.y * f.yt;
       const double ss = f.xs * f.xs + f.ys * f.ys, tt = f.xt * f.xt + f.yt * f.yt,
                    st = f.xs * f.xt + f.ys * f.yt;
-      const double a = ss * (1 + damping), b = tt * (1 + damping);
+      const double a = ss + damping * (ss + tt), b = tt + damping * (ss + tt);
       const double determinant = a * b - st * st;
       if (!(determinant > 0)) {
         return false;
@@ -310,9 +365,8 @@ class PatchRay {
   RayHit hitAt(double s, double t, double z) const {
     BezierPatch::Values at;
     patch_.evaluate<0>(s, t, at);
-    const auto onBorder = [](double x) { return x < kBorder || x > 1 - kBorder; };
     return {z, patch_.on.at(s, t), (patch_.anchor + at.value).head<3>().matrix(),
-            onBorder(s) || onBorder(t)};
+            sineAt(s, t) <= kGrazingSine};
   }
 
   bool counts(double z) const { return z >= out_.from - out_.tolerance && z <= out_.nearest; }
@@ -326,9 +380,6 @@ class PatchRay {
 
   /// Of the touches on a patch only the first along the ray is kept.
   void replaceTouch(double s, double t, double z) {
-    if (!counts(z)) {
-      return;
-    }
     if (!out_.first_only && touch_ < out_.hits.size()) {
       out_.hits[touch_] = hitAt(s, t, z);
       return;
@@ -338,13 +389,13 @@ class PatchRay {
   }
 
   static constexpr double kFar = std::numeric_limits<double>::infinity();
-  static constexpr double kBorder = 1e-9;
 
   const BezierPatch& patch_;
   const RayFrame& ray_;
   CollectedHits& out_;
   double x_[16], y_[16], z_[16];  // the whole patch as seen along the ray
   double touched_ = kFar;
+  int deep_cells_ = 0;
   std::size_t touch_ = static_cast<std::size_t>(-1);
 };
 

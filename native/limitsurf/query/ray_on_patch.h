@@ -13,8 +13,8 @@ struct RayHit {
   double distance;
   Location at;
   Vector3 position;
-  /// On the border of a patch, where the next patch finds it as well.
-  bool on_border;
+  /// The ray touches the surface there without crossing it, but for rounding.
+  bool grazes;
 };
 
 /// A ray with two axes across it, in coordinates of which the surface is near the origin.
@@ -32,6 +32,9 @@ struct CollectedHits {
   double nearest;
   /// How near the ray has to be to the surface, a tenth of kSearchError.
   double tolerance;
+  /// How near it may come without being followed up: more than rounding. What lies between the two
+  /// is a hit if it is come upon.
+  double margin() const { return tolerance / 32; }
   std::vector<RayHit> hits;
 
   void add(const RayHit& hit);

@@ -17,6 +17,7 @@ class SquaredDistance {
   explicit SquaredDistance(const BezierPatch::Point points[16]);
 
   double least() const { return f_.least(); }
+  double largest() const { return f_.largest(); }
   /// At a corner: i, j = 0 or 1.
   double corner(int i, int j) const { return f_.at(6 * i, 6 * j); }
   void quarter(SquaredDistance out[4]) const;

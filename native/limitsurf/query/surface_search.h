@@ -67,8 +67,8 @@ class SurfaceSearch {
   Hits closest(const Points& points, const ClosestOptions& options = {}, int threads = 0) const;
 
   /// The first point at which each ray meets the surface, from either side; the distance counts
-  /// along the ray and is at least 0. Rays that touch the surface within kSearchError hit it, and
-  /// none slip through between faces.
+  /// along the ray and is at least 0. Rays that graze the surface hit it, and none slip through
+  /// between faces; one that misses by less than kSearchError may count as a hit.
   ///
   /// `directions` need not be unit vectors. Throws std::invalid_argument naming the first row that
   /// is not finite, or whose direction is 0.
@@ -76,8 +76,9 @@ class SurfaceSearch {
                double max_distance = std::numeric_limits<double>::infinity(),
                int threads = 0) const;
 
-  /// All of them, sorted along each ray. A hit on an edge or vertex of several faces counts once.
-  /// Of a stretch on which the ray runs within the surface, the first point of each patch is given.
+  /// All of them, sorted along each ray. Hits on faces with a common vertex count once if they are
+  /// within 1e-10 diagonals of each other, touches within 4e-6. Of a stretch on which the ray runs
+  /// within the surface, points at the beginning of each patch are given.
   RayHits rayCastAll(const Points& origins, const Points& directions,
                      double max_distance = std::numeric_limits<double>::infinity(),
                      int threads = 0) const;

@@ -74,6 +74,26 @@ inline void cubic(const Point& a, const Point& b, const Point& c, const Point& d
   value = pq + t * (qr - pq);
 }
 
+/// The Bezier points of a cubic, `stride` apart, become those of its part between t0 and t1.
+template <typename Point>
+inline void cut(Point* p, int stride, double t0, double t1) {
+  // The blossom: interpolated to t0 or t1 in each of three rounds.
+  const auto blossom = [&](double a, double b, double c) -> Point {
+    const auto mix = [](const Point& x, const Point& y, double t) -> Point {
+      return x + t * (y - x);
+    };
+    const Point x = mix(p[0], p[stride], a), y = mix(p[stride], p[2 * stride], a),
+                z = mix(p[2 * stride], p[3 * stride], a);
+    return mix(mix(x, y, b), mix(y, z, b), c);
+  };
+  const Point q0 = blossom(t0, t0, t0), q1 = blossom(t0, t0, t1), q2 = blossom(t0, t1, t1),
+              q3 = blossom(t1, t1, t1);
+  p[0] = q0;
+  p[stride] = q1;
+  p[2 * stride] = q2;
+  p[3 * stride] = q3;
+}
+
 }  // namespace bezier
 
 template <int Order>

@@ -262,7 +262,8 @@ struct SurfacePatches::Data {
     return pose.ring(tile.ring).limit;
   }
 
-  void quarterPatch(const RingTile& tile, const Padded* grid, int quarter, BezierPatch& out) const {
+  void quarterPatch(const RingTile& tile, const Padded* grid, int steps, int quarter,
+                    BezierPatch& out) const {
     const int a = kQuarters[quarter][0], b = kQuarters[quarter][1];
     for (int y = 0; y < 4; ++y) {
       for (int x = 0; x < 4; ++x) {
@@ -272,7 +273,9 @@ struct SurfacePatches::Data {
     const bool x_low = onRight(tile.sides) && a == 0, y_low = onLeft(tile.sides) && b == 0;
     continueSides(out.points, x_low, false, y_low, false);
     convertBothWays(out.points, toBezier);
-    out.borders = (x_low ? kSideS0 : 0u) | (y_low ? kSideT0 : 0u);
+    out.borders = (x_low ? kSideS0 : 0u) | (y_low ? kSideT0 : 0u) |
+                  (tile.u_high && steps == 1 && a == 1 ? kSideS1 : 0u) |
+                  (tile.v_high && steps == 1 && b == 1 ? kSideT1 : 0u);
   }
 
   static constexpr double kFloatMargin = 1e-6;
@@ -327,7 +330,7 @@ BezierPatch SurfacePatches::patch(const SurfacePiece& piece) const {
   if (piece.steps > 0) {
     Padded grid[tile_grid::kCells];
     out.anchor = data_->ringGrid(piece, piece.steps, grid);
-    data_->quarterPatch(data_->ringTile(piece), grid, piece.part, out);
+    data_->quarterPatch(data_->ringTile(piece), grid, piece.steps, piece.part, out);
   } else {
     data_->regularPatch(piece, out);
   }
@@ -347,7 +350,7 @@ void SurfacePatches::split(const SurfacePiece& core, SplitCore& out) const {
                            static_cast<std::int16_t>(quarter)};
     BezierPatch& patch = out.patches[quarter];
     patch.anchor = anchor;
-    data_->quarterPatch(tile, grid, quarter, patch);
+    data_->quarterPatch(tile, grid, steps, quarter, patch);
     patch.on = data_->rectangle(out.pieces[quarter]);
   }
   out.core = {core.tile, static_cast<std::int16_t>(steps), SurfacePiece::kCore};
