@@ -36,8 +36,8 @@ class Job:
         return self.result()
 
     def start(self) -> None:
-        """In a thread of its own, that a program which ends does not wait for."""
-        Thread(target=self._run, args=(lambda _part: None,), daemon=True).start()
+        """In a thread of its own. A program that ends waits for it: cancel what is not wanted."""
+        Thread(target=self._run, args=(lambda _part: None,)).start()
 
     def wait(self, seconds: float) -> bool:
         """Whether it is done by then."""

@@ -120,7 +120,7 @@ def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, nou
 
 @bpy.app.handlers.persistent
 def _notice(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    if not cage.is_busy():
+    if _counts and not cage.is_busy():
         changed = {update.id.name for update in depsgraph.updates}
         for count in _counts.values():
             count.notice(changed)
