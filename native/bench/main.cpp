@@ -22,6 +22,7 @@
 #include "evaluation_benchmarks.h"
 #include "large_mesh.h"
 #include "ratio_reporter.h"
+#include "scatter_benchmarks.h"
 #include "setup_benchmarks.h"
 
 namespace {
@@ -48,6 +49,7 @@ int runTables(int argc, char** argv, int sample_count) {
 
   std::vector<Group> groups = evaluationGroups(sample_count);
   for (Group& group : setupGroups()) groups.push_back(std::move(group));
+  for (Group& group : scatterGroups(sample_count)) groups.push_back(std::move(group));
   RatioReporter reporter;
   runGroups(groups, reporter);
 
@@ -61,6 +63,10 @@ int runTables(int argc, char** argv, int sample_count) {
                       groups);
   reporter.printTable(kPosingTable, "New positions, ns per irregular face",
                       {"mesh", "faces", "irregular"}, groups);
+  reporter.printTable(kScatterSetupTable, "Preparing to scatter, ns per face", {"mesh", "faces"},
+                      groups);
+  reporter.printTable(kUniformTable, "Uniform points, ns each", {"mesh", "faces"}, groups);
+  reporter.printTable(kBlueNoiseTable, "Blue noise, ns per point", {"mesh", "faces"}, groups);
   return allAgreed() ? 0 : 1;
 }
 
