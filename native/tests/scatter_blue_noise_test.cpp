@@ -263,6 +263,20 @@ TEST(BlueNoise, NothingIsWhereAFunctionIsZero) {
   for (const Location& at : noise.at) EXPECT_GT(weightOf(at), 0);
 }
 
+/// By far too fine a radius: the function is not asked about each place, and the radius refused.
+TEST(BlueNoise, AFunctionIsAskedAtAsManyPlacesAsAreOfUse) {
+  const LimitSurface surface = limitSurface(grid(20, 20));
+  std::size_t asked = 0;
+  BlueNoiseOptions options = byRadius(1e-6);
+  options.density = Density([&](Span<Location> at, double* weights) {
+    asked += at.size();
+    std::fill(weights, weights + at.size(), 1.);
+  });
+  expectThrow<std::invalid_argument>([&] { AreaSampler(surface).blueNoise(options); },
+                                     {"radius", "points"});
+  EXPECT_LT(asked, std::size_t{50} << 20);
+}
+
 TEST(BlueNoise, LeavesOutFacesWithoutASurface) {
   Cage cage = gridWithFace({0, 1, 2, 1});
   cage.options.holes = {3};

@@ -22,6 +22,8 @@ constexpr double kSurplus = 1.03, kMostSurplus = 1.25;
 constexpr int kMostAttempts = 60;
 /// Squares of a face's grid of a density's values, at most 2^kMostLevels a side.
 constexpr int kMostLevels = 10;
+/// And so many on the whole surface, if one a face is not more already.
+constexpr double kMostValues = 1 << 25;
 
 std::string text(double value) {
   std::ostringstream out;
@@ -153,14 +155,20 @@ class BlueNoiseMaker {
       ++fewest;
     }
     std::vector<int> levels(sizes_.size(), -1);
-    for (std::size_t face = 0; face < levels.size(); ++face) {
-      if (sizes_[face] >= 0) {
-        levels[face] = fewest;
-        while (levels[face] < kMostLevels && sizes_[face] > radius * (1 << levels[face])) {
-          ++levels[face];
+    int most = kMostLevels;
+    double values;
+    do {
+      values = 0;
+      for (std::size_t face = 0; face < levels.size(); ++face) {
+        if (sizes_[face] >= 0) {
+          int& level = levels[face] = std::min(fewest, most);
+          while (level < most && sizes_[face] > radius * (1 << level)) {
+            ++level;
+          }
+          values += static_cast<double>(std::size_t{1} << (2 * level));
         }
       }
-    }
+    } while (values > kMostValues && most-- > 0);
     density_ = DensityField(options_.density, levels);
     setWeighedArea();
   }

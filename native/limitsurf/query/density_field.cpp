@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "limitsurf/parallel.h"
 
@@ -71,6 +72,10 @@ DensityField::DensityField(const Density& density, const std::vector<int>& level
     }
   }
   ask();
+  if (std::all_of(values_.begin(), values_.end(), [](double value) { return value == 0; })) {
+    throw std::invalid_argument("density is 0 at all of " + std::to_string(values_.size()) +
+                                " locations");
+  }
   normalise();
 }
 
