@@ -144,6 +144,13 @@ def hair(per_side: int) -> None:
     bpy.context.active_object.name = "Hair"
 
 
+def smooth_sheet() -> None:
+    """As users have theirs: subdivided and shaded smoothly."""
+    sheet = bpy.data.objects["Sheet"]
+    sheet.modifiers.new("Subdivision", "SUBSURF").levels = 3
+    sheet.data.shade_smooth()
+
+
 def lock_location(name: str) -> None:
     bpy.data.objects[name].lock_location = (True, True, True)
 

@@ -5,6 +5,7 @@
 """
 
 import os
+import shutil
 import subprocess
 import time
 from collections.abc import Iterator, Sequence
@@ -13,10 +14,13 @@ from multiprocessing.connection import Client
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 HERE = Path(__file__).parent
 OUT = Path("/out")
 PACKAGES = OUT
 WIDTH, HEIGHT = 1280, 800
+SHOWN_AFTER = 0.5  # seconds: what was drawn is on the screen
 TAB_STRIP = 22  # pixels at the sidebar's right edge
 ADDON = "bl_ext.user_default.limit_surface"
 
@@ -93,6 +97,8 @@ class BlenderSession:
         self._process.kill()
         self._process.wait()
         self._log.close()
+        for report in Path("/tmp").glob("*.crash.txt"):
+            shutil.copy(report, OUT)
 
     def call(self, name: str, *arguments: Any, timeout: float = 60, **keywords: Any) -> Any:
         """What the function of inside.py returns, once Blender has nothing else to do."""
@@ -189,8 +195,15 @@ class BlenderSession:
 
     def screenshot(self, name: str) -> Path:
         path = OUT / f"{name}.png"
+        time.sleep(SHOWN_AFTER)
         self._run("import", "-window", "root", path)
         return path
+
+    def pixels(self, picture: Path) -> np.ndarray:
+        """(rows, columns, 3) of 0 to 255."""
+        command = ["convert", picture, "-depth", "8", "rgb:-"]
+        raw = subprocess.run(command, capture_output=True, check=True, timeout=30).stdout
+        return np.frombuffer(raw, np.uint8).reshape(HEIGHT, WIDTH, 3)
 
     def _xdotool(self, *words: object) -> None:
         self._run("xdotool", *map(str, words))

@@ -8,6 +8,7 @@ from quadric import Camera, Sheet, boundary_height, height
 ON_SURFACE = 1e-6  # Blender's single precision, of coordinates up to 4
 PIXEL = 0.1  # what single precision makes of the view's inverted matrix
 
+DRAWN = ((0.25, 0.55, 1.0), (1.0, 0.45, 0.1), (0.2, 0.85, 0.35))  # normal, principal directions
 STORED = ("limit_face", "limit_uv", "rest_root")
 
 
@@ -182,7 +183,6 @@ def test_strand_is_clicked_and_dragged_by_its_root(blender, sheet, seen):
     assert blender.call("running")
     at = seen(4.1, 2.4)
     blender.move(*at)
-    blender.screenshot("snap_modal_strand")
     blender.press()
     assert not blender.call("running")
     after = np.array(blender.call("strand", "Hair", curve))
@@ -263,3 +263,22 @@ def test_what_is_locked_stays(blender, sheet, seen):
     blender.press()
     assert not blender.call("running")
     assert blender.call("transform", "Pin") == before
+
+
+def test_what_is_drawn(blender, sheet, seen):
+    """And the picture of docs/snap_modal.md."""
+    blender.call("smooth_sheet")
+    blender.call("pin")
+    blender.call("start_drag", align="NORMAL")
+    blender.move(*seen(3.4, 2.4))
+    blender.wheel(1)
+    drawn = blender.pixels(blender.screenshot("snap_modal"))
+    assert all(count(drawn, colour) > 50 for colour in DRAWN)
+    blender.key("Escape")
+    assert not blender.call("running")
+    left = blender.pixels(blender.screenshot("snap_modal_ended"))
+    assert all(count(left, colour) == 0 for colour in DRAWN)
+
+
+def count(pixels, colour):
+    return np.count_nonzero((np.abs(pixels - 255 * np.array(colour)) < 10).all(axis=2))

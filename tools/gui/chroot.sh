@@ -93,6 +93,7 @@ enter() {
     mount --bind "$project" "$folder/project"
     mount -o remount,bind,ro "$folder/project"
     mount --bind "$out" "$folder/out"
+    mount -t tmpfs tmpfs "$folder/tmp"
     mount -t proc proc "$folder/proc"
     mount --rbind /dev "$folder/dev"
     mount --rbind /sys "$folder/sys"
