@@ -64,7 +64,7 @@ class DraggedObject:
         bpy.context.view_layer.update()
         reason = self._move.finish()
         if reason:
-            raise RefusalError(f"{self.name}: its transform channels {reason}")
+            raise RefusalError(f"{self.name} cannot be put there: {reason}")
 
 
 class DraggedVertex:
