@@ -150,6 +150,16 @@ Rays raysAround(const LimitSurface& surface, int count, Random& random) {
   return rays;
 }
 
+/// Whether before that distance the ray enters a stretch on which it runs within the surface.
+bool runsWithin(const RayHits& hits, std::size_t ray, const Vector3& along, double distance) {
+  for (std::int64_t row = hits.offsets[ray]; row < hits.offsets[ray + 1]; ++row) {
+    if (hits.distance[row] <= distance && std::abs(along.dot(hits.normal.row(row))) < 1e-8) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void expectNoneTwice(const std::string& where, const RayHits& hits, std::size_t ray) {
   for (std::int64_t a = hits.offsets[ray]; a < hits.offsets[ray + 1]; ++a) {
     for (std::int64_t b = hits.offsets[ray]; b < a; ++b) {
@@ -270,6 +280,7 @@ TEST(RayCast, FindsPointsAtGrazingAngles) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       // A ray along the tangent may stay within the tolerance for the root of it.
       const double slack = std::min(1e-4, 1e-11 / std::max(angles[i], 1e-11)) * unit;
+      if (angles[i] < 1e-5 && runsWithin(all, i, rays.directions[i], 0.7 * unit)) continue;
       EXPECT_TRUE(anyAt(all, i, 0.7 * unit, std::max(slack, 2e-5 * unit * (angles[i] < 1e-5))))
           << name << ", " << textOf(rays.origins[i], rays.directions[i]) << " misses "
           << describe(at[points[i]]) << " at the angle " << angles[i];
