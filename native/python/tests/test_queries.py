@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Closest points and rays: arrays in and out, errors, progress."""
 
+import os
 import pickle
+import subprocess
+import sys
 import threading
 import time
 
@@ -267,6 +270,25 @@ def test_progress_may_use_the_surface(cube):
     assert set(seen) == {3}
 
 
+def test_progress_cannot_hang_the_call_that_it_is_told_of():
+    program = """
+import sys
+import limitsurf as ls, numpy as np
+positions = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, [[0, 1, 2, 3]]))
+try:
+    surface.closest(np.ones((40000, 3)), progress=lambda part: surface.set_positions(positions))
+except (RuntimeError, ValueError) as error:
+    print(error)
+"""
+    subprocess.run(
+        [sys.executable, "-c", program],
+        timeout=20,
+        check=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+
+
 def test_progress_must_be_callable(cube):
     with pytest.raises(TypeError, match="progress"):
         cube.closest([[0, 0, 0]], progress=3)
@@ -279,8 +301,8 @@ def test_progress_must_be_callable(cube):
         (lambda s: s.closest([[0, 0, np.inf]]), ValueError, "row 0.*inf"),
         (lambda s: s.closest(np.zeros((2, 2))), ValueError, "points"),
         (lambda s: s.closest(np.zeros(3)), ValueError, "points"),
-        (lambda s: s.closest("points"), (TypeError, ValueError), ""),
-        (lambda s: s.closest([[1j, 0, 0]]), (TypeError, ValueError), ""),
+        (lambda s: s.closest("points"), (TypeError, ValueError), None),
+        (lambda s: s.closest([[1j, 0, 0]]), (TypeError, ValueError), None),
         (lambda s: s.closest([[0, 0, 0]], -1), ValueError, "max_distance"),
         (lambda s: s.closest([[0, 0, 0]], np.nan), ValueError, "max_distance"),
         (lambda s: s.closest([], np.nan), ValueError, "max_distance"),
@@ -291,7 +313,7 @@ def test_progress_must_be_callable(cube):
         (lambda s: s.closest([[0, 0, 0]], facing=[0, 0, 1], max_angle=-1), ValueError, "max_angle"),
         (lambda s: s.closest([[0, 0, 0]], threads=-1), ValueError, "threads"),
         (lambda s: s.closest([[0, 0, 0]], dtype=int), (TypeError, ValueError), "dtype|float"),
-        (lambda s: s.closest([[0, 0, 0]], 1, [0, 0, 1]), TypeError, ""),
+        (lambda s: s.closest([[0, 0, 0]], 1, [0, 0, 1]), TypeError, None),
         (lambda s: s.ray_cast([[0, 0, 0]], [[0, 0, 0]]), ValueError, "row 0.*direction"),
         (lambda s: s.ray_cast([[0, 0, 0]], [[0, np.nan, 0]]), ValueError, "row 0.*direction"),
         (lambda s: s.ray_cast([[np.nan, 0, 0]], [[0, 1, 0]]), ValueError, "row 0.*origin"),
