@@ -7,6 +7,7 @@
 #include <memory>
 #include <shared_mutex>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "arrays.h"
@@ -146,6 +147,11 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
   }
   const Points points = pointsOf(array);
   const py::gil_scoped_release release;
+  if (HeldPose::isHeldHere(shared)) {
+    throw std::runtime_error(
+        "set_positions() called by a function that a call on the same surface "
+        "called: it would wait for itself");
+  }
   const std::unique_lock<std::shared_mutex> lock(shared.mutex);
   shared.surface().setPositions(points, threads);
   shared.forgetPose();

@@ -92,7 +92,7 @@ void searchInParts(const SharedSurface& shared, Eigen::Index rows, int threads,
                    const py::object& progress, const Body& body) {
   const ProgressReport report(progress);
   const py::gil_scoped_release release;
-  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  const HeldPose held(shared);
   const InterruptionPoint point = interruptible();
   const SurfaceSearch& search = shared.search.get(shared.surface(), threads);
   for (Eigen::Index begin = 0; begin < rows; begin += kRowsPerSearch) {

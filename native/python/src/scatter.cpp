@@ -72,7 +72,7 @@ auto sampled(const SharedSurface& shared, const py::object& density, int threads
   const ProgressReport report(progress);
   const Progress tell = progress.is_none() ? Progress() : Progress(report);
   const py::gil_scoped_release release;
-  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  const HeldPose held(shared);
   const InterruptionPoint point = interruptible();
   const AreaSampler& sampler = shared.sampler.get(shared.surface(), threads);
   return sample(sampler, argument.on(shared.surface(), threads), tell);

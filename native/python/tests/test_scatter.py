@@ -184,6 +184,17 @@ def test_a_density_may_evaluate_the_surface(cube):
         assert np.all(cube.evaluate(at.face, at.uv, derivatives=1).normal[:, 2] > 0)
 
 
+def test_a_density_cannot_repose_the_surface(cube):
+    def density(face, uv):
+        cube.set_positions(cube.positions)
+        return uv[:, 0]
+
+    for scatter in (cube.scatter_uniform, cube.scatter_blue_noise):
+        with pytest.raises(RuntimeError, match="set_positions"):
+            scatter(count=10, density=density)
+    cube.set_positions(2 * cube.positions)  # afterwards it can be
+
+
 @pytest.mark.parametrize("call", ["scatter_uniform", "scatter_blue_noise"])
 class TestErrors:
     def scatter(self, surface, call, **more):
