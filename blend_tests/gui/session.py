@@ -21,6 +21,7 @@ OUT = Path("/out")
 PACKAGES = OUT
 WIDTH, HEIGHT = 1280, 800
 SHOWN_AFTER = 0.5  # seconds: what was drawn is on the screen
+ROW = 20  # pixels, of a button
 TAB_STRIP = 22  # pixels at the sidebar's right edge
 ADDON = "bl_ext.user_default.limit_surface"
 
@@ -185,9 +186,9 @@ class BlenderSession:
 
     def _find(self, x: float, top: float, bottom: float, copied: str) -> tuple[float, float]:
         """What Ctrl+C copies tells what is under the mouse."""
-        for y in range(round(top), round(bottom), -10):
+        self.call("clear_clipboard")
+        for y in range(round(top), round(bottom), -ROW * 3 // 4):
             self.move(x, y)
-            self.call("clear_clipboard")
             self.key("ctrl+c")
             if self.call("clipboard").startswith(copied):
                 return x, y
