@@ -47,6 +47,9 @@ class PatchSearch {
  private:
   /// Cells so small that the distance over one varies by less than rounding.
   static constexpr int kMostDepth = 40;
+  /// A patch so far from being one, as of no area, that its closest point cannot be told is not
+  /// followed for ever.
+  static constexpr int kMostCells = 1 << 17;
   static constexpr int kMostIterations = 40;
   /// Every so many halvings the squared distance is made anew.
   static constexpr int kFreshDepths = 4;
@@ -102,13 +105,16 @@ class PatchSearch {
   /// Whether the distance falls towards sides of the cell beyond which the sheet goes on: then no
   /// foot is in it.
   bool fallsOutwards(const Cell& cell, const SquaredDistance::Shape& shape) const {
-    const auto ends = [&](unsigned side, bool at_border) {
-      return at_border && (patch_.borders & side) != 0;
-    };
-    return (shape.s_strictly && !(shape.s_side < 0 ? ends(kSideS0, cell.s == 0)
-                                                   : ends(kSideS1, cell.s + cell.size == 1))) ||
-           (shape.t_strictly && !(shape.t_side < 0 ? ends(kSideT0, cell.t == 0)
-                                                   : ends(kSideT1, cell.t + cell.size == 1)));
+    const unsigned borders = bordersOf(cell);
+    return (shape.s_strictly && (borders & (shape.s_side < 0 ? kSideS0 : kSideS1)) == 0) ||
+           (shape.t_strictly && (borders & (shape.t_side < 0 ? kSideT0 : kSideT1)) == 0);
+  }
+
+  /// The cell's sides at which the sheet ends.
+  unsigned bordersOf(const Cell& cell) const {
+    return patch_.borders &
+           ((cell.s == 0 ? kSideS0 : 0u) | (cell.t == 0 ? kSideT0 : 0u) |
+            (cell.s + cell.size == 1 ? kSideS1 : 0u) | (cell.t + cell.size == 1 ? kSideT1 : 0u));
   }
 
   /// What rounding may have done to the coefficients, and to those of its quarters.
@@ -130,7 +136,8 @@ class PatchSearch {
     const double least_slack = reach * best_.tolerance;
     const double slack = noise <= 4 * least_slack ? 5 * least_slack : least_slack;
     const SquaredDistance::Shape shape = f.shape(slack);
-    if (facing_ && fallsOutwards(cell, shape)) {
+    if (facing_ && (fallsOutwards(cell, shape) ||
+                    (!shape.convex && bordersOf(cell) == 0 && f.isNowhereConvex()))) {
       return;
     }
     double s, t;
@@ -138,7 +145,8 @@ class PatchSearch {
     s = cell.s + sideOr(shape.s_side, s) * cell.size;
     t = cell.t + sideOr(shape.t_side, t) * cell.size;
     const bool corner = shape.s_side != 0 && shape.t_side != 0;
-    if (cell.depth == kMostDepth || corner || (shape.convex && minimize(cell, slack, s, t))) {
+    if (cell.depth == kMostDepth || ++cells_ > kMostCells || corner ||
+        (shape.convex && minimize(cell, slack, s, t))) {
       if (!facing_ || isFoot(cell, s, t)) {
         offer(s, t);
       }
@@ -317,13 +325,11 @@ class PatchSearch {
       return slope < -kFlat * (value * std::sqrt(dot(tangent, tangent)));
     };
     const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
-    const auto ends = [&](unsigned side, double x, double border) {
-      return x == border && (patch_.borders & side) != 0;
-    };
-    if ((s == cell.s && !ends(kSideS0, s, 0) && falls(at.ds, -1)) ||
-        (s == s1 && !ends(kSideS1, s, 1) && falls(at.ds, 1)) ||
-        (t == cell.t && !ends(kSideT0, t, 0) && falls(at.dt, -1)) ||
-        (t == t1 && !ends(kSideT1, t, 1) && falls(at.dt, 1))) {
+    const unsigned borders = bordersOf(cell);
+    if ((s == cell.s && !(borders & kSideS0) && falls(at.ds, -1)) ||
+        (s == s1 && !(borders & kSideS1) && falls(at.ds, 1)) ||
+        (t == cell.t && !(borders & kSideT0) && falls(at.dt, -1)) ||
+        (t == t1 && !(borders & kSideT1) && falls(at.dt, 1))) {
       return false;
     }
     // Patches keep the orientation of their face, turned by right angles.
@@ -341,6 +347,7 @@ class PatchSearch {
   const Facing* facing_;
   ClosestSoFar& best_;
   BezierPatch relative_;
+  int cells_ = 0;
 };
 
 }  // namespace

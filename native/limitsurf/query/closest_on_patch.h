@@ -22,7 +22,7 @@ struct ClosestSoFar {
   /// What may be left out: whose squared distance is at least this.
   double enough() const {
     const double least = distance - tolerance;
-    return least > 0 ? least * least : 0;
+    return least > 0 ? least * least : -std::numeric_limits<double>::infinity();
   }
   /// `offset`: from the searching point to the one found at `where`.
   void offer(const Vector3& offset, const Location& where) {

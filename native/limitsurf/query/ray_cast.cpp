@@ -199,7 +199,7 @@ class RaySearch {
 
   /// Relative to the diagonal. A touch is found wherever the ray is within the tolerance of the
   /// surface: along the root of that.
-  static constexpr double kSame = 1e-10, kSameTouch = 4e-6;
+  static constexpr double kSame = 2 * kSearchError, kSameTouch = 4e-6;
 
   const SearchTree& data_;
   PatchCache cache_;

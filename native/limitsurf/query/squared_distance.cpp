@@ -151,4 +151,24 @@ bool SquaredDistance::isConvex(double slack) const {
   return ss * tt >= st * st;
 }
 
+bool SquaredDistance::isNowhereConvex() const {
+  double ss = -kInfinity, tt = -kInfinity, low = kInfinity, high = -kInfinity;
+  for (int j = 0; j < 7; ++j) {
+    for (int i = 0; i < 5; ++i) {
+      ss = std::max(ss, f_.at(i, j) - 2 * f_.at(i + 1, j) + f_.at(i + 2, j));
+      tt = std::max(tt, f_.at(j, i) - 2 * f_.at(j, i + 1) + f_.at(j, i + 2));
+    }
+  }
+  for (int j = 0; j < 6; ++j) {
+    for (int i = 0; i < 6; ++i) {
+      const double st = (f_.at(i + 1, j + 1) - f_.at(i, j + 1)) - (f_.at(i + 1, j) - f_.at(i, j));
+      low = std::min(low, st);
+      high = std::max(high, st);
+    }
+  }
+  const double rounding = kRounding * f_.largest();
+  const double st = 36 * std::max({0., low, -high});
+  return ss < -rounding || tt < -rounding || 30 * (ss + rounding) * 30 * (tt + rounding) < st * st;
+}
+
 }  // namespace limitsurf

@@ -37,6 +37,9 @@ class SquaredDistance {
   };
   Shape shape(double slack) const;
 
+  /// Whether there is no minimum inside the square: at none of its points the Hessian is positive.
+  bool isNowhereConvex() const;
+
  private:
   /// Whether the Hessian's lesser eigenvalue is at least -slack.
   bool isConvex(double slack) const;

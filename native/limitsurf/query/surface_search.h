@@ -77,7 +77,7 @@ class SurfaceSearch {
                int threads = 0) const;
 
   /// All of them, sorted along each ray. Hits on faces with a common vertex count once if they are
-  /// within 1e-10 diagonals of each other, touches within 4e-6. Of a stretch on which the ray runs
+  /// within 2 kSearchError of each other, touches within 4e-6. Of a stretch on which the ray runs
   /// within the surface, points at the beginning of each patch are given.
   RayHits rayCastAll(const Points& origins, const Points& directions,
                      double max_distance = std::numeric_limits<double>::infinity(),
