@@ -160,6 +160,11 @@ bool runsWithin(const RayHits& hits, std::size_t ray, const Vector3& along, doub
   return false;
 }
 
+bool isFlat(const LimitSurface& surface, const Location& at, double unit) {
+  const Curvature k = surface.curvature({&at, 1});
+  return std::max(std::abs(k.k1[0]), std::abs(k.k2[0])) * unit < 1e-9;
+}
+
 void expectNoneTwice(const std::string& where, const RayHits& hits, std::size_t ray) {
   for (std::int64_t a = hits.offsets[ray]; a < hits.offsets[ray + 1]; ++a) {
     for (std::int64_t b = hits.offsets[ray]; b < a; ++b) {
@@ -236,7 +241,7 @@ TEST(RayCast, FindsThePointsItIsSentThrough) {
       const double rounding = 4 * 0x1p-53 * (distances[i] + rays.origins[i].norm());
       const Vector3 normal = e.normal.row(row);
       const double sine = normal.allFinite() ? std::abs(normal.dot(rays.directions[i])) : 1e-3;
-      const bool on_boundary_perhaps = rounding > kSearchError * unit / 20;
+      const bool on_boundary_perhaps = rounding > kSearchError * unit / 400;
       if (on_boundary_perhaps) continue;
       EXPECT_TRUE(
           anyAt(all, i, distances[i], (2 * kSearchError * unit + rounding) / std::max(sine, 1e-6)))
@@ -280,7 +285,15 @@ TEST(RayCast, FindsPointsAtGrazingAngles) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       // A ray along the tangent may stay within the tolerance for the root of it.
       const double slack = std::min(1e-4, 1e-11 / std::max(angles[i], 1e-11)) * unit;
-      if (angles[i] < 1e-5 && runsWithin(all, i, rays.directions[i], 0.7 * unit)) continue;
+      // What lies on the border of a face may be the border of the surface, which a ray at such an
+      // angle passes by for rounding; in a plane the ray meets the surface before.
+      const Location& place = at[points[i]];
+      const auto inside = [](double x) { return x > 1e-6 && x < 1 - 1e-6; };
+      if (angles[i] < 1e-3 && !(inside(place.u) && inside(place.v))) continue;
+      if (angles[i] < 1e-5 &&
+          (runsWithin(all, i, rays.directions[i], 0.7 * unit) || isFlat(surface, place, unit))) {
+        continue;
+      }
       EXPECT_TRUE(anyAt(all, i, 0.7 * unit, std::max(slack, 2e-5 * unit * (angles[i] < 1e-5))))
           << name << ", " << textOf(rays.origins[i], rays.directions[i]) << " misses "
           << describe(at[points[i]]) << " at the angle " << angles[i];

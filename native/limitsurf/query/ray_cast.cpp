@@ -158,7 +158,7 @@ class RaySearch {
     const double aside = (to_vertex - z * frame.direction).norm();
     if (aside <= found_.tolerance + data_.patches.coreRadius(core) &&
         z >= found_.from - found_.tolerance && z <= found_.nearest) {
-      found_.add({z, data_.patches.rectangle(core).at(0, 0), vertex, false});
+      found_.add({z, data_.patches.rectangle(core).at(0, 0), vertex, 2 * found_.tolerance});
     }
   }
 
@@ -168,15 +168,17 @@ class RaySearch {
     std::vector<RayHit>& hits = found_.hits;
     std::stable_sort(hits.begin(), hits.end(),
                      [](const RayHit& a, const RayHit& b) { return a.distance < b.distance; });
-    const double same = kSame * data_.diagonal, same_touch = kSameTouch * data_.diagonal;
+    double longest = 0;
+    for (const RayHit& hit : hits) {
+      longest = std::max(longest, hit.slack);
+    }
     std::vector<RayHit> merged;
     for (const RayHit& hit : hits) {
       bool known = false;
       for (auto other = merged.rbegin();
-           !known && other != merged.rend() && hit.distance - other->distance <= same_touch;
+           !known && other != merged.rend() && hit.distance - other->distance <= 2 * longest;
            ++other) {
-        const double apart = (hit.position - other->position).norm();
-        known = apart <= (hit.grazes && other->grazes ? same_touch : same) &&
+        known = (hit.position - other->position).norm() <= hit.slack + other->slack &&
                 areNeighbours(hit.at.face, other->at.face);
       }
       if (!known) {
@@ -196,10 +198,6 @@ class RaySearch {
                     b = data_.surface.mesh().faceVertices(base[other]);
     return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
   }
-
-  /// Relative to the diagonal. A touch is found wherever the ray is within the tolerance of the
-  /// surface: along the root of that.
-  static constexpr double kSame = 2 * kSearchError, kSameTouch = 4e-6;
 
   const SearchTree& data_;
   PatchCache cache_;

@@ -82,13 +82,13 @@ class PatchRay {
   /// Cells in which a patch's second differences are below rounding.
   static constexpr int kMostDepth = 26;
   /// From here on a cell may be the place where the ray touches the patch.
-  static constexpr int kTouchDepth = 8;
+  static constexpr int kTouchDepth = 2;
   /// Rays that stay within the tolerance of a patch for long are not followed any further.
-  static constexpr int kMostDeepCells = 1 << 13;
-  /// A ray at such an angle to the surface is deep in it by less than kSearchError of a patch.
-  static constexpr double kTouchingSine = 2e-6;
-  /// Hits at such an angle may be one touch, come upon in several cells.
-  static constexpr double kGrazingSine = 1e-5;
+  static constexpr int kDeep = 8, kMostDeepCells = 1 << 13;
+  /// At smaller angles the ray runs within the surface: of that only the beginning is kept.
+  static constexpr double kWithinSine = 1e-9;
+  /// At smaller angles the tolerance is left by the surface's curvature, along its root.
+  static constexpr double kLeastSine = 1e-7;
 
   static bool isWithin(const Cubic& f, double margin) {
     return f.least() >= -margin && f.largest() <= margin;
@@ -138,7 +138,7 @@ class PatchRay {
     if (cell.depth >= kTouchDepth && touchesIn(cell)) {
       return;
     }
-    if (cell.depth == kMostDepth || (cell.depth >= kTouchDepth && ++deep_cells_ > kMostDeepCells)) {
+    if (cell.depth == kMostDepth || (cell.depth >= kDeep && ++deep_cells_ > kMostDeepCells)) {
       return;
     }
     divide(cell);
@@ -153,9 +153,16 @@ class PatchRay {
   }
 
   void touch(double s, double t, double z) {
-    if (z < touched_ && counts(z)) {
-      touched_ = z;
-      replaceTouch(s, t, z);
+    if (!counts(z)) {
+      return;
+    }
+    if (out_.first_only || sineAt(s, t) > kWithinSine) {
+      out_.add(hitAt(s, t, z));
+    } else if (within_ >= out_.hits.size()) {
+      within_ = out_.hits.size();
+      out_.add(hitAt(s, t, z));
+    } else if (z < out_.hits[within_].distance) {
+      out_.hits[within_] = hitAt(s, t, z);
     }
   }
 
@@ -230,6 +237,28 @@ class PatchRay {
     return seen;
   }
 
+  /// Newton's step; where that leads out of the cell, the one to the nearest point on the side.
+  static void step(const Seen& f, const Cell& cell, double s, double t, double& next_s,
+                   double& next_t) {
+    const double determinant = f.xs * f.yt - f.xt * f.ys;
+    const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
+    next_s = s - (f.yt * f.x - f.xt * f.y) / determinant;
+    next_t = t - (f.xs * f.y - f.ys * f.x) / determinant;
+    const double beyond_s = std::max(cell.s - next_s, next_s - s1),
+                 beyond_t = std::max(cell.t - next_t, next_t - t1);
+    if (beyond_s > 0 && beyond_s >= beyond_t) {
+      next_s = std::clamp(next_s, cell.s, s1);
+      const double x = f.x + f.xs * (next_s - s), y = f.y + f.ys * (next_s - s);
+      next_t = t - (x * f.xt + y * f.yt) / (f.xt * f.xt + f.yt * f.yt);
+    } else if (beyond_t > 0) {
+      next_t = std::clamp(next_t, cell.t, t1);
+      const double x = f.x + f.xt * (next_t - t), y = f.y + f.yt * (next_t - t);
+      next_s = s - (x * f.xs + y * f.ys) / (f.xs * f.xs + f.ys * f.ys);
+    }
+    next_s = std::clamp(next_s, cell.s, s1);
+    next_t = std::clamp(next_t, cell.t, t1);
+  }
+
   /// Newton's iteration, kept within the cell. Whether the ray passes within the tolerance of where
   /// it ends.
   bool solve(const Cell& cell, double& s, double& t) const {
@@ -238,11 +267,8 @@ class PatchRay {
     for (int i = 0; i < kMostIterations; ++i) {
       const Seen f = look(s, t);
       const double residual = f.x * f.x + f.y * f.y;
-      const double determinant = f.xs * f.yt - f.xt * f.ys;
-      const double next_s = std::clamp(s - (f.yt * f.x - f.xt * f.y) / determinant, cell.s,
-                                       cell.s + cell.size),
-                   next_t = std::clamp(t - (f.xs * f.y - f.ys * f.x) / determinant, cell.t,
-                                       cell.t + cell.size);
+      double next_s, next_t;
+      step(f, cell, s, t, next_s, next_t);
       const bool close = residual <= out_.tolerance * out_.tolerance;
       if (!(std::isfinite(next_s) && std::isfinite(next_t)) || (close && residual >= before)) {
         return close;
@@ -271,23 +297,41 @@ class PatchRay {
 
   /// Whether the ray touches the surface in the cell without crossing it, or runs within it.
   ///
-  /// Then cells around that place cannot be told from it by their hulls. The cell is done with but
-  /// for what is nearer along the ray.
+  /// Then cells around that place cannot be told from it by their hulls.
   bool touchesIn(const Cell& cell) {
     double s = cell.s + cell.size / 2, t = cell.t + cell.size / 2;
-    if (!approach(cell, s, t)) {
-      return false;
-    }
-    if (sineAt(s, t) > kTouchingSine) {
+    if (!isThin(cell, look(s, t)) || !approach(cell, s, t)) {
       return false;
     }
     touch(s, t, along(s, t));
     for (int side = 0; side < 4; ++side) {
       touchSide(cell, side);
     }
-    // What runs within the surface enters it at the cell's nearest end: look closer there.
-    return cell.depth >= kMostDepth || cell.z.least() >= touched_ - out_.tolerance;
+    return true;
   }
+
+  /// Whether all of the cell is as near as matters to a plane through the ray, tangent in `middle`.
+  bool isThin(const Cell& cell, const Seen& middle) const {
+    const bool along_s = std::hypot(middle.xs, middle.ys) > std::hypot(middle.xt, middle.yt);
+    double nx = along_s ? -middle.ys : -middle.yt, ny = along_s ? middle.xs : middle.xt;
+    const double length = std::hypot(nx, ny);
+    if (!(length > 0)) {
+      return false;
+    }
+    nx /= length;
+    ny /= length;
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 4; ++i) {
+        if (std::abs(nx * cell.x.at(i, j) + ny * cell.y.at(i, j)) > kThin * out_.tolerance) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  /// In tolerances: up to here a ray that goes in and out again only touches (kSearchError).
+  static constexpr double kThin = 10;
 
   /// A ray within the surface comes into the cell across one of its sides.
   void touchSide(const Cell& cell, int side) {
@@ -366,7 +410,7 @@ class PatchRay {
     BezierPatch::Values at;
     patch_.evaluate<0>(s, t, at);
     return {z, patch_.on.at(s, t), (patch_.anchor + at.value).head<3>().matrix(),
-            sineAt(s, t) <= kGrazingSine};
+            2 * out_.tolerance / std::max(sineAt(s, t), kLeastSine)};
   }
 
   bool counts(double z) const { return z >= out_.from - out_.tolerance && z <= out_.nearest; }
@@ -378,25 +422,14 @@ class PatchRay {
     }
   }
 
-  /// Of the touches on a patch only the first along the ray is kept.
-  void replaceTouch(double s, double t, double z) {
-    if (!out_.first_only && touch_ < out_.hits.size()) {
-      out_.hits[touch_] = hitAt(s, t, z);
-      return;
-    }
-    touch_ = out_.hits.size();
-    out_.add(hitAt(s, t, z));
-  }
-
   static constexpr double kFar = std::numeric_limits<double>::infinity();
 
   const BezierPatch& patch_;
   const RayFrame& ray_;
   CollectedHits& out_;
-  double x_[16], y_[16], z_[16];  // the whole patch as seen along the ray
-  double touched_ = kFar;
+  double x_[16], y_[16], z_[16];                       // the whole patch as seen along the ray
+  std::size_t within_ = static_cast<std::size_t>(-1);  // the hit that stands for a stretch
   int deep_cells_ = 0;
-  std::size_t touch_ = static_cast<std::size_t>(-1);
 };
 
 }  // namespace

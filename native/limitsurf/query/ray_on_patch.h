@@ -13,8 +13,9 @@ struct RayHit {
   double distance;
   Location at;
   Vector3 position;
-  /// The ray touches the surface there without crossing it, but for rounding.
-  bool grazes;
+  /// How far along the ray the surface is within twice the tolerance of it: other hits so near may
+  /// be the same.
+  double slack;
 };
 
 /// A ray with two axes across it, in coordinates of which the surface is near the origin.

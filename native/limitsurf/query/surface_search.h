@@ -77,8 +77,9 @@ class SurfaceSearch {
                int threads = 0) const;
 
   /// All of them, sorted along each ray. Hits on faces with a common vertex count once if they are
-  /// within 2 kSearchError of each other, touches within 4e-6. Of a stretch on which the ray runs
-  /// within the surface, points at the beginning of each patch are given.
+  /// nearer to each other than kSearchError, divided by the sine of the angle between ray and
+  /// surface but by 1e-7 at least. Of a stretch on which the ray runs within the surface, points at
+  /// the beginning of each patch are given.
   RayHits rayCastAll(const Points& origins, const Points& directions,
                      double max_distance = std::numeric_limits<double>::infinity(),
                      int threads = 0) const;

@@ -281,7 +281,7 @@ constexpr const char* kRayCastAllDoc =
 
 As ray_cast(), but RayHits: the fields of Hits with one row for each hit, and .offsets (n + 1,)
 int64: the hits of ray i are rows offsets[i] to offsets[i + 1] - 1. A hit on the border of several
-faces counts once; of a stretch on which a ray runs within the surface, the first point of each
+faces counts once; of a stretch on which a ray runs within the surface, the beginning on each
 patch is given.
 )";
 
