@@ -44,8 +44,7 @@ Points facingOf(const py::object& facing, const Points& points) {
   if (array.ndim() == 1 && array.shape(0) == 3) {
     return Eigen::Map<const Eigen::RowVector3d>(array.data()).replicate(points.rows(), 1);
   }
-  requireRows<std::invalid_argument>(array, "facing", 3);
-  Points rows = pointsOf(array);
+  const Points rows = rowsOfThree(facing, "facing");
   requireAsMany(rows, "facing", points, "points");
   return rows;
 }
