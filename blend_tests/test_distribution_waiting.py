@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids, scatter
+from limit_surface import attributes, ids, scatter, watched
 from limit_surface.errors import CancelledError
 from limit_surface.job import Job, part_of
 
@@ -65,7 +65,7 @@ def slowly(monkeypatch):
         return evaluate(self, face, uv)
 
     monkeypatch.setattr(scatter.Ground, "evaluate", wait)
-    monkeypatch.setattr(scatter, "PATIENCE", 0.01)
+    monkeypatch.setattr(watched, "PATIENCE", 0.01)
     yield go_on
     go_on.set()
 
@@ -164,6 +164,16 @@ def test_memory_that_runs_out_in_the_thread(monkeypatch):
     before = scenes.file_contents()
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
     assert "Not enough memory" in operator.report.call_args.args[1]
+    assert scenes.file_contents() == before
+
+
+def test_more_than_blender_holds_is_refused_even_if_large_counts_are_allowed():
+    scenes.cross()
+    before = scenes.file_contents()
+    chosen = {"distribution": "UNIFORM", "count": 2**31 - 1, "points": 5, "allow_large": True}
+    operator = stand_in("hair", **chosen)
+    assert operator.invoke(window_context(), None) == {"CANCELLED"}
+    assert "more than the 2,147,483,647 that Blender holds" in operator.report.call_args.args[1]
     assert scenes.file_contents() == before
 
 

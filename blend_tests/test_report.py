@@ -227,6 +227,13 @@ def test_attributes_of_somebody_else():
     refusal(ob, "sheet has an attribute limit_distance of another kind .FLOAT on FACE.")
 
 
+@pytest.mark.parametrize("name", [ids.DISTANCE, ids.DISTANCE_COLOR])
+def test_a_vertex_group_of_that_name(name):
+    ob = parity_zoo.add("sheet")
+    ob.vertex_groups.new(name=name)
+    refusal(ob, f"sheet has a vertex group {name}: rename or remove it")
+
+
 def test_render_that_cannot_be_had():
     ob = parity_zoo.add("sheet")
     ob.modifiers.new("Mirror", "MIRROR").show_viewport = False
@@ -420,13 +427,14 @@ def test_escape_leaves_nothing(slowly):
     before = scenes.file_contents(), sorted(ob.data.attributes.keys())
     operator, context = watched()
     assert operator.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
+    job = operator._job
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
     operator.report.assert_called_with({"INFO"}, "Cancelled: nothing was measured")
     context.window_manager.event_timer_remove.assert_called_once()
     slowly.set()
-    assert operator._job.wait(20)
+    assert job.wait(20)
     with pytest.raises(CancelledError):
-        operator._job.result()
+        job.result()
     assert (scenes.file_contents(), sorted(ob.data.attributes.keys())) == before
     assert ids.REPORT not in ob
 

@@ -30,7 +30,7 @@ def test_table_lists_the_properties_and_their_defaults():
     rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]+?)`? \|", section, re.MULTILINE))
     properties = bpy.ops.object.limit_snap.get_rna_type().properties
     shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
-    assert list(rows) == list(shown)
+    assert rows.keys() == shown.keys()
     for name, said in rows.items():
         prop = shown[name]
         if prop.type == "BOOLEAN":

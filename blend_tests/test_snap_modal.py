@@ -92,6 +92,32 @@ def test_strand(target, hair_mode):
     np.testing.assert_array_equal(uv[3], UV)
 
 
+@pytest.mark.parametrize("kind", ["VIEWPORT", "RENDER"])
+def test_on_the_polygons_that_are_shown(target, kind):
+    """At a corner of a face they have the vertex of the subdivided mesh."""
+    subsurf = scenes.add_subsurf(target)
+    subsurf.levels, subsurf.render_levels = 1, 2
+    ob = pin(target)
+    assert drag(uv=(0, 0), target=kind) == {"FINISHED"}
+    subsurf.levels = 1 if kind == "VIEWPORT" else 2
+    bpy.context.view_layer.update()
+    shown = target.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    vertex = shown.data.vertices[target.data.polygons[FACE].vertices[0]]
+    place = ob.matrix_world.translation
+    np.testing.assert_allclose(place, target.matrix_world @ vertex.co, atol=1e-6)
+    limit = scenes.surface_without_addon(target).evaluate([FACE], [(0, 0)]).position
+    on_limit = scenes.transformed(target.matrix_world, limit)[0]
+    assert np.linalg.norm(np.array(place) - on_limit) > 1e-3
+
+
+def test_a_target_that_comes_along(target):
+    ob = pin(target)
+    follow = target.constraints.new("COPY_LOCATION")
+    follow.target, follow.use_offset = ob, True
+    bpy.context.view_layer.update()
+    refused("Cross moves along with it")
+
+
 def refused(match, **properties):
     before = [tuple(ob.matrix_basis.translation) for ob in bpy.data.objects]
     with pytest.raises(RuntimeError, match=match):

@@ -46,6 +46,13 @@ class Cage:
     ignored: tuple[str, ...]  # enabled modifiers behind the subdivision
 
     @property
+    def notes(self) -> list[str]:
+        """What reports say of it."""
+        if not self.ignored:
+            return [str(self.rules)]
+        return [str(self.rules), f"ignored behind {self.rules.subsurf}: {', '.join(self.ignored)}"]
+
+    @property
     def ptex_face_count(self) -> int:
         return int(np.where(self.face_sizes == 4, 1, self.face_sizes).sum())
 

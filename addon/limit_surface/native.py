@@ -31,5 +31,10 @@ def available() -> bool:
     return limitsurf is not None
 
 
+def obstacle() -> str:
+    """Why nothing can be done without it, if so."""
+    return "" if available() else f"The native module does not load: {reason}"
+
+
 def version() -> str:
     return getattr(limitsurf, "__version__", "unknown version")

@@ -6,11 +6,12 @@ import bpy
 from . import native
 
 
-def active_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """A mesh object, in Object Mode; the operator's poll message says what is missing."""
-    ob = context.active_object
+def mesh_in_object_mode(
+    operator: type[bpy.types.Operator], context: bpy.types.Context, ob: bpy.types.Object | None
+) -> bool:
+    """`ob` is what would be worked on; the operator's poll message says what is missing."""
     if not native.available():
-        operator.poll_message_set(f"The native module does not load: {native.reason}")
+        operator.poll_message_set(native.obstacle())
     elif ob is None or ob.type != "MESH":
         operator.poll_message_set("Make a mesh object active first")
     elif context.mode != "OBJECT":

@@ -8,20 +8,15 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, StringProperty
 
-from . import cage, displayed, native, objects, roots
+from . import cage, displayed, objects, polling, roots
 from .distribution import properties, region
 from .distribution.spread import Scattered, Spread
 from .errors import RefusalError
 from .job import Job, Progress, part_of
-from .progress import Waiting, progress_bar
 from .request import RequestSize
+from .watched import WatchedOperator
 
 SCATTERED = 0.5  # of the progress, when the locations are there
-
-#: Long work lets the user wait, and watch it, from here on
-PATIENCE = 0.3  # seconds
-
-VIEW_NAVIGATION = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION"}
 
 
 @dataclass(frozen=True)
@@ -73,8 +68,15 @@ class Order:
         return Ground(self.region.cage, self.region, scattered, self.shown)
 
 
-class ScatterOperator(properties.DistributionProperties):
-    """Mixin: locations by one of the distributions, and the rules of asking, waiting and reporting.
+@dataclass(frozen=True)
+class Made:
+    surface: tuple[str, str | None]  # the object's key
+    ground: Ground
+    things: Any  # what the operator's maker makes
+
+
+class ScatterOperator(WatchedOperator, properties.DistributionProperties):
+    """Mixin: locations by one of the distributions, and the rules of asking and reporting.
 
     A subclass names what it makes (`noun`, plural) and makes it in two steps: `maker` gives a
     function that makes arrays, which may run in a thread of its own, and `add` puts them into the
@@ -97,46 +99,30 @@ class ScatterOperator(properties.DistributionProperties):
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
-    _someone_waits = False
+    @property
+    def too_large(self) -> str:
+        return f"Not enough memory for so many {self.noun}"
+
+    @property
+    def cancelled(self) -> str:
+        return f"Cancelled: no {self.noun} were made"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not native.available():
-            cls.poll_message_set(f"The native module does not load: {native.reason}")
-        elif _surface_object(context) is None:
-            cls.poll_message_set("Make a mesh object active first")
-        elif context.mode != "OBJECT":
-            cls.poll_message_set("Only in Object Mode")
-        else:
-            return True
-        return False
+        return polling.mesh_in_object_mode(cls, context, _surface_object(context))
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        return self._guarded(self._invoke, context, event)
+        return self._guarded(self._ask, context, event)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        return self._guarded(self._execute, context)
+    def start(self, context: bpy.types.Context) -> set[str]:
+        order = self._order(context)
+        order.size.check(self.allow_large)
+        return self._begin(context, order)
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if event.type == "ESC" and event.value == "PRESS":
-            self.cancel(context)
-            self.report({"INFO"}, f"Cancelled: no {self.noun} were made")
-            return {"CANCELLED"}
-        if event.type in VIEW_NAVIGATION:
-            return {"PASS_THROUGH"}
-        if event.type != "TIMER":
-            return {"RUNNING_MODAL"}
-        self._waiting.show(self._job.part)
-        if not self._job.is_done:
-            return {"RUNNING_MODAL"}
-        self._waiting.end()
-        return self._guarded(self._finish, context)
-
-    def cancel(self, _context: bpy.types.Context) -> None:
-        """By the user; also if another file is loaded, or Blender quits."""
-        self._job.cancel()
-        self._job = None
-        self._waiting.end()
+    def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
+        self.add(context, objects.find(made.surface), made.things)
+        self._report(made.ground)
+        return {"FINISHED"}
 
     def maker(self, found: cage.Cage) -> Any:
         """A function of the ground and of progress, that makes what `add` gets. It is called
@@ -165,15 +151,8 @@ class ScatterOperator(properties.DistributionProperties):
     def draw_own(self, layout: bpy.types.UILayout) -> None:
         """The subclass's own properties."""
 
-    def _guarded(self, step: Any, *arguments: Any) -> set[str]:
-        try:
-            return step(*arguments)
-        except (RefusalError, *native.errors) as error:
-            return self._refuse(error)
-        except MemoryError:
-            return self._refuse(f"Not enough memory for so many {self.noun}")
-
-    def _invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def _ask(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Whether so much is meant, where that is not settled."""
         order = self._order(context)
         self._someone_waits = True
         if order.size.is_large and not self.allow_large:
@@ -181,42 +160,19 @@ class ScatterOperator(properties.DistributionProperties):
             return context.window_manager.invoke_confirm(
                 self, event, title=self.bl_label, message=f"Make {order.size}?", confirm_text="Make"
             )
-        return self._start(context, order)
-
-    def _execute(self, context: bpy.types.Context) -> set[str]:
-        order = self._order(context)
         order.size.check(self.allow_large)
-        return self._start(context, order)
+        return self._begin(context, order)
 
-    def _start(self, context: bpy.types.Context, order: Order) -> set[str]:
+    def _begin(self, context: bpy.types.Context, order: Order) -> set[str]:
         self.summary, self.surface = "", order.surface[0]
         self.amount = order.spread.amount  # the redo panel shows it
         make = self.maker(order.region.cage)
 
-        def work(progress: Progress) -> tuple[Ground, Any]:
+        def work(progress: Progress) -> Made:
             ground = order.ground(part_of(progress, 0, SCATTERED))
-            return ground, make(ground, part_of(progress, SCATTERED, 1))
+            return Made(order.surface, ground, make(ground, part_of(progress, SCATTERED, 1)))
 
-        job = Job(work)
-        someone_waits, self._someone_waits = self._someone_waits, False
-        self._job, self._surface_key = job, order.surface
-        if not (someone_waits and context.window):
-            with progress_bar(context.window_manager) as show:
-                job.run(show)
-            return self._finish(context)
-        job.start()
-        if job.wait(PATIENCE):
-            return self._finish(context)
-        self._waiting = Waiting(context, f"Making {order.size.how_many}")
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def _finish(self, context: bpy.types.Context) -> set[str]:
-        job, self._job = self._job, None  # Blender keeps operators, for the redo panel
-        ground, made = job.result()
-        self.add(context, objects.find(self._surface_key), made)
-        self._report(ground)
-        return {"FINISHED"}
+        return self.watch(context, Job(work), f"Making {order.size.how_many}")
 
     def _order(self, context: bpy.types.Context) -> Order:
         self.check_properties()
@@ -237,10 +193,6 @@ class ScatterOperator(properties.DistributionProperties):
             shown = displayed.read(ob, depsgraph, covered.cage, self.target)
         return Order(objects.key(ob), covered, spread, shown, size)
 
-    def _refuse(self, reason: object) -> set[str]:
-        self.report({"ERROR"}, str(reason))
-        return {"CANCELLED"}
-
     def _report(self, ground: Ground) -> None:
         found, refused = ground.cage, ground.region.refused
         faces = ground.region.face_count
@@ -253,9 +205,7 @@ class ScatterOperator(properties.DistributionProperties):
                 f"{len(refused):,} of {len(found.face_sizes):,} faces have no limit surface and "
                 f"were left out: {region.reasons(refused)}",
             )
-        notes = [f"{self.summary} of {self.surface}", str(found.rules)]
-        if found.ignored:
-            notes.append(f"ignored behind {found.rules.subsurf}: {', '.join(found.ignored)}")
+        notes = [f"{self.summary} of {self.surface}", *found.notes]
         if found.without_uv_map:
             notes.append(f"no UVs stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))

@@ -57,11 +57,11 @@ class WatchedOperator:
         if not self._job.is_done:
             return {"RUNNING_MODAL"}
         self._waiting.end()
-        return self._guarded(self._finish, context, self._job)
+        return self._guarded(self._finish, context, self._taken_job())
 
     def cancel(self, _context: bpy.types.Context) -> None:
         """By ESC; or another file is loaded, or Blender quits, while somebody waits."""
-        self._job.cancel()
+        self._taken_job().cancel()
         self._waiting.end()
 
     def watch(self, context: bpy.types.Context, job: Job, text: str) -> set[str]:
@@ -76,6 +76,11 @@ class WatchedOperator:
         self._job, self._waiting = job, Waiting(context, text)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
+
+    def _taken_job(self) -> Job:
+        """Blender keeps operators, for the redo panel: not what they have made."""
+        job, self._job = self._job, None
+        return job
 
     def _finish(self, context: bpy.types.Context, job: Job) -> set[str]:
         return self.finish(context, job.result())

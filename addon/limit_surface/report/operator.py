@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from .. import cage, displayed, ids, polling
-from ..errors import RefusalError
+from .. import cage, displayed, ids, objects, polling
 from ..job import Job, Progress
 from ..watched import WatchedOperator
 from .distances import Distances, measure_all
@@ -17,7 +16,7 @@ from .text import numbers, sentence
 
 @dataclass(frozen=True)
 class Measured:
-    name: str  # of the object, and of its library
+    surface: tuple[str, str | None]  # the object's key
     cage: cage.Cage
     results: dict[str, Distances]
     refused: int
@@ -69,7 +68,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.active_mesh(cls, context)
+        return polling.mesh_in_object_mode(cls, context, context.active_object)
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
@@ -86,26 +85,24 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         ob, depsgraph = context.active_object, context.evaluated_depsgraph_get()
         found = cage.read(ob, depsgraph)
         if not why_not_on_mesh(ob, found):
-            check_attributes(ob.data)
+            check_attributes(ob)
         meshes = {
             name: displayed.read(ob, depsgraph, found, kind) for name, kind in self._kinds().items()
         }
-        name = ob.name_full
+        key = objects.key(ob)
 
         def work(progress: Progress) -> Measured:
-            return Measured(name, found, *measure_all(found, meshes, progress))
+            return Measured(key, found, *measure_all(found, meshes, progress))
 
         return self.watch(context, Job(work), f"Measuring {ob.name}")
 
     def finish(self, context: bpy.types.Context, made: Measured) -> set[str]:
-        ob = next((o for o in bpy.data.objects if o.name_full == made.name), None)
-        if ob is None:
-            raise RefusalError(f"{made.name} is not there any more")
+        ob = objects.find(made.surface)
         not_stored = why_not_on_mesh(ob, made.cage)
         if not_stored:
             self.report({"WARNING"}, f"Attributes are not stored: {not_stored}")
         else:
-            check_attributes(ob.data)
+            check_attributes(ob)
             at_vertices = next(iter(made.results.values())).at_vertices
             store_on_mesh(ob.data, at_vertices, self.full_color or float(at_vertices.max()))
         kept = {name: numbers(result) for name, result in made.results.items()}
@@ -135,7 +132,4 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
                 f"{refused:,} of {len(found.face_sizes):,} faces have no limit surface and were "
                 "left out",
             )
-        notes = [f"{ob.name}: {'; '.join(lines)}", str(found.rules)]
-        if found.ignored:
-            notes.append(f"ignored behind {found.rules.subsurf}: {', '.join(found.ignored)}")
-        self.report({"INFO"}, "; ".join(notes))
+        self.report({"INFO"}, "; ".join([f"{ob.name}: {'; '.join(lines)}", *found.notes]))

@@ -26,8 +26,9 @@ def why_not_on_mesh(ob: bpy.types.Object, found: cage.Cage) -> str:
     return ""
 
 
-def check_attributes(mesh: bpy.types.Mesh) -> None:
-    """RefusalError where somebody else's have these names."""
+def check_attributes(ob: bpy.types.Object) -> None:
+    """RefusalError where something else has these names."""
+    mesh = ob.data
     for name, kind in ((ids.DISTANCE, "FLOAT"), (ids.DISTANCE_COLOR, "FLOAT_COLOR")):
         there = mesh.attributes.get(name)
         if there and (there.data_type, there.domain) != (kind, "POINT"):
@@ -35,6 +36,8 @@ def check_attributes(mesh: bpy.types.Mesh) -> None:
                 f"{mesh.name} has an attribute {name} of another kind "
                 f"({there.data_type} on {there.domain}): rename or remove it"
             )
+        if name in ob.vertex_groups:  # they share names with attributes
+            raise RefusalError(f"{ob.name} has a vertex group {name}: rename or remove it")
 
 
 def store_on_mesh(mesh: bpy.types.Mesh, distance: np.ndarray, full: float) -> None:

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..rotations import unit
 from .surface import TargetSurface
-from .turns import unit
 
 WAYS = {"BOTH": (1.0, -1.0), "POSITIVE": (1.0,), "NEGATIVE": (-1.0,)}
 

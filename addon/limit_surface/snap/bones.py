@@ -12,11 +12,11 @@ from collections.abc import Iterable
 import bpy
 import numpy as np
 
-from ..rotations import WorldSpace
+from ..rotations import WorldSpace, unit
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .surface import transformed
-from .turns import shortest, unit
+from .turns import shortest
 
 
 class SnappedBones:

@@ -6,11 +6,10 @@ from abc import ABC, abstractmethod
 import bpy
 import numpy as np
 
-from ..rotations import WorldSpace
+from ..rotations import WorldSpace, unit
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .surface import transformed
-from .turns import unit
 
 
 class SnappedPoints(ABC):

@@ -10,7 +10,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .turns import shortest, unit
+from ..rotations import unit
+from .turns import shortest
 
 # Blender's matrices are in single precision: of the largest coordinate, and an angle
 ELSEWHERE = 1e-5

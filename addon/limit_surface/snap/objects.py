@@ -5,10 +5,10 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from ..rotations import unit
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .object_move import ELSEWHERE, ObjectMove
-from .turns import unit
 
 _NOTHING_BETWEEN = ("OBJECT", "ARMATURE", "LATTICE")  # the parent's own matrix is what counts
 

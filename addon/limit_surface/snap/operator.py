@@ -11,10 +11,11 @@ from ..progress import progress_bar
 from .aim import Aim, View
 from .choices import Choices, Outcome, merged
 from .gather import HAIR_MODES, MODES, check_target, find_target, gather
+from .properties import PlacingProperties
 from .surface import TargetSurface
 
 
-class OBJECT_OT_limit_snap(bpy.types.Operator):
+class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
     """Snap to the exact limit surface: selected objects and hair to that of the active mesh, or
     outside Object Mode what is selected to that of the target chosen in the tab Limit"""
 
@@ -82,27 +83,6 @@ class OBJECT_OT_limit_snap(bpy.types.Operator):
         max=np.pi,
         subtype="ANGLE",
     )
-    offset: FloatProperty(
-        name="Offset",
-        description="Distance from the surface along its normal, in world units",
-        default=0.0,
-        subtype="DISTANCE",
-    )
-    align: EnumProperty(
-        name="Align",
-        description="Rotation of objects, strands and bones",
-        items=(
-            ("NONE", "None", "As it is", 0),
-            ("NORMAL", "Normal", "Turned to the surface's normal by the smallest angle", 1),
-            (
-                "NORMAL_DU",
-                "Normal and U",
-                "To the normal, and X along growing u of the face. Strands that are on a surface "
-                "already turn as much as its frame does",
-                2,
-            ),
-        ),
-    )
     children: EnumProperty(
         name="Children",
         description="Those of the objects that move",
@@ -111,30 +91,10 @@ class OBJECT_OT_limit_snap(bpy.types.Operator):
             ("KEEP", "Keep", "They stay where they are", 1),
         ),
     )
-    hair: EnumProperty(
-        name="Hair",
-        description="What of a strand moves",
-        items=(
-            ("ROOT", "Root", "The root alone", 0),
-            ("STRAND", "Strand", "All of it", 1),
-            ("BLEND", "Blend", "The root fully, the tip not at all", 2),
-        ),
-        default="STRAND",
-    )
     keep_length: BoolProperty(
         name="Keep Length",
         description="Strands keep their length, and that of each of their segments",
         default=False,
-    )
-    target: EnumProperty(
-        name="Put On",
-        description="The surface is searched in any case; things can be put at the same place of "
-        "the polygons that are shown instead",
-        items=(
-            ("LIMIT", "Limit Surface", "The exact surface", 0),
-            ("VIEWPORT", "Viewport Mesh", "The polygons that the viewport shows", 1),
-            ("RENDER", "Render Mesh", "The polygons that are rendered", 2),
-        ),
     )
     view_matrix: FloatVectorProperty(
         name="View Matrix",
@@ -256,11 +216,15 @@ class OBJECT_OT_limit_snap(bpy.types.Operator):
         self.summary = "\n".join(line for outcome in done for line in outcome.lines())
         if failed:
             self.report({"WARNING"}, "; ".join(failed))
+        if surface.has_moved():
+            self.report(
+                {"WARNING"},
+                f"{surface.ob.name} has moved away from under what was snapped: constraints or "
+                "drivers tie it to that",
+            )
         found = surface.cage
         notes = [f"{', '.join(outcome.lines())} (to {surface.ob.name})" for outcome in done]
-        notes.append(str(found.rules))
-        if found.ignored:
-            notes.append(f"ignored behind {found.rules.subsurf}: {', '.join(found.ignored)}")
+        notes += found.notes
         notes += [note for outcome in outcomes for note in outcome.notes]
         self.report({"INFO"}, "; ".join(notes))
         return {"FINISHED"}
@@ -269,7 +233,7 @@ class OBJECT_OT_limit_snap(bpy.types.Operator):
 def _obstacle(context: bpy.types.Context) -> str:
     """Why there is nothing to do, if so."""
     if not native.available():
-        return f"The native module does not load: {native.reason}"
+        return native.obstacle()
     if context.mode not in MODES:
         return "Only in Object Mode, and Edit Mode of meshes, curves, hair, lattices and armatures"
     target = find_target(context)

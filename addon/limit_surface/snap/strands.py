@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .turns import unit
+from ..rotations import unit
 
 
 class Strands:

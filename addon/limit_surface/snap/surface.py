@@ -22,16 +22,21 @@ class TargetSurface:
 
     def __init__(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: str) -> None:
         self.ob = ob
+        self._stood = ob.matrix_world.copy()
         self.cage = cage.read(ob, depsgraph)
         WorldSpace(self.cage.matrix)  # refuses what is flattened to nothing
         self.in_world = native.limitsurf.LimitSurface(self.cage.mesh)
         if len(self.in_world.refused) == len(self.cage.face_sizes):
             raise RefusalError(f"No face of {ob.name} has a limit surface")
-        self.in_world.set_positions(transformed(self.cage.matrix, self.cage.mesh.positions))
+        self.in_world.set_positions(self.cage.world_positions())
         self._in_object = native.limitsurf.LimitSurface(self.cage.mesh)
         self._shown = None if kind == "LIMIT" else displayed.read(ob, depsgraph, self.cage, kind)
         # du x dv points inwards in the world if the object is mirrored there.
         self.outward = np.sign(np.linalg.det(self.cage.matrix[:3, :3]))
+
+    def has_moved(self) -> bool:
+        """Since it was read: what was put on it has taken it along."""
+        return self.ob.matrix_world != self._stood
 
     def size(self) -> float:
         """Of the largest coordinate that positions in the world are calculated with."""

@@ -3,11 +3,7 @@
 
 import numpy as np
 
-
-def unit(vectors: np.ndarray) -> np.ndarray:
-    """Along the last axis; NaN where there is no direction."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+from ..rotations import unit
 
 
 def shortest(source: np.ndarray, target: np.ndarray) -> np.ndarray:

@@ -91,6 +91,8 @@ class Drag:
         """All is as it was where this raises a RefusalError."""
         try:
             self.handle.confirm(self.place)
+            if self.glide.surface.has_moved():
+                raise RefusalError(f"{self.glide.surface.ob.name} moves along with it")
         except RefusalError:
             self.handle.restore()
             raise

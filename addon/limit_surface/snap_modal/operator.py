@@ -3,33 +3,17 @@
 
 import bpy
 import numpy as np
-from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty
+from bpy.props import FloatVectorProperty, IntProperty
 
 from .. import ids, native
 from ..errors import RefusalError
+from ..snap.properties import ALIGNMENTS, HAIR, PlacingProperties
 from ..snap.surface import TargetSurface
 from . import ray
 from .drag import Drag, Glide, nearest_in_sight, offset_step
 from .drawing import Drawing, Mark
 from .subject import Subject, find_subject
 from .typed_number import TypedNumber
-
-ALIGNMENTS = (
-    ("NONE", "None", "As it is", 0),
-    ("NORMAL", "Normal", "Turned to the surface's normal by the smallest angle", 1),
-    (
-        "NORMAL_DU",
-        "Normal and U",
-        "To the normal, and X along growing u of the face. Strands that are on a surface already "
-        "turn as much as its frame does",
-        2,
-    ),
-)
-HAIR = (
-    ("ROOT", "Root", "The root alone", 0),
-    ("STRAND", "Strand", "All of it", 1),
-    ("BLEND", "Blend", "The root fully, the tip not at all", 2),
-)
 
 LOCK_KEYS = {"X": "BORDER", "Y": "BOUNDARY", "Z": "FREE"}
 LOCK_NAMES = {"FREE": "Free", "BORDER": "Along the face's border", "BOUNDARY": "Along the boundary"}
@@ -40,7 +24,7 @@ CLICK = 3  # pixels: a mouse that moves less while it is pressed does not drag
 FINE = 0.1  # of a step of the wheel, with Shift
 
 
-class VIEW3D_OT_limit_snap_modal(bpy.types.Operator):
+class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
     """Drag over the exact limit surface with the mouse: the selected object over the active mesh; a
     vertex in Edit Mode, or a strand of hair by its root, over the target chosen in the tab Limit"""
 
@@ -48,23 +32,6 @@ class VIEW3D_OT_limit_snap_modal(bpy.types.Operator):
     bl_label = "Drag on Limit Surface"
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}
 
-    offset: FloatProperty(
-        name="Offset",
-        description="Distance from the surface along its normal, in world units",
-        default=0.0,
-        subtype="DISTANCE",
-    )
-    align: EnumProperty(
-        name="Align",
-        description="Rotation of objects and strands",
-        items=ALIGNMENTS,
-    )
-    hair: EnumProperty(
-        name="Hair",
-        description="What of a strand moves",
-        items=HAIR,
-        default="STRAND",
-    )
     element: IntProperty(
         name="Element",
         description="Vertex or strand that is dragged",
@@ -90,7 +57,7 @@ class VIEW3D_OT_limit_snap_modal(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not native.available():
-            cls.poll_message_set(f"The native module does not load: {native.reason}")
+            cls.poll_message_set(native.obstacle())
             return False
         try:
             find_subject(context)
@@ -107,6 +74,7 @@ class VIEW3D_OT_limit_snap_modal(bpy.types.Operator):
             layout.prop(self, "align")
         if self.element >= 0 and context.mode != "EDIT_MESH":
             layout.prop(self, "hair")
+        layout.prop(self, "target")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """At a stored location; without one there is nothing to do."""
@@ -117,7 +85,7 @@ class VIEW3D_OT_limit_snap_modal(bpy.types.Operator):
             )
         try:
             subject = find_subject(context)
-            surface = TargetSurface(subject.target, context.evaluated_depsgraph_get(), "LIMIT")
+            surface = TargetSurface(subject.target, context.evaluated_depsgraph_get(), self.target)
             self._check_element(subject)
             glide = Glide(surface)
             glide.go_to(self.face, self.uv)
@@ -134,7 +102,7 @@ class VIEW3D_OT_limit_snap_modal(bpy.types.Operator):
         try:
             self._subject = find_subject(context)
             depsgraph = context.evaluated_depsgraph_get()
-            self._glide = Glide(TargetSurface(self._subject.target, depsgraph, "LIMIT"))
+            self._glide = Glide(TargetSurface(self._subject.target, depsgraph, self.target))
             self._glide.prepare()
             self._candidates = self._hovered = self._drag = None
             if self._subject.is_picked:

@@ -7,6 +7,8 @@ import bpy
 import numpy as np
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
+from ..rotations import unit
+
 
 @dataclass(frozen=True)
 class Ray:
@@ -41,10 +43,6 @@ def through(region: bpy.types.Region, view: bpy.types.RegionView3D, x: int, y: i
     at = (x - region.x, y - region.y)
     return Ray(
         np.array(region_2d_to_origin_3d(region, view, at), np.float64),
-        _unit(np.array(region_2d_to_vector_3d(region, view, at), np.float64)),
+        unit(np.array(region_2d_to_vector_3d(region, view, at), np.float64)),
         view.is_perspective,
     )
-
-
-def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / np.linalg.norm(vector)
