@@ -330,6 +330,26 @@ def test_hair_and_objects_together(capfd):
     assert "6 of 6 strands snapped" in said
 
 
+@pytest.mark.parametrize("align", ["NONE", "NORMAL"])
+def test_hair_and_what_it_hangs_from(align, capfd):
+    target = stretched(scenes.cross())
+    hair, truth = add_hair(target), Truth(target)
+    carrier = bpy.data.objects.new("Carrier", None)
+    carrier.location, carrier.rotation_euler = (4, 1, -2), (0.3, 0.2, 0.1)
+    bpy.context.collection.objects.link(carrier)
+    carrier.select_set(True)
+    hair.parent = carrier
+    before = roots(world_strands(hair))
+    snap(target, align=align)
+    after = roots(world_strands(hair))
+    np.testing.assert_allclose(truth.distances(after), 0, atol=EXACT)
+    np.testing.assert_allclose(truth.distances([carrier.matrix_world.translation]), 0, atol=EXACT)
+    expected = truth.distances(before)
+    np.testing.assert_allclose(np.linalg.norm(after - before, axis=1), expected, atol=2e-6)
+    check_stored(hair, target)
+    assert f"moved by {expected.mean():.4g} on average" in capfd.readouterr().out
+
+
 def test_two_objects_with_the_same_curves(capfd):
     target = scenes.cross()
     hair = add_hair(target)

@@ -348,6 +348,22 @@ def test_what_carries_the_target():
     refused_and_unchanged(target, carrier, "1 that would take Flat along")
 
 
+def test_a_target_that_comes_along(capfd):
+    target = scenes.cross()
+    thing = add_object((3, 4, 5))
+    follow = target.constraints.new("COPY_LOCATION")
+    follow.target, follow.use_offset = thing, True
+    snap(target)
+    assert "Cross has moved away from under what was snapped" in capfd.readouterr().out
+
+
+def test_a_target_that_stays_is_not_warned_about(capfd):
+    target = stretched(scenes.cross())
+    add_object((3, 4, 5))
+    snap(target)
+    assert "Warning" not in capfd.readouterr().out
+
+
 def test_linked_objects(tmp_path):
     thing = add_object((2, 2, 1), name="Linked")
     path = str(tmp_path / "library.blend")

@@ -74,7 +74,7 @@ def _objects(
 ) -> Iterator[Callable[[], Snapped]]:
     target = surface.ob
     carriers = set(_ancestors(target))
-    movable, curves = [], set()
+    movable, hair, curves = [], [], set()
     for ob in context.selected_objects:
         if ob == target:
             continue
@@ -88,9 +88,11 @@ def _objects(
             failures["sharing curves with another"] += 1
         else:
             curves.add(ob.data)
-            yield partial(SnappedHair, ob, surface, selected_only=False)
-    if movable:
+            hair.append(ob)
+    if movable:  # first: hair may hang from them
         yield partial(SnappedObjects, movable)
+    for ob in hair:
+        yield partial(SnappedHair, ob, surface, selected_only=False)
 
 
 def _edited(context: bpy.types.Context, surface: TargetSurface) -> Iterator[Callable[[], Snapped]]:

@@ -5,13 +5,13 @@ import bpy
 import numpy as np
 
 from .. import attributes, ids
-from ..rotations import WorldSpace
+from ..rotations import WorldSpace, unit
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .hair_binding import HairBinding
 from .strands import Strands
 from .surface import TargetSurface, transformed
-from .turns import shortest, unit
+from .turns import shortest
 
 _SELECTION = ".selection"  # Blender's own; where it is missing all is selected
 _HANDLES = ("handle_left", "handle_right")  # of Bezier hair
@@ -25,8 +25,7 @@ class SnappedHair:
 
     def __init__(self, ob: bpy.types.Object, surface: TargetSurface, selected_only: bool) -> None:
         self._ob = ob
-        self._matrix = np.array(ob.matrix_world, np.float64)
-        self._space = WorldSpace(self._matrix)
+        self._read_transform()
         self._sizes = np.empty(len(ob.data.curves), np.int32)
         ob.data.curves.foreach_get("points_length", self._sizes)
         chosen = np.ones(len(self._sizes), bool)
@@ -43,15 +42,21 @@ class SnappedHair:
     def place(self, placement: Placement, choices: Choices) -> Outcome:
         outcome = Outcome(self.noun)
         curves = self._chosen[placement.rows]
-        strands, rows = self._strands(curves)
+        strands, _rows = self._strands(curves)
         outcome.distances.append(
             np.linalg.norm(placement.position - strands.points[strands.root], axis=1)
         )
+        self._read_transform()  # objects that it hangs from may have been snapped just now
+        strands, rows = self._strands(curves)
         turn = self._turns(curves, strands, placement, choices.align, outcome)
         self._move(strands, rows, placement, turn, choices)
         outcome.notes += self._binding.write(curves, placement.face, placement.uv, self._matrix)
         self._ob.data.update_tag()
         return outcome
+
+    def _read_transform(self) -> None:
+        self._matrix = np.array(self._ob.matrix_world, np.float64)
+        self._space = WorldSpace(self._matrix)
 
     def _strands(self, curves: np.ndarray) -> tuple[Strands, np.ndarray]:
         """In world space, and the rows of their points."""
