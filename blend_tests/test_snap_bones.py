@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import pytest
 import scenes
+from mathutils import Matrix
 from snap_truth import Truth, add_object, stretched
 
 EXACT = 1e-6
@@ -160,3 +161,46 @@ def test_tails_alone_are_nothing_to_snap(armature):
     armature.data.edit_bones["tip"].select_tail = True
     with pytest.raises(RuntimeError, match="Nothing is selected"):
         bpy.ops.object.limit_snap()
+
+
+@pytest.fixture
+def before_a_corner(armature):
+    """To which all of its bones' heads are closest."""
+    corner = scenes.flat_grid(1)
+    corner.select_set(False)
+    scenes.activate(armature)
+    scenes.add_subsurf(corner, "PRESERVE_CORNERS")
+    bpy.context.scene.limit_surface.target = corner
+    armature.matrix_world = Matrix.Translation((-3, -3, 0))
+    bpy.context.view_layer.update()
+    return armature
+
+
+def names_outside_edit_mode(armature):
+    """Blender removes bones without length when that mode is left."""
+    bpy.ops.object.mode_set(mode="OBJECT")
+    names = set(armature.data.bones.keys())
+    bpy.ops.object.mode_set(mode="EDIT")
+    return names
+
+
+def test_joints_that_would_meet_stay_apart(before_a_corner, capfd):
+    heads, _, new_heads, _ = snapped(before_a_corner, set(BONES))
+    for name in ("root", "loose"):
+        np.testing.assert_allclose(new_heads[name], (0, 0, 0), atol=EXACT)
+    moved = -heads["root"]
+    for name in ("middle", "other"):  # with the tail of the root
+        np.testing.assert_allclose(new_heads[name], heads[name] + moved, atol=EXACT)
+    assert "bones not snapped: 2 that would leave a bone without length" in capfd.readouterr().out
+    assert names_outside_edit_mode(before_a_corner) == set(BONES)
+
+
+def test_head_that_would_meet_its_tail(before_a_corner):
+    stub = before_a_corner.data.edit_bones.new("stub")
+    stub.head, stub.tail = (1, 1, 0), (3, 3, 0)
+    select(before_a_corner, set())
+    stub.select_head = True
+    with pytest.raises(RuntimeError, match="1 that would leave a bone without length"):
+        bpy.ops.object.limit_snap()
+    assert tuple(stub.head) == (1, 1, 0)
+    assert names_outside_edit_mode(before_a_corner) == {*BONES, "stub"}

@@ -115,7 +115,7 @@ def test_a_target_that_comes_along(target):
     follow = target.constraints.new("COPY_LOCATION")
     follow.target, follow.use_offset = ob, True
     bpy.context.view_layer.update()
-    refused("Cross moves along with it")
+    refused("Pin cannot be put there: Cross changes along with it")
 
 
 def refused(match, **properties):

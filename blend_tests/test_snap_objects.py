@@ -354,11 +354,20 @@ def test_a_target_that_comes_along(capfd):
     follow = target.constraints.new("COPY_LOCATION")
     follow.target, follow.use_offset = thing, True
     snap(target)
-    assert "Cross has moved away from under what was snapped" in capfd.readouterr().out
+    assert "Cross has changed with what was snapped" in capfd.readouterr().out
+
+
+def test_a_target_that_is_reshaped(capfd):
+    target = scenes.cross()
+    mirror = target.modifiers.new("Mirror", "MIRROR")
+    mirror.mirror_object = add_object((3, 4, 5))
+    snap(target)
+    assert "Cross has changed with what was snapped" in capfd.readouterr().out
 
 
 def test_a_target_that_stays_is_not_warned_about(capfd):
     target = stretched(scenes.cross())
+    target.modifiers.new("Mirror", "MIRROR")
     add_object((3, 4, 5))
     snap(target)
     assert "Warning" not in capfd.readouterr().out

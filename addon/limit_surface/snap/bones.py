@@ -18,6 +18,8 @@ from .choices import Choices, Outcome
 from .surface import transformed
 from .turns import shortest
 
+SHORTEST = 2e-6  # Blender removes bones of at most half of it
+
 
 class SnappedBones:
     noun = "bones"
@@ -52,17 +54,34 @@ class SnappedBones:
             tails = heads + self._space.to_local(length * along)
             up = self._space.to_local(up)
 
+        placed = np.ones(len(rows), bool)
         for i, row in enumerate(rows):
             bone = self._bones[row]
-            if bone.use_connect:
-                bone.parent.tail = heads[i]  # takes along the heads of all that are connected
-            else:
-                bone.head = heads[i]
-            if bone.select:
+            placed[i] = _put_head(bone, heads[i])
+            if placed[i] and bone.select:
                 bone.tail = tails[i]
                 if align:
                     bone.align_roll(up[i])
-        return Outcome(self.noun, [np.linalg.norm(moves, axis=1)])
+        outcome = Outcome(self.noun, [np.linalg.norm(moves[placed], axis=1)])
+        outcome.failures["that would leave a bone without length"] = np.count_nonzero(~placed)
+        return outcome
+
+
+def _put_head(bone: bpy.types.EditBone, head: np.ndarray) -> bool:
+    """Not where a bone would be left so short that Blender removes it."""
+    if bone.use_connect:
+        holder, end = bone.parent, "tail"  # takes along the heads of all that are connected
+        affected = [holder, *(child for child in holder.children if child.use_connect)]
+    else:
+        holder, end, affected = bone, "head", [bone]
+    before = getattr(holder, end).copy()
+    setattr(holder, end, head)
+    if bone.select:
+        affected.remove(bone)  # its tail comes along
+    if all(each.length > SHORTEST for each in affected):
+        return True
+    setattr(holder, end, before)
+    return False
 
 
 def _aligned(axes: np.ndarray, frame: np.ndarray, align: str) -> tuple[np.ndarray, np.ndarray]:

@@ -103,7 +103,11 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
         subtype="MATRIX",
         options={"HIDDEN", "SKIP_SAVE"},
     )
-    view_is_perspective: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+    view_is_perspective: BoolProperty(
+        name="View Is Perspective",
+        description="Lines of sight meet in the eye, for the view's Z",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
     summary: StringProperty(
         name="Result",
         description="What the operator did",
@@ -179,7 +183,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
             outcome = part.place(placement, choices) if placed else Outcome(part.noun)
             outcome.failures += placement.failures
             outcomes.append(outcome)
-        return self._report(surface, merged(outcomes))
+        return self._report(surface, context.evaluated_depsgraph_get(), merged(outcomes))
 
     def _aim(self, context: bpy.types.Context) -> Aim:
         by_view = self.mode == "AXIS" and self.orientation == "VIEW"
@@ -204,7 +208,12 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
         matrix = np.linalg.inv(np.array(self.view_matrix, np.float64))
         return View(matrix[:3, :3], matrix[:3, 3] if self.view_is_perspective else None)
 
-    def _report(self, surface: TargetSurface, outcomes: list[Outcome]) -> set[str]:
+    def _report(
+        self,
+        surface: TargetSurface,
+        depsgraph: bpy.types.Depsgraph,
+        outcomes: list[Outcome],
+    ) -> set[str]:
         failed = [
             f"{outcome.failed:,} {outcome.noun} not snapped: {outcome.reasons()}"
             for outcome in outcomes
@@ -216,11 +225,11 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
         self.summary = "\n".join(line for outcome in done for line in outcome.lines())
         if failed:
             self.report({"WARNING"}, "; ".join(failed))
-        if surface.has_moved():
+        if surface.has_changed(depsgraph):
             self.report(
                 {"WARNING"},
-                f"{surface.ob.name} has moved away from under what was snapped: constraints or "
-                "drivers tie it to that",
+                f"{surface.ob.name} has changed with what was snapped, which is not on it now: "
+                "constraints, drivers or modifiers tie it to that",
             )
         found = surface.cage
         notes = [f"{', '.join(outcome.lines())} (to {surface.ob.name})" for outcome in done]

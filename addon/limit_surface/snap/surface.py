@@ -6,9 +6,11 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from .. import cage, displayed, native
+from .. import cage, displayed, native, rules
 from ..errors import RefusalError
 from ..rotations import WorldSpace
+
+SAME = 1e-6  # of the largest coordinate: as exactly as Blender's single precision allows
 
 
 class Places(NamedTuple):
@@ -34,9 +36,14 @@ class TargetSurface:
         # du x dv points inwards in the world if the object is mirrored there.
         self.outward = np.sign(np.linalg.det(self.cage.matrix[:3, :3]))
 
-    def has_moved(self) -> bool:
-        """Since it was read: what was put on it has taken it along."""
-        return self.ob.matrix_world != self._stood
+    def has_changed(self, depsgraph: bpy.types.Depsgraph) -> bool:
+        """Since it was read: what was put on it has a part in it."""
+        if self.ob.matrix_world != self._stood:
+            return True
+        if not self.ob.modifiers or self.ob.modifiers[0] == rules.find_subsurf(self.ob):
+            return False
+        now, before = cage.read(self.ob, depsgraph).mesh.positions, self.cage.mesh.positions
+        return now.shape != before.shape or np.abs(now - before).max() > SAME * np.abs(before).max()
 
     def size(self) -> float:
         """Of the largest coordinate that positions in the world are calculated with."""

@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+import bpy
 import numpy as np
 
 from ..errors import RefusalError
@@ -91,8 +92,11 @@ class Drag:
         """All is as it was where this raises a RefusalError."""
         try:
             self.handle.confirm(self.place)
-            if self.glide.surface.has_moved():
-                raise RefusalError(f"{self.glide.surface.ob.name} moves along with it")
+            if self.glide.surface.has_changed(bpy.context.evaluated_depsgraph_get()):
+                raise RefusalError(
+                    f"{self.handle.name} cannot be put there: {self.glide.surface.ob.name} changes "
+                    "along with it"
+                )
         except RefusalError:
             self.handle.restore()
             raise
