@@ -19,6 +19,7 @@ JOBS=${LIMITSURF_JOBS:-$(nproc)}
 APT_PACKAGES=(
   g++ libosd-dev libtbb-dev libeigen3-dev                # the library
   libgtest-dev libbenchmark-dev libboost-dev             # its tests and benchmarks
+  libembree-dev                                          # a peer in the benchmarks
   libx11-6 libxrender1 libxfixes3 libxi6 libxkbcommon0   # what Blender as a module loads
   libsm6 libgl1 libegl1
 )

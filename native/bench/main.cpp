@@ -8,6 +8,7 @@
 //   limitsurf_bench --fresh-memory        results in memory that the system has just handed out
 //   limitsurf_bench --large[=1000]        opening a grid of 1000 x 1000 quads: time and memory
 //   limitsurf_bench --semi-sharp[=100]    the same, every edge of 100 x 100 quads semi-sharp
+//   limitsurf_bench --queries[=1000000]   closest points and rays beside Embree, and random points
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 #include <opensubdiv/version.h>
@@ -21,6 +22,9 @@
 #include "agreement.h"
 #include "evaluation_benchmarks.h"
 #include "large_mesh.h"
+#ifdef LIMITSURF_BENCH_EMBREE
+#include "query_benchmarks.h"
+#endif
 #include "ratio_reporter.h"
 #include "scatter_benchmarks.h"
 #include "setup_benchmarks.h"
@@ -79,7 +83,7 @@ int main(int argc, char** argv) {
   static char time[] = "--benchmark_min_time=0.03";
   std::vector<char*> arguments = {argv[0], interleave, repetitions, time};
   int sample_count = 100000;
-  int large_side = 0, semi_sharp_side = 0;
+  int large_side = 0, semi_sharp_side = 0, query_count = 0;
   bool is_memory_fresh = false;
   for (int i = 1; i < argc; ++i) {
     if (const int count = valueOf(argv[i], "--samples", 0)) {
@@ -88,6 +92,8 @@ int main(int argc, char** argv) {
       large_side = side;
     } else if (const int sharp_side = valueOf(argv[i], "--semi-sharp", 100)) {
       semi_sharp_side = sharp_side;
+    } else if (const int queries = valueOf(argv[i], "--queries", 1000000)) {
+      query_count = queries;
     } else if (std::strcmp(argv[i], "--fresh-memory") == 0) {
       is_memory_fresh = true;
     } else {
@@ -97,6 +103,14 @@ int main(int argc, char** argv) {
   try {
     if (large_side > 0) return limitsurf::bench::measureLargeMesh(large_side);
     if (semi_sharp_side > 0) return limitsurf::bench::measureSemiSharpMesh(semi_sharp_side);
+    if (query_count > 0) {
+#ifdef LIMITSURF_BENCH_EMBREE
+      return limitsurf::bench::measureQueries(query_count);
+#else
+      std::fprintf(stderr, "built without Embree\n");
+      return 2;
+#endif
+    }
     if (!is_memory_fresh) recycleMemory();
     return runTables(static_cast<int>(arguments.size()), arguments.data(), sample_count);
   } catch (const std::exception& error) {

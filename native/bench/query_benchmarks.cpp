@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "query_benchmarks.h"
+
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "cages.h"
+#include "embree_peer.h"
+#include "limitsurf/query/area_sampler.h"
+#include "limitsurf/query/surface_search.h"
+#include "process_cost.h"
+#include "random.h"
+
+namespace limitsurf::bench {
+namespace {
+
+constexpr int kSide = 100;
+constexpr int kPeerLevel = 4;
+constexpr int kRepetitions = 3;
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+double secondsOf(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Prints a row for each thing that is made before the first answer.
+bool measureSetUp(const Cage& cage) {
+  std::unique_ptr<LimitSurface> surface;
+  Tessellation mesh;
+  const auto with_surface = [&] { surface = std::make_unique<LimitSurface>(cage.controlMesh()); };
+  const auto with_mesh = [&] {
+    with_surface();
+    mesh = surface->tessellate(kPeerLevel);
+  };
+  struct Row {
+    const char* name;
+    Opening open;
+    std::function<void()> prepare;
+  };
+  const Row rows[] = {
+      {"limitsurf SurfaceSearch", [&] { return std::make_shared<SurfaceSearch>(*surface); },
+       with_surface},
+      {"limitsurf AreaSampler", [&] { return std::make_shared<AreaSampler>(*surface); },
+       with_surface},
+      {"tessellate(4)",
+       [&] { return std::make_shared<Tessellation>(surface->tessellate(kPeerLevel)); },
+       with_surface},
+      {"Embree over its triangles", [&] { return std::make_shared<EmbreePeer>(mesh); }, with_mesh},
+  };
+  std::printf("| set-up | s | peak MiB | kept MiB |\n|---|---:|---:|---:|\n");
+  for (const Row& row : rows) {
+    std::vector<Cost> costs(kRepetitions);
+    for (Cost& cost : costs) {
+      if (!measureApart(row.open, cost, row.prepare)) {
+        std::fprintf(stderr, "%s failed\n", row.name);
+        return false;
+      }
+    }
+    std::sort(costs.begin(), costs.end(),
+              [](const Cost& a, const Cost& b) { return a.seconds < b.seconds; });
+    const Cost& middle = costs[kRepetitions / 2];
+    std::printf("| %s | %.3f | %.0f | %.0f |\n", row.name, middle.seconds, middle.peak_mib,
+                middle.kept_mib);
+  }
+  return true;
+}
+
+struct Queries {
+  const char* name;
+  Points origins;
+  Points directions;  ///< of rays, length 1; none for closest points
+};
+
+Vector3 randomDirection(Random& random) {
+  const double z = random.between(-1, 1), angle = random.between(-M_PI, M_PI);
+  const double radius = std::sqrt(1 - z * z);
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+/// `reach`: how far from the surface at most.
+Queries pointsNear(const char* name, const Points& on_surface, double reach) {
+  Random random(1);
+  Queries queries{name, on_surface, {}};
+  for (Eigen::Index i = 0; i < on_surface.rows(); ++i) {
+    const double distance = random.between(0, reach);
+    queries.origins.row(i) += distance * randomDirection(random).transpose();
+  }
+  return queries;
+}
+
+/// Towards places of the surface, of which the ray may meet others before.
+Queries raysTo(const char* name, const Points& on_surface, double distance,
+               const std::function<Vector3(Random&)>& direction) {
+  Random random(2);
+  Queries queries{name, on_surface, Points(on_surface.rows(), 3)};
+  for (Eigen::Index i = 0; i < on_surface.rows(); ++i) {
+    queries.directions.row(i) = direction(random).transpose();
+    queries.origins.row(i) -= distance * queries.directions.row(i);
+  }
+  return queries;
+}
+
+struct Errors {
+  double max = 0, rms = 0;
+};
+
+Errors errorsOf(const Eigen::VectorXd& differences, double diagonal) {
+  return {
+      differences.maxCoeff() / diagonal,
+      std::sqrt(differences.squaredNorm() / static_cast<double>(differences.size())) / diagonal};
+}
+
+void compare(const Queries& queries, const SurfaceSearch& search, const EmbreePeer& peer,
+             double diagonal) {
+  const bool are_rays = queries.directions.rows() > 0;
+  Hits ours;
+  EmbreePeer::Found theirs;
+  std::vector<double> our_seconds, their_seconds;
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+    our_seconds.push_back(secondsOf([&] {
+      ours = are_rays ? search.rayCast(queries.origins, queries.directions)
+                      : search.closest(queries.origins);
+    }));
+    their_seconds.push_back(secondsOf([&] {
+      theirs = are_rays ? peer.rayCast(queries.origins, queries.directions)
+                        : peer.closest(queries.origins);
+    }));
+  }
+
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(queries.origins.rows());
+  Eigen::VectorXd farther = moved;
+  int missed = 0, invented = 0;
+  for (Eigen::Index i = 0; i < queries.origins.rows(); ++i) {
+    const bool is_ours = ours.at[static_cast<std::size_t>(i)].face >= 0;
+    const bool is_theirs = !std::isnan(theirs.distance[i]);
+    missed += is_ours && !is_theirs;
+    invented += is_theirs && !is_ours;
+    if (!is_ours || !is_theirs) continue;
+    moved[i] = (ours.position.row(i) - theirs.position.row(i)).norm();
+    farther[i] = std::abs(ours.distance[i] - theirs.distance[i]);
+  }
+  const Errors position = errorsOf(moved, diagonal), distance = errorsOf(farther, diagonal);
+  const double our_median = median(our_seconds), their_median = median(their_seconds);
+  std::printf("| %s | %.2f | %.2f | %.2f | %.1e | %.1e | %.1e | %.1e | %d | %d |\n", queries.name,
+              our_median, their_median, their_median / our_median, distance.max, distance.rms,
+              position.max, position.rms, missed, invented);
+  std::fflush(stdout);
+}
+
+void timeScattering(const AreaSampler& sampler, int count, double area) {
+  std::printf("\n| random points | s |\n|---|---:|\n");
+  const auto row = [](const char* name, const std::function<void()>& work) {
+    std::vector<double> seconds(kRepetitions);
+    for (double& second : seconds) second = secondsOf(work);
+    std::printf("| %s | %.2f |\n", name, median(seconds));
+    std::fflush(stdout);
+  };
+  row("uniform", [&] { sampler.uniform(count, 1); });
+  BlueNoiseOptions options;
+  options.radius = std::sqrt(0.7 * area / count);
+  row("blue noise, by radius", [&] { sampler.blueNoise(options); });
+  options.radius.reset();
+  options.count = count;
+  row("blue noise, by count", [&] { sampler.blueNoise(options); });
+}
+
+}  // namespace
+
+int measureQueries(int count) {
+  const Cage cage = largeCage(kSide);
+  const double diagonal = cage.diagonal();
+  std::printf("%d quads, open; all threads; median of %d\n\n", cage.faceCount(), kRepetitions);
+  if (!measureSetUp(cage)) return 1;
+
+  std::printf("\n%d threads, %d each\n\n", tbb::info::default_concurrency(), count);
+  std::fflush(stdout);
+  const LimitSurface surface(cage.controlMesh());
+  const SurfaceSearch search(surface);
+  const AreaSampler sampler(surface);
+  const EmbreePeer peer(surface.tessellate(kPeerLevel));
+  const Points on_surface = surface.evaluate(sampler.uniform(count, 1)).position;
+  const double face_width = std::sqrt(surface.area() / cage.faceCount());
+  std::printf(
+      "| | limitsurf s | Embree s | Embree / ours | its distance: max | RMS | its position: max | "
+      "RMS | missed | invented |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+  compare(pointsNear("closest, to 5 % of the diagonal", on_surface, 0.05 * diagonal), search, peer,
+          diagonal);
+  compare(pointsNear("closest, to 5 % of a face's width", on_surface, 0.05 * face_width), search,
+          peer, diagonal);
+  compare(
+      raysTo("rays, from above", on_surface, diagonal, [](Random&) { return Vector3(0, 0, -1); }),
+      search, peer, diagonal);
+  compare(raysTo("rays, from all sides", on_surface, diagonal, randomDirection), search, peer,
+          diagonal);
+  timeScattering(sampler, count, surface.area());
+  return 0;
+}
+
+}  // namespace limitsurf::bench
