@@ -16,6 +16,9 @@ class Bernstein {
 
   double& at(int i, int j) { return c_[kStride * j + i]; }
   double at(int i, int j) const { return c_[kStride * j + i]; }
+  /// The coefficients along s, for one j.
+  const double* row(int j) const { return c_ + kStride * j; }
+  /// To be called when coefficients have been set one by one.
   void pad() {
     for (int j = 0; j < kSize; ++j) {
       c_[kStride * j + kStride - 1] = c_[kStride * j + N];
@@ -42,11 +45,11 @@ class Bernstein {
     for (int half = 0; half < 2; ++half) {
       Row p[kSize];
       for (int j = 0; j < kSize; ++j) {
-        p[j] = out[half].row(j);
+        p[j] = out[half].vector(j);
       }
       halve(
-          p, [&](int j, const Row& x) { out[half].row(j) = x; },
-          [&](int j, const Row& x) { out[half + 2].row(j) = x; });
+          p, [&](int j, const Row& x) { out[half].vector(j) = x; },
+          [&](int j, const Row& x) { out[half + 2].vector(j) = x; });
     }
   }
 
@@ -56,7 +59,7 @@ class Bernstein {
   Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16> all() const {
     return Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16>(c_);
   }
-  Eigen::Map<Row, Eigen::Aligned16> row(int j) {
+  Eigen::Map<Row, Eigen::Aligned16> vector(int j) {
     return Eigen::Map<Row, Eigen::Aligned16>(c_ + kStride * j);
   }
 

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/query/foot_iteration.h"
+
 namespace limitsurf {
 namespace {
 
 /// A square cell of a patch.
-struct Cell {
-  double s, t, size;
+struct Cell : ParameterSquare {
   int depth;
 };
 
@@ -40,7 +41,7 @@ class PatchSearch {
     const SquaredDistance f(relative_.points);
     const double noise = noiseOf(f);
     if (isBetter(f.least() - noise)) {
-      visit(f, noise, {0, 0, 1, 0});
+      visit(f, noise, {{0, 0, 1}, 0});
     }
   }
 
@@ -50,7 +51,6 @@ class PatchSearch {
   /// A patch so far from being one, as of no area, that its closest point cannot be told is not
   /// followed for ever.
   static constexpr int kMostCells = 1 << 17;
-  static constexpr int kMostIterations = 40;
   /// Every so many halvings the squared distance is made anew.
   static constexpr int kFreshDepths = 4;
   static constexpr double kRounding = 1e-15;
@@ -146,7 +146,7 @@ class PatchSearch {
     t = cell.t + sideOr(shape.t_side, t) * cell.size;
     const bool corner = shape.s_side != 0 && shape.t_side != 0;
     if (cell.depth == kMostDepth || ++cells_ > kMostCells || corner ||
-        (shape.convex && minimize(cell, slack, s, t))) {
+        (shape.convex && minimizeDistance(relative_, cell, slack, s, t))) {
       if (!facing_ || isFoot(cell, s, t)) {
         offer(s, t);
       }
@@ -174,7 +174,7 @@ class PatchSearch {
       if (!isBetter(least[q] - noise) || isBehindFoot()) {
         continue;
       }
-      const Cell next{cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half, cell.depth + 1};
+      const Cell next{{cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half}, cell.depth + 1};
       if (next.depth % kFreshDepths == 0) {
         // Quarters inherit the rounding of the whole: those of the points are as small as they.
         BezierPatch::Point points[16];
@@ -193,122 +193,6 @@ class PatchSearch {
     Values at;
     relative_.evaluate<0>(s, t, at);
     best_.offer(at.value.head<3>().matrix(), patch_.on.at(s, t));
-  }
-
-  /// Newton's iteration within the cell, by an active set of its sides. Whether it arrived at a
-  /// point where no direction leads down, or none so far that the squared distance would fall by
-  /// more than `slack`.
-  bool minimize(const Cell& cell, double slack, double& s, double& t) const {
-    const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
-    Values at, next;
-    relative_.evaluate<2>(s, t, at);
-    double f = dot(at.value, at.value);
-    for (int i = 0; i < kMostIterations; ++i) {
-      const double gs = dot(at.value, at.ds), gt = dot(at.value, at.dt);
-      const double ss = dot(at.ds, at.ds), tt = dot(at.dt, at.dt), st = dot(at.ds, at.dt);
-      double hss = ss + dot(at.value, at.dss), htt = tt + dot(at.value, at.dtt),
-             hst = st + dot(at.value, at.dst);
-      const bool free_s = !((s <= cell.s && gs >= 0) || (s >= s1 && gs <= 0));
-      const bool free_t = !((t <= cell.t && gt >= 0) || (t >= t1 && gt <= 0));
-      if (!free_s && !free_t) {
-        return true;
-      }
-      double ds = 0, dt = 0;
-      bool newton = hss > 0 && htt > 0;
-      if (free_s && free_t) {
-        double determinant = hss * htt - hst * hst;
-        if (!(hss > 0 && determinant > 1e-12 * hss * htt)) {  // Gauss and Newton's
-          newton = false;
-          hss = ss;
-          htt = tt;
-          hst = st;
-          determinant = hss * htt - hst * hst;
-        }
-        if (determinant > 1e-14 * hss * htt) {
-          ds = (hst * gt - htt * gs) / determinant;
-          dt = (hst * gs - hss * gt) / determinant;
-        } else if (hss > 0 || htt > 0) {  // along the steepest side
-          (hss > htt ? ds : dt) = hss > htt ? -gs / hss : -gt / htt;
-        }
-      }
-      // A side on which the iteration stands, and out of which the step leads, stays active for
-      // this step: the other parameter moves, or where it has arrived, this one inwards.
-      if (free_s && free_t) {
-        if (leadsOut(s, ds, cell.s, s1)) {
-          along(gs, gt, hss, htt, ds, dt);
-        } else if (leadsOut(t, dt, cell.t, t1)) {
-          along(gt, gs, htt, hss, dt, ds);
-        }
-      } else if (free_s) {
-        along(gt, gs, htt, hss, dt, ds);
-      } else {
-        along(gs, gt, hss, htt, ds, dt);
-      }
-      // A step that leads out of the cell is cut off where it leaves; the side then becomes active.
-      double part = 1;
-      const auto cut = [&](double from, double step, double low, double high) {
-        if (step > 0 && from + step > high) {
-          part = std::min(part, (high - from) / step);
-        } else if (step < 0 && from + step < low) {
-          part = std::min(part, (low - from) / step);
-        }
-      };
-      cut(s, ds, cell.s, s1);
-      cut(t, dt, cell.t, t1);
-      // Newton's next step would be the square of this one.
-      const bool last = newton && part == 1 && std::abs(ds) + std::abs(dt) < kLastStep;
-      bool lower = false;
-      for (int halvings = 0; halvings < kMostHalvings && !lower; ++halvings, part /= 2) {
-        const double next_s = std::clamp(s + part * ds, cell.s, s1),
-                     next_t = std::clamp(t + part * dt, cell.t, t1);
-        if (next_s == s && next_t == t) {
-          return true;
-        }
-        relative_.evaluate<2>(next_s, next_t, next);
-        const double next_f = dot(next.value, next.value);
-        lower = next_f <= f || (last && next_f <= f * (1 + kStepRounding));
-        if (lower) {
-          s = next_s;
-          t = next_t;
-          f = next_f;
-          at = next;
-        }
-      }
-      if (!lower) {
-        return last || (std::abs(free_s ? gs : 0) + std::abs(free_t ? gt : 0)) * cell.size <= slack;
-      }
-      if (last && !fallsFromSide(cell, s, t, at)) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /// A step for the second parameter alone; where it has arrived, one for the first.
-  static void along(double g1, double g2, double h1, double h2, double& d1, double& d2) {
-    d1 = 0;
-    d2 = h2 > 0 ? -g2 / h2 : 0;
-    if (std::abs(d2) < kArrived) {
-      d2 = 0;
-      d1 = h1 > 0 ? -g1 / h1 : 0;
-    }
-  }
-
-  /// Whether on a side of the cell the distance falls towards its inside.
-  static bool fallsFromSide(const Cell& cell, double s, double t, const Values& at) {
-    const double gs = dot(at.value, at.ds), gt = dot(at.value, at.dt);
-    return (s == cell.s && gs < 0) || (s == cell.s + cell.size && gs > 0) ||
-           (t == cell.t && gt < 0) || (t == cell.t + cell.size && gt > 0);
-  }
-
-  static constexpr double kArrived = 1e-15;
-
-  static constexpr int kMostHalvings = 30;
-  static constexpr double kLastStep = 1e-7;
-  static constexpr double kStepRounding = 1e-12;
-
-  static bool leadsOut(double x, double step, double low, double high) {
-    return (x <= low && step < 0) || (x >= high && step > 0);
   }
 
   /// Whether the minimum over a convex cell is one over the smooth sheet around it as well, with a

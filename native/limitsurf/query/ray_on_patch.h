@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "limitsurf/query/oriented_box.h"
+#include "limitsurf/query/seen_patch.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
@@ -16,12 +16,6 @@ struct RayHit {
   /// How far along the ray the surface is within twice the tolerance of it: other hits so near may
   /// be the same.
   double slack;
-};
-
-/// A ray with two axes across it, in coordinates of which the surface is near the origin.
-struct RayFrame {
-  explicit RayFrame(const Ray& ray);
-  Vector3 origin, direction, across[2];
 };
 
 /// Collects what one ray meets.
