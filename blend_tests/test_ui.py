@@ -183,8 +183,9 @@ def test_broken_native_module(tmp_path):
 
 def test_a_folder_of_that_name_is_not_the_module(tmp_path):
     (tmp_path / "limitsurf").mkdir()
-    spoil = f"sys.path = [{str(tmp_path)!r}, *(p for p in sys.path if 'site-packages' not in p)]"
+    without = "not (os.path.exists(p + '/limitsurf') or 'site-packages' in p)"
+    spoil = f"sys.path = [{str(tmp_path)!r}, *(p for p in sys.path if {without})]"
     # Blender itself comes from site-packages, and is found before they are taken away.
     check_reason_is_shown(
-        f"import bpy, gpu_extras.batch, numpy; {spoil}", "is not the native module"
+        f"import bpy, gpu_extras.batch, numpy, os; {spoil}", "is not the native module"
     )
