@@ -73,7 +73,7 @@ def _objects(
     context: bpy.types.Context, surface: TargetSurface, failures: Counter[str]
 ) -> Iterator[Callable[[], Snapped]]:
     target = surface.ob
-    carriers = set(_ancestors(target))
+    carriers = set(ancestors(target))
     movable, hair, curves = [], [], set()
     for ob in context.selected_objects:
         if ob == target:
@@ -106,7 +106,7 @@ def _edited(context: bpy.types.Context, surface: TargetSurface) -> Iterator[Call
             yield partial(POINTS[mode], ob)
 
 
-def _ancestors(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+def ancestors(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
     while ob.parent:
         ob = ob.parent
         yield ob

@@ -19,17 +19,13 @@ class SnappedVertices(SnappedPoints):
     noun = "vertices"
 
     def read(self) -> tuple[np.ndarray, np.ndarray]:
-        mesh = bpy.data.meshes.new("Edited")
-        try:
-            bmesh.from_edit_mesh(self.ob.data).to_mesh(mesh)
+        with as_edited(self.ob.data) as mesh:
             points, normals = np.empty((2, len(mesh.vertices), 3), np.float32)
             selected, hidden = np.empty((2, len(mesh.vertices)), bool)
             mesh.vertices.foreach_get("co", points.ravel())
             mesh.vertices.foreach_get("normal", normals.ravel())
             mesh.vertices.foreach_get("select", selected)
             mesh.vertices.foreach_get("hide", hidden)
-        finally:
-            bpy.data.meshes.remove(mesh)
         self._normals = normals.astype(np.float64)
         return points, selected & ~hidden
 
@@ -73,6 +69,17 @@ def _dependent(
         found += relative
         pending += relative
     return found
+
+
+@contextmanager
+def as_edited(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Mesh]:
+    """A mesh as it is in Edit Mode, in a copy whose arrays can be read."""
+    copy = bpy.data.meshes.new("Edited")
+    try:
+        bmesh.from_edit_mesh(mesh).to_mesh(copy)
+        yield copy
+    finally:
+        bpy.data.meshes.remove(copy)
 
 
 @contextmanager

@@ -91,12 +91,12 @@ class Drag:
     def confirm(self) -> None:
         """All is as it was where this raises a RefusalError."""
         try:
-            self.handle.confirm(self.place)
             if self.glide.surface.has_changed(bpy.context.evaluated_depsgraph_get()):
                 raise RefusalError(
                     f"{self.handle.name} cannot be put there: {self.glide.surface.ob.name} changes "
                     "along with it"
                 )
+            self.handle.confirm(self.place)
         except RefusalError:
             self.handle.restore()
             raise

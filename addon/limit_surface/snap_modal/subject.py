@@ -3,12 +3,13 @@
 
 from dataclasses import dataclass
 
-import bmesh
 import bpy
 import numpy as np
 
 from .. import attributes, ids
 from ..errors import RefusalError
+from ..snap.gather import ancestors
+from ..snap.mesh_vertices import as_edited
 from ..snap.surface import TargetSurface, transformed
 from .handles import DraggedObject, DraggedStrand, DraggedVertex, Handle
 
@@ -77,26 +78,17 @@ def _object(context: bpy.types.Context, target: bpy.types.Object) -> Subject:
     (ob,) = others
     if not ob.is_editable:
         raise RefusalError(f"{ob.name} is linked from another file")
-    carrier = target.parent
-    while carrier is not None:
-        if carrier == ob:
-            raise RefusalError(f"{ob.name} would take {target.name} along")
-        carrier = carrier.parent
+    if ob in ancestors(target):
+        raise RefusalError(f"{ob.name} would take {target.name} along")
     return Subject("OBJECT", ob, target)
 
 
 def _vertices(mesh: bpy.types.Mesh) -> np.ndarray:
-    copy = bpy.data.meshes.new("Edited")
-    try:
-        bmesh.from_edit_mesh(mesh).to_mesh(copy)
-        points, hidden = (
-            np.empty((len(copy.vertices), 3), np.float32),
-            np.empty(len(copy.vertices), bool),
-        )
+    with as_edited(mesh) as copy:
+        points = np.empty((len(copy.vertices), 3), np.float32)
+        hidden = np.empty(len(copy.vertices), bool)
         copy.vertices.foreach_get("co", points.ravel())
         copy.vertices.foreach_get("hide", hidden)
-    finally:
-        bpy.data.meshes.remove(copy)
     points = points.astype(np.float64)
     points[hidden] = np.nan
     return points
