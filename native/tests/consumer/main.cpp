@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "limitsurf/query/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
 
 int main() {
@@ -19,4 +20,11 @@ int main() {
                 limit.position(i, 0), limit.position(i, 1), limit.position(i, 2),
                 limit.normal(i, 0), limit.normal(i, 1), limit.normal(i, 2));
   }
+
+  const limitsurf::SurfaceSearch search(surface);
+  limitsurf::Points above(1, 3);
+  above << 0.5, 0.25, 2;
+  const limitsurf::Hits near = search.closest(above);
+  std::printf("closest: %.6f %.6f %.6f, distance %g\n", near.position(0, 0), near.position(0, 1),
+              near.position(0, 2), near.distance[0]);
 }
