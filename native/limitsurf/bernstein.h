@@ -2,8 +2,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 
 namespace limitsurf {
+
+/// The numbers 0 to 3 in the order of their values.
+inline std::array<int, 4> ascending(const double values[4]) {
+  std::array<int, 4> order = {0, 1, 2, 3};
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return values[i] != values[j] ? values[i] < values[j] : i < j; });
+  return order;
+}
 
 /// A polynomial of degree N in s and in t on the unit square, by its Bernstein coefficients, i
 /// along s and j along t: they bound it, and those at the corners are its values there.

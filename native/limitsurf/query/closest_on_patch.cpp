@@ -163,14 +163,11 @@ class PatchSearch {
     SquaredDistance quarters[4];
     f.quarter(quarters);
     double least[4];
-    int order[4] = {0, 1, 2, 3};
     for (int q = 0; q < 4; ++q) {
       least[q] = quarters[q].least();
     }
-    std::sort(order, order + 4,
-              [&](int a, int b) { return least[a] != least[b] ? least[a] < least[b] : a < b; });
     const double half = cell.size / 2;
-    for (const int q : order) {
+    for (const int q : ascending(least)) {
       if (!isBetter(least[q] - noise) || isBehindFoot()) {
         continue;
       }

@@ -153,14 +153,11 @@ class PatchRay {
     cell.y.quarter(y);
     cell.z.quarter(z);
     double near[4];
-    int order[4] = {0, 1, 2, 3};
     for (int q = 0; q < 4; ++q) {
       near[q] = z[q].least();
     }
-    std::sort(order, order + 4,
-              [&](int i, int j) { return near[i] != near[j] ? near[i] < near[j] : i < j; });
     const double half = cell.on.size / 2;
-    for (const int q : order) {
+    for (const int q : ascending(near)) {
       const ParameterSquare on{cell.on.s + (q & 1) * half, cell.on.t + (q >> 1) * half, half};
       visit({on, cell.depth + 1, x[q], y[q], z[q]});
     }

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limitsurf/surface/jet.h"
+
+namespace limitsurf {
+
+/// Uniform B-spline control points p0..p3, `stride` apart, to Bezier points of the middle span.
+inline void toBezier(Padded* p, int stride) {
+  const Padded p0 = p[0], p1 = p[stride], p2 = p[2 * stride], p3 = p[3 * stride];
+  p[0] = p1 + ((p0 - p1) + (p2 - p1)) / 6;
+  p[stride] = p1 + (p2 - p1) / 3;
+  p[2 * stride] = p2 + (p1 - p2) / 3;
+  p[3 * stride] = p2 + ((p1 - p2) + (p3 - p2)) / 6;
+}
+
+/// Bezier coefficients of a cubic from its values at 0, 1/3, 2/3 and 1, `stride` apart.
+inline void interpolateBezier(Padded* p, int stride) {
+  const Padded p0 = p[0], p1 = p[stride], p2 = p[2 * stride], p3 = p[3 * stride];
+  p[stride] = (-5 * p0 + 18 * p1 - 9 * p2 + 2 * p3) / 6;
+  p[2 * stride] = (2 * p0 - 9 * p1 + 18 * p2 - 5 * p3) / 6;
+}
+
+/// `convert` applied to the rows and then to the columns of 4 x 4 points.
+template <typename Convert>
+void convertBothWays(Padded points[16], const Convert& convert) {
+  for (int i = 0; i < 4; ++i) {
+    convert(points + 4 * i, 1);
+  }
+  for (int i = 0; i < 4; ++i) {
+    convert(points + i, 4);
+  }
+}
+
+/// Fills a side's missing points by linear continuation.
+inline void continueLow(Padded* p, int along, int across) {
+  for (int i = 0; i < 4; ++i) {
+    p[i * along] = 2 * p[i * along + across] - p[i * along + 2 * across];
+  }
+}
+
+/// The same for all sides without points beyond them.
+inline void continueSides(Padded window[16], bool x_low, bool x_high, bool y_low, bool y_high) {
+  if (x_low) {
+    continueLow(window, 4, 1);
+  }
+  if (x_high) {
+    continueLow(window + 3, 4, -1);
+  }
+  if (y_low) {
+    continueLow(window, 1, 4);
+  }
+  if (y_high) {
+    continueLow(window + 12, 1, -4);
+  }
+}
+
+}  // namespace limitsurf
