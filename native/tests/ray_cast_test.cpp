@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -114,27 +113,6 @@ void expectFirstOfAll(const std::string& name, const LimitSurface& surface, cons
   }
 }
 
-double secondsOfSlowest(const SurfaceSearch& search, const Rays& rays, const std::string& name) {
-  double worst = 0;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    search.rayCastAll(Points(rays.origins[i].transpose()), Points(rays.directions[i].transpose()),
-                      kInfinity, 1);
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (seconds > worst) {
-      worst = seconds;
-      at = i;
-    }
-  }
-  if (worst > 0.005) {
-    std::printf("%s: %.1f ms at %s\n", name.c_str(), 1e3 * worst,
-                textOf(rays.origins[at], rays.directions[at]).c_str());
-  }
-  return worst;
-}
-
 /// Rays from everywhere to everywhere, half of them from far away.
 Rays raysAround(const LimitSurface& surface, int count, Random& random) {
   const double diagonal = diagonalOf(surface);
@@ -203,7 +181,6 @@ void compareWithBruteForce(const NamedCages& cages, int count, int per_side) {
       }
       expectNoneTwice(where, all, i);
     }
-    secondsOfSlowest(search, rays, name);
   }
   std::printf("%ld roots found\n", found);
 }
@@ -252,7 +229,6 @@ TEST(RayCast, FindsThePointsItIsSentThrough) {
           << name << ", " << textOf(rays.origins[i], rays.directions[i]) << " misses "
           << describe(at[i]);
     }
-    EXPECT_LT(secondsOfSlowest(search, rays, name), 0.5);
   }
 }
 
@@ -298,7 +274,6 @@ TEST(RayCast, FindsPointsAtGrazingAngles) {
           << name << ", " << textOf(rays.origins[i], rays.directions[i]) << " misses "
           << describe(at[points[i]]) << " at the angle " << angles[i];
     }
-    EXPECT_LT(secondsOfSlowest(search, rays, name), 0.5);
   }
 }
 
@@ -440,7 +415,6 @@ TEST(RayCast, InAPlaneOfTheSurface) {
       EXPECT_GE(first.at[i].face, 0) << where;
       EXPECT_LE(first.distance[static_cast<Eigen::Index>(i)], 3 * unit * (1 + 1e-9)) << where;
     }
-    EXPECT_LT(secondsOfSlowest(search, rays, name), 0.5);
   }
 }
 
@@ -582,7 +556,7 @@ TEST(RayCast, AtAnyScaleAndFarFromTheOrigin) {
                    search.rayCast(rays.originRows(), rays.directionRows()), all);
 }
 
-TEST(RayCast, DegenerateCagesEndInTime) {
+TEST(RayCast, DegenerateCagesEnd) {
   Random random(11);
   for (const auto& [name, cage] : degenerateCages()) {
     const LimitSurface surface = limitSurface(cage);
@@ -601,7 +575,6 @@ TEST(RayCast, DegenerateCagesEndInTime) {
       EXPECT_EQ(first.at[i].face >= 0, all.offsets[i] < all.offsets[i + 1])
           << name << ", " << textOf(rays.origins[i], rays.directions[i]);
     }
-    EXPECT_LT(secondsOfSlowest(search, rays, name), 0.5) << name;
   }
 }
 
