@@ -24,15 +24,6 @@ double statusMib(const char* key) {
   return 0;
 }
 
-double cpuSeconds() {
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 Cost measureHere(const Opening& open) {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts anew
@@ -51,6 +42,15 @@ Cost measureHere(const Opening& open) {
 }
 
 }  // namespace
+
+double cpuSeconds() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
 
 bool measureApart(const Opening& open, Cost& cost, const std::function<void()>& prepare) {
   int ends[2];

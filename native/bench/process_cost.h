@@ -11,6 +11,9 @@ struct Cost {
   double peak_mib, kept_mib;  ///< above what the process held before
 };
 
+/// Of all threads of this process so far.
+double cpuSeconds();
+
 /// Makes something, which lives until it has been measured.
 using Opening = std::function<std::shared_ptr<void>()>;
 

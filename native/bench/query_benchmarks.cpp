@@ -30,11 +30,17 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-double secondsOf(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+struct Seconds {
+  std::vector<double> wall, cpu;  ///< of each repetition; cpu: of all threads
+
+  void measure(const std::function<void()>& work) {
+    const double cpu_before = cpuSeconds();
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    wall.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    cpu.push_back(cpuSeconds() - cpu_before);
+  }
+};
 
 /// Prints a row for each thing that is made before the first answer.
 bool measureSetUp(const Cage& cage) {
@@ -128,16 +134,16 @@ void compare(const Queries& queries, const SurfaceSearch& search, const EmbreePe
   const bool are_rays = queries.directions.rows() > 0;
   Hits ours;
   EmbreePeer::Found theirs;
-  std::vector<double> our_seconds, their_seconds;
+  Seconds our_seconds, their_seconds;
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {
-    our_seconds.push_back(secondsOf([&] {
+    our_seconds.measure([&] {
       ours = are_rays ? search.rayCast(queries.origins, queries.directions)
                       : search.closest(queries.origins);
-    }));
-    their_seconds.push_back(secondsOf([&] {
+    });
+    their_seconds.measure([&] {
       theirs = are_rays ? peer.rayCast(queries.origins, queries.directions)
                         : peer.closest(queries.origins);
-    }));
+    });
   }
 
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(queries.origins.rows());
@@ -153,19 +159,20 @@ void compare(const Queries& queries, const SurfaceSearch& search, const EmbreePe
     farther[i] = std::abs(ours.distance[i] - theirs.distance[i]);
   }
   const Errors position = errorsOf(moved, diagonal), distance = errorsOf(farther, diagonal);
-  const double our_median = median(our_seconds), their_median = median(their_seconds);
-  std::printf("| %s | %.2f | %.2f | %.2f | %.1e | %.1e | %.1e | %.1e | %d | %d |\n", queries.name,
-              our_median, their_median, their_median / our_median, distance.max, distance.rms,
+  std::printf("| %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.1e | %.1e | %.1e | %.1e | %d | %d |\n",
+              queries.name, median(our_seconds.wall), median(our_seconds.cpu),
+              median(their_seconds.wall), median(their_seconds.cpu),
+              median(their_seconds.cpu) / median(our_seconds.cpu), distance.max, distance.rms,
               position.max, position.rms, missed, invented);
   std::fflush(stdout);
 }
 
 void timeScattering(const AreaSampler& sampler, int count, double area) {
-  std::printf("\n| random points | s |\n|---|---:|\n");
+  std::printf("\n| random points | s | CPU s |\n|---|---:|---:|\n");
   const auto row = [](const char* name, const std::function<void()>& work) {
-    std::vector<double> seconds(kRepetitions);
-    for (double& second : seconds) second = secondsOf(work);
-    std::printf("| %s | %.2f |\n", name, median(seconds));
+    Seconds seconds;
+    for (int repetition = 0; repetition < kRepetitions; ++repetition) seconds.measure(work);
+    std::printf("| %s | %.2f | %.2f |\n", name, median(seconds.wall), median(seconds.cpu));
     std::fflush(stdout);
   };
   row("uniform", [&] { sampler.uniform(count, 1); });
@@ -194,8 +201,9 @@ int measureQueries(int count) {
   const Points on_surface = surface.evaluate(sampler.uniform(count, 1)).position;
   const double face_width = std::sqrt(surface.area() / cage.faceCount());
   std::printf(
-      "| | limitsurf s | Embree s | Embree / ours | its distance: max | RMS | its position: max | "
-      "RMS | missed | invented |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+      "| | limitsurf s | CPU s | Embree s | CPU s | Embree / ours | its distance: max | RMS | its "
+      "position: max | "
+      "RMS | missed | invented |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
   compare(pointsNear("closest, to 5 % of the diagonal", on_surface, 0.05 * diagonal), search, peer,
           diagonal);
   compare(pointsNear("closest, to 5 % of a face's width", on_surface, 0.05 * face_width), search,
