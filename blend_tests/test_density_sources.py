@@ -301,6 +301,15 @@ def test_density_0_everywhere(distribution):
     )
 
 
+def test_a_vertex_group_that_would_be_taken_for_an_attribute():
+    weigh(scenes.cross(), "position")
+    check_refused(
+        "Cross has an attribute that is called position",
+        density_source="VERTEX_GROUP",
+        vertex_group="position",
+    )
+
+
 @pytest.mark.parametrize(
     ("distribution", "amount"),
     [
@@ -319,7 +328,7 @@ def test_an_image_that_is_black_where_the_surface_is(distribution, amount):
     values[7, 7] = 1
     image(values)
     check_refused(
-        "(?i)density.*(0|zero|too low)",
+        "density is too low" if distribution == "JITTERED" else "The density is 0 everywhere",
         distribution=distribution,
         amount=amount,
         density_source="IMAGE",

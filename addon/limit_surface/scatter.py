@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, StringProperty
 
 from . import cage, displayed, objects, polling, roots
 from .distribution import properties, region
-from .distribution.spread import Scattered, Spread
+from .distribution.spread import TOO_LOW, Scattered, Spread
 from .errors import RefusalError
 from .job import Job, Progress, part_of
 from .request import RequestSize
@@ -64,7 +64,7 @@ class Order:
     def ground(self, progress: Progress) -> Ground:
         scattered = self.spread.scatter(self.region, progress)
         if not len(scattered.locations):
-            raise RefusalError("The density is too low: nothing is made")
+            raise RefusalError(TOO_LOW)
         return Ground(self.region.cage, self.region, scattered, self.shown)
 
 

@@ -63,6 +63,11 @@ class DensityChoice:
             return ""
         if self.vertex_group not in ob.vertex_groups:
             raise RefusalError(f"{ob.name} has no vertex group {self.vertex_group!r}")
+        if self.vertex_group in ob.data.attributes:
+            raise RefusalError(
+                f"{ob.name} has an attribute that is called {self.vertex_group} like the vertex "
+                "group, and would be taken for it: rename the group"
+            )
         return self.vertex_group
 
     def read(

@@ -16,6 +16,9 @@ from .region import Region
 #: anywhere.
 PACKING = 0.7
 
+NOWHERE = "The density is 0 everywhere"
+TOO_LOW = "The density is too low: nothing is made"
+
 
 @dataclass(frozen=True)
 class Expected:
@@ -51,7 +54,7 @@ class Spread:
             return Expected(round(self.density * region.sums.weighted_area), True)
         self._check_distance()
         if not region.sums.largest:
-            raise RefusalError("The density is 0 everywhere")
+            raise RefusalError(NOWHERE)
         fit = PACKING * region.sums.weighted_area / region.sums.largest / self.distance**2
         return Expected(max(round(fit), 1), False)
 
@@ -62,7 +65,7 @@ class Spread:
             return Scattered(self._jittered(region), None)
         count = None if self.amount == "DISTANCE" else self.expected(region).count
         if count == 0:
-            raise RefusalError("The density is too low: nothing is made")
+            raise RefusalError(TOO_LOW if region.sums.largest else NOWHERE)
         self._check_distance()
         common = {"seed": self.seed, "density": region.density, "progress": progress}
         try:
@@ -74,7 +77,8 @@ class Spread:
                 found = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
                 return Scattered(_rounded(found), float(found.radius))
         except ValueError as error:  # nowhere to put them, or no room for so many
-            raise RefusalError(str(error)) from error
+            reason = str(error) if region.sums.largest else NOWHERE
+            raise RefusalError(f"{reason[0].upper()}{reason[1:]}") from error
 
     def _check_distance(self) -> None:
         if self.distribution == "UNIFORM" and self.amount == "DISTANCE":
