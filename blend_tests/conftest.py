@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender as a module, the add-on registered from this checkout, an empty file for each test."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -23,3 +24,21 @@ def addon():
 @pytest.fixture(autouse=True)
 def _empty_file(addon):
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+
+_exit_status = pytest.StashKey[int]()
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    session.config.stash[_exit_status] = int(exitstatus)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Ends the process at once: Blender's own exit handlers wait for each other now and then, and
+    all there is to report has been written."""
+    config.get_terminal_writer().flush()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if _exit_status in config.stash:
+        os._exit(config.stash[_exit_status])
