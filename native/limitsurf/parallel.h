@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace limitsurf {
@@ -38,6 +40,14 @@ class InterruptionPoint {
   std::function<void()> ask_;
   InterruptionPoint* outer_;
 };
+
+/// Throws std::invalid_argument for a negative number.
+inline void checkThreads(int threads) {
+  if (threads < 0) {
+    throw std::invalid_argument("threads is " + std::to_string(threads) +
+                                "; 0 means all cores, n at most n");
+  }
+}
 
 /// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or at most
 /// `threads` of them, with an InterruptionPoint after every so many. Bodies must not depend on how

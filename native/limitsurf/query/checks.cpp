@@ -22,13 +22,6 @@ constexpr double kFarthest = 1e150;
 
 }  // namespace
 
-void checkThreads(int threads) {
-  if (threads < 0) {
-    throw std::invalid_argument("threads is " + std::to_string(threads) +
-                                "; 0 means all cores, n at most n");
-  }
-}
-
 void checkFinite(const Points& rows, const char* name) {
   for (Eigen::Index row = 0; row < rows.rows(); ++row) {
     if (!rows.row(row).allFinite()) {

@@ -9,7 +9,6 @@ namespace limitsurf {
 constexpr std::size_t kRowsPerTask = 512;
 
 /// Throw std::invalid_argument that quotes what is wrong and in which row.
-void checkThreads(int threads);
 /// Finite, and not so far away that squares overflow. `name`: of one row, as in "point".
 void checkFinite(const Points& rows, const char* name);
 void checkDirections(const Points& rows);

@@ -158,7 +158,7 @@ class RaySearch {
     const double aside = (to_vertex - z * frame.direction).norm();
     if (aside <= found_.tolerance + data_.patches.coreRadius(core) &&
         z >= found_.from - found_.tolerance && z <= found_.nearest) {
-      found_.add({z, data_.patches.rectangle(core).at(0, 0), vertex, 2 * found_.tolerance});
+      found_.add({z, data_.patches.rectangle(core).at(0, 0), vertex, 1});
     }
   }
 
@@ -170,7 +170,7 @@ class RaySearch {
                      [](const RayHit& a, const RayHit& b) { return a.distance < b.distance; });
     double longest = 0;
     for (const RayHit& hit : hits) {
-      longest = std::max(longest, hit.slack);
+      longest = std::max(longest, hit.slack(found_.tolerance));
     }
     std::vector<RayHit> merged;
     for (const RayHit& hit : hits) {
@@ -178,7 +178,8 @@ class RaySearch {
       for (auto other = merged.rbegin();
            !known && other != merged.rend() && hit.distance - other->distance <= 2 * longest;
            ++other) {
-        known = (hit.position - other->position).norm() <= hit.slack + other->slack &&
+        known = (hit.position - other->position).norm() <=
+                    hit.slack(found_.tolerance) + other->slack(found_.tolerance) &&
                 areNeighbours(hit.at.face, other->at.face);
       }
       if (!known) {

@@ -68,8 +68,6 @@ class PatchRay {
   static constexpr int kDeep = 8, kMostDeepCells = 1 << 13;
   /// At smaller angles the ray runs within the surface: of that only the beginning is kept.
   static constexpr double kWithinSine = 1e-9;
-  /// At smaller angles the tolerance is left by the surface's curvature, along its root.
-  static constexpr double kLeastSine = 1e-7;
 
   static bool isWithin(const Cubic& f, double margin) {
     return f.least() >= -margin && f.largest() <= margin;
@@ -137,13 +135,14 @@ class PatchRay {
     if (!counts(z)) {
       return;
     }
-    if (out_.first_only || sineAt(s, t) > kWithinSine) {
-      out_.add(hitAt(s, t, z));
+    const RayHit hit = hitAt(s, t, z);
+    if (out_.first_only || hit.sine > kWithinSine) {
+      out_.add(hit);
     } else if (within_ >= out_.hits.size()) {
       within_ = out_.hits.size();
-      out_.add(hitAt(s, t, z));
+      out_.add(hit);
     } else if (z < out_.hits[within_].distance) {
-      out_.hits[within_] = hitAt(s, t, z);
+      out_.hits[within_] = hit;
     }
   }
 
@@ -176,15 +175,6 @@ class PatchRay {
       }
     }
     return as > 0 && bt > 0 && as * bt > at * bs;
-  }
-
-  /// Of the angle between the ray and the surface; 0 where the tangents are parallel.
-  double sineAt(double s, double t) const {
-    BezierPatch::Values at;
-    patch_.evaluate<1>(s, t, at);
-    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
-    const double length = normal.norm();
-    return length > 0 ? std::abs(normal.dot(ray_.direction)) / length : 0;
   }
 
   /// Whether the ray touches the surface in the cell without crossing it, or runs within it.
@@ -230,9 +220,11 @@ class PatchRay {
 
   RayHit hitAt(double s, double t, double z) const {
     BezierPatch::Values at;
-    patch_.evaluate<0>(s, t, at);
+    patch_.evaluate<1>(s, t, at);
+    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
+    const double length = normal.norm();
     return {z, patch_.on.at(s, t), (patch_.anchor + at.value).head<3>().matrix(),
-            2 * out_.tolerance / std::max(sineAt(s, t), kLeastSine)};
+            length > 0 ? std::abs(normal.dot(ray_.direction)) / length : 0};
   }
 
   bool counts(double z) const { return z >= out_.from - out_.tolerance && z <= out_.nearest; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "limitsurf/query/seen_patch.h"
@@ -13,9 +14,12 @@ struct RayHit {
   double distance;
   Location at;
   Vector3 position;
+  /// Of the angle between the ray and the surface; 0 where its tangents are parallel.
+  double sine;
+
   /// How far along the ray the surface is within twice the tolerance of it: other hits so near may
-  /// be the same.
-  double slack;
+  /// be the same. At angles below 1e-7 it is the surface's curvature that leads away.
+  double slack(double tolerance) const { return 2 * tolerance / std::max(sine, 1e-7); }
 };
 
 /// Collects what one ray meets.

@@ -339,11 +339,6 @@ Vector3 SurfacePatches::coreVertex(const SurfacePiece& core) const {
   return data_->pose.ring(data_->ringTile(core).ring).limit.head<3>().matrix();
 }
 
-unsigned SurfacePatches::coreBorders(const SurfacePiece& core) const {
-  const Sides sides = data_->ringTile(core).sides;
-  return (onRight(sides) ? kSideS0 : 0u) | (onLeft(sides) ? kSideT0 : 0u);
-}
-
 double SurfacePatches::diagonal() const {
   return data_->table.faces.empty() ? 0 : (data_->cage_box.high - data_->cage_box.low).norm();
 }

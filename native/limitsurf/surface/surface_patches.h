@@ -93,8 +93,6 @@ class SurfacePatches {
   double coreRadius(const SurfacePiece& core) const;
   /// The limit position of the core's vertex.
   Vector3 coreVertex(const SurfacePiece& core) const;
-  /// The core's sides (kSideS0, kSideT0) that are boundaries or infinitely sharp edges.
-  unsigned coreBorders(const SurfacePiece& core) const;
 
   /// Diagonal of the control points' bounding box: the unit of kPositionError.
   double diagonal() const;

@@ -3,16 +3,15 @@
 
 #include <sstream>
 
+#include "limitsurf/parallel.h"
+
 namespace limitsurf {
 
 TiledSurface::TiledSurface(const ControlMesh& mesh, const Topology& topology)
     : ptex(mesh), refused(topology.refused()), table(buildTileTable(mesh, topology, ptex)) {}
 
 void TiledSurface::check(Span<Location> at, int threads) const {
-  if (threads < 0) {
-    throw std::invalid_argument("threads is " + std::to_string(threads) +
-                                "; 0 means all cores, n at most n");
-  }
+  checkThreads(threads);
   std::ostringstream message;
   message.precision(17);
   for (std::size_t row = 0; row < at.size(); ++row) {

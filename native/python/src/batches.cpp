@@ -38,13 +38,6 @@ Locations locationsOf(int face_count, const py::object& face, const py::object& 
   return result;
 }
 
-void checkThreads(int threads) {
-  if (threads < 0) {
-    throw py::value_error("threads is " + std::to_string(threads) +
-                          "; 0 means all cores, n at most n");
-  }
-}
-
 void checkDerivatives(int derivatives, int highest) {
   if (derivatives < 0 || derivatives > highest) {
     throw py::value_error("derivatives is " + std::to_string(derivatives) + "; expected " +

@@ -28,9 +28,6 @@ Locations locationsOn(const Surface& surface, const py::object& face, const py::
   return at;
 }
 
-/// ValueError for a negative number.
-void checkThreads(int threads);
-
 /// ValueError for orders above `highest` and below 0.
 void checkDerivatives(int derivatives, int highest);
 
