@@ -12,6 +12,7 @@ from ._results import (
     Evaluation,
     Hits,
     Locations,
+    Projection,
     RayHits,
     Stencils,
     Tessellation,
@@ -83,6 +84,39 @@ class SurfaceData:
         dtype: DTypeLike = ...,
     ) -> DataEvaluation: ...
 
+class FilteredImage:
+    def __init__(
+        self,
+        pixels: ArrayLike,
+        extension: Literal["clip", "extend", "repeat", "mirror"] = "clip",
+        *,
+        premultiplied: bool = False,
+        threads: int = 0,
+    ) -> None: ...
+    @property
+    def shape(self) -> tuple[int, int, int]: ...
+    def sample(
+        self,
+        st: ArrayLike,
+        footprint: ArrayLike,
+        *,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> NDArray[np.float32]: ...
+
+def blend_over(
+    below: ArrayLike,
+    above: ArrayLike,
+    weight: ArrayLike,
+    mode: Literal["mix", "add", "multiply"] = "mix",
+    *,
+    premultiplied: bool = False,
+) -> NDArray[np.float32]: ...
+def box_sides(matrix: ArrayLike) -> NDArray[np.float64]: ...
+def box_weights(
+    normals: ArrayLike, blend: float = 0.0, matrix: ArrayLike | None = None
+) -> NDArray[np.float64]: ...
+
 class LimitSurface:
     def __init__(self, mesh: ControlMesh) -> None: ...
     @property
@@ -111,7 +145,14 @@ class LimitSurface:
         self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0, dtype: DTypeLike = ...
     ) -> NDArray[np.floating[Any]]: ...
     def curvature(
-        self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0, dtype: DTypeLike = ...
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        *,
+        irregular: Literal["none", "average"] = "none",
+        radius: float = 1 / 64,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
     ) -> Curvature: ...
     def stencils(
         self,
@@ -165,6 +206,43 @@ class LimitSurface:
         dtype: DTypeLike = ...,
         progress: Callable[[float], object] | None = None,
     ) -> RayHits: ...
+    def project(
+        self,
+        uv_map: SurfaceData,
+        face: ArrayLike,
+        uv: ArrayLike,
+        matrix: ArrayLike,
+        texel: tuple[float, float],
+        *,
+        facing: tuple[float, float] = ...,
+        two_sided: bool = False,
+        occlusion: bool = True,
+        samples: Literal[1, 4, 16] = 1,
+        bias: float | None = None,
+        soft_edge: float = 0.0,
+        frame: bool = True,
+        depth: tuple[float, float] | None = ...,
+        world: ArrayLike | None = None,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> Projection: ...
+    def project_along_normals(
+        self,
+        uv_map: SurfaceData,
+        face: ArrayLike,
+        uv: ArrayLike,
+        source: LimitSurface,
+        source_map: SurfaceData,
+        texel: tuple[float, float],
+        *,
+        max_distance: float = ...,
+        direction: Literal["both", "outward", "inward"] = "both",
+        transform: ArrayLike | None = None,
+        world: ArrayLike | None = None,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> Projection: ...
+    def eye_is_inside(self, matrix: ArrayLike, *, threads: int = 0) -> bool: ...
     def scatter_jittered(self, per_side: int, seed: int = 0, *, threads: int = 0) -> Locations: ...
     def scatter_uniform(
         self,

@@ -37,7 +37,8 @@ class DataEvaluation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curvature:
-    """Principal curvatures k1 >= k2 with unit directions; mean and Gaussian curvature."""
+    """Principal curvatures k1 >= k2 with unit directions; mean and Gaussian curvature; and whether
+    the location is exactly at an irregular vertex, where they are an average or NaN."""
 
     gaussian: Array
     mean: Array
@@ -45,6 +46,7 @@ class Curvature:
     k2: Array
     direction1: Array
     direction2: Array
+    irregular: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,6 +97,18 @@ class RayHits(Hits):
     """All hits of rays: those of ray i are rows offsets[i] to offsets[i + 1] - 1."""
 
     offsets: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Projection:
+    """Places in an image that texels see, (n, 2), with footprints (n, 2, 2) and weights (n,)."""
+
+    st: NDArray[np.float64]
+    footprint: NDArray[np.float64]
+    weight: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.weight)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
