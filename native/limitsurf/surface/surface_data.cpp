@@ -9,11 +9,10 @@
 #include "limitsurf/mesh/limits.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/surface_data_poses.h"
 
 namespace limitsurf {
 namespace {
-
-constexpr Eigen::Index kColumnsPerPose = 3;
 
 void checkValues(const DataRows& values) {
   if (values.cols() < 1) {
@@ -67,43 +66,34 @@ std::shared_ptr<const TiledSurface> tilesOf(const ControlMesh& mesh,
 
 }  // namespace
 
-struct SurfaceData::Data {
-  /// `rows`: per vertex of the tiles' mesh the row of its value; empty where they are the same.
-  Data(std::shared_ptr<const TiledSurface> surface, std::vector<int> vertex_rows,
-       const DataRows& values, int threads)
-      : tiles(std::move(surface)),
-        rows_of_vertices(std::move(vertex_rows)),
-        rows(values.rows()),
-        columns(values.cols()) {
-    for (Eigen::Index column = 0; column < columns; column += kColumnsPerPose) {
-      poses.emplace_back(tiles->table);
-    }
-    set(values, threads);
+SurfaceData::Data::Data(std::shared_ptr<const TiledSurface> surface, std::vector<int> vertex_rows,
+                        const DataRows& values, int threads)
+    : tiles(std::move(surface)),
+      rows_of_vertices(std::move(vertex_rows)),
+      rows(values.rows()),
+      columns(values.cols()) {
+  for (Eigen::Index column = 0; column < columns; column += kColumnsPerPose) {
+    poses.emplace_back(tiles->table);
   }
+  set(values, threads);
+}
 
-  void set(const DataRows& values, int threads) {
-    const Eigen::Index vertices = rows_of_vertices.empty()
-                                      ? values.rows()
-                                      : static_cast<Eigen::Index>(rows_of_vertices.size());
-    Points points = Points::Zero(vertices, 3);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const Eigen::Index first = static_cast<Eigen::Index>(i) * kColumnsPerPose;
-      const Eigen::Index count = std::min(kColumnsPerPose, columns - first);
-      points.rightCols(3 - count).setZero();
-      for (Eigen::Index vertex = 0; vertex < vertices; ++vertex) {
-        const Eigen::Index row =
-            rows_of_vertices.empty() ? vertex : rows_of_vertices[static_cast<std::size_t>(vertex)];
-        points.row(vertex).head(count) = values.row(row).segment(first, count);
-      }
-      poses[i].set(points, threads);
+void SurfaceData::Data::set(const DataRows& values, int threads) {
+  const Eigen::Index vertices =
+      rows_of_vertices.empty() ? values.rows() : static_cast<Eigen::Index>(rows_of_vertices.size());
+  Points points = Points::Zero(vertices, 3);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Index first = static_cast<Eigen::Index>(i) * kColumnsPerPose;
+    const Eigen::Index count = std::min(kColumnsPerPose, columns - first);
+    points.rightCols(3 - count).setZero();
+    for (Eigen::Index vertex = 0; vertex < vertices; ++vertex) {
+      const Eigen::Index row =
+          rows_of_vertices.empty() ? vertex : rows_of_vertices[static_cast<std::size_t>(vertex)];
+      points.row(vertex).head(count) = values.row(row).segment(first, count);
     }
+    poses[i].set(points, threads);
   }
-
-  std::shared_ptr<const TiledSurface> tiles;
-  std::vector<int> rows_of_vertices;
-  Eigen::Index rows, columns;
-  std::vector<Pose> poses;  // one for every three columns
-};
+}
 
 SurfaceData::SurfaceData(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 SurfaceData::~SurfaceData() = default;
@@ -148,7 +138,7 @@ DataEvaluation SurfaceData::evaluate(Span<Location> at, Derivatives derivatives,
   parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     Eigen::Index first = 0, row = 0;
     const auto put = [&](DataRows& to, const Padded& values) {
-      const Eigen::Index count = std::min(kColumnsPerPose, columns - first);
+      const Eigen::Index count = std::min(Data::kColumnsPerPose, columns - first);
       to.row(row).segment(first, count) = values.head(count).matrix().transpose();
     };
     for (const Pose& pose : data_->poses) {
@@ -168,7 +158,7 @@ DataEvaluation SurfaceData::evaluate(Span<Location> at, Derivatives derivatives,
           put(out.dvv, jet.second(jet.patch.dvv));
         }
       }
-      first += kColumnsPerPose;
+      first += Data::kColumnsPerPose;
     }
   });
   return out;

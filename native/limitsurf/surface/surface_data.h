@@ -57,6 +57,7 @@ class SurfaceData {
 
  private:
   friend class LimitSurface;
+  friend class SurfacePatches;
   struct Data;
   explicit SurfaceData(std::unique_ptr<Data> data);
   std::unique_ptr<Data> data_;

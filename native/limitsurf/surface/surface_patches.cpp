@@ -5,6 +5,7 @@
 
 #include "limitsurf/surface/bezier_conversion.h"
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/surface_data_poses.h"
 
 namespace limitsurf {
 namespace {
@@ -35,10 +36,10 @@ struct SurfacePatches::Data {
     FaceRectangle on;  ///< of a ring tile turned so that its vertex is (0, 0)
   };
 
-  explicit Data(const LimitSurface::Data& surface) : table(surface.table), pose(surface.pose) {
-    const Points& cage = surface.positions;
-    for (Eigen::Index i = 0; i < cage.rows(); ++i) {
-      cage_box.include(cage.row(i).transpose());
+  Data(const TileTable& tile_table, const Pose& control_points)
+      : table(tile_table), pose(control_points) {
+    for (int i = 0; i < table.points.cagePoints(); ++i) {
+      cage_box.include(pose.point(i).head<3>().matrix());
     }
     tiles.reserve(table.faces.size());
     for (std::size_t face = 0; face < table.faces.size(); ++face) {
@@ -70,7 +71,7 @@ struct SurfacePatches::Data {
     return table.rings[ring].basis->ring().faces > kFewFaces ? kMostSteps : kFewSteps;
   }
 
-  void reserveLevels() {
+  void setLevels(int threads) {
     radii.resize(table.rings.size() * (kMostSteps + 1));
     first_level.resize(table.rings.size());
     std::size_t size = 0;
@@ -79,11 +80,16 @@ struct SurfacePatches::Data {
       size += table.rings[ring].points.size() * (keptSteps(static_cast<int>(ring)) + 1);
     }
     levels.resize(size);
+    parallelFor(table.rings.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t ring = begin; ring < end; ++ring) {
+        setRingLevels(static_cast<int>(ring));
+      }
+    });
   }
 
   /// How far a ring's points are from its limit after 0, 1, ... steps, and the
   /// points.
-  void setLevels(int ring_index) {
+  void setRingLevels(int ring_index) {
     const RingPoints& ring = table.rings[ring_index];
     const Padded limit = pose.ring(ring_index).limit;
     std::vector<Padded> points(ring.points.size()), next(ring.points.size());
@@ -244,13 +250,12 @@ struct SurfacePatches::Data {
 };
 
 SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads)
-    : data_(std::make_unique<Data>(*surface.data_)) {
-  data_->reserveLevels();
-  parallelFor(data_->table.rings.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t ring = begin; ring < end; ++ring) {
-      data_->setLevels(static_cast<int>(ring));
-    }
-  });
+    : data_(std::make_unique<Data>(surface.data_->table, surface.data_->pose)) {
+  data_->setLevels(threads);
+}
+SurfacePatches::SurfacePatches(const SurfaceData& data, int threads)
+    : data_(std::make_unique<Data>(data.data_->tiles->table, data.data_->poses.front())) {
+  data_->setLevels(threads);
 }
 SurfacePatches::~SurfacePatches() = default;
 SurfacePatches::SurfacePatches(SurfacePatches&&) noexcept = default;

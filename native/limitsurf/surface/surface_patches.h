@@ -44,9 +44,9 @@ struct SurfacePiece {
 /// with them is split into tiles with one such vertex at most, and a core at each, which is three
 /// patches and a core of half its size, as often as the search asks; nothing is kept of those.
 ///
-/// Refers to the surface, which must live on and keep its pose. All members may be called from many
-/// threads at once. Memory: 60 bytes a tile; around an extraordinary vertex
-/// 800 bytes a face, with more than kFewFaces of them 4,600.
+/// Refers to the surface or data, which must live on and keep their pose. All members may be called
+/// from many threads at once. Memory: 60 bytes a tile; around an extraordinary vertex 800 bytes a
+/// face, with more than kFewFaces of them 4,600.
 class SurfacePatches {
  public:
   /// After so many steps, and with so small a core that positions in it are kPositionError from
@@ -55,6 +55,8 @@ class SurfacePatches {
   static constexpr int kFewFaces = 16;
 
   explicit SurfacePatches(const LimitSurface& surface, int threads = 0);
+  /// Of data's first three columns, as if they were positions; what columns are missing is 0.
+  explicit SurfacePatches(const SurfaceData& data, int threads = 0);
   ~SurfacePatches();
   SurfacePatches(SurfacePatches&&) noexcept;
   SurfacePatches& operator=(SurfacePatches&&) noexcept;

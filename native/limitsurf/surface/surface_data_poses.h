@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/surface_data.h"
+#include "limitsurf/surface/tiled_surface.h"
+
+namespace limitsurf {
+
+struct SurfaceData::Data {
+  static constexpr Eigen::Index kColumnsPerPose = 3;
+
+  /// `vertex_rows`: per vertex of the tiles' mesh the row of its value; empty where they are the
+  /// same.
+  Data(std::shared_ptr<const TiledSurface> surface, std::vector<int> vertex_rows,
+       const DataRows& values, int threads);
+
+  void set(const DataRows& values, int threads);
+
+  std::shared_ptr<const TiledSurface> tiles;
+  std::vector<int> rows_of_vertices;
+  Eigen::Index rows, columns;
+  std::vector<Pose> poses;  // one for every three columns
+};
+
+}  // namespace limitsurf
