@@ -8,6 +8,7 @@ POINTS_ADD = "object.limit_points_add"
 SNAP = "object.limit_snap"
 SNAP_MODAL = "view3d.limit_snap_modal"
 REPORT_OPERATOR = "object.limit_report"
+PROJECT_IMAGE = "object.limit_project_image"
 
 PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
@@ -42,6 +43,8 @@ REPORT = "limit_report"  # custom property of the surface's object
 
 HAIR_OBJECT = "Limit Hair"
 POINTS_OBJECT = "Limit Points"
+DECAL_OBJECT = "Limit Decal"
+DECAL_UV = "Image"  # UV map of decals
 INSTANCES_GROUP = "Limit Instances"
 INSTANCES_MARK = "limit_surface_instances"  # custom property of that node group: its version
 
