@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace limitsurf {
+
+/// An image of float32 pixels, row after row, the channels of a pixel together.
+struct PixelGrid {
+  PixelGrid(int columns, int rows, int channels_of_each)
+      : width(columns),
+        height(rows),
+        channels(channels_of_each),
+        values(new float[static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) *
+                         static_cast<std::size_t>(channels_of_each)]) {}
+
+  float* row(int y) { return values.get() + rowLength() * static_cast<std::size_t>(y); }
+  const float* row(int y) const { return values.get() + rowLength() * static_cast<std::size_t>(y); }
+  std::size_t rowLength() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+  }
+
+  int width, height, channels;
+  std::unique_ptr<float[]> values;
+};
+
+/// An image and its halvings, down to one pixel. Sizes are halved and rounded up; a pixel of the
+/// half is the mean of the original over the pixel's area, so that every level covers the same
+/// square and has the same mean, whatever the size.
+class ImagePyramid {
+ public:
+  explicit ImagePyramid(PixelGrid image, int threads = 0);
+
+  int size() const { return static_cast<int>(levels_.size()); }
+  const PixelGrid& level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
+
+ private:
+  std::vector<PixelGrid> levels_;
+};
+
+}  // namespace limitsurf
