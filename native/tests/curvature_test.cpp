@@ -8,6 +8,8 @@
 
 #include "support/corner_points.h"
 #include "support/meshes.h"
+#include "support/sharp_meshes.h"
+#include "support/strange_meshes.h"
 #include "support/witness.h"
 
 namespace limitsurf::test {
@@ -120,8 +122,85 @@ TEST(Curvature, IsMissingAtIrregularVerticesAlone) {
            {&curvature.gaussian, &curvature.mean, &curvature.k1, &curvature.k2}) {
         EXPECT_EQ(std::isnan((*values)[i]), !regular) << describe(at[i]);
       }
+      EXPECT_EQ(curvature.irregular[i], !regular) << describe(at[i]);
     }
   }
+}
+
+/// Of the faces 0, 4, 8, ... of a fan around their vertex (0, 0), from subdivision: the mean that
+/// LimitSurface::curvature() promises; and the size of what is averaged.
+Eigen::Matrix3d meanAround(const Cage& cage, const Vector3& vertex_normal, double radius,
+                           double& size) {
+  DeepSubdivision deep(cage);
+  std::vector<std::pair<double, Truth>> places;
+  Vector3 normal = Vector3::Zero();
+  for (int face = 0; face < static_cast<int>(cage.faces.size()); face += 4) {
+    for (const auto& [u, v] : {std::pair{1., 0.25}, {1., 0.75}, {0.75, 1.}, {0.25, 1.}}) {
+      const Truth truth = deep.evaluate({face, radius * u, radius * v});
+      const double area = truth[kDu].cross(truth[kDv]).norm();
+      places.push_back({area, truth});
+      normal += area * truth[kNormal];
+    }
+  }
+  normal = vertex_normal.hasNaN() ? normal.normalized() : vertex_normal;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  double total = 0;
+  size = 0;
+  for (const auto& [area, truth] : places) {
+    // The shape operator in space: second fundamental form, raised on both sides by the tangents'
+    // dual vectors.
+    Eigen::Matrix<double, 3, 2> tangents;
+    tangents << truth[kDu], truth[kDv];
+    const Eigen::Matrix<double, 3, 2> dual = tangents * (tangents.transpose() * tangents).inverse();
+    Eigen::Matrix2d second;
+    second << truth[kDuu].dot(truth[kNormal]), truth[kDuv].dot(truth[kNormal]),
+        truth[kDuv].dot(truth[kNormal]), truth[kDvv].dot(truth[kNormal]);
+    const Eigen::Matrix3d turn =
+        Eigen::Quaterniond::FromTwoVectors(truth[kNormal], normal).toRotationMatrix();
+    const Eigen::Matrix<double, 3, 2> turned = turn * dual;
+    sum += area * turned * second * turned.transpose();
+    total += area;
+    size = std::max(size, (truth[kDuu].norm() + truth[kDuv].norm() + truth[kDvv].norm()) /
+                              std::min(truth[kDu].squaredNorm(), truth[kDv].squaredNorm()));
+  }
+  return sum / total;
+}
+
+TEST(Curvature, AveragesAroundIrregularVerticesAreThoseOfSubdivision) {
+  NamedCages cages;
+  for (int faces : {3, 5, 6, 11}) cages.push_back({"closed", fan(faces, true, faces)});
+  for (int faces : {1, 3, 4, 7}) cages.push_back({"open", fan(faces, false, faces)});
+  cages.push_back({"dart", fan(5, true, 4)});
+  sharpenEdge(cages.back().second, 0, 1, 10);
+  cages.push_back({"cone", fan(5, true, 5)});
+  sharpenVertex(cages.back().second, 0, 10);
+  cages.push_back({"pinned", fan(3, false, 6)});
+  sharpenVertex(cages.back().second, 0, 10);
+  cages.push_back({"semi-sharp", fan(5, true, 7)});
+  sharpenVertex(cages.back().second, 0, 1.5);
+  cages.push_back({"several", perturbed(fan(5, true, 8), 0.1, 1)});
+  sharpenEdge(cages.back().second, 0, 1, 2);
+  double worst = 0;
+  for (const auto& [name, cage] : cages) {
+    const LimitSurface surface = limitSurface(cage);
+    const std::vector<Location> at = {{0, 0, 0}};
+    const Vector3 normal = surface.evaluate(at, Derivatives::first, true).normal.row(0);
+    for (const double radius : {0.5, 1. / 8, kCurvatureRadius, 0x1p-12}) {
+      const std::string where =
+          name + " " + std::to_string(cage.faces.size() / 4) + ", radius " + std::to_string(radius);
+      double size = 0;
+      const Eigen::Matrix3d expected = meanAround(cage, normal, radius, size);
+      const Curvature got = surface.curvature(at, IrregularRule::average, radius);
+      ASSERT_TRUE(got.irregular[0]) << where;
+      const Vector3 d1 = got.direction1.row(0), d2 = got.direction2.row(0);
+      const Eigen::Matrix3d tensor =
+          got.k1[0] * d1 * d1.transpose() + got.k2[0] * d2 * d2.transpose();
+      const double error = (tensor - expected).norm() / size;
+      worst = std::max(worst, error);
+      EXPECT_LE(error, kAverageCurvatureError) << where;
+    }
+  }
+  std::printf("  worst relative to the second derivatives: %.1e\n", worst);
 }
 
 TEST(Curvature, OverflowsOnlyWhereItIsThatLarge) {

@@ -61,12 +61,11 @@ Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& norma
 }
 
 PrincipalCurvatures principalCurvatures(const Jet& jet) {
-  PrincipalCurvatures result{kNaN, kNaN, Vector3::Constant(kNaN), Vector3::Constant(kNaN)};
   const double first = std::max(jet.patch.du.abs().maxCoeff(), jet.patch.dv.abs().maxCoeff());
   const Vector3 du = jet.patch.du.head<3>() / first, dv = jet.patch.dv.head<3>() / first;
   const Vector3 n = unitNormal(du, dv);
   if (!n.allFinite()) {
-    return result;
+    return {kNaN, kNaN, Vector3::Constant(kNaN), Vector3::Constant(kNaN)};
   }
   double second = std::max({jet.patch.duu.abs().maxCoeff(), jet.patch.duv.abs().maxCoeff(),
                             jet.patch.dvv.abs().maxCoeff()});
@@ -83,15 +82,20 @@ PrincipalCurvatures principalCurvatures(const Jet& jet) {
   const double xy = (uv - b * a * xx) / (a * c);
   const double yy = (vv - 2 * b * c * xy - b * b * xx) / (c * c);
 
-  const double mean = (xx + yy) / 2, half = (xx - yy) / 2,
-               radius = std::sqrt(half * half + xy * xy);
   const double scale = std::ldexp(second / first / first, jet.exponent);
-  result.k1 = (mean + radius) * scale;
-  result.k2 = (mean - radius) * scale;
-  const double angle = std::atan2(xy, half) / 2;
-  result.direction1 = std::cos(angle) * x + std::sin(angle) * y;
-  result.direction2 = -std::sin(angle) * x + std::cos(angle) * y;
+  PrincipalCurvatures result = principalCurvatures({xx, xy, yy}, x, y);
+  result.k1 *= scale;
+  result.k2 *= scale;
   return result;
+}
+
+PrincipalCurvatures principalCurvatures(const ShapeOperator& shape, const Vector3& x,
+                                        const Vector3& y) {
+  const double mean = shape.xx / 2 + shape.yy / 2, half = shape.xx / 2 - shape.yy / 2,
+               radius = std::hypot(half, shape.xy);
+  const double angle = std::atan2(shape.xy, half) / 2;
+  return {mean + radius, mean - radius, std::cos(angle) * x + std::sin(angle) * y,
+          -std::sin(angle) * x + std::cos(angle) * y};
 }
 
 }  // namespace limitsurf

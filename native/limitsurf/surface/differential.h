@@ -19,11 +19,20 @@ Vector3 unitNormal(const Vector3& du, const Vector3& dv);
 /// `normal` may have any length; zero asks for completion.
 Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& normal);
 
-/// Principal curvatures k1 >= k2 and unit directions; NaN where du x dv vanishes or is NaN.
+/// Principal curvatures k1 >= k2 and unit directions, direction1 x direction2 the normal.
 struct PrincipalCurvatures {
   double k1, k2;
   Vector3 direction1, direction2;
 };
+
+/// NaN where du x dv vanishes or is NaN.
 PrincipalCurvatures principalCurvatures(const Jet& jet);
+
+/// How the surface bends along two perpendicular unit vectors x and y of its tangent plane.
+struct ShapeOperator {
+  double xx, xy, yy;
+};
+PrincipalCurvatures principalCurvatures(const ShapeOperator& shape, const Vector3& x,
+                                        const Vector3& y);
 
 }  // namespace limitsurf

@@ -46,8 +46,27 @@ struct Curvature {
   Eigen::VectorXd gaussian, mean, k1, k2;
   Points direction1, direction2;
 };
+  /// Exactly at an irregular vertex: the other members are no curvature of the surface there.
+  Eigen::Array<bool, Eigen::Dynamic, 1> irregular;
 
 /// Sparse linear weights of the control mesh's vertices, one row per location (CSR).
+/// What stands for curvature exactly at irregular vertices, where it has no limit.
+enum class IrregularRule {
+  none,     ///< NaN
+  average,  ///< a mean over the faces around the vertex
+};
+
+/// How far around an irregular vertex curvature is averaged, as a share of an edge.
+constexpr double kCurvatureRadius = 1. / 64;
+
+/// Throws std::invalid_argument unless 0 < radius <= 1/2.
+void checkCurvatureRadius(double radius);
+
+/// Averages: relative to what curvature would be if second derivatives all pointed along the
+/// normal, (|duu| + |duv| + |dvv|) / min(|du|, |dv|)^2, where that is largest among the places. At
+/// tiny radii this leaves little: below 2^-40 or so no digit of the curvature itself is left.
+constexpr double kAverageCurvatureError = 1e-9;
+
 struct Stencils {
   std::vector<std::int64_t> offsets;
   std::vector<int> indices;
@@ -135,8 +154,30 @@ class LimitSurface {
   Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> frames(Span<Location> at,
                                                                    int threads = 0) const;
 
-  /// Curvature; NaN exactly at irregular vertices, where it has no limit.
-  Curvature curvature(Span<Location> at, int threads = 0) const;
+  /// Curvature. Exactly at irregular vertices, where it has no limit, what `rule` says.
+  ///
+  /// The average there is over the faces of the location's own sector: all that boundaries and
+  /// infinitely sharp edges do not part from its face. On each of them four places stand on the
+  /// square with the vertex at one corner and sides of `radius` edges, at (1, 1/4), (1, 3/4),
+  /// (3/4, 1) and (1/4, 1) times the side as seen from the vertex; the side is `radius` in u and v
+  /// on a quad and twice that on a sub-face of an n-gon, whose sides are half edges. Their shape
+  /// operators, each turned by the shortest rotation into the vertex' tangent plane, are averaged,
+  /// weighted by area (|du x dv|, counted in edges): the midpoint rule for the mean over a thin
+  /// band around the vertex. Principal curvatures and directions are those of the mean; `gaussian`
+  /// is the product of its k1 and k2, not a mean of products.
+  ///
+  /// Where the vertex has no normal the plane is perpendicular to the mean of the places' normals
+  /// weighted by area, or to one of them should these cancel out. Places where the surface is
+  /// singular, or turned the opposite way, are left out; where none remains all is NaN.
+  ///
+  /// Properties:
+  ///   (1) all locations that name the same vertex in the same sector get the same bits;
+  ///   (2) a mesh subdivided once gives the same at twice the radius.
+  ///
+  /// Error: kAverageCurvatureError. Throws std::invalid_argument for a radius outside (0, 1/2].
+  /// Cost: O(Ptex faces), where any row needs an average, and O(valence^2) for each vertex.
+  Curvature curvature(Span<Location> at, IrregularRule rule = IrregularRule::none,
+                      double radius = kCurvatureRadius, int threads = 0) const;
 
   /// The exact linear weights of position (and du, dv) on the cage's vertices.
   Stencils stencils(Span<Location> at, bool first_derivatives = false, int threads = 0) const;

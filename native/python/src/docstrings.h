@@ -105,8 +105,28 @@ or the normal vanishes, completed from dv, then from the least aligned world axi
 constexpr const char* kCurvatureDoc =
     R"(Curvature: .gaussian .mean .k1 .k2 (n,) with k1 >= k2, and their unit .direction1 .direction2 (n, 3).
 
-Signs follow the normal: a sphere seen from outside curves negatively. NaN exactly at irregular
-vertices, where curvature has no limit in general.
+Signs follow the normal: a sphere seen from outside curves negatively. .irregular (n,) bool tells the
+locations exactly at an irregular vertex, where curvature has no limit in general. There
+
+irregular="none": all is NaN;
+irregular="average": a mean over the faces of the location's own sector, those around the vertex that
+    boundaries and infinitely sharp edges do not part from its face. On each of them four places stand
+    on a square with the vertex at one corner and sides of `radius` edges: at (1, 1/4), (1, 3/4),
+    (3/4, 1), (1/4, 1) times the side, as seen from the vertex. The side is `radius` in u and v on a
+    quad, and 2 * radius on a sub-face of an n-gon, whose sides are half edges. Their shape operators,
+    each turned by the shortest rotation into the vertex's tangent plane, are averaged, weighted by
+    area. k1, k2 and the directions are the mean's; gaussian is k1 * k2. All faces of the sector give
+    the same bits; a mesh subdivided once gives the same at twice the radius.
+
+Where the vertex has no normal the plane is perpendicular to the mean of the places' normals. Places
+where the surface is singular (du x dv = 0), or turned the opposite way, are left out; where none
+remains, and at singular places anywhere, the result is NaN.
+
+Error of averages: 1e-9 of what curvature would be if second derivatives all pointed along the normal;
+below a radius of 2^-40 or so no digit is left of it. Cost: O(valence^2) for each such vertex,
+and O(faces) for each 131,072 locations that need any.
+
+Raises ValueError for a radius outside (0, 1/2], MeshError for another word, and as evaluate().
 )";
 
 constexpr const char* kStencilsDoc =

@@ -12,6 +12,7 @@
 
 #include "arrays.h"
 #include "batches.h"
+#include "choices.h"
 #include "docstrings.h"
 #include "shared_surface.h"
 #include "surface_data.h"
@@ -59,9 +60,13 @@ py::object frames(const SharedSurface& shared, const py::object& face, const py:
 }
 
 py::object curvature(const SharedSurface& shared, const py::object& face, const py::object& uv,
-                     int threads, const py::object& dtype) {
+                     const std::string& irregular, double radius, int threads,
+                     const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
+  const IrregularRule rule = choice<IrregularRule>(
+      irregular, "irregular", {{"none", IrregularRule::none}, {"average", IrregularRule::average}});
+  checkCurvatureRadius(radius);
   const Locations at = locationsOn(shared.surface(), face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   Output scalars[4], directions[2];
@@ -71,17 +76,21 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
   for (Output& output : directions) {
     output = Output(type, {rows, 3});
   }
+  py::array_t<bool> is_irregular(rows);
+  bool* flags = is_irregular.mutable_data();
   inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
-    const Curvature c = shared.surface().curvature(chunk, threads);
+    const Curvature c = shared.surface().curvature(chunk, rule, radius, threads);
     const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
     for (int i = 0; i < 4; ++i) {
       scalars[i].put(begin, values[i]->data(), chunk.size());
     }
     directions[0].put(3 * begin, c.direction1.data(), 3 * chunk.size());
     directions[1].put(3 * begin, c.direction2.data(), 3 * chunk.size());
+    std::copy(c.irregular.data(), c.irregular.data() + chunk.size(), flags + begin);
   });
   return result("Curvature")(scalars[0].object(), scalars[1].object(), scalars[2].object(),
-                             scalars[3].object(), directions[0].object(), directions[1].object());
+                             scalars[3].object(), directions[0].object(), directions[1].object(),
+                             is_irregular);
 }
 
 py::object stencils(const SharedSurface& shared, const py::object& face, const py::object& uv,
@@ -226,8 +235,8 @@ void bindLimitSurface(py::module_& module) {
            "threads"_a = 0, "dtype"_a = float64, kEvaluateDoc)
       .def("frames", &frames, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0, "dtype"_a = float64,
            kFramesDoc)
-      .def("curvature", &curvature, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0,
-           "dtype"_a = float64, kCurvatureDoc)
+      .def("curvature", &curvature, "face"_a, "uv"_a, py::kw_only(), "irregular"_a = "none",
+           "radius"_a = kCurvatureRadius, "threads"_a = 0, "dtype"_a = float64, kCurvatureDoc)
       .def("stencils", &stencils, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
            "threads"_a = 0, kStencilsDoc)
       .def("face_varying", &faceVarying, "values"_a, "indices"_a, "interpolation"_a, py::kw_only(),
