@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/bake/displacement.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace limitsurf {
+namespace {
+
+using Frame = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+
+/// Places in a frame's columns.
+constexpr int kTangent = 0, kBitangent = 1, kNormal = 2;
+
+void requireAsMany(const Points& rows, const FrameRows& frames) {
+  if (rows.rows() != frames.rows()) {
+    throw std::invalid_argument(std::to_string(rows.rows()) + " vectors and " +
+                                std::to_string(frames.rows()) + " frames");
+  }
+}
+
+/// Always unit vectors.
+Points normalsAt(const LimitSurface& base, Span<Location> at, Points normals, int threads) {
+  std::vector<Location> without;
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index row = 0; row < normals.rows(); ++row) {
+    if (!normals.row(row).allFinite()) {
+      without.push_back(at[static_cast<std::size_t>(row)]);
+      rows.push_back(row);
+    }
+  }
+  const FrameRows frames = base.frames(without, threads);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    normals.row(rows[i]) = Frame(frames.row(static_cast<Eigen::Index>(i)).data()).col(kNormal);
+  }
+  return normals;
+}
+
+}  // namespace
+
+Points vectorDisplacement(const LimitSurface& base, const LimitSurface& target,
+                          const SubdividedFaces& faces, Span<Location> at, int threads) {
+  base.checkLocations(at);
+  return target.evaluate(faces.locate(at, threads), Derivatives::none, false, threads).position -
+         base.evaluate(at, Derivatives::none, false, threads).position;
+}
+
+Points intoFrames(const Points& vectors, const FrameRows& frames) {
+  requireAsMany(vectors, frames);
+  Points result(vectors.rows(), 3);
+  for (Eigen::Index row = 0; row < vectors.rows(); ++row) {
+    const Eigen::RowVector3d along = vectors.row(row) * Frame(frames.row(row).data());
+    result.row(row) << along[kTangent], along[kNormal], along[kBitangent];
+  }
+  return result;
+}
+
+Points outOfFrames(const Points& components, const FrameRows& frames) {
+  requireAsMany(components, frames);
+  Points result(components.rows(), 3);
+  for (Eigen::Index row = 0; row < components.rows(); ++row) {
+    const Frame frame(frames.row(row).data());
+    result.row(row) = components(row, 0) * frame.col(kTangent) +
+                      components(row, 1) * frame.col(kNormal) +
+                      components(row, 2) * frame.col(kBitangent);
+  }
+  return result;
+}
+
+Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch& target,
+                                   Span<Location> at, const ScalarDisplacementOptions& options,
+                                   int threads) {
+  Evaluation here = base.evaluate(at, Derivatives::first, true, threads);
+  const Points normals = normalsAt(base, at, std::move(here.normal), threads);
+  const auto distances = [&](double sign) -> Eigen::VectorXd {
+    return target.rayCast(here.position, sign * normals, options.max_distance, threads).distance;
+  };
+  switch (options.directions) {
+    case RayDirections::outward:
+      return distances(1);
+    case RayDirections::inward:
+      return -distances(-1);
+    case RayDirections::both:
+      break;
+  }
+  const Eigen::VectorXd outward = distances(1), inward = distances(-1);
+  Eigen::VectorXd result(outward.size());
+  for (Eigen::Index row = 0; row < result.size(); ++row) {
+    const bool inwards = std::isnan(outward[row]) || inward[row] < outward[row];
+    result[row] = inwards ? -inward[row] : outward[row];
+  }
+  return result;
+}
+
+}  // namespace limitsurf
