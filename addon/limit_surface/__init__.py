@@ -5,7 +5,7 @@ import atexit
 
 import bpy
 
-from . import distribution, hair, points, preferences, report, snap, snap_modal, ui
+from . import distribution, hair, pixel_undo, points, preferences, report, snap, snap_modal, ui
 
 _parts = (preferences, hair, points, snap, snap_modal, ui, distribution, report)
 
@@ -19,6 +19,7 @@ def register() -> None:
             bpy.utils.register_class(cls)
     snap.attach_settings()
     distribution.attach_handlers()
+    pixel_undo.attach_handlers()
     ui.append_menus()
     if _is_module:
         atexit.register(unregister)
@@ -27,6 +28,7 @@ def register() -> None:
 def unregister() -> None:
     atexit.unregister(unregister)
     ui.remove_menus()
+    pixel_undo.detach_handlers()
     distribution.detach_handlers()
     snap.detach_settings()
     for part in reversed(_parts):

@@ -51,3 +51,6 @@ INSTANCES_MARK = "limit_surface_instances"  # custom property of that node group
 CAGE_SCENE = ".limit_cage"
 WEIGHTS_GROUP = ".limit_weights"
 VERTEX_WEIGHT = ".limit_weight"  # attribute of the private scene's meshes
+
+PIXELS_MARK = "limit_surface_pixels"  # custom property of images that operators have changed
+TEMPORARY_IMAGE = ".limit_image"

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images as arrays of pixels: read, written, saved, undone."""
+
+import bpy
+import numpy as np
+import pytest
+from limit_surface import image_files, images
+from limit_surface.errors import RefusalError
+
+SIZE = (6, 4)  # width, height
+
+
+def some_pixels(seed: int, width: int = 6, height: int = 4) -> np.ndarray:
+    """Multiples of 1/255, opaque: what 8 bits hold."""
+    pixels = np.random.default_rng(seed).integers(0, 256, (height, width, 4)).astype(np.float32)
+    pixels[:, :, 3] = 255
+    return pixels / np.float32(255)
+
+
+def raw(image: bpy.types.Image) -> np.ndarray:
+    flat = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(flat)
+    return flat.reshape(image.size[1], image.size[0], -1)
+
+
+def new_image(kind: str, folder) -> bpy.types.Image:
+    """generated, packed or file; 8-bit or float."""
+    source, depth = kind.split()
+    image = images.new(kind, *SIZE, is_float=depth == "float", is_data=False)
+    image.pixels.foreach_set(some_pixels(0).ravel())
+    if source == "packed":
+        image.pack()
+    if source == "file":
+        kind = image_files.EXR_32 if depth == "float" else image_files.PNG_8
+        images.save(image, folder / f"image{kind.suffix}", kind)
+    return image
+
+
+KINDS = [
+    f"{source} {depth}" for source in ("generated", "packed", "file") for depth in ("8", "float")
+]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_pixels_are_read_and_written(kind, tmp_path):
+    image = new_image(kind, tmp_path)
+    described = images.checked(image, to_write=True)
+    assert (described.width, described.height, described.channels) == (*SIZE, 4)
+    assert described.is_float == kind.endswith("float")
+    np.testing.assert_allclose(images.read(image), some_pixels(0), atol=1e-6)
+    images.write(image, some_pixels(1))
+    np.testing.assert_allclose(raw(image), some_pixels(1), atol=1e-6)
+    assert image.is_dirty
+    assert image.colorspace_settings.name == described.colorspace
+
+
+class Writes(bpy.types.Operator):
+    """For tests"""
+
+    bl_idname = "image.limit_test_write"
+    bl_label = "Write"
+    bl_options = {"REGISTER", "UNDO"}
+
+    image: bpy.props.StringProperty()
+    seed: bpy.props.IntProperty()
+    tile: bpy.props.IntProperty(default=1001)
+
+    def execute(self, _context):
+        image = bpy.data.images.get(self.image)
+        if image is None:
+            image = images.new(self.image, *SIZE, is_float=True, is_data=True)
+        images.write(image, some_pixels(self.seed), self.tile)
+        return {"FINISHED"}
+
+
+@pytest.fixture
+def write():
+    bpy.utils.register_class(Writes)
+    bpy.ops.ed.undo_push(message="before")
+    yield lambda name, seed, tile=1001: bpy.ops.image.limit_test_write(
+        "EXEC_DEFAULT", True, image=name, seed=seed, tile=tile
+    )
+    bpy.utils.unregister_class(Writes)
+
+
+def shows(name: str, seed: int) -> bool:
+    return np.allclose(raw(bpy.data.images[name]), some_pixels(seed), atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_writing_is_undone_and_redone(kind, tmp_path, write):
+    new_image(kind, tmp_path)
+    bpy.ops.ed.undo_push(message="an image")
+    for seed in (1, 2, 3):
+        write(kind, seed)
+    for seed in (2, 1, 0):
+        bpy.ops.ed.undo()
+        assert shows(kind, seed)
+    for seed in (1, 2, 3):
+        bpy.ops.ed.redo()
+        assert shows(kind, seed)
+    bpy.ops.ed.undo()
+    write(kind, 4)
+    bpy.ops.ed.undo()
+    assert shows(kind, 2)
+
+
+def test_several_writes_are_undone_at_once(tmp_path, write):
+    new_image("generated 8", tmp_path)
+    bpy.ops.ed.undo_push(message="an image")
+    for seed in (1, 2, 3):
+        write("generated 8", seed)
+    bpy.ops.ed.undo_push(message="something else")
+    bpy.ops.ed.undo_history(item=2)
+    seed = next(s for s in range(4) if shows("generated 8", s))
+    assert seed < 2  # Blender counts its steps from one version to the next a little differently
+    bpy.ops.ed.undo_history(item=4)
+    assert shows("generated 8", seed + 2)
+
+
+def test_a_new_image_comes_back(write):
+    write("made", 1)
+    bpy.ops.ed.undo()
+    assert "made" not in bpy.data.images
+    bpy.ops.ed.redo()
+    assert shows("made", 1)
+
+
+def test_a_write_that_fails_leaves_the_pixels(tmp_path):
+    image = new_image("generated 8", tmp_path)
+    with pytest.raises(ValueError, match="expected"):
+        images.write(image, some_pixels(1, width=5))
+    np.testing.assert_allclose(raw(image), some_pixels(0), atol=1e-6)
+    assert not image.keys()
+
+
+@pytest.mark.parametrize("name", sorted(image_files.KINDS))
+def test_data_are_saved_as_they_are(name, tmp_path):
+    kind = image_files.KINDS[name]
+    image = images.new("data", *SIZE, is_float=True, is_data=True)
+    pixels = some_pixels(0)
+    pixels[0, 0] = (0.1, 0.2, 0.3, 1)
+    if kind.is_float:
+        pixels[1, 1, :3] = (-3, 7.5, 1000)
+    images.write(image, pixels)
+    images.save(image, tmp_path / f"data{kind.suffix}", kind)
+    step = {"EXR_32": 0, "EXR_16": 5e-4, "PNG_16": 0.6 / 65535, "PNG_8": 0.6 / 255}[name]
+    np.testing.assert_allclose(raw(image), pixels, rtol=5e-4 if name == "EXR_16" else 0, atol=step)
+    assert image.colorspace_settings.name == "Non-Color"
+    assert not image.is_dirty
+    again = bpy.data.images.load(str(tmp_path / f"data{kind.suffix}"))
+    again.colorspace_settings.name = "Non-Color"
+    np.testing.assert_allclose(raw(again), raw(image))
+    assert again.is_float == (name != "PNG_8")
+
+
+def test_colours_are_saved_in_their_space(tmp_path):
+    image = new_image("generated 8", tmp_path)
+    images.save(image, tmp_path / "colour.png", image_files.PNG_8)
+    np.testing.assert_allclose(raw(image), some_pixels(0), atol=1e-6)
+    image = new_image("generated float", tmp_path)
+    images.save(image, tmp_path / "colour.exr", image_files.EXR_32)
+    np.testing.assert_allclose(raw(image), some_pixels(0), atol=1e-6)
+
+
+def test_a_tiled_image(tmp_path, write):
+    tiles = {1001: some_pixels(0), 1002: some_pixels(5), 1011: some_pixels(6, 3, 2)}
+    image = images.new_tiled("tiled", tiles, is_float=False, is_data=True)
+    assert images.checked(image).tiles == {1001: SIZE, 1002: SIZE, 1011: (3, 2)}
+    bpy.ops.ed.undo_push(message="an image")
+    write("tiled", 7, 1002)
+    image = bpy.data.images["tiled"]
+    for number, seed in ((1001, 0), (1002, 7)):
+        np.testing.assert_allclose(images.read(image, number), some_pixels(seed), atol=1e-6)
+    np.testing.assert_allclose(images.read(image, 1011), tiles[1011], atol=1e-6)
+    bpy.ops.ed.undo()
+    np.testing.assert_allclose(
+        images.read(bpy.data.images["tiled"], 1002), some_pixels(5), atol=1e-6
+    )
+    bpy.ops.ed.redo()
+    image = bpy.data.images["tiled"]
+    np.testing.assert_allclose(images.read(image, 1002), some_pixels(7), atol=1e-6)
+    images.save(image, tmp_path / "saved.<UDIM>.png", image_files.PNG_8)
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        f"saved.{number}.png" for number in sorted(tiles)
+    ]
+    np.testing.assert_allclose(images.read(image, 1002), some_pixels(7), atol=1e-6)
+    images.write(image, some_pixels(8), 1001)
+    file = bpy.data.images.load(str(tmp_path / "saved.1001.png"))
+    file.colorspace_settings.name = "Non-Color"
+    np.testing.assert_allclose(raw(file), some_pixels(0), atol=1e-6)
+    np.testing.assert_allclose(images.read(image), some_pixels(8), atol=1e-6)
+
+
+def test_what_is_refused(tmp_path):
+    def refused(image, message, **how):
+        with pytest.raises(RefusalError, match=message):
+            images.checked(image, **how)
+
+    refused(None, "No image")
+    missing = images.new("missing", *SIZE, is_float=False, is_data=False)
+    missing.source, missing.filepath = "FILE", str(tmp_path / "nothing.png")
+    refused(missing, "missing has no pixels: is its file missing")
+    movie = bpy.data.images.new("movie", 2, 2)
+    movie.source = "MOVIE"
+    refused(movie, "movie is a movie")
+    image = new_image("generated 8", tmp_path)
+    with pytest.raises(RefusalError, match="no tile 1002"):
+        images.read(image, 1002)
+    with pytest.raises(RefusalError, match="no folder"):
+        images.save(image, tmp_path / "nowhere" / "a.png", image_files.PNG_8)
+    assert image.source == "GENERATED"
+
+
+def test_linked_images_are_read_but_not_written(tmp_path):
+    new_image("packed 8", tmp_path)
+    path = str(tmp_path / "library.blend")
+    bpy.data.libraries.write(path, {bpy.data.images["packed 8"]})
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(path, link=True) as (_, to):
+        to.images = ["packed 8"]
+    image = bpy.data.images["packed 8"]
+    np.testing.assert_allclose(images.read(image), some_pixels(0), atol=1e-6)
+    with pytest.raises(RefusalError, match="linked"):
+        images.checked(image, to_write=True)
+
+
+def test_nothing_is_left_behind(tmp_path, write):
+    new_image("packed 8", tmp_path)
+    write("packed 8", 1)
+    assert not [i for i in bpy.data.images if i.name.startswith(".")]
+    assert [s.name for s in bpy.data.scenes] == ["Scene"]
