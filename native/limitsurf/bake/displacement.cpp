@@ -14,15 +14,21 @@ using Frame = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 /// Places in a frame's columns.
 constexpr int kTangent = 0, kBitangent = 1, kNormal = 2;
 
-void requireAsMany(const Points& rows, const FrameRows& frames) {
-  if (rows.rows() != frames.rows()) {
-    throw std::invalid_argument(std::to_string(rows.rows()) + " vectors and " +
-                                std::to_string(frames.rows()) + " frames");
+void requireAsMany(Eigen::Index a, const char* name_a, Eigen::Index b, const char* name_b) {
+  if (a != b) {
+    throw std::invalid_argument(std::to_string(a) + " " + name_a + " and " + std::to_string(b) +
+                                " " + name_b);
   }
 }
 
-/// Always unit vectors.
-Points normalsAt(const LimitSurface& base, Span<Location> at, Points normals, int threads) {
+struct PointsAndNormals {
+  Points position, normal;
+};
+
+/// Normals are always unit vectors.
+PointsAndNormals pointsAndNormals(const LimitSurface& base, Span<Location> at, int threads) {
+  Evaluation here = base.evaluate(at, Derivatives::first, true, threads);
+  Points normals = std::move(here.normal);
   std::vector<Location> without;
   std::vector<Eigen::Index> rows;
   for (Eigen::Index row = 0; row < normals.rows(); ++row) {
@@ -35,7 +41,7 @@ Points normalsAt(const LimitSurface& base, Span<Location> at, Points normals, in
   for (std::size_t i = 0; i < rows.size(); ++i) {
     normals.row(rows[i]) = Frame(frames.row(static_cast<Eigen::Index>(i)).data()).col(kNormal);
   }
-  return normals;
+  return {std::move(here.position), std::move(normals)};
 }
 
 }  // namespace
@@ -48,7 +54,7 @@ Points vectorDisplacement(const LimitSurface& base, const LimitSurface& target,
 }
 
 Points intoFrames(const Points& vectors, const FrameRows& frames) {
-  requireAsMany(vectors, frames);
+  requireAsMany(vectors.rows(), "vectors", frames.rows(), "frames");
   Points result(vectors.rows(), 3);
   for (Eigen::Index row = 0; row < vectors.rows(); ++row) {
     const Eigen::RowVector3d along = vectors.row(row) * Frame(frames.row(row).data());
@@ -58,7 +64,7 @@ Points intoFrames(const Points& vectors, const FrameRows& frames) {
 }
 
 Points outOfFrames(const Points& components, const FrameRows& frames) {
-  requireAsMany(components, frames);
+  requireAsMany(components.rows(), "vectors", frames.rows(), "frames");
   Points result(components.rows(), 3);
   for (Eigen::Index row = 0; row < components.rows(); ++row) {
     const Frame frame(frames.row(row).data());
@@ -69,20 +75,27 @@ Points outOfFrames(const Points& components, const FrameRows& frames) {
   return result;
 }
 
+Points displaced(const LimitSurface& base, Span<Location> at, const Points& components,
+                 const FrameRows& frames, int threads) {
+  requireAsMany(static_cast<Eigen::Index>(at.size()), "locations", components.rows(), "vectors");
+  const Points positions = base.evaluate(at, Derivatives::none, false, threads).position;
+  return positions + (frames.rows() > 0 ? outOfFrames(components, frames) : components);
+}
+
 Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch& target,
                                    Span<Location> at, const ScalarDisplacementOptions& options,
                                    int threads) {
-  Evaluation here = base.evaluate(at, Derivatives::first, true, threads);
-  const Points normals = normalsAt(base, at, std::move(here.normal), threads);
+  const PointsAndNormals here = pointsAndNormals(base, at, threads);
   const auto distances = [&](double sign) -> Eigen::VectorXd {
-    return target.rayCast(here.position, sign * normals, options.max_distance, threads).distance;
+    return target.rayCast(here.position, sign * here.normal, options.max_distance, threads)
+        .distance;
   };
-  switch (options.directions) {
-    case RayDirections::outward:
+  switch (options.direction) {
+    case RayDirection::outward:
       return distances(1);
-    case RayDirections::inward:
+    case RayDirection::inward:
       return -distances(-1);
-    case RayDirections::both:
+    case RayDirection::both:
       break;
   }
   const Eigen::VectorXd outward = distances(1), inward = distances(-1);
@@ -92,6 +105,13 @@ Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch
     result[row] = inwards ? -inward[row] : outward[row];
   }
   return result;
+}
+
+Points displacedAlongNormals(const LimitSurface& base, Span<Location> at,
+                             const Eigen::VectorXd& distances, int threads) {
+  requireAsMany(static_cast<Eigen::Index>(at.size()), "locations", distances.size(), "distances");
+  const PointsAndNormals here = pointsAndNormals(base, at, threads);
+  return here.position + distances.asDiagonal() * here.normal;
 }
 
 }  // namespace limitsurf

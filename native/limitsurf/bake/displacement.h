@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "limitsurf/bake/ray_direction.h"
 #include "limitsurf/bake/subdivided_faces.h"
 #include "limitsurf/query/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
@@ -35,12 +36,15 @@ Points vectorDisplacement(const LimitSurface& base, const LimitSurface& target,
 Points intoFrames(const Points& vectors, const FrameRows& frames);
 Points outOfFrames(const Points& components, const FrameRows& frames);
 
-enum class RayDirections { both, outward, inward };
-
 struct ScalarDisplacementOptions {
   double max_distance = std::numeric_limits<double>::infinity();
-  RayDirections directions = RayDirections::both;
+  RayDirection direction = RayDirection::both;
 };
+
+/// The base's points moved by vectors, given by their components where there are frames: reads a
+/// displacement back. `components` and `frames` have a row for each location, or `frames` none.
+Points displaced(const LimitSurface& base, Span<Location> at, const Points& components,
+                 const FrameRows& frames, int threads = 0);
 
 /// How far along the base's exact normal another surface lies, of any structure: the distance to
 /// the nearest point at which the line through base(at) along the normal meets the target; negative
@@ -53,5 +57,9 @@ struct ScalarDisplacementOptions {
 Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch& target,
                                    Span<Location> at, const ScalarDisplacementOptions& options = {},
                                    int threads = 0);
+
+/// The base's points moved so far along its normals, the same ones.
+Points displacedAlongNormals(const LimitSurface& base, Span<Location> at,
+                             const Eigen::VectorXd& distances, int threads = 0);
 
 }  // namespace limitsurf

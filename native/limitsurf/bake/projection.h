@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "limitsurf/bake/footprint.h"
+#include "limitsurf/bake/ray_direction.h"
 #include "limitsurf/query/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/surface/surface_data.h"
@@ -77,8 +78,6 @@ Projection project(const LimitSurface& surface, const SurfaceData& map, Span<Loc
 void checkProject(const LimitSurface& surface, const SurfaceData& map,
                   const Eigen::Matrix4d& matrix, const Eigen::Vector2d& texel,
                   const ProjectOptions& options);
-
-enum class RayDirection { both, outward, inward };
 
 struct NormalProjectOptions {
   double max_distance = std::numeric_limits<double>::infinity();  ///< in the world

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace limitsurf {
+
+/// Which way rays leave a surface: along its normals, against them, or both.
+enum class RayDirection { both, outward, inward };
+
+}  // namespace limitsurf
