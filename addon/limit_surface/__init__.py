@@ -5,9 +5,20 @@ import atexit
 
 import bpy
 
-from . import distribution, hair, pixel_undo, points, preferences, report, snap, snap_modal, ui
+from . import (
+    curvature,
+    distribution,
+    hair,
+    pixel_undo,
+    points,
+    preferences,
+    report,
+    snap,
+    snap_modal,
+    ui,
+)
 
-_parts = (preferences, hair, points, snap, snap_modal, ui, distribution, report)
+_parts = (preferences, hair, points, snap, snap_modal, ui, distribution, report, curvature)
 
 # Blender as a module hangs at the interpreter's exit if classes are registered then.
 _is_module = not bpy.app.binary_path

@@ -9,6 +9,7 @@ SNAP = "object.limit_snap"
 SNAP_MODAL = "view3d.limit_snap_modal"
 REPORT_OPERATOR = "object.limit_report"
 PROJECT_IMAGE = "object.limit_project_image"
+CURVATURE = "object.limit_curvature"
 
 PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
@@ -31,6 +32,16 @@ ROTATION = "rotation"
 DISTANCE = "limit_distance"
 DISTANCE_COLOR = "limit_distance_color"
 
+# Attributes of whatever curvature is stored on
+CURVATURE_MEAN = "limit_curvature_mean"
+CURVATURE_GAUSSIAN = "limit_curvature_gaussian"
+CURVATURE_K1 = "limit_curvature_k1"
+CURVATURE_K2 = "limit_curvature_k2"
+CURVATURE_DIRECTION1 = "limit_curvature_direction1"
+CURVATURE_DIRECTION2 = "limit_curvature_direction2"
+CURVATURE_IRREGULAR = "limit_curvature_irregular"
+CURVATURE_COLOR = "limit_curvature_color"
+
 # Attributes of the surface's mesh: Blender's own
 POSITION = "position"
 CORNER_VERTEX = ".corner_vert"
@@ -43,6 +54,7 @@ REPORT = "limit_report"  # custom property of the surface's object
 
 HAIR_OBJECT = "Limit Hair"
 POINTS_OBJECT = "Limit Points"
+CURVATURE_OBJECT = "Limit Curvature"
 DECAL_OBJECT = "Limit Decal"
 DECAL_UV = "Image"  # UV map of decals
 INSTANCES_GROUP = "Limit Instances"

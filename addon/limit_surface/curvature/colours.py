@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curvature as colours: blue where it is negative, white for none, red where it is positive, and
+grey where there is none.
+
+The steps are those of ColorBrewer's map RdBu (Cynthia Brewer), which prints well and the
+colour-blind can read too, in the linear values that Blender's colour attributes hold.
+"""
+
+import numpy as np
+
+AUTOMATIC = 95  # per cent of the values are paler than the fullest colour
+
+_STEPS = np.linspace(-1, 1, 11)
+_SRGB = (
+    (5, 48, 97), (33, 102, 172), (67, 147, 195), (146, 197, 222), (209, 229, 240), (247, 247, 247),
+    (253, 219, 199), (244, 165, 130), (214, 96, 77), (178, 24, 43), (103, 0, 31),
+)  # fmt: skip
+_MISSING = 0.1
+
+
+def full_of(values: np.ndarray) -> float:
+    """The size of value that gets the fullest colour, where nobody has said."""
+    sizes = np.abs(values[np.isfinite(values)])
+    return float(np.percentile(sizes, AUTOMATIC)) if len(sizes) else 0.0
+
+
+def of_values(values: np.ndarray, full: float) -> np.ndarray:
+    """(n, 4) for values (n,), of which `full` and more, either way, are the fullest."""
+    srgb = np.array(_SRGB) / 255
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    missing = ~np.isfinite(values)
+    part = np.where(missing, 0, values) / full if full > 0 else np.zeros(len(values))
+    rgb = np.stack([np.interp(part, _STEPS, channel) for channel in linear.T], axis=1)
+    rgb[missing] = _MISSING
+    return np.column_stack([rgb, np.ones(len(rgb))])

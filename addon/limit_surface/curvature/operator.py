@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_curvature."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from .. import ids, polling
+from ..errors import RefusalError
+from ..job import Job, Progress
+from ..watched import WatchedOperator
+from . import colours, text
+from .control_mesh import ControlMesh
+from .rooted import Rooted
+from .settings import Settings
+from .tessellation import Tessellation
+from .values import Values
+
+_PLACES = {"CONTROL_MESH": ControlMesh, "TESSELLATION": Tessellation, "ROOTS": Rooted}
+Places = ControlMesh | Tessellation | Rooted
+
+
+class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
+    """Store the limit surface's exact curvature, its principal directions and colors as
+    attributes"""
+
+    bl_idname = ids.CURVATURE
+    bl_label = "Curvature of Limit Surface"
+    bl_options = {"REGISTER", "UNDO"}
+    too_large = "Not enough memory for so many places"
+    cancelled = "Cancelled: no curvature was stored"
+
+    on: EnumProperty(
+        name="On",
+        description="Where curvature is stored",
+        items=(
+            ("CONTROL_MESH", "Control Mesh", "The active mesh's vertices, each at its place on the "
+             "limit surface", "", 0),
+            ("TESSELLATION", "New Mesh", "A new mesh whose vertices lie on the limit surface", "",
+             1),
+            ("ROOTS", "Hair and Points", "The selected hair and points that were made on a limit "
+             "surface, or all that stand on the active mesh", "", 2),
+        ),
+        default="CONTROL_MESH",
+    )  # fmt: skip
+    levels: IntProperty(
+        name="Levels",
+        description="Subdivisions of the new mesh",
+        default=3,
+        min=1,
+        max=12,
+        soft_max=6,
+    )
+    space: EnumProperty(
+        name="Space",
+        description="Whose lengths count",
+        items=(
+            ("WORLD", "World", "The surface as it lies in the world: 1 / world unit", "", 0),
+            ("LOCAL", "Local", "The surface in its object's space, without scale", "", 1),
+        ),
+        default="WORLD",
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="At irregular vertices, where curvature has no limit, it is averaged over the "
+        "faces around, so far from the vertex as a share of an edge",
+        default=1 / 64,
+        min=2**-20,
+        max=0.5,
+        precision=4,
+    )
+    color: EnumProperty(
+        name="Color",
+        description="What the colors show: blue where it is negative, red where it is positive",
+        items=(
+            ("MEAN", "Mean", "(k1 + k2) / 2: negative where the surface bulges", "", 0),
+            ("GAUSSIAN", "Gaussian", "k1 k2: negative on saddles", "", 1),
+            ("K1", "Largest", "The larger principal curvature", "", 2),
+            ("K2", "Smallest", "The smaller principal curvature", "", 3),
+        ),
+        default="MEAN",
+    )
+    full_color: FloatProperty(
+        name="Full Color",
+        description="Curvature from which on, either way, the color is the fullest. At 0 it is "
+        "such that 95% of the values are paler",
+        default=0.0,
+        min=0.0,
+        soft_max=100.0,
+        precision=4,
+    )
+    allow_large: BoolProperty(
+        name="Allow Large Counts",
+        description="Make millions of polygons without asking",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    summary: StringProperty(
+        name="Result",
+        description="What the operator found, line by line",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return polling.mesh_in_object_mode(
+            cls, context, context.active_object, types=("MESH", "CURVES")
+        )
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "on")
+        if self.on == "TESSELLATION":
+            layout.prop(self, "levels")
+            layout.prop(self, "allow_large")
+        for name in ("space", "radius", "color", "full_color"):
+            layout.prop(self, name)
+        for line in self.summary.splitlines():
+            layout.label(text=line, icon="INFO")
+
+    def start(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
+        if self.on != "ROOTS" and context.active_object.type != "MESH":
+            raise RefusalError("Make a mesh object active first")
+        settings = Settings(self.space == "WORLD", self.radius, self.levels, self.allow_large)
+        places = _PLACES[self.on](context, settings)
+
+        def work(progress: Progress) -> tuple[Places, list[Values]]:
+            return places, places.measure(progress)
+
+        text_shown = f"Measuring the curvature of {context.active_object.name}"
+        return self.watch(context, Job(work), text_shown)
+
+    def finish(self, context: bpy.types.Context, made: tuple[Places, list[Values]]) -> set[str]:
+        places, values = made
+        shown = [getattr(part, self.color.lower()) for part in values]
+        full = self.full_color or colours.full_of(text.together(values, self.color.lower()))
+        stored = places.store(context, values, [colours.of_values(of, full) for of in shown])
+        lines = text.lines(values, places.noun, self.radius, full, self.color)
+        self.summary = "\n".join(lines)
+        for warning in (text.without(values, places.noun), *places.notes):
+            if warning:
+                self.report({"WARNING"}, warning)
+        self.report({"INFO"}, f"{stored}: {'; '.join(lines)}")
+        return {"FINISHED"}

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curvature on a new mesh whose vertices lie on the limit surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import attributes, cage, ids, objects
+from ..job import Progress, part_of
+from ..request import RequestSize
+from . import storing
+from .settings import Settings
+from .values import CurvedSurface, Values
+
+if TYPE_CHECKING:
+    import limitsurf
+
+_TESSELLATED = 0.3  # of the progress
+
+
+class Tessellation:
+    noun = "vertices"
+    notes: tuple[str, ...] = ()
+
+    def __init__(self, context: bpy.types.Context, settings: Settings) -> None:
+        ob = context.active_object
+        self._found = cage.read(ob, context.evaluated_depsgraph_get())
+        self._key = objects.key(ob)
+        self._settings = settings
+        quads = np.where(self._found.face_sizes == 4, 4, self._found.face_sizes).sum() // 4
+        count = int(quads * 4**settings.levels)
+        RequestSize("polygons", count, 1, is_exact=False).check(settings.allow_large)
+        self._mesh: limitsurf.Tessellation | None = None
+
+    def measure(self, progress: Progress) -> list[Values]:
+        found, settings = self._found, self._settings
+        local = CurvedSurface(found, False, settings.radius)
+        self._mesh = local.surface.tessellate(settings.levels)
+        progress(_TESSELLATED)
+        on = CurvedSurface(found, True, settings.radius) if settings.in_world else local
+        at = self._mesh.locations
+        values = on.values(at.face, at.uv, found.matrix, part_of(progress, _TESSELLATED, 1))
+        return [values]
+
+    def store(
+        self, context: bpy.types.Context, values: list[Values], colors: list[np.ndarray]
+    ) -> str:
+        surface = objects.find(self._key)
+        mesh = bpy.data.meshes.new(ids.CURVATURE_OBJECT)
+        try:
+            self._fill(mesh)
+            storing.write_on_mesh(mesh, values[0], colors[0])
+            return objects.add_on_surface(context, ids.CURVATURE_OBJECT, mesh, surface).name
+        except BaseException:
+            bpy.data.meshes.remove(mesh)
+            raise
+
+    def _fill(self, mesh: bpy.types.Mesh) -> None:
+        faces = np.ascontiguousarray(self._mesh.faces, np.int32)
+        mesh.vertices.add(len(self._mesh.positions))
+        mesh.loops.add(faces.size)
+        mesh.polygons.add(len(faces))
+        attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", self._mesh.positions)
+        mesh.loops.foreach_set("vertex_index", faces.ravel())
+        mesh.polygons.foreach_set("loop_start", np.arange(0, faces.size, 4, dtype=np.int32))
+        mesh.update(calc_edges=True)
+        mesh.shade_smooth()
+        mesh.normals_split_custom_set_from_vertices(self._mesh.normals.astype(np.float32))

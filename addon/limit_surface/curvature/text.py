@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The result in words."""
+
+import numpy as np
+
+from .values import Values
+
+QUANTITIES = {"MEAN": "mean", "GAUSSIAN": "Gaussian", "K1": "k1", "K2": "k2"}
+
+
+def together(parts: list[Values], name: str) -> np.ndarray:
+    return np.concatenate([getattr(part, name) for part in parts])
+
+
+def lines(parts: list[Values], noun: str, radius: float, full: float, color: str) -> list[str]:
+    found = together(parts, "exist")
+    said = []
+    for key, name in QUANTITIES.items():
+        values = together(parts, key.lower())[found]
+        if len(values):
+            said.append(f"{name} {values.min():.4g} to {values.max():.4g}")
+    averaged = np.count_nonzero(together(parts, "irregular") & found)
+    return [
+        f"Curvature at {np.count_nonzero(found):,} {noun}: {', '.join(said)}",
+        f"{averaged:,} at irregular vertices, averaged {radius:.4g} edges around",
+        f"Full color: {QUANTITIES[color]} {full:.4g}",
+    ]
+
+
+def without(parts: list[Values], noun: str) -> str:
+    """What is to be warned of, if anything."""
+    found = together(parts, "exist")
+    missing = np.count_nonzero(~found)
+    if not missing:
+        return ""
+    return (
+        f"{missing:,} of {len(found):,} {noun} have no curvature: they lie on no limit surface, or "
+        "it is singular there"
+    )

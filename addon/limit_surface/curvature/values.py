@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curvature of an object's limit surface, as plain arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import cage, native
+from ..errors import RefusalError
+from ..job import Progress
+from ..rotations import WorldSpace, unit
+
+PART = 1 << 16  # so many places are looked at at once: a progress bar moves, memory stays small
+NOWHERE = -1  # the face of what is on no surface
+
+
+@dataclass(frozen=True)
+class Values:
+    """NaN where there is no curvature."""
+
+    mean: np.ndarray  # (n,)
+    gaussian: np.ndarray
+    k1: np.ndarray  # the larger one
+    k2: np.ndarray
+    direction1: np.ndarray  # (n, 3) unit vectors
+    direction2: np.ndarray
+    irregular: np.ndarray  # (n,) bool: an average around an irregular vertex
+
+    @property
+    def exist(self) -> np.ndarray:
+        return np.isfinite(self.k1) & np.isfinite(self.k2)
+
+
+class CurvedSurface:
+    """`in_world`: as the surface lies in the world, else in its object's space. Subdivision does
+    not mind which positions it gets, curvature does: a stretched sphere has another one."""
+
+    def __init__(self, found: cage.Cage, in_world: bool, radius: float) -> None:
+        self.cage, self.in_world, self._radius = found, in_world, radius
+        self.surface = native.limitsurf.LimitSurface(found.mesh)
+        refused = self.surface.refused
+        if len(refused) == len(found.face_sizes):
+            raise RefusalError(f"No face has a limit surface: {next(iter(refused.values()))}")
+        self._to_world = found.matrix
+        self._is_inwards = False
+        if in_world:
+            WorldSpace(found.matrix)  # refuses what is flattened to nothing
+            self.surface.set_positions(found.world_positions())
+            self._to_world = np.eye(4)
+            # du x dv points inwards in the world if the object is mirrored there.
+            self._is_inwards = np.linalg.det(found.matrix[:3, :3]) < 0
+
+    def values(
+        self, face: np.ndarray, uv: np.ndarray, matrix: np.ndarray, progress: Progress
+    ) -> Values:
+        """At locations, of which those with face NOWHERE get none. Directions are told in the
+        space that `matrix` leads from to the world."""
+        count = len(face)
+        numbers = np.full((4, count), np.nan)
+        directions = np.full((2, count, 3), np.nan)
+        irregular = np.zeros(count, bool)
+        there = np.flatnonzero(face != NOWHERE)
+        for begin in range(0, len(there), PART):
+            rows = there[begin : begin + PART]
+            c = self.surface.curvature(
+                face[rows], uv[rows], irregular="average", radius=self._radius
+            )
+            if self._is_inwards:
+                numbers[:, rows] = -c.mean, c.gaussian, -c.k2, -c.k1
+                directions[:, rows] = c.direction2, c.direction1
+            else:
+                numbers[:, rows] = c.mean, c.gaussian, c.k1, c.k2
+                directions[:, rows] = c.direction1, c.direction2
+            irregular[rows] = c.irregular
+            progress((begin + len(rows)) / len(there))
+        return Values(*numbers, *self._seen_from(matrix, directions), irregular)
+
+    def _seen_from(self, matrix: np.ndarray, directions: np.ndarray) -> np.ndarray:
+        if np.array_equal(matrix, self._to_world):
+            return directions
+        relation = WorldSpace(matrix).to_local(self._to_world[:3, :3].T).T
+        return unit(directions @ relation.T)
