@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import bpy
@@ -45,7 +44,9 @@ class Rooted:
                 continue
             seen.add(ob.data)
             try:
-                surface = _surface_of(ob)
+                surface = _surface(ob)
+                if surface is None or surface.type != "MESH":
+                    raise RefusalError(f"{ob.name} has no surface: parent it to the mesh below it")
                 if surface not in cages:
                     cages[surface] = cage.read(surface, depsgraph)
                 self._parts.append(_read(ob, cages[surface], surface.name))
@@ -92,26 +93,15 @@ def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
     carriers = [ob for ob in selected if _carries(ob)]
     if carriers:
         return carriers
-    return [ob for ob in context.view_layer.objects if _carries(ob) and active in _surfaces(ob)]
+    return [ob for ob in context.view_layer.objects if _carries(ob) and _surface(ob) == active]
 
 
 def _carries(ob: bpy.types.Object) -> bool:
     return ob.type in _DOMAINS and {ids.FACE, ids.UV} <= set(ob.data.attributes.keys())
 
 
-def _surfaces(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
-    """Where it may stand, what Blender knows of hair first."""
-    if ob.type == "CURVES" and ob.data.surface:
-        yield ob.data.surface
-    elif ob.parent:
-        yield ob.parent
-
-
-def _surface_of(ob: bpy.types.Object) -> bpy.types.Object:
-    for surface in _surfaces(ob):
-        if surface.type == "MESH":
-            return surface
-    raise RefusalError(f"{ob.name} has no surface: parent it to the mesh that it stands on")
+def _surface(ob: bpy.types.Object) -> bpy.types.Object | None:
+    return (ob.data.surface if ob.type == "CURVES" else None) or ob.parent
 
 
 def _check(ob: bpy.types.Object) -> None:
