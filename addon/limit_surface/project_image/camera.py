@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A camera as a projector: what it shows when its render has the image's resolution."""
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError
+from .projector import Projector, inverse
+
+PROJECTIONS = {"PERSP", "ORTHO"}
+
+
+def find(context: bpy.types.Context, name: str) -> bpy.types.Object:
+    """The scene's camera where no name is given."""
+    if not name:
+        if context.scene.camera is None:
+            raise RefusalError("There is no camera: the scene has none, and none is named")
+        return context.scene.camera
+    ob = bpy.data.objects.get(name)
+    if ob is None or ob.type != "CAMERA":
+        raise RefusalError(f"There is no camera {name!r}")
+    return ob
+
+
+def projector(
+    ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, size: tuple[int, int]
+) -> Projector:
+    """With lens, sensor, shift and clipping as they are evaluated, and the scene's pixel aspect."""
+    if ob.type != "CAMERA":
+        raise RefusalError(f"{ob.name} is no camera")
+    called, evaluated = f"The camera {ob.name}", ob.evaluated_get(depsgraph)
+    if evaluated.data.type not in PROJECTIONS:
+        kind = evaluated.data.bl_rna.properties["type"].enum_items[evaluated.data.type].name
+        raise RefusalError(
+            f"{called} is {kind.lower()}: only perspective and orthographic ones can project"
+        )
+    render = depsgraph.scene.render
+    window = ob.calc_matrix_camera(
+        depsgraph,
+        x=size[0],
+        y=size[1],
+        scale_x=render.pixel_aspect_x,
+        scale_y=render.pixel_aspect_y,
+    )
+    # Blender renders without the camera's scale.
+    placed = np.array(evaluated.matrix_world.normalized(), np.float64)
+    matrix = np.array(window, np.float64) @ inverse(placed, called)
+    return Projector(called, matrix, has_eye=evaluated.data.type == "PERSP")

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An image's values as shaders read them: linear light, alpha apart; and back.
+
+Byte images hold what is in their file, float images what shaders read, with the color multiplied
+by alpha unless they are data or their alpha is a channel of its own. Measured in Blender, by
+rendering images that scripts have filled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from mathutils import Color
+
+from ..errors import RefusalError
+
+SRGB = "sRGB"
+LINEAR = "Linear Rec.709"  # the same primaries, without the curve
+
+SMALLEST_ALPHA = 1e-6  # below, a multiplied color is taken as it is
+UNCHANGED = 1e-5  # of primaries: what Blender's own single precision leaves
+
+
+@dataclass(frozen=True)
+class Encoding:
+    is_curved: bool  # by sRGB's curve
+    primaries: np.ndarray | None  # (3, 3) from Rec. 709 to the scene's; None where they are equal
+    is_multiplied: bool  # colors by alpha
+    has_alpha: bool
+
+    def decoded(self, values: np.ndarray) -> np.ndarray:
+        """From the image's own values (..., 4), float32, to what shaders read."""
+        out = np.array(values, np.float32)
+        if self.is_curved:
+            out[..., :3] = to_linear(out[..., :3])
+        if self.primaries is not None:
+            out[..., :3] = out[..., :3] @ self.primaries.T
+        if self.is_multiplied:
+            out[..., :3] /= _divisor(out[..., 3:])
+        if not self.has_alpha:
+            out[..., 3] = 1
+        return out
+
+    def encoded(self, values: np.ndarray) -> np.ndarray:
+        """The other way."""
+        out = np.array(values, np.float32)
+        if self.is_multiplied:
+            out[..., :3] *= _divisor(out[..., 3:])
+        if self.primaries is not None:
+            out[..., :3] = out[..., :3] @ np.linalg.inv(self.primaries).T
+        if self.is_curved:
+            out[..., :3] = to_srgb(out[..., :3])
+        return out
+
+
+def of(image: bpy.types.Image) -> Encoding:
+    """RefusalError where a byte image's space is one that only Blender itself can convert."""
+    space = image.colorspace_settings
+    has_alpha = image.alpha_mode != "NONE"
+    if image.is_float:
+        blended = image.alpha_mode in {"STRAIGHT", "PREMUL"}
+        return Encoding(False, None, blended and not space.is_data, has_alpha)
+    if space.is_data:
+        return Encoding(False, None, False, has_alpha)
+    if space.name not in {SRGB, LINEAR}:
+        raise RefusalError(
+            f"The image {image.name} is in the color space {space.name}: among images of 8 bits, "
+            f"only {SRGB}, {LINEAR} and data can be projected or painted on"
+        )
+    return Encoding(space.name == SRGB, _primaries(), False, has_alpha)
+
+
+def of_new(is_float: bool) -> Encoding:
+    """Of an image that Blender makes, for colors."""
+    if is_float:
+        return Encoding(False, None, True, True)
+    return Encoding(True, _primaries(), False, True)
+
+
+def to_linear(values: np.ndarray) -> np.ndarray:
+    """sRGB's curve (IEC 61966-2-1)."""
+    return np.where(
+        values <= 0.04045, values / 12.92, ((np.maximum(values, 0) + 0.055) / 1.055) ** 2.4
+    )
+
+
+def to_srgb(values: np.ndarray) -> np.ndarray:
+    return np.where(
+        values <= 0.0031308, values * 12.92, 1.055 * np.maximum(values, 0) ** (1 / 2.4) - 0.055
+    )
+
+
+def _primaries() -> np.ndarray | None:
+    """Of the scene, as Blender is set up."""
+    columns = [Color(c).from_srgb_to_scene_linear() for c in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    found = np.array(columns, np.float32).T
+    return None if np.abs(found - np.eye(3)).max() < UNCHANGED else found
+
+
+def _divisor(alpha: np.ndarray) -> np.ndarray:
+    return np.where(alpha > SMALLEST_ALPHA, alpha, 1)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Making a decal: what is asked for, the work on arrays, and the object that comes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..job import Progress, part_of
+from ..request import RequestSize
+from . import decal, decal_object, inputs, material
+from .projector import Projector, fitted
+from .world import WorldSurface
+
+CAST = 0.9  # of the progress, when the polygons are known
+
+
+@dataclass(frozen=True)
+class Order:
+    surface: tuple[str, str | None]  # the object's key
+    world: WorldSurface
+    projector: Projector
+    image: str
+    cells: tuple[int, int]
+    steepest: float
+    two_sided: bool
+    offset: float
+    create_material: bool
+
+    def work(self, progress: Progress) -> Made:
+        self.world.check_eye(self.projector)
+        rays = decal.Rays(self.world, self.projector, self.steepest, self.two_sided)
+        found = decal.make(rays, self.cells, part_of(progress, 0, CAST))
+        if not len(found.sizes):
+            raise RefusalError(
+                f"Nothing to see from there: no part of the image {self.image} falls on the surface"
+            )
+        sag = decal.sag(rays, found)
+        placing = part_of(progress, CAST, 1)
+        placed = decal_object.PlacedDecal(self.world, found, self.offset, placing)
+        return Made(self, placed, sag)
+
+
+@dataclass(frozen=True)
+class Made:
+    order: Order
+    placed: decal_object.PlacedDecal
+    sag: float  # of polygons below the surface, without the offset
+
+    @property
+    def warning(self) -> str:
+        if self.sag <= self.order.offset:
+            return ""
+        return (
+            f"Polygons lie up to {self.sag - self.order.offset:.2g} below the surface: raise the "
+            "resolution or the offset"
+        )
+
+    def put(self, context: bpy.types.Context, surface: bpy.types.Object) -> str:
+        image = bpy.data.images.get(self.order.image)
+        if image is None:
+            raise RefusalError(f"{self.order.image} is not there any more")
+        made = decal_object.add(context, ids.DECAL_OBJECT, self.placed, surface)
+        if self.order.create_material:
+            material.for_decal(made, image, ids.DECAL_UV)
+        return f"{len(self.placed.sizes):,} polygons on {surface.name}"
+
+
+def order(
+    properties: bpy.types.OperatorProperties,
+    context: bpy.types.Context,
+    world: WorldSurface,
+    surface: tuple[str, str | None],
+) -> Order:
+    image = inputs.image(properties.image)
+    size = tuple(image.size)
+    # Cells are as square as whole numbers of them can be.
+    columns, rows = np.rint(properties.decal_resolution * fitted(size)).clip(1).astype(int).tolist()
+    RequestSize("polygons", columns * rows, 1).check(allow_large=False)
+    return Order(
+        surface=surface,
+        world=world,
+        projector=inputs.projector(properties, context, world, size),
+        image=image.name,
+        cells=(columns, rows),
+        steepest=inputs.facing(properties)[1],
+        two_sided=properties.two_sided,
+        offset=properties.decal_offset,
+        create_material=properties.create_material,
+    )

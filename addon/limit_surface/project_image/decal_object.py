@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A decal as an object of Blender."""
+
+import bpy
+import numpy as np
+
+from .. import attributes, ids, objects, roots
+from ..binding import Binding
+from ..job import Progress
+from .decal import Decal
+from .world import WorldSurface
+
+
+class PlacedDecal:
+    """Arrays of a mesh in the space of the surface's object."""
+
+    def __init__(
+        self, world: WorldSurface, decal: Decal, offset: float, progress: Progress
+    ) -> None:
+        """`offset` along the normals, in world units."""
+        hits = decal.hits
+        self.st, self.sizes, self.vertices = hits.st, decal.sizes, decal.vertices
+        # Counter-clockwise in the image is clockwise from outside, seen from a mirrored object.
+        self.is_turned = world.is_mirrored
+        locations = roots.Locations(hits.face.astype(np.int32), hits.uv.astype(np.float32))
+        self.binding = Binding(locations)
+        self.position, self.normal = (np.empty((len(hits), 3)) for _ in range(2))
+
+        def on(face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return local.evaluate(face, uv).position, local.frames(face, uv)
+
+        local = world.local
+        for part in roots.evaluate(on, locations, progress):
+            self.binding.fill(part)
+            side = hits.facing[part.rows][:, None]
+            outward = side * world.axes.frames(part.frame)[:, :, 2]
+            self.position[part.rows] = part.position + offset * world.axes.to_local(outward)
+            self.normal[part.rows] = side * part.frame[:, :, 2]
+
+
+def add(
+    context: bpy.types.Context, name: str, placed: PlacedDecal, surface: bpy.types.Object
+) -> bpy.types.Object:
+    mesh = bpy.data.meshes.new(name)
+    try:
+        _fill(mesh, placed)
+        return objects.add_on_surface(context, name, mesh, surface)
+    except BaseException:
+        bpy.data.meshes.remove(mesh)
+        raise
+
+
+def _fill(mesh: bpy.types.Mesh, placed: PlacedDecal) -> None:
+    starts = np.cumsum(placed.sizes) - placed.sizes
+    vertices = placed.vertices
+    if placed.is_turned:
+        vertices = vertices[::-1]
+        starts = (len(vertices) - starts - placed.sizes)[::-1]
+    mesh.vertices.add(len(placed.position))
+    mesh.loops.add(len(vertices))
+    mesh.polygons.add(len(starts))
+    attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", placed.position)
+    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(vertices, np.int32))
+    mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(starts, np.int32))
+    mesh.update(calc_edges=True)
+    layer = mesh.uv_layers.new(name=ids.DECAL_UV)
+    attributes.write(mesh, layer.name, "FLOAT2", "CORNER", placed.st[vertices])
+    placed.binding.write(mesh, "POINT")
+    mesh.shade_smooth()
+    mesh.normals_split_custom_set_from_vertices(placed.normal.astype(np.float32))

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Empties as projectors: a flat image thrown along -Z, or one on each
+side of a box."""
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError
+from .projector import Projector, fitted, inverse
+
+ROOM = 0.01  # of the surface's extent, before and behind it, where no depths are given
+
+
+def find(name: str) -> bpy.types.Object:
+    ob = bpy.data.objects.get(name)
+    if ob is None or ob.type != "EMPTY":
+        raise RefusalError(f"There is no empty {name!r}" if name else "No empty is chosen")
+    return ob
+
+
+def planar(
+    ob: bpy.types.Object,
+    size: tuple[float, float],
+    bounds: np.ndarray,
+    depth: tuple[float, float] | None = None,
+) -> Projector:
+    """The rectangle in which the empty shows its image; for others, the square that holds all
+    of the empty, or as much of it as an image of that size takes. `depth`: two distances behind
+    it in the world; without them all of the surface, whose bounds (2, 3) are the world's."""
+    called, matrix = f"The empty {ob.name}", world_matrix(ob)
+    middle, half = _rectangle(ob, size)
+    placed = matrix @ _frame(np.diag([*half, 1]), np.array([*middle, 0]))
+    return Projector(called, _flat(placed, called, bounds, depth), has_eye=False)
+
+
+def to_box(ob: bpy.types.Object) -> np.ndarray:
+    """From the world to the coordinates in which the empty's cube reaches from -1 to 1."""
+    placed = world_matrix(ob) @ _frame(np.diag([ob.empty_display_size] * 3), np.zeros(3))
+    return inverse(placed, f"The empty {ob.name}")
+
+
+def world_matrix(ob: bpy.types.Object) -> np.ndarray:
+    return np.array(ob.matrix_world, np.float64)
+
+
+def _rectangle(ob: bpy.types.Object, size: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Middle and half sides in the empty's x-y plane."""
+    if ob.empty_display_type != "IMAGE":
+        return np.zeros(2), ob.empty_display_size * fitted(size)
+    sides = ob.empty_display_size * fitted(_shown_size(ob.data) if ob.data else (1, 1))
+    return (np.array(ob.empty_image_offset) + 0.5) * sides, sides / 2
+
+
+def _shown_size(image: bpy.types.Image) -> tuple[float, float]:
+    width, height = (np.array(image.size) * image.display_aspect).tolist()
+    return (width, height) if width and height else (1, 1)
+
+
+def _frame(axes: np.ndarray, origin: np.ndarray) -> np.ndarray:
+    frame = np.eye(4)
+    frame[:3, :3], frame[:3, 3] = axes, origin
+    return frame
+
+
+def _flat(
+    placed: np.ndarray, called: str, bounds: np.ndarray, depth: tuple[float, float] | None
+) -> np.ndarray:
+    """From the world to the square [-1, 1]^2 of a frame's x-y plane, seen from its +Z."""
+    matrix = inverse(placed, called)
+    if depth is None:
+        corners = np.stack(np.meshgrid(*bounds.T, indexing="ij"), axis=-1).reshape(-1, 3)
+        behind = -(corners @ matrix[2, :3] + matrix[2, 3])
+        room = ROOM * max(np.ptp(behind), np.abs(behind).max())
+        near, far = behind.min() - room, behind.max() + room
+    else:
+        near, far = np.array(depth) / np.linalg.norm(placed[:3, 2])
+        if not near < far:
+            raise RefusalError(f"The depths {depth[0]:g} and {depth[1]:g} hold nothing between")
+    z = np.array([0, 0, -2 / (far - near), -(far + near) / (far - near)])
+    return np.array([*(np.eye(4)[:2]), z, np.eye(4)[3]]) @ matrix

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the operator's properties name in the file, read into what the work needs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import baking, cage, images, native
+from ..errors import RefusalError
+from . import camera, colours, empties, view
+from .projector import Projector, fitted
+from .sources import AlongNormals, FromBox, FromProjector, Seen, Source
+from .world import WorldSurface
+
+if TYPE_CHECKING:
+    import limitsurf
+
+
+def image(name: str) -> bpy.types.Image:
+    """The one that is projected."""
+    if not name:
+        raise RefusalError("No image is chosen to be projected")
+    found = bpy.data.images.get(name)
+    if found is None:
+        raise RefusalError(f"There is no image {name!r}")
+    if list(images.checked(found).tiles) != [images.FIRST_TILE]:
+        raise RefusalError(f"The image {name} is tiled (UDIM): such images cannot be projected")
+    return found
+
+
+def projector(
+    properties: bpy.types.OperatorProperties,
+    context: bpy.types.Context,
+    world: WorldSurface,
+    size: tuple[int, int],
+) -> Projector:
+    """For the sources that throw an image of that size from somewhere."""
+    if properties.source == "CAMERA":
+        ob = camera.find(context, properties.camera)
+        return camera.projector(ob, context.evaluated_depsgraph_get(), size)
+    if properties.source == "VIEW":
+        return view.from_context(context, size)
+    depth = tuple(properties.depth) if properties.use_depth else None
+    return empties.planar(empties.find(properties.empty), size, world.bounds(), depth)
+
+
+def source(
+    properties: bpy.types.OperatorProperties,
+    context: bpy.types.Context,
+    world: WorldSurface,
+    shown: bpy.types.Image,
+) -> Source:
+    size, is_framed = tuple(shown.size), properties.extension == "CLIP"
+    if properties.source == "BOX":
+        to_box = empties.to_box(empties.find(properties.empty))
+        pixels = _filtered(shown, properties.extension)
+        return FromBox(world, to_box, fitted(size), pixels, properties.blend, is_framed)
+    if properties.source == "NORMALS":
+        return _along_normals(properties, context, world, shown)
+    thrown = projector(properties, context, world, size)
+    seen = Seen(
+        facing=facing(properties),
+        two_sided=properties.two_sided,
+        occlusion=properties.occlusion,
+        samples=int(properties.occlusion_samples),
+        soft_edge=properties.soft_edge,
+        is_framed=is_framed,
+    )
+    # Where the frame ends the image, its pixels must not fade before.
+    extension = "EXTEND" if is_framed else properties.extension
+    return FromProjector(world, thrown, _filtered(shown, extension), seen)
+
+
+def facing(properties: bpy.types.OperatorProperties) -> tuple[float, float]:
+    start, end = properties.facing
+    if not start <= end:
+        raise RefusalError("The first angle of Facing is larger than the second")
+    return start, end
+
+
+def _filtered(shown: bpy.types.Image, extension: str) -> limitsurf.FilteredImage:
+    pixels = colours.of(shown).decoded(images.read(shown))
+    if not np.isfinite(pixels).all():
+        raise RefusalError(f"The image {shown.name} has values that are not finite numbers")
+    return native.limitsurf.FilteredImage(pixels, extension.lower())
+
+
+def _along_normals(
+    properties: bpy.types.OperatorProperties,
+    context: bpy.types.Context,
+    world: WorldSurface,
+    shown: bpy.types.Image,
+) -> AlongNormals:
+    name, ob = properties.from_object, bpy.data.objects.get(properties.from_object)
+    if ob is None or ob.type != "MESH":
+        raise RefusalError(f"There is no mesh {name!r}" if name else "No mesh is chosen")
+    found = cage.read(ob, context.evaluated_depsgraph_get())
+    carrier = WorldSurface(found, ob.name)
+    carrier_map = baking.uv_data(carrier.surface, found, ob.name)
+    reach = properties.max_distance or np.inf
+    pixels = _filtered(shown, properties.extension)
+    return AlongNormals(world, carrier, carrier_map, pixels, reach, properties.direction.lower())

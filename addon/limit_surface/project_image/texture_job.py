@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Painting into a texture: what is asked for, the work on arrays, and the image that takes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import baking, images
+from ..errors import RefusalError
+from ..job import Progress, part_of
+from . import colours, inputs, material
+from .painting import Canvas, paint
+from .sources import Source
+from .world import WorldSurface
+
+if TYPE_CHECKING:
+    import limitsurf
+
+MAPPED = 0.4  # of a tile's progress, when its texels are known
+
+
+@dataclass(frozen=True)
+class NewImage:
+    name: str
+    width: int
+    height: int
+    is_float: bool
+
+
+@dataclass(frozen=True)
+class Order:
+    surface: tuple[str, str | None]  # the object's key
+    world: WorldSurface
+    uv_map: limitsurf.SurfaceData
+    source: Source
+    image: str
+    target: str | NewImage
+    canvases: dict[int, Canvas]  # by tile
+    margin: int
+    allow_overlap: bool
+    opacity: float
+    create_material: bool
+
+    def work(self, progress: Progress) -> Made:
+        self.source.check()
+        count, whole = 0, len(self.canvases)
+        for i, (tile, canvas) in enumerate(self.canvases.items()):
+            part = part_of(progress, i / whole, (i + 1) / whole)
+            height, width, _ = canvas.pixels.shape
+            texels = baking.texels(
+                self.uv_map,
+                (width, height),
+                tile,
+                margin=self.margin,
+                allow_overlap=self.allow_overlap,
+                progress=part_of(part, 0, MAPPED),
+            )
+            painting = part_of(part, MAPPED, 1)
+            count += paint(canvas, texels, self.uv_map, self.source, self.opacity, painting)
+        if not count:
+            raise RefusalError(f"No part of the image {self.image} falls on the surface's UV map")
+        return Made(self, count)
+
+
+@dataclass(frozen=True)
+class Made:
+    order: Order
+    count: int
+    warning = ""
+
+    def put(self, _context: bpy.types.Context, surface: bpy.types.Object) -> str:
+        target = self.order.target
+        if isinstance(target, NewImage):
+            image = images.new(
+                target.name,
+                target.width,
+                target.height,
+                is_float=target.is_float,
+                is_data=False,
+                alpha=True,
+            )
+        else:
+            image = bpy.data.images.get(target)
+            if image is None:
+                raise RefusalError(f"{target} is not there any more")
+        images.write(image, {tile: c.pixels for tile, c in self.order.canvases.items()})
+        if self.order.create_material:
+            material.show(surface, image, self.order.world.cage.uv_map.name)
+        return f"{self.count:,} texels of {image.name}"
+
+
+def order(
+    properties: bpy.types.OperatorProperties,
+    context: bpy.types.Context,
+    world: WorldSurface,
+    surface: tuple[str, str | None],
+) -> Order:
+    shown = inputs.image(properties.image)
+    target = _target(properties)
+    return Order(
+        surface=surface,
+        world=world,
+        uv_map=baking.uv_data(world.surface, world.cage, surface[0]),
+        source=inputs.source(properties, context, world, shown),
+        image=shown.name,
+        target=target,
+        canvases=_canvases(target),
+        margin=properties.margin,
+        allow_overlap=properties.overlap == "ALLOW",
+        opacity=properties.opacity,
+        create_material=properties.create_material,
+    )
+
+
+def _target(properties: bpy.types.OperatorProperties) -> str | NewImage:
+    if properties.output == "NEW":
+        name = properties.target or f"{properties.image} Projected"
+        return NewImage(name, properties.width, properties.height, properties.use_float)
+    if not properties.target:
+        raise RefusalError("No image is chosen to paint into")
+    if properties.target not in bpy.data.images:
+        raise RefusalError(f"There is no image {properties.target!r} to paint into")
+    if properties.target == properties.image:
+        raise RefusalError(f"The image {properties.image} cannot be painted into itself")
+    return properties.target
+
+
+def _canvases(target: str | NewImage) -> dict[int, Canvas]:
+    if isinstance(target, NewImage):
+        blank = np.zeros((target.height, target.width, 4), np.float32)
+        return {images.FIRST_TILE: Canvas(blank, colours.of_new(target.is_float))}
+    image = bpy.data.images[target]
+    tiles = images.checked(image, to_write=True).tiles
+    encoding = colours.of(image)
+    return {tile: Canvas(images.read(image, tile), encoding) for tile in tiles}

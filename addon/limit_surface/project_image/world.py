@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The limit surface as it stands in the world, where distances and angles are what is seen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import cage, native
+from ..errors import RefusalError
+from ..rotations import WorldSpace
+from .projector import Projector
+
+if TYPE_CHECKING:
+    import limitsurf
+
+MIRROR = np.diag([-1.0, 1, 1, 1])
+
+
+class WorldSurface:
+    """`surface` has the positions of the world, or of its mirror image for an object that is
+    mirrored itself: du x dv points outward. `local` has the object's own."""
+
+    def __init__(self, found: cage.Cage, called: str) -> None:
+        self.cage = found
+        self.axes = WorldSpace(found.matrix)  # refuses what is flattened to nothing
+        self.is_mirrored = np.linalg.det(found.matrix[:3, :3]) < 0
+        self.from_world = MIRROR if self.is_mirrored else np.eye(4)
+        self.surface: limitsurf.LimitSurface = native.limitsurf.LimitSurface(found.mesh)
+        if len(self.surface.refused) == len(found.face_sizes):
+            raise RefusalError(f"No face of {called} has a limit surface")
+        self.local: limitsurf.LimitSurface = native.limitsurf.LimitSurface(found.mesh)
+        self.surface.set_positions(self.to_surface(found.world_positions()))
+
+    def to_surface(self, points: np.ndarray) -> np.ndarray:
+        """Points (n, 3) of the world, in the surface's space."""
+        return points @ self.from_world[:3, :3].T
+
+    def clip_matrix(self, projector: Projector) -> np.ndarray:
+        """From the surface's space to the projector's clip space."""
+        return projector.matrix @ np.linalg.inv(self.from_world)
+
+    def check_eye(self, projector: Projector) -> None:
+        if projector.has_eye and self.surface.eye_is_inside(self.clip_matrix(projector)):
+            raise RefusalError(f"{projector.called} is inside the surface")
+
+    def bounds(self) -> np.ndarray:
+        """(2, 3), in the world."""
+        return np.sort(self.to_surface(self.surface.bounds()), axis=0)
