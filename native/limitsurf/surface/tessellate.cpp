@@ -3,177 +3,169 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
 
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/tessellation_numbers.h"
 
 namespace limitsurf {
 namespace {
 
-constexpr int kMostLevels = 12;
+/// Evaluated at a time: derivatives need little memory, and progress is told.
+constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
+/// Of the progress, when all but the normals of corners is there.
+constexpr double kPointsPart = 0.8;
 
-/// Hands out the tessellation's points: one for each vertex of the mesh, for each step along an
-/// edge and for each place inside a face, made when a face first asks for it.
-class PointNumbers {
- public:
-  PointNumbers(const ControlMesh& mesh, const PtexFaces& ptex, int side)
-      : mesh_(mesh), ptex_(ptex), side_(side), vertices_(mesh.vertexCount(), -1) {}
+using Progress = std::function<void(double part)>;
 
-  const std::vector<Location>& locations() const { return locations_; }
+static_assert(Tessellation::Corner::kSteps == kGridSide);
 
-  void startFace(int face) {
-    face_ = face;
-    vertices_of_face_ = mesh_.faceVertices(face);
-    inside_.clear();
+std::string allowedLevels(int least) {
+  return "; expected " + std::to_string(least) + " to " + std::to_string(kMostTessellationLevels);
+}
+
+/// Throws std::invalid_argument where points could not be counted with an int.
+void checkSize(std::size_t points, const std::string& whose) {
+  if (points > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    throw std::invalid_argument(whose + ": " + std::to_string(points) +
+                                " points or more are too many");
   }
+}
 
-  /// A quad's point (i, j), 0 <= i, j <= side.
-  int quadPoint(int i, int j) {
-    const Location at = location(ptex_.first[face_], i, j, side_);
-    const int n = side_;
-    if (j == 0) {
-      return onEdge(0, i, at);
-    }
-    if (i == n) {
-      return onEdge(1, j, at);
-    }
-    if (j == n) {
-      return onEdge(2, n - i, at);
-    }
-    if (i == 0) {
-      return onEdge(3, n - j, at);
-    }
-    return inside(0, i, j, at);
+/// Of the points inside faces; no face has fewer.
+std::size_t leastPoints(const ControlMesh& mesh, const std::vector<int>& levels) {
+  std::size_t points = 0;
+  for (int face = 0; face < mesh.faceCount(); ++face) {
+    const bool is_quad = mesh.faceSize(face) == 4;
+    const std::size_t side = (std::size_t{1} << (is_quad ? levels[face] : levels[face] - 1)) - 1;
+    points += side * side * (is_quad ? 1 : static_cast<std::size_t>(mesh.faceSize(face)));
   }
+  return points;
+}
 
-  /// An n-gon's point (i, j) of its sub-face at a corner, 0 <= i, j <= side / 2.
-  int subFacePoint(int corner, int i, int j) {
-    const int half = side_ / 2, size = static_cast<int>(vertices_of_face_.size());
-    const Location at = location(ptex_.first[face_] + corner, i, j, half);
-    const int before = (corner + size - 1) % size;
-    if (j == 0) {
-      return onEdge(corner, i, at);
+/// Evaluates positions and normals part by part. Where a normal has no limit, at irregular
+/// vertices, the face's own direction has to do.
+template <typename Take>
+void evaluateParts(const LimitSurface& surface, Span<Location> at, int threads, const Take& take) {
+  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
+    const Span<Location> part = at.subspan(begin, std::min(kRowsPerPart, at.size() - begin));
+    Evaluation e = surface.evaluate(part, Derivatives::first, true, threads);
+    std::vector<Location> without;
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = 0; row < e.normal.rows(); ++row) {
+      if (!e.normal.row(row).allFinite()) {
+        without.push_back(part[static_cast<std::size_t>(row)]);
+        rows.push_back(row);
+      }
     }
-    if (i == 0) {
-      return onEdge(before, side_ - j, at);
+    const auto rotations = surface.frames(without, threads);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto rotation = rotations.row(static_cast<Eigen::Index>(i));
+      e.normal.row(rows[i]) << rotation[2], rotation[5], rotation[8];
     }
-    if (i == half && j == half) {
-      return inside(0, half, half, at);  // the centre
-    }
-    if (j == half) {
-      return inside(before, half, i, at);  // on the line from an edge's middle to the centre
-    }
-    return inside(corner, i, j, at);
+    take(begin, e);
   }
+}
 
- private:
-  static Location location(int face, int i, int j, int n) {
-    return {face, static_cast<double>(i) / n, static_cast<double>(j) / n};
-  }
+void evaluatePoints(const LimitSurface& surface, Tessellation& result, int threads,
+                    const Progress& progress) {
+  const auto count = static_cast<Eigen::Index>(result.locations.size());
+  result.positions.resize(count, 3);
+  result.normals.resize(count, 3);
+  evaluateParts(surface, result.locations, threads, [&](std::size_t begin, const Evaluation& e) {
+    const auto first = static_cast<Eigen::Index>(begin);
+    result.positions.middleRows(first, e.position.rows()) = e.position;
+    result.normals.middleRows(first, e.normal.rows()) = e.normal;
+    progress(static_cast<double>(first + e.position.rows()) / static_cast<double>(count));
+  });
+}
 
-  int make(const Location& at) {
-    locations_.push_back(at);
-    return static_cast<int>(locations_.size()) - 1;
-  }
-
-  int onEdge(int edge, int step, const Location& at) {
-    const int size = static_cast<int>(vertices_of_face_.size());
-    int from = vertices_of_face_[edge], to = vertices_of_face_[(edge + 1) % size];
-    if (step == 0 || step == side_) {
-      int& point = vertices_[step == 0 ? from : to];
-      return point >= 0 ? point : point = make(at);
+/// A corner has its point's normal where both are seen from the same Ptex face.
+void evaluateCornerNormals(const LimitSurface& surface, Tessellation& result, int threads,
+                           const Progress& progress) {
+  result.corner_normals.resize(static_cast<Eigen::Index>(result.face_vertices.size()), 3);
+  std::vector<Location> others;
+  std::vector<Eigen::Index> rows;
+  std::size_t corner = 0;
+  for (std::size_t polygon = 0; polygon < result.face_sizes.size(); ++polygon) {
+    const int face = result.ptex_face[polygon];
+    for (int k = 0; k < result.face_sizes[polygon]; ++k, ++corner) {
+      const int point = result.face_vertices[corner];
+      const auto row = static_cast<Eigen::Index>(corner);
+      if (result.locations[point].face == face) {
+        result.corner_normals.row(row) = result.normals.row(point);
+      } else {
+        others.push_back(result.cornerLocation(polygon, corner));
+        rows.push_back(row);
+      }
     }
-    if (from > to) {
-      std::swap(from, to);
-      step = side_ - step;
-    }
-    const std::uint64_t key =
-        (static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to));
-    std::vector<int>& points = edges_[key];
-    points.resize(static_cast<std::size_t>(side_), -1);
-    int& point = points[step];
-    return point >= 0 ? point : point = make(at);
   }
-
-  int inside(int corner, int i, int j, const Location& at) {
-    const std::size_t place =
-        (static_cast<std::size_t>(corner) * (side_ + 1) + i) * (side_ + 1) + j;
-    if (inside_.size() <= place) {
-      inside_.resize(place + 1, -1);
+  evaluateParts(surface, others, threads, [&](std::size_t begin, const Evaluation& e) {
+    for (Eigen::Index row = 0; row < e.normal.rows(); ++row) {
+      result.corner_normals.row(rows[begin + static_cast<std::size_t>(row)]) = e.normal.row(row);
     }
-    int& point = inside_[place];
-    return point >= 0 ? point : point = make(at);
-  }
-
-  const ControlMesh& mesh_;
-  const PtexFaces& ptex_;
-  const int side_;
-  int face_ = 0;
-  Span<int> vertices_of_face_;
-  std::vector<int> vertices_, inside_;
-  std::unordered_map<std::uint64_t, std::vector<int>> edges_;
-  std::vector<Location> locations_;
-};
+    progress(static_cast<double>(begin + static_cast<std::size_t>(e.normal.rows())) /
+             static_cast<double>(others.size()));
+  });
+}
 
 }  // namespace
 
-Tessellation LimitSurface::tessellate(int levels, int threads) const {
-  data_->check({}, threads);
-  const ControlMesh& mesh = data_->mesh;
-  const bool only_quads = faceCount() == mesh.faceCount();
-  if (levels < (only_quads ? 0 : 1) || levels > kMostLevels) {
-    throw std::invalid_argument("levels is " + std::to_string(levels) + "; expected " +
-                                (only_quads ? "0" : "1") + " to " + std::to_string(kMostLevels));
+Location Tessellation::cornerLocation(std::size_t polygon, std::size_t corner) const {
+  return {ptex_face[polygon], static_cast<double>(corners[corner].u) / Corner::kSteps,
+          static_cast<double>(corners[corner].v) / Corner::kSteps};
+}
+
+Tessellation LimitSurface::tessellate(int levels, const TessellationOptions& options) const {
+  data_->check({}, options.threads);
+  const int least = faceCount() == mesh().faceCount() ? 0 : 1;
+  if (levels < least || levels > kMostTessellationLevels) {
+    throw std::invalid_argument("levels is " + std::to_string(levels) + allowedLevels(least));
   }
-  const int side = 1 << levels;
-  const std::size_t most_points =
-      (mesh.faceVertices().size() / 3 + 1) * (side + std::size_t{1}) * (side + std::size_t{1});
-  if (most_points > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    throw std::invalid_argument("levels is " + std::to_string(levels) + " on " +
-                                std::to_string(mesh.faceCount()) + " faces: up to " +
-                                std::to_string(most_points) + " points are too many");
+  return tessellateAs(std::vector<int>(static_cast<std::size_t>(mesh().faceCount()), levels),
+                      "levels is " + std::to_string(levels) + " on " +
+                          std::to_string(mesh().faceCount()) + " faces",
+                      options);
+}
+
+Tessellation LimitSurface::tessellate(std::vector<int> levels,
+                                      const TessellationOptions& options) const {
+  data_->check({}, options.threads);
+  if (levels.size() != static_cast<std::size_t>(mesh().faceCount())) {
+    throw std::invalid_argument("levels has " + std::to_string(levels.size()) + " values for " +
+                                std::to_string(mesh().faceCount()) + " faces");
   }
-  PointNumbers numbers(mesh, data_->ptex, side);
+  for (int face = 0; face < mesh().faceCount(); ++face) {
+    const int least = mesh().faceSize(face) == 4 ? 0 : 1;
+    int& level = levels[static_cast<std::size_t>(face)];
+    if (data_->refused.count(face)) {
+      level = least;
+    } else if (level < least || level > kMostTessellationLevels) {
+      throw std::invalid_argument("levels: face " + std::to_string(face) + ", of " +
+                                  std::to_string(mesh().faceSize(face)) + " corners, has level " +
+                                  std::to_string(level) + allowedLevels(least));
+    }
+  }
+  return tessellateAs(levels, "levels", options);
+}
+
+Tessellation LimitSurface::tessellateAs(const std::vector<int>& levels, const std::string& whose,
+                                        const TessellationOptions& options) const {
+  checkSize(leastPoints(mesh(), levels), whose);
+  const TessellationNumbers numbers(mesh(), data_->ptex, data_->refused, levels, options.threads);
+  checkSize(numbers.slotCount(), whose);
+  checkSize(numbers.pointCount(), whose);
   Tessellation result;
-  const auto addQuads = [&](int n, const auto& point) {
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        for (const auto& [di, dj] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
-          result.face_vertices.push_back(point(i + di, j + dj));
-        }
-      }
+  numbers.fill(result, options.threads);
+  const double points_part = options.corner_normals ? kPointsPart : 1;
+  const auto tell = [&](double part) {
+    if (options.progress) {
+      options.progress(part);
     }
   };
-  for (int face = 0; face < mesh.faceCount(); ++face) {
-    if (data_->refused.count(face)) {
-      continue;
-    }
-    InterruptionPoint::pass();
-    numbers.startFace(face);
-    if (mesh.faceSize(face) == 4) {
-      addQuads(side, [&](int i, int j) { return numbers.quadPoint(i, j); });
-      continue;
-    }
-    for (int corner = 0; corner < mesh.faceSize(face); ++corner) {
-      addQuads(side / 2, [&](int i, int j) { return numbers.subFacePoint(corner, i, j); });
-    }
-  }
-  result.locations = numbers.locations();
-  Evaluation points = evaluate(result.locations, Derivatives::first, true, threads);
-  result.positions = std::move(points.position);
-  result.normals = std::move(points.normal);
-  std::vector<Location> without;  // at irregular vertices any sector's own direction has to do
-  std::vector<Eigen::Index> rows;
-  for (Eigen::Index row = 0; row < result.normals.rows(); ++row) {
-    if (!result.normals.row(row).allFinite()) {
-      without.push_back(result.locations[static_cast<std::size_t>(row)]);
-      rows.push_back(row);
-    }
-  }
-  const auto rotations = frames(without, threads);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto rotation = rotations.row(static_cast<Eigen::Index>(i));
-    result.normals.row(rows[i]) << rotation[2], rotation[5], rotation[8];
+  evaluatePoints(*this, result, options.threads, [&](double part) { tell(part * points_part); });
+  if (options.corner_normals) {
+    evaluateCornerNormals(*this, result, options.threads,
+                          [&](double part) { tell(points_part + part * (1 - points_part)); });
   }
   return result;
 }

@@ -113,9 +113,21 @@ class Projection:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tessellation:
-    """Quads on the limit surface and where their points lie."""
+    """Polygons on the limit surface, and where their points and corners lie."""
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float64]
     faces: NDArray[np.int32]
     locations: Locations
+    face_sizes: NDArray[np.int32]
+    face_vertices: NDArray[np.int32]
+    base_face: NDArray[np.int32]
+    ptex_face: NDArray[np.int32]
+    corner_uv: NDArray[np.float32]
+    corner_normals: NDArray[np.float64] | None
+
+    @property
+    def corner_locations(self) -> Locations:
+        """Of the polygons' corners, each on its polygon's own Ptex face."""
+        face = np.repeat(self.ptex_face, self.face_sizes)
+        return Locations(face, self.corner_uv.astype(np.float64))

@@ -306,10 +306,69 @@ patch is given.
 )";
 
 constexpr const char* kTessellateDoc =
-    R"(Watertight quads on the limit surface: 2^levels x 2^levels a quad face.
+    R"(Watertight polygons on the limit surface: 2^levels x 2^levels quads a face.
 
-Each sub-face of an n-gon gets half as many a side, so levels >= 1 where there are n-gons. Returns
-Tessellation: .positions .normals (n, 3), .faces (m, 4) int32, .locations of the points.
+Each sub-face of an n-gon gets half as many a side, so levels >= 1 where there are n-gons. levels
+may be (F,) integers, one for each face of the mesh (those of refused faces mean nothing): an edge
+then has 2^level segments for the largest level of its faces, and coarser faces pass over to it by
+smaller quads and triangles.
+
+Returns Tessellation:
+    .positions .normals (n, 3), .locations: of the points, each of which exists once
+    .faces (m, 4) int32: the polygons; those of triangles end in -1
+    .face_sizes (m,) .face_vertices (k,) int32: the same without such ends
+    .base_face .ptex_face (m,) int32: the mesh's face, and the Ptex face, that a polygon lies on
+    .corner_uv (k, 2) float32: of the polygons' corners on their own Ptex face, exactly
+    .corner_locations: the same as Locations
+    .corner_normals (k, 3): with corner_normals=True, else None; as seen from the polygon's own
+        face, so one-sided at creases
+Normals are always finite: at irregular vertices without one they are the third column of frames().
+progress: called with the part that is done, 0 to 1. ValueError names the first face whose level is
+not 0 (n-gons: 1) to 12.
+)";
+
+constexpr const char* kRasterizeDoc =
+    R"(Where the texels of an image lie on the surface: the UV map inverted on its limit.
+
+Parameters
+----------
+width, height : int, 1 to 65,536
+tile : (int, int)
+    The image covers [i, i + 1] x [j, j + 1] of the map: UDIM tile 1001 + i + 10 j.
+margin : float
+    Texels outside the map's image whose centre is no farther from it than so many texels get the
+    location on its border that is nearest.
+threads : int
+progress : function of the part that is done, 0 to 1, optional
+
+Returns
+-------
+Texels
+    Sorted by row (y), then by column (x), with y upwards as in Blender's images. Texel (x, y)'s
+    centre is tile + ((x + 0.5) / width, (y + 0.5) / height) on the map.
+    .x .y : (n,) int32
+    .face : (n,) int32, .uv : (n, 2)
+        The location, exact to 1e-12 of the diagonal of the box around the map's values and (0, 0).
+    .inside : (n,) bool
+        False for texels of the margin.
+    .overlap : (n,) bool
+        Several places of the surface lie there; that with the lowest Ptex face is given, among
+        those of one face that with the lowest v, then u.
+    .flipped : (n,) bool
+        The map is mirrored there.
+
+No texel is lost on edges that faces share. Faces whose image has no area cover none.
+
+Raises ValueError for data of other than two columns, and for sizes out of range.
+)";
+
+constexpr const char* kLocateDoc =
+    R"(Which places of the surface lie at points of the UV map: (n, 2) float.
+
+Returns MapLocations: .face (n,) is -1 and .uv (n, 2) NaN where the map does not cover the point;
+.overlap and .flipped as rasterize() has them. A point on the map's border counts as covered.
+
+Raises ValueError for data of other than two columns, and naming the first row that is not finite.
 )";
 
 }  // namespace limitsurf::python

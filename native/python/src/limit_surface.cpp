@@ -131,22 +131,6 @@ Points currentPositions(const SharedSurface& shared) {
   return shared.surface().positions();
 }
 
-py::object tessellate(const SharedSurface& shared, int levels, int threads) {
-  checkThreads(threads);
-  Tessellation t;
-  {
-    const py::gil_scoped_release release;
-    const std::shared_lock<std::shared_mutex> lock(shared.mutex);
-    const InterruptionPoint point = interruptible();
-    t = shared.surface().tessellate(levels, threads);
-  }
-  const py::array_t<int> faces(
-      {static_cast<py::ssize_t>(t.face_vertices.size() / 4), py::ssize_t{4}},
-      t.face_vertices.data());
-  return result("Tessellation")(pointArray(t.positions), pointArray(t.normals), faces,
-                                locations(t.locations));
-}
-
 void setPositions(SharedSurface& shared, const py::object& positions, int threads) {
   checkThreads(threads);
   const Doubles array = doubles(positions, "positions");
@@ -211,6 +195,7 @@ void bindLimitSurface(py::module_& module) {
           "positions",
           [](const SharedSurface& shared) { return pointArray(currentPositions(shared)); },
           "(V, 3) float64: the cage's current positions, a copy.")
+  bindTessellate(type);
       .def_property_readonly(
           "face_count", [](const SharedSurface& s) { return s.surface().faceCount(); },
           "Number of Ptex faces.")
@@ -262,7 +247,6 @@ void bindLimitSurface(py::module_& module) {
             return locations(at);
           },
           "per_side"_a, "seed"_a = 0, py::kw_only(), "threads"_a = 0, kScatterJitteredDoc)
-      .def("tessellate", &tessellate, "levels"_a, py::kw_only(), "threads"_a = 0, kTessellateDoc)
       .def(
           "area",
           [](const SharedSurface& shared, int threads) {

@@ -86,6 +86,7 @@ class HeldPose {
   static bool isHeldHere(const SharedSurface& shared) {
     const HeldPose* held = innermost();
     while (held && &held->shared_ != &shared) {
+void bindTessellate(py::class_<SharedSurface>& type);
       held = held->outer_;
     }
     return held != nullptr;
