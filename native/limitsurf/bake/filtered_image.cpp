@@ -61,7 +61,22 @@ PixelGrid copied(const float* pixels, int width, int height, int channels, bool 
   return image;
 }
 
-void checkRows(const ImagePoints& st, const Footprints& footprint) {
+template <int kChannels>
+void sampleRows(const ImagePyramid& pyramid, Extension extension, const ImagePoints& st,
+                const Footprints& footprint, Eigen::Index begin, Eigen::Index end, Colours& out) {
+  const ImageLookup<kChannels> lookup(pyramid, extension);
+  for (Eigen::Index i = begin; i < end; ++i) {
+    if (st.row(i).hasNaN()) {
+      out.row(i).setZero();
+    } else {
+      lookup.sample(st.row(i).data(), footprint.row(i).data(), out.row(i).data());
+    }
+  }
+}
+
+}  // namespace
+
+void checkSamples(Eigen::Ref<const ImagePoints> st, Eigen::Ref<const Footprints> footprint) {
   if (st.rows() != footprint.rows()) {
     throw std::invalid_argument("st has " + std::to_string(st.rows()) + " rows and footprint " +
                                 std::to_string(footprint.rows()));
@@ -79,21 +94,6 @@ void checkRows(const ImagePoints& st, const Footprints& footprint) {
   }
 }
 
-template <int kChannels>
-void sampleRows(const ImagePyramid& pyramid, Extension extension, const ImagePoints& st,
-                const Footprints& footprint, Eigen::Index begin, Eigen::Index end, Colours& out) {
-  const ImageLookup<kChannels> lookup(pyramid, extension);
-  for (Eigen::Index i = begin; i < end; ++i) {
-    if (st.row(i).hasNaN()) {
-      out.row(i).setZero();
-    } else {
-      lookup.sample(st.row(i).data(), footprint.row(i).data(), out.row(i).data());
-    }
-  }
-}
-
-}  // namespace
-
 FilteredImage::FilteredImage(const float* pixels, int width, int height, int channels,
                              Extension extension, bool premultiplied, int threads)
     : pyramid_(
@@ -104,7 +104,7 @@ FilteredImage::FilteredImage(const float* pixels, int width, int height, int cha
 Colours FilteredImage::sample(const ImagePoints& st, const Footprints& footprint,
                               int threads) const {
   checkThreads(threads);
-  checkRows(st, footprint);
+  checkSamples(st, footprint);
   Colours out(st.rows(), channels());
   const auto rows = [&](auto channel_count) {
     parallelFor(static_cast<std::size_t>(st.rows()), kRowsPerTask, threads,

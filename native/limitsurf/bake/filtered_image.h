@@ -22,6 +22,9 @@ constexpr double kMostEccentric = 32;
 /// One value a row, one column a channel.
 using Colours = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// What FilteredImage::sample() throws for these arguments.
+void checkSamples(Eigen::Ref<const ImagePoints> st, Eigen::Ref<const Footprints> footprint);
+
 /// An image that can be looked up through footprints of any size and shape without aliasing.
 ///
 /// Of four channels the last is alpha, and colours are filtered multiplied by it: what is

@@ -10,11 +10,15 @@ boundaries included.
 
 from ._limitsurf import (
     ControlMesh,
+    FilteredImage,
     LimitSurface,
     LocationError,
     MeshError,
     SurfaceData,
     __version__,
+    blend_over,
+    box_sides,
+    box_weights,
 )
 from ._results import (
     BlueNoise,
@@ -23,6 +27,8 @@ from ._results import (
     Evaluation,
     Hits,
     Locations,
+    MapDistortion,
+    Projection,
     RayHits,
     Stencils,
     Tessellation,
@@ -34,18 +40,26 @@ __all__ = [
     "Curvature",
     "DataEvaluation",
     "Evaluation",
+    "FilteredImage",
     "Hits",
     "LimitSurface",
     "LocationError",
     "Locations",
+    "MapDistortion",
+    "MapLocations",
     "MeshError",
+    "Projection",
     "RayHits",
     "Stencils",
     "SurfaceData",
     "Tessellation",
+    "Texels",
     "__version__",
+    "blend_over",
+    "box_sides",
+    "box_weights",
 ]
 
-for _public in (ControlMesh, LimitSurface, LocationError, MeshError, SurfaceData):
+for _public in (ControlMesh, FilteredImage, LimitSurface, LocationError, MeshError, SurfaceData):
     _public.__module__ = __name__
 del _public

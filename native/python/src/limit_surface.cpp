@@ -11,9 +11,12 @@
 #include <utility>
 
 #include "arrays.h"
+#include "bake.h"
 #include "batches.h"
 #include "choices.h"
+#include "displacement.h"
 #include "docstrings.h"
+#include "projection.h"
 #include "shared_surface.h"
 #include "surface_data.h"
 
@@ -187,15 +190,18 @@ void bindLimitSurface(py::module_& module) {
   using namespace py::literals;
   const py::object float64 = py::dtype("float64");
   py::class_<SharedSurface> type(module, "LimitSurface", kLimitSurfaceDoc);
+  bindBake(type);
   bindQueries(type);
+  bindDisplacement(type);
+  bindProjection(type);
   bindScatter(type);
+  bindTessellate(type);
   type.def(py::init(&makeSurface), "mesh"_a.none(false))
       .def_readonly("mesh", &SharedSurface::mesh, "The ControlMesh, in the pose it was made with.")
       .def_property_readonly(
           "positions",
           [](const SharedSurface& shared) { return pointArray(currentPositions(shared)); },
           "(V, 3) float64: the cage's current positions, a copy.")
-  bindTessellate(type);
       .def_property_readonly(
           "face_count", [](const SharedSurface& s) { return s.surface().faceCount(); },
           "Number of Ptex faces.")

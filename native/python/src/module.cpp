@@ -2,8 +2,11 @@
 #include <pybind11/pybind11.h>
 
 #include "control_mesh.h"
+#include "displacement.h"
+#include "images.h"
 #include "limit_surface.h"
 #include "limitsurf/error.h"
+#include "ptex_layout.h"
 #include "surface_data.h"
 
 PYBIND11_MODULE(_limitsurf, module) {
@@ -17,5 +20,8 @@ PYBIND11_MODULE(_limitsurf, module) {
       .doc() = "A location outside the surface's domain. The message names the row and the value.";
   limitsurf::python::bindControlMesh(module);
   limitsurf::python::bindSurfaceData(module);
+  limitsurf::python::bindImages(module);
+  limitsurf::python::bindSubdividedFaces(module);
+  limitsurf::python::bindPtexLayout(module);
   limitsurf::python::bindLimitSurface(module);
 }

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "images.h"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "batches.h"
+#include "choices.h"
+#include "control_mesh.h"
+#include "limitsurf/bake/blend.h"
+#include "limitsurf/bake/box.h"
+#include "limitsurf/bake/filtered_image.h"
+#include "matrices.h"
+#include "progress.h"
+#include "projection_docstrings.h"
+
+namespace limitsurf::python {
+namespace {
+
+using Floats = py::array_t<float, py::array::c_style>;
+
+/// Rows looked up at a time: a progress bar moves, and Ctrl-C is heard.
+constexpr Eigen::Index kRowsPerPart = Eigen::Index{1} << 18;
+
+const Choices<Extension> kExtensions = {{"clip", Extension::clip},
+                                        {"extend", Extension::extend},
+                                        {"repeat", Extension::repeat},
+                                        {"mirror", Extension::mirror}};
+const Choices<BlendMode> kBlendModes = {
+    {"mix", BlendMode::mix}, {"add", BlendMode::add}, {"multiply", BlendMode::multiply}};
+
+/// Anything numpy can convert to float32; TypeError for what is not real numbers.
+Floats floats(const py::object& object, const char* name) {
+  const py::array array = py::module_::import("numpy").attr("asarray")(object);
+  return py::cast<Floats>(array.dtype().kind() == 'f' && array.dtype().itemsize() <= 4
+                              ? array.attr("astype")("float32", py::arg("copy") = false)
+                              : doubles(object, name).attr("astype")("float32"));
+}
+
+[[noreturn]] void refuseShape(const py::array& array, const char* name, const char* expected) {
+  throw std::invalid_argument(std::string(name) + " has shape " + shapeText(array) + "; expected " +
+                              expected);
+}
+
+/// An image that Python may have made without initialising it.
+class BoundImage : public ZeroedMemory {
+ public:
+  explicit BoundImage(FilteredImage image)
+      : image_(std::make_unique<FilteredImage>(std::move(image))) {}
+  const FilteredImage& image() const {
+    if (!image_) {
+      throw py::value_error("this FilteredImage was never initialised");
+    }
+    return *image_;
+  }
+
+ private:
+  std::unique_ptr<FilteredImage> image_;
+};
+
+std::unique_ptr<BoundImage> makeImage(const py::object& pixels, const std::string& extension,
+                                      bool premultiplied, int threads) {
+  const Extension beyond = choice(extension, "extension", kExtensions);
+  const Floats array = floats(pixels, "pixels");
+  constexpr py::ssize_t kLargestSide = py::ssize_t{1} << 20;
+  if (array.ndim() != 3 || array.size() == 0 || array.shape(2) > 4 ||
+      std::max(array.shape(0), array.shape(1)) > kLargestSide) {
+    refuseShape(array, "pixels",
+                "(h, w, c) with at least one pixel, at most 2^20 a side, c = 1 to 4");
+  }
+  const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
+  return std::make_unique<BoundImage>(FilteredImage(
+      array.data(), static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
+      static_cast<int>(array.shape(2)), beyond, premultiplied, threads));
+}
+
+py::object sample(const BoundImage& bound, const py::object& st, const py::object& footprint,
+                  int threads, const py::object& progress) {
+  checkThreads(threads);
+  const FilteredImage& image = bound.image();
+  const Doubles places = doubles(st, "st"), steps = doubles(footprint, "footprint");
+  if (places.ndim() != 2 || places.shape(1) != 2) {
+    refuseShape(places, "st", "(n, 2)");
+  }
+  if (steps.ndim() != 3 || steps.shape(0) != places.shape(0) || steps.shape(1) != 2 ||
+      steps.shape(2) != 2) {
+    refuseShape(steps, "footprint",
+                ("(" + std::to_string(places.shape(0)) + ", 2, 2), as st has rows").c_str());
+  }
+  const ProgressReport report(progress);
+  const Eigen::Index rows = places.shape(0);
+  Floats out({rows, Eigen::Index{image.channels()}});
+  const Eigen::Map<const ImagePoints> all_places(places.data(), rows, 2);
+  const Eigen::Map<const Footprints> all_steps(steps.data(), rows, 4);
+  float* to = out.mutable_data();
+  {
+    const py::gil_scoped_release release;
+    const InterruptionPoint point = interruptible();
+    checkSamples(all_places, all_steps);
+    for (Eigen::Index begin = 0; begin < rows; begin += kRowsPerPart) {
+      const Eigen::Index count = std::min(kRowsPerPart, rows - begin);
+      const Colours part = image.sample(all_places.middleRows(begin, count),
+                                        all_steps.middleRows(begin, count), threads);
+      to = std::copy(part.data(), part.data() + part.size(), to);
+      report(static_cast<double>(begin + count) / static_cast<double>(rows));
+    }
+  }
+  return std::move(out);
+}
+
+Colours pixelRows(const py::object& object, const char* name) {
+  const Floats array = floats(object, name);
+  if (array.ndim() != 2 || array.shape(1) != 4) {
+    refuseShape(array, name, "(n, 4)");
+  }
+  return Eigen::Map<const Colours>(array.data(), array.shape(0), 4);
+}
+
+py::object blendOver(const py::object& below, const py::object& above, const py::object& weight,
+                     const std::string& mode, bool premultiplied) {
+  const BlendMode blend = choice(mode, "mode", kBlendModes);
+  const Colours lower = pixelRows(below, "below"), upper = pixelRows(above, "above");
+  const Doubles weights = doubles(weight, "weight");
+  requireVector<std::invalid_argument>(weights, "weight");
+  Colours out;
+  {
+    const py::gil_scoped_release release;
+    out = limitsurf::blendOver(lower, upper,
+                               Eigen::Map<const Eigen::VectorXd>(weights.data(), weights.size()),
+                               blend, premultiplied);
+  }
+  return Floats({out.rows(), Eigen::Index{4}}, out.data());
+}
+
+py::object boxSides(const py::object& matrix) {
+  const std::array<Eigen::Matrix4d, 6> sides = limitsurf::boxSides(matrixOf(matrix, "matrix"));
+  py::array_t<double> out({6, 4, 4});
+  double* to = out.mutable_data();
+  for (const Eigen::Matrix4d& side : sides) {
+    for (int row = 0; row < 4; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        *to++ = side(row, column);
+      }
+    }
+  }
+  return std::move(out);
+}
+
+py::object boxWeights(const py::object& normals, double blend, const py::object& matrix) {
+  const Doubles array = doubles(normals, "normals");
+  requireRows<std::invalid_argument>(array, "normals", 3);
+  const Eigen::Matrix4d to_box = matrixOrNone(matrix, "matrix");
+  BoxWeights weights;
+  {
+    const py::gil_scoped_release release;
+    weights = limitsurf::boxWeights(pointsOf(array), blend, to_box);
+  }
+  return py::array_t<double>({weights.rows(), Eigen::Index{6}}, weights.data());
+}
+
+}  // namespace
+
+void bindImages(py::module_& module) {
+  using namespace py::literals;
+  py::class_<BoundImage>(module, "FilteredImage", kFilteredImageDoc)
+      .def(py::init(&makeImage), "pixels"_a, "extension"_a = "clip", py::kw_only(),
+           "premultiplied"_a = false, "threads"_a = 0)
+      .def_property_readonly(
+          "shape",
+          [](const BoundImage& b) {
+            return py::make_tuple(b.image().height(), b.image().width(), b.image().channels());
+          },
+          "(h, w, c) of the pixels that it was made of.")
+      .def("sample", &sample, "st"_a, "footprint"_a, py::kw_only(), "threads"_a = 0,
+           "progress"_a = py::none(), kSampleDoc)
+      .def("__repr__", [](const BoundImage& b) {
+        return "FilteredImage(" + std::to_string(b.image().width()) + " x " +
+               std::to_string(b.image().height()) + " pixels of " +
+               std::to_string(b.image().channels()) + " channels)";
+      });
+  module.def("blend_over", &blendOver, "below"_a, "above"_a, "weight"_a, "mode"_a = "mix",
+             py::kw_only(), "premultiplied"_a = false, kBlendOverDoc);
+  module.def("box_sides", &boxSides, "matrix"_a, kBoxSidesDoc);
+  module.def("box_weights", &boxWeights, "normals"_a, "blend"_a = 0., "matrix"_a = py::none(),
+             kBoxWeightsDoc);
+}
+
+}  // namespace limitsurf::python

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "projection.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <shared_mutex>
+#include <utility>
+
+#include "batches.h"
+#include "choices.h"
+#include "limitsurf/bake/projection.h"
+#include "matrices.h"
+#include "progress.h"
+#include "projection_docstrings.h"
+#include "surface_data.h"
+
+namespace limitsurf::python {
+namespace {
+
+/// Rows projected at a time: a progress bar moves, and Ctrl-C is heard.
+constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
+
+const Choices<RayDirection> kRayDirections = {{"both", RayDirection::both},
+                                              {"outward", RayDirection::outward},
+                                              {"inward", RayDirection::inward}};
+
+/// Projections row by row, as numpy arrays.
+class ProjectionArrays {
+ public:
+  explicit ProjectionArrays(py::ssize_t rows)
+      : st_(py::dtype("float64"), {rows, 2}),
+        footprint_(py::dtype("float64"), {rows, 2, 2}),
+        weight_(py::dtype("float64"), {rows}) {}
+
+  /// Without the GIL.
+  void put(std::size_t begin, const Projection& part) {
+    const auto rows = static_cast<std::size_t>(part.weight.size());
+    st_.put(2 * begin, part.st.data(), 2 * rows);
+    footprint_.put(4 * begin, part.footprint.data(), 4 * rows);
+    weight_.put(begin, part.weight.data(), rows);
+  }
+  py::object object() const {
+    return result("Projection")(st_.object(), footprint_.object(), weight_.object());
+  }
+
+ private:
+  Output st_, footprint_, weight_;
+};
+
+/// Puts body(locations) of one part after the other into arrays, without the GIL. Nothing that
+/// `lock` holds is held while progress is told.
+template <typename Lock, typename Body>
+void projectInParts(const Locations& at, const ProgressReport& report, ProjectionArrays& arrays,
+                    const Lock& lock, const Body& body) {
+  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
+    const std::size_t count = std::min(kRowsPerPart, at.size() - begin);
+    {
+      const auto held = lock();
+      arrays.put(begin, body(Span<Location>(at).subspan(begin, count)));
+    }
+    report(static_cast<double>(begin + count) / static_cast<double>(at.size()));
+  }
+}
+
+py::object project(const SharedSurface& shared, const SharedData& uv_map, const py::object& face,
+                   const py::object& uv, const py::object& matrix, std::pair<double, double> texel,
+                   std::pair<double, double> facing, bool two_sided, bool occlusion, int samples,
+                   std::optional<double> bias, double soft_edge, bool frame,
+                   std::optional<std::pair<double, double>> depth, const py::object& world,
+                   int threads, const py::object& progress) {
+  checkThreads(threads);
+  const Eigen::Matrix4d projector = matrixOf(matrix, "matrix");
+  ProjectOptions options;
+  options.facing_start = facing.first;
+  options.facing_end = facing.second;
+  options.two_sided = two_sided;
+  options.samples = samples;
+  options.bias = bias;
+  options.soft_edge = soft_edge;
+  options.frame = frame;
+  options.depth = depth ? std::optional<DepthRange>({depth->first, depth->second}) : std::nullopt;
+  options.world = matrixOrNone(world, "world");
+  const Eigen::Vector2d size(texel.first, texel.second);
+  const SurfaceData& map = uv_map.data();
+  const ProgressReport report(progress);
+  const Locations at = locationsOn(shared.surface(), face, uv);
+  ProjectionArrays arrays(static_cast<py::ssize_t>(at.size()));
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    checkProject(shared.surface(), map, projector, size, options);
+    const SurfaceSearch* occluder =
+        occlusion ? &shared.search.get(shared.surface(), threads) : nullptr;
+    projectInParts(
+        at, report, arrays, [&] { return std::shared_lock<std::shared_mutex>(uv_map.mutex); },
+        [&](Span<Location> part) {
+          return limitsurf::project(shared.surface(), map, part, projector, size, occluder, options,
+                                    threads);
+        });
+  }
+  return arrays.object();
+}
+
+/// Holds the data of two maps still, which may be one.
+class HeldMaps {
+ public:
+  HeldMaps(const SharedData& a, const SharedData& b) : first_(a.mutex) {
+    if (&a != &b) {
+      second_ = std::shared_lock<std::shared_mutex>(b.mutex);
+    }
+  }
+
+ private:
+  std::shared_lock<std::shared_mutex> first_, second_;
+};
+
+py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv_map,
+                               const py::object& face, const py::object& uv,
+                               const SharedSurface& source, const SharedData& source_map,
+                               std::pair<double, double> texel, double max_distance,
+                               const std::string& direction, const py::object& transform,
+                               const py::object& world, int threads, const py::object& progress) {
+  checkThreads(threads);
+  NormalProjectOptions options;
+  options.max_distance = max_distance;
+  options.direction = choice(direction, "direction", kRayDirections);
+  options.transform = matrixOrNone(transform, "transform");
+  options.world = matrixOrNone(world, "world");
+  const Eigen::Vector2d size(texel.first, texel.second);
+  const SurfaceData &map = uv_map.data(), &other_map = source_map.data();
+  const ProgressReport report(progress);
+  const Locations at = locationsOn(shared.surface(), face, uv);
+  ProjectionArrays arrays(static_cast<py::ssize_t>(at.size()));
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    std::optional<HeldPose> held_source;
+    if (&source != &shared) {
+      held_source.emplace(source);
+    }
+    const InterruptionPoint point = interruptible();
+    checkProjectAlongNormals(shared.surface(), map, source.surface(), other_map, size, options);
+    const SurfaceSearch& search = source.search.get(source.surface(), threads);
+    projectInParts(
+        at, report, arrays, [&] { return HeldMaps(uv_map, source_map); },
+        [&](Span<Location> part) {
+          return limitsurf::projectAlongNormals(shared.surface(), map, part, source.surface(),
+                                                other_map, search, size, options, threads);
+        });
+  }
+  return arrays.object();
+}
+
+bool eyeIsInside(const SharedSurface& shared, const py::object& matrix, int threads) {
+  checkThreads(threads);
+  const Eigen::Matrix4d projector = matrixOf(matrix, "matrix");
+  const py::gil_scoped_release release;
+  const HeldPose held(shared);
+  const InterruptionPoint point = interruptible();
+  return limitsurf::eyeIsInside(shared.surface(), shared.search.get(shared.surface(), threads),
+                                projector, threads);
+}
+
+}  // namespace
+
+void bindProjection(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  const ProjectOptions defaults;
+  type.def("project", &project, "uv_map"_a, "face"_a, "uv"_a, "matrix"_a, "texel"_a, py::kw_only(),
+           "facing"_a = std::pair(defaults.facing_start, defaults.facing_end),
+           "two_sided"_a = defaults.two_sided, "occlusion"_a = true, "samples"_a = defaults.samples,
+           "bias"_a = py::none(), "soft_edge"_a = defaults.soft_edge, "frame"_a = defaults.frame,
+           "depth"_a = std::pair(defaults.depth->near, defaults.depth->far), "world"_a = py::none(),
+           "threads"_a = 0, "progress"_a = py::none(), kProjectDoc)
+      .def("project_along_normals", &projectAlongNormals, "uv_map"_a, "face"_a, "uv"_a, "source"_a,
+           "source_map"_a, "texel"_a, py::kw_only(),
+           "max_distance"_a = std::numeric_limits<double>::infinity(), "direction"_a = "both",
+           "transform"_a = py::none(), "world"_a = py::none(), "threads"_a = 0,
+           "progress"_a = py::none(), kProjectAlongNormalsDoc)
+      .def("eye_is_inside", &eyeIsInside, "matrix"_a, py::kw_only(), "threads"_a = 0,
+           kEyeIsInsideDoc);
+}
+
+}  // namespace limitsurf::python
