@@ -12,6 +12,7 @@ from ._results import (
     Evaluation,
     Hits,
     Locations,
+    MapDistortion,
     Projection,
     RayHits,
     Stencils,
@@ -83,6 +84,23 @@ class SurfaceData:
         threads: int = 0,
         dtype: DTypeLike = ...,
     ) -> DataEvaluation: ...
+    def rasterize(
+        self,
+        width: int,
+        height: int,
+        tile: tuple[int, int] = ...,
+        margin: float = 0,
+        *,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> Texels: ...
+    def locate(
+        self,
+        points: ArrayLike,
+        *,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> MapLocations: ...
 
 class FilteredImage:
     def __init__(
@@ -144,6 +162,24 @@ class LimitSurface:
     def frames(
         self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0, dtype: DTypeLike = ...
     ) -> NDArray[np.floating[Any]]: ...
+    def tangent_frames(
+        self,
+        uv_map: SurfaceData,
+        face: ArrayLike,
+        uv: ArrayLike,
+        *,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
+    ) -> NDArray[np.floating[Any]]: ...
+    def map_distortion(
+        self,
+        uv_map: SurfaceData,
+        face: ArrayLike,
+        uv: ArrayLike,
+        *,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
+    ) -> MapDistortion: ...
     def curvature(
         self,
         face: ArrayLike,

@@ -50,6 +50,16 @@ class Curvature:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class MapDistortion:
+    """How a UV map stretches a surface, (n,) each: area of the surface per area of the map, and the
+    largest and smallest length on the surface per length on the map."""
+
+    area: Array
+    stretch_high: Array
+    stretch_low: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Stencils:
     """Sparse rows (CSR) of weights on the cage's vertices."""
 
@@ -76,6 +86,30 @@ class BlueNoise(Locations):
     """Locations, and the distance that they keep from each other where the density is largest."""
 
     radius: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapLocations(Locations):
+    """Locations at points of a UV map; face is -1 and uv NaN where it does not cover them."""
+
+    overlap: NDArray[np.bool_]
+    flipped: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Texels:
+    """Texels of an image, sorted by row and then by column, and the locations under them."""
+
+    x: NDArray[np.int32]
+    y: NDArray[np.int32]
+    face: NDArray[np.int32]
+    uv: NDArray[np.float64]
+    inside: NDArray[np.bool_]
+    overlap: NDArray[np.bool_]
+    flipped: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.face)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,6 +143,19 @@ class Projection:
 
     def __len__(self) -> int:
         return len(self.weight)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PtexTexels:
+    """Pixels (x, y) of a PtexLayout, y upwards, and the locations (face, uv) they stand for."""
+
+    x: NDArray[np.int32]
+    y: NDArray[np.int32]
+    face: NDArray[np.int32]
+    uv: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.x)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

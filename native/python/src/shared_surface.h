@@ -10,30 +10,12 @@
 
 #include "arrays.h"
 #include "control_mesh.h"
+#include "lazily.h"
 #include "limitsurf/query/area_sampler.h"
 #include "limitsurf/query/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
 
 namespace limitsurf::python {
-
-/// What is made of a surface's pose at the first call that needs it, and kept for the next.
-template <typename T>
-class Lazily {
- public:
-  /// To be called while the pose is held still.
-  const T& get(const LimitSurface& surface, int threads) const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!made_) {
-      made_ = std::make_unique<T>(surface, threads);
-    }
-    return *made_;
-  }
-  void forget() { made_.reset(); }
-
- private:
-  mutable std::mutex mutex_;
-  mutable std::unique_ptr<T> made_;
-};
 
 /// A surface that may be re-posed while other Python threads, without the GIL, evaluate it.
 struct SharedSurface : ZeroedMemory {
@@ -62,8 +44,8 @@ struct SharedSurface : ZeroedMemory {
 
   std::shared_ptr<BoundMesh> mesh;
   mutable std::shared_mutex mutex;
-  Lazily<SurfaceSearch> search;
-  Lazily<AreaSampler> sampler;
+  Lazily<SurfaceSearch, LimitSurface> search;
+  Lazily<AreaSampler, LimitSurface> sampler;
 
  private:
   std::unique_ptr<LimitSurface> surface_;
@@ -86,7 +68,6 @@ class HeldPose {
   static bool isHeldHere(const SharedSurface& shared) {
     const HeldPose* held = innermost();
     while (held && &held->shared_ != &shared) {
-void bindTessellate(py::class_<SharedSurface>& type);
       held = held->outer_;
     }
     return held != nullptr;
@@ -105,5 +86,6 @@ void bindTessellate(py::class_<SharedSurface>& type);
 
 void bindQueries(py::class_<SharedSurface>& type);
 void bindScatter(py::class_<SharedSurface>& type);
+void bindTessellate(py::class_<SharedSurface>& type);
 
 }  // namespace limitsurf::python

@@ -51,6 +51,7 @@ void setValues(SharedData& shared, const py::object& values, int threads) {
   const py::gil_scoped_release release;
   const std::unique_lock<std::shared_mutex> lock(shared.mutex);
   data.setValues(rows, threads);
+  shared.uv_map.forget();
 }
 
 }  // namespace
@@ -82,8 +83,8 @@ DataRows rowsOf(const py::object& values) {
 
 void bindSurfaceData(py::module_& module) {
   using namespace py::literals;
-  py::class_<SharedData>(module, "SurfaceData", kSurfaceDataDoc)
-      .def_property_readonly(
+  py::class_<SharedData> type(module, "SurfaceData", kSurfaceDataDoc);
+  type.def_property_readonly(
           "shape",
           [](const SharedData& s) { return py::make_tuple(s.data().rows(), s.data().columns()); },
           "(m, d) of the values that it was made of.")
@@ -94,6 +95,7 @@ void bindSurfaceData(py::module_& module) {
         return "SurfaceData(" + std::to_string(s.data().rows()) + " values of " +
                std::to_string(s.data().columns()) + " columns)";
       });
+  bindUvMap(type);
 }
 
 }  // namespace limitsurf::python

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "control_mesh.h"
+#include "lazily.h"
+#include "limitsurf/bake/uv_map.h"
 #include "limitsurf/surface/surface_data.h"
 
 namespace limitsurf::python {
@@ -21,6 +23,7 @@ class SharedData : public ZeroedMemory {
   SurfaceData& data();
 
   mutable std::shared_mutex mutex;
+  Lazily<UvMap, SurfaceData> uv_map;
 
  private:
   std::unique_ptr<SurfaceData> data_;
@@ -33,5 +36,6 @@ Interpolation interpolationOf(const std::string& name);
 DataRows rowsOf(const pybind11::object& values);
 
 void bindSurfaceData(pybind11::module_& module);
+void bindUvMap(pybind11::class_<SharedData>& type);
 
 }  // namespace limitsurf::python

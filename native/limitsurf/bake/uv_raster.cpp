@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/bake/uv_raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "limitsurf/parallel.h"
+
+namespace limitsurf {
+namespace {
+
+/// An image is done in bands of about so many texels: a band's slots stay in the cache, and there
+/// are enough of them for all threads.
+constexpr int kTexelsPerBand = 1 << 17;
+
+/// Bands between two words on the progress.
+constexpr std::size_t kBandsPerReport = 16;
+
+void checkRange(const char* name, double value, double least, double most) {
+  if (!(value >= least && value <= most)) {
+    std::ostringstream message;
+    message << name << " is " << value << "; it must be " << least << " to " << most;
+    throw std::invalid_argument(message.str());
+  }
+}
+
+/// An image's bands of rows, and which pieces of the map have a part in which of them.
+class Bands {
+ public:
+  Bands(const UvPatches& map, const RasterOptions& options)
+      : width_(options.width),
+        height_(options.height),
+        rows_(std::clamp(kTexelsPerBand / width_, 1, height_)),
+        frame_{{static_cast<double>(options.tile_x), static_cast<double>(options.tile_y)},
+               {static_cast<double>(width_), static_cast<double>(height_)},
+               -0.5},
+        tolerance_(map.tolerance() * frame_.scale) {
+    std::vector<std::size_t>& begins = begins_;
+    begins.assign(count() + 2, 0);
+    const auto forEachBand = [&](const auto& body) {
+      const Lattice image{0, 0, width_ - 1, height_ - 1};
+      for (std::size_t piece = 0; piece < map.pieces().size(); ++piece) {
+        const Lattice inside = image.within(frame_.at(map.pieces()[piece].box).grown(tolerance_));
+        if (!inside.empty()) {
+          for (int band = inside.y0 / rows_; band <= inside.y1 / rows_; ++band) {
+            body(static_cast<int>(piece), band);
+          }
+        }
+      }
+    };
+    forEachBand([&](int, int band) { ++begins[band + 2]; });
+    for (std::size_t band = 2; band < begins.size(); ++band) {
+      begins[band] += begins[band - 1];
+    }
+    pieces_.resize(begins.back());
+    forEachBand([&](int piece, int band) { pieces_[begins[band + 1]++] = piece; });
+  }
+
+  std::size_t count() const { return static_cast<std::size_t>((height_ + rows_ - 1) / rows_); }
+  Lattice lattice(std::size_t band) const {
+    const int first = static_cast<int>(band) * rows_;
+    return {0, first, width_ - 1, std::min(first + rows_, height_) - 1};
+  }
+  Span<int> pieces(std::size_t band) const {
+    return Span<int>(pieces_).subspan(begins_[band], begins_[band + 1] - begins_[band]);
+  }
+  const PlaneFrame& frame() const { return frame_; }
+  const Point2& tolerance() const { return tolerance_; }
+
+ private:
+  int width_, height_, rows_;
+  PlaneFrame frame_;
+  Point2 tolerance_;
+  std::vector<std::size_t> begins_;  // of each band, and one more
+  std::vector<int> pieces_;          // band after band
+};
+
+void append(const LatticeFinds& finds, const Lattice& lattice, Texels& out) {
+  for (int y = lattice.y0; y <= lattice.y1; ++y) {
+    for (int x = lattice.x0; x <= lattice.x1; ++x) {
+      const LatticeFinds::Slot& slot = finds.at(x, y);
+      if (slot.face >= 0) {
+        out.x.push_back(x);
+        out.y.push_back(y);
+        out.face.push_back(slot.face);
+        out.uv.push_back({slot.u, slot.v});
+        out.inside.push_back(1);
+        out.overlap.push_back(slot.overlap);
+        out.flipped.push_back(slot.flipped);
+      }
+    }
+  }
+}
+
+template <typename T>
+void moveTo(std::vector<T>& from, std::vector<T>& to, std::size_t begin) {
+  std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(begin));
+  from = {};
+}
+
+Texels concatenate(std::vector<Texels>& parts, int threads) {
+  std::vector<std::size_t> begins;
+  std::size_t size = 0;
+  for (const Texels& part : parts) {
+    begins.push_back(size);
+    size += part.size();
+  }
+  Texels all;
+  all.x.resize(size);
+  all.y.resize(size);
+  all.face.resize(size);
+  all.uv.resize(size);
+  all.inside.resize(size);
+  all.overlap.resize(size);
+  all.flipped.resize(size);
+  parallelFor(parts.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      moveTo(parts[i].x, all.x, begins[i]);
+      moveTo(parts[i].y, all.y, begins[i]);
+      moveTo(parts[i].face, all.face, begins[i]);
+      moveTo(parts[i].uv, all.uv, begins[i]);
+      moveTo(parts[i].inside, all.inside, begins[i]);
+      moveTo(parts[i].overlap, all.overlap, begins[i]);
+      moveTo(parts[i].flipped, all.flipped, begins[i]);
+    }
+  });
+  return all;
+}
+
+}  // namespace
+
+void LatticeFinds::add(const Find& find) {
+  const std::int64_t point = (find.y - lattice_.y0) * width_ + (find.x - lattice_.x0);
+  Slot& slot = slots_[static_cast<std::size_t>(point)];
+  if (find.on_border) {
+    border_finds_.push_back({point, find.wedge_count, {find.wedges[0], find.wedges[1]}});
+  } else {
+    slot.overlap |= slot.within_cell;
+    slot.within_cell = true;
+  }
+  const Location at = on_.at(find.s, find.t);
+  const bool better =
+      slot.face < 0 || at.face < slot.face ||
+      (at.face == slot.face && (at.v < slot.v || (at.v == slot.v && at.u < slot.u)));
+  if (better) {
+    slot.face = at.face;
+    slot.u = at.u;
+    slot.v = at.v;
+    slot.flipped = find.flipped;
+  }
+}
+
+void LatticeFinds::finish() {
+  std::stable_sort(border_finds_.begin(), border_finds_.end(),
+                   [](const BorderFind& a, const BorderFind& b) { return a.point < b.point; });
+  const BorderFind* const end = border_finds_.data() + border_finds_.size();
+  for (const BorderFind* first = border_finds_.data(); first != end;) {
+    const BorderFind* last = first + 1;
+    bool known = first->wedge_count > 0;
+    while (last != end && last->point == first->point) {
+      known |= last->wedge_count > 0;
+      ++last;
+    }
+    Slot& slot = slots_[static_cast<std::size_t>(first->point)];
+    slot.overlap |= (slot.within_cell && known) || doWedgesOverlap(first, last);
+    first = last;
+  }
+  border_finds_.clear();
+}
+
+void checkOptions(const RasterOptions& options) {
+  checkRange("width", options.width, 1, RasterOptions::kMostTexels);
+  checkRange("height", options.height, 1, RasterOptions::kMostTexels);
+  checkRange("tile's column", options.tile_x, -RasterOptions::kMostTile, RasterOptions::kMostTile);
+  checkRange("tile's row", options.tile_y, -RasterOptions::kMostTile, RasterOptions::kMostTile);
+  checkRange("margin", options.margin, 0, RasterOptions::kMostMargin);
+}
+
+Texels rasterize(const UvPatches& map, const RasterOptions& options, int threads,
+                 const Progress& progress) {
+  const Bands bands(map, options);
+  std::vector<Texels> parts(bands.count());
+  for (std::size_t begin = 0; begin < parts.size(); begin += kBandsPerReport) {
+    const std::size_t count = std::min(kBandsPerReport, parts.size() - begin);
+    parallelFor(count, 1, threads, [&](std::size_t first, std::size_t last) {
+      for (std::size_t band = begin + first; band < begin + last; ++band) {
+        const Lattice lattice = bands.lattice(band);
+        LatticeFinds finds(lattice);
+        LatticeInverse inverse(lattice, bands.tolerance(), finds);
+        for (const int piece : bands.pieces(band)) {
+          map.invert(map.pieces()[static_cast<std::size_t>(piece)], bands.frame(), inverse, finds);
+        }
+        finds.finish();
+        append(finds, lattice, parts[band]);
+      }
+    });
+    if (progress) {
+      progress(static_cast<double>(begin + count) / static_cast<double>(parts.size()));
+    }
+  }
+  return concatenate(parts, threads);
+}
+
+}  // namespace limitsurf
