@@ -14,6 +14,7 @@ from ._results import (
     Locations,
     MapDistortion,
     Projection,
+    PtexTexels,
     RayHits,
     Stencils,
     Tessellation,
@@ -134,6 +135,31 @@ def box_sides(matrix: ArrayLike) -> NDArray[np.float64]: ...
 def box_weights(
     normals: ArrayLike, blend: float = 0.0, matrix: ArrayLike | None = None
 ) -> NDArray[np.float64]: ...
+
+class SubdividedFaces:
+    def __init__(self, base: ControlMesh, subdivided: ControlMesh) -> None: ...
+    @property
+    def levels(self) -> int: ...
+    @property
+    def order(self) -> Literal["blender", "opensubdiv"]: ...
+    def locate(self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0) -> Locations: ...
+
+class PtexLayout:
+    def __init__(self, face_count: int, resolution: int) -> None: ...
+    @property
+    def face_count(self) -> int: ...
+    @property
+    def resolution(self) -> int: ...
+    @property
+    def columns(self) -> int: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    def texels(self) -> PtexTexels: ...
+    def map_coordinates(self, face: ArrayLike, uv: ArrayLike) -> NDArray[np.float64]: ...
+
+def bilinear(pixels: ArrayLike, st: ArrayLike, *, threads: int = 0) -> NDArray[np.float64]: ...
 
 class LimitSurface:
     def __init__(self, mesh: ControlMesh) -> None: ...
@@ -279,6 +305,36 @@ class LimitSurface:
         progress: Callable[[float], object] | None = None,
     ) -> Projection: ...
     def eye_is_inside(self, matrix: ArrayLike, *, threads: int = 0) -> bool: ...
+    def vector_displacement(
+        self,
+        target: LimitSurface,
+        face: ArrayLike,
+        uv: ArrayLike,
+        *,
+        frames: ArrayLike | None = None,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> NDArray[np.float64]: ...
+    def scalar_displacement(
+        self,
+        target: LimitSurface,
+        face: ArrayLike,
+        uv: ArrayLike,
+        max_distance: float = ...,
+        *,
+        direction: Literal["both", "outward", "inward"] = "both",
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> NDArray[np.float64]: ...
+    def displaced(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        values: ArrayLike,
+        *,
+        frames: ArrayLike | None = None,
+        threads: int = 0,
+    ) -> NDArray[np.float64]: ...
     def scatter_jittered(self, per_side: int, seed: int = 0, *, threads: int = 0) -> Locations: ...
     def scatter_uniform(
         self,

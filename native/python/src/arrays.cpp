@@ -72,6 +72,13 @@ Doubles doubles(const py::handle& object, const char* name) {
   return py::cast<Doubles>(array.attr("astype")("float64", py::arg("copy") = false));
 }
 
+Floats floats(const py::object& object, const char* name) {
+  const py::array array = viewed(object, name);
+  const bool is_small = array.dtype().kind() == 'f' && array.dtype().itemsize() <= 4;
+  return py::cast<Floats>((is_small ? array : py::array(doubles(array, name)))
+                              .attr("astype")("float32", py::arg("copy") = false));
+}
+
 Points pointsOf(const Doubles& array) {
   return Eigen::Map<const Points>(array.data(), array.shape(0), 3);
 }

@@ -17,6 +17,7 @@ namespace py = pybind11;
 
 using Doubles = py::array_t<double, py::array::c_style>;
 using Integers = py::array_t<std::int64_t, py::array::c_style>;
+using Floats = py::array_t<float, py::array::c_style>;
 
 /// "(4, 2)".
 std::string shapeText(const py::array& array);
@@ -35,6 +36,9 @@ Integers integers(const py::handle& object, const char* name) {
 
 /// Anything numpy can convert to float64; TypeError for what is not real numbers.
 Doubles doubles(const py::handle& object, const char* name);
+
+/// The same rounded to float32, without a detour where that is what it is.
+Floats floats(const py::object& object, const char* name);
 
 /// One dimension, else Error quoting the shape.
 template <typename Error>

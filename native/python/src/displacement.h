@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+
+/// SubdividedFaces.
+void bindSubdividedFaces(py::module_& module);
+
+/// What surfaces have to do with displacement.
+void bindDisplacement(py::class_<SharedSurface>& type);
+
+}  // namespace limitsurf::python

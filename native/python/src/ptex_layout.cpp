@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ptex_layout.h"
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "batches.h"
+#include "control_mesh.h"
+#include "limitsurf/bake/bilinear_image.h"
+#include "limitsurf/bake/ptex_layout.h"
+
+namespace limitsurf::python {
+namespace {
+
+constexpr const char* kPtexLayoutDoc =
+    R"(An image that holds a square tile for each Ptex face, so that no UV map is needed.
+
+A tile has resolution + 1 pixels a side (resolution is a power of two): pixel (i, j) holds the value
+at (u, v) = (i, j) / resolution. Values along a face's sides stand in the tiles of all faces that
+meet there, so bilinear interpolation within a tile is continuous from face to face and needs no
+neighbour. Tiles follow each other in rows of `columns` from the image's lower left corner: the tile
+of face f begins at pixel (f % columns, f // columns) * (resolution + 1).
+
+    layout = limitsurf.PtexLayout(surface.face_count, 64)
+    texels = layout.texels()                              # .x .y .face .uv of every pixel
+    pixels[texels.y, texels.x] = ...                      # (layout.height, layout.width, 3)
+    limitsurf.bilinear(pixels, layout.map_coordinates(face, uv))      # reads it back
+)";
+
+constexpr const char* kTexelsDoc =
+    R"(All pixels of all tiles, face after face: .x .y (upwards), and the location .face .uv that each
+stands for.)";
+
+constexpr const char* kMapCoordinatesDoc =
+    R"((n, 2) float64: where on the image, from (0, 0) at its lower left corner to (1, 1), the values
+of locations are found. As UVs of a mesh they make a renderer read the image, with linear filtering,
+no mipmaps.)";
+
+constexpr const char* kBilinearDoc =
+    R"(Values of an image between its pixels, interpolated bilinearly in double precision.
+
+Parameters
+----------
+pixels : (h, w, c) array of float
+    Rows from the lower left corner upwards, as Blender has them; rounded to float32.
+st : (n, 2) array of float
+    From (0, 0) at the lower left corner to (1, 1); pixel centres are half a pixel inside. Outside of
+    the outermost centres the nearest value on their border counts.
+
+Returns
+-------
+(n, c) float64.
+)";
+
+using PlaceRows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+/// The class as Python sees it.
+class BoundLayout : public ZeroedMemory {
+ public:
+  BoundLayout(int faces, int resolution)
+      : layout_(std::make_unique<const PtexLayout>(faces, resolution)) {}
+
+  const PtexLayout& layout() const {
+    if (!layout_) {
+      throw py::value_error("this PtexLayout was never initialised");
+    }
+    return *layout_;
+  }
+
+ private:
+  std::unique_ptr<const PtexLayout> layout_;
+};
+
+py::object texels(const BoundLayout& bound) {
+  const std::vector<PtexLayout::Pixel> pixels = bound.layout().pixels();
+  const Locations at = bound.layout().locations();
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  py::array_t<int> x(rows), y(rows), face(rows);
+  py::array_t<double> uv({rows, py::ssize_t{2}});
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    x.mutable_data()[i] = pixels[i].x;
+    y.mutable_data()[i] = pixels[i].y;
+    face.mutable_data()[i] = at[i].face;
+    uv.mutable_data()[2 * i] = at[i].u;
+    uv.mutable_data()[2 * i + 1] = at[i].v;
+  }
+  return result("PtexTexels")(x, y, face, uv);
+}
+
+py::array_t<double> mapCoordinates(const BoundLayout& bound, const py::object& face,
+                                   const py::object& uv) {
+  const Locations at = locationsOf(bound.layout().faces(), face, uv);
+  const PlaceRows places = bound.layout().mapCoordinates(at);
+  return py::array_t<double>({places.rows(), Eigen::Index{2}}, places.data());
+}
+
+py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int threads) {
+  checkThreads(threads);
+  const Floats values = floats(pixels, "pixels");
+  if (values.ndim() != 3 || values.size() == 0) {
+    throw std::invalid_argument("pixels has shape " + shapeText(values) +
+                                "; expected (h, w, c), none of them 0");
+  }
+  const Doubles places = doubles(st, "st");
+  requireRows<std::invalid_argument>(places, "st", 2);
+  const BilinearImage image{values.data(), static_cast<int>(values.shape(1)),
+                            static_cast<int>(values.shape(0)), static_cast<int>(values.shape(2))};
+  DataRows sampled;
+  {
+    const py::gil_scoped_release release;
+    const InterruptionPoint point = interruptible();
+    sampled = image.sample(Eigen::Map<const PlaceRows>(places.data(), places.shape(0), 2), threads);
+  }
+  return py::array_t<double>({sampled.rows(), sampled.cols()}, sampled.data());
+}
+
+}  // namespace
+
+void bindPtexLayout(py::module_& module) {
+  using namespace py::literals;
+  py::class_<BoundLayout>(module, "PtexLayout", kPtexLayoutDoc)
+      .def(py::init<int, int>(), "face_count"_a, "resolution"_a)
+      .def_property_readonly(
+          "face_count", [](const BoundLayout& b) { return b.layout().faces(); },
+          "Number of Ptex faces.")
+      .def_property_readonly(
+          "resolution", [](const BoundLayout& b) { return b.layout().resolution(); },
+          "Pixels along the side of a tile, less one.")
+      .def_property_readonly(
+          "columns", [](const BoundLayout& b) { return b.layout().columns(); },
+          "Tiles in a row: the square root of their number, rounded up.")
+      .def_property_readonly(
+          "width", [](const BoundLayout& b) { return b.layout().width(); }, "Of the image.")
+      .def_property_readonly(
+          "height", [](const BoundLayout& b) { return b.layout().height(); }, "Of the image.")
+      .def("texels", &texels, kTexelsDoc)
+      .def("map_coordinates", &mapCoordinates, "face"_a, "uv"_a, kMapCoordinatesDoc)
+      .def("__repr__", [](const BoundLayout& b) {
+        return "PtexLayout(" + std::to_string(b.layout().faces()) + " faces, resolution " +
+               std::to_string(b.layout().resolution()) + ")";
+      });
+  module.def("bilinear", &bilinear, "pixels"_a, "st"_a, py::kw_only(), "threads"_a = 0,
+             kBilinearDoc);
+}
+
+}  // namespace limitsurf::python
