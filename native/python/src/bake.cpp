@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bake.h"
+
+#include <shared_mutex>
+
+#include "arrays.h"
+#include "batches.h"
+#include "limitsurf/bake/map_distortion.h"
+#include "limitsurf/bake/tangent_frames.h"
+#include "surface_data.h"
+
+namespace limitsurf::python {
+namespace {
+
+constexpr const char* kTangentFramesDoc =
+    "(n, 3, 3): the frames of tangent-space normals and displacements for a map (U, V) on the\n"
+    "surface, a SurfaceData of two columns. Their columns are\n"
+    "\n"
+    "- tangent: dP/dU made perpendicular to the normal, unit;\n"
+    "- bitangent: sign * normal x tangent, with sign -1 where the map is mirrored, else 1;\n"
+    "- normal: the limit surface's.\n"
+    "\n"
+    "It is what MikkTSpace's frames converge to as a mesh on the limit is tessellated ever more\n"
+    "finely. Always finite: at an irregular vertex the tangent is that seen from 2^-20 inside the\n"
+    "face; where the map or the surface is singular the frame is that of frames(). A ValueError "
+    "for\n"
+    "a map of another surface or of other than two columns.";
+
+constexpr const char* kMapDistortionDoc =
+    "MapDistortion: how a map (U, V) on the surface, a SurfaceData of two columns, stretches it:\n"
+    ".area (n,), the surface's area per area of the map; .stretch_high and .stretch_low (n,), the\n"
+    "largest and the smallest length on the surface per length on the map (the singular values of\n"
+    "dP/d(U, V)). inf, inf and NaN where the map is singular. At an irregular vertex they are "
+    "those\n"
+    "seen from 2^-20 inside the face.";
+
+py::object tangentFrames(const SharedSurface& shared, const SharedData& uv_map,
+                         const py::object& face, const py::object& uv, int threads,
+                         const py::object& dtype) {
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const Locations at = locationsOn(shared.surface(), face, uv);
+  const SurfaceData& map = uv_map.data();
+  Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
+  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+    const std::shared_lock<std::shared_mutex> lock(uv_map.mutex);
+    const auto frames = limitsurf::tangentFrames(shared.surface(), map, chunk, threads);
+    output.put(9 * begin, frames.data(), 9 * chunk.size());
+  });
+  return output.object();
+}
+
+py::object mapDistortion(const SharedSurface& shared, const SharedData& uv_map,
+                         const py::object& face, const py::object& uv, int threads,
+                         const py::object& dtype) {
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const Locations at = locationsOn(shared.surface(), face, uv);
+  const SurfaceData& map = uv_map.data();
+  Output outputs[3];  // area, stretch_high, stretch_low
+  for (Output& output : outputs) {
+    output = Output(type, {static_cast<py::ssize_t>(at.size())});
+  }
+  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+    const std::shared_lock<std::shared_mutex> lock(uv_map.mutex);
+    const MapDistortion d = limitsurf::mapDistortion(shared.surface(), map, chunk, threads);
+    const Eigen::VectorXd* values[3] = {&d.area, &d.stretch_high, &d.stretch_low};
+    for (int i = 0; i < 3; ++i) {
+      outputs[i].put(begin, values[i]->data(), chunk.size());
+    }
+  });
+  return result("MapDistortion")(outputs[0].object(), outputs[1].object(), outputs[2].object());
+}
+
+}  // namespace
+
+void bindBake(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  const py::object float64 = py::dtype("float64");
+  type.def("tangent_frames", &tangentFrames, "uv_map"_a, "face"_a, "uv"_a, py::kw_only(),
+           "threads"_a = 0, "dtype"_a = float64, kTangentFramesDoc)
+      .def("map_distortion", &mapDistortion, "uv_map"_a, "face"_a, "uv"_a, py::kw_only(),
+           "threads"_a = 0, "dtype"_a = float64, kMapDistortionDoc);
+}
+
+}  // namespace limitsurf::python
