@@ -19,8 +19,6 @@
 namespace limitsurf::python {
 namespace {
 
-using Floats = py::array_t<float, py::array::c_style>;
-
 /// Rows looked up at a time: a progress bar moves, and Ctrl-C is heard.
 constexpr Eigen::Index kRowsPerPart = Eigen::Index{1} << 18;
 
@@ -30,14 +28,6 @@ const Choices<Extension> kExtensions = {{"clip", Extension::clip},
                                         {"mirror", Extension::mirror}};
 const Choices<BlendMode> kBlendModes = {
     {"mix", BlendMode::mix}, {"add", BlendMode::add}, {"multiply", BlendMode::multiply}};
-
-/// Anything numpy can convert to float32; TypeError for what is not real numbers.
-Floats floats(const py::object& object, const char* name) {
-  const py::array array = py::module_::import("numpy").attr("asarray")(object);
-  return py::cast<Floats>(array.dtype().kind() == 'f' && array.dtype().itemsize() <= 4
-                              ? array.attr("astype")("float32", py::arg("copy") = false)
-                              : doubles(object, name).attr("astype")("float32"));
-}
 
 [[noreturn]] void refuseShape(const py::array& array, const char* name, const char* expected) {
   throw std::invalid_argument(std::string(name) + " has shape " + shapeText(array) + "; expected " +
