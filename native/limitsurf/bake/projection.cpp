@@ -40,8 +40,11 @@ class WorldAngles {
 
 /// The part of [x - reach, x + reach] that is in [0, 1].
 double partInside(double x, double reach) {
+  if (x >= reach && x <= 1 - reach) {
+    return 1;
+  }
   if (!(reach > 0)) {
-    return x >= 0 && x <= 1 ? 1 : 0;
+    return 0;
   }
   return std::max(0., std::min(x + reach, 1.) - std::max(x - reach, 0.)) / (2 * reach);
 }
