@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What operators that make textures share: UV maps and texels."""
+
+import bpy
+import numpy as np
+import pytest
+from limit_surface import baking, native
+from limit_surface.errors import RefusalError, TooLargeError
+
+
+def grid(uv_scale=(1.0, 1.0), uv_offset=(0.0, 0.0), name="UVMap") -> bpy.types.Object:
+    """Two by two unit quads, and a map of all of them."""
+    xy = np.stack(np.meshgrid([0, 1, 2], [0, 1, 2]), axis=-1).reshape(-1, 2)
+    faces = [(i, i + 1, i + 4, i + 3) for i in (0, 1, 3, 4)]
+    mesh = bpy.data.meshes.new("grid")
+    mesh.from_pydata([(*p, 0) for p in xy.tolist()], [], faces)
+    layer = mesh.uv_layers.new(name=name)
+    uv = xy[np.array(faces).ravel()] / 2 * uv_scale + uv_offset
+    layer.uv.foreach_set("vector", uv.astype(np.float32).ravel())
+    ob = bpy.data.objects.new("grid", mesh)
+    bpy.context.collection.objects.link(ob)
+    ob.modifiers.new("Subdivision", "SUBSURF")
+    bpy.context.view_layer.objects.active = ob
+    return ob
+
+
+def read(ob, name=""):
+    return baking.read_cage(ob, bpy.context.evaluated_depsgraph_get(), name)
+
+
+def mapped(ob):
+    found = read(ob)
+    return baking.uv_data(native.limitsurf.LimitSurface(found.mesh), found, ob.name)
+
+
+def test_the_named_map_or_the_active_one():
+    ob = grid()
+    other = ob.data.uv_layers.new(name="Other", do_init=True)
+    values = np.empty(32, np.float32)
+    other.uv.foreach_get("vector", values)
+    other.uv.foreach_set("vector", values / 4)
+    assert read(ob).uv_map.name == "UVMap"
+    assert read(ob, "Other").uv_map.name == "Other"
+    assert read(ob, "Other").uv_map.values.max() == pytest.approx(0.25)
+
+
+def test_maps_that_are_refused():
+    ob = grid()
+    with pytest.raises(RefusalError, match="grid has no UV map 'Nothing'"):
+        read(ob, "Nothing")
+    with pytest.raises(RefusalError, match="no face has an area on the UV map UVMap"):
+        read(grid(uv_scale=(1, 0)))
+    bare = grid()
+    bare.data.uv_layers.remove(bare.data.uv_layers[0])
+    with pytest.raises(RefusalError, match="there is no UV map"):
+        read(bare)
+    wild = grid()
+    wild.data.uv_layers[0].uv[3].vector = (np.nan, 0)
+    with pytest.raises(RefusalError, match="not finite"):
+        read(wild)
+    with pytest.raises(RefusalError, match="not finite"):
+        read(wild, "UVMap")
+
+
+def test_faces_without_area_are_counted():
+    ob = grid()
+    assert baking.faces_without_area(read(ob)) == 0
+    for corner in range(4):
+        ob.data.uv_layers[0].uv[corner].vector = (0.5, 0.25 * corner)
+    assert baking.faces_without_area(read(ob)) == 1
+
+
+def test_texels_lie_where_the_map_says():
+    at = baking.texels(mapped(grid()), (16, 8))
+    assert at.inside.all()
+    found = mapped(grid()).evaluate(at.face, at.uv).value
+    np.testing.assert_allclose(found, np.stack([(at.x + 0.5) / 16, (at.y + 0.5) / 8], axis=1))
+
+
+def test_other_tiles():
+    shifted = mapped(grid(uv_offset=(1, 2)))
+    assert len(baking.texels(shifted, (8, 8)).x) == 0
+    assert len(baking.texels(shifted, (8, 8), 1022).x) > 20
+    assert baking.tile_corner(1022) == (1, 2)
+    assert baking.tiles_of(read(grid(uv_offset=(1, 2)))) == [1022]
+    assert baking.tiles_of(read(grid(uv_offset=(0.5, 0)))) == [1001, 1002]
+    assert baking.tiles_of(read(grid(uv_scale=(2, 2)))) == [1001, 1002, 1011, 1012]
+
+
+def test_maps_that_overlap():
+    ob = grid()
+    layer = ob.data.uv_layers[0]
+    for corner in range(4):
+        layer.uv[4 + corner].vector = layer.uv[corner].vector
+    with pytest.raises(RefusalError, match=r"overlaps itself at \d+ of \d+ texels"):
+        baking.texels(mapped(ob), (32, 32))
+    at = baking.texels(mapped(ob), (32, 32), allow_overlap=True)
+    assert at.overlap.any()
+    assert not at.overlap.all()
+
+
+def test_large_images_have_to_be_allowed():
+    baking.check_size(4096, 4096, 1, 6, allow_large=False)
+    with pytest.raises(TooLargeError, match=r"8,192 x 8,192 pixels take about \d+\.\d GiB"):
+        baking.check_size(8192, 8192, 1, 4, allow_large=False)
+    baking.check_size(8192, 8192, 1, 4, allow_large=True)
