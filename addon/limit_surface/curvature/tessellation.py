@@ -38,8 +38,9 @@ class Tessellation:
     def measure(self, progress: Progress) -> list[Values]:
         found, settings = self._found, self._settings
         local = CurvedSurface(found, False, settings.radius)
-        self._mesh = local.surface.tessellate(settings.levels)
-        progress(_TESSELLATED)
+        self._mesh = local.surface.tessellate(
+            settings.levels, progress=part_of(progress, 0, _TESSELLATED)
+        )
         on = CurvedSurface(found, True, settings.radius) if settings.in_world else local
         at = self._mesh.locations
         values = on.values(at.face, at.uv, found.matrix, part_of(progress, _TESSELLATED, 1))
