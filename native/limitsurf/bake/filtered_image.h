@@ -11,9 +11,10 @@ namespace limitsurf {
 enum class Extension { clip, extend, repeat, mirror };
 
 /// Bound on the error of FilteredImage::sample() against the exact integral of the image (linear
-/// between pixels' centres) under a Gaussian with the footprint for twice its standard deviations,
-/// for pixels from 0 to 1 and footprints that are at least 1.5 pixels long and at most
-/// kMostEccentric times as long as wide.
+/// between pixels' centres) under a Gaussian that has half a texel for standard deviation, for
+/// pixels from 0 to 1 and footprints that are at least 1.5 pixels long and at most kMostEccentric
+/// times as long as wide. Not near borders that Extension::extend continues: what it repeats is the
+/// border of a halving.
 constexpr double kFilterError = 0.06;
 
 /// Narrower footprints are widened to this ratio of length to width.

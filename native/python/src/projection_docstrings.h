@@ -45,8 +45,9 @@ half a texel for standard deviation, on the halving of the image that suits the 
 the long one may be 32 times as long, beyond it the short one is widened. Between a pixel and one and
 a half the two are mixed.
 
-Values are within 0.02 of the exact integral of the image under that Gaussian, for pixels from 0 to 1
-and footprints up to 32 times as long as wide. Some 0.1 to 0.5 microseconds a row.
+Values are within 0.06 of the exact integral of the image under a Gaussian of that size, for pixels
+from 0 to 1 and footprints up to 32 times as long as wide (not near borders that 'extend' continues:
+what it repeats is the border of a halving). Some 0.05 to 0.5 microseconds a row and core.
 )";
 
 constexpr const char* kProjectDoc =
@@ -136,7 +137,7 @@ source or its map is singular the footprint is 0. Vectors longer than four image
 four.
 
 Raises ValueError as project(), and for a max_distance below 0 and a transform that is not finite or
-singular. Must not be called while another thread sets positions of either surface.
+singular.
 )";
 
 constexpr const char* kEyeIsInsideDoc =
