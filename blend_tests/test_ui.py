@@ -61,7 +61,14 @@ def test_preferences_show_the_version():
 def test_menu_offers_the_operators():
     layout = drawn(bpy.types.VIEW3D_MT_object_limit_surface)
     offered = [call.args[0] for call in layout.operator.call_args_list]
-    assert offered == [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.SNAP_MODAL, ids.REPORT_OPERATOR]
+    first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.SNAP_MODAL, ids.REPORT_OPERATOR]
+    textures = drawn(bpy.types.VIEW3D_PT_limit_textures).column()
+    assert textures.enabled is True
+    then = [call.args[0] for call in textures.operator.call_args_list]
+    assert ids.PROJECT_IMAGE in then
+    assert offered == first + then
+    for operator in offered:
+        assert properties_of(operator)
 
 
 def choices(name):

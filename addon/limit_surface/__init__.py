@@ -12,13 +12,25 @@ from . import (
     pixel_undo,
     points,
     preferences,
+    project_image,
     report,
     snap,
     snap_modal,
     ui,
 )
 
-_parts = (preferences, hair, points, snap, snap_modal, ui, distribution, report, curvature)
+_parts = (
+    preferences,
+    hair,
+    points,
+    snap,
+    snap_modal,
+    ui,
+    distribution,
+    report,
+    curvature,
+    project_image,
+)
 
 # Blender as a module hangs at the interpreter's exit if classes are registered then.
 _is_module = not bpy.app.binary_path

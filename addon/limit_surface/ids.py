@@ -16,6 +16,7 @@ REPORT_PANEL = "VIEW3D_PT_limit_report"
 HAIR_PANEL = "VIEW3D_PT_limit_hair"
 POINTS_PANEL = "VIEW3D_PT_limit_points"
 SNAP_PANEL = "VIEW3D_PT_limit_snap"
+TEXTURES_PANEL = "VIEW3D_PT_limit_textures"
 OBJECT_MENU = "VIEW3D_MT_object_limit_surface"
 
 # Attributes of generated curves and points

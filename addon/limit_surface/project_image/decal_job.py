@@ -80,7 +80,7 @@ def order(
     size = tuple(image.size)
     # Cells are as square as whole numbers of them can be.
     columns, rows = np.rint(properties.decal_resolution * fitted(size)).clip(1).astype(int).tolist()
-    RequestSize("polygons", columns * rows, 1).check(allow_large=False)
+    RequestSize("polygons", columns * rows, 1).check(properties.allow_large)
     return Order(
         surface=surface,
         world=world,

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import cage, ids, objects, polling
+from .. import baking, cage, ids, objects, polling
 from ..errors import RefusalError
 from ..job import Job
 from ..watched import WatchedOperator
@@ -45,7 +45,11 @@ class OBJECT_OT_limit_project_image(
         ob = context.active_object
         if self.mode == "DECAL" and self.source not in properties.THROWN:
             raise RefusalError("Decals are made from a camera, a view or an empty's plane only")
-        found = cage.read(ob, context.evaluated_depsgraph_get())
+        depsgraph = context.evaluated_depsgraph_get()
+        if self.mode == "DECAL":
+            found = cage.read(ob, depsgraph)
+        else:
+            found = baking.read_cage(ob, depsgraph, self.uv_map)
         world = WorldSurface(found, ob.name)
         order = MODES[self.mode].order(self.properties, context, world, objects.key(ob))
         return self.watch(context, Job(order.work), f"Projecting {self.image}")

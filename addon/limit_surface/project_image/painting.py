@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import native
+from .. import baking, native
 from ..job import Progress
 from .colours import Encoding
 from .sources import Places, Source
 
 if TYPE_CHECKING:
     import limitsurf
-
-PART = 1 << 16  # texels at once: a progress bar moves, memory stays small
 
 
 @dataclass
@@ -43,15 +41,13 @@ def paint(
     """How many texels have taken something. All others keep their values to the last bit."""
     count = 0
     whole = Places(uv_map, texels.face, texels.uv, canvas.texel)
-    for begin in range(0, len(texels.face), PART):
-        rows = slice(begin, begin + PART)
+    for rows in baking.parts(len(texels.face), progress):
         above, weight = source.look(whole.take(rows))
-        weight = opacity * weight
+        weight = (opacity * weight).clip(0, 1)  # rounding may have left more than 1
         taken = weight * above[:, 3] > 0
         at = texels.y[rows][taken], texels.x[rows][taken]
         below = canvas.encoding.decoded(canvas.pixels[at])
         mixed = native.limitsurf.blend_over(below, above[taken], weight[taken])
         canvas.pixels[at] = canvas.encoding.encoded(mixed)
         count += int(taken.sum())
-        progress(min(begin + PART, len(texels.face)) / len(texels.face))
     return count

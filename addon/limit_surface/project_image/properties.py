@@ -50,7 +50,7 @@ class ProjectionProperties:
         name="Result",
         description="What becomes of the projected image",
         items=(
-            ("TEXTURE", "Texture", "It is painted into an image, by the active UV map", "", 0),
+            ("TEXTURE", "Texture", "It is painted into an image, by a UV map", "", 0),
             ("DECAL", "Decal", "A new mesh that lies on the surface, with a UV map", "", 1),
         ),
         default="TEXTURE",
@@ -97,9 +97,13 @@ class ProjectionProperties:
         max=64,
         subtype="PIXEL",
     )
+    uv_map: StringProperty(
+        name="UV Map",
+        description="Name of the UV map to paint by. Without one the active map is taken",
+    )
     overlap: EnumProperty(
-        name="Overlapping UVs",
-        description="If several places of the surface share texels",
+        name="Overlap",
+        description="If several places of the surface share texels on the UV map",
         items=(
             ("ERROR", "Refuse", "Nothing is painted, and a message says so", "", 0),
             ("ALLOW", "Allow", "The place on the face with the lowest number is looked at", "", 1),
@@ -215,6 +219,12 @@ class ProjectionProperties:
         precision=4,
         subtype="DISTANCE",
     )
+    allow_large: BoolProperty(
+        name="Allow Large Images",
+        description="Make images that take gigabytes of memory, and decals of millions of polygons",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
     summary: StringProperty(
         name="Result",
         description="What the operator made",
@@ -249,6 +259,7 @@ def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -
         _draw_texture(layout.column(), properties)
     _draw_coverage(layout.column(), properties)
     layout.prop(properties, "create_material")
+    layout.prop(properties, "allow_large")
 
 
 def _draw_texture(column: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
@@ -259,7 +270,7 @@ def _draw_texture(column: bpy.types.UILayout, properties: bpy.types.OperatorProp
         column.prop(properties, "target")
         for name in ("width", "height", "use_float"):
             column.prop(properties, name)
-    for name in ("margin", "overlap", "opacity", "extension"):
+    for name in ("uv_map", "margin", "overlap", "opacity", "extension"):
         column.prop(properties, name)
 
 

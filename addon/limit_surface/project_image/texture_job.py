@@ -108,7 +108,7 @@ def order(
         source=inputs.source(properties, context, world, shown),
         image=shown.name,
         target=target,
-        canvases=_canvases(target),
+        canvases=_canvases(target, properties.allow_large),
         margin=properties.margin,
         allow_overlap=properties.overlap == "ALLOW",
         opacity=properties.opacity,
@@ -129,8 +129,9 @@ def _target(properties: bpy.types.OperatorProperties) -> str | NewImage:
     return properties.target
 
 
-def _canvases(target: str | NewImage) -> dict[int, Canvas]:
+def _canvases(target: str | NewImage, allow_large: bool) -> dict[int, Canvas]:
     if isinstance(target, NewImage):
+        baking.check_size(target.width, target.height, 1, 1, allow_large)
         blank = np.zeros((target.height, target.width, 4), np.float32)
         return {images.FIRST_TILE: Canvas(blank, colours.of_new(target.is_float))}
     image = bpy.data.images[target]

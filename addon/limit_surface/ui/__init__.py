@@ -3,7 +3,8 @@
 
 from .menus import VIEW3D_MT_object_limit_surface, append_menus, remove_menus
 from .panel import VIEW3D_PT_limit_surface
+from .textures import VIEW3D_PT_limit_textures
 
 __all__ = ["append_menus", "classes", "remove_menus"]
 
-classes = (VIEW3D_PT_limit_surface, VIEW3D_MT_object_limit_surface)
+classes = (VIEW3D_PT_limit_surface, VIEW3D_PT_limit_textures, VIEW3D_MT_object_limit_surface)

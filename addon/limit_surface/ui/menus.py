@@ -4,6 +4,7 @@
 import bpy
 
 from .. import ids
+from .textures import draw_entries
 
 
 class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
@@ -16,6 +17,8 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
         self.layout.operator(ids.SNAP, icon="SNAP_ON")
         self.layout.operator(ids.SNAP_MODAL, icon="VIEW_PAN")
         self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
+        self.layout.separator()
+        draw_entries(self.layout)
 
 
 def _draw_in_add_curve(self: bpy.types.Menu, _context: bpy.types.Context) -> None:

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""In the sidebar tab: textures and meshes that are made from the surface."""
+
+import bpy
+
+from .. import ids, native
+
+#: In the order of the panel and of the menu
+ENTRIES = (
+    (ids.PROJECT_IMAGE, "MOD_UVPROJECT"),
+    (ids.CURVATURE, "SPHERECURVE"),
+)
+
+
+class VIEW3D_PT_limit_textures(bpy.types.Panel):
+    bl_idname = ids.TEXTURES_PANEL
+    bl_label = "Textures and Meshes"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = ids.TAB
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        column = self.layout.column()
+        column.enabled = native.available()
+        draw_entries(column)
+
+
+def draw_entries(layout: bpy.types.UILayout) -> None:
+    for operator, icon in ENTRIES:
+        layout.operator(operator, icon=icon)
