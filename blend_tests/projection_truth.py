@@ -102,7 +102,7 @@ def pixels(image: bpy.types.Image) -> np.ndarray:
     """(height, width, 4), as Blender's buffer has them."""
     values = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(values)
-    return values.reshape(image.size[1], image.size[0], -1)
+    return values.reshape(image.size[1], image.size[0], image.channels or 4)
 
 
 def sampled(values: np.ndarray, uv: np.ndarray) -> np.ndarray:
