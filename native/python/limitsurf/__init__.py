@@ -22,6 +22,8 @@ from ._limitsurf import (
     blend_over,
     box_sides,
     box_weights,
+    into_shading_frames,
+    out_of_shading_frames,
 )
 from ._results import (
     BlueNoise,
@@ -66,6 +68,8 @@ __all__ = [
     "blend_over",
     "box_sides",
     "box_weights",
+    "into_shading_frames",
+    "out_of_shading_frames",
 ]
 
 for _public in (ControlMesh, FilteredImage, LimitSurface, LocationError, MeshError, SurfaceData):

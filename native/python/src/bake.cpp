@@ -6,6 +6,7 @@
 #include "arrays.h"
 #include "batches.h"
 #include "limitsurf/bake/map_distortion.h"
+#include "limitsurf/bake/shading_frames.h"
 #include "limitsurf/bake/tangent_frames.h"
 #include "surface_data.h"
 
@@ -72,7 +73,53 @@ py::object mapDistortion(const SharedSurface& shared, const SharedData& uv_map,
   return result("MapDistortion")(outputs[0].object(), outputs[1].object(), outputs[2].object());
 }
 
+constexpr const char* kIntoShadingFramesDoc =
+    "(n, 3) unit vectors: directions (n, 3) as a tangent-space normal map has to tell them to\n"
+    "renderers whose frames, interpolated from the corners of polygons, are normals (n, 3),\n"
+    "tangents (n, 3) of any length and the bitangents' signs (n,). (0, 0, 1) where such a frame "
+    "has\n"
+    "no volume.";
+constexpr const char* kOutOfShadingFramesDoc =
+    "(n, 3) unit vectors: what renderers read out of a tangent-space normal map's vectors (n, 3);\n"
+    "the reverse of into_shading_frames().";
+
+Points vectors(const py::object& object, const char* name) {
+  const Doubles array = doubles(object, name);
+  if (array.ndim() != 2 || array.shape(1) != 3) {
+    throw py::value_error(std::string(name) + " has shape " + shapeText(array) +
+                          "; expected (n, 3)");
+  }
+  return pointsOf(array);
+}
+
+/// `convert`: intoShadingFrames() or outOfShadingFrames().
+template <Points (*convert)(const Points&, const ShadingFrames&)>
+py::object throughShadingFrames(const py::object& directions, const py::object& normals,
+                                const py::object& tangents, const py::object& signs) {
+  const Points from = vectors(directions, "vectors");
+  const Doubles sign = doubles(signs, "signs");
+  if (sign.ndim() != 1) {
+    throw py::value_error("signs has shape " + shapeText(sign) + "; expected (n,)");
+  }
+  const ShadingFrames frames{vectors(normals, "normals"), vectors(tangents, "tangents"),
+                             Eigen::Map<const Eigen::VectorXd>(sign.data(), sign.shape(0))};
+  Points out;
+  {
+    const py::gil_scoped_release release;
+    out = convert(from, frames);
+  }
+  return py::array_t<double>({out.rows(), Eigen::Index{3}}, out.data());
+}
+
 }  // namespace
+
+void bindShadingFrames(py::module_& module) {
+  using namespace py::literals;
+  module.def("into_shading_frames", &throughShadingFrames<&intoShadingFrames>, "vectors"_a,
+             "normals"_a, "tangents"_a, "signs"_a, kIntoShadingFramesDoc);
+  module.def("out_of_shading_frames", &throughShadingFrames<&outOfShadingFrames>, "vectors"_a,
+             "normals"_a, "tangents"_a, "signs"_a, kOutOfShadingFramesDoc);
+}
 
 void bindBake(py::class_<SharedSurface>& type) {
   using namespace py::literals;

@@ -6,5 +6,6 @@
 namespace limitsurf::python {
 
 void bindBake(py::class_<SharedSurface>& type);
+void bindShadingFrames(py::module_& module);
 
 }  // namespace limitsurf::python

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/pybind11.h>
 
+#include "bake.h"
 #include "control_mesh.h"
 #include "displacement.h"
 #include "images.h"
@@ -21,6 +22,7 @@ PYBIND11_MODULE(_limitsurf, module) {
   limitsurf::python::bindControlMesh(module);
   limitsurf::python::bindSurfaceData(module);
   limitsurf::python::bindImages(module);
+  limitsurf::python::bindShadingFrames(module);
   limitsurf::python::bindSubdividedFaces(module);
   limitsurf::python::bindPtexLayout(module);
   limitsurf::python::bindLimitSurface(module);
