@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/bake/uv_map.h"
 
+#include <mutex>
+
 #include "limitsurf/bake/uv_locate.h"
 #include "limitsurf/bake/uv_raster.h"
 #include "limitsurf/parallel.h"
@@ -10,8 +12,20 @@ namespace limitsurf {
 struct UvMap::Data {
   Data(const SurfaceData& map, int threads) : patches(map, threads), search(patches) {}
 
+  const UvBorders& borders(int threads) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!borders_) {
+      borders_ = std::make_unique<UvBorders>(patches, threads);
+    }
+    return *borders_;
+  }
+
   UvPatches patches;
   UvSearch search;
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<UvBorders> borders_;  // made when a margin asks for them
 };
 
 UvMap::UvMap(const SurfaceData& map, int threads)
@@ -23,7 +37,8 @@ UvMap& UvMap::operator=(UvMap&&) noexcept = default;
 Texels UvMap::rasterize(const RasterOptions& options, int threads, const Progress& progress) const {
   checkThreads(threads);
   checkOptions(options);
-  return limitsurf::rasterize(data_->patches, options, threads, progress);
+  const auto borders = [&]() -> const UvBorders& { return data_->borders(threads); };
+  return limitsurf::rasterize(data_->patches, borders, options, threads, progress);
 }
 
 MapLocations UvMap::locate(const PlanePoints& points, int threads) const {

@@ -17,6 +17,10 @@ namespace limitsurf {
 /// box around the map's values and (0, 0).
 constexpr double kMapError = 1e-12;
 
+/// Bound on how much farther than the nearest point of the map's image the place of a texel in the
+/// margin may lie, in texels; along curves within a face on which the map folds back, one texel.
+constexpr double kMarginError = 1. / 64;
+
 /// One point of the plane per row.
 using PlanePoints = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
@@ -75,7 +79,8 @@ class UvMap {
   /// tile + ((x + 1/2) / width, (y + 1/2) / height) on the map.
   ///
   /// With a margin, texels outside whose centre lies no farther than that from the map's image, in
-  /// texels, get a location on its border.
+  /// texels, get the location on its border that is nearest to kMarginError. They are neither
+  /// inside nor overlap.
   ///
   /// Throws std::invalid_argument for options out of range. Memory: 35 bytes a texel of the result,
   /// twice for a moment, and 8 MiB a thread.

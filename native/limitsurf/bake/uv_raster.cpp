@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
+#include "limitsurf/bake/uv_margin.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -40,9 +42,8 @@ class Bands {
     std::vector<std::size_t>& begins = begins_;
     begins.assign(count() + 2, 0);
     const auto forEachBand = [&](const auto& body) {
-      const Lattice image{0, 0, width_ - 1, height_ - 1};
       for (std::size_t piece = 0; piece < map.pieces().size(); ++piece) {
-        const Lattice inside = image.within(frame_.at(map.pieces()[piece].box).grown(tolerance_));
+        const Lattice inside = image().within(frame_.at(map.pieces()[piece].box).grown(tolerance_));
         if (!inside.empty()) {
           for (int band = inside.y0 / rows_; band <= inside.y1 / rows_; ++band) {
             body(static_cast<int>(piece), band);
@@ -58,6 +59,8 @@ class Bands {
     forEachBand([&](int piece, int band) { pieces_[begins[band + 1]++] = piece; });
   }
 
+  int rows() const { return rows_; }
+  Lattice image() const { return {0, 0, width_ - 1, height_ - 1}; }
   std::size_t count() const { return static_cast<std::size_t>((height_ + rows_ - 1) / rows_); }
   Lattice lattice(std::size_t band) const {
     const int first = static_cast<int>(band) * rows_;
@@ -77,18 +80,55 @@ class Bands {
   std::vector<int> pieces_;          // band after band
 };
 
-void append(const LatticeFinds& finds, const Lattice& lattice, Texels& out) {
+class TexelWriter {
+ public:
+  explicit TexelWriter(Texels& out) : out_(out) {}
+
+  void add(int x, int y, const LatticeFinds::Slot& slot) {
+    add(x, y, {slot.face, slot.u, slot.v}, true, slot.overlap, slot.flipped);
+  }
+  void add(int x, int y, const NearestChords::Foot& foot) {
+    add(x, y, foot.at, false, false, foot.flipped);
+  }
+
+ private:
+  void add(int x, int y, const Location& at, bool inside, bool overlap, bool flipped) {
+    out_.x.push_back(x);
+    out_.y.push_back(y);
+    out_.face.push_back(at.face);
+    out_.uv.push_back({at.u, at.v});
+    out_.inside.push_back(inside);
+    out_.overlap.push_back(overlap);
+    out_.flipped.push_back(flipped);
+  }
+
+  Texels& out_;
+};
+
+void append(const LatticeFinds& finds, const Lattice& lattice, TexelWriter out) {
   for (int y = lattice.y0; y <= lattice.y1; ++y) {
     for (int x = lattice.x0; x <= lattice.x1; ++x) {
-      const LatticeFinds::Slot& slot = finds.at(x, y);
-      if (slot.face >= 0) {
-        out.x.push_back(x);
-        out.y.push_back(y);
-        out.face.push_back(slot.face);
-        out.uv.push_back({slot.u, slot.v});
-        out.inside.push_back(1);
-        out.overlap.push_back(slot.overlap);
-        out.flipped.push_back(slot.flipped);
+      if (finds.at(x, y).face >= 0) {
+        out.add(x, y, finds.at(x, y));
+      }
+    }
+  }
+}
+
+/// The same with the margin around the finds.
+void append(const LatticeFinds& finds, const Lattice& lattice, const BorderChords& chords,
+            std::size_t band, TexelWriter out) {
+  NearestChords nearest(chords, lattice);
+  for (const BorderChords::Chord& chord : chords.inBand(band)) {
+    nearest.add(chord, [&](int x, int y) { return finds.at(x, y).face < 0; });
+  }
+  for (int y = lattice.y0; y <= lattice.y1; ++y) {
+    for (int x = lattice.x0; x <= lattice.x1; ++x) {
+      NearestChords::Foot foot;
+      if (finds.at(x, y).face >= 0) {
+        out.add(x, y, finds.at(x, y));
+      } else if (nearest.foot(x, y, foot)) {
+        out.add(x, y, foot);
       }
     }
   }
@@ -178,9 +218,13 @@ void checkOptions(const RasterOptions& options) {
   checkRange("margin", options.margin, 0, RasterOptions::kMostMargin);
 }
 
-Texels rasterize(const UvPatches& map, const RasterOptions& options, int threads,
-                 const Progress& progress) {
+Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& borders,
+                 const RasterOptions& options, int threads, const Progress& progress) {
   const Bands bands(map, options);
+  std::optional<BorderChords> chords;
+  if (options.margin > 0) {
+    chords.emplace(borders(), bands.frame(), bands.image(), bands.rows(), options.margin);
+  }
   std::vector<Texels> parts(bands.count());
   for (std::size_t begin = 0; begin < parts.size(); begin += kBandsPerReport) {
     const std::size_t count = std::min(kBandsPerReport, parts.size() - begin);
@@ -193,7 +237,11 @@ Texels rasterize(const UvPatches& map, const RasterOptions& options, int threads
           map.invert(map.pieces()[static_cast<std::size_t>(piece)], bands.frame(), inverse, finds);
         }
         finds.finish();
-        append(finds, lattice, parts[band]);
+        if (chords) {
+          append(finds, lattice, *chords, band, TexelWriter(parts[band]));
+        } else {
+          append(finds, lattice, TexelWriter(parts[band]));
+        }
       }
     });
     if (progress) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "limitsurf/bake/uv_border.h"
 #include "limitsurf/bake/uv_map.h"
 #include "limitsurf/bake/uv_overlap.h"
 #include "limitsurf/bake/uv_patches.h"
@@ -45,7 +47,8 @@ class LatticeFinds : public UvPatches::Sink {
 /// Throws std::invalid_argument.
 void checkOptions(const RasterOptions& options);
 
-Texels rasterize(const UvPatches& map, const RasterOptions& options, int threads,
-                 const Progress& progress);
+/// `borders` are asked for a margin only.
+Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& borders,
+                 const RasterOptions& options, int threads, const Progress& progress);
 
 }  // namespace limitsurf
