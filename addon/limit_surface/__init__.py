@@ -6,6 +6,7 @@ import atexit
 import bpy
 
 from . import (
+    bake_displacement,
     curvature,
     distribution,
     hair,
@@ -29,6 +30,7 @@ _parts = (
     distribution,
     report,
     curvature,
+    bake_displacement,
     project_image,
 )
 

@@ -10,6 +10,7 @@ SNAP_MODAL = "view3d.limit_snap_modal"
 REPORT_OPERATOR = "object.limit_report"
 PROJECT_IMAGE = "object.limit_project_image"
 CURVATURE = "object.limit_curvature"
+BAKE_DISPLACEMENT = "object.limit_bake_displacement"
 
 PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
@@ -65,5 +66,6 @@ CAGE_SCENE = ".limit_cage"
 WEIGHTS_GROUP = ".limit_weights"
 VERTEX_WEIGHT = ".limit_weight"  # attribute of the private scene's meshes
 
+DISPLACEMENT = "limit_displacement"  # custom property of images that hold displacement
 PIXELS_MARK = "limit_surface_pixels"  # custom property of images that operators have changed
 TEMPORARY_IMAGE = ".limit_image"

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which place of the surface each texel of the image stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import bpy
+import numpy as np
+
+from .. import baking, native
+from ..errors import RefusalError, TooLargeError
+from ..images import FIRST_TILE
+from ..job import Progress
+from .surfaces import Surfaces
+
+if TYPE_CHECKING:
+    import limitsurf
+
+
+class Texels(NamedTuple):
+    x: np.ndarray
+    y: np.ndarray  # upwards
+    face: np.ndarray
+    uv: np.ndarray
+
+
+@dataclass(frozen=True)
+class UvLayout:
+    uv_data: limitsurf.SurfaceData
+    width: int
+    height: int
+    tiles: list[int]
+    margin: int
+    allow_overlap: bool
+
+    def texels(self, tile: int, progress: Progress) -> Texels:
+        found = baking.texels(
+            self.uv_data,
+            (self.width, self.height),
+            tile,
+            margin=self.margin,
+            allow_overlap=self.allow_overlap,
+            progress=progress,
+        )
+        return Texels(found.x, found.y, found.face, found.uv)
+
+    def frames(self, surface: limitsurf.LimitSurface, texels: Texels) -> np.ndarray:
+        return surface.tangent_frames(self.uv_data, texels.face, texels.uv)
+
+
+@dataclass(frozen=True)
+class PtexLayout:
+    layout: limitsurf.PtexLayout
+    tiles = (FIRST_TILE,)
+
+    @property
+    def width(self) -> int:
+        return self.layout.width
+
+    @property
+    def height(self) -> int:
+        return self.layout.height
+
+    def texels(self, _tile: int, _progress: Progress) -> Texels:
+        found = self.layout.texels()
+        return Texels(found.x, found.y, found.face, found.uv)
+
+    def frames(self, surface: limitsurf.LimitSurface, texels: Texels) -> np.ndarray:
+        return surface.frames(texels.face, texels.uv)
+
+    def described(self) -> dict[str, int]:
+        """All that is needed to find a place's texel."""
+        layout = self.layout
+        return {
+            "face_count": layout.face_count,
+            "resolution": layout.resolution,
+            "columns": layout.columns,
+        }
+
+
+def of(
+    properties: bpy.types.OperatorProperties, surfaces: Surfaces, whose: str
+) -> UvLayout | PtexLayout:
+    """RefusalError where the image cannot be had, or is larger than one expects."""
+    if properties.layout_kind == "PTEX":
+        try:
+            layout = native.limitsurf.PtexLayout(
+                surfaces.base.face_count, int(properties.face_resolution)
+            )
+        except ValueError as error:
+            raise TooLargeError(str(error)) from error
+        baking.check_size(layout.width, layout.height, 1, 1, properties.allow_large)
+        return PtexLayout(layout)
+    tiles = baking.tiles_of(surfaces.found) if properties.use_tiles else [FIRST_TILE]
+    if not tiles:
+        raise RefusalError(f"{whose}: the UV map {surfaces.found.uv_map.name} touches no UDIM tile")
+    baking.check_size(properties.width, properties.height, len(tiles), 1, properties.allow_large)
+    return UvLayout(
+        baking.uv_data(surfaces.base, surfaces.found, whose),
+        properties.width,
+        properties.height,
+        tiles,
+        properties.margin,
+        properties.overlap == "ALLOW",
+    )
+
+
+def with_surface(texels: Texels, surface: limitsurf.LimitSurface) -> Texels:
+    """Without those on faces that have no limit surface."""
+    if not surface.refused:
+        return texels
+    keep = ~np.isin(surface.base_face[texels.face], list(surface.refused))
+    return Texels(*(column[keep] for column in texels))
+
+
+def parts(texels: Texels, progress: Progress) -> Iterator[tuple[slice, Texels]]:
+    """A piece after the other."""
+    for rows in baking.parts(len(texels.x), progress):
+        yield rows, Texels(*(column[rows] for column in texels))

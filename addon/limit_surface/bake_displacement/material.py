@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials that displace."""
+
+import bpy
+
+OUTPUT = "OUTPUT_MATERIAL"
+
+
+def show(
+    ob: bpy.types.Object, image: bpy.types.Image, uv_map: str, *, is_vector: bool, space: str
+) -> bpy.types.Material:
+    """By the object's active material, or by a new one where it has none that can be changed."""
+    material = ob.active_material
+    if material is None or not material.is_editable or _output(material) is None:
+        material = bpy.data.materials.new(image.name)
+        material.use_nodes = True
+        _put(ob, material)
+    _link(material, image, uv_map, is_vector, space)
+    material.displacement_method = "DISPLACEMENT"
+    return material
+
+
+def _put(ob: bpy.types.Object, material: bpy.types.Material) -> None:
+    """Into the active slot where that is empty, else into a new one, which all faces take only if
+    there was none before."""
+    if ob.active_material is None and ob.material_slots:
+        ob.active_material = material
+        return
+    ob.data.materials.append(material)
+    ob.active_material_index = len(ob.material_slots) - 1
+
+
+def _output(material: bpy.types.Material) -> bpy.types.Node | None:
+    tree = material.node_tree
+    outputs = [node for node in tree.nodes if node.type == OUTPUT] if tree else []
+    return next((node for node in outputs if node.is_active_output), None)
+
+
+def _link(
+    material: bpy.types.Material, image: bpy.types.Image, uv_map: str, is_vector: bool, space: str
+) -> None:
+    nodes, links, output = material.node_tree.nodes, material.node_tree.links, _output(material)
+    kind = "ShaderNodeVectorDisplacement" if is_vector else "ShaderNodeDisplacement"
+    displacement = nodes.new(kind)
+    displacement.space = space
+    displacement.inputs["Midlevel"].default_value = 0.0
+    displacement.inputs["Scale"].default_value = 1.0
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image = image
+    texture.interpolation = "Linear"
+    texture.extension = "EXTEND"
+    places = nodes.new("ShaderNodeUVMap")
+    places.uv_map = uv_map
+    links.new(places.outputs["UV"], texture.inputs["Vector"])
+    links.new(texture.outputs["Color"], displacement.inputs["Vector" if is_vector else "Height"])
+    links.new(displacement.outputs["Displacement"], output.inputs["Displacement"])
+    x, y = output.location
+    for node, left in ((displacement, 220), (texture, 520), (places, 720)):
+        node.location = (x - left, y - 260)

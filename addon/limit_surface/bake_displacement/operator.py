@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_bake_displacement."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+
+from .. import ids, image_files, images, objects, polling
+from ..errors import RefusalError
+from ..image_files import EXR_32
+from ..images import FIRST_TILE
+from ..job import Job, Progress
+from ..watched import WatchedOperator
+from . import layouts, material, properties, surfaces
+from .layouts import PtexLayout
+from .measuring import Measured, Request, measure
+
+
+@dataclass(frozen=True)
+class Made:
+    surface: tuple[str, str | None]  # the object's key
+    request: Request
+    measured: Measured
+
+
+class OBJECT_OT_limit_bake_displacement(
+    WatchedOperator, properties.DisplacementProperties, bpy.types.Operator
+):
+    """Make an image of the displacement that turns the active mesh's limit surface into that of
+    the other selected mesh"""
+
+    bl_idname = ids.BAKE_DISPLACEMENT
+    bl_label = "Bake Displacement on Limit Surface"
+    bl_options = {"REGISTER", "UNDO"}
+    too_large = "Not enough memory for so many texels"
+    cancelled = "Cancelled: nothing was made"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return polling.mesh_in_object_mode(cls, context, context.active_object)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        self._someone_waits = True
+        return context.window_manager.invoke_props_dialog(self, width=380)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        properties.draw(layout, self.properties)
+        for line in self.summary.splitlines():
+            layout.label(text=line, icon="INFO")
+
+    def start(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
+        ob = context.active_object
+        if self.create_material and self.layout_kind == "PTEX":
+            raise RefusalError("A material finds its texels by a UV map: choose the layout UV Map")
+        if self.filepath:
+            image_files.check_folder(self._path.parent)
+        both = surfaces.read(self.properties, context, ob)
+        request = Request(
+            surfaces=both,
+            layout=layouts.of(self.properties, both, ob.name),
+            is_vector=self.mode == "VECTOR",
+            in_frames=self.space == "TANGENT",
+            max_distance=self.max_distance,
+            direction=self.direction,
+        )
+        key = objects.key(ob)
+
+        def work(progress: Progress) -> Made:
+            return Made(key, request, measure(request, progress))
+
+        return self.watch(context, Job(work), f"Displacing {ob.name}")
+
+    def finish(self, _context: bpy.types.Context, made: Made) -> set[str]:
+        ob, request, measured = objects.find(made.surface), made.request, made.measured
+        image = self._image(self.image_name or f"{ob.name} Displacement", measured)
+        image[ids.DISPLACEMENT] = json.dumps(self._described(request))
+        if self.create_material:
+            map_name = request.surfaces.found.uv_map.name
+            material.show(ob, image, map_name, is_vector=request.is_vector, space=self._space)
+            self._warn_of_tangents(ob, map_name, request)
+        self._tell(ob, image, request, measured)
+        return {"FINISHED"}
+
+    @property
+    def _path(self) -> Path:
+        return Path(bpy.path.abspath(self.filepath))
+
+    @property
+    def _space(self) -> str:
+        return self.space if self.mode == "VECTOR" else "OBJECT"
+
+    def _image(self, name: str, measured: Measured) -> bpy.types.Image:
+        """Removed again where it cannot be saved."""
+        if measured.tiles.keys() == {FIRST_TILE}:
+            pixels = measured.tiles[FIRST_TILE]
+            height, width, _ = pixels.shape
+            image = images.new(name, width, height, is_float=True, is_data=True, alpha=False)
+            images.write(image, pixels)
+        else:
+            image = images.new_tiled(name, measured.tiles, is_float=True, is_data=True)
+        if self.filepath:
+            try:
+                images.save(image, self._path, EXR_32)
+            except RefusalError:
+                bpy.data.images.remove(image)
+                raise
+        return image
+
+    def _described(self, request: Request) -> dict[str, object]:
+        """For whoever reads the image: what its numbers are."""
+        told: dict[str, object] = {"mode": self.mode, "space": self._space}
+        if isinstance(request.layout, PtexLayout):
+            return {**told, "layout": "PTEX", **request.layout.described()}
+        return {**told, "layout": "UV", "uv_map": request.surfaces.found.uv_map.name}
+
+    def _warn_of_tangents(self, ob: bpy.types.Object, map_name: str, request: Request) -> None:
+        """The node for vectors has no choice of map: it takes tangents from the rendered one."""
+        rendered = next((layer.name for layer in ob.data.uv_layers if layer.active_render), "")
+        if request.is_vector and self.space == "TANGENT" and rendered != map_name:
+            self.report(
+                {"WARNING"},
+                f"Renders take tangents from the UV map {rendered}: make {map_name} the one that "
+                "is active for rendering",
+            )
+
+    def _tell(
+        self, ob: bpy.types.Object, image: bpy.types.Image, request: Request, measured: Measured
+    ) -> None:
+        base = request.surfaces.base
+        if base.refused:
+            self.report(
+                {"WARNING"},
+                f"{len(base.refused):,} of {len(request.surfaces.found.face_sizes):,} faces have "
+                "no limit surface and were left out",
+            )
+        if measured.missing:
+            self.report(
+                {"WARNING"},
+                f"{request.surfaces.target_name} is not met at {measured.missing:,} of "
+                f"{measured.count:,} texels: they hold 0",
+            )
+        what = "lengths" if request.is_vector else "distances"
+        lines = [
+            f"{image.name}: {measured.count:,} texels",
+            f"{what} {measured.lowest:.4g} to {measured.highest:.4g}",
+        ]
+        self.summary = "\n".join(lines)
+        notes = request.surfaces.found.notes
+        self.report({"INFO"}, "; ".join([f"{ob.name}: {', '.join(lines)}", *notes]))

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The two surfaces, in the space of the one that is displaced."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import attributes, baking, cage, ids, native
+from ..errors import RefusalError
+
+if TYPE_CHECKING:
+    import limitsurf
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    base: limitsurf.LimitSurface
+    target: limitsurf.LimitSurface
+    found: cage.Cage  # the base's
+    target_name: str
+
+
+def read(
+    properties: bpy.types.OperatorProperties, context: bpy.types.Context, ob: bpy.types.Object
+) -> Surfaces:
+    """RefusalError where there are not two surfaces."""
+    depsgraph = context.evaluated_depsgraph_get()
+    target = _target(properties.target, context, ob)
+    if properties.layout_kind == "UV":
+        found = baking.read_cage(ob, depsgraph, properties.uv_map)
+    else:
+        found = cage.read(ob, depsgraph)
+    base = _surface(found.mesh, ob.name)
+    if properties.target_shape == "LIMIT":
+        found_target = cage.read(target, depsgraph)
+        mesh, matrix = found_target.mesh, found_target.matrix
+    else:
+        mesh, matrix = _polygons(target, depsgraph)
+    sculpted = _surface(mesh, target.name)
+    if properties.transform == "WORLD":
+        sculpted.set_positions(_carried(mesh.positions, matrix, found.matrix, ob.name))
+    return Surfaces(base, sculpted, found, target.name)
+
+
+def _target(name: str, context: bpy.types.Context, ob: bpy.types.Object) -> bpy.types.Object:
+    if name:
+        target = bpy.data.objects.get(name)
+        if target is None:
+            raise RefusalError(f"There is no object {name!r}")
+    else:
+        others = [o for o in context.selected_objects if o != ob and o.type == "MESH"]
+        if len(others) != 1:
+            raise RefusalError(
+                f"{len(others) or 'No'} other mesh{'es are' if len(others) > 1 else ' is'} "
+                f"selected: select the one that {ob.name} is to become"
+            )
+        target = others[0]
+    if target == ob:
+        raise RefusalError(f"{ob.name} is chosen as its own sculpted mesh")
+    if target.type != "MESH":
+        raise RefusalError(f"{target.name} is not a mesh")
+    return target
+
+
+def _polygons(
+    target: bpy.types.Object, depsgraph: bpy.types.Depsgraph
+) -> tuple[limitsurf.ControlMesh, np.ndarray]:
+    """As the viewport shows them: a place between vertices lies on a bilinear patch."""
+    evaluated = target.evaluated_get(depsgraph)
+    mesh = evaluated.data
+    if not mesh.polygons:
+        raise RefusalError(f"{target.name} has no faces")
+    polygons = native.limitsurf.ControlMesh(
+        attributes.read(mesh, ids.POSITION).astype(np.float64),
+        attributes.face_sizes(mesh),
+        attributes.read(mesh, ids.CORNER_VERTEX),
+        scheme="bilinear",
+    )
+    return polygons, np.array(evaluated.matrix_world, np.float64)
+
+
+def _surface(mesh: limitsurf.ControlMesh, name: str) -> limitsurf.LimitSurface:
+    surface = native.limitsurf.LimitSurface(mesh)
+    if len(surface.refused) == len(mesh.face_sizes):
+        raise RefusalError(f"No face of {name} has a limit surface")
+    return surface
+
+
+def _carried(
+    positions: np.ndarray, matrix: np.ndarray, base_matrix: np.ndarray, base_name: str
+) -> np.ndarray:
+    """From one object's space to another's, by way of the world."""
+    try:
+        relative = np.linalg.solve(base_matrix, matrix)
+    except np.linalg.LinAlgError:
+        raise RefusalError(f"{base_name} is flattened to nothing by its scale") from None
+    return positions @ relative[:3, :3].T + relative[:3, 3]
