@@ -12,6 +12,8 @@ cage.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Literal
 
 import bpy
@@ -61,6 +63,16 @@ def read(
 ) -> DisplayedMesh:
     """The mesh at the depsgraph's frame, for a cage that was read there. RefusalError where its
     polygons are not those of the subdivided cage."""
+    with opened(ob, depsgraph, kind) as (mesh, level, whose):
+        return _read_mesh(whose, mesh, found, level)
+
+
+@contextmanager
+def opened(
+    ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: Kind
+) -> Iterator[tuple[bpy.types.Mesh, int, str]]:
+    """Blender's own mesh, which lasts as long as the context, its level, and what to call it in
+    messages."""
     subsurf = _subsurf(ob, kind)
     cut = ob.modifiers.find(subsurf.name) + 1 if subsurf else len(ob.modifiers)
     if kind == "RENDER":
@@ -75,8 +87,7 @@ def read(
         whose = f"{ob.name}: {_called(kind)}"
         modifier = evaluated.modifiers[subsurf.name] if subsurf else None
         _check_settings(whose, evaluated, modifier, kind)
-        level = _level(modifier, depsgraph.scene, kind)
-        return _read_mesh(whose, evaluated.data, found, level)
+        yield evaluated.data, _level(modifier, depsgraph.scene, kind), whose
 
 
 def _subsurf(ob: bpy.types.Object, kind: Kind) -> bpy.types.SubsurfModifier | None:
