@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images of displacement: their numbers, against places found another way."""
+
+import json
+
+import bpy
+import limitsurf
+import numpy as np
+import pytest
+import scenes
+import sculpts
+from limit_surface import attributes, ids, images, subdivided
+from mathutils import Matrix
+
+SINGLE = 1e-6  # what Blender rounds coordinates up to 5 by
+
+
+def flat_map(at):
+    """Inside the first tile, for the meshes of the tests."""
+    return at[:, :2] @ np.array([[0.15, 0.03], [-0.02, 0.17]]).T + [0.14, 0.12]
+
+
+@pytest.fixture
+def base():
+    ob = scenes.grid_with_holes()
+    scenes.add_subsurf(ob)
+    scenes.add_uv_map(ob, flat_map)
+    return ob
+
+
+@pytest.fixture
+def sculpt(base):
+    return sculpts.reshape(sculpts.subdivided_copy(base, 2), sculpts.ripples)
+
+
+def bake(ob, target, **properties):
+    scenes.activate(ob)
+    before = set(bpy.data.images)
+    small = {"width": 96, "height": 80, "target": target.name}
+    assert bpy.ops.object.limit_bake_displacement(**small | properties) == {"FINISHED"}
+    (made,) = set(bpy.data.images) - before
+    return made
+
+
+def surface(ob):
+    return scenes.surface_without_addon(ob)
+
+
+def there(ob, target, levels, face, uv):
+    """The limit of the subdivided mesh, found polygon by polygon as Blender has them."""
+    finder = subdivided.PolygonFinder(attributes.face_sizes(ob.data), levels)
+    polygon, within = finder.find(face, uv)
+    return surface(target).evaluate(polygon, np.clip(within, 0, 1)).position
+
+
+def texels_of(ob, image, margin=4):
+    """Where they lie, those of the margin included."""
+    base = surface(ob)
+    corner_vertex = attributes.read(ob.data, ids.CORNER_VERTEX)
+    values = flat_map(sculpts.positions(ob))
+    uv_map = base.face_varying(values.astype(np.float32), corner_vertex, "boundaries")
+    return base, uv_map, uv_map.rasterize(*image.size, margin=margin)
+
+
+@pytest.mark.parametrize("levels", [1, 2, 3])
+@pytest.mark.parametrize("name", scenes.SCENES)
+def test_what_blender_only_subdivides_is_not_displaced(name, levels):
+    ob = scenes.SCENES[name]()
+    scenes.add_subsurf(ob)
+    target = sculpts.subdivided_copy(ob, levels)
+    image = bake(ob, target, layout_kind="PTEX", face_resolution="8", space="OBJECT")
+    pixels = images.read(image)
+    assert np.abs(pixels[..., :3]).max() < SINGLE
+    assert (pixels[..., 3] == 1).all()
+    moved = sculpts.reshape(target, lambda at: at + [0.25, 0, -1])
+    layout = json.loads(image[ids.DISPLACEMENT])
+    texels = limitsurf.PtexLayout(layout["face_count"], layout["resolution"]).texels()
+    pixels = images.read(bake(ob, moved, layout_kind="PTEX", face_resolution="8", space="OBJECT"))
+    np.testing.assert_allclose(
+        pixels[texels.y, texels.x, :3], np.tile([0.25, 0, -1], (len(texels), 1)), atol=SINGLE
+    )
+
+
+def test_vectors_in_object_space(base, sculpt):
+    image = bake(base, sculpt, space="OBJECT")
+    pixels = images.read(image)
+    own, _, texels = texels_of(base, image)
+    assert len(texels.x) > 3000
+    expected = there(base, sculpt, 2, texels.face, texels.uv)
+    found = own.evaluate(texels.face, texels.uv).position + pixels[texels.y, texels.x, :3]
+    np.testing.assert_allclose(found, expected, atol=3 * SINGLE)
+    rest = np.ones(pixels.shape[:2], bool)
+    rest[texels.y, texels.x] = False
+    assert rest.any()
+    assert (pixels[rest] == [0, 0, 0, 1]).all()
+
+
+def test_vectors_in_tangent_space(base, sculpt):
+    image = bake(base, sculpt)
+    own, uv_map, texels = texels_of(base, image)
+    tangent, bitangent, normal = np.moveaxis(
+        own.tangent_frames(uv_map, texels.face, texels.uv), 2, 0
+    )
+    x, y, z = images.read(image)[texels.y, texels.x, :3].T.astype(float)
+    moved = x[:, None] * tangent + y[:, None] * normal + z[:, None] * bitangent
+    expected = there(base, sculpt, 2, texels.face, texels.uv)
+    found = own.evaluate(texels.face, texels.uv).position + moved
+    np.testing.assert_allclose(found, expected, atol=3 * SINGLE)
+
+
+def test_a_tile_for_each_face_needs_no_map(sculpt, base):
+    base.data.uv_layers.remove(base.data.uv_layers[0])
+    image = bake(base, sculpt, layout_kind="PTEX", face_resolution="4", space="OBJECT")
+    described = json.loads(image[ids.DISPLACEMENT])
+    assert described == {
+        "mode": "VECTOR", "space": "OBJECT", "layout": "PTEX",
+        "face_count": 18, "resolution": 4, "columns": 5,
+    }  # fmt: skip
+    assert tuple(image.size) == (25, 20)
+    pixels = images.read(image)
+    rng = np.random.default_rng(1)
+    own = surface(base)
+    for _ in range(60):  # as the page says where a sample is
+        face, i, j = rng.integers(0, 18), *rng.integers(0, 5, 2)
+        value = pixels[face // 5 * 5 + j, face % 5 * 5 + i, :3]
+        at = np.array([face]), np.array([[i, j]]) / 4
+        expected = there(base, sculpt, 2, *at) - own.evaluate(*at).position
+        np.testing.assert_allclose(value, expected[0], atol=3 * SINGLE)
+
+
+STRETCHED = (
+    Matrix.Translation((3, -2, 1))
+    @ Matrix.Rotation(0.7, 4, (1, 2, 3))
+    @ Matrix.Diagonal((2.0, -0.5, 1.3, 1))
+)
+
+
+def test_where_the_sculpted_mesh_lies(base, sculpt):
+    plain = images.read(bake(base, sculpt, space="OBJECT"))
+    base.matrix_world = STRETCHED
+    bpy.context.view_layer.update()
+    own = images.read(bake(base, sculpt, space="OBJECT", transform="OWN"))
+    np.testing.assert_array_equal(own, plain)
+    sculpt.matrix_world = STRETCHED
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(
+        images.read(bake(base, sculpt, space="OBJECT")), plain, atol=3 * SINGLE
+    )
+    sculpt.matrix_world = STRETCHED @ Matrix.Translation((0, 0, 1))
+    bpy.context.view_layer.update()
+    image = bake(base, sculpt, space="OBJECT")
+    texels = texels_of(base, image)[2]
+    moved = images.read(image) - plain
+    expected = np.tile([0, 0, 1, 0], (len(texels.x), 1))
+    np.testing.assert_allclose(moved[texels.y, texels.x], expected, atol=5 * SINGLE)
+
+
+def test_distances(capfd):
+    """A flat sheet below a slope that does not cover all of it."""
+    ob = scenes.flat_grid(4)
+    scenes.add_subsurf(ob)
+    scenes.add_uv_map(ob, lambda at: at[:, :2] / 5 + 0.1)
+    slope = scenes.add_mesh(
+        "Slope", [(-9, -9, 0.5), (2, -9, 0.5), (2, 9, 0.5), (-9, 9, 0.5)], [(0, 1, 2, 3)]
+    )
+    scenes.add_subsurf(slope).subdivision_type = "SIMPLE"
+    sculpts.reshape(slope, lambda at: at + [0, 0, 0.1] * at[:, :1])
+    image = bake(ob, slope, mode="SCALAR", width=64, height=64, margin=0)
+    said = capfd.readouterr().out
+    pixels = images.read(image)
+    y, x = np.mgrid[:64, :64]
+    across = ((x + 0.5) / 64 - 0.1) * 5
+    inside = (np.abs(x - 31.5) < 14) & (np.abs(y - 31.5) < 14)
+    met = inside & (across < 2)
+    np.testing.assert_allclose(pixels[met][:, 0], 0.5 + 0.1 * across[met], atol=SINGLE)
+    assert (pixels[inside & (across > 2)][:, :3] == 0).all()
+    np.testing.assert_array_equal(pixels[..., 0], pixels[..., 1])
+    assert "Slope is not met at 1,2" in said
+    assert "they hold 0" in said
+    refused(ob, "Slope is met nowhere", target="Slope", mode="SCALAR", max_distance=0.1)
+    refused(ob, "Slope is met nowhere", target="Slope", mode="SCALAR", direction="INWARD")
+
+
+def test_polygons_of_multiresolution(base):
+    """As they are shown; vertices are where they are, whatever limit they would have."""
+    copy = base.copy()
+    copy.data = base.data.copy()
+    bpy.context.collection.objects.link(copy)
+    copy.modifiers.clear()
+    multires = copy.modifiers.new("Multires", "MULTIRES")
+    with bpy.context.temp_override(object=copy, active_object=copy):
+        for _ in range(2):
+            bpy.ops.object.multires_subdivide(modifier=multires.name)
+    multires.levels = 2
+    bpy.context.view_layer.update()
+    image = bake(base, copy, target_shape="POLYGONS", layout_kind="PTEX", face_resolution="4",
+                 space="OBJECT")  # fmt: skip
+    shown = copy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    at = subdivided.corner_locations(attributes.face_sizes(base.data), 2)
+    vertex = attributes.read(shown, ids.CORNER_VERTEX)
+    expected = attributes.read(shown, ids.POSITION)[vertex]
+    expected = expected - surface(base).evaluate(at.face, at.uv).position
+    i, j = np.rint(at.uv * 4).astype(int).T
+    found = images.read(image)[at.face // 5 * 5 + j, at.face % 5 * 5 + i, :3]
+    np.testing.assert_allclose(found, expected, atol=3 * SINGLE)
+
+
+def test_creases_that_blender_leaves_on_a_subdivided_mesh(base):
+    """Infinitely sharp ones stay so, and the surface is the same."""
+    crease = base.data.edge_creases_ensure()
+    values = np.zeros(len(base.data.edges), np.float32)
+    values[::3] = 1
+    crease.data.foreach_set("value", values)
+    target = sculpts.subdivided_copy(base, 2)
+    pixels = images.read(bake(base, target, layout_kind="PTEX", space="OBJECT"))
+    assert np.abs(pixels[..., :3]).max() < SINGLE
+
+
+def test_udim_tiles(sculpt, base):
+    for layer in (base.data.uv_layers[0],):
+        uv = attributes.read(base.data, layer.name)
+        layer.data.foreach_set("uv", (uv + [0.6, 0]).astype(np.float32).ravel())
+    image = bake(base, sculpt, use_tiles=True, space="OBJECT", width=64, height=64)
+    assert image.source == "TILED"
+    assert [tile.number for tile in image.tiles] == [1001, 1002]
+    left, right = (images.read(image, tile) for tile in (1001, 1002))
+    assert np.abs(left[:, :30, :3]).max() == 0 < np.abs(left[..., :3]).max()
+    assert np.abs(right[:, 60:, :3]).max() == 0 < np.abs(right[..., :3]).max()
+    alone = images.read(bake(base, sculpt, space="OBJECT", width=64, height=64))
+    np.testing.assert_allclose(alone, left, atol=1e-7)
+
+
+def test_the_file_holds_the_numbers(sculpt, base, tmp_path):
+    path = tmp_path / "displacement.exr"
+    image = bake(base, sculpt, filepath=str(path))
+    loaded = bpy.data.images.load(str(path), check_existing=False)
+    loaded.colorspace_settings.name = "Non-Color"
+    assert loaded.is_float
+    plain = images.read(bake(base, sculpt))
+    np.testing.assert_array_equal(images.read(loaded)[..., :3], plain[..., :3])
+    np.testing.assert_array_equal(images.read(image)[..., :3], plain[..., :3])
+    assert image.colorspace_settings.name == "Non-Color"
+    assert bpy.path.abspath(image.filepath) == str(path)
+    refused(base, "There is no folder", target="Sculpt", filepath=str(tmp_path / "no" / "a.exr"))
+
+
+def refused(ob, match, **properties):
+    scenes.activate(ob)
+    before = scenes.file_contents()
+    with pytest.raises(RuntimeError, match=match):
+        bpy.ops.object.limit_bake_displacement(**{"width": 32, "height": 32} | properties)
+    assert scenes.file_contents() == before
+    assert bpy.context.active_object == ob
+
+
+def test_refusals(base, sculpt):
+    for other in list(bpy.context.selected_objects):
+        other.select_set(False)
+    refused(base, "No other mesh is selected: select the one that Holes is to become")
+    refused(base, "There is no object 'Nobody'", target="Nobody")
+    refused(base, "Holes is chosen as its own sculpted mesh", target="Holes")
+    light = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    bpy.context.collection.objects.link(light)
+    refused(base, "Sun is not a mesh", target="Sun")
+    refused(base, "Holes has no UV map 'Other'", target="Sculpt", uv_map="Other")
+    refused(base, "the layout UV Map", target="Sculpt", layout_kind="PTEX", create_material=True)
+    refused(base, "GiB of memory: set Allow Large", target="Sculpt", width=16384, height=16384)
+    cross = scenes.cross()
+    refused(base, "structures do not match: the target has 5 faces; the base's 18 become 72",
+            target=cross.name)  # fmt: skip
+    base.data.uv_layers.remove(base.data.uv_layers[0])
+    refused(base, "Holes: there is no UV map", target="Sculpt")
+
+
+def test_the_selected_mesh_is_taken(base, sculpt):
+    for ob in bpy.context.selected_objects:
+        ob.select_set(False)
+    sculpt.select_set(True)
+    base.select_set(True)
+    scenes.activate(base)
+    assert bpy.ops.object.limit_bake_displacement(width=32, height=32) == {"FINISHED"}
+    scenes.cross().select_set(True)
+    refused(base, "2 other meshes are selected")
+
+
+def test_a_face_order_that_nobody_makes(base, sculpt):
+    """Sorted faces, as Blender's own operator leaves them."""
+    scenes.activate(sculpt)
+    for ob in bpy.context.selected_objects:
+        ob.select_set(ob == sculpt)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.sort_elements(type="REVERSE", elements={"FACE"})
+    bpy.ops.object.mode_set(mode="OBJECT")
+    refused(base, "structures do not match: face .* of the target has vertex", target="Sculpt")
+
+
+def test_maps_that_overlap(base, sculpt):
+    layer = base.data.uv_layers[0]
+    uv = attributes.read(base.data, layer.name)
+    layer.data.foreach_set("uv", (0.2 + 0.5 * np.abs(uv - 0.5)).astype(np.float32).ravel())
+    refused(base, "overlaps itself at .* texels", target="Sculpt")
+    assert bake(base, sculpt, overlap="ALLOW")
+    layer.data.foreach_set("uv", np.full(uv.size, 0.5, np.float32))
+    refused(base, "no face has an area on the UV map Flat", target="Sculpt")
+
+
+def test_undo_takes_the_image_away(base, sculpt):
+    bpy.ops.ed.undo_push(message="before")
+    bake(base, sculpt)
+    bpy.ops.ed.undo_push(message="after")
+    bpy.ops.ed.undo()
+    assert "Holes Displacement" not in bpy.data.images
+    bpy.ops.ed.redo()
+    pixels = images.read(bpy.data.images["Holes Displacement"])
+    assert np.abs(pixels[..., :3]).max() > 0.05
