@@ -58,8 +58,9 @@ constexpr double kRayBias = 1e-9;
 /// near plane hides nothing.
 ///
 /// st and footprint are exact but for rounding: first derivatives of projector, surface and map.
-/// Where those have no limit or the map is singular: kStepAside to the face's centre; where it is
-/// singular there too the footprint is 0. Vectors longer than kLongestFootprint are shortened.
+/// Where those have no limit, or surface or map are singular: kStepAside (2^-10) of the way to the
+/// face's centre; where the map is singular there too the footprint is 0. Vectors longer than
+/// kLongestFootprint are shortened.
 ///
 /// The weight is the product of: facing; the part of the texel's parallelogram (its bounding box)
 /// that is inside the image; the soft edge; the part of the rays that reach the eye. Rays begin at

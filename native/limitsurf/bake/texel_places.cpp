@@ -30,7 +30,8 @@ struct Derived {
 
   bool isRegularAt(Eigen::Index row) const {
     const Evaluation& e = on_surface;
-    return isRegular(jacobian(row)) && e.du.row(row).allFinite() && e.dv.row(row).allFinite() &&
+    const Vector3 du = e.du.row(row), dv = e.dv.row(row);
+    return isRegular(jacobian(row)) && du.cross(dv).norm() > kSingular * du.norm() * dv.norm() &&
            (e.duu.rows() == 0 ||
             (normalBy(e.duu, e.duv, row).allFinite() && normalBy(e.duv, e.dvv, row).allFinite()));
   }

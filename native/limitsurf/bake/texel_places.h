@@ -7,8 +7,8 @@
 
 namespace limitsurf {
 
-/// Where derivatives have no limit or the map is singular they are taken so much of the way to the
-/// face's centre.
+/// Where derivatives have no limit or surface or map are singular, they are taken so much of the
+/// way to the face's centre.
 constexpr double kStepAside = 0x1p-10;
 
 /// The location so much of the way to its face's centre.

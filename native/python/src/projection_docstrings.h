@@ -99,9 +99,9 @@ Returns Projection: .st (n, 2), (0, 0) at the image's lower left corner; .footpr
 FilteredImage.sample(), preferably with extension 'extend', since .weight ends at the frame.
 
 st is exact but for rounding, and so is the footprint: from first derivatives of the surface, the map
-and the projection. Where those have no limit (at irregular vertices) or the map is singular, they are
-taken 1/1024 of the way to the face's centre; where the map is singular there too the footprint is
-0. Vectors longer than four images are shortened to four.
+and the projection. Where those have no limit (at irregular vertices), or surface or map are singular,
+they are taken 1/1024 of the way to the face's centre; where the map is singular there too the
+footprint is 0. Vectors longer than four images are shortened to four.
 
 Raises ValueError for a matrix that is not finite or singular, options without meaning, and a map that
 does not have two columns or is another surface's; LocationError and MeshError as evaluate().
