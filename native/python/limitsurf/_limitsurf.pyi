@@ -10,6 +10,7 @@ from ._results import (
     Curvature,
     DataEvaluation,
     Evaluation,
+    FaceLevels,
     Hits,
     Locations,
     MapDistortion,
@@ -367,6 +368,24 @@ class LimitSurface:
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> Tessellation: ...
+    def levels_within(
+        self,
+        tolerance: float,
+        most: int = 8,
+        *,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> FaceLevels: ...
+    def levels_of_length(
+        self,
+        length: float,
+        matrix: ArrayLike | None = None,
+        nearest: float = 0.0,
+        most: int = 8,
+        *,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> FaceLevels: ...
     def area(self, *, threads: int = 0) -> float: ...
     def bounds(self, *, threads: int = 0) -> NDArray[np.float64]: ...
 

@@ -159,6 +159,14 @@ class PtexTexels:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class FaceLevels:
+    """A level for each face of a mesh, and what was measured there."""
+
+    levels: NDArray[np.int32]
+    measure: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Tessellation:
     """Polygons on the limit surface, and where their points and corners lie."""
 

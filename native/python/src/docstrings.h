@@ -327,6 +327,32 @@ progress: called with the part that is done, 0 to 1. ValueError names the first 
 not 0 (n-gons: 1) to 12.
 )";
 
+constexpr const char* kLevelsWithinDoc =
+    R"(Levels for tessellate(), as low as keeps polygons within `tolerance` of the surface.
+
+That is measured, not bounded: between the surface and either way of cutting polygons into triangles,
+at the middles of sides, diagonals and quads and at 8 or more places along each side of a Ptex face,
+along the surface's normal; on borders and infinitely sharp edges the sides' distance as well.
+Neighbours are raised until levels differ by 2 at most across an edge.
+
+Returns FaceLevels: .levels (F,) int32, .measure (F,): the deviation at that level or, where a
+neighbour raised it, at a lower one; above `tolerance` where the level `most` is too low. 0 and NaN
+for refused faces. ValueError unless tolerance > 0 and most is 1 to 12.
+)";
+
+constexpr const char* kLevelsOfLengthDoc =
+    R"(Levels for tessellate(), as low as keeps sides of polygons no longer than `length`.
+
+With matrix (4, 4) that is a length in a picture: matrix @ (x, y, z, 1) are homogeneous coordinates
+there, and what has w < nearest is not seen, so has no length. Lengths are measured between places
+at eighths of each side of a Ptex face. Neighbours are raised until levels differ by 2 at most
+across an edge.
+
+Returns FaceLevels: .levels (F,) int32, .measure (F,): the longest side at that level or, where a
+neighbour raised it, at a lower one; above `length` where the level `most` is too low. 0 and NaN for
+refused faces. ValueError unless length > 0 and most is 1 to 12.
+)";
+
 constexpr const char* kRasterizeDoc =
     R"(Where the texels of an image lie on the surface: the UV map inverted on its limit.
 

@@ -8,6 +8,7 @@
 
 #include "batches.h"
 #include "docstrings.h"
+#include "limitsurf/surface/tessellation_levels.h"
 #include "progress.h"
 #include "shared_surface.h"
 
@@ -85,12 +86,62 @@ py::object tessellate(const SharedSurface& shared, const py::object& levels, boo
                                 arrayOf(t.ptex_face), cornerUvs(t), normals);
 }
 
+py::object faceLevels(const FaceLevels& found) {
+  return result("FaceLevels")(arrayOf(found.levels),
+                              py::array_t<double>(found.measure.size(), found.measure.data()));
+}
+
+py::object levelsWithin(const SharedSurface& shared, double tolerance, int most, int threads,
+                        const py::object& progress) {
+  const LevelOptions options{most, threads, ProgressReport(progress)};
+  FaceLevels found;
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    found = limitsurf::levelsWithin(shared.surface(), tolerance, options);
+  }
+  return faceLevels(found);
+}
+
+PictureView viewOf(const py::object& matrix, double nearest) {
+  const Doubles array = doubles(matrix, "matrix");
+  if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) {
+    throw std::invalid_argument("matrix has shape " + shapeText(array) + "; expected (4, 4)");
+  }
+  PictureView view;
+  view.matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(array.data());
+  view.nearest = nearest;
+  return view;
+}
+
+py::object levelsOfLength(const SharedSurface& shared, double length, const py::object& matrix,
+                          double nearest, int most, int threads, const py::object& progress) {
+  const LevelOptions options{most, threads, ProgressReport(progress)};
+  const bool in_picture = !matrix.is_none();
+  const PictureView view = in_picture ? viewOf(matrix, nearest) : PictureView();
+  FaceLevels found;
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    found =
+        limitsurf::levelsOfLength(shared.surface(), length, in_picture ? &view : nullptr, options);
+  }
+  return faceLevels(found);
+}
+
 }  // namespace
 
 void bindTessellate(py::class_<SharedSurface>& type) {
   using namespace py::literals;
   type.def("tessellate", &tessellate, "levels"_a, py::kw_only(), "corner_normals"_a = false,
-           "threads"_a = 0, "progress"_a = py::none(), kTessellateDoc);
+           "threads"_a = 0, "progress"_a = py::none(), kTessellateDoc)
+      .def("levels_within", &levelsWithin, "tolerance"_a, "most"_a = LevelOptions().most,
+           py::kw_only(), "threads"_a = 0, "progress"_a = py::none(), kLevelsWithinDoc)
+      .def("levels_of_length", &levelsOfLength, "length"_a, "matrix"_a = py::none(),
+           "nearest"_a = 0.0, "most"_a = LevelOptions().most, py::kw_only(), "threads"_a = 0,
+           "progress"_a = py::none(), kLevelsOfLengthDoc);
 }
 
 }  // namespace limitsurf::python
