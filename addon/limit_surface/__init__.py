@@ -7,6 +7,7 @@ import bpy
 
 from . import (
     bake_displacement,
+    bake_maps,
     curvature,
     distribution,
     hair,
@@ -30,6 +31,7 @@ _parts = (
     distribution,
     report,
     curvature,
+    bake_maps,
     bake_displacement,
     project_image,
 )

@@ -86,9 +86,14 @@ def read(image: bpy.types.Image, tile: int = FIRST_TILE) -> np.ndarray:
 
 
 def write(
-    image: bpy.types.Image, pixels: np.ndarray | Mapping[int, np.ndarray], tile: int = FIRST_TILE
+    image: bpy.types.Image,
+    pixels: np.ndarray | Mapping[int, np.ndarray],
+    tile: int = FIRST_TILE,
+    *,
+    is_new: bool = False,
 ) -> None:
-    """Of the whole tile, or of several: a mapping of their numbers to their pixels.
+    """Of the whole tile, or of several: a mapping of their numbers to their pixels. `is_new`: the
+    image has been made by the same operator, and undo removes it.
 
     Takes part in undo and redo. Marks the image as changed, so that Blender asks to save it; tiled
     images are packed instead, as their files must not change behind the user's back."""
@@ -100,7 +105,7 @@ def write(
         width, height = described.tiles[number]
         if values.shape != (height, width, 4):
             raise ValueError(f"pixels have shape {values.shape}; expected ({height}, {width}, 4)")
-    with pixel_undo.recorded(image):
+    with pixel_undo.recorded(image, is_new):
         image_tiles.write_some(image, given)
 
 
@@ -129,16 +134,31 @@ def new_tiled(
 def save(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
     """To a file, or of a tiled image to one for each tile: <UDIM> in the path stands for its
     number. From then on that is the image's file. RefusalError where it cannot be written."""
-    colorspace, path = image.colorspace_settings.name, str(path)
     if image.source == "TILED":
         for number, pixels in image_tiles.read_all(image).items():
-            image_files.save_pixels(pixels, path.replace("<UDIM>", str(number)), kind)
+            image_files.save_pixels(pixels, str(path).replace("<UDIM>", str(number)), kind)
     else:
         image_files.save_copy(image, path, kind)
+    attach(image, path)
+
+
+def attach(image: bpy.types.Image, path: str | Path) -> None:
+    """Makes a file the image's own, with the image's color space."""
+    colorspace = image.colorspace_settings.name
     if image.packed_files:
         image.unpack(method="REMOVE")
     if image.source != "TILED":
         image.source = "FILE"
-    image.filepath = path
+    image.filepath = str(path)
     image.reload()
     image.colorspace_settings.name = colorspace
+
+
+def load(path: str | Path, tiles: list[int]) -> bpy.types.Image:
+    """An image of files that hold data; with <UDIM> in the path a tiled one."""
+    if "<UDIM>" in str(path):
+        image = image_tiles.opened(str(path), tiles[0])
+    else:
+        image = bpy.data.images.load(str(path))
+    image.colorspace_settings.name = "Non-Color"
+    return image

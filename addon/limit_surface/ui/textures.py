@@ -8,6 +8,7 @@ from .. import ids, native
 #: In the order of the panel and of the menu
 ENTRIES = (
     (ids.PROJECT_IMAGE, "MOD_UVPROJECT"),
+    (ids.BAKE_MAPS, "IMAGE_DATA"),
     (ids.CURVATURE, "SPHERECURVE"),
 )
 

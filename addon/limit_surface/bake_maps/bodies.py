@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The limit surface that maps are made of, and what it is like at some of its places."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import baking, cage, native
+
+if TYPE_CHECKING:
+    import limitsurf
+
+
+class Body:
+    """In the object's space, or as it lies in the world."""
+
+    def __init__(self, found: cage.Cage, whose: str, *, in_world: bool) -> None:
+        self.surface = native.limitsurf.LimitSurface(found.mesh)
+        self.uv_map = baking.uv_data(self.surface, found, whose)
+        self.outward = 1.0
+        if in_world:
+            self.surface.set_positions(found.world_positions())
+            # du x dv points inwards in the world if the object is mirrored there.
+            self.outward = float(np.sign(np.linalg.det(found.matrix[:3, :3])) or 1.0)
+
+    @cached_property
+    def bounds(self) -> np.ndarray:
+        """(2, 3) lowest and highest coordinates."""
+        return self.surface.bounds()
+
+    @property
+    def size(self) -> float:
+        """Of the box around it, along its diagonal."""
+        return float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
+
+
+class Places:
+    """Some locations on a body. Each quantity is calculated when it is first asked for."""
+
+    def __init__(self, body: Body, face: np.ndarray, uv: np.ndarray, radius: float) -> None:
+        self.body, self.face, self.uv, self._radius = body, face, uv, radius
+
+    @cached_property
+    def position(self) -> np.ndarray:
+        return self.body.surface.evaluate(self.face, self.uv, dtype=np.float32).position
+
+    @cached_property
+    def normal(self) -> np.ndarray:
+        """Outward; always finite."""
+        frames = self.body.surface.frames(self.face, self.uv)
+        return self.body.outward * frames[:, :, 2]
+
+    @cached_property
+    def curvature(self) -> limitsurf.Curvature:
+        return self.body.surface.curvature(
+            self.face, self.uv, irregular="average", radius=self._radius
+        )
+
+    @cached_property
+    def mean(self) -> np.ndarray:
+        """Negative where the surface bulges outwards."""
+        return self.body.outward * self.curvature.mean
+
+    @cached_property
+    def principal(self) -> tuple[np.ndarray, np.ndarray]:
+        """The larger and the smaller curvature."""
+        c = self.curvature
+        return (c.k1, c.k2) if self.body.outward > 0 else (-c.k2, -c.k1)
+
+    @cached_property
+    def directions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Theirs, unit vectors of either sign."""
+        c = self.curvature
+        both = c.direction1, c.direction2
+        return both if self.body.outward > 0 else both[::-1]
+
+    @cached_property
+    def distortion(self) -> limitsurf.MapDistortion:
+        return self.body.surface.map_distortion(self.body.uv_map, self.face, self.uv)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What has been read of Blender's data, and the surfaces that are made of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .. import baking, cage
+from .baked import Order
+from .bodies import Body
+from .maps import NORMAL_TANGENT, Settings
+from .shading import Corners, Polygons
+
+
+@dataclass(frozen=True)
+class Inputs:
+    found: cage.Cage
+    whose: str
+    corners: Corners | None
+    in_world: bool
+    maps: tuple[str, ...]
+    settings: Settings
+    size: tuple[int, int]
+    tiles: tuple[int, ...]
+    margin: int
+    allow_overlap: bool
+    is_encoded: bool
+
+    @property
+    def flat_faces(self) -> int:
+        return baking.faces_without_area(self.found)
+
+    def order(self) -> Order:
+        body = Body(self.found, self.whose, in_world=self.in_world)
+        in_object = body
+        if self.in_world and NORMAL_TANGENT in self.maps:
+            in_object = Body(self.found, self.whose, in_world=False)
+        return Order(
+            body=body,
+            in_object=in_object,
+            polygons=Polygons(self.corners) if self.corners else None,
+            maps=self.maps,
+            settings=self.settings,
+            size=self.size,
+            tiles=self.tiles,
+            margin=self.margin,
+            allow_overlap=self.allow_overlap,
+            is_encoded=self.is_encoded,
+        )

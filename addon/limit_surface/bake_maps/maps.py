@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The maps: their names, their values, and how these become colors.
+
+Float files hold the values themselves. Files of 8 and 16 bits hold 0 to 1, so each map says from
+which value to which that goes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .bodies import Body, Places
+
+#: Of the values, so many fit into a range that is found by itself
+FITTING = 95  # percent
+
+#: Area ratios and stretches beyond 2^-16 and 2^16 are those
+MOST_OCTAVES = 16.0
+
+#: At irregular vertices curvature is averaged so far from them, as a share of an edge
+IRREGULAR_RADIUS = 1 / 64
+
+Range = tuple[np.ndarray | float, np.ndarray | float]  # what becomes 0, what becomes 1
+
+
+@dataclass(frozen=True)
+class Settings:
+    curvature: float  # what becomes 1 in 8 and 16 bits; 0: found
+    cavity: float  # the radius of a hollow that is black; 0: found
+    octaves: float  # of area that become 1
+    radius: float  # see limitsurf's curvature()
+
+
+@dataclass(frozen=True)
+class MapKind:
+    name: str
+    description: str
+    values: Callable[[Places, Settings], np.ndarray]  # (n, 3), or (n,) for grey
+    range: Callable[[Body, Settings, np.ndarray], Range]
+
+
+def _of_unit_vectors(_body: Body, _settings: Settings, _values: np.ndarray) -> Range:
+    return -1.0, 1.0
+
+
+def _of_positions(body: Body, _settings: Settings, _values: np.ndarray) -> Range:
+    low, high = body.bounds
+    flat = high <= low
+    return low, np.where(flat, low + 1, high)
+
+
+def _of_curvature(_body: Body, settings: Settings, values: np.ndarray) -> Range:
+    return _around_zero(settings.curvature, values)
+
+
+def _of_gaussian(_body: Body, settings: Settings, values: np.ndarray) -> Range:
+    return _around_zero(settings.curvature**2, values)
+
+
+def _around_zero(wanted: float, values: np.ndarray) -> Range:
+    largest = wanted or float(np.percentile(np.abs(values), FITTING)) or 1.0
+    return -largest, largest
+
+
+def _of_octaves(_body: Body, settings: Settings, _values: np.ndarray) -> Range:
+    return -settings.octaves, settings.octaves
+
+
+def _as_it_is(_body: Body, _settings: Settings, _values: np.ndarray) -> Range:
+    return 0.0, 1.0
+
+
+def cavity_radius(body: Body, settings: Settings) -> float:
+    """1 / 20 of the surface's size, unless it is given."""
+    return settings.cavity or body.size / 20
+
+
+def _cavity(places: Places, settings: Settings) -> np.ndarray:
+    """1 where nothing is hollow; 0 where mean curvature is that of a hollow of the radius."""
+    return 1 - (places.mean * cavity_radius(places.body, settings)).clip(0, 1)
+
+
+def _distortion(places: Places, _settings: Settings) -> np.ndarray:
+    """Octaves of area, largest and smallest length; compared with the whole map afterwards."""
+    d = places.distortion
+    columns = np.stack([d.area, d.stretch_high, d.stretch_low], axis=1)
+    with np.errstate(divide="ignore"):
+        octaves = np.log2(columns)
+    lost = np.isnan(octaves)
+    octaves[lost] = -MOST_OCTAVES
+    return octaves.clip(-MOST_OCTAVES, MOST_OCTAVES)
+
+
+def mean_octave(octaves: np.ndarray) -> float:
+    """Of area: that of the whole map, if the rows are those of its texels."""
+    found = octaves[np.abs(octaves[:, 0]) < MOST_OCTAVES, 0]
+    return float(np.log2(np.exp2(found.astype(np.float64)).mean())) if found.size else 0.0
+
+
+def compared(octaves: np.ndarray, mean: float) -> np.ndarray:
+    """0 is what a map without distortion would have everywhere."""
+    return (octaves - mean * np.array([1, 0.5, 0.5])).clip(-MOST_OCTAVES, MOST_OCTAVES)
+
+
+def encoded(values: np.ndarray, range_: Range) -> np.ndarray:
+    low, high = (np.asarray(end, np.float32) for end in range_)
+    return ((values - low) / (high - low)).clip(0, 1)
+
+
+NORMAL_TANGENT = "NORMAL_TANGENT"
+AREA_DISTORTION = "AREA_DISTORTION"
+
+#: In the order of the menu; that of tangent-space normals is made by shading.py
+KINDS = {
+    "POSITION": MapKind(
+        "Position",
+        "Where each texel lies on the limit surface",
+        lambda p, _s: p.position,
+        _of_positions,
+    ),
+    "NORMAL_OBJECT": MapKind(
+        "Normal",
+        "The exact normal, in the chosen space",
+        lambda p, _s: p.normal,
+        _of_unit_vectors,
+    ),
+    NORMAL_TANGENT: MapKind(
+        "Tangent Normal",
+        "The exact normal as a Normal Map node needs it on polygons (MikkTSpace, OpenGL, +Y)",
+        lambda p, _s: p.normal,
+        _of_unit_vectors,
+    ),
+    "CURVATURE_MEAN": MapKind(
+        "Mean Curvature",
+        "(k1 + k2) / 2: negative where the surface bulges",
+        lambda p, _s: p.mean,
+        _of_curvature,
+    ),
+    "CURVATURE_GAUSSIAN": MapKind(
+        "Gaussian Curvature",
+        "k1 k2: negative on saddles",
+        lambda p, _s: p.curvature.gaussian,
+        _of_gaussian,
+    ),
+    "CURVATURE_PRINCIPAL": MapKind(
+        "Principal Curvature",
+        "k1 in red and k2 in green, k1 the larger; blue is half their difference",
+        lambda p, _s: np.stack([*p.principal, (p.principal[0] - p.principal[1]) / 2], axis=1),
+        _of_curvature,
+    ),
+    "DIRECTION_1": MapKind(
+        "Direction 1",
+        "The direction of k1, a unit vector of either sign, in the chosen space",
+        lambda p, _s: p.directions[0],
+        _of_unit_vectors,
+    ),
+    "DIRECTION_2": MapKind(
+        "Direction 2",
+        "The direction of k2, a unit vector of either sign, in the chosen space",
+        lambda p, _s: p.directions[1],
+        _of_unit_vectors,
+    ),
+    "CAVITY": MapKind(
+        "Cavity",
+        "White, and darker where the surface is hollow: 1 - mean curvature times a radius",
+        _cavity,
+        _as_it_is,
+    ),
+    AREA_DISTORTION: MapKind(
+        "Distortion",
+        "How the UV map stretches the surface, in octaves (log2) against the whole map: area in "
+        "red, the largest and the smallest length in green and blue",
+        _distortion,
+        _of_octaves,
+    ),
+}

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_bake_maps."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import bpy
+
+from .. import baking, ids, image_files, images, polling
+from ..errors import RefusalError
+from ..job import Job, Progress
+from ..watched import WatchedOperator
+from . import properties, shading, text
+from .baked import Baked, bake
+from .inputs import Inputs
+from .maps import IRREGULAR_RADIUS, KINDS, NORMAL_TANGENT, Settings
+from .output import Output
+
+
+class Done(NamedTuple):
+    baked: Baked
+    output: Output
+    flat_faces: int
+
+
+class OBJECT_OT_limit_bake_maps(WatchedOperator, properties.BakeProperties, bpy.types.Operator):
+    """Bake position, normal, curvature and other maps of the active mesh's limit surface into
+    images, exactly and without rays"""
+
+    bl_idname = ids.BAKE_MAPS
+    bl_label = "Bake Maps of Limit Surface"
+    bl_options = {"REGISTER", "UNDO"}
+    too_large = "Not enough memory for images of this size"
+    cancelled = "Cancelled: nothing was baked"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return polling.mesh_in_object_mode(cls, context, context.active_object)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        self._someone_waits = True
+        return context.window_manager.invoke_props_dialog(self, width=380)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        properties.draw(self.layout, self.properties)
+        for line in self.summary.splitlines():
+            self.layout.label(text=line, icon="INFO")
+
+    def start(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
+        ob, maps = context.active_object, tuple(key for key in KINDS if key in self.maps)
+        if not maps:
+            raise RefusalError("No map is chosen")
+        depsgraph = context.evaluated_depsgraph_get()
+        found = baking.read_cage(ob, depsgraph, self.uv_map)
+        tiles = tuple(baking.tiles_of(found)) if self.tiles == "ALL" else (images.FIRST_TILE,)
+        if not tiles:
+            raise RefusalError("The UV map touches no tile that has a UDIM number")
+        baking.check_size(self.width, self.height, len(tiles), len(maps), self.allow_large)
+        output = self._output(ob, tiles)
+        output.check(maps)
+        corners = None
+        if NORMAL_TANGENT in maps:
+            corners = shading.read(ob, depsgraph, self.target, found.uv_map.name)
+        inputs = Inputs(
+            found,
+            ob.name,
+            corners,
+            in_world=self.space == "WORLD",
+            maps=maps,
+            settings=Settings(
+                self.curvature_range, self.cavity_radius, self.distortion_range, IRREGULAR_RADIUS
+            ),
+            size=(self.width, self.height),
+            tiles=tiles,
+            margin=self.margin,
+            allow_overlap=self.overlap == "ALLOW",
+            is_encoded=not output.kind.is_float,
+        )
+
+        def work(progress: Progress) -> Done:
+            return Done(bake(inputs.order(), progress), output, inputs.flat_faces)
+
+        return self.watch(context, Job(work), f"Baking {ob.name}")
+
+    def finish(self, _context: bpy.types.Context, made: Done) -> set[str]:
+        named = made.output.put(made.baked.pixels)
+        lines = text.ranges(made.baked)
+        self.summary = "\n".join(lines)
+        warnings = text.warnings(made.baked, made.flat_faces)
+        if warnings:
+            self.report({"WARNING"}, "; ".join(warnings))
+        names = ", ".join(image.name for image in named)
+        self.report({"INFO"}, "; ".join([f"{names}: {made.baked.texels:,} texels", *lines]))
+        return {"FINISHED"}
+
+    def _output(self, ob: bpy.types.Object, tiles: tuple[int, ...]) -> Output:
+        return Output(
+            name=self.name or ob.name,
+            kind=image_files.KINDS[self.format],
+            folder=Path(bpy.path.abspath(self.folder)) if self.folder else None,
+            reuse=self.reuse,
+            tiles=tiles,
+            size=(self.width, self.height),
+        )

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where baked pixels go: new images or those of the same name, and files.
+
+Files are written first. So if that fails no image has changed, and files that were not there before
+are removed again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from .. import image_files, images
+from ..errors import RefusalError
+from ..image_files import FileKind
+from .maps import KINDS
+
+
+@dataclass(frozen=True)
+class Output:
+    name: str  # of the images, before the map's own
+    kind: FileKind
+    folder: Path | None
+    reuse: bool  # images of these names
+    tiles: tuple[int, ...]
+    size: tuple[int, int]
+
+    def image_name(self, map_name: str) -> str:
+        return f"{self.name} {KINDS[map_name].name}"
+
+    def check(self, maps: tuple[str, ...]) -> None:
+        """RefusalError for what could not be written afterwards."""
+        if self.folder:
+            image_files.check_folder(self.folder)
+        for name in maps:
+            image = self._existing(name)
+            if image:
+                self._check_fits(image)
+
+    def put(self, baked: Mapping[str, Mapping[int, np.ndarray]]) -> list[bpy.types.Image]:
+        files = self._write_files(baked) if self.folder else {}
+        made = []
+        for name, tiles in baked.items():
+            image = self._existing(name)
+            path = files.get(name)
+            if image:
+                images.write(image, tiles)
+                if path:
+                    images.attach(image, path)
+            elif path:
+                image = images.load(path, list(tiles))
+                image.name = self.image_name(name)
+            else:
+                image = self._new(self.image_name(name), tiles)
+            made.append(image)
+        return made
+
+    def _existing(self, map_name: str) -> bpy.types.Image | None:
+        found = bpy.data.images.get((self.image_name(map_name), None)) if self.reuse else None
+        return found
+
+    def _check_fits(self, image: bpy.types.Image) -> None:
+        whose = f"There is an image {image.name}"
+        described = images.checked(image, to_write=True)
+        missing = set(self.tiles) - described.tiles.keys()
+        if missing:
+            raise RefusalError(f"{whose} without the tile {min(missing)}")
+        for tile in self.tiles:
+            if described.tiles[tile] != self.size:
+                width, height = described.tiles[tile]
+                raise RefusalError(f"{whose} of {width} x {height} pixels: choose its size")
+        if described.is_float != self._is_float:
+            depth = "float" if described.is_float else "8-bit"
+            raise RefusalError(f"{whose} of {depth} pixels, which is another format")
+        if not described.is_data:
+            raise RefusalError(
+                f"{whose} of the color space {described.colorspace}: data need Non-Color"
+            )
+
+    @property
+    def _is_float(self) -> bool:
+        """Blender holds 16 bits as float, too."""
+        return self.kind.depth != "8"
+
+    def _new(self, name: str, tiles: Mapping[int, np.ndarray]) -> bpy.types.Image:
+        if len(self.tiles) > 1:
+            return images.new_tiled(name, tiles, is_float=self._is_float, is_data=True)
+        image = images.new(name, *self.size, is_float=self._is_float, is_data=True)
+        images.write(image, tiles, is_new=True)
+        return image
+
+    def _write_files(self, baked: Mapping[str, Mapping[int, np.ndarray]]) -> dict[str, Path]:
+        files, written = {}, []
+        try:
+            for name, tiles in baked.items():
+                stem = bpy.path.clean_name(self.image_name(name))
+                for number, pixels in tiles.items():
+                    middle = f".{number}" if len(self.tiles) > 1 else ""
+                    path = self.folder / f"{stem}{middle}{self.kind.suffix}"
+                    if not path.exists():
+                        written.append(path)
+                    image_files.save_pixels(pixels, path, self.kind)
+                middle = ".<UDIM>" if len(self.tiles) > 1 else ""
+                files[name] = self.folder / f"{stem}{middle}{self.kind.suffix}"
+        except BaseException:
+            for path in written:
+                path.unlink(missing_ok=True)
+            raise
+        return files

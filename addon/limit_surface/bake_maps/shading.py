@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What renderers interpolate on the polygons that a tangent-space normal map is for: the normals,
+MikkTSpace's tangents and the signs at their corners.
+
+The polygons are triangles on the UV map, laid out over the image as the limit surface is: a mesh of
+triangles without any smoothing has a limit surface, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import attributes, baking, cage, displayed, ids, native, rules
+from ..errors import RefusalError
+from ..job import Progress
+
+if TYPE_CHECKING:
+    import limitsurf
+
+
+@dataclass(frozen=True)
+class Corners:
+    """Three a triangle."""
+
+    uv: np.ndarray  # (3 t, 2)
+    normal: np.ndarray  # (3 t, 3)
+    tangent: np.ndarray  # (3 t, 3)
+    sign: np.ndarray  # (3 t,)
+
+
+@dataclass(frozen=True)
+class Shading:
+    """On the texels of one tile of the image."""
+
+    texels: limitsurf.Texels
+    columns: np.ndarray  # (n, 7) normal, tangent, sign
+
+    def tangent_space(self, rows: np.ndarray, normals: np.ndarray) -> np.ndarray:
+        """The normals as the map has to hold them."""
+        c = self.columns[rows]
+        return native.limitsurf.into_shading_frames(normals, c[:, :3], c[:, 3:6], c[:, 6])
+
+
+class Polygons:
+    def __init__(self, corners: Corners) -> None:
+        count = len(corners.uv)
+        flat = np.concatenate([corners.uv, np.zeros((count, 1))], axis=1)
+        own = np.arange(count)
+        surface = native.limitsurf.LimitSurface(
+            native.limitsurf.ControlMesh(flat, np.full(count // 3, 3), own, scheme="bilinear")
+        )
+        self._uv = surface.face_varying(corners.uv, own, rules.LINEAR)
+        columns = np.concatenate(
+            [corners.normal, corners.tangent, corners.sign[:, None]], axis=1, dtype=np.float64
+        )
+        self._columns = surface.face_varying(columns, own, rules.LINEAR)
+
+    def over(self, size: tuple[int, int], tile: int, margin: float, progress: Progress) -> Shading:
+        """Where polygons overlap, one of them."""
+        found = baking.texels(
+            self._uv, size, tile, margin=margin, allow_overlap=True, progress=progress
+        )
+        return Shading(found, self._columns.evaluate(found.face, found.uv).value)
+
+
+def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: str, uv_name: str) -> Corners:
+    """`kind`: CAGE for the mesh that stands before the subdivision, VIEWPORT or RENDER for that
+    behind it. RefusalError where its tangents cannot be had."""
+    with _opened(ob, depsgraph, kind) as (mesh, whose):
+        if uv_name not in mesh.uv_layers:
+            raise RefusalError(f"{whose} has no UV map {uv_name!r}")
+        return _corners(mesh, uv_name)
+
+
+@contextmanager
+def _opened(
+    ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: str
+) -> Iterator[tuple[bpy.types.Mesh, str]]:
+    if kind == "CAGE":
+        with cage.opened(ob, depsgraph) as (_, mesh):
+            yield mesh, f"{ob.name}: the mesh before the subdivision"
+    else:
+        with displayed.opened(ob, depsgraph, kind) as (mesh, _, whose):
+            yield mesh, whose
+
+
+def _corners(mesh: bpy.types.Mesh, uv_name: str) -> Corners:
+    mesh.calc_loop_triangles()
+    triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("loops", triangles)
+    uv = attributes.read(mesh, uv_name).astype(np.float64)
+    normal = _of_corners(mesh.corner_normals, "vector", 3)
+    if (attributes.face_sizes(mesh) > 4).any():
+        tangent, sign = _of_triangulated(mesh, triangles, uv, normal)
+    else:
+        mesh.calc_tangents(uvmap=uv_name)
+        tangent = _of_corners(mesh.loops, "tangent", 3)[triangles]
+        sign = _of_corners(mesh.loops, "bitangent_sign", 1)[triangles]
+    return Corners(uv[triangles], normal[triangles], tangent, sign.ravel())
+
+
+def _of_triangulated(
+    mesh: bpy.types.Mesh, triangles: np.ndarray, uv: np.ndarray, normal: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Blender calculates tangents of triangles and quads alone: where there are other faces, of the
+    triangles that it draws."""
+    twin = bpy.data.meshes.new(ids.TEMPORARY_MESH)
+    try:
+        vertices = attributes.read(mesh, ids.POSITION)
+        corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)[triangles]
+        twin.from_pydata(vertices, [], corner_vertex.reshape(-1, 3))
+        layer = twin.uv_layers.new()
+        layer.uv.foreach_set("vector", uv[triangles].astype(np.float32).ravel())
+        twin.normals_split_custom_set(normal[triangles])
+        twin.calc_tangents(uvmap=layer.name)
+        return _of_corners(twin.loops, "tangent", 3), _of_corners(twin.loops, "bitangent_sign", 1)
+    finally:
+        bpy.data.meshes.remove(twin)
+
+
+def _of_corners(data: bpy.types.bpy_prop_collection, key: str, width: int) -> np.ndarray:
+    values = np.empty(width * len(data), np.float32)
+    data.foreach_get(key, values)
+    return values.reshape(-1, width)

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a bake is reported with."""
+
+import numpy as np
+
+from .baked import Baked
+from .maps import KINDS, NORMAL_TANGENT, Range
+
+
+def ranges(baked: Baked) -> list[str]:
+    """A line for each map whose values have become colors."""
+    return [f"{KINDS[name].name}: {_said(found)}" for name, found in baked.ranges.items()]
+
+
+def warnings(baked: Baked, flat_faces: int) -> list[str]:
+    found = []
+    if flat_faces:
+        found.append(f"{flat_faces:,} faces have no area on the UV map and are not in the images")
+    if baked.overlapping:
+        found.append(
+            f"the UV map overlaps itself at {baked.overlapping:,} texels: they belong to the "
+            "first face there"
+        )
+    if baked.without_values:
+        found.append(f"{baked.without_values:,} values have no limit and are 0")
+    if baked.without_polygons:
+        found.append(
+            f"{KINDS[NORMAL_TANGENT].name}: {baked.without_polygons:,} texels have no polygon on "
+            "the UV map"
+        )
+    return found
+
+
+def _said(range_: Range) -> str:
+    low, high = (np.atleast_1d(end) for end in range_)
+    return f"0 is {_numbers(low)}, 1 is {_numbers(high)}"
+
+
+def _numbers(values: np.ndarray) -> str:
+    text = ", ".join(f"{value:.5g}" for value in values)
+    return f"({text})" if len(values) > 1 else text
