@@ -175,7 +175,7 @@ def test_distances(capfd):
     np.testing.assert_allclose(pixels[met][:, 0], 0.5 + 0.1 * across[met], atol=SINGLE)
     assert (pixels[inside & (across > 2)][:, :3] == 0).all()
     np.testing.assert_array_equal(pixels[..., 0], pixels[..., 1])
-    assert "Slope is not met at 1,2" in said
+    assert "Slope is not met at 1,352 of 2,704 texels" in said
     assert "they hold 0" in said
     refused(ob, "Slope is met nowhere", target="Slope", mode="SCALAR", max_distance=0.1)
     refused(ob, "Slope is met nowhere", target="Slope", mode="SCALAR", direction="INWARD")

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A head and a sculpt of it, in Blender: for the table and the pictures of docs/displacement.md."""
+
+import bpy
+import numpy as np
+from limit_surface import attributes, ids
+
+LEVELS = 3  # subdivisions of the sculpt
+QUALITY = 8  # of Blender's own limit surface: the sculpt's polygons as they are rendered
+
+
+def add_base() -> bpy.types.Object:
+    bpy.ops.mesh.primitive_monkey_add()
+    ob = bpy.context.active_object
+    ob.name = ob.data.name = "Head"
+    _add_subsurf(ob)
+    return ob
+
+
+def add_sculpt(base: bpy.types.Object) -> bpy.types.Object:
+    """Scales that lean over, so that no displacement along normals could make them."""
+    ob = base.copy()
+    ob.data, ob.name = base.data.copy(), "Sculpt"
+    bpy.context.collection.objects.link(ob)
+    subsurf = ob.modifiers[0]
+    subsurf.use_limit_surface, subsurf.levels = False, LEVELS
+    with bpy.context.temp_override(object=ob, active_object=ob):
+        bpy.ops.object.modifier_apply(modifier=subsurf.name)
+    normals = np.empty((len(ob.data.vertices), 3), np.float32)
+    ob.data.vertices.foreach_get("normal", normals.ravel())
+    at = attributes.read(ob.data, ids.POSITION)
+    attributes.write(ob.data, ids.POSITION, "FLOAT_VECTOR", "POINT", at + moves(at, normals))
+    ob.data.update()
+    _add_subsurf(ob)
+    bpy.context.view_layer.objects.active = base
+    return ob
+
+
+def moves(at: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Bumps in rows, that grow outward and hang down."""
+    x, y, z = (7.5 * at).T
+    bumps = ((1 + np.sin(x) * np.sin(y) * np.sin(z)) ** 2)[:, None] - 1
+    fade = 1 / (1 + (at[:, :1] / 0.75) ** 6)  # less on the ears
+    return fade * bumps * (0.05 * normals + [0, 0, -0.04])
+
+
+def _add_subsurf(ob: bpy.types.Object) -> None:
+    subsurf = ob.modifiers.new("Subdivision", "SUBSURF")
+    subsurf.quality = QUALITY
