@@ -116,14 +116,23 @@ def render(
     ob.rotation_euler = _turned(view)
     ob.location = Vector(target) + ob.rotation_euler.to_matrix() @ Vector((0, 0, 50))
     scene.collection.objects.link(ob)
-    scene.camera = ob
+    bpy.context.view_layer.update()
+    render_through(ob, path, pixels, samples)
+    bpy.data.cameras.remove(camera)
+
+
+def render_through(
+    camera: bpy.types.Object, path: Path, pixels: tuple[int, int], samples: int
+) -> None:
+    """With the light that comes from where any camera has it."""
+    scene = bpy.context.scene
+    scene.camera = camera
+    turned = camera.matrix_world.to_3x3().normalized()
     for direction, strength in SUNS:
         sun = bpy.data.lights.new("Sun", "SUN")
         sun.energy, sun.angle = strength, 0
         lamp = bpy.data.objects.new("Sun", sun)
-        lamp.rotation_euler = (
-            (ob.rotation_euler.to_matrix() @ Vector(direction)).to_track_quat("Z", "Y").to_euler()
-        )
+        lamp.rotation_euler = (turned @ Vector(direction)).to_track_quat("Z", "Y").to_euler()
         scene.collection.objects.link(lamp)
     scene.cycles.samples = samples
     scene.render.resolution_x, scene.render.resolution_y = pixels
@@ -132,7 +141,6 @@ def render(
         bpy.ops.render.render(write_still=True)
     for light in list(bpy.data.lights):
         bpy.data.lights.remove(light)
-    bpy.data.cameras.remove(camera)
 
 
 def axes(view: View) -> np.ndarray:
