@@ -6,7 +6,9 @@ import numpy as np
 import projection_truth as truth
 import pytest
 import scenes
-from mathutils import Matrix
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from limit_surface import images
+from mathutils import Matrix, Vector
 
 TEXTURE = (256, 256)
 
@@ -352,6 +354,46 @@ def test_along_normals_from_another_surface():
     project(ob, max_distance=0.4, direction="OUTWARD", **common)
 
 
+def test_views_project_what_they_show():
+    window = bpy.context.window_manager.windows[0]
+    area = next(a for a in window.screen.areas if a.type == "VIEW_3D")
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    shown = area.spaces.active.region_3d
+    ob = flat_square()
+    places = truth.image_of_places((80, 60))
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        made = project(
+            ob, source="VIEW", image=places.name, use_float=True, two_sided=True, facing=(1.5, 1.5)
+        )
+    y, x = (np.mgrid[: TEXTURE[1], : TEXTURE[0]] + 0.5) / TEXTURE[0]
+    points = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)[::37]
+    pixels = np.array([location_3d_to_region_2d(region, shown, Vector(p)) for p in points])
+    room, size = np.array([region.width, region.height]), np.array([80, 60])
+    expected = (pixels - room / 2) / (min(room / size) * size) + 0.5
+    found = truth.pixels(made).reshape(-1, 4)[::37]
+    assert found[:, 3].min() > 0.99
+    np.testing.assert_allclose(found[:, :2], expected, atol=1e-4)
+
+
+def test_tiles():
+    """Two tiles, both under one image; the third stays as it was."""
+    ob = scenes.add_mesh("Long", [(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
+    ob.data.uv_layers.new(name="Map").data.foreach_set("uv", [0, 0, 2, 0, 2, 1, 0, 1])
+    scenes.add_subsurf(ob).subdivision_type = "SIMPLE"
+    blank = np.full((32, 32, 4), 0.5, np.float32)
+    target = images.new_tiled(
+        "Tiles", dict.fromkeys((1001, 1002, 1011), blank), is_float=False, is_data=True
+    )
+    values = noise((32, 64), alpha=False)
+    filled("Shown", values, is_data=True)
+    frame = empty(location=(1, 0.5, 1), empty_display_size=1)
+    project(ob, source="PLANAR", image="Shown", empty=frame.name, output="EXISTING", target="Tiles")
+    values = truth.pixels(bpy.data.images["Shown"])
+    for tile, expected in ((1001, values[:, :32]), (1002, values[:, 32:]), (1011, blank)):
+        np.testing.assert_allclose(images.read(target, tile), expected, atol=1.01 / 255)
+    refused(ob, "The image Tiles is tiled", image="Tiles", source="PLANAR", empty=frame.name)
+
+
 def state():
     """All names, and all pixels."""
     images = {image.name: truth.pixels(image).tobytes() for image in bpy.data.images}
@@ -385,7 +427,13 @@ def test_refusals_about_images():
     refused(ob, "Shown cannot be painted into itself", target="Shown", **existing)
     bpy.data.images["Target"].colorspace_settings.name = "AgX Base sRGB"
     refused(ob, "Target is in the color space AgX Base sRGB", target="Target", **existing)
-    refused(ob, "4.0 GiB of memory", width=16384, height=16384)
+    refused(ob, "GiB of memory: set Allow Large Images", width=16384, height=16384)
+    endless = np.ones((8, 8, 4))
+    endless[2, 3, 1] = np.inf
+    filled("Endless", endless, is_float=True)
+    refused(ob, "The image Endless has values that are not finite", image="Endless")
+    bpy.data.images["Shown"].source = "SEQUENCE"
+    refused(ob, "The image Shown is a sequence")
 
 
 def test_refusals_about_uv_maps():

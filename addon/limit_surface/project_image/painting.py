@@ -25,9 +25,13 @@ class Canvas:
     encoding: Encoding
 
     @property
+    def size(self) -> tuple[int, int]:
+        """Width and height."""
+        return self.pixels.shape[1], self.pixels.shape[0]
+
+    @property
     def texel(self) -> tuple[float, float]:
-        height, width, _ = self.pixels.shape
-        return 1 / width, 1 / height
+        return 1 / self.size[0], 1 / self.size[1]
 
 
 def paint(

@@ -50,10 +50,9 @@ class Order:
         count, whole = 0, len(self.canvases)
         for i, (tile, canvas) in enumerate(self.canvases.items()):
             part = part_of(progress, i / whole, (i + 1) / whole)
-            height, width, _ = canvas.pixels.shape
             texels = baking.texels(
                 self.uv_map,
-                (width, height),
+                canvas.size,
                 tile,
                 margin=self.margin,
                 allow_overlap=self.allow_overlap,
@@ -73,7 +72,7 @@ class Made:
     warning = ""
 
     def put(self, _context: bpy.types.Context, surface: bpy.types.Object) -> str:
-        target = self.order.target
+        target, canvases = self.order.target, self.order.canvases
         if isinstance(target, NewImage):
             image = images.new(
                 target.name,
@@ -87,7 +86,10 @@ class Made:
             image = bpy.data.images.get(target)
             if image is None:
                 raise RefusalError(f"{target} is not there any more")
-        images.write(image, {tile: c.pixels for tile, c in self.order.canvases.items()})
+            sizes = images.checked(image, to_write=True).tiles
+            if any(sizes.get(tile) != canvas.size for tile, canvas in canvases.items()):
+                raise RefusalError(f"{target} has another size meanwhile")
+        images.write(image, {tile: canvas.pixels for tile, canvas in canvases.items()})
         if self.order.create_material:
             material.show(surface, image, self.order.world.cage.uv_map.name)
         return f"{self.count:,} texels of {image.name}"

@@ -9,6 +9,7 @@ from .. import ids, native
 ENTRIES = (
     (ids.PROJECT_IMAGE, "MOD_UVPROJECT"),
     (ids.BAKE_MAPS, "IMAGE_DATA"),
+    (ids.BAKE_DISPLACEMENT, "MOD_DISPLACE"),
     (ids.CURVATURE, "SPHERECURVE"),
 )
 
