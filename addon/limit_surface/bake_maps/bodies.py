@@ -72,10 +72,13 @@ class Places:
 
     @cached_property
     def directions(self) -> tuple[np.ndarray, np.ndarray]:
-        """Theirs, unit vectors of either sign."""
+        """Theirs, unit vectors, the way that goes up the map's U."""
         c = self.curvature
         both = c.direction1, c.direction2
-        return both if self.body.outward > 0 else both[::-1]
+        frames = self.body.surface.tangent_frames(self.body.uv_map, self.face, self.uv)
+        against = [np.einsum("ni,ni->n", of, frames[:, :, 0]) < 0 for of in both]
+        found = [np.where(down[:, None], -of, of) for of, down in zip(both, against, strict=True)]
+        return tuple(found if self.body.outward > 0 else found[::-1])
 
     @cached_property
     def distortion(self) -> limitsurf.MapDistortion:

@@ -153,13 +153,13 @@ KINDS = {
     ),
     "DIRECTION_1": MapKind(
         "Direction 1",
-        "The direction of k1, a unit vector of either sign, in the chosen space",
+        "The direction of k1, a unit vector, towards the map's U, in the chosen space",
         lambda p, _s: p.directions[0],
         _of_unit_vectors,
     ),
     "DIRECTION_2": MapKind(
         "Direction 2",
-        "The direction of k2, a unit vector of either sign, in the chosen space",
+        "The direction of k2, a unit vector, towards the map's U, in the chosen space",
         lambda p, _s: p.directions[1],
         _of_unit_vectors,
     ),

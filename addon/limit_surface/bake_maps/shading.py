@@ -91,40 +91,40 @@ def _opened(
 
 
 def _corners(mesh: bpy.types.Mesh, uv_name: str) -> Corners:
+    """Tangents are those of the triangles that are drawn: so Cycles has them, and whoever
+    triangulates a mesh first. (Blender itself, and Eevee, take quads as a whole for them.)"""
     mesh.calc_loop_triangles()
-    triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("loops", triangles)
-    uv = attributes.read(mesh, uv_name).astype(np.float64)
-    normal = _of_corners(mesh.corner_normals, "vector", 3)
-    if (attributes.face_sizes(mesh) > 4).any():
-        tangent, sign = _of_triangulated(mesh, triangles, uv, normal)
-    else:
-        mesh.calc_tangents(uvmap=uv_name)
-        tangent = _of_corners(mesh.loops, "tangent", 3)[triangles]
-        sign = _of_corners(mesh.loops, "bitangent_sign", 1)[triangles]
-    return Corners(uv[triangles], normal[triangles], tangent, sign.ravel())
-
-
-def _of_triangulated(
-    mesh: bpy.types.Mesh, triangles: np.ndarray, uv: np.ndarray, normal: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Blender calculates tangents of triangles and quads alone: where there are other faces, of the
-    triangles that it draws."""
+    corners = _of(mesh.loop_triangles, "loops", 3, np.int32).ravel()
+    flat = attributes.read(mesh, "sharp_face") if "sharp_face" in mesh.attributes else False
+    flat = np.broadcast_to(flat, len(mesh.polygons))[
+        _of(mesh.loop_triangles, "polygon_index", 1, np.int32).ravel()
+    ]
+    uv = attributes.read(mesh, uv_name)[corners]
     twin = bpy.data.meshes.new(ids.TEMPORARY_MESH)
     try:
-        vertices = attributes.read(mesh, ids.POSITION)
-        corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)[triangles]
-        twin.from_pydata(vertices, [], corner_vertex.reshape(-1, 3))
-        layer = twin.uv_layers.new()
-        layer.uv.foreach_set("vector", uv[triangles].astype(np.float32).ravel())
-        twin.normals_split_custom_set(normal[triangles])
-        twin.calc_tangents(uvmap=layer.name)
-        return _of_corners(twin.loops, "tangent", 3), _of_corners(twin.loops, "bitangent_sign", 1)
+        vertex = attributes.read(mesh, ids.CORNER_VERTEX)[corners]
+        twin.from_pydata(attributes.read(mesh, ids.POSITION), [], vertex.reshape(-1, 3))
+        twin.polygons.foreach_set("use_smooth", ~flat)
+        twin.update()
+        # What is flat is so triangle by triangle.
+        normal = np.where(
+            np.repeat(flat, 3)[:, None],
+            _of(twin.corner_normals, "vector", 3),
+            _of(mesh.corner_normals, "vector", 3)[corners],
+        )
+        # Setting normals moves layers in memory: none is held meanwhile.
+        twin.uv_layers.new(name=uv_name).uv.foreach_set("vector", uv.ravel())
+        twin.normals_split_custom_set(normal)
+        twin.calc_tangents(uvmap=uv_name)
+        tangent, sign = _of(twin.loops, "tangent", 3), _of(twin.loops, "bitangent_sign", 1)
     finally:
         bpy.data.meshes.remove(twin)
+    return Corners(uv.astype(np.float64), normal, tangent, sign.ravel())
 
 
-def _of_corners(data: bpy.types.bpy_prop_collection, key: str, width: int) -> np.ndarray:
-    values = np.empty(width * len(data), np.float32)
+def _of(
+    data: bpy.types.bpy_prop_collection, key: str, width: int, dtype: type = np.float32
+) -> np.ndarray:
+    values = np.empty(width * len(data), dtype)
     data.foreach_get(key, values)
     return values.reshape(-1, width)
