@@ -12,6 +12,7 @@ BAKE_MAPS = "object.limit_bake_maps"
 PROJECT_IMAGE = "object.limit_project_image"
 CURVATURE = "object.limit_curvature"
 BAKE_DISPLACEMENT = "object.limit_bake_displacement"
+LIMIT_MESH = "object.limit_mesh"
 
 PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
@@ -52,12 +53,14 @@ CORNER_EDGE = ".corner_edge"
 EDGE_VERTICES = ".edge_verts"
 EDGE_CREASE = "crease_edge"
 VERTEX_CREASE = "crease_vert"
+CUSTOM_NORMAL = "custom_normal"
 
 REPORT = "limit_report"  # custom property of the surface's object
 
 HAIR_OBJECT = "Limit Hair"
 POINTS_OBJECT = "Limit Points"
 CURVATURE_OBJECT = "Limit Curvature"
+LIMIT_MESH_OBJECT = "Limit Mesh"
 DECAL_OBJECT = "Limit Decal"
 DECAL_UV = "Image"  # UV map of decals
 INSTANCES_GROUP = "Limit Instances"

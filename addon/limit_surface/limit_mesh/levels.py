@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How finely each face of a cage is divided."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import adapted, attributes, cage
+from ..errors import RefusalError
+from ..job import Progress
+from ..project_image import camera
+
+if TYPE_CHECKING:
+    import limitsurf
+
+MOST = 8
+
+#: From the surface as it lies in the world to levels (f,), and what there is to say about them
+Choice = Callable[["limitsurf.LimitSurface", Progress], tuple[np.ndarray, str]]
+
+
+def uniform(levels: int) -> Choice:
+    return lambda surface, _progress: (_allowed(surface, np.full(_count(surface), levels)), "")
+
+
+def of_faces(values: np.ndarray) -> Choice:
+    return lambda surface, _progress: (_allowed(surface, values), "")
+
+
+def within(tolerance: float, most: int) -> Choice:
+    def choose(surface: limitsurf.LimitSurface, progress: Progress) -> tuple[np.ndarray, str]:
+        found = surface.levels_within(tolerance, most, progress=progress)
+        return found.levels, _falling_short(found, tolerance, most, "deviate by more")
+
+    return choose
+
+
+def of_pixels(view: PixelView, pixels: float, most: int) -> Choice:
+    def choose(surface: limitsurf.LimitSurface, progress: Progress) -> tuple[np.ndarray, str]:
+        found = surface.levels_of_length(pixels, view.matrix, view.nearest, most, progress=progress)
+        return found.levels, _falling_short(found, pixels, most, "have longer edges")
+
+    return choose
+
+
+@dataclass(frozen=True)
+class PixelView:
+    """From the world to pixels of the render, as homogeneous coordinates."""
+
+    matrix: np.ndarray  # (4, 4)
+    nearest: float  # w of what is just seen
+
+
+def seen_by_camera(context: bpy.types.Context) -> PixelView:
+    """RefusalError where the scene has no camera that can be looked through so."""
+    ob, render = camera.find(context, ""), context.scene.render
+    part = render.resolution_percentage / 100
+    size = (render.resolution_x * part, render.resolution_y * part)
+    depsgraph = context.evaluated_depsgraph_get()
+    rounded = tuple(max(round(side), 1) for side in size)
+    projector = camera.projector(ob, depsgraph, rounded)
+    to_pixels = np.diag([size[0] / 2, size[1] / 2, 1.0, 1.0])
+    nearest = ob.evaluated_get(depsgraph).data.clip_start if projector.has_eye else 0.0
+    return PixelView(to_pixels @ projector.matrix, nearest)
+
+
+def named(
+    name: str,
+    levels: int,
+    mesh: bpy.types.Mesh,
+    found: cage.Cage,
+    ob: bpy.types.Object,
+    weights: Mapping[str, np.ndarray],
+) -> Choice:
+    """What the mesh has of that name: an attribute of its faces, or a vertex group, whose weights
+    are parts of `levels` and of which each face takes the largest."""
+    if name in mesh.attributes or name not in weights:
+        return of_faces(_whole_levels(mesh, name, ob))
+    if not weights[name].any():
+        raise RefusalError(f"The vertex group {name} of {ob.name} has no weights")
+    starts = np.cumsum(found.face_sizes) - found.face_sizes
+    largest = np.maximum.reduceat(weights[name][found.mesh.face_vertices], starts)
+    return of_faces(np.rint(largest * levels).astype(np.int64))
+
+
+def _whole_levels(mesh: bpy.types.Mesh, name: str, ob: bpy.types.Object) -> np.ndarray:
+    attribute = mesh.attributes.get(name)
+    if attribute is None:
+        raise RefusalError(
+            f"{ob.name} has no attribute of faces, and no vertex group, named {name!r}"
+        )
+    if attribute.domain != "FACE" or attribute.data_type not in adapted.TYPES:
+        raise RefusalError(
+            f"The attribute {name} is {attribute.data_type} on {attribute.domain}: levels are "
+            "numbers on FACE"
+        )
+    values = attributes.read(mesh, name).astype(np.float64)
+    wrong = np.flatnonzero(~((values > -0.5) & (values < MOST + 0.5)))
+    if wrong.size:
+        raise RefusalError(
+            f"The attribute {name} is {values[wrong[0]]:g} on face {wrong[0]} "
+            f"({wrong.size} in all): levels are 0 to {MOST}"
+        )
+    return np.rint(values).astype(np.int64)
+
+
+def _allowed(surface: limitsurf.LimitSurface, levels: np.ndarray) -> np.ndarray:
+    """Faces other than quads are divided once at least."""
+    return np.maximum(levels, surface.mesh.face_sizes != 4)
+
+
+def _count(surface: limitsurf.LimitSurface) -> int:
+    return len(surface.mesh.face_sizes)
+
+
+def _falling_short(found: limitsurf.FaceLevels, asked: float, most: int, what: str) -> str:
+    count = np.count_nonzero(found.measure > asked)
+    return f"{count:,} faces {what} at level {most}: raise Most Levels" if count else ""
