@@ -40,28 +40,32 @@ IrregularCurvature::IrregularCurvature(const TileTable& table, const Pose& pose,
       radius_(radius),
       corners_(table.ring_tiles.size()),
       first_tile_(table.rings.size() + 1) {
-  for (std::size_t f = 0; f < table.faces.size(); ++f) {
+  findCorners();
+  for (const RingTile& tile : table.ring_tiles) {
+    ++first_tile_[tile.ring + 1];
+  }
+  for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
+    first_tile_[ring + 1] += first_tile_[ring];
+  }
+}
+
+void IrregularCurvature::findCorners() {
+  for (std::size_t f = 0; f < table_.faces.size(); ++f) {
     const int face = static_cast<int>(f);
-    const TileRef& whole = table.faces[f];
+    const TileRef& whole = table_.faces[f];
     if (whole.kind == TileRef::kRing) {
-      corners_[whole.index] = {face, table.ring_tiles[whole.index].corner};
+      corners_[whole.index] = {face, table_.ring_tiles[whole.index].corner};
     } else if (whole.kind == TileRef::kSplit) {
       for (int corner = 0; corner < 4; ++corner) {
-        TileRef child = table.splits[whole.index][corner];
+        TileRef child = table_.splits[whole.index][corner];
         while (child.kind == TileRef::kSplit) {
-          child = table.splits[child.index][0];
+          child = table_.splits[child.index][0];
         }
         if (child.kind == TileRef::kRing) {
           corners_[child.index] = {face, corner};
         }
       }
     }
-  }
-  for (const RingTile& tile : table.ring_tiles) {
-    ++first_tile_[tile.ring + 1];
-  }
-  for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
-    first_tile_[ring + 1] += first_tile_[ring];
   }
 }
 
@@ -98,37 +102,35 @@ std::vector<PrincipalCurvatures> IrregularCurvature::around(const std::vector<in
 
 IrregularCurvature::Place IrregularCurvature::place(TileEvaluator& evaluator, int ring_tile,
                                                     int number) const {
-  const RingTile& tile = table_.ring_tiles[ring_tile];
-  const PtexCorner at = corners_[ring_tile];
-  const int base = ptex_.base_face[at.face];
+  const int base = ptex_.base_face[corners_[ring_tile].face];
   const bool is_quad = ptex_.first[base + 1] - ptex_.first[base] == 1;
-  const double side = is_quad ? radius_ : 2 * radius_;
-  // Counter-clockwise: up the one side, back along the other.
-  double u = number < 2 ? side : side * (number == 2 ? 0.75 : 0.25);
-  double v = number < 2 ? side * (number == 0 ? 0.25 : 0.75) : side;
-
-  TileLocation location;
-  const double zoom = powerOfTwo(tile.depth);
-  if (side * zoom <= 1) {  // in the vertex' own tile, which is seen from the vertex
-    location.tile = {TileRef::kRing, static_cast<std::uint32_t>(ring_tile)};
-    location.u = u * zoom;
-    location.v = v * zoom;
-    location.turns = at.corner;
-    location.depth = tile.depth;
-  } else {
-    turnParameters((4 - at.corner) & 3, u, v);
-    location = evaluator.locate({at.face, u, v});
-  }
+  const double edge = is_quad ? 1 : 2;  // in u and v: a sub-face's sides are half edges
   Jet jet;
-  evaluator.evaluate<2>(location, jet);
+  evaluator.evaluate<2>(locate(evaluator, ring_tile, edge * radius_, number), jet);
   const Vector3 du = jet.patch.du.head<3>(), dv = jet.patch.dv.head<3>();
   Place result;
   result.curvature = principalCurvatures(jet);
   result.scale = std::max(du.cwiseAbs().maxCoeff(), dv.cwiseAbs().maxCoeff());
   result.area = result.scale > 0 ? (du / result.scale).cross(dv / result.scale).norm() : 0;
-  // Of equal shares of edges: a sub-face's sides are half edges.
-  result.scale *= side / radius_;
+  result.scale *= edge;
   return result;
+}
+
+TileLocation IrregularCurvature::locate(const TileEvaluator& evaluator, int ring_tile, double side,
+                                        int number) const {
+  // Counter-clockwise: up the one side, back along the other.
+  double u = number < 2 ? side : side * (number == 2 ? 0.75 : 0.25);
+  double v = number < 2 ? side * (number == 0 ? 0.25 : 0.75) : side;
+  const PtexCorner at = corners_[ring_tile];
+  const int depth = table_.ring_tiles[ring_tile].depth;
+  const double zoom = powerOfTwo(depth);
+  if (side * zoom > 1) {
+    turnParameters((4 - at.corner) & 3, u, v);
+    return evaluator.locate({at.face, u, v});
+  }
+  // In the vertex' own tile, which is seen from the vertex: no radius is too small.
+  const TileRef tile = {TileRef::kRing, static_cast<std::uint32_t>(ring_tile)};
+  return {tile, u * zoom, v * zoom, at.corner, depth};
 }
 
 PrincipalCurvatures IrregularCurvature::mean(int ring, const Place* places) const {

@@ -39,6 +39,8 @@ class IrregularCurvature {
   };
 
   int tileCount(int ring) const { return first_tile_[ring + 1] - first_tile_[ring]; }
+  void findCorners();
+  TileLocation locate(const TileEvaluator& evaluator, int ring_tile, double side, int number) const;
   Place place(TileEvaluator& evaluator, int ring_tile, int number) const;
   PrincipalCurvatures mean(int ring, const Place* places) const;
   Vector3 normalOf(int ring, const Place* places, const std::vector<double>& weights) const;

@@ -333,6 +333,22 @@ def test_average_is_finite_everywhere_but_on_singular_surfaces():
     assert c.irregular.tolist() == [True, False]
 
 
+@pytest.mark.parametrize("scale", [2.0**-200, 2.0**200])
+def test_average_is_that_of_any_scale(scale):
+    positions, faces = rough(shapes.cube())
+    for name in ("k1", "k2"):
+        one, other = (
+            getattr(
+                ls.LimitSurface(ls.ControlMesh.from_faces(at, faces)).curvature(
+                    0, [[0, 0]], irregular="average"
+                ),
+                name,
+            )
+            for at in (positions, scale * positions)
+        )
+        np.testing.assert_allclose(other * scale, one, rtol=1e-12)
+
+
 def test_average_of_faces_that_have_no_surface_is_that_of_the_others():
     positions, faces = rough(shapes.cube())
     holed = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces, holes=[0]))
