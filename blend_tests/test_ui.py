@@ -65,7 +65,13 @@ def test_menu_offers_the_operators():
     textures = drawn(bpy.types.VIEW3D_PT_limit_textures).column()
     assert textures.enabled is True
     then = [call.args[0] for call in textures.operator.call_args_list]
-    assert ids.PROJECT_IMAGE in then
+    assert then == [
+        ids.PROJECT_IMAGE,
+        ids.BAKE_MAPS,
+        ids.BAKE_DISPLACEMENT,
+        ids.CURVATURE,
+        ids.LIMIT_MESH,
+    ]
     assert offered == first + then
     for operator in offered:
         assert properties_of(operator)

@@ -11,6 +11,7 @@ ENTRIES = (
     (ids.BAKE_MAPS, "IMAGE_DATA"),
     (ids.BAKE_DISPLACEMENT, "MOD_DISPLACE"),
     (ids.CURVATURE, "SPHERECURVE"),
+    (ids.LIMIT_MESH, "MOD_SUBSURF"),
 )
 
 
