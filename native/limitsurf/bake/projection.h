@@ -34,7 +34,7 @@ struct ProjectOptions {
   /// 1, 4 or 16 rays a texel for what hides it.
   int samples = 1;
   /// How far from the surface, along the normal, rays begin; kRayBias times the cage's diagonal
-  /// where it is not given.
+  /// and some rounding where it is not given.
   std::optional<double> bias;
   /// Over this part of the image, 0 to 1/2, the weight rises from its borders on.
   double soft_edge = 0;
@@ -47,7 +47,8 @@ struct ProjectOptions {
 };
 
 /// Rays to the eye begin so far above the surface, relative to the cage's diagonal: a thousand
-/// times kSearchError, so that no ray meets the place where it begins.
+/// times kSearchError, so that no ray meets the place where it begins. 16 units in the last place of
+/// the cage's largest coordinate come on top, for cages far from the origin.
 constexpr double kRayBias = 1e-9;
 
 /// Where a projector's image falls on texels of a surface's map.

@@ -34,11 +34,13 @@ from ._results import (
     Hits,
     Locations,
     MapDistortion,
+    MapLocations,
     Projection,
     PtexTexels,
     RayHits,
     Stencils,
     Tessellation,
+    Texels,
 )
 
 __all__ = [

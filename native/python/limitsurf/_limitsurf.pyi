@@ -14,11 +14,13 @@ from ._results import (
     Hits,
     Locations,
     MapDistortion,
+    MapLocations,
     Projection,
     PtexTexels,
     RayHits,
     Stencils,
     Tessellation,
+    Texels,
 )
 
 __version__: str

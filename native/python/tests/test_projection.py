@@ -178,23 +178,25 @@ def test_a_dense_mesh_hides_the_same(anywhere):
     assert np.mean(seen.weight != ~hidden) < 0.02
 
 
-@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
-def test_convex_surfaces_do_not_shade_themselves(scale, anywhere):
+@pytest.mark.parametrize(("scale", "offset"), [(1e-3, 0), (1, 0), (1e4, 0), (1, 1e7), (1, 1e8)])
+def test_convex_surfaces_do_not_shade_themselves(scale, offset, anywhere):
     positions, faces = shapes.cube()
-    surface, uv_map = projectors.mapped(scale * positions, faces)
+    middle = offset * np.array([1, -0.7, 0.3])
+    surface, uv_map = projectors.mapped(scale * positions + middle, faces)
     face, uv = anywhere(surface, 40_000)
     here = surface.evaluate(face, uv, 1)
-    for projection in (
-        projectors.perspective(near=1e-3 * scale, far=1e3 * scale),
-        projectors.orthographic(scale, scale, 1e-3 * scale, 1e3 * scale),
+    away = scale * np.array([3, 2, 2.5])
+    for projection, towards in (
+        (projectors.perspective(), middle + away - here.position),
+        (projectors.orthographic(), np.broadcast_to(away, here.position.shape)),
     ):
-        camera = projection @ projectors.looking(scale * np.array([3, 2, 2.5]), (0, 0, 0))
+        camera = projection @ projectors.looking(middle + away, middle)
         seen = surface.project(
-            uv_map, face, uv, camera, TEXEL, facing=(np.pi / 2, np.pi / 2), frame=False
+            uv_map, face, uv, camera, TEXEL, facing=(np.pi / 2, np.pi / 2), frame=False, depth=None
         )
-        cosine = np.sum(here.normal * to_eye(camera, here.position), axis=1)
-        assert np.all(seen.weight[cosine > 1e-9] == 1)
-        assert np.all(seen.weight[cosine < -1e-9] == 0)
+        cosine = np.sum(here.normal * towards, axis=1) / np.linalg.norm(towards, axis=1)
+        assert np.all(seen.weight[cosine > 1e-6] == 1)
+        assert np.all(seen.weight[cosine < -1e-6] == 0)
         assert np.mean(seen.weight) > 0.2
 
 
