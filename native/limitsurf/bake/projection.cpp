@@ -46,7 +46,7 @@ double partInside(double x, double reach) {
   if (!(reach > 0)) {
     return 0;
   }
-  return std::max(0., std::min(x + reach, 1.) - std::max(x - reach, 0.)) / (2 * reach);
+  return std::clamp((std::min(x + reach, 1.) - std::max(x - reach, 0.)) / (2 * reach), 0., 1.);
 }
 
 void refuse(const char* name, double value, const char* expected) {
