@@ -18,7 +18,7 @@ def add_base() -> bpy.types.Object:
 
 
 def add_sculpt(base: bpy.types.Object) -> bpy.types.Object:
-    """Scales that lean over, so that no displacement along normals could make them."""
+    """Wrinkles that hang over, so that no displacement along normals could make them."""
     ob = base.copy()
     ob.data, ob.name = base.data.copy(), "Sculpt"
     bpy.context.collection.objects.link(ob)
@@ -37,13 +37,14 @@ def add_sculpt(base: bpy.types.Object) -> bpy.types.Object:
 
 
 def moves(at: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Bumps in rows, that grow outward and hang down."""
-    x, y, z = (7.5 * at).T
-    bumps = ((1 + np.sin(x) * np.sin(y) * np.sin(z)) ** 2)[:, None] - 1
+    """Ridges around the head, that grow outward and hang down."""
+    x, y, z = at.T
+    ridges = ((1 + np.sin(20 * z + 2 * np.sin(4 * x) + 3 * y)) ** 2)[:, None] / 4
     fade = 1 / (1 + (at[:, :1] / 0.75) ** 6)  # less on the ears
-    return fade * bumps * (0.05 * normals + [0, 0, -0.04])
+    return fade * ridges * (0.07 * normals + [0, 0, -0.07])
 
 
 def _add_subsurf(ob: bpy.types.Object) -> None:
     subsurf = ob.modifiers.new("Subdivision", "SUBSURF")
     subsurf.quality = QUALITY
+    subsurf.uv_smooth = "SMOOTH_ALL"  # the map's other rules fold it over beside the eyes

@@ -87,17 +87,15 @@ def baked(case: Case, size: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def numbers(errors: Errors) -> list[float]:
-    """Largest and root mean square, inside and at seams."""
-    return [
-        float(value)
-        for some in (errors.inner, errors.border)
-        for value in (some.max(), np.sqrt((some**2).mean()))
-    ]
+    """Largest, largest of 99 in 100, root mean square; largest at seams."""
+    inner = errors.inner
+    root_mean_square = np.sqrt((inner**2).mean())
+    return [inner.max(), np.quantile(inner, 0.99), root_mean_square, errors.border.max()]
 
 
 def table(found: Iterable[Errors]) -> str:
     lines = [
-        "| texels a side | largest | root mean square | at seams, largest | root mean square |",
+        "| texels a side | largest | largest of 99 % | root mean square | largest at seams |",
         "|---|---|---|---|---|",
     ]
     for errors in found:

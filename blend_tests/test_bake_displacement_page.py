@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page about displacement: its examples run, its tables are right, and its picture is what the
+operator gives."""
+
+import json
+import re
+
+import bpy
+import displacement_picture
+import displacement_table
+import limitsurf
+import numpy as np
+import pictures
+import pytest
+import scenes
+import sculpts
+from limit_surface import ids
+from processes import ROOT
+
+PAGE = (ROOT / "docs/displacement.md").read_text()
+EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+
+
+def test_example_in_blender(capsys):
+    ob = scenes.flat_grid(3)
+    scenes.add_subsurf(ob)
+    scenes.add_uv_map(ob, lambda at: at[:, :2] / 4 + 0.1)
+    sculpts.subdivided_copy(ob, 1)
+    exec(EXAMPLES[0], {})
+    assert capsys.readouterr().out.endswith("True Non-Color\n")
+
+
+@pytest.mark.parametrize("example", EXAMPLES[1:])
+def test_examples_without_blender(example, capsys):
+    exec(example, {})
+    said = re.findall(r"^print.*# (.*)$", example, re.MULTILINE)
+    assert said
+    assert capsys.readouterr().out.splitlines() == said
+
+
+def test_table_lists_the_properties_and_their_defaults():
+    rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]+?)`? \|", PAGE, re.MULTILINE))
+    properties = bpy.ops.object.limit_bake_displacement.get_rna_type().properties
+    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
+    assert set(rows) == set(shown)
+    for name, said in rows.items():
+        default = shown[name].default
+        if isinstance(default, bool):
+            default = "on" if default else "off"
+        assert said == ((default or "none") if isinstance(default, str) else f"{default:g}")
+
+
+def test_table_of_errors():
+    """Its first two rows, at fewer places."""
+    rows = re.findall(r"^\| (\d+) \| (.*) \|$", PAGE, re.MULTILINE)
+    assert [int(size) for size, _ in rows] == list(displacement_table.SIZES)
+    said = np.array([[float(number) for number in cells.split(" | ")] for _, cells in rows])
+    case = displacement_table.head()
+    found = [displacement_table.numbers(displacement_table.measure(case, size, 40_000))
+             for size in (256, 512)]  # fmt: skip
+    np.testing.assert_allclose(np.array(found)[:, 1:3], said[:2, 1:3], rtol=0.15)
+    np.testing.assert_array_less(np.array(found)[:, [0, 3]], 1.1 * said[:2, [0, 3]])
+    quarters = said[:-1, 1] / said[1:, 1]
+    assert quarters.min() > 3.7
+
+
+def test_page_tells_the_custom_property():
+    ob = scenes.flat_grid(2)
+    scenes.add_subsurf(ob)
+    target = sculpts.subdivided_copy(ob, 1)
+    bpy.ops.object.limit_bake_displacement(target=target.name, layout_kind="PTEX")
+    told = json.loads(bpy.data.images["Flat Displacement"][ids.DISPLACEMENT])
+    assert ids.DISPLACEMENT in PAGE
+    for name in ("face_count", "resolution", "columns"):
+        assert f"`{name}`" in PAGE
+        assert told[name] == getattr(limitsurf.PtexLayout(4, 16), name)
+
+
+def test_picture_is_what_the_operator_gives(tmp_path):
+    displacement_picture.make(tmp_path / "again.png", samples=2)
+    committed = ROOT / "docs/images/displacement.png"
+    mean, worst = pictures.differences(tmp_path / "again.png", committed)
+    assert mean < 1
+    assert worst < 16
