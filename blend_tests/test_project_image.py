@@ -387,11 +387,12 @@ def test_tiles():
     values = noise((32, 64), alpha=False)
     filled("Shown", values, is_data=True)
     frame = empty(location=(1, 0.5, 1), empty_display_size=1)
-    project(ob, source="PLANAR", image="Shown", empty=frame.name, output="EXISTING", target="Tiles")
+    planar = {"source": "PLANAR", "image": "Shown", "empty": frame.name}
+    project(ob, output="EXISTING", target="Tiles", margin=0, **planar)
     values = truth.pixels(bpy.data.images["Shown"])
     for tile, expected in ((1001, values[:, :32]), (1002, values[:, 32:]), (1011, blank)):
         np.testing.assert_allclose(images.read(target, tile), expected, atol=1.01 / 255)
-    refused(ob, "The image Tiles is tiled", image="Tiles", source="PLANAR", empty=frame.name)
+    refused(ob, "The image Tiles is tiled", **planar | {"image": "Tiles"})
 
 
 def state():
