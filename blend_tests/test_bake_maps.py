@@ -73,24 +73,26 @@ class Truth:
         z = A * self.x**2 + B * self.y**2 + (A + B) / 3
         self.position = np.stack([self.x, self.y, z], axis=-1)
         self.normal = np.stack([-zx, -zy, np.ones_like(zx)], axis=-1) / length[..., None]
-        # The second fundamental form by the first.
-        first = np.stack([1 + zx**2, zx * zy, zx * zy, 1 + zy**2], axis=-1).reshape(*zx.shape, 2, 2)
-        second = np.array([[2 * A, 0], [0, 2 * B]]) / length[..., None, None]
-        k, plan = np.linalg.eig(np.linalg.solve(first, second))
-        order = np.argsort(-k, axis=-1)
-        self.k1, self.k2 = np.moveaxis(np.take_along_axis(k, order, axis=-1), -1, 0) / scale
-        self.directions = []
-        for i in (0, 1):
-            d = np.take_along_axis(plan, order[..., None, i : i + 1], axis=-1)[..., 0]
-            d = np.concatenate([d, (d[..., 0] * zx + d[..., 1] * zy)[..., None]], axis=-1)
-            d /= np.linalg.norm(d, axis=-1, keepdims=True)
-            # along the map's U, which is x: its image on the surface is (1, 0, zx)
-            up = d[..., 0] + d[..., 2] * zx
-            self.directions.append(d * np.where(up < 0, -1, 1)[..., None])
-        self.mean, self.gaussian = (self.k1 + self.k2) / 2, self.k1 * self.k2
+        # The second fundamental form by the first: a 2 x 2 eigenvalue problem written out.
+        e, f, g = 1 + zx**2, zx * zy, 1 + zy**2
+        xx, yy = 2 * A / length, 2 * B / length
+        self.mean = (xx * g + yy * e) / (2 * length**2) / scale
+        self.gaussian = xx * yy / length**2 / scale**2
+        root = np.sqrt(self.mean**2 - self.gaussian)
+        self.k1, self.k2 = self.mean + root, self.mean - root
+        # (second - k first) d = 0; along the map's U, which is x: its image is (1, 0, zx).
+        self.directions = [self._along(k * scale, xx, e, f, zx, zy) for k in (self.k1, self.k2)]
         self.area = length
-        stretch = np.sqrt(np.linalg.eigvalsh(first))
-        self.high, self.low = stretch[..., 1], stretch[..., 0]
+        half, apart = (e + g) / 2, np.hypot((e - g) / 2, f)
+        self.high, self.low = np.sqrt(half + apart), np.sqrt(half - apart)
+
+    def _along(self, k, xx, e, f, zx, zy):
+        x, y = k * f, xx - k * e
+        swap = np.hypot(x, y) < 1e-9 * np.hypot(k * f, 2 * B)
+        x, y = np.where(swap, 1, x), np.where(swap, 0, y)
+        d = np.stack([x, y, x * zx + y * zy], axis=-1)
+        d /= np.linalg.norm(d, axis=-1, keepdims=True)
+        return d * np.where(d[..., 0] + d[..., 2] * zx < 0, -1, 1)[..., None]
 
 
 def test_every_map_is_what_the_formulas_say():

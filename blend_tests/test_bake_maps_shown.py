@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tangent-space normal maps on the meshes that they are for, as Cycles shades these; and Blender's
+own tangents on ever finer meshes, which become the limit's frames."""
+
+import bpy
+import limitsurf
+import numpy as np
+import pytest
+from limit_surface import attributes, ids, images
+
+SIZE = 128
+
+
+def suzanne(smooth: bool) -> bpy.types.Object:
+    bpy.ops.mesh.primitive_monkey_add()
+    ob = bpy.context.active_object
+    if smooth:
+        ob.data.shade_smooth()
+    return subdivided(ob)
+
+
+def drum(smooth: bool) -> bpy.types.Object:
+    """With two polygons of seven corners."""
+    bpy.ops.mesh.primitive_cylinder_add(vertices=7)
+    ob = bpy.context.active_object
+    if smooth:
+        ob.data.shade_smooth()
+    return subdivided(ob)
+
+
+def subdivided(ob: bpy.types.Object) -> bpy.types.Object:
+    subsurf = ob.modifiers.new("Subdivision", "SUBSURF")
+    subsurf.levels, subsurf.render_levels = 1, 2
+    return ob
+
+
+def shaded(ob: bpy.types.Object, normal_map: bpy.types.Image) -> np.ndarray:
+    """The normals that Cycles shades the object with, in the object's space; 0 where it has no
+    polygon."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.bake.margin, scene.render.bake.normal_space = 0, "OBJECT"
+    result = bpy.data.images.new("shaded", SIZE, SIZE, float_buffer=True, is_data=True)
+    material = bpy.data.materials.new("shows the map")
+    ob.data.materials.clear()
+    ob.data.materials.append(material)
+    material.use_nodes = True
+    tree = material.node_tree
+    nodes, links = tree.nodes, tree.links
+    nodes.clear()
+    into, texture, color, normal, diffuse, output = (
+        nodes.new(f"ShaderNode{kind}")
+        for kind in ("TexImage", "TexImage", "VectorMath", "NormalMap", "BsdfDiffuse",
+                     "OutputMaterial")
+    )  # fmt: skip
+    texture.image, into.image, nodes.active = normal_map, result, into
+    color.operation = "MULTIPLY_ADD"
+    color.inputs[1].default_value = color.inputs[2].default_value = (0.5, 0.5, 0.5)
+    links.new(texture.outputs[0], color.inputs[0])
+    links.new(color.outputs[0], normal.inputs["Color"])
+    links.new(normal.outputs[0], diffuse.inputs["Normal"])
+    links.new(diffuse.outputs[0], output.inputs[0])
+    bpy.ops.object.bake(type="NORMAL")
+    found = images.read(result)[..., :3]
+    return np.where(found.any(axis=-1, keepdims=True), 2 * found - 1, 0)
+
+
+def angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Degrees."""
+    one = one / np.linalg.norm(one, axis=-1, keepdims=True)
+    return np.degrees(2 * np.arcsin((np.linalg.norm(one - other, axis=-1) / 2).clip(0, 1)))
+
+
+@pytest.mark.parametrize("smooth", [True, False])
+@pytest.mark.parametrize("target", ["CAGE", "VIEWPORT", "RENDER"])
+@pytest.mark.parametrize("make", [suzanne, drum])
+def test_polygons_are_shaded_as_the_limit_surface(make, target, smooth):
+    ob = make(smooth)
+    bpy.ops.object.limit_bake_maps(
+        maps={"NORMAL_TANGENT", "NORMAL_OBJECT"},
+        width=SIZE, height=SIZE, target=target, overlap="ALLOW",
+    )  # fmt: skip
+    if target == "CAGE":
+        ob.modifiers.clear()
+    elif target == "VIEWPORT":
+        ob.modifiers[0].render_levels = 1  # bakes are renders
+    exact = images.read(bpy.data.images[f"{ob.name} Normal"])[..., :3]
+    found = shaded(ob, bpy.data.images[f"{ob.name} Tangent Normal"])
+    there = found.any(axis=-1) & exact.any(axis=-1)
+    assert there.sum() > 0.5 * SIZE**2
+    apart = angles(found[there], exact[there])
+    # Cycles turns shading normals round where the polygon's smooth normal faces away from it.
+    turned = apart > 179
+    assert turned.mean() < 0.02
+    assert np.median(apart) < 0.02
+    assert np.percentile(apart[~turned], 99) < 0.3
+
+
+def flat_map(ob: bpy.types.Object) -> float:
+    """How far off shading is without the map, in the median."""
+    bpy.ops.object.limit_bake_maps(maps={"NORMAL_OBJECT"}, width=SIZE, height=SIZE, overlap="ALLOW")
+    ob.modifiers.clear()
+    plain = images.new("plain", 4, 4, is_float=True, is_data=True)
+    plain.pixels.foreach_set(np.tile(np.float32([0, 0, 1, 1]), 16))
+    exact = images.read(bpy.data.images[f"{ob.name} Normal"])[..., :3]
+    found = shaded(ob, plain)
+    there = found.any(axis=-1) & exact.any(axis=-1)
+    return float(np.median(angles(found[there], exact[there])))
+
+
+def test_without_the_map_shading_is_another():
+    assert flat_map(suzanne(smooth=True)) > 2
+
+
+def bent_sheet() -> tuple[limitsurf.LimitSurface, limitsurf.SurfaceData]:
+    """With a pole of five quads, and a map that is no projection."""
+    angle = 2 * np.pi * np.arange(5) / 5
+    spokes = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    between = 1.3 * np.stack([np.cos(angle + 0.6), np.sin(angle + 0.6)], axis=1)
+    plan = np.concatenate([[[0, 0]], spokes, between])
+    height = 0.4 * plan[:, 0] ** 2 - 0.3 * plan[:, 0] * plan[:, 1]
+    faces = np.array([[0, 1 + i, 6 + i, 1 + (i + 1) % 5] for i in range(5)])
+    mesh = limitsurf.ControlMesh.from_faces(np.column_stack([plan, height]), faces)
+    surface = limitsurf.LimitSurface(mesh)
+    uv = plan @ [[-0.3, 0.1], [0.05, 0.35]] + 0.02 * np.sin(5 * plan) + 0.5
+    return surface, surface.face_varying(uv, faces.ravel(), "none")
+
+
+def tangents(surface, uv_map, levels):
+    """Blender's of a mesh on the limit, and the limit's, corner by corner."""
+    fine = surface.tessellate(levels)
+    mesh = bpy.data.meshes.new("fine")
+    mesh.from_pydata(fine.positions, [], fine.faces, shade_flat=False)
+    mesh.update()
+    places = fine.corner_locations
+    value = uv_map.evaluate(places.face, places.uv).value
+    mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", value.astype(np.float32).ravel())
+    normals = surface.frames(places.face, places.uv)[:, :, 2]
+    mesh.normals_split_custom_set(normals)
+    mesh.calc_tangents(uvmap="UVMap")
+    assert np.array_equal(attributes.read(mesh, ids.CORNER_VERTEX), fine.faces.ravel())
+    tangent, sign = np.empty(3 * len(mesh.loops), np.float32), np.empty(len(mesh.loops), np.float32)
+    mesh.loops.foreach_get("tangent", tangent)
+    mesh.loops.foreach_get("bitangent_sign", sign)
+    return tangent.reshape(-1, 3), sign, surface.tangent_frames(uv_map, places.face, places.uv)
+
+
+def test_tangents_of_fine_meshes_become_the_limits():
+    surface, uv_map = bent_sheet()
+    errors = []
+    for levels in (2, 3, 4):
+        tangent, sign, frames = tangents(surface, uv_map, levels)
+        assert (np.linalg.det(frames) < 0).all()  # the map is mirrored
+        assert (sign == -1).all()
+        errors.append(np.linalg.norm(tangent - frames[:, :, 0], axis=1).mean())
+    ratios = np.array(errors[:-1]) / errors[1:]
+    assert (ratios > 2).all()
+    assert errors[-1] < 3e-4  # Blender keeps normals of its own in 16 bits a component
