@@ -217,9 +217,9 @@ def test_creases_that_blender_leaves_on_a_subdivided_mesh(base):
 
 
 def test_udim_tiles(sculpt, base):
-    for layer in (base.data.uv_layers[0],):
-        uv = attributes.read(base.data, layer.name)
-        layer.data.foreach_set("uv", (uv + [0.6, 0]).astype(np.float32).ravel())
+    layer = base.data.uv_layers[0]
+    uv = attributes.read(base.data, layer.name)
+    layer.data.foreach_set("uv", (uv + [0.6, 0]).astype(np.float32).ravel())
     image = bake(base, sculpt, use_tiles=True, space="OBJECT", width=64, height=64)
     assert image.source == "TILED"
     assert [tile.number for tile in image.tiles] == [1001, 1002]
@@ -253,6 +253,19 @@ def refused(ob, match, **properties):
     assert bpy.context.active_object == ob
 
 
+def test_tiles_in_tangent_space(base, sculpt):
+    """Frames are the map's, and each face's own along seams."""
+    image = bake(base, sculpt, layout_kind="PTEX", face_resolution="4")
+    texels = limitsurf.PtexLayout(18, 4).texels()
+    own, uv_map, _ = texels_of(base, image)
+    frames = own.tangent_frames(uv_map, texels.face, texels.uv)
+    moved = own.displaced(
+        texels.face, texels.uv, images.read(image)[texels.y, texels.x, :3], frames=frames
+    )
+    expected = there(base, sculpt, 2, texels.face, texels.uv)
+    np.testing.assert_allclose(moved, expected, atol=3 * SINGLE)
+
+
 def test_refusals(base, sculpt):
     for other in list(bpy.context.selected_objects):
         other.select_set(False)
@@ -270,6 +283,7 @@ def test_refusals(base, sculpt):
             target=cross.name)  # fmt: skip
     base.data.uv_layers.remove(base.data.uv_layers[0])
     refused(base, "Holes: there is no UV map", target="Sculpt")
+    refused(base, "choose the space Object", target="Sculpt", layout_kind="PTEX")
 
 
 def test_the_selected_mesh_is_taken(base, sculpt):

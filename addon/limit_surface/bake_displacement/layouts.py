@@ -47,9 +47,6 @@ class UvLayout:
         )
         return Texels(found.x, found.y, found.face, found.uv)
 
-    def frames(self, surface: limitsurf.LimitSurface, texels: Texels) -> np.ndarray:
-        return surface.tangent_frames(self.uv_data, texels.face, texels.uv)
-
 
 @dataclass(frozen=True)
 class PtexLayout:
@@ -67,9 +64,6 @@ class PtexLayout:
     def texels(self, _tile: int, _progress: Progress) -> Texels:
         found = self.layout.texels()
         return Texels(found.x, found.y, found.face, found.uv)
-
-    def frames(self, surface: limitsurf.LimitSurface, texels: Texels) -> np.ndarray:
-        return surface.frames(texels.face, texels.uv)
 
     def described(self) -> dict[str, int]:
         """All that is needed to find a place's texel."""
@@ -99,7 +93,7 @@ def of(
         raise RefusalError(f"{whose}: the UV map {surfaces.found.uv_map.name} touches no UDIM tile")
     baking.check_size(properties.width, properties.height, len(tiles), 1, properties.allow_large)
     return UvLayout(
-        baking.uv_data(surfaces.base, surfaces.found, whose),
+        surfaces.uv_data,
         properties.width,
         properties.height,
         tiles,

@@ -77,6 +77,8 @@ def _measured(request: Request, texels: Texels) -> tuple[np.ndarray, np.ndarray]
             direction=request.direction.lower(),
         )
         return np.repeat(distances[:, None], 3, axis=1), distances
-    frames = request.layout.frames(base, texels) if request.in_frames else None
+    frames = None
+    if request.in_frames:
+        frames = base.tangent_frames(surfaces.uv_data, texels.face, texels.uv)
     vectors = base.vector_displacement(target, texels.face, texels.uv, frames=frames)
     return vectors, np.linalg.norm(vectors, axis=1)

@@ -42,7 +42,7 @@ class DisplacementProperties:
         name="Space",
         description="Which axes vectors are given in",
         items=(
-            ("TANGENT", "Tangent", "Tangent, normal, bitangent of the limit surface", "", 0),
+            ("TANGENT", "Tangent", "Tangent, normal, bitangent: a UV map gives them", "", 0),
             ("OBJECT", "Object", "The active object's axes", "", 1),
         ),
         default="TANGENT",
@@ -101,13 +101,14 @@ class DisplacementProperties:
         description="How places are found on the image",
         items=(
             ("UV", "UV Map", "By a UV map, as it is on the limit surface", "", 0),
-            ("PTEX", "Tile per Face", "A tile for each Ptex face: no UV map is needed", "", 1),
+            ("PTEX", "Tile per Face", "A tile for each Ptex face, whatever the UV map", "", 1),
         ),
         default="UV",
     )
     uv_map: StringProperty(
         name="UV Map",
-        description="Name of the UV map. Without one the active map is taken",
+        description="Name of the UV map, for the layout and for tangents. Without one the active "
+        "map is taken",
     )
     width: IntProperty(
         name="Width",
@@ -191,8 +192,9 @@ def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -
         column.prop(properties, name)
     column = layout.column()
     column.prop(properties, "layout_kind")
+    column.prop(properties, "uv_map")
     if properties.layout_kind == "UV":
-        for name in ("uv_map", "width", "height", "margin", "use_tiles", "overlap"):
+        for name in ("width", "height", "margin", "use_tiles", "overlap"):
             column.prop(properties, name)
     else:
         column.prop(properties, "face_resolution")

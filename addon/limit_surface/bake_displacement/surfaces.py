@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 class Surfaces:
     base: limitsurf.LimitSurface
     target: limitsurf.LimitSurface
+    uv_data: limitsurf.SurfaceData | None  # the base's map, where one is needed
     found: cage.Cage  # the base's
     target_name: str
 
@@ -30,11 +31,16 @@ def read(
     """RefusalError where there are not two surfaces."""
     depsgraph = context.evaluated_depsgraph_get()
     target = _target(properties.target, context, ob)
-    if properties.layout_kind == "UV":
+    in_tangent_space = properties.mode == "VECTOR" and properties.space == "TANGENT"
+    needs_map = properties.layout_kind == "UV" or in_tangent_space
+    if properties.layout_kind == "PTEX" and needs_map and not ob.data.uv_layers:
+        raise RefusalError(f"{ob.name}: tangent space needs a UV map: choose the space Object")
+    if needs_map:
         found = baking.read_cage(ob, depsgraph, properties.uv_map)
     else:
         found = cage.read(ob, depsgraph)
     base = _surface(found.mesh, ob.name)
+    uv_data = baking.uv_data(base, found, ob.name) if needs_map else None
     if properties.target_shape == "LIMIT":
         found_target = cage.read(target, depsgraph)
         mesh, matrix = found_target.mesh, found_target.matrix
@@ -43,7 +49,7 @@ def read(
     sculpted = _surface(mesh, target.name)
     if properties.transform == "WORLD":
         sculpted.set_positions(_carried(mesh.positions, matrix, found.matrix, ob.name))
-    return Surfaces(base, sculpted, found, target.name)
+    return Surfaces(base, sculpted, uv_data, found, target.name)
 
 
 def _target(name: str, context: bpy.types.Context, ob: bpy.types.Object) -> bpy.types.Object:
