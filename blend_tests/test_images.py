@@ -126,6 +126,18 @@ def test_a_new_image_comes_back(write):
     assert shows("made", 1)
 
 
+def test_new_images_are_kept_in_the_file(tmp_path):
+    for is_float in (True, False):
+        image = images.new("new", *SIZE, is_float=is_float, is_data=True)
+        pixels = some_pixels(0)
+        if is_float:
+            pixels[0, 0, :3] = (-3, 1e-4, 7.5)
+        images.write(image, pixels, is_new=True)
+        image.colorspace_settings.name = "Non-Color"  # Blender takes the pixels anew
+        np.testing.assert_allclose(raw(image), pixels, rtol=1e-7, atol=1e-7)
+        bpy.data.images.remove(image)
+
+
 def test_a_write_that_fails_leaves_the_pixels(tmp_path):
     image = new_image("generated 8", tmp_path)
     with pytest.raises(ValueError, match="expected"):

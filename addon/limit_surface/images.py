@@ -93,7 +93,7 @@ def write(
     is_new: bool = False,
 ) -> None:
     """Of the whole tile, or of several: a mapping of their numbers to their pixels. `is_new`: the
-    image has been made by the same operator, and undo removes it.
+    image has been made by the same operator, so that undo removes it; it is packed, too.
 
     Takes part in undo and redo. Marks the image as changed, so that Blender asks to save it; tiled
     images are packed instead, as their files must not change behind the user's back."""
@@ -105,8 +105,13 @@ def write(
         width, height = described.tiles[number]
         if values.shape != (height, width, 4):
             raise ValueError(f"pixels have shape {values.shape}; expected ({height}, {width}, 4)")
-    with pixel_undo.recorded(image, is_new):
+    if is_new:
+        # Left as it is, a generated image would lose its pixels to any change of its settings.
         image_tiles.write_some(image, given)
+        image.pack()
+    else:
+        with pixel_undo.recorded(image):
+            image_tiles.write_some(image, given)
 
 
 def new(

@@ -42,7 +42,7 @@ class _Kept:
 
     def show(self, image: bpy.types.Image) -> None:
         tiles = {number: np.load(file) for number, file in self.files.items() if file.exists()}
-        if tiles and tiles.keys() == self.files.keys():
+        if tiles.keys() == self.files.keys():
             image_tiles.write_some(image, tiles)
 
     def drop(self) -> None:
@@ -66,11 +66,10 @@ _shown: dict[int, str | None] = {}  # the mark whose pixels an image holds, by t
 
 
 @contextmanager
-def recorded(image: bpy.types.Image, is_new: bool) -> Iterator[None]:
-    """Around a change of the image's pixels. If it fails the pixels are as they were. What a new
-    image shows is not kept: there it was not."""
+def recorded(image: bpy.types.Image) -> Iterator[None]:
+    """Around a change of the image's pixels. If it fails the pixels are as they were."""
     mark, onto = uuid4().hex, image.get(ids.PIXELS_MARK)
-    before = _Kept({}) if is_new else _Kept.of(image, f"{mark}_before")
+    before = _Kept.of(image, f"{mark}_before")
     try:
         yield
         after = _Kept.of(image, f"{mark}_after")
