@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The example of docs/projecting.md runs, and its picture is what the program draws."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import limitsurf as ls
+import matplotlib.image
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[2]
+BLOCK = 20  # pixels a side
+
+
+@pytest.fixture(scope="module")
+def program():
+    spec = importlib.util.spec_from_file_location(
+        "projecting_picture", ROOT / "tools/projecting_picture.py"
+    )
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def differences(one: np.ndarray, other: np.ndarray) -> tuple[float, float]:
+    """Of all pixels, and of the worst block of them."""
+    error = np.abs(one - other).mean(axis=2)
+    rows, columns = (size // BLOCK for size in error.shape)
+    blocks = error[: rows * BLOCK, : columns * BLOCK].reshape(rows, BLOCK, columns, BLOCK)
+    return error.mean(), blocks.mean(axis=(1, 3)).max()
+
+
+def test_picture_is_up_to_date(program):
+    shown = matplotlib.image.imread(ROOT / "docs/images/projecting.png")[..., :3]
+    mean, worst = differences(program.picture(), shown)
+    assert mean < 0.004
+    assert worst < 0.03
+
+
+def test_wrong_pictures_are_seen(program, monkeypatch):
+    shown = matplotlib.image.imread(ROOT / "docs/images/projecting.png")[: program.PANEL, :, :3]
+    project = ls.LimitSurface.project
+
+    def through(surface, *args, **options):
+        return project(surface, *args, **options | {"occlusion": False})
+
+    monkeypatch.setattr(ls.LimitSurface, "project", through)
+    assert differences(program.side_by_side(program.top_row()), shown)[1] > 0.06
+
+
+def test_example():
+    side = np.arange(4.0)
+    x, y = np.meshgrid(side, side)
+    positions = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+    first = (np.arange(3) + 4 * np.arange(3)[:, None]).ravel()
+    faces = np.stack([first, first + 1, first + 5, first + 4], axis=1)
+    camera = np.diag([0.5, 0.5, -0.1, 1.0])  # straight down on (-2, -2) to (2, 2)
+    known = {
+        "positions": positions,
+        "faces": faces,
+        "uvs": positions[:, :2] / 3,
+        "uv_indices": faces.ravel(),
+        "camera_matrix": camera,
+        "pixels": np.tile(np.float32([1, 0.5, 0, 1]), (8, 8, 1)),
+        "texture": np.zeros((512, 512, 4), np.float32),
+    }
+    page = (ROOT / "docs/projecting.md").read_text()
+    for example in re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL):
+        exec(example, known)
+    texture = known["texture"]
+    np.testing.assert_allclose(texture[:330, :330], np.broadcast_to([1, 0.5, 0, 1], (330, 330, 4)))
+    assert not texture[350:].any()
