@@ -47,8 +47,8 @@ struct ProjectOptions {
 };
 
 /// Rays to the eye begin so far above the surface, relative to the cage's diagonal: a thousand
-/// times kSearchError, so that no ray meets the place where it begins. 16 units in the last place of
-/// the cage's largest coordinate come on top, for cages far from the origin.
+/// times kSearchError, so that no ray meets the place where it begins. 16 units in the last place
+/// of the cage's largest coordinate come on top, for cages far from the origin.
 constexpr double kRayBias = 1e-9;
 
 /// Where a projector's image falls on texels of a surface's map.
