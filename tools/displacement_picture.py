@@ -68,7 +68,7 @@ def clay() -> bpy.types.Material:
     made.use_nodes = True
     shader = made.node_tree.nodes["Principled BSDF"]
     shader.inputs["Base Color"].default_value = CLAY
-    shader.inputs["Roughness"].default_value = 0.6
+    shader.inputs["Specular IOR Level"].default_value = 0
     shader.inputs["Emission Color"].default_value = CLAY
     shader.inputs["Emission Strength"].default_value = 0.06
     return made
