@@ -102,7 +102,7 @@ class OBJECT_OT_limit_bake_displacement(
             pixels = measured.tiles[FIRST_TILE]
             height, width, _ = pixels.shape
             image = images.new(name, width, height, is_float=True, is_data=True, alpha=False)
-            images.write(image, pixels)
+            images.write(image, pixels, is_new=True)
         else:
             image = images.new_tiled(name, measured.tiles, is_float=True, is_data=True)
         if self.filepath:

@@ -89,7 +89,8 @@ class Made:
             sizes = images.checked(image, to_write=True).tiles
             if any(sizes.get(tile) != canvas.size for tile, canvas in canvases.items()):
                 raise RefusalError(f"{target} has another size meanwhile")
-        images.write(image, {tile: canvas.pixels for tile, canvas in canvases.items()})
+        pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
+        images.write(image, pixels, is_new=isinstance(target, NewImage))
         if self.order.create_material:
             material.show(surface, image, self.order.world.cage.uv_map.name)
         return f"{self.count:,} texels of {image.name}"
