@@ -164,6 +164,17 @@ def test_normals_at_creases_are_those_of_either_side():
     assert np.count_nonzero(apart > 0.2) >= 4 * 8 * 2
 
 
+def test_edges_are_sharp_where_they_part_normals():
+    """And nowhere else: renderers split vertices there."""
+    ob = creased_cube()
+    mesh = make(ob, levels=3).data
+    crease = attributes.read(mesh, ids.EDGE_CREASE) == 1
+    sharp = np.array([edge.use_edge_sharp for edge in mesh.edges])
+    assert crease.sum() == 4 * 8
+    np.testing.assert_array_equal(sharp, crease)
+    assert not any(e.use_edge_sharp for e in make(scenes.cross(), levels=2).data.edges)
+
+
 def test_normals_are_blenders_own_without_exact_ones(dressed):
     dressed.data.polygons.foreach_set("use_smooth", np.arange(len(dressed.data.polygons)) % 2 == 0)
     made = make(dressed, levels=1, exact_normals=False)

@@ -54,6 +54,7 @@ EDGE_VERTICES = ".edge_verts"
 EDGE_CREASE = "crease_edge"
 VERTEX_CREASE = "crease_vert"
 CUSTOM_NORMAL = "custom_normal"
+SHARP_EDGE = "sharp_edge"
 
 REPORT = "limit_report"  # custom property of the surface's object
 

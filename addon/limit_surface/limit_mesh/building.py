@@ -9,7 +9,9 @@ import numpy as np
 from .. import attributes, ids
 from . import carried, vertex_groups
 from .making import Made
+from .places import next_corner
 
+_SAME = 1e-4  # components of normals that differ by less
 # From there on normals can be stored as they are; before, as angles of 16 bits.
 _FREE_NORMALS = bpy.app.version >= (4, 5)
 
@@ -34,7 +36,8 @@ def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) 
         for slot in source.material_slots:
             mesh.materials.append(slot.material if slot.link == "DATA" else None)
         if made.tessellation.corner_normals is not None:
-            _set_normals(mesh, made.tessellation.corner_normals)
+            on = made.tessellation
+            _set_normals(mesh, on.corner_normals, on.face_sizes)
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise
@@ -86,9 +89,30 @@ def _activate_as(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
             colours.render_color_index = colours.find(name)
 
 
-def _set_normals(mesh: bpy.types.Mesh, normals: np.ndarray) -> None:
+def _set_normals(mesh: bpy.types.Mesh, normals: np.ndarray, face_sizes: np.ndarray) -> None:
+    """Edges are sharp where they part normals: Cycles keeps several at a vertex only there."""
+    edge = attributes.read(mesh, ids.CORNER_EDGE)
+    part = _parting(edge, normals, normals[next_corner(face_sizes)], len(mesh.edges))
+    attributes.write(mesh, ids.SHARP_EDGE, "BOOLEAN", "EDGE", part)
     if _FREE_NORMALS:
         attributes.write(mesh, ids.CUSTOM_NORMAL, "FLOAT_VECTOR", "CORNER", normals)
         mesh.update()
     else:
         mesh.normals_split_custom_set(normals)
+
+
+def _parting(
+    edge: np.ndarray, at_corner: np.ndarray, at_next: np.ndarray, count: int
+) -> np.ndarray:
+    """Which edges have polygons on their two sides whose normals differ at an end. `edge` leads
+    from each corner to the next."""
+    order = np.argsort(edge, kind="stable")
+    paired = edge[order[1:]] == edge[order[:-1]]
+    one, other = order[:-1][paired], order[1:][paired]
+    apart = np.maximum(
+        np.abs(at_corner[one] - at_next[other]).max(axis=1),
+        np.abs(at_next[one] - at_corner[other]).max(axis=1),
+    )
+    part = np.zeros(count, bool)
+    part[edge[one[apart > _SAME]]] = True
+    return part

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page about object.limit_mesh: its examples run, its table is the operator's, and its picture
+is what the operator makes."""
+
+import re
+
+import bpy
+import limit_mesh_picture
+import pictures
+import scenes
+from processes import ROOT
+
+PAGE = (ROOT / "docs/limit_mesh.md").read_text()
+EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+
+
+def test_example_in_blender(capsys):
+    scenes.cross()
+    exec(EXAMPLES[0], {})
+    count = int(capsys.readouterr().out.split()[-2])
+    assert count == len(bpy.context.active_object.data.polygons) > 100
+
+
+def test_example_without_blender(capsys):
+    known = {}
+    exec(EXAMPLES[1], known)
+    assert "is a triangle" in capsys.readouterr().out
+    assert known["chosen"].measure.max() <= 0.001
+
+
+def test_table_lists_the_properties_and_their_defaults():
+    section = PAGE.split("## Levels")[0]
+    rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]+?)`? \|", section, re.MULTILINE))
+    properties = bpy.ops.object.limit_mesh.get_rna_type().properties
+    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
+    assert set(rows) == set(shown)
+    for name, said in rows.items():
+        default = shown[name].default
+        if isinstance(default, bool):
+            default = "on" if default else "off"
+        assert said == ((default or "none") if isinstance(default, str) else f"{default:g}")
+
+
+def test_picture_is_what_the_operator_makes(tmp_path):
+    limit_mesh_picture.make(tmp_path / "again.png", samples=4)
+    mean, worst = pictures.differences(tmp_path / "again.png", ROOT / "docs/images/limit_mesh.png")
+    assert mean < 0.8
+    assert worst < 16
