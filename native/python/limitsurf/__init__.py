@@ -76,6 +76,15 @@ __all__ = [
     "out_of_shading_frames",
 ]
 
-for _public in (ControlMesh, FilteredImage, LimitSurface, LocationError, MeshError, SurfaceData):
+for _public in (
+    ControlMesh,
+    FilteredImage,
+    LimitSurface,
+    LocationError,
+    MeshError,
+    PtexLayout,
+    SubdividedFaces,
+    SurfaceData,
+):
     _public.__module__ = __name__
 del _public

@@ -9,6 +9,14 @@ import limitsurf as ls
 import pytest
 
 PACKAGE = Path(ls.__file__).parent
+CLASSES = (
+    ls.ControlMesh,
+    ls.FilteredImage,
+    ls.LimitSurface,
+    ls.PtexLayout,
+    ls.SubdividedFaces,
+    ls.SurfaceData,
+)
 
 
 def test_version_is_the_distributions():
@@ -30,6 +38,8 @@ def test_all_names_exist_and_say_where_they_are_from():
         ls.LimitSurface,
         ls.MeshError,
         ls.LocationError,
+        ls.PtexLayout,
+        ls.SubdividedFaces,
         ls.SurfaceData,
     ):
         assert public.__module__ == "limitsurf"
@@ -39,15 +49,16 @@ def test_types_are_there_for_checkers():
     assert (PACKAGE / "py.typed").exists()
     stubs = ast.parse((PACKAGE / "_limitsurf.pyi").read_text())
     classes = {node.name: node for node in stubs.body if isinstance(node, ast.ClassDef)}
-    for name in ("ControlMesh", "FilteredImage", "LimitSurface", "SurfaceData"):
+    for cls in CLASSES:
+        name = cls.__name__
         stubbed = {n.name for n in classes[name].body if isinstance(n, ast.FunctionDef)}
         real = {n for n in vars(getattr(ls, name)) if not n.startswith("_")}
         assert stubbed - {"__init__"} == real
     stubbed = {node.name for node in stubs.body if isinstance(node, ast.FunctionDef)}
-    assert {"blend_over", "box_sides", "box_weights"} <= stubbed
+    assert {"bilinear", "blend_over", "box_sides", "box_weights"} <= stubbed
 
 
-@pytest.mark.parametrize("cls", [ls.ControlMesh, ls.FilteredImage, ls.LimitSurface, ls.SurfaceData])
+@pytest.mark.parametrize("cls", CLASSES)
 def test_everything_public_has_a_docstring(cls):
     assert cls.__doc__
     for name, member in vars(cls).items():
