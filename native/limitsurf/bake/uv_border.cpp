@@ -13,6 +13,9 @@ namespace {
 /// Sides count as the same if their ends and middles are no farther apart than so many tolerances.
 constexpr double kSame = 100;
 
+/// Cells in which a map folds back become points when they are so small.
+constexpr double kFoldDetail = 0.25;
+
 constexpr std::size_t kPiecesPerTask = 1024;
 
 /// Side i of a patch, from its corner i to the next: its control points.
@@ -50,6 +53,33 @@ struct Orientation {
 struct SidePoints {
   Point2 begin, middle, end;
 };
+
+/// Appends points along the curves on which a cell folds.
+void appendFolds(const UvCell& cell, const FaceRectangle& on, const Box2& around,
+                 std::vector<BorderCurve>& out) {
+  const Box2 box = cell.box();
+  const JacobianBounds jacobian(cell);
+  if (!(jacobian.least <= 0 && jacobian.largest >= 0) || (box.high < around.low).any() ||
+      (box.low > around.high).any()) {
+    return;
+  }
+  if (((box.high - box.low) <= kFoldDetail).all()) {
+    BorderCurve curve;
+    Point2 ds, dt;
+    cell.evaluate(0.5, 0.5, curve.points[0], ds, dt);
+    std::fill_n(curve.points + 1, 3, curve.points[0]);
+    curve.on = on;
+    curve.begin = curve.end = Point2(cell.s0, cell.t0) + 0.5 * cell.size;
+    curve.flipped = cross(ds, dt) < 0;
+    out.push_back(curve);
+    return;
+  }
+  UvCell quarters[4];
+  cell.quarter(quarters);
+  for (const UvCell& quarter : quarters) {
+    appendFolds(quarter, on, around, out);
+  }
+}
 
 }  // namespace
 
@@ -151,8 +181,8 @@ void UvBorders::appendSide(const BezierPatch& patch, int side, bool flipped,
   out.push_back(curve);
 }
 
-void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, double detail,
-                                std::vector<BorderCurve>& out) const {
+void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, const Box2& around,
+                                double detail, std::vector<BorderCurve>& out) const {
   SurfacePatches::SplitCore split;
   SurfacePiece core = map_.pieces()[static_cast<std::size_t>(of.piece)].piece;
   const Point2 vertex = frame.at(map_.patches().coreVertex(core).head<2>().array());
@@ -166,6 +196,11 @@ void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, double
     core = split.core;
     append(0, 0);
     append(2, 3);
+    if (of.folds) {
+      for (const BezierPatch& patch : split.patches) {
+        appendFolds(cellOf(patch, frame), patch.on, around, out);
+      }
+    }
     if (first) {
       append(0, 1);
       append(1, 1);
@@ -174,7 +209,7 @@ void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, double
     }
     const Point2 size =
         (split.core_box.high - split.core_box.low).head<2>().array().abs() * frame.scale;
-    if ((of.sides & 9u) == 0) {
+    if ((of.sides & 9u) == 0 && !of.folds) {
       return;
     }
     if (size.maxCoeff() > detail && core.steps < SurfacePatches::kMostSteps) {
@@ -201,37 +236,6 @@ void UvBorders::appendCoreSides(const Sides& of, const PlaneFrame& frame, double
   }
 }
 
-namespace {
-
-/// Appends points along the curves on which a cell folds.
-void appendFolds(const UvCell& cell, const FaceRectangle& on, const Box2& around, double detail,
-                 std::vector<BorderCurve>& out) {
-  const Box2 box = cell.box();
-  const JacobianBounds jacobian(cell);
-  if (!(jacobian.least <= 0 && jacobian.largest >= 0) || (box.high < around.low).any() ||
-      (box.low > around.high).any()) {
-    return;
-  }
-  if (((box.high - box.low) <= detail).all()) {
-    BorderCurve curve;
-    Point2 ds, dt;
-    cell.evaluate(0.5, 0.5, curve.points[0], ds, dt);
-    std::fill_n(curve.points + 1, 3, curve.points[0]);
-    curve.on = on;
-    curve.begin = curve.end = Point2(cell.s0, cell.t0) + 0.5 * cell.size;
-    curve.flipped = cross(ds, dt) < 0;
-    out.push_back(curve);
-    return;
-  }
-  UvCell quarters[4];
-  cell.quarter(quarters);
-  for (const UvCell& quarter : quarters) {
-    appendFolds(quarter, on, around, detail, out);
-  }
-}
-
-}  // namespace
-
 void UvBorders::appendCurves(const PlaneFrame& frame, const Box2& box, double reach, double detail,
                              std::vector<BorderCurve>& out) const {
   const Box2 around = box.grown(Point2::Constant(reach));
@@ -242,7 +246,7 @@ void UvBorders::appendCurves(const PlaneFrame& frame, const Box2& box, double re
       continue;
     }
     if (piece.piece.isCore()) {
-      appendCoreSides(of, frame, detail, out);
+      appendCoreSides(of, frame, around, detail, out);
       continue;
     }
     const BezierPatch patch = map_.patches().patch(piece.piece);
@@ -252,7 +256,7 @@ void UvBorders::appendCurves(const PlaneFrame& frame, const Box2& box, double re
       }
     }
     if (of.folds) {
-      appendFolds(cellOf(patch, frame), patch.on, around, detail, out);
+      appendFolds(cellOf(patch, frame), patch.on, around, out);
     }
   }
 }

@@ -29,7 +29,7 @@ class UvBorders {
   UvBorders(const UvPatches& map, int threads);
 
   /// Those no farther from a box than `reach`, appended to `out`. Where a side runs into an
-  /// extraordinary vertex, and along folds, pieces of the length `detail` end the matter.
+  /// extraordinary vertex, a straight piece of the length `detail` ends the matter.
   void appendCurves(const PlaneFrame& frame, const Box2& box, double reach, double detail,
                     std::vector<BorderCurve>& out) const;
 
@@ -44,7 +44,7 @@ class UvBorders {
 
   void appendSide(const BezierPatch& patch, int side, bool flipped, const PlaneFrame& frame,
                   std::vector<BorderCurve>& out) const;
-  void appendCoreSides(const Sides& of, const PlaneFrame& frame, double detail,
+  void appendCoreSides(const Sides& of, const PlaneFrame& frame, const Box2& around, double detail,
                        std::vector<BorderCurve>& out) const;
 
   const UvPatches& map_;

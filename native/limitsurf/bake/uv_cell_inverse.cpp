@@ -29,6 +29,9 @@ bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
     mean_t += dt[i] / 12;
   }
   const double determinant = cross(mean_s, mean_t);
+  if (determinant == 0) {
+    return false;
+  }
   m_s_ = Point2(mean_t[1], -mean_s[1]) / determinant;
   m_t_ = Point2(-mean_t[0], mean_s[0]) / determinant;
   // Row r of M J - 1, entry by entry.
@@ -98,6 +101,11 @@ inline void CellInverse::evaluate(const Point2& x, const Point2& target, Point2&
   rest = (target - c_[0]) - (row[0] + t * (row[1] + high));
   dt = (row[1] + high) + t * (row[2] + 2 * r3t);
   ds = row_ds[0] + t * (row_ds[1] + t * (row_ds[2] + t * row_ds[3]));
+}
+
+void CellInverse::derivatives(const Point2& x, Point2& ds, Point2& dt) const {
+  Point2 unused;
+  evaluate(x, Point2::Zero(), unused, ds, dt);
 }
 
 bool CellInverse::find(const Point2& target, Place& out) const {

@@ -21,7 +21,7 @@ class CellInverse {
   /// A place in the cell, from its middle: -1/2 to 1/2.
   struct Place {
     Point2 x;
-    Point2 ds, dt;  ///< the map's derivatives close by
+    Point2 ds, dt;  ///< the map's derivatives before the last step
     double determinant;
     /// Newton's last step, not brought back into the cell: a start for points nearby.
     Point2 beyond;
@@ -32,6 +32,8 @@ class CellInverse {
 
   /// Where the linear part of the map takes that value.
   Point2 guess(const Point2& target) const;
+  /// The map's derivatives at a place, from the cell's middle.
+  void derivatives(const Point2& x, Point2& ds, Point2& dt) const;
   /// Farther than this from the cell's sides, the map's distance to them is more than four times
   /// the tolerance.
   double borderWidth() const { return border_width_; }

@@ -99,6 +99,53 @@ class LeastSquares {
 
 }  // namespace
 
+bool LatticeInverse::isFlat(const UvCell& patch) const {
+  const Box2 box = patch.box();
+  const JacobianBounds jacobian(patch);
+  const double area = std::max(std::abs(jacobian.least), std::abs(jacobian.largest));
+  return !(area > tolerance_.maxCoeff() * (box.high - box.low).maxCoeff());
+}
+
+bool LatticeInverse::isBeside(const UvCell& cell, const Lattice& inside) const {
+  const Point2 *p = cell.points, one = p[15] - p[0], other = p[12] - p[3];
+  const Point2 along = (one * one).sum() > (other * other).sum() ? one : other;
+  const double tolerance = (along.abs() * tolerance_.reverse()).sum();
+  for (int y = inside.y0; y <= inside.y1; ++y) {
+    for (int x = inside.x0; x <= inside.x1; ++x) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (int i = 0; i < 16; ++i) {
+        const double across = cross(along, p[i] - Point2(x, y));
+        low = std::min(low, across);
+        high = std::max(high, across);
+      }
+      if (low <= tolerance && high >= -tolerance) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+void LatticeInverse::add(const UvCell& patch) {
+  if (!within(patch.box()).empty() && !isFlat(patch)) {
+    deep_cells_ = 0;
+    addCell(patch, 0);
+  }
+}
+
+void LatticeInverse::addPart(const UvCell& part) {
+  const Lattice inside = within(part.box());
+  if (inside.empty()) {
+    return;
+  }
+  if (isFlat(part)) {
+    addNearest(part, inside);
+  } else {
+    deep_cells_ = 0;
+    addCell(part, 0);
+  }
+}
+
 void LatticeInverse::addCell(const UvCell& cell, int depth) {
   const Box2 box = cell.box();
   const Lattice inside = within(box);
@@ -110,16 +157,13 @@ void LatticeInverse::addCell(const UvCell& cell, int depth) {
     addRows(cell, inverse, inside);
     return;
   }
-  if (depth == 0) {
-    const JacobianBounds jacobian(cell);
-    const double area = std::max(std::abs(jacobian.least), std::abs(jacobian.largest));
-    const double length = (box.high - box.low).maxCoeff();
-    const double tolerance = tolerance_.maxCoeff();
-    if (length > kNoLength * tolerance && !(area > tolerance * length)) {
-      return;
-    }
+  if (depth > 0 && inside.x1 - inside.x0 < 2 && inside.y1 - inside.y0 < 2 &&
+      isBeside(cell, inside)) {
+    return;
   }
-  if (depth == kMostQuarterings || ((box.high - box.low) <= tolerance_).all()) {
+  const bool is_last =
+      depth >= kQuarterings && (depth == kMostQuarterings || deep_cells_++ > kMostDeepCells);
+  if (is_last || ((box.high - box.low) <= kTiny * tolerance_).all()) {
     addNearest(cell, inside);
     return;
   }
@@ -172,7 +216,8 @@ void LatticeInverse::addPlace(const UvCell& cell, const CellInverse& inverse,
     const bool at_s = from_sides[0] <= inverse.borderWidth();
     const bool at_t = from_sides[1] <= inverse.borderWidth();
     const bool s_low = place.x[0] < 0, t_low = place.x[1] < 0;
-    const Point2 &ds = place.ds, &dt = place.dt;
+    Point2 ds, dt;
+    inverse.derivatives(place.x, ds, dt);
     Wedge wedge;
     if (at_s && at_t) {
       const Point2 along_s = s_low ? ds : Point2(-ds), along_t = t_low ? dt : Point2(-dt);
@@ -186,7 +231,7 @@ void LatticeInverse::addPlace(const UvCell& cell, const CellInverse& inverse,
       std::swap(wedge.first, wedge.last);
     }
     find.on_border = true;
-    find.wedge_count = 1;
+    find.wedge_count = inverse.borderWidth() <= kWidestBorder ? 1 : 0;
     find.wedges[0] = wedge;
   }
   sink_.add(find);

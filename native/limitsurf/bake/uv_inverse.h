@@ -33,17 +33,21 @@ class FindSink {
 
 /// All places at which patches take the values of lattice points.
 ///
-/// A patch is quartered until the lattice has no point in the box around the control points, or the
-/// cell is one that CellInverse can serve. Where the Jacobian determinant vanishes that never comes
-/// to be; after kMostQuarterings a least-squares iteration looks for one place in what is left, so
-/// that two places less than 2^-kMostQuarterings of a patch apart may count as one. Patches whose
-/// image has no area, only length, take no values.
+/// A patch is quartered until the lattice has no point in its cells' control hulls, or they are
+/// such as CellInverse can serve. Where the Jacobian determinant vanishes that never comes to be:
+/// there quartering goes on to the tolerance, or if that takes more than kMostDeepCells cells, as
+/// it does where a whole edge of a patch leads to one lattice point, a least-squares iteration
+/// looks for one place in each. Patches whose image has no area, only length, take no values.
 class LatticeInverse {
  public:
   LatticeInverse(const Lattice& lattice, const Point2& tolerance, FindSink& sink)
       : lattice_(lattice), tolerance_(tolerance), sink_(sink) {}
 
-  void add(const UvCell& patch) { addCell(patch, 0); }
+  void add(const UvCell& patch);
+  /// The same for a small part of a patch whose image has an area: it may be too thin to tell.
+  void addPart(const UvCell& part);
+  /// Whether the image has no area, to the tolerance.
+  bool isFlat(const UvCell& patch) const;
 
   const Lattice& lattice() const { return lattice_; }
   const Point2& tolerance() const { return tolerance_; }
@@ -51,11 +55,18 @@ class LatticeInverse {
   Lattice within(const Box2& box) const { return lattice_.within(box.grown(tolerance_)); }
 
  private:
-  static constexpr int kMostQuarterings = 14;
-  /// Tolerances; images that are shorter are done with as points.
-  static constexpr double kNoLength = 1000;
+  static constexpr int kQuarterings = 10;
+  static constexpr int kMostQuarterings = 40;
+  static constexpr int kMostDeepCells = 1024;
+  /// Cells of so many tolerances are as good as points.
+  static constexpr double kTiny = 16;
+  /// Cells on which the border is so wide are too small for directions; of the cell's side.
+  static constexpr double kWidestBorder = 1. / 8;
 
   void addCell(const UvCell& cell, int depth);
+  /// Whether points lie beside a cell's image, seen along its longer diagonal: boxes around slanted
+  /// images, thin ones above all, tell little.
+  bool isBeside(const UvCell& cell, const Lattice& inside) const;
   void addRows(const UvCell& cell, const CellInverse& inverse, const Lattice& inside);
   void addPlace(const UvCell& cell, const CellInverse& inverse, const CellInverse::Place& place,
                 int x, int y);
@@ -64,6 +75,7 @@ class LatticeInverse {
   const Lattice lattice_;
   const Point2 tolerance_;
   FindSink& sink_;
+  int deep_cells_ = 0;  // of the present patch, quartered more than kQuarterings times
 };
 
 }  // namespace limitsurf

@@ -69,7 +69,7 @@ struct RasterOptions {
 class UvMap {
  public:
   /// Throws std::invalid_argument for data of other than 2 columns, and for coordinates beyond
-  /// 1e60.
+  /// 1e36.
   explicit UvMap(const SurfaceData& map, int threads = 0);
   ~UvMap();
   UvMap(UvMap&&) noexcept;

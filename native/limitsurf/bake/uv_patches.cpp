@@ -11,8 +11,8 @@
 namespace limitsurf {
 namespace {
 
-/// Beyond, products of four coordinates and of a lattice's sizes overflow.
-constexpr double kFarthest = 1e60;
+/// Beyond, SurfacePatches runs out of the range of single precision.
+constexpr double kFarthest = 1e36;
 
 /// Tiles that one thread takes at a time.
 constexpr std::size_t kTilesPerTask = 1024;
@@ -92,9 +92,19 @@ void UvPatches::invertCore(const UvPiece& piece, const PlaneFrame& frame, Lattic
   SurfacePiece core = piece.piece;
   for (;;) {
     patches_.split(core, split);
+    bool is_flat = core.steps == 0;
     for (const BezierPatch& patch : split.patches) {
+      const UvCell cell = cellOf(patch, frame);
+      is_flat = is_flat && inverse.isFlat(cell);
       sink.enter(patch.on);
-      inverse.add(cellOf(patch, frame));
+      if (core.steps == 0) {
+        inverse.add(cell);
+      } else {
+        inverse.addPart(cell);
+      }
+    }
+    if (is_flat) {
+      return;
     }
     core = split.core;
     const Box2 rest = frame.at(inPlane(split.core_box));
