@@ -30,7 +30,7 @@ PART = 1 << 18  # texels at once: a progress bar moves, memory stays small
 
 LARGE_MEMORY = 4 << 30  # bytes
 BYTES_PER_TEXEL = 40  # of its place on the surface, measured at the peak
-BYTES_PER_PIXEL = 16  # of each image
+BYTES_PER_PIXEL = 32  # of each image, what it is made of, and packed
 
 
 def read_cage(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, name: str = "") -> cage.Cage:

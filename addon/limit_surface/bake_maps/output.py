@@ -41,11 +41,12 @@ class Output:
             if image:
                 self._check_fits(image)
 
-    def put(self, baked: Mapping[str, Mapping[int, np.ndarray]]) -> list[bpy.types.Image]:
+    def put(self, baked: dict[str, Mapping[int, np.ndarray]]) -> list[bpy.types.Image]:
+        """Takes the pixels out of `baked`, so that they are not kept twice."""
         files = self._write_files(baked) if self.folder else {}
         made = []
-        for name, tiles in baked.items():
-            image = self._existing(name)
+        for name in list(baked):
+            image, tiles = self._existing(name), baked.pop(name)
             path = files.get(name)
             if image:
                 images.write(image, tiles)
@@ -60,8 +61,7 @@ class Output:
         return made
 
     def _existing(self, map_name: str) -> bpy.types.Image | None:
-        found = bpy.data.images.get((self.image_name(map_name), None)) if self.reuse else None
-        return found
+        return bpy.data.images.get((self.image_name(map_name), None)) if self.reuse else None
 
     def _check_fits(self, image: bpy.types.Image) -> None:
         whose = f"There is an image {image.name}"
