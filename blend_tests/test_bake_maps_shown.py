@@ -6,7 +6,7 @@ import bpy
 import limitsurf
 import numpy as np
 import pytest
-from limit_surface import attributes, ids, images
+from limit_surface import attributes, cage, ids, images, subdivided
 
 SIZE = 128
 
@@ -16,7 +16,7 @@ def suzanne(smooth: bool) -> bpy.types.Object:
     ob = bpy.context.active_object
     if smooth:
         ob.data.shade_smooth()
-    return subdivided(ob)
+    return with_subsurf(ob)
 
 
 def drum(smooth: bool) -> bpy.types.Object:
@@ -25,10 +25,10 @@ def drum(smooth: bool) -> bpy.types.Object:
     ob = bpy.context.active_object
     if smooth:
         ob.data.shade_smooth()
-    return subdivided(ob)
+    return with_subsurf(ob)
 
 
-def subdivided(ob: bpy.types.Object) -> bpy.types.Object:
+def with_subsurf(ob: bpy.types.Object) -> bpy.types.Object:
     subsurf = ob.modifiers.new("Subdivision", "SUBSURF")
     subsurf.levels, subsurf.render_levels = 1, 2
     return ob
@@ -110,6 +110,36 @@ def flat_map(ob: bpy.types.Object) -> float:
 
 def test_without_the_map_shading_is_another():
     assert flat_map(suzanne(smooth=True)) > 2
+
+
+def replaced(size: int) -> np.ndarray:
+    """How far the corners of a subdivided mesh come to lie from the limit surface if each goes
+    where a position map of so many texels has its UV."""
+    ob = suzanne(smooth=True)
+    ob.modifiers[0].levels = 2
+    bpy.ops.object.limit_bake_maps(maps={"POSITION"}, width=size, height=size, overlap="ALLOW")
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    found = cage.read(ob, depsgraph)
+    shown = ob.evaluated_get(depsgraph).data
+    uv = attributes.read(shown, shown.uv_layers.active.name)
+    values = images.read(bpy.data.images["Suzanne Position"])[..., :3]
+    place = uv * size - 0.5
+    low = np.floor(place).astype(int).clip(0, size - 2)
+    (x, y), (s, t) = low.T, (place - low).T[:, :, None]
+    at = (1 - t) * ((1 - s) * values[y, x] + s * values[y, x + 1])
+    at += t * ((1 - s) * values[y + 1, x] + s * values[y + 1, x + 1])
+    places = subdivided.corner_locations(found.face_sizes, 2)
+    limit = limitsurf.LimitSurface(found.mesh).evaluate(places.face, places.uv).position
+    bpy.data.objects.remove(ob)
+    bpy.data.images.remove(bpy.data.images["Suzanne Position"])
+    return np.linalg.norm(at - limit, axis=1)
+
+
+def test_a_position_map_gives_the_surface_back():
+    coarse, fine = replaced(128), replaced(256)
+    assert np.median(fine) < 2e-4
+    assert np.median(coarse) > 2.5 * np.median(fine)
+    assert np.percentile(fine, 99) < 0.01
 
 
 def bent_sheet() -> tuple[limitsurf.LimitSurface, limitsurf.SurfaceData]:

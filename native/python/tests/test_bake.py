@@ -108,3 +108,37 @@ def test_errors_and_types(mapped):
     np.testing.assert_array_equal(one, two)
     with pytest.raises(ValueError, match="threads"):
         surface.map_distortion(uv_map, at.face, at.uv, threads=-1)
+
+
+def shading(seed, n=200):
+    """Interpolated frames: not unit, not at right angles; both signs."""
+    rng = np.random.default_rng(seed)
+    normals = rng.normal(size=(n, 3)) * rng.uniform(0.3, 1, (n, 1))
+    tangents = np.cross(normals, rng.normal(size=(n, 3))) + 0.1 * rng.normal(size=(n, 3))
+    return normals, tangents, rng.choice([-1.0, 1.0], n)
+
+
+def test_shading_frames_and_back():
+    normals, tangents, signs = shading(1)
+    rng = np.random.default_rng(2)
+    wanted = rng.normal(size=(200, 3))
+    wanted /= np.linalg.norm(wanted, axis=1, keepdims=True)
+    told = ls.into_shading_frames(wanted, normals, tangents, signs)
+    np.testing.assert_allclose(np.linalg.norm(told, axis=1), 1, atol=1e-14)
+    # What renderers do with it, written out
+    across = signs[:, None] * np.cross(normals, tangents)
+    found = told[:, :1] * tangents + told[:, 1:2] * across + told[:, 2:] * normals
+    found /= np.linalg.norm(found, axis=1, keepdims=True)
+    np.testing.assert_allclose(found, wanted, atol=1e-10)
+    back = ls.out_of_shading_frames(told, normals, tangents, signs)
+    np.testing.assert_allclose(back, wanted, atol=1e-10)
+
+
+def test_shading_frames_without_volume_and_errors():
+    normals, _, signs = shading(3, 4)
+    flat = ls.into_shading_frames(normals, normals, normals, signs)
+    np.testing.assert_array_equal(flat, np.tile([0, 0, 1.0], (4, 1)))
+    with pytest.raises(ValueError, match="4 vectors for frames of 3 rows"):
+        ls.into_shading_frames(normals, normals, normals[:3], signs)
+    with pytest.raises(ValueError, match=r"vectors has shape \(4, 2\)"):
+        ls.out_of_shading_frames(normals[:, :2], normals, normals, signs)
