@@ -9,6 +9,7 @@
 //   limitsurf_bench --large[=1000]        opening a grid of 1000 x 1000 quads: time and memory
 //   limitsurf_bench --semi-sharp[=100]    the same, every edge of 100 x 100 quads semi-sharp
 //   limitsurf_bench --queries[=1000000]   closest points and rays beside Embree, and random points
+//   limitsurf_bench --uv[=4096]           UV maps inverted, in an image of so many texels a side
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 #include <opensubdiv/version.h>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "agreement.h"
+#include "bake_benchmarks.h"
 #include "evaluation_benchmarks.h"
 #include "large_mesh.h"
 #ifdef LIMITSURF_BENCH_EMBREE
@@ -83,7 +85,7 @@ int main(int argc, char** argv) {
   static char time[] = "--benchmark_min_time=0.03";
   std::vector<char*> arguments = {argv[0], interleave, repetitions, time};
   int sample_count = 100000;
-  int large_side = 0, semi_sharp_side = 0, query_count = 0;
+  int large_side = 0, semi_sharp_side = 0, query_count = 0, uv_side = 0;
   bool is_memory_fresh = false;
   for (int i = 1; i < argc; ++i) {
     if (const int count = valueOf(argv[i], "--samples", 0)) {
@@ -94,6 +96,8 @@ int main(int argc, char** argv) {
       semi_sharp_side = sharp_side;
     } else if (const int queries = valueOf(argv[i], "--queries", 1000000)) {
       query_count = queries;
+    } else if (const int texels = valueOf(argv[i], "--uv", 4096)) {
+      uv_side = texels;
     } else if (std::strcmp(argv[i], "--fresh-memory") == 0) {
       is_memory_fresh = true;
     } else {
@@ -103,6 +107,7 @@ int main(int argc, char** argv) {
   try {
     if (large_side > 0) return limitsurf::bench::measureLargeMesh(large_side);
     if (semi_sharp_side > 0) return limitsurf::bench::measureSemiSharpMesh(semi_sharp_side);
+    if (uv_side > 0) return limitsurf::bench::measureUvMaps(uv_side);
     if (query_count > 0) {
 #ifdef LIMITSURF_BENCH_EMBREE
       return limitsurf::bench::measureQueries(query_count);
