@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from limit_surface import baking, native
+from limit_surface import baking, native, overlap
 from limit_surface.errors import RefusalError, TooLargeError
 
 
@@ -97,6 +97,19 @@ def test_maps_that_overlap():
     at = baking.texels(mapped(ob), (32, 32), allow_overlap=True)
     assert at.overlap.any()
     assert not at.overlap.all()
+
+
+def test_folds_are_no_refusal():
+    """One face is no more than a few texels, all of them on another one."""
+    ob = grid()
+    layer = ob.data.uv_layers[0]
+    for corner, place in enumerate([(0, 0), (0.03, 0), (0.03, 0.03), (0, 0.03)]):
+        layer.uv[4 + corner].vector = 0.1 + np.array(place)
+    at = baking.texels(mapped(ob), (64, 64))
+    assert overlap.overlapping(at) == 4
+    with pytest.raises(RefusalError, match=r"overlaps itself at \d+ of [\d,]+ texels"):
+        layer.uv[6].vector = (0.25, 0.25)
+        baking.texels(mapped(ob), (64, 64))
 
 
 def test_large_images_have_to_be_allowed():

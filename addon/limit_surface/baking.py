@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from . import attributes, cage, uv_map
+from . import attributes, cage, overlap, uv_map
 from .errors import RefusalError, TooLargeError
 from .images import FIRST_TILE
 from .job import Progress
@@ -80,19 +80,14 @@ def texels(
     progress: Progress | None = None,
 ) -> limitsurf.Texels:
     """Of an image of so many texels across and up, for a UDIM tile. There may be none: whether that
-    is wrong depends on what other tiles hold. RefusalError where the map overlaps itself, unless
-    that is allowed."""
+    is wrong depends on what other tiles hold. RefusalError where the map overlaps itself by more
+    than folds, unless that is allowed."""
     width, height = size
     found = uv_data.rasterize(
         width, height, tile=tile_corner(tile), margin=margin, progress=progress
     )
-    overlapping = int(np.count_nonzero(found.overlap))
-    if overlapping and not allow_overlap:
-        raise RefusalError(
-            f"The UV map overlaps itself at {overlapping:,} of {len(found.x):,} texels"
-            + (f" of tile {tile}" if tile != FIRST_TILE else "")
-            + ": set Overlap to Allow to take the first face there"
-        )
+    if not allow_overlap:
+        overlap.check(found, f" of tile {tile}" if tile != FIRST_TILE else "")
     return found
 
 

@@ -25,6 +25,7 @@ class Texels(NamedTuple):
     y: np.ndarray  # upwards
     face: np.ndarray
     uv: np.ndarray
+    overlap: np.ndarray  # whether several places share it
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class UvLayout:
             allow_overlap=self.allow_overlap,
             progress=progress,
         )
-        return Texels(found.x, found.y, found.face, found.uv)
+        return Texels(found.x, found.y, found.face, found.uv, found.overlap)
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class PtexLayout:
 
     def texels(self, _tile: int, _progress: Progress) -> Texels:
         found = self.layout.texels()
-        return Texels(found.x, found.y, found.face, found.uv)
+        return Texels(found.x, found.y, found.face, found.uv, np.zeros(len(found.x), bool))
 
     def described(self) -> dict[str, int]:
         """All that is needed to find a place's texel."""

@@ -31,6 +31,7 @@ class Measured:
     tiles: dict[int, np.ndarray]  # pixels, (height, width, 4)
     count: int  # texels
     missing: int  # of them, where nothing was met: they hold 0
+    overlapping: int  # of them, that several places share
     lowest: float  # distance, or length of a vector
     highest: float
 
@@ -38,7 +39,7 @@ class Measured:
 def measure(request: Request, progress: Progress) -> Measured:
     """RefusalError where no texel has a place, or nothing is met at all."""
     layout, tiles = request.layout, {}
-    ranges, count, missing = [], 0, 0
+    ranges, count, missing, overlapping = [], 0, 0, 0
     for i, tile in enumerate(layout.tiles):
         part = part_of(progress, i / len(layout.tiles), (i + 1) / len(layout.tiles))
         texels = layout.texels(tile, part_of(part, 0, PLACED))
@@ -53,6 +54,7 @@ def measure(request: Request, progress: Progress) -> Measured:
                 ranges.append((sizes[found].min(), sizes[found].max()))
             pixels[some.y, some.x, :3] = np.where(found[:, None], values, 0)
         count += len(texels.x)
+        overlapping += int(texels.overlap.sum())
         tiles[tile] = pixels
     if not count:
         raise RefusalError("No texel lies on the surface: is the UV map elsewhere?")
@@ -61,7 +63,7 @@ def measure(request: Request, progress: Progress) -> Measured:
             f"{request.surfaces.target_name} is met nowhere along the normals: nothing was made"
         )
     lows, highs = zip(*ranges, strict=True)
-    return Measured(tiles, count, missing, float(min(lows)), float(max(highs)))
+    return Measured(tiles, count, missing, overlapping, float(min(lows)), float(max(highs)))
 
 
 def _measured(request: Request, texels: Texels) -> tuple[np.ndarray, np.ndarray]:

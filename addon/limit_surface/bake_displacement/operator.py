@@ -9,7 +9,7 @@ from pathlib import Path
 
 import bpy
 
-from .. import ids, image_files, images, objects, polling
+from .. import ids, image_files, images, objects, overlap, polling
 from ..errors import RefusalError
 from ..image_files import EXR_32
 from ..images import FIRST_TILE
@@ -146,6 +146,8 @@ class OBJECT_OT_limit_bake_displacement(
                 f"{request.surfaces.target_name} is not met at {measured.missing:,} of "
                 f"{measured.count:,} texels: they hold 0",
             )
+        if measured.overlapping:
+            self.report({"WARNING"}, f"{ob.name}: {overlap.told(measured.overlapping)}")
         what = "lengths" if request.is_vector else "distances"
         lines = [
             f"{image.name}: {measured.count:,} texels",

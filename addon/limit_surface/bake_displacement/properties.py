@@ -4,11 +4,13 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ..overlap import OverlapProperty
+
 LARGEST = 16384  # texels along a side
 FACE_RESOLUTIONS = tuple(2**exponent for exponent in range(11))
 
 
-class DisplacementProperties:
+class DisplacementProperties(OverlapProperty):
     """Mixin for the operator."""
 
     target: StringProperty(
@@ -138,15 +140,6 @@ class DisplacementProperties:
         name="UDIM Tiles",
         description="An image with all tiles that the UV map touches, instead of the first alone",
         default=False,
-    )
-    overlap: EnumProperty(
-        name="Overlap",
-        description="If several places of the surface share texels on the UV map",
-        items=(
-            ("ERROR", "Refuse", "Nothing is made, and a message says so", "", 0),
-            ("ALLOW", "Allow", "The place on the face with the lowest number counts", "", 1),
-        ),
-        default="ERROR",
     )
     face_resolution: EnumProperty(
         name="Resolution",

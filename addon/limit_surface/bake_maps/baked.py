@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import baking
+from .. import baking, overlap
 from ..errors import RefusalError
 from ..job import Progress, part_of
 from .bodies import Body, Places
@@ -92,7 +92,7 @@ def _values(order: Order, tile: int, made: Baked, progress: Progress) -> _Tile:
     )
     count = len(texels.x)
     made.texels += int(np.count_nonzero(texels.inside))
-    made.overlapping += int(np.count_nonzero(texels.overlap))
+    made.overlapping += overlap.overlapping(texels)
     plain = [name for name in order.maps if name != NORMAL_TANGENT]
     values: dict[str, np.ndarray] = {}
     for rows in baking.parts(count, part_of(progress, MAPPED, 0.8)):

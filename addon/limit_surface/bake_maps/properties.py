@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ..overlap import OverlapProperty
 from .maps import AREA_DISTORTION, KINDS, NORMAL_TANGENT
 
 LARGEST = 16384  # texels along a side
@@ -11,7 +12,7 @@ LARGEST = 16384  # texels along a side
 CURVATURES = {"CURVATURE_MEAN", "CURVATURE_GAUSSIAN", "CURVATURE_PRINCIPAL"}
 
 
-class BakeProperties:
+class BakeProperties(OverlapProperty):
     """Mixin for the operator."""
 
     maps: EnumProperty(
@@ -60,15 +61,6 @@ class BakeProperties:
             ("ALL", "All", "All that the UV map touches, in tiled images if it is several", "", 1),
         ),
         default="FIRST",
-    )
-    overlap: EnumProperty(
-        name="Overlap",
-        description="Where several places of the surface share a texel",
-        items=(
-            ("ERROR", "Refuse", "Nothing is made", "", 0),
-            ("ALLOW", "Allow", "The texel belongs to the first face", "", 1),
-        ),
-        default="ERROR",
     )
     space: EnumProperty(
         name="Space",

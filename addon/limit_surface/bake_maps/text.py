@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from .. import overlap
 from .baked import Baked
 from .maps import KINDS, NORMAL_TANGENT, Range
 
@@ -17,10 +18,7 @@ def warnings(baked: Baked, flat_faces: int) -> list[str]:
     if flat_faces:
         found.append(f"{flat_faces:,} faces have no area on the UV map and are not in the images")
     if baked.overlapping:
-        found.append(
-            f"the UV map overlaps itself at {baked.overlapping:,} texels: they belong to the "
-            "first face there"
-        )
+        found.append(overlap.told(baked.overlapping))
     if baked.without_values:
         found.append(f"{baked.without_values:,} values have no limit and are 0")
     if baked.without_polygons:

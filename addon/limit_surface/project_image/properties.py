@@ -12,13 +12,15 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..overlap import OverlapProperty
+
 LARGEST = 16384  # texels along a side
 
 # Sources that throw the image from somewhere: rays can be followed through its pixels.
 THROWN = {"CAMERA", "VIEW", "PLANAR"}
 
 
-class ProjectionProperties:
+class ProjectionProperties(OverlapProperty):
     """Mixin for the operator."""
 
     source: EnumProperty(
@@ -100,15 +102,6 @@ class ProjectionProperties:
     uv_map: StringProperty(
         name="UV Map",
         description="Name of the UV map to paint by. Without one the active map is taken",
-    )
-    overlap: EnumProperty(
-        name="Overlap",
-        description="If several places of the surface share texels on the UV map",
-        items=(
-            ("ERROR", "Refuse", "Nothing is painted, and a message says so", "", 0),
-            ("ALLOW", "Allow", "The place on the face with the lowest number is looked at", "", 1),
-        ),
-        default="ERROR",
     )
     opacity: FloatProperty(
         name="Opacity",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import baking, images
+from .. import baking, images, overlap
 from ..errors import RefusalError
 from ..job import Progress, part_of
 from . import colours, inputs, material
@@ -47,7 +47,7 @@ class Order:
 
     def work(self, progress: Progress) -> Made:
         self.source.check()
-        count, whole = 0, len(self.canvases)
+        count, overlapping, whole = 0, 0, len(self.canvases)
         for i, (tile, canvas) in enumerate(self.canvases.items()):
             part = part_of(progress, i / whole, (i + 1) / whole)
             texels = baking.texels(
@@ -58,18 +58,19 @@ class Order:
                 allow_overlap=self.allow_overlap,
                 progress=part_of(part, 0, MAPPED),
             )
+            overlapping += overlap.overlapping(texels)
             painting = part_of(part, MAPPED, 1)
             count += paint(canvas, texels, self.uv_map, self.source, self.opacity, painting)
         if not count:
             raise RefusalError(f"No part of the image {self.image} falls on the surface's UV map")
-        return Made(self, count)
+        return Made(self, count, overlap.told(overlapping) if overlapping else "")
 
 
 @dataclass(frozen=True)
 class Made:
     order: Order
     count: int
-    warning = ""
+    warning: str
 
     def put(self, _context: bpy.types.Context, surface: bpy.types.Object) -> str:
         target, canvases = self.order.target, self.order.canvases
