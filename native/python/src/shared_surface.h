@@ -10,6 +10,7 @@
 
 #include "arrays.h"
 #include "control_mesh.h"
+#include "held_still.h"
 #include "lazily.h"
 #include "limitsurf/query/area_sampler.h"
 #include "limitsurf/query/surface_search.h"
@@ -52,37 +53,7 @@ struct SharedSurface : ZeroedMemory {
   std::atomic<std::uint64_t> pose_{0};
 };
 
-/// Holds a pose still during a call that calls back into Python. What it calls may read the surface
-/// as well, but must not re-pose it: that would wait for itself for ever.
-class HeldPose {
- public:
-  explicit HeldPose(const SharedSurface& shared)
-      : shared_(shared), lock_(shared.mutex), outer_(innermost()) {
-    innermost() = this;
-  }
-  ~HeldPose() { innermost() = outer_; }
-  HeldPose(const HeldPose&) = delete;
-  HeldPose& operator=(const HeldPose&) = delete;
-
-  /// Whether a call further up on this thread does.
-  static bool isHeldHere(const SharedSurface& shared) {
-    const HeldPose* held = innermost();
-    while (held && &held->shared_ != &shared) {
-      held = held->outer_;
-    }
-    return held != nullptr;
-  }
-
- private:
-  static HeldPose*& innermost() {
-    static thread_local HeldPose* held = nullptr;
-    return held;
-  }
-
-  const SharedSurface& shared_;
-  std::shared_lock<std::shared_mutex> lock_;
-  HeldPose* outer_;
-};
+using HeldPose = HeldStill<SharedSurface>;
 
 void bindQueries(py::class_<SharedSurface>& type);
 void bindScatter(py::class_<SharedSurface>& type);

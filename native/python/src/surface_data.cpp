@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface_data.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "batches.h"
 #include "choices.h"
 #include "docstrings.h"
+#include "held_still.h"
 #include "limitsurf/error.h"
 
 namespace limitsurf::python {
@@ -49,6 +51,11 @@ void setValues(SharedData& shared, const py::object& values, int threads) {
   const DataRows rows = rowsOf(values);
   SurfaceData& data = shared.data();
   const py::gil_scoped_release release;
+  if (HeldStill<SharedData>::isHeldHere(shared)) {
+    throw std::runtime_error(
+        "set_values() called by a function that a call on the same data called: it would wait for "
+        "itself");
+  }
   const std::unique_lock<std::shared_mutex> lock(shared.mutex);
   data.setValues(rows, threads);
   shared.uv_map.forget();

@@ -6,13 +6,13 @@
 #include <array>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "batches.h"
 #include "docstrings.h"
+#include "held_still.h"
 #include "progress.h"
 #include "surface_data.h"
 
@@ -28,7 +28,7 @@ auto withMap(const SharedData& shared, int threads, const Use& use) {
   checkThreads(threads);
   const SurfaceData& data = shared.data();
   const py::gil_scoped_release release;
-  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  const HeldStill<SharedData> held(shared);
   const InterruptionPoint point = interruptible();
   return use(shared.uv_map.get(data, threads));
 }
