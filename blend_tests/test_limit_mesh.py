@@ -172,7 +172,10 @@ def test_edges_are_sharp_where_they_part_normals():
     sharp = np.array([edge.use_edge_sharp for edge in mesh.edges])
     assert crease.sum() == 4 * 8
     np.testing.assert_array_equal(sharp, crease)
-    assert not any(e.use_edge_sharp for e in make(scenes.cross(), levels=2).data.edges)
+    cross = scenes.cross()
+    assert not any(e.use_edge_sharp for e in make(cross, levels=2).data.edges)
+    cross.data.edges[3].use_edge_sharp = True
+    assert sum(e.use_edge_sharp for e in make(cross, levels=2).data.edges) == 4
 
 
 def test_normals_are_blenders_own_without_exact_ones(dressed):

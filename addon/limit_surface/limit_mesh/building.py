@@ -93,6 +93,8 @@ def _set_normals(mesh: bpy.types.Mesh, normals: np.ndarray, face_sizes: np.ndarr
     """Edges are sharp where they part normals: Cycles keeps several at a vertex only there."""
     edge = attributes.read(mesh, ids.CORNER_EDGE)
     part = _parting(edge, normals, normals[next_corner(face_sizes)], len(mesh.edges))
+    if ids.SHARP_EDGE in mesh.attributes:  # the cage's
+        part |= attributes.read(mesh, ids.SHARP_EDGE)
     attributes.write(mesh, ids.SHARP_EDGE, "BOOLEAN", "EDGE", part)
     if _FREE_NORMALS:
         attributes.write(mesh, ids.CUSTOM_NORMAL, "FLOAT_VECTOR", "CORNER", normals)
