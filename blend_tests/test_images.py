@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 import pytest
+import scenes
 from limit_surface import image_files, images
 from limit_surface.errors import RefusalError
 
@@ -103,6 +104,22 @@ def test_writing_is_undone_and_redone(kind, tmp_path, write):
     write(kind, 4)
     bpy.ops.ed.undo()
     assert shows(kind, 2)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_pixels_outlast_the_undo_of_something_else(kind, tmp_path, write):
+    """Blender drops them from there on, once a write has been undone and redone."""
+    scenes.monkey()
+    new_image(kind, tmp_path)
+    bpy.ops.ed.undo_push(message="an image")
+    write(kind, 1)
+    bpy.ops.ed.undo()
+    bpy.ops.ed.redo()
+    bpy.ops.object.select_all("EXEC_DEFAULT", True, action="SELECT")
+    bpy.ops.object.duplicate("EXEC_DEFAULT", True)
+    for step in (bpy.ops.ed.undo, bpy.ops.ed.redo, bpy.ops.ed.undo):
+        step()
+        assert shows(kind, 1)
 
 
 def test_several_writes_are_undone_at_once(tmp_path, write):

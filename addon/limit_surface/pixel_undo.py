@@ -3,7 +3,8 @@
 
 Blender's undo steps hold an image's properties, but not its pixels. So each write leaves a mark in
 a property of the image, and keeps the pixels before and after it in Blender's temporary folder:
-behind an undo or a redo the mark says which of them the image has to show.
+behind an undo or a redo the mark says which of them the image has to show. Where the mark is still
+the same Blender may have dropped pixels that were not saved: then it shows those again.
 """
 
 from __future__ import annotations
@@ -61,8 +62,17 @@ class _Write:
         self.after.drop()
 
 
+@dataclass(frozen=True)
+class _Shown:
+    """What an image holds."""
+
+    mark: str | None
+    kept: _Kept | None
+
+
 _writes: dict[str, _Write] = {}  # by mark, the oldest first
-_shown: dict[int, str | None] = {}  # the mark whose pixels an image holds, by the image's session
+_shown: dict[int, _Shown] = {}  # by the image's session
+_unsaved: set[int] = set()  # images that held unsaved pixels before an undo or a redo
 
 
 @contextmanager
@@ -79,7 +89,7 @@ def recorded(image: bpy.types.Image) -> Iterator[None]:
         raise
     _writes[mark] = _Write(onto, before, after)
     image[ids.PIXELS_MARK] = mark
-    _shown[image.session_uid] = mark
+    _shown[image.session_uid] = _Shown(mark, after)
     _drop_oldest()
 
 
@@ -95,16 +105,24 @@ def detach_handlers() -> None:
 
 
 @bpy.app.handlers.persistent
+def _look(*_scene: object) -> None:
+    _unsaved.clear()
+    _unsaved.update(
+        i.session_uid for i in bpy.data.images if i.session_uid in _shown and i.is_dirty
+    )
+
+
+@bpy.app.handlers.persistent
 def _follow(*_scene: object) -> None:
     there = {image.session_uid: image for image in bpy.data.images}
     for uid, shown in _shown.items():
         image = there.get(uid)
         mark = image.get(ids.PIXELS_MARK) if image else _GONE
-        if image and mark != shown:
-            kept = _pixels_at(mark, shown)
-            if kept:
-                kept.show(image)
-        _shown[uid] = mark
+        kept = shown.kept if mark == shown.mark else _pixels_at(mark, shown.mark)
+        is_dropped = image and uid in _unsaved and not image.is_dirty
+        if image and kept and (mark != shown.mark or is_dropped):
+            kept.show(image)
+        _shown[uid] = _Shown(mark, kept)
 
 
 def _pixels_at(mark: str | None, shown: str | None) -> _Kept | None:
@@ -134,6 +152,8 @@ def _forget(*_file: object) -> None:
 
 
 _HANDLERS = (
+    (bpy.app.handlers.undo_pre, _look),
+    (bpy.app.handlers.redo_pre, _look),
     (bpy.app.handlers.undo_post, _follow),
     (bpy.app.handlers.redo_post, _follow),
     (bpy.app.handlers.load_post, _forget),
