@@ -73,7 +73,7 @@ def vase() -> bpy.types.Object:
 
 
 FRONT = {"view": View(25, 12), "middle": (0.12, 0, 0.01), "width": 2.78, "pixels": (600, 460)}
-ABOVE = {"view": View(20, 24), "middle": (0, 0, 0.94), "width": 2.55, "pixels": (395, 370)}
+ABOVE = {"view": View(20, 24), "middle": (0, 0, 1.09), "width": 2.55, "pixels": (395, 370)}
 ROWS = (
     (
         Panel("Levels: uniform", monkey, {"levels": 2}, **FRONT),
