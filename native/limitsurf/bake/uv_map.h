@@ -18,7 +18,7 @@ namespace limitsurf {
 constexpr double kMapError = 1e-12;
 
 /// Bound on how much farther than the nearest point of the map's image the place of a texel in the
-/// margin may lie, in texels; along curves within a face on which the map folds back, one texel.
+/// margin may lie, in texels; along curves within a face on which the map folds back, half a texel.
 constexpr double kMarginError = 1. / 64;
 
 /// One point of the plane per row.
