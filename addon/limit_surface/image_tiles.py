@@ -44,6 +44,7 @@ def read_all(image: bpy.types.Image) -> dict[int, np.ndarray]:
 
 def write_some(image: bpy.types.Image, tiles: Mapping[int, np.ndarray]) -> None:
     """The others stay. Nothing is kept for undo: that is what images.write does."""
+    image.update_tag()  # or a viewport that has nothing else to draw goes on showing the old ones
     if image.source != "TILED":
         channels = _narrowed(tiles[FIRST_TILE], image.channels)
         image.pixels.foreach_set(np.ascontiguousarray(channels, np.float32).ravel())
