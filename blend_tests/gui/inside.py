@@ -15,8 +15,10 @@ bpy.context.preferences.view.show_splash = False
 bpy.context.preferences.view.show_tooltips = False
 
 import actions  # noqa: E402
+import texture_actions  # noqa: E402
 
 POLL = 0.01  # seconds
+ACTIONS = {**vars(actions), **vars(texture_actions)}
 
 
 def serve() -> None:
@@ -40,7 +42,7 @@ def outcome(name: str, arguments: tuple, keywords: dict) -> tuple[bool, object]:
     try:
         window = bpy.context.window_manager.windows[0]
         with bpy.context.temp_override(window=window):
-            return False, getattr(actions, name)(*arguments, **keywords)
+            return False, ACTIONS[name](*arguments, **keywords)
     except BaseException:
         return True, traceback.format_exc()
 

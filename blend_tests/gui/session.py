@@ -23,6 +23,8 @@ WIDTH, HEIGHT = 1280, 800
 SHOWN_AFTER = 0.5  # seconds: what was drawn is on the screen
 ROW = 20  # pixels, of a button
 TAB_STRIP = 22  # pixels at the sidebar's right edge
+MOST_ENTRIES = 30  # of a menu
+CONFIRMATION = (71, 114, 179)  # color of a dialog's OK
 ADDON = "bl_ext.user_default.limit_surface"
 
 
@@ -57,6 +59,10 @@ def install_extension(user: Path) -> str:
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
+
+
+def is_near(pixels: np.ndarray, color: Sequence[int]) -> np.ndarray:
+    return (np.abs(pixels.astype(int) - color) < 12).all(axis=2)
 
 
 class BlenderSession:
@@ -167,11 +173,48 @@ class BlenderSession:
                 return
         raise AssertionError("no tab Limit in the sidebar")
 
+    def open_panel(self, panel: str) -> None:
+        """In the open tab: A above a panel's header opens and closes it, and only there."""
+        self.call("count_draws", panel)
+        bar = self.call("sidebar")
+        x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
+        for y in range(bar["top"] - ROW // 2, bar["bottom"], -ROW // 2):
+            self.move(x, y)
+            for _ in range(2):
+                if self._is_drawn(panel):
+                    return
+                self.key("a")
+        raise AssertionError(f"no header of {panel} in the sidebar")
+
+    def _is_drawn(self, panel: str) -> bool:
+        before = self.call("draws", panel)
+        self.settle()
+        return self.call("draws", panel) > before
+
     def find_button(self, command: str) -> tuple[float, float]:
         """Where in the open tab the button is that runs an operator, by what it copies."""
         bar = self.call("sidebar")
         x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
         return self._find(x, bar["top"] - 10, bar["bottom"], f"bpy.ops.{command}(")
+
+    def find_confirmation(self, before: np.ndarray) -> tuple[float, float]:
+        """Where a dialog's OK is: of what has become blue since then, the lowest."""
+        now = self.pixels(self.screenshot("dialog"))
+        blue = is_near(now, CONFIRMATION) & ~is_near(before, CONFIRMATION)
+        row = np.flatnonzero(blue.sum(axis=1) > ROW)[-1] - ROW // 4
+        return np.flatnonzero(blue[row]).mean(), HEIGHT - 1 - row
+
+    def operators_in_menu(self) -> list[str]:
+        """Of the menu that is open: as many as there are, each once."""
+        found = []
+        while len(found) < MOST_ENTRIES:
+            self.call("clear_clipboard")
+            self.key("Down", "ctrl+c")
+            name = self.call("clipboard").removeprefix("bpy.ops.").split("(")[0]
+            if found[:1] == [name]:
+                return found
+            found.append(name)
+        raise AssertionError(f"a menu without an end: {found}")
 
     def open_redo_panel(self) -> tuple[float, float]:
         """By F9 in the middle of the viewport; where the column of its fields begins."""

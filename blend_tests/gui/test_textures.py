@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operators that make textures and meshes, by their panel, dialogs, redo panels and menu."""
+
+import time
+
+import numpy as np
+import pytest
+from quadric import Camera
+from session import OUT, is_near
+
+PROJECT = "object.limit_project_image"
+BAKE_MAPS = "object.limit_bake_maps"
+BAKE_DISPLACEMENT = "object.limit_bake_displacement"
+CURVATURE = "object.limit_curvature"
+MESH = "object.limit_mesh"
+PANEL = "VIEW3D_PT_limit_textures"
+MENU = "VIEW3D_MT_object_limit_surface"
+
+WAVE = 0.35
+BLANK = (255, 0, 255)
+SQUARES = 8
+FIRST, SECOND, CORNER = (230, 60, 40), (40, 90, 220), (60, 200, 80)
+FACE_ROWS = 8**2
+
+
+@pytest.fixture
+def sheet(blender):
+    """In the view; afterwards Blender has complained of nothing."""
+    log = OUT / "blender.log"
+    blender.call("flush")
+    begin = log.stat().st_size
+    blender.call("textured_sheet", WAVE)
+    blender.call("remember")
+    blender.settle()
+    yield blender
+    blender.call("flush")
+    said = log.read_text()[begin:]
+    assert not any(word in said for word in ("Traceback", "Error", "rna_")), said
+
+
+def checker(side=256):
+    """(rows, columns, 3) of 0 to 255, the lowest row first; its upper left square is another."""
+    y, x = np.mgrid[:side, :side] * SQUARES // side
+    pixels = np.where(((x + y) % 2 == 0)[..., None], FIRST, SECOND)
+    pixels[(x == 0) & (y == SQUARES - 1)] = CORNER
+    return pixels
+
+
+def test_projected_from_the_view_it_looks_like_the_image_and_is_undone(sheet):
+    image = checker()
+    opaque = np.dstack([image / 255, np.ones(image.shape[:2])])
+    sheet.call("new_image", "Checker", opaque)
+    sheet.call("remember")
+    before, there = sheet.call("image_digest", "Texture"), sheet.call("contents")
+    sheet.call(
+        "set_next", PROJECT, source="VIEW", image="Checker", output="EXISTING", target="Texture"
+    )
+    sheet.open_tab()
+    sheet.open_panel(PANEL)
+    blank = sheet.pixels(sheet.screenshot("project_before"))
+    sheet.click(*sheet.find_button(PROJECT))
+    assert sheet.call("image_digest", "Texture") == before
+    sheet.click(*sheet.find_confirmation(blank))
+    await_end(sheet, "OBJECT_OT_limit_project_image")
+    after = sheet.call("image_digest", "Texture")
+    assert after != before
+    assert sheet.call("contents") == there
+    sheet.move(*sheet.call("view_centre"))
+    shown = sheet.pixels(sheet.screenshot("projected"))
+    assert_undistorted(shown, blank, sheet.call("camera"), image)
+
+    sheet.key("ctrl+z")
+    assert sheet.call("image_digest", "Texture") == before
+    undone = sheet.pixels(sheet.screenshot("project_undone"))
+    assert is_near(undone, BLANK)[is_near(blank, BLANK)].mean() > 0.999
+    sheet.key("ctrl+shift+z")
+    assert sheet.call("image_digest", "Texture") == after
+    redone = sheet.pixels(sheet.screenshot("project_redone"))
+    assert_undistorted(redone, blank, sheet.call("camera"), image)
+
+
+def await_end(blender, operator):
+    deadline = time.monotonic() + 30
+    while blender.call("running"):
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
+    blender.settle()
+    assert blender.call("last_operator") == operator
+
+
+def assert_undistorted(shown, blank, camera, image):
+    """Wherever the sheet was seen the image is, as large as fits into the middle of the view."""
+    rows, columns = np.nonzero(is_near(blank, BLANK))
+    (left, bottom), (width, height) = camera["corner"], camera["size"]
+    side = min(width, height)
+    st = np.stack(
+        [
+            (columns + 0.5 - left - width / 2) / side + 0.5,
+            (len(blank) - rows - 0.5 - bottom - height / 2) / side + 0.5,
+        ],
+        axis=1,
+    )
+    square = st * SQUARES
+    from_border = np.abs(square - np.rint(square)).min(axis=1) * side / SQUARES  # screen's pixels
+    inside = ((st > 0) & (st < 1)).all(axis=1)
+    seen = shown[rows, columns].astype(int)
+    clear = inside & (from_border > 2)
+    assert np.count_nonzero(clear) > 30_000
+    y, x = (st[clear] * len(image)).astype(int).T[::-1]
+    right = (np.abs(seen[clear] - image[y, x]) < 12).all(axis=1)
+    assert right.mean() > 0.995
+    outside = ~((st > -0.01) & (st < 1.01)).all(axis=1)
+    if outside.any():
+        assert (np.abs(seen[outside] - BLANK) < 12).all(axis=1).mean() > 0.99
+
+
+def test_esc_ends_a_long_bake_and_leaves_nothing(sheet, tmp_path):
+    there, before = sheet.call("contents"), sheet.call("image_digest", "Texture")
+    threads = sheet.call("threads")
+    sheet.call(
+        "start",
+        BAKE_MAPS,
+        maps={"POSITION", "NORMAL_TANGENT", "CURVATURE_MEAN", "CAVITY"},
+        width=4096,
+        height=4096,
+        folder=str(tmp_path),
+    )
+    sheet.key("Return")
+    assert sheet.call("running") == ["OBJECT_OT_limit_bake_maps"]
+    distance = sheet.call("view_distance")
+    slowest = 0
+    for _ in range(10):
+        asked = time.monotonic()
+        sheet.call("redraw")
+        slowest = max(slowest, time.monotonic() - asked)
+        time.sleep(0.2)
+    print(f"The window answered after {slowest:.2f} s at most")
+    assert slowest < 1
+    sheet.wheel(1)
+    assert sheet.call("view_distance") < distance
+    sheet.screenshot("baking")
+    assert sheet.call("running") == ["OBJECT_OT_limit_bake_maps"]
+    asked = time.monotonic()
+    sheet.key("Escape")
+    assert not sheet.call("running")
+    while sheet.call("threads") > threads:
+        time.sleep(0.05)
+        assert time.monotonic() - asked < 2
+    print(f"It ended after {time.monotonic() - asked:.2f} s")
+    assert sheet.call("contents") == there
+    assert sheet.call("image_digest", "Texture") == before
+    assert not list(tmp_path.iterdir())
+
+
+def test_mesh_is_adjusted_in_the_redo_panel(sheet):
+    there = sheet.call("contents")
+    sheet.open_tab()
+    sheet.open_panel(PANEL)
+    sheet.click(*sheet.find_button(MESH))
+    await_end(sheet, "OBJECT_OT_limit_mesh")
+    assert sheet.call("mesh_size", "Limit Mesh") == ((8 * 8 + 1) ** 2, FACE_ROWS * 4**3)
+    made = sheet.call("contents")
+    assert sheet.call("objects") == ["Limit Mesh", "Sheet"]
+    fields = sheet.open_redo_panel()
+    sheet.screenshot("mesh_redo")
+    sheet.move(*sheet.find_field(*fields, value="3"))
+    sheet.key("Return", "ctrl+a", "4", "Return")
+    await_end(sheet, "OBJECT_OT_limit_mesh")
+    assert sheet.call("mesh_size", "Limit Mesh") == ((8 * 16 + 1) ** 2, FACE_ROWS * 4**4)
+    assert sheet.call("contents") == made
+    sheet.key("Escape")
+    sheet.move(*sheet.call("view_centre"))
+    sheet.key("ctrl+z")
+    assert sheet.call("contents") == there
+
+
+def test_curvature_is_seen(sheet):
+    """Blue where the sheet bulges, red where it is hollow."""
+    there = sheet.call("contents")
+    sheet.open_tab()
+    sheet.open_panel(PANEL)
+    sheet.click(*sheet.find_button(CURVATURE))
+    await_end(sheet, "OBJECT_OT_limit_curvature")
+    assert sheet.call("contents") == there
+    sheet.call("show_flat", "VERTEX")
+    sheet.settle()
+    shown = sheet.pixels(sheet.screenshot("curvature"))
+    camera = Camera(**sheet.call("camera"))
+    tops = [(np.pi / 2, 0, WAVE), (-np.pi / 2, 0, -WAVE)]
+    bulge, hollow = (
+        shown[len(shown) - 1 - round(y), round(x)].astype(int)
+        for x, y in map(camera.pixel, sheet.call("world_points", "Sheet", tops))
+    )
+    assert bulge[2] > bulge[0] + 60
+    assert hollow[0] > hollow[2] + 60
+
+
+def test_menu_has_them_all(sheet):
+    sheet.call("open_menu", MENU)
+    sheet.settle()
+    sheet.screenshot("textures_menu")
+    found = sheet.operators_in_menu()
+    for operator in (PROJECT, BAKE_MAPS, BAKE_DISPLACEMENT, CURVATURE, MESH):
+        assert found.count(operator) == 1
+    sheet.key("Escape")
