@@ -290,7 +290,7 @@ def test_sunken_polygons_are_told_of(capfd):
     image()
     add_decal(ob, decal_resolution=8, decal_offset=0.001)
     said = capfd.readouterr()
-    assert "below the surface: raise the resolution or the offset" in said.out + said.err
+    assert "below the surface: raise the resolution, or the offset to " in said.out + said.err
     add_decal(ob, decal_resolution=8, decal_offset=0.2)
     said = capfd.readouterr()
     assert "below the surface" not in said.out + said.err

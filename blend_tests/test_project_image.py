@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Textures that images are projected into, against Blender's own fine mesh, rays and UVs."""
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
 import bpy
 import numpy as np
 import projection_truth as truth
@@ -488,13 +491,74 @@ def test_materials_are_made_if_asked_for():
     again = project(ob, image="Shown", create_material=True, target="Second")
     assert len(ob.material_slots) == 1
     assert linked_image(material) == again
+    count = len(material.node_tree.nodes)
+    project(ob, image="Shown", create_material=True, output="EXISTING", target="Second")
+    assert len(material.node_tree.nodes) == count  # it is shown already
+
+
+@pytest.mark.parametrize("use_float", [False, True])
+def test_materials_keep_their_color_where_nothing_is_projected(use_float):
+    """Rendered by Cycles: half of the square is seen through the image."""
+    ob = flat_square()
+    own = bpy.data.materials.new("Own")
+    own.use_nodes = True
+    own.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0, 1, 0, 1)
+    ob.data.materials.append(own)
+    camera = truth.add_camera((0.5, 0.5, 3), (0.5, 0.5, 0))
+    filled("Shown", np.tile(np.float32([1, 0, 0, 1]), (8, 8, 1)))
+    camera.location.x += 3 * np.tan(camera.data.angle / 2)
+    bpy.context.view_layer.update()
+    project(ob, image="Shown", create_material=True, use_float=use_float)
+    camera.location.x = 0.5
+    left, right = rendered_colors(own)
+    assert np.abs(left - [0, 1, 0]).max() < 0.02
+    assert np.abs(right - [1, 0, 0]).max() < 0.02
+
+
+def rendered_colors(material):
+    """The base color, seen on the left and on the right."""
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    light = nodes.new("ShaderNodeEmission")
+    links.new(nodes["Principled BSDF"].inputs["Base Color"].links[0].from_socket, light.inputs[0])
+    links.new(light.outputs[0], nodes["Material Output"].inputs["Surface"])
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", 4
+    scene.render.resolution_x = scene.render.resolution_y = 32
+    scene.view_settings.view_transform = "Standard"
+    with TemporaryDirectory() as folder:
+        scene.render.filepath = str(Path(folder, "shown.png"))
+        bpy.ops.render.render(write_still=True)
+        pixels = truth.pixels(bpy.data.images.load(scene.render.filepath))
+    row = pixels.reshape(32, 32, 4)[16, :, :3]
+    return row[12], row[20]
+
+
+def test_linked_meshes_get_no_material(tmp_path):
+    ob = flat_square()
+    bpy.data.libraries.write(str(tmp_path / "library.blend"), {ob})
+    bpy.data.objects.remove(ob)
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (there, linked):
+        linked.objects = there.objects
+    (ob,) = linked.objects
+    bpy.context.collection.objects.link(ob)
+    truth.add_camera((0.5, 0.5, 3))
+    filled("Shown", noise((8, 8)))
+    refused(ob, f"{ob.name} cannot be given a material: its mesh", create_material=True)
+    project(ob, image="Shown")
 
 
 def linked_image(material):
+    """The topmost, mixed in by its alpha."""
     shader = next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
-    texture = shader.inputs["Base Color"].links[0].from_node
+    mix = shader.inputs["Base Color"].links[0].from_node
+    texture = _links(mix, "B_Color")[0].from_node
+    assert [link.from_socket.name for link in _links(mix, "Factor_Float")] == ["Alpha"]
     assert texture.inputs["Vector"].links[0].from_node.uv_map == "Map"
     return texture.image
+
+
+def _links(node, identifier):
+    return next(s for s in node.inputs if s.identifier == identifier).links
 
 
 def test_undo_brings_the_pixels_back():

@@ -3,31 +3,34 @@
 
 import bpy
 
+from .. import material_slots
+
 OUTPUT = "OUTPUT_MATERIAL"
+
+
+def check(ob: bpy.types.Object) -> None:
+    """RefusalError where the object can show no image."""
+    if _own(ob) is None:
+        material_slots.check(ob)
 
 
 def show(
     ob: bpy.types.Object, image: bpy.types.Image, uv_map: str, *, is_vector: bool, space: str
 ) -> bpy.types.Material:
     """By the object's active material, or by a new one where it has none that can be changed."""
-    material = ob.active_material
-    if material is None or not material.is_editable or _output(material) is None:
+    material = _own(ob)
+    if material is None:
         material = bpy.data.materials.new(image.name)
         material.use_nodes = True
-        _put(ob, material)
+        material_slots.put(ob, material)
     _link(material, image, uv_map, is_vector, space)
     material.displacement_method = "DISPLACEMENT"
     return material
 
 
-def _put(ob: bpy.types.Object, material: bpy.types.Material) -> None:
-    """Into the active slot where that is empty, else into a new one, which all faces take only if
-    there was none before."""
-    if ob.active_material is None and ob.material_slots:
-        ob.active_material = material
-        return
-    ob.data.materials.append(material)
-    ob.active_material_index = len(ob.material_slots) - 1
+def _own(ob: bpy.types.Object) -> bpy.types.Material | None:
+    material = ob.active_material
+    return material if material and material.is_editable and _output(material) else None
 
 
 def _output(material: bpy.types.Material) -> bpy.types.Node | None:

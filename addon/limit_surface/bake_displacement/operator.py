@@ -59,6 +59,8 @@ class OBJECT_OT_limit_bake_displacement(
         ob = context.active_object
         if self.create_material and self.layout_kind == "PTEX":
             raise RefusalError("A material finds its texels by a UV map: choose the layout UV Map")
+        if self.create_material:
+            material.check(ob)
         if self.filepath:
             image_files.check_folder(self._path.parent)
         both = surfaces.read(self.properties, context, ob)

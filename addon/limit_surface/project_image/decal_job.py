@@ -57,7 +57,7 @@ class Made:
             return ""
         return (
             f"Polygons lie up to {self.sag - self.order.offset:.2g} below the surface: raise the "
-            "resolution or the offset"
+            f"resolution, or the offset to {1.1 * self.sag:.2g}"
         )
 
     def put(self, context: bpy.types.Context, surface: bpy.types.Object) -> str:

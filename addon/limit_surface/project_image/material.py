@@ -3,18 +3,28 @@
 
 import bpy
 
+from .. import material_slots
+
 SHADER = "BSDF_PRINCIPLED"
+COLOR = "Base Color"
+
+
+def check(ob: bpy.types.Object) -> None:
+    """RefusalError where the object can show no image."""
+    if _own(ob) is None:
+        material_slots.check(ob)
 
 
 def show(ob: bpy.types.Object, image: bpy.types.Image, uv_map: str) -> bpy.types.Material:
-    """As base color of the object's active material, or of a new one where it has none that has a
-    shader for it."""
-    material = ob.active_material
-    if material is None or not material.is_editable or _shader(material) is None:
+    """Over the base color of the object's active material, or of a new one where it has none that
+    has a shader for it."""
+    material = _own(ob)
+    if material is None:
         material = bpy.data.materials.new(image.name)
         material.use_nodes = True
-        _put(ob, material)
-    _link(material, image, uv_map, with_alpha=False)
+        material_slots.put(ob, material)
+    if not _shows(_shader(material).inputs[COLOR], image):
+        _link(material, image, uv_map)
     return material
 
 
@@ -23,18 +33,18 @@ def for_decal(ob: bpy.types.Object, image: bpy.types.Image, uv_map: str) -> bpy.
     material = bpy.data.materials.new(ob.name)
     material.use_nodes = True
     ob.data.materials.append(material)
-    _link(material, image, uv_map, with_alpha=True)
+    nodes, links, shader = material.node_tree.nodes, material.node_tree.links, _shader(material)
+    texture = _texture(material.node_tree, image, uv_map, shader.location.x)
+    texture.extension = "EXTEND"
+    links.new(texture.outputs["Color"], shader.inputs[COLOR])
+    links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
+    nodes.active = texture
     return material
 
 
-def _put(ob: bpy.types.Object, material: bpy.types.Material) -> None:
-    """Into the active slot where that is empty, else into a new one, which all faces take only if
-    there was none before."""
-    if ob.active_material is None and ob.material_slots:
-        ob.active_material = material
-        return
-    ob.data.materials.append(material)
-    ob.active_material_index = len(ob.material_slots) - 1
+def _own(ob: bpy.types.Object) -> bpy.types.Material | None:
+    material = ob.active_material
+    return material if material and material.is_editable and _shader(material) else None
 
 
 def _shader(material: bpy.types.Material) -> bpy.types.Node | None:
@@ -42,19 +52,46 @@ def _shader(material: bpy.types.Material) -> bpy.types.Node | None:
     return next((n for n in tree.nodes if n.type == SHADER), None) if tree else None
 
 
-def _link(
-    material: bpy.types.Material, image: bpy.types.Image, uv_map: str, with_alpha: bool
-) -> None:
-    nodes, links, shader = material.node_tree.nodes, material.node_tree.links, _shader(material)
-    texture = nodes.new("ShaderNodeTexImage")
-    texture.image = image
-    texture.extension = "EXTEND" if with_alpha else "REPEAT"
-    places = nodes.new("ShaderNodeUVMap")
-    places.uv_map = uv_map
-    links.new(places.outputs["UV"], texture.inputs["Vector"])
-    links.new(texture.outputs["Color"], shader.inputs["Base Color"])
-    if with_alpha:
-        links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
-    x, y = shader.location
+def _shows(socket: bpy.types.NodeSocket, image: bpy.types.Image) -> bool:
+    """Whether it comes, by way of any nodes, from a texture of that image."""
+    waiting, seen = [socket], set()
+    while waiting:
+        for node in (link.from_node for link in waiting.pop().links):
+            if getattr(node, "image", None) == image:
+                return True
+            if node not in seen:
+                seen.add(node)
+                waiting += node.inputs
+    return False
+
+
+def _link(material: bpy.types.Material, image: bpy.types.Image, uv_map: str) -> None:
+    """Where the image is transparent, the color stays that was there."""
+    tree, shader = material.node_tree, _shader(material)
+    base, x = shader.inputs[COLOR], shader.location.x
+    mix = tree.nodes.new("ShaderNodeMix")
+    mix.data_type, mix.location = "RGBA", (x - 200, shader.location.y)
+    sockets = {s.identifier: s for s in (*mix.inputs, *mix.outputs)}
+    if base.links:
+        tree.links.new(base.links[0].from_socket, sockets["A_Color"])
+    else:
+        sockets["A_Color"].default_value = base.default_value
+    texture = _texture(tree, image, uv_map, x - 220)
+    tree.links.new(texture.outputs["Color"], sockets["B_Color"])
+    tree.links.new(texture.outputs["Alpha"], sockets["Factor_Float"])
+    tree.links.new(sockets["Result_Color"], base)
+    tree.nodes.active = texture
+
+
+def _texture(
+    tree: bpy.types.NodeTree, image: bpy.types.Image, uv_map: str, x: float
+) -> bpy.types.Node:
+    texture, places = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeUVMap")
+    texture.image, places.uv_map = image, uv_map
+    tree.links.new(places.outputs["UV"], texture.inputs["Vector"])
+    y = min(
+        (n.location.y - 300 for n in tree.nodes if n.type == "TEX_IMAGE" and n != texture),
+        default=300,
+    )
     texture.location, places.location = (x - 300, y), (x - 500, y - 120)
-    nodes.active = texture
+    return texture

@@ -225,8 +225,8 @@ class ProjectionProperties(OverlapProperty):
     )
     create_material: BoolProperty(
         name="Create Material",
-        description="Show the result: link it to the base color of the active material, or of a "
-        "new one",
+        description="Show the result: lay it over the base color of the active material, or of "
+        "a new one",
         default=False,
     )
 

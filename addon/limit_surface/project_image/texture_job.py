@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import baking, images, overlap
+from .. import baking, images, objects, overlap
 from ..errors import RefusalError
 from ..job import Progress, part_of
 from . import colours, inputs, material
@@ -103,6 +103,8 @@ def order(
     world: WorldSurface,
     surface: tuple[str, str | None],
 ) -> Order:
+    if properties.create_material:
+        material.check(objects.find(surface))
     shown = inputs.image(properties.image)
     target = _target(properties)
     return Order(
