@@ -1,85 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rasterised UV maps, held against a great many evaluated triangles and against the map's own
+// Rasterised UV maps, held against a great many evaluated triangles, closed forms and the map's own
 // evaluation.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <cstdio>
-#include <map>
 
-#include "limitsurf/bake/uv_map.h"
-#include "support/meshes.h"
 #include "support/throws.h"
-#include "support/uv_witness.h"
+#include "support/uv_images.h"
 
 namespace limitsurf::test {
 namespace {
-
-RasterOptions image(int width, int height, double margin = 0) {
-  RasterOptions options;
-  options.width = width;
-  options.height = height;
-  options.margin = margin;
-  return options;
-}
-
-Eigen::RowVector2d centre(const RasterOptions& options, int x, int y) {
-  return {options.tile_x + (x + 0.5) / options.width, options.tile_y + (y + 0.5) / options.height};
-}
-
-DataRows centres(const RasterOptions& options) {
-  DataRows rows(options.width * options.height, 2);
-  for (int y = 0; y < options.height; ++y) {
-    for (int x = 0; x < options.width; ++x) {
-      rows.row(y * options.width + x) = centre(options, x, y);
-    }
-  }
-  return rows;
-}
-
-DataRows valuesAt(const SurfaceData& map, const Texels& texels) {
-  std::vector<Location> at;
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    at.push_back({texels.face[i], texels.uv[i][0], texels.uv[i][1]});
-  }
-  return map.evaluate(at).value;
-}
 
 /// The diagonal of the box around the values and (0, 0).
 double extent(const DataRows& values) {
   const Eigen::RowVector2d low = values.colwise().minCoeff().cwiseMin(0),
                            high = values.colwise().maxCoeff().cwiseMax(0);
   return (high - low).norm();
-}
-
-/// By pixel, y * width + x; -1 where there is no texel.
-std::vector<int> rowsOf(const Texels& texels, const RasterOptions& options) {
-  std::vector<int> rows(static_cast<std::size_t>(options.width) * options.height, -1);
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    rows[static_cast<std::size_t>(texels.y[i]) * options.width + texels.x[i]] = static_cast<int>(i);
-  }
-  return rows;
-}
-
-bool sameBits(const Texels& a, const Texels& b) {
-  return a.x == b.x && a.y == b.y && a.face == b.face && a.uv == b.uv && a.inside == b.inside &&
-         a.overlap == b.overlap && a.flipped == b.flipped;
-}
-
-/// A map on columns x rows squares with one value a vertex, which `place` puts somewhere.
-template <typename Place>
-NamedMap gridMap(int columns, int rows, Interpolation interpolation, const Place& place) {
-  const Cage cage = grid(columns, rows);
-  DataRows values(cage.vertexCount(), 2);
-  for (int v = 0; v < cage.vertexCount(); ++v) {
-    values.row(v) = place(cage.positions(v, 0) / columns, cage.positions(v, 1) / rows);
-  }
-  std::vector<std::int64_t> corners;
-  for (const auto& face : cage.faces) corners.insert(corners.end(), face.begin(), face.end());
-  LimitSurface surface = limitSurface(cage);
-  SurfaceData map = surface.faceVarying(values, corners, interpolation);
-  return {"grid", std::move(surface), std::move(map)};
 }
 
 TEST(UvRaster, CoversWhatTheMapCovers) {
@@ -261,6 +200,114 @@ TEST(UvRaster, TellsStackedIslandsFromNeighbours) {
   }
 }
 
+// Bilinear quads that fold, inverted in closed form.
+TEST(UvRaster, FindsBothSheetsOfFoldedQuads) {
+  const double kQuads[][4][2] = {{{0.05, 0.1}, {0.9, 0.2}, {0.4, 0.35}, {0.3, 0.95}},
+                                 {{0.1, 0.1}, {0.9, 0.1}, {0.1, 0.9}, {0.9, 0.9}}};
+  constexpr int kSide = 1000;
+  long sheets_of_two = 0;
+  for (const auto& quad : kQuads) {
+    const NamedMap named = gridMap(1, 1, Interpolation::all, [&](double s, double t) {
+      const int corner = t == 0 ? (s == 0 ? 0 : 1) : (s == 0 ? 3 : 2);
+      return Eigen::RowVector2d(quad[corner][0], quad[corner][1]);
+    });
+    const RasterOptions options = image(kSide, kSide);
+    const Texels texels = UvMap(named.map).rasterize(options);
+    const std::vector<int> rows = rowsOf(texels, options);
+    using Complex = std::complex<long double>;  // as points of the plane
+    const auto point = [&](int i) { return Complex(quad[i][0], quad[i][1]); };
+    const Complex a = point(0), b = point(1) - a, c = point(3) - a, d = point(2) - a - b - c;
+    const auto area = [](const Complex& x, const Complex& y) {
+      return x.real() * y.imag() - x.imag() * y.real();
+    };
+    long wrong = 0;
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        const Eigen::RowVector2d at = centre(options, x, y);
+        const Complex p = Complex(at[0], at[1]) - a;
+        // (p - t c) x (b + t d) = 0, a quadratic in t.
+        const long double c0 = area(p, b), c1 = area(p, d) - area(c, b), c2 = -area(c, d);
+        const long double root = std::sqrt(std::max(0.L, c1 * c1 - 4 * c2 * c0));
+        const bool is_real = c1 * c1 - 4 * c2 * c0 >= 0;
+        int count = 0;
+        bool is_close = std::abs(c1 * c1 - 4 * c2 * c0) < 1e-12L;
+        for (const long double sign : {-1.L, 1.L}) {
+          // The form without cancellation.
+          const long double q = -(c1 + (c1 < 0 ? -root : root)) / 2;
+          const long double t = sign < 0 ? q / c2 : c0 / q;
+          const Complex along = b + t * d;
+          const long double s = ((p - t * c) * std::conj(along)).real() / std::norm(along);
+          const auto inside = [](long double v) { return v >= 0 && v <= 1; };
+          for (const long double v : {s, t}) {
+            is_close |= std::abs(v) < 1e-9L || std::abs(v - 1) < 1e-9L;
+          }
+          count += is_real && inside(s) && inside(t);
+        }
+        if (is_close) continue;
+        const int row = rows[y * kSide + x];
+        const int found = row < 0 ? 0 : texels.overlap[row] ? 2 : 1;
+        wrong += found != count;
+        sheets_of_two += count == 2;
+      }
+    }
+    EXPECT_EQ(wrong, 0);
+  }
+  EXPECT_GT(sheets_of_two, 100);
+}
+
+// A sheet that folds back along a slanted line from one side of a wide image to the other.
+TEST(UvRaster, FindsBothSheetsAlongLongFolds) {
+  constexpr double kHeights[] = {0.1, 0.4, 0.85, 0.6, 0.35, 0.7};
+  constexpr double kSlope = 0.07;
+  const auto place = [&](double s, double t) {
+    return Eigen::RowVector2d(s, kHeights[std::lround(5 * t)] + kSlope * s);
+  };
+  for (const int columns : {1, 3}) {
+    const NamedMap named = gridMap(columns, 5, Interpolation::corners_only, place);
+    // The height of one side; the rest is the same, moved along.
+    constexpr int kSamples = 500;
+    std::vector<Location> side;
+    for (int face = 0; face < 5; ++face) {
+      for (int i = 0; i < kSamples; ++i) {
+        side.push_back({face * columns, 0, static_cast<double>(i) / kSamples});
+      }
+    }
+    side.push_back({4 * columns, 0, 1});
+    const DataRows heights = named.map.evaluate(side).value;
+    ASSERT_LE(heights.col(0).cwiseAbs().maxCoeff(), 1e-12);
+    const RasterOptions options = image(3000, 200);
+    const Texels texels = UvMap(named.map).rasterize(options);
+    const std::vector<int> rows = rowsOf(texels, options);
+    long wrong = 0, compared = 0, folded = 0;
+    for (int y = 0; y < options.height; ++y) {
+      for (int x = 0; x < options.width; x += 29) {
+        const Eigen::RowVector2d point = centre(options, x, y);
+        const double height = point[1] - kSlope * point[0];
+        int count = 0;
+        bool is_close = false;
+        for (Eigen::Index i = 0; i + 1 < heights.rows(); ++i) {
+          count += (heights(i, 1) < height) != (heights(i + 1, 1) < height);
+        }
+        const int row = rows[y * options.width + x];
+        // Beside a fold samples do not tell.
+        for (Eigen::Index i = 1; i + 1 < heights.rows(); ++i) {
+          is_close |=
+              (heights(i, 1) - heights(i - 1, 1)) * (heights(i + 1, 1) - heights(i, 1)) <= 0 &&
+              std::abs(heights(i, 1) - height) < 2e-5;
+        }
+        if (is_close) continue;
+        ++compared;
+        folded += count > 1;
+        wrong +=
+            (row >= 0) != (count > 0) || (row >= 0 && (texels.overlap[row] != 0) != (count > 1));
+      }
+    }
+    EXPECT_EQ(wrong, 0) << columns;
+    EXPECT_GT(compared, 20000);
+    EXPECT_GT(folded, 5000);
+  }
+}
+
 TEST(UvRaster, TilesAreWindowsOfOneMap) {
   const auto place = [](double s, double t) {
     return Eigen::RowVector2d(-1.3 + 3.1 * s + 0.4 * t, 0.2 + 1.9 * t - 0.3 * s * t);
@@ -391,68 +438,6 @@ TEST(UvRaster, OptionsOutOfRangeAreRefused) {
   const DataRows three = DataRows::Zero(9, 3);
   const SurfaceData other = named.surface.vertexData(three);
   expectThrow<std::invalid_argument>([&] { UvMap wrong(other); }, {"3 columns"});
-}
-
-// A margin against the nearest of a great many points of the map.
-TEST(UvRaster, MarginsHoldTheNearestPlaces) {
-  const RasterOptions options = image(48, 40, 5);
-  const Eigen::RowVector2d scale(options.width, options.height);
-  std::size_t compared = 0;
-  double worst = 0;
-  for (const NamedMap& named : uvMaps()) {
-    if (named.name.find("random") != std::string::npos) continue;
-    SCOPED_TRACE(named.name);
-    const UvWitness witness(named.surface, named.map, 48);
-    const Texels texels = UvMap(named.map).rasterize(options);
-    const std::vector<int> rows = rowsOf(texels, options);
-    const DataRows values = valuesAt(named.map, texels);
-    for (int y = 0; y < options.height; y += 1) {
-      for (int x = (y * 7) % 5; x < options.width; x += 5) {
-        const int row = rows[y * options.width + x];
-        if (row >= 0 && texels.inside[row]) continue;
-        const Eigen::RowVector2d point = centre(options, x, y);
-        const double nearest = witness.distance(point, scale);
-        if (row < 0) {
-          ASSERT_GT(nearest, options.margin - kMarginError) << x << ", " << y;
-          continue;
-        }
-        const double found = ((values.row(row) - point).array() * scale.array()).matrix().norm();
-        ASSERT_LE(found, options.margin + 1e-9);
-        worst = std::max(worst, found - nearest);
-        ASSERT_LE(found, nearest + kMarginError) << x << ", " << y;
-        ASSERT_FALSE(texels.overlap[row]);
-        ++compared;
-      }
-    }
-  }
-  std::printf("%zu texels of margins, at most %.2g texels farther than the nearest sample\n",
-              compared, worst);
-  EXPECT_GT(compared, 3000u);
-}
-
-TEST(UvRaster, MarginsOfFoldedMapsComeClose) {
-  const RasterOptions options = image(40, 40, 4);
-  const Eigen::RowVector2d scale(options.width, options.height);
-  for (const NamedMap& named : uvMaps()) {
-    if (named.name.find("random") == std::string::npos) continue;
-    SCOPED_TRACE(named.name);
-    const UvWitness witness(named.surface, named.map, 32);
-    const Texels texels = UvMap(named.map).rasterize(options);
-    const std::vector<int> rows = rowsOf(texels, options);
-    const DataRows values = valuesAt(named.map, texels);
-    for (int i = 3; i < 40 * 40; i += 11) {
-      const int row = rows[i];
-      if (row >= 0 && texels.inside[row]) continue;
-      const Eigen::RowVector2d point = centre(options, i % 40, i / 40);
-      const double nearest = witness.distance(point, scale);
-      if (row < 0) {
-        ASSERT_GT(nearest, options.margin - 0.5);
-      } else {
-        ASSERT_LE(((values.row(row) - point).array() * scale.array()).matrix().norm(),
-                  nearest + 0.5);
-      }
-    }
-  }
 }
 
 }  // namespace
