@@ -241,7 +241,25 @@ def test_the_file_holds_the_numbers(sculpt, base, tmp_path):
     np.testing.assert_array_equal(images.read(image)[..., :3], plain[..., :3])
     assert image.colorspace_settings.name == "Non-Color"
     assert bpy.path.abspath(image.filepath) == str(path)
-    refused(base, "There is no folder", target="Sculpt", filepath=str(tmp_path / "no" / "a.exr"))
+    numbered = bake(base, sculpt, filepath=str(tmp_path / "tile.<UDIM>.exr"))
+    assert bpy.path.abspath(numbered.filepath) == str(tmp_path / "tile.1001.exr")
+    assert sorted(file.name for file in tmp_path.iterdir()) == [path.name, "tile.1001.exr"]
+
+
+def test_paths_that_would_not_do(sculpt, base, tmp_path):
+    scenes.add_uv_map(base, lambda p: p[:, :2] / (2.5, 4))
+    for match, path, properties in (
+        ("There is no folder", tmp_path / "no" / "a.exr", {}),
+        ("a.png does not end in .exr", tmp_path / "a.png", {}),
+        ("save that file first", "//a.exr", {}),
+        (
+            "a.exr would be the file of 2 tiles",
+            tmp_path / "a.exr",
+            {"use_tiles": True, "uv_map": "Flat.001"},
+        ),
+    ):
+        refused(base, match, target="Sculpt", filepath=str(path), **properties)
+    assert not list(tmp_path.iterdir())
 
 
 def refused(ob, match, **properties):

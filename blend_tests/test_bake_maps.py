@@ -290,6 +290,7 @@ def test_refusals(tmp_path):
     refused("No map is chosen", maps=set())
     refused("Bowl has no UV map 'Other'", uv_map="Other")
     refused("There is no folder", folder=str(tmp_path / "nothing"))
+    refused("//maps begins at the .blend file's folder: save that file first", folder="//maps")
     refused("take about .* GiB of memory", width=16384, height=16384)
     bake(maps={"POSITION"})
     refused("an image Bowl Position of 64 x 64 pixels: choose its size")

@@ -22,6 +22,10 @@ from .errors import RefusalError
 UNCONVERTED = ("Non-Color", "Linear Rec.709", "Linear", "Raw", "Generic Data")
 
 
+#: Options of properties that hold paths
+PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5) else set()
+
+
 @dataclass(frozen=True)
 class FileKind:
     file_format: str
@@ -67,6 +71,13 @@ def save_pixels(pixels: np.ndarray, path: str | Path, kind: FileKind) -> None:
         save_copy(image, path, kind)
     finally:
         bpy.data.images.remove(image)
+
+
+def given_path(text: str) -> Path:
+    """RefusalError for paths that begin where a file lies that has not been saved."""
+    if text.startswith("//") and not bpy.data.filepath:
+        raise RefusalError(f"{text} begins at the .blend file's folder: save that file first")
+    return Path(bpy.path.abspath(text))
 
 
 def check_folder(folder: Path) -> None:

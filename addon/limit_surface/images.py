@@ -143,6 +143,7 @@ def save(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
         for number, pixels in image_tiles.read_all(image).items():
             image_files.save_pixels(pixels, str(path).replace("<UDIM>", str(number)), kind)
     else:
+        path = str(path).replace("<UDIM>", str(FIRST_TILE))
         image_files.save_copy(image, path, kind)
     attach(image, path)
 

@@ -61,8 +61,6 @@ class OBJECT_OT_limit_bake_displacement(
             raise RefusalError("A material finds its texels by a UV map: choose the layout UV Map")
         if self.create_material:
             material.check(ob)
-        if self.filepath:
-            image_files.check_folder(self._path.parent)
         both = surfaces.read(self.properties, context, ob)
         request = Request(
             surfaces=both,
@@ -72,6 +70,8 @@ class OBJECT_OT_limit_bake_displacement(
             max_distance=self.max_distance,
             direction=self.direction,
         )
+        if self.filepath:
+            self._check_path(len(request.layout.tiles))
         key = objects.key(ob)
 
         def work(progress: Progress) -> Made:
@@ -90,9 +90,21 @@ class OBJECT_OT_limit_bake_displacement(
         self._tell(ob, image, request, measured)
         return {"FINISHED"}
 
+    def _check_path(self, tiles: int) -> None:
+        image_files.check_folder(self._path.parent)
+        if self._path.suffix.lower() != EXR_32.suffix:
+            raise RefusalError(
+                f"{self._path.name} does not end in {EXR_32.suffix}: the image is saved as OpenEXR"
+            )
+        if tiles > 1 and "<UDIM>" not in self._path.name:
+            raise RefusalError(
+                f"{self._path.name} would be the file of {tiles} tiles: put <UDIM> where their "
+                "numbers go"
+            )
+
     @property
     def _path(self) -> Path:
-        return Path(bpy.path.abspath(self.filepath))
+        return image_files.given_path(self.filepath)
 
     @property
     def _space(self) -> str:

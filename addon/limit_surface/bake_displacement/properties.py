@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ..image_files import PATH_OPTIONS
 from ..overlap import OverlapProperty
 
 LARGEST = 16384  # texels along a side
@@ -155,6 +156,7 @@ class DisplacementProperties(OverlapProperty):
         description="Where the image is saved, as a 32-bit OpenEXR file. <UDIM> in the path stands "
         "for a tile's number. Without a path it is not saved",
         subtype="FILE_PATH",
+        options=PATH_OPTIONS,
     )
     create_material: BoolProperty(
         name="Create Material",

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import NamedTuple
 
 import bpy
@@ -100,7 +99,7 @@ class OBJECT_OT_limit_bake_maps(WatchedOperator, properties.BakeProperties, bpy.
         return Output(
             name=self.name or ob.name,
             kind=image_files.KINDS[self.format],
-            folder=Path(bpy.path.abspath(self.folder)) if self.folder else None,
+            folder=image_files.given_path(self.folder) if self.folder else None,
             reuse=self.reuse,
             tiles=tiles,
             size=(self.width, self.height),

@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ..image_files import PATH_OPTIONS
 from ..overlap import OverlapProperty
 from .maps import AREA_DISTORTION, KINDS, NORMAL_TANGENT
 
@@ -134,6 +135,7 @@ class BakeProperties(OverlapProperty):
         description="Where the images are saved, each by its name. Files of these names are "
         "replaced. Without a folder nothing is saved",
         subtype="DIR_PATH",
+        options=PATH_OPTIONS,
     )
     allow_large: BoolProperty(
         name="Allow Large Images",
