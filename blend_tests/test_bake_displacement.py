@@ -246,6 +246,19 @@ def test_the_file_holds_the_numbers(sculpt, base, tmp_path):
     assert sorted(file.name for file in tmp_path.iterdir()) == [path.name, "tile.1001.exr"]
 
 
+def test_polygons_that_no_viewport_shows(sculpt, base):
+    """Hidden from view they are there; not so where the object is not evaluated at all."""
+    sculpt.modifiers.clear()
+    shown = images.read(bake(base, sculpt, target_shape="POLYGONS"))
+    sculpt.hide_set(True)
+    np.testing.assert_array_equal(images.read(bake(base, sculpt, target_shape="POLYGONS")), shown)
+    sculpt.hide_viewport = True
+    refused(base, "Sculpt is disabled", target="Sculpt", target_shape="POLYGONS")
+    sculpt.hide_viewport = False
+    bpy.context.collection.objects.unlink(sculpt)
+    refused(base, "or not in this view layer", target="Sculpt", target_shape="POLYGONS")
+
+
 def test_paths_that_would_not_do(sculpt, base, tmp_path):
     scenes.add_uv_map(base, lambda p: p[:, :2] / (2.5, 4))
     for match, path, properties in (

@@ -77,6 +77,11 @@ def _polygons(
 ) -> tuple[limitsurf.ControlMesh, np.ndarray]:
     """As the viewport shows them: a place between vertices lies on a bilinear patch."""
     evaluated = target.evaluated_get(depsgraph)
+    if not evaluated.is_evaluated:  # but the mesh without its modifiers
+        raise RefusalError(
+            f"{target.name} is disabled in viewports, or not in this view layer: so there are no "
+            "polygons as the viewport shows them"
+        )
     mesh = evaluated.data
     if not mesh.polygons:
         raise RefusalError(f"{target.name} has no faces")
