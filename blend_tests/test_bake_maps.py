@@ -293,7 +293,7 @@ def test_refusals(tmp_path):
     refused("//maps begins at the .blend file's folder: save that file first", folder="//maps")
     refused("take about .* GiB of memory", width=16384, height=16384)
     bake(maps={"POSITION"})
-    refused("an image Bowl Position of 64 x 64 pixels: choose its size")
+    refused("an image Bowl Position of 64 x 64 pixels: choose .* or turn Reuse Images off")
     refused("of float pixels, which is another format", width=64, height=64, format="PNG_8")
     bpy.data.images["Bowl Position"].colorspace_settings.name = "sRGB"
     refused("data need Non-Color", width=64, height=64)

@@ -418,6 +418,7 @@ def test_refusals_about_images():
     ob, _ = flat_square(), truth.add_camera((0.5, 0.5, 3))
     filled("Shown", noise((8, 8)))
     filled("Target", noise((8, 8)))
+    refused(ob, "Opacity is 0", opacity=0)
     missing = bpy.data.images.new("Missing", 8, 8)
     missing.source = "FILE"
     missing.filepath = "//nowhere.png"

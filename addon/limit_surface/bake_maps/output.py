@@ -72,7 +72,10 @@ class Output:
         for tile in self.tiles:
             if described.tiles[tile] != self.size:
                 width, height = described.tiles[tile]
-                raise RefusalError(f"{whose} of {width} x {height} pixels: choose its size")
+                raise RefusalError(
+                    f"{whose} of {width} x {height} pixels: choose its size, another name, or "
+                    "turn Reuse Images off"
+                )
         if described.is_float != self._is_float:
             depth = "float" if described.is_float else "8-bit"
             raise RefusalError(f"{whose} of {depth} pixels, which is another format")

@@ -103,6 +103,8 @@ def order(
     world: WorldSurface,
     surface: tuple[str, str | None],
 ) -> Order:
+    if not properties.opacity:
+        raise RefusalError("Opacity is 0: nothing would be seen of the image")
     if properties.create_material:
         material.check(objects.find(surface))
     shown = inputs.image(properties.image)
