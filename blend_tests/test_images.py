@@ -155,6 +155,18 @@ def test_new_images_are_kept_in_the_file(tmp_path):
         bpy.data.images.remove(image)
 
 
+def test_new_images_that_nothing_uses_outlast_saving(tmp_path):
+    images.write(images.new("one", *SIZE, is_float=True, is_data=True), some_pixels(1), is_new=True)
+    tiles = {1001: some_pixels(2), 1002: some_pixels(3)}
+    images.new_tiled("tiled", tiles, is_float=True, is_data=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
+    assert shows("one", 1)
+    for tile, pixels in tiles.items():
+        found = images.read(bpy.data.images["tiled"], tile)
+        np.testing.assert_allclose(found, pixels, atol=1e-6)
+
+
 def test_a_write_that_fails_leaves_the_pixels(tmp_path):
     image = new_image("generated 8", tmp_path)
     with pytest.raises(ValueError, match="expected"):

@@ -117,11 +117,13 @@ def write(
 def new(
     name: str, width: int, height: int, *, is_float: bool, is_data: bool, alpha: bool = True
 ) -> bpy.types.Image:
-    """Black, and transparent if it has alpha."""
+    """Black, and transparent if it has alpha. Saved with the .blend file, like all that is made
+    here, whether anything uses it or not."""
     image = bpy.data.images.new(
         name, width, height, alpha=alpha, float_buffer=is_float, is_data=is_data
     )
     image.generated_color = (0.0, 0.0, 0.0, 0.0 if alpha else 1.0)
+    image.use_fake_user = True
     return image
 
 
@@ -133,7 +135,9 @@ def new_tiled(
     is_data: bool,
 ) -> bpy.types.Image:
     """An image of the given tiles, packed."""
-    return image_tiles.new(name, tiles, is_float=is_float, is_data=is_data)
+    image = image_tiles.new(name, tiles, is_float=is_float, is_data=is_data)
+    image.use_fake_user = True
+    return image
 
 
 def save(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
@@ -167,4 +171,5 @@ def load(path: str | Path, tiles: list[int]) -> bpy.types.Image:
     else:
         image = bpy.data.images.load(str(path))
     image.colorspace_settings.name = "Non-Color"
+    image.use_fake_user = True
     return image
