@@ -53,7 +53,7 @@ def there(ob, target, levels, face, uv):
     return surface(target).evaluate(polygon, np.clip(within, 0, 1)).position
 
 
-def texels_of(ob, image, margin=4):
+def texels_of(ob, image, margin=16):
     """Where they lie, those of the margin included."""
     base = surface(ob)
     corner_vertex = attributes.read(ob.data, ids.CORNER_VERTEX)

@@ -3,23 +3,18 @@
 """The picture of docs/bake_maps.md: a control mesh that is shaded by a baked normal map, beside the
 limit surface; and baked maps, on the surface and flat."""
 
-import argparse
-import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "addon"))
-
-import bpy  # noqa: E402
-import exactness_scene as scene  # noqa: E402
-import limit_surface  # noqa: E402
-import numpy as np  # noqa: E402
-from exactness_sheet import GREY, INK, font  # noqa: E402
-from exactness_zoo import View  # noqa: E402
-from PIL import Image, ImageDraw  # noqa: E402
-from quiet import quiet  # noqa: E402
+import bpy
+import exactness_scene as scene
+import numpy as np
+import page_picture
+from exactness_sheet import GREY, INK, font
+from exactness_zoo import View
+from PIL import Image, ImageDraw
+from quiet import quiet
 
 TEXELS = 512
 VIEW, TARGET, WIDTH = View(24, 12), np.array([0.05, 0.0, -0.02]), 2.95
@@ -43,17 +38,6 @@ SHADED = (
     "control mesh with its normal map",
     "the limit surface itself",
 )
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--output", type=Path, default=ROOT / "docs/images/bake_maps.png")
-    parser.add_argument("--samples", type=int, default=32, help="per pixel")
-    arguments = parser.parse_args()
-    limit_surface.register()
-    make(arguments.output, arguments.samples)
-    limit_surface.unregister()
-    print(f"{arguments.output}: {arguments.output.stat().st_size >> 10} KiB")
 
 
 def make(output: Path, samples: int) -> None:
@@ -184,4 +168,4 @@ def thumbnail(name: str, side: int) -> Image.Image:
 
 
 if __name__ == "__main__":
-    main()
+    page_picture.run(__doc__, "bake_maps", make)

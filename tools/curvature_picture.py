@@ -3,23 +3,18 @@
 """The picture of docs/curvature.md: what object.limit_curvature stores of an open mesh with a pole,
 as colours and as strokes along the principal directions."""
 
-import argparse
-import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "addon"))
-
-import bpy  # noqa: E402
-import exactness_scene as scene  # noqa: E402
-import limit_surface  # noqa: E402
-import numpy as np  # noqa: E402
-from exactness_sheet import GREY, INK, font  # noqa: E402
-from exactness_zoo import View  # noqa: E402
-from limit_surface import attributes, ids  # noqa: E402
-from limit_surface.curvature import colours  # noqa: E402
-from PIL import Image, ImageDraw  # noqa: E402
+import bpy
+import exactness_scene as scene
+import numpy as np
+import page_picture
+from exactness_sheet import GREY, INK, font
+from exactness_zoo import View
+from limit_surface import attributes, ids
+from limit_surface.curvature import colours
+from PIL import Image, ImageDraw
 
 SECTORS, SIDE = 7, 3  # around the pole; quads along the side of each
 HOLE = (1, 1, 1)  # sector and place of the quad that is missing
@@ -32,17 +27,6 @@ VIEW, TARGET = View(18, 42), np.array([-0.01, 0.0, 0.02])
 PANELS = (("MEAN", "Mean curvature", 2.5), ("GAUSSIAN", "Gaussian curvature", 5.0))
 GAP, TOP, BOTTOM = 14, 40, 92
 DARK, PALE = (0.01, 0.01, 0.015), (0.9, 0.75, 0.1)
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--output", type=Path, default=ROOT / "docs/images/curvature.png")
-    parser.add_argument("--samples", type=int, default=32, help="per pixel")
-    arguments = parser.parse_args()
-    limit_surface.register()
-    make(arguments.output, arguments.samples)
-    limit_surface.unregister()
-    print(f"{arguments.output}: {arguments.output.stat().st_size >> 10} KiB")
 
 
 def make(output: Path, samples: int) -> None:
@@ -174,4 +158,4 @@ def draw_scale(
 
 
 if __name__ == "__main__":
-    main()
+    page_picture.run(__doc__, "curvature", make)

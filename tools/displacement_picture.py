@@ -3,23 +3,18 @@
 """The picture of docs/displacement.md: a head, the map that object.limit_bake_displacement makes of
 a sculpt of it, the head rendered with that map, and the sculpt itself."""
 
-import argparse
-import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "addon"))
-
-import bpy  # noqa: E402
-import displacement_scene  # noqa: E402
-import exactness_scene as scene  # noqa: E402
-import limit_surface  # noqa: E402
-import numpy as np  # noqa: E402
-from exactness_sheet import GREY, INK, font  # noqa: E402
-from exactness_zoo import View  # noqa: E402
-from limit_surface import images  # noqa: E402
-from PIL import Image, ImageDraw  # noqa: E402
+import bpy
+import displacement_scene
+import exactness_scene as scene
+import numpy as np
+import page_picture
+from exactness_sheet import GREY, INK, font
+from exactness_zoo import View
+from limit_surface import images
+from PIL import Image, ImageDraw
 
 SIZE = 1024  # texels along a side of the map
 RENDERED = {"Head": 4, "Sculpt": 1}  # levels
@@ -29,17 +24,6 @@ TITLES = ("Mesh", "Displacement map", "Mesh and map, rendered", "Sculpted mesh")
 FULL = 0.11  # length of a vector's component that is as bright, or dark, as can be
 CLAY = (0.55, 0.42, 0.33, 1)
 GAP, TOP, BOTTOM = 12, 38, 34
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--output", type=Path, default=ROOT / "docs/images/displacement.png")
-    parser.add_argument("--samples", type=int, default=32, help="per pixel")
-    arguments = parser.parse_args()
-    limit_surface.register()
-    make(arguments.output, arguments.samples)
-    limit_surface.unregister()
-    print(f"{arguments.output}: {arguments.output.stat().st_size >> 10} KiB")
 
 
 def make(output: Path, samples: int) -> None:
@@ -54,7 +38,7 @@ def make(output: Path, samples: int) -> None:
         parts = [Path(folder) / f"{i}.png" for i in range(3)]
         render(head, parts[0], samples)
         bpy.ops.object.limit_bake_displacement(
-            target=sculpt.name, width=SIZE, height=SIZE, create_material=True
+            target=sculpt.name, width=SIZE, height=SIZE, margin=4, create_material=True
         )
         render(head, parts[1], samples)
         render(sculpt, parts[2], samples)
@@ -105,4 +89,4 @@ def compose(shown: list[Image.Image], output: Path) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    page_picture.run(__doc__, "displacement", make)

@@ -4,24 +4,20 @@
 polygons everywhere and with as many as flatness asks for; below, few polygons with Blender's
 normals and with exact ones."""
 
-import argparse
-import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "addon"))
-
-import bpy  # noqa: E402
-import exactness_scene as scene  # noqa: E402
-import limit_surface  # noqa: E402
-import numpy as np  # noqa: E402
-from exactness_sheet import GREY, INK, font  # noqa: E402
-from exactness_zoo import View  # noqa: E402
-from limit_surface import attributes, ids  # noqa: E402
-from PIL import Image, ImageDraw  # noqa: E402
+import bpy
+import exactness_scene as scene
+import numpy as np
+import page_picture
+from exactness_sheet import GREY, INK, font
+from exactness_zoo import View
+from limit_surface import attributes, ids, native
+from limit_surface import cage as cages
+from PIL import Image, ImageDraw
 
 TOLERANCE = 0.005
 GAP, TITLE, NOTE = 14, 34, 26
@@ -89,17 +85,6 @@ ROWS = (
 )  # fmt: skip
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--output", type=Path, default=ROOT / "docs/images/limit_mesh.png")
-    parser.add_argument("--samples", type=int, default=32, help="per pixel")
-    arguments = parser.parse_args()
-    limit_surface.register()
-    make(arguments.output, arguments.samples)
-    limit_surface.unregister()
-    print(f"{arguments.output}: {arguments.output.stat().st_size >> 10} KiB")
-
-
 def make(output: Path, samples: int) -> None:
     scene.start()
     with tempfile.TemporaryDirectory() as folder:
@@ -133,8 +118,8 @@ def said(cage: bpy.types.Object, made: bpy.types.Object, panel: Panel) -> list[s
     count = f"{len(made.data.polygons):,} polygons"
     if panel.striped:
         return [count]
-    surface = limit_surface.native.limitsurf.LimitSurface(
-        limit_surface.cage.read(cage, bpy.context.evaluated_depsgraph_get()).mesh
+    surface = native.limitsurf.LimitSurface(
+        cages.read(cage, bpy.context.evaluated_depsgraph_get()).mesh
     )
     centres = np.array([polygon.center for polygon in made.data.polygons])
     return [f"{count}, their centres at most {surface.closest(centres).distance.max():.4f} off"]
@@ -218,4 +203,4 @@ def compose(rows: list[list[tuple[Panel, Path]]], output: Path) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    page_picture.run(__doc__, "limit_mesh", make)

@@ -3,24 +3,19 @@
 """The picture of docs/project_image.md: an image projected from a camera onto an open mesh, seen
 through that camera and from the side, and a decal."""
 
-import argparse
-import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "addon"))
-
-import bpy  # noqa: E402
-import exactness_scene as scene  # noqa: E402
-import limit_surface  # noqa: E402
-import numpy as np  # noqa: E402
-from exactness_shapes import fan  # noqa: E402
-from exactness_sheet import GREY, INK, font  # noqa: E402
-from exactness_zoo import View  # noqa: E402
-from limit_surface import attributes, ids  # noqa: E402
-from mathutils import Vector  # noqa: E402
-from PIL import Image, ImageDraw  # noqa: E402
+import bpy
+import exactness_scene as scene
+import numpy as np
+import page_picture
+from exactness_shapes import fan
+from exactness_sheet import GREY, INK, font
+from exactness_zoo import View
+from limit_surface import attributes, ids
+from mathutils import Vector
+from PIL import Image, ImageDraw
 
 SECTORS, SIDE = 5, 4
 HOLES = (7, 21)  # faces that are missing
@@ -35,17 +30,6 @@ GAP, TOP, BOTTOM = 14, 40, 14
 RED, CREAM, BLUE = (0.70, 0.16, 0.10), (0.95, 0.90, 0.78), (0.10, 0.25, 0.50)
 CLAY = (0.55, 0.53, 0.50)
 PANELS = ("Through the camera", "From the side", "A decal")
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--output", type=Path, default=ROOT / "docs/images/project_image.png")
-    parser.add_argument("--samples", type=int, default=32, help="per pixel")
-    arguments = parser.parse_args()
-    limit_surface.register()
-    make(arguments.output, arguments.samples)
-    limit_surface.unregister()
-    print(f"{arguments.output}: {arguments.output.stat().st_size >> 10} KiB")
 
 
 def make(output: Path, samples: int) -> None:
@@ -210,4 +194,4 @@ def compose(parts: list[Path], output: Path) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    page_picture.run(__doc__, "project_image", make)

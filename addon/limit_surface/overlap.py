@@ -5,10 +5,11 @@ Subdivision folds many a good map a little, at concave corners of its islands. T
 a map whose islands lie upon each other is refused, unless it is asked for.
 """
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING
 
 import numpy as np
-from bpy.props import EnumProperty
 
 from .errors import RefusalError
 
@@ -18,29 +19,7 @@ if TYPE_CHECKING:
 MOST_FOLDED = 1 / 500  # of the texels that a tile's map covers
 
 
-class OverlapProperty:
-    """Mixin for operators that make textures."""
-
-    overlap: EnumProperty(
-        name="Overlap",
-        description="If several places of the surface share texels on the UV map",
-        items=(
-            (
-                "ERROR",
-                "Refuse",
-                "Nothing is made, unless it is no more than one texel in 500, where a map folds at "
-                "the corners of its islands: then the face with the lowest number counts, and a "
-                "warning says how many texels there are",
-                "",
-                0,
-            ),
-            ("ALLOW", "Allow", "The place on the face with the lowest number counts", "", 1),
-        ),
-        default="ERROR",
-    )
-
-
-def check(texels: "limitsurf.Texels", where: str) -> None:
+def check(texels: limitsurf.Texels, where: str) -> None:
     """RefusalError where the map does more than fold."""
     count, covered = overlapping(texels), int(np.count_nonzero(texels.inside))
     if count > MOST_FOLDED * covered:
@@ -50,7 +29,7 @@ def check(texels: "limitsurf.Texels", where: str) -> None:
         )
 
 
-def overlapping(texels: "limitsurf.Texels") -> int:
+def overlapping(texels: limitsurf.Texels) -> int:
     return int(np.count_nonzero(texels.overlap))
 
 

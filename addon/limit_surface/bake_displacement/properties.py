@@ -2,16 +2,15 @@
 """The properties of object.limit_bake_displacement, and their layout."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from ..image_files import PATH_OPTIONS
-from ..overlap import OverlapProperty
+from ..texture_properties import TextureProperties
 
-LARGEST = 16384  # texels along a side
 FACE_RESOLUTIONS = tuple(2**exponent for exponent in range(11))
 
 
-class DisplacementProperties(OverlapProperty):
+class DisplacementProperties(TextureProperties):
     """Mixin for the operator."""
 
     target: StringProperty(
@@ -108,35 +107,6 @@ class DisplacementProperties(OverlapProperty):
         ),
         default="UV",
     )
-    uv_map: StringProperty(
-        name="UV Map",
-        description="Name of the UV map, for the layout and for tangents. Without one the active "
-        "map is taken",
-    )
-    width: IntProperty(
-        name="Width",
-        description="Of the image, or of each of its tiles, in texels",
-        default=1024,
-        min=1,
-        max=LARGEST,
-        subtype="PIXEL",
-    )
-    height: IntProperty(
-        name="Height",
-        description="Of the image, or of each of its tiles, in texels",
-        default=1024,
-        min=1,
-        max=LARGEST,
-        subtype="PIXEL",
-    )
-    margin: IntProperty(
-        name="Margin",
-        description="Texels around the UV map's islands that are filled as well",
-        default=4,
-        min=0,
-        max=64,
-        subtype="PIXEL",
-    )
     use_tiles: BoolProperty(
         name="UDIM Tiles",
         description="An image with all tiles that the UV map touches, instead of the first alone",
@@ -163,17 +133,6 @@ class DisplacementProperties(OverlapProperty):
         description="Displace the active mesh when it is rendered: link the image to the "
         "displacement of the active material, or of a new one",
         default=False,
-    )
-    allow_large: BoolProperty(
-        name="Allow Large Images",
-        description="Make images that take gigabytes of memory",
-        default=False,
-        options={"SKIP_SAVE"},
-    )
-    summary: StringProperty(
-        name="Result",
-        description="What the operator made",
-        options={"HIDDEN", "SKIP_SAVE"},
     )
 
 

@@ -2,18 +2,16 @@
 """The properties of object.limit_bake_maps, and their layout."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from ..image_files import PATH_OPTIONS
-from ..overlap import OverlapProperty
+from ..texture_properties import TextureProperties
 from .maps import AREA_DISTORTION, KINDS, NORMAL_TANGENT
-
-LARGEST = 16384  # texels along a side
 
 CURVATURES = {"CURVATURE_MEAN", "CURVATURE_GAUSSIAN", "CURVATURE_PRINCIPAL"}
 
 
-class BakeProperties(OverlapProperty):
+class BakeProperties(TextureProperties):
     """Mixin for the operator."""
 
     maps: EnumProperty(
@@ -25,34 +23,6 @@ class BakeProperties(OverlapProperty):
         ),
         options={"ENUM_FLAG"},
         default={NORMAL_TANGENT},
-    )
-    width: IntProperty(
-        name="Width",
-        description="Of the images, in texels",
-        default=1024,
-        min=1,
-        max=LARGEST,
-        subtype="PIXEL",
-    )
-    height: IntProperty(
-        name="Height",
-        description="Of the images, in texels",
-        default=1024,
-        min=1,
-        max=LARGEST,
-        subtype="PIXEL",
-    )
-    margin: IntProperty(
-        name="Margin",
-        description="So many texels around the UV map's islands take what is nearest on them",
-        default=16,
-        min=0,
-        max=256,
-        subtype="PIXEL",
-    )
-    uv_map: StringProperty(
-        name="UV Map",
-        description="The UV map that places the texels. The active one if it has no name",
     )
     tiles: EnumProperty(
         name="Tiles",
@@ -136,17 +106,6 @@ class BakeProperties(OverlapProperty):
         "replaced. Without a folder nothing is saved",
         subtype="DIR_PATH",
         options=PATH_OPTIONS,
-    )
-    allow_large: BoolProperty(
-        name="Allow Large Images",
-        description="Use gigabytes of memory without asking",
-        default=False,
-        options={"SKIP_SAVE"},
-    )
-    summary: StringProperty(
-        name="Result",
-        description="What the operator made, line by line",
-        options={"HIDDEN", "SKIP_SAVE"},
     )
 
 

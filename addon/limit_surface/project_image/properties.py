@@ -12,15 +12,13 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..overlap import OverlapProperty
-
-LARGEST = 16384  # texels along a side
+from ..texture_properties import TextureProperties
 
 # Sources that throw the image from somewhere: rays can be followed through its pixels.
 THROWN = {"CAMERA", "VIEW", "PLANAR"}
 
 
-class ProjectionProperties(OverlapProperty):
+class ProjectionProperties(TextureProperties):
     """Mixin for the operator."""
 
     source: EnumProperty(
@@ -69,39 +67,10 @@ class ProjectionProperties(OverlapProperty):
     target: StringProperty(
         name="Texture", description="Name of the image to paint into, or of the new one"
     )
-    width: IntProperty(
-        name="Width",
-        description="Of a new image, in texels",
-        default=1024,
-        min=1,
-        max=LARGEST,
-        subtype="PIXEL",
-    )
-    height: IntProperty(
-        name="Height",
-        description="Of a new image, in texels",
-        default=1024,
-        min=1,
-        max=LARGEST,
-        subtype="PIXEL",
-    )
     use_float: BoolProperty(
         name="32-bit Float",
         description="A new image has floating point numbers instead of 8 bits",
         default=False,
-    )
-    margin: IntProperty(
-        name="Margin",
-        description="Texels around the UV map's islands that are painted as well, so that no seams "
-        "are seen",
-        default=4,
-        min=0,
-        max=64,
-        subtype="PIXEL",
-    )
-    uv_map: StringProperty(
-        name="UV Map",
-        description="Name of the UV map to paint by. Without one the active map is taken",
     )
     opacity: FloatProperty(
         name="Opacity",
@@ -211,17 +180,6 @@ class ProjectionProperties(OverlapProperty):
         soft_max=0.1,
         precision=4,
         subtype="DISTANCE",
-    )
-    allow_large: BoolProperty(
-        name="Allow Large Images",
-        description="Make images that take gigabytes of memory, and decals of millions of polygons",
-        default=False,
-        options={"SKIP_SAVE"},
-    )
-    summary: StringProperty(
-        name="Result",
-        description="What the operator made",
-        options={"HIDDEN", "SKIP_SAVE"},
     )
     create_material: BoolProperty(
         name="Create Material",
