@@ -5,6 +5,7 @@
 """
 
 import os
+import re
 import shutil
 import subprocess
 import time
@@ -173,8 +174,9 @@ class BlenderSession:
                 return
         raise AssertionError("no tab Limit in the sidebar")
 
-    def open_panel(self, panel: str) -> None:
-        """In the open tab: A above a panel's header opens and closes it, and only there."""
+    def open_panel(self, panel: str) -> float:
+        """In the open tab: A above a panel's header opens and closes it, and only there. Where its
+        buttons are, or further down."""
         self.call("count_draws", panel)
         bar = self.call("sidebar")
         x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
@@ -182,7 +184,7 @@ class BlenderSession:
             self.move(x, y)
             for _ in range(2):
                 if self._is_drawn(panel):
-                    return
+                    return y
                 self.key("a")
         raise AssertionError(f"no header of {panel} in the sidebar")
 
@@ -191,11 +193,12 @@ class BlenderSession:
         self.settle()
         return self.call("draws", panel) > before
 
-    def find_button(self, command: str) -> tuple[float, float]:
-        """Where in the open tab the button is that runs an operator, by what it copies."""
+    def find_button(self, command: str, top: float | None = None) -> tuple[float, float]:
+        """Where in the open tab, or from so high on down, the button is that runs an operator, by
+        what it copies."""
         bar = self.call("sidebar")
         x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
-        return self._find(x, bar["top"] - 10, bar["bottom"], f"bpy.ops.{command}(")
+        return self._find(x, top or bar["top"] - 10, bar["bottom"], f"bpy.ops.{command}(")
 
     def find_confirmation(self, before: np.ndarray) -> tuple[float, float]:
         """Where a dialog's OK is: of what has become blue since then, the lowest."""
@@ -228,12 +231,13 @@ class BlenderSession:
         return self._find(x, y, y - 400, value)
 
     def _find(self, x: float, top: float, bottom: float, copied: str) -> tuple[float, float]:
-        """What Ctrl+C copies tells what is under the mouse."""
+        """What Ctrl+C copies tells what is under the mouse: this, not with more digits."""
+        copied_here = re.compile(re.escape(copied) + r"(?!\d)")
         self.call("clear_clipboard")
         for y in range(round(top), round(bottom), -ROW * 3 // 4):
             self.move(x, y)
             self.key("ctrl+c")
-            if self.call("clipboard").startswith(copied):
+            if copied_here.match(self.call("clipboard")):
                 return x, y
         raise AssertionError(f"nothing that copies {copied!r} between {top} and {bottom} at {x}")
 

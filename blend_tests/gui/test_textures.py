@@ -19,7 +19,7 @@ MENU = "VIEW3D_MT_object_limit_surface"
 WAVE = 0.35
 BLANK = (255, 0, 255)
 SQUARES = 8
-FIRST, SECOND, CORNER = (230, 60, 40), (40, 90, 220), (60, 200, 80)
+FIRST, SECOND, MARK = (230, 60, 40), (40, 90, 220), (60, 200, 80)
 FACE_ROWS = 8**2
 
 
@@ -39,29 +39,40 @@ def sheet(blender):
 
 
 def checker(side=256):
-    """(rows, columns, 3) of 0 to 255, the lowest row first; its upper left square is another."""
+    """(rows, columns, 3) of 0 to 255, the lowest row first; one square tells which way it is."""
     y, x = np.mgrid[:side, :side] * SQUARES // side
     pixels = np.where(((x + y) % 2 == 0)[..., None], FIRST, SECOND)
-    pixels[(x == 0) & (y == SQUARES - 1)] = CORNER
+    pixels[(x == 2) & (y == 4)] = MARK
     return pixels
 
 
-def test_projected_from_the_view_it_looks_like_the_image_and_is_undone(sheet):
-    image = checker()
-    opaque = np.dstack([image / 255, np.ones(image.shape[:2])])
-    sheet.call("new_image", "Checker", opaque)
+@pytest.fixture
+def image(sheet):
+    """That the next projection puts into the sheet's texture."""
+    pixels = checker()
+    sheet.call("new_image", "Checker", np.dstack([pixels / 255, np.ones(pixels.shape[:2])]))
     sheet.call("remember")
-    before, there = sheet.call("image_digest", "Texture"), sheet.call("contents")
-    sheet.call(
-        "set_next", PROJECT, source="VIEW", image="Checker", output="EXISTING", target="Texture"
-    )
+    chosen = {"source": "VIEW", "image": "Checker", "output": "EXISTING", "target": "Texture"}
+    sheet.call("set_next", PROJECT, **chosen)
+    return pixels
+
+
+def project(sheet):
+    """By the button and the dialog that it opens; what was to be seen before."""
     sheet.open_tab()
-    sheet.open_panel(PANEL)
+    top = sheet.open_panel(PANEL)
     blank = sheet.pixels(sheet.screenshot("project_before"))
-    sheet.click(*sheet.find_button(PROJECT))
+    before = sheet.call("image_digest", "Texture")
+    sheet.click(*sheet.find_button(PROJECT, top))
     assert sheet.call("image_digest", "Texture") == before
     sheet.click(*sheet.find_confirmation(blank))
     await_end(sheet, "OBJECT_OT_limit_project_image")
+    return blank
+
+
+def test_projected_from_the_view_it_looks_like_the_image_and_is_undone(sheet, image):
+    before, there = sheet.call("image_digest", "Texture"), sheet.call("contents")
+    blank = project(sheet)
     after = sheet.call("image_digest", "Texture")
     assert after != before
     assert sheet.call("contents") == there
@@ -77,6 +88,22 @@ def test_projected_from_the_view_it_looks_like_the_image_and_is_undone(sheet):
     assert sheet.call("image_digest", "Texture") == after
     redone = sheet.pixels(sheet.screenshot("project_redone"))
     assert_undistorted(redone, blank, sheet.call("camera"), image)
+
+
+def test_projection_is_adjusted_in_the_redo_panel(sheet, image):
+    """From the pixels that were there before: over itself the image would not change anything."""
+    before = sheet.call("image_digest", "Texture")
+    project(sheet)
+    after = sheet.call("image_digest", "Texture")
+    fields = sheet.open_redo_panel()
+    sheet.screenshot("project_redo")
+    sheet.move(*sheet.find_field(*fields, value="1"))
+    sheet.key("Return", "ctrl+a", "period", "5", "Return")
+    await_end(sheet, "OBJECT_OT_limit_project_image")
+    assert sheet.call("image_digest", "Texture") not in (before, after)
+    sheet.key("Return", "ctrl+a", "1", "Return")
+    await_end(sheet, "OBJECT_OT_limit_project_image")
+    assert sheet.call("image_digest", "Texture") == after
 
 
 def await_end(blender, operator):
@@ -155,8 +182,8 @@ def test_esc_ends_a_long_bake_and_leaves_nothing(sheet, tmp_path):
 def test_mesh_is_adjusted_in_the_redo_panel(sheet):
     there = sheet.call("contents")
     sheet.open_tab()
-    sheet.open_panel(PANEL)
-    sheet.click(*sheet.find_button(MESH))
+    top = sheet.open_panel(PANEL)
+    sheet.click(*sheet.find_button(MESH, top))
     await_end(sheet, "OBJECT_OT_limit_mesh")
     assert sheet.call("mesh_size", "Limit Mesh") == ((8 * 8 + 1) ** 2, FACE_ROWS * 4**3)
     made = sheet.call("contents")
@@ -178,8 +205,8 @@ def test_curvature_is_seen(sheet):
     """Blue where the sheet bulges, red where it is hollow."""
     there = sheet.call("contents")
     sheet.open_tab()
-    sheet.open_panel(PANEL)
-    sheet.click(*sheet.find_button(CURVATURE))
+    top = sheet.open_panel(PANEL)
+    sheet.click(*sheet.find_button(CURVATURE, top))
     await_end(sheet, "OBJECT_OT_limit_curvature")
     assert sheet.call("contents") == there
     sheet.call("show_flat", "VERTEX")
