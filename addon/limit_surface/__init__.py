@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hair and points exactly on the limit surface of subdivided meshes."""
+"""Hair, points, images and meshes exactly on the limit surface of subdivided meshes."""
 
 import atexit
 
@@ -45,6 +45,8 @@ _is_module = not bpy.app.binary_path
 def register() -> None:
     for part in _parts:
         for cls in part.classes:
+            if issubclass(cls, bpy.types.Operator):
+                cls.bl_description = " ".join(cls.__doc__.split())  # tooltips keep line breaks
             bpy.utils.register_class(cls)
     snap.attach_settings()
     distribution.attach_handlers()

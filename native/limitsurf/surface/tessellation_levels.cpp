@@ -304,6 +304,9 @@ FaceLevels levelsWithin(const LimitSurface& surface, double tolerance,
 FaceLevels levelsOfLength(const LimitSurface& surface, double length, const PictureView* view,
                           const LevelOptions& options) {
   check(length, "length", options);
+  if (view && !(view->matrix.allFinite() && std::isfinite(view->nearest))) {
+    throw std::invalid_argument("the view's matrix and nearest must be finite");
+  }
   const Squares squares(surface);
   FaceLevels result = lowest(surface, squares);
   const std::vector<int>& faces = squares.faces();

@@ -50,7 +50,8 @@ struct PictureView {
 /// picture of `view`. Measured between places at 1/8, 2/8, ... of each side of a Ptex face;
 /// `measure` is the longest. What is not seen has no length, and the lowest level.
 ///
-/// Throws std::invalid_argument unless length > 0, finite, and 1 <= most <= 12.
+/// Throws std::invalid_argument unless length > 0, finite, 1 <= most <= 12, and all numbers of the
+/// view are finite.
 FaceLevels levelsOfLength(const LimitSurface& surface, double length,
                           const PictureView* view = nullptr, const LevelOptions& options = {});
 

@@ -28,7 +28,10 @@ int levelOf(std::int64_t level) {
 Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
                           const TessellationOptions& options) {
   if (isOneNumber(levels)) {
-    const int level = levelOf(py::cast<std::int64_t>(py::int_(levels)));
+    int overflow = 0;
+    const std::int64_t wide = PyLong_AsLongLongAndOverflow(py::int_(levels).ptr(), &overflow);
+    const int level =
+        levelOf(overflow == 0 ? wide : overflow * std::numeric_limits<std::int64_t>::max());
     const py::gil_scoped_release release;
     const HeldPose held(shared);
     const InterruptionPoint point = interruptible();

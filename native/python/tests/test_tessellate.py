@@ -305,12 +305,21 @@ def test_progress_is_told_and_may_end_the_call():
         (None, TypeError, "levels"),
         (13, ValueError, "levels is 13; expected 1 to 12"),
         (0, ValueError, "levels is 0; expected 1 to 12"),
+        (2**63, ValueError, "levels is 2147483647; expected 1 to 12"),
+        (-(2**70), ValueError, "levels is -2147483648; expected 1 to 12"),
     ],
 )
 def test_levels_that_are_refused(levels, error, match):
     surface = ls.LimitSurface(MESHES["house"]())
     with pytest.raises(error, match=match):
         surface.tessellate(levels)
+
+
+@pytest.mark.parametrize("view", [{"matrix": np.full((4, 4), np.nan)}, {"nearest": np.nan}])
+def test_views_that_are_refused(view):
+    surface = ls.LimitSurface(MESHES["house"]())
+    with pytest.raises(ValueError, match="finite"):
+        surface.levels_of_length(0.5, **{"matrix": np.eye(4), **view})
 
 
 def test_levels_of_refused_faces_mean_nothing():
