@@ -30,6 +30,7 @@ class WatchedOperator:
     too_large = "Not enough memory"
     cancelled = "Cancelled"
     _someone_waits = False
+    _job: Job | None = None
 
     def start(self, context: bpy.types.Context) -> set[str]:
         raise NotImplementedError
@@ -60,9 +61,12 @@ class WatchedOperator:
         return self._guarded(self._finish, context, self._taken_job())
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """By ESC; or another file is loaded, or Blender quits, while somebody waits."""
-        self._taken_job().cancel()
-        self._waiting.end()
+        """By ESC; or another file is loaded, or Blender quits, while somebody waits. Or by ESC in
+        a dialog, before there is a job."""
+        job = self._taken_job()
+        if job is not None:
+            job.cancel()
+            self._waiting.end()
 
     def watch(self, context: bpy.types.Context, job: Job, text: str) -> set[str]:
         someone_waits, self._someone_waits = self._someone_waits, False
@@ -77,7 +81,7 @@ class WatchedOperator:
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def _taken_job(self) -> Job:
+    def _taken_job(self) -> Job | None:
         """Blender keeps operators, for the redo panel: not what they have made."""
         job, self._job = self._job, None
         return job

@@ -110,8 +110,9 @@ class BakeProperties(TextureProperties):
 
 
 def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
+    names = layout.grid_flow(columns=2, even_columns=True, align=True)  # side by side: unreadable
+    names.prop(properties, "maps")
     layout.use_property_split = True
-    layout.prop(properties, "maps")
     wanted = properties.maps
     size = layout.column(align=True)
     for name in ("width", "height", "margin"):
