@@ -12,7 +12,7 @@ from actions import activate, view
 from mathutils import Euler, Vector
 
 FACES = 8  # of the sheet, along each side
-TEXELS = 1024  # of its texture, along each side
+TEXELS = 512  # of its texture, along each side
 BLANK = (1.0, 0.0, 1.0, 1.0)
 DRAWN = {}  # panel -> how often
 
