@@ -15,8 +15,13 @@ struct Angles {
   explicit Angles(const Wedge& wedge) : begin(std::atan2(wedge.first[1], wedge.first[0])) {
     width = std::atan2(wedge.last[1], wedge.last[0]) - begin;
     width += width < 0 ? kTurn : 0;
+    // A cell's corner or side spans half a turn at most: this is a wedge that rounding has turned.
+    width = width > kMostWidth ? 0 : width;
   }
   double begin, width;
+
+ private:
+  static constexpr double kMostWidth = 0.75 * kTurn;
 };
 
 bool overlap(const Angles& a, const Angles& b) {

@@ -27,6 +27,17 @@ Box2 boxOf(const BezierPatch& patch) {
   return box;
 }
 
+/// Whether a map is mirrored at an extraordinary vertex is seen after so many steps: at the vertex
+/// itself directions may become parallel, as at smooth corners, and rounding would decide.
+constexpr int kSignSteps = 8;
+
+/// The determinant of a patch's derivatives at its (0, 0), up to a positive factor.
+double jacobianAtCorner(const BezierPatch& patch) {
+  const Point2 ds = (patch.points[1] - patch.points[0]).head<2>();
+  const Point2 dt = (patch.points[4] - patch.points[0]).head<2>();
+  return cross(ds, dt);
+}
+
 const SurfaceData& checked(const SurfaceData& map) {
   if (map.columns() != 2) {
     throw std::invalid_argument("the data have " + std::to_string(map.columns()) +
@@ -90,8 +101,12 @@ void UvPatches::invertCore(const UvPiece& piece, const PlaneFrame& frame, Lattic
                            Sink& sink) const {
   SurfacePatches::SplitCore split;
   SurfacePiece core = piece.piece;
+  bool flipped = false;
   for (;;) {
     patches_.split(core, split);
+    if (core.steps <= kSignSteps) {
+      flipped = jacobianAtCorner(split.patches[1]) < 0;
+    }
     bool is_flat = core.steps == 0;
     for (const BezierPatch& patch : split.patches) {
       const UvCell cell = cellOf(patch, frame);
@@ -116,13 +131,18 @@ void UvPatches::invertCore(const UvPiece& piece, const PlaneFrame& frame, Lattic
     if (!is_point && core.steps < SurfacePatches::kMostSteps) {
       continue;
     }
-    // The vertex itself, seen between the corners of the last three patches.
+    // The vertex itself, seen between the corners of the last three patches: in all faces around it
+    // after the same number of steps, as directions may converge slowly.
+    while (core.steps < SurfacePatches::kMostSteps) {
+      patches_.split(core, split);
+      core = split.core;
+    }
     const Point2 first = split.patches[0].points[0].head<2>() * frame.scale,
                  middle = split.patches[1].points[0].head<2>() * frame.scale,
                  last = split.patches[2].points[0].head<2>() * frame.scale;
     Find find;
     find.s = find.t = 0;
-    find.flipped = cross(first, last) < 0;
+    find.flipped = flipped;
     find.on_border = true;
     find.wedge_count = 2;
     find.wedges[0] = {first, middle};
