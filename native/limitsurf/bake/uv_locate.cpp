@@ -11,8 +11,9 @@
 namespace limitsurf {
 namespace {
 
-/// Rows that one thread takes at a time.
-constexpr std::size_t kPointsPerTask = 512;
+/// Rows that one thread takes at a time: few, since where thousands of faces lie on each other each
+/// takes a millisecond, and Ctrl-C is heard only between tasks.
+constexpr std::size_t kPointsPerTask = 64;
 
 constexpr double kFarthest = 1e150;
 

@@ -17,8 +17,15 @@ namespace {
 /// are enough of them for all threads.
 constexpr int kTexelsPerBand = 1 << 17;
 
-/// Bands between two words on the progress.
-constexpr std::size_t kBandsPerReport = 16;
+/// Where pieces lie on each other in more layers than this, bands are the smaller, so that work is
+/// never long without a word on the progress. Boxes make two or three layers of any map.
+constexpr double kFewLayers = 8;
+/// But pieces shall not stand in more lists than these together, besides one each.
+constexpr double kMostListed = 1 << 25;
+
+/// Between two words on the progress: so many texels of all layers, in so many bands.
+constexpr double kTexelsPerReport = 1 << 22;
+constexpr double kFewestBandsPerReport = 4, kMostBandsPerReport = 16;
 
 void checkRange(const char* name, double value, double least, double most) {
   if (!(value >= least && value <= most)) {
@@ -34,16 +41,16 @@ class Bands {
   Bands(const UvPatches& map, const RasterOptions& options)
       : width_(options.width),
         height_(options.height),
-        rows_(std::clamp(kTexelsPerBand / width_, 1, height_)),
         frame_{{static_cast<double>(options.tile_x), static_cast<double>(options.tile_y)},
                {static_cast<double>(width_), static_cast<double>(height_)},
                -0.5},
         tolerance_(map.tolerance() * frame_.scale) {
+    chooseRows(map);
     std::vector<std::size_t>& begins = begins_;
     begins.assign(count() + 2, 0);
     const auto forEachBand = [&](const auto& body) {
       for (std::size_t piece = 0; piece < map.pieces().size(); ++piece) {
-        const Lattice inside = image().within(frame_.at(map.pieces()[piece].box).grown(tolerance_));
+        const Lattice inside = texelsOf(map.pieces()[piece]);
         if (!inside.empty()) {
           for (int band = inside.y0 / rows_; band <= inside.y1 / rows_; ++band) {
             body(static_cast<int>(piece), band);
@@ -69,11 +76,37 @@ class Bands {
   Span<int> pieces(std::size_t band) const {
     return Span<int>(pieces_).subspan(begins_[band], begins_[band + 1] - begins_[band]);
   }
+  std::size_t countPerReport() const { return per_report_; }
   const PlaneFrame& frame() const { return frame_; }
   const Point2& tolerance() const { return tolerance_; }
 
  private:
-  int width_, height_, rows_;
+  /// Those in the piece's box.
+  Lattice texelsOf(const UvPiece& piece) const {
+    return image().within(frame_.at(piece.box).grown(tolerance_));
+  }
+
+  void chooseRows(const UvPatches& map) {
+    double texels = 0, rows = 0;  // of all pieces
+    for (const UvPiece& piece : map.pieces()) {
+      const Lattice inside = texelsOf(piece);
+      if (!inside.empty()) {
+        const double high = inside.y1 - inside.y0 + 1;
+        rows += high;
+        texels += high * (inside.x1 - inside.x0 + 1);
+      }
+    }
+    const double layers = texels / width_ / height_;
+    const double wanted = kTexelsPerBand / width_ / std::max(1., layers / kFewLayers);
+    rows_ = static_cast<int>(
+        std::clamp(std::max(wanted, rows / kMostListed), 1., static_cast<double>(height_)));
+    per_report_ =
+        static_cast<std::size_t>(std::clamp(kTexelsPerReport / (layers * width_ * rows_ + 1),
+                                            kFewestBandsPerReport, kMostBandsPerReport));
+  }
+
+  int width_, height_, rows_ = 1;
+  std::size_t per_report_ = 1;
   PlaneFrame frame_;
   Point2 tolerance_;
   std::vector<std::size_t> begins_;  // of each band, and one more
@@ -226,8 +259,8 @@ Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& 
     chords.emplace(borders(), bands.frame(), bands.image(), bands.rows(), options.margin);
   }
   std::vector<Texels> parts(bands.count());
-  for (std::size_t begin = 0; begin < parts.size(); begin += kBandsPerReport) {
-    const std::size_t count = std::min(kBandsPerReport, parts.size() - begin);
+  for (std::size_t begin = 0; begin < parts.size(); begin += bands.countPerReport()) {
+    const std::size_t count = std::min(bands.countPerReport(), parts.size() - begin);
     parallelFor(count, 1, threads, [&](std::size_t first, std::size_t last) {
       for (std::size_t band = begin + first; band < begin + last; ++band) {
         const Lattice lattice = bands.lattice(band);

@@ -20,7 +20,7 @@ namespace limitsurf::python {
 namespace {
 
 /// Rows looked up at a time: a progress bar moves, and Ctrl-C is heard.
-constexpr Eigen::Index kRowsPerLookup = Eigen::Index{1} << 16;
+constexpr Eigen::Index kRowsPerLookup = Eigen::Index{1} << 12;
 
 /// What use(uv map) gives, without the GIL and with the values held still.
 template <typename Use>

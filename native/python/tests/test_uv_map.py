@@ -94,6 +94,25 @@ def test_irregular_vertices_and_polygons():
         assert np.max(np.abs(at - centres(texels, 90, 90))) <= 1e-12, name
 
 
+@pytest.mark.parametrize(
+    ("faces", "is_closed", "interpolation"),
+    [(1, False, "none"), (3, False, "none"), (8, True, "none")],
+)
+def test_vertices_of_maps_that_neither_fold_nor_flip(faces, is_closed, interpolation):
+    """At the vertex itself the directions along which it is left become parallel, or nearly."""
+    positions, corners = shapes.fan(faces, is_closed, 0)
+    mesh = ls.ControlMesh.from_faces(positions, corners)
+    surface = ls.LimitSurface(mesh)
+    uv_map = surface.face_varying(positions[:, :2], mesh.face_vertices, interpolation)
+    at = surface.vertex_locations()
+    beside = uv_map.locate(uv_map.evaluate(np.arange(faces), np.full((faces, 2), 2.0**-9)).value)
+    assert not beside.flipped.any()
+    found = uv_map.locate(uv_map.evaluate(at.face, at.uv).value)
+    assert (found.face >= 0).all()
+    assert not found.overlap.any()
+    assert not found.flipped.any()
+
+
 def test_stacked_and_mirrored_islands():
     positions, faces = shapes.grid(2, 2)
     mesh = ls.ControlMesh.from_faces(positions, faces)
@@ -242,6 +261,19 @@ def test_progress_is_told_and_can_end_the_work(uv_map):
         uv_map.rasterize(2048, 2048, progress=stop)
     with pytest.raises(KeyError):
         uv_map.locate(np.zeros((10, 2)), progress=stop)
+
+
+def test_progress_is_told_often_where_many_faces_lie_on_each_other():
+    positions, faces = shapes.grid(8, 8)
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    uv_map = surface.face_varying(np.tile(square, (64, 1)), np.arange(256), "all")
+    told = []
+    texels = uv_map.rasterize(512, 256, progress=told.append)
+    assert texels.overlap.all()
+    assert len(texels.x) == 512 * 256
+    assert len(told) >= 2
+    assert np.max(np.diff([0, *told])) <= 0.5
 
 
 def test_progress_may_read_but_not_set(uv_map):
