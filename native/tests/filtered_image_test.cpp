@@ -138,6 +138,26 @@ TEST(FilteredImage, IsTheIntegralUnderAGaussian) {
   EXPECT_GT(worst, kFilterError / 4);  // the bound means something
 }
 
+TEST(FilteredImage, StripesBesideABorderAreTheWorst) {
+  PlainImage stripes(64, 64);
+  for (int y = 0; y < stripes.height; ++y) {
+    for (int x = 1; x < stripes.width; x += 2) stripes.at(x, y) = 1;
+  }
+  const FilteredImage filtered = stripes.filtered(Extension::mirror);
+  Random random(2);
+  double worst = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double length = random.uniform(1.5, 5), ratio = random.uniform(1, 1.3);
+    const Footprint f =
+        turned(stripes, length, ratio, random.uniform(0, 2 * kPi), random.uniform(0, 2 * kPi));
+    const double s = random.uniform(-0.05, 0.05), t = random.uniform(0, 1);
+    const double expected = mean(stripes, Extension::mirror, s, t, f, 2.5, 120, gaussian);
+    worst = std::max(worst, std::abs(sampled(filtered, s, t, f) - expected));
+  }
+  EXPECT_LE(worst, kFilterError);
+  EXPECT_GT(worst, 0.06);
+}
+
 TEST(FilteredImage, CheckerIsGreyFromAfarAsItsSupersampledTexelIs) {
   const PlainImage image = checker(4);
   const FilteredImage filtered = image.filtered(Extension::mirror);

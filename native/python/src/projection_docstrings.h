@@ -45,9 +45,10 @@ half a texel for standard deviation, on the halving of the image that suits the 
 the long one may be 32 times as long, beyond it the short one is widened. Between a pixel and one and
 a half the two are mixed.
 
-Values are within 0.06 of the exact integral of the image under a Gaussian of that size, for pixels
-from 0 to 1 and footprints up to 32 times as long as wide (not near borders that 'extend' continues:
-what it repeats is the border of a halving). Some 0.05 to 0.5 microseconds a row and core.
+Values are within 0.15 (mostly 0.05) of the exact integral of the image under a Gaussian of that
+size, for pixels from 0 to 1 and footprints up to 32 times as long as wide (not near borders that
+'extend' continues: what it repeats is the border of a halving). Some 0.05 to 0.5 microseconds a row
+and core.
 )";
 
 constexpr const char* kProjectDoc =
