@@ -230,7 +230,8 @@ def _draw_coverage(column: bpy.types.UILayout, properties: bpy.types.OperatorPro
         column.prop(properties, "blend")
     if properties.source not in THROWN:
         return
-    column.prop(properties, "facing")
+    column.prop(properties, "facing", index=0, text="Full Up To")
+    column.prop(properties, "facing", index=1, text="Nothing From")
     column.prop(properties, "two_sided")
     if properties.mode == "TEXTURE":
         column.prop(properties, "soft_edge")
