@@ -31,7 +31,8 @@ struct ScatterCage {
 /// Uniform points on triangles, the usual way: by area, then by barycentric coordinates.
 class TriangleSampler {
  public:
-  explicit TriangleSampler(const LimitSurface& surface) : mesh_(surface.tessellate(kPeerLevel, TessellationOptions{1})) {
+  explicit TriangleSampler(const LimitSurface& surface)
+      : mesh_(surface.tessellate(kPeerLevel, TessellationOptions{1})) {
     double sum = 0;
     for (std::size_t quad = 0; quad < mesh_.face_vertices.size() / 4; ++quad) {
       for (const int half : {0, 1}) {
