@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tools")]
+sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "docs"), str(ROOT / "tools")]
 
 import bpy  # noqa: E402
 import limit_surface  # noqa: E402

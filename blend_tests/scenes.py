@@ -2,14 +2,13 @@
 """Objects to test on, and what is looked at in them."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import bpy
 import limitsurf
 import numpy as np
+from figures.meshes import obj
 from limit_surface import attributes, ids
 
-CROSS = Path(__file__).resolve().parents[1] / "native/tests/data/cross.obj"
 BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
 
 
@@ -30,10 +29,7 @@ def add_mesh(
 
 
 def cross() -> bpy.types.Object:
-    lines = [line.split() for line in CROSS.read_text().splitlines()]
-    positions = [[float(x) for x in words[1:]] for words in lines if words[0] == "v"]
-    faces = [[int(i) - 1 for i in words[1:]] for words in lines if words[0] == "f"]
-    return add_mesh("Cross", positions, faces)
+    return add_mesh("Cross", *obj.read(obj.CROSS))
 
 
 def grid_with_holes() -> bpy.types.Object:

@@ -3,11 +3,11 @@
 
 import bpy
 import numpy as np
-import parity_zoo
 import pytest
+from figures.parity import zoo as parity_zoo
+from figures.parity.distances import Comparison
 from limit_surface import adapted, attributes, cage, ids
 from limit_surface.errors import CageError
-from parity_measure import Comparison
 
 LEVELS = 2
 BOUND = 1e-6

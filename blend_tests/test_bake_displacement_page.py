@@ -6,14 +6,13 @@ import json
 import re
 
 import bpy
-import displacement_picture
-import displacement_table
 import limitsurf
 import numpy as np
-import pictures
 import pytest
 import scenes
 import sculpts
+from figures import comparison
+from figures.displacement import picture, table
 from limit_surface import ids
 from processes import ROOT
 
@@ -53,10 +52,10 @@ def test_table_lists_the_properties_and_their_defaults():
 def test_table_of_errors():
     """Its first two rows, at fewer places."""
     rows = re.findall(r"^\| (\d+) \| (.*) \|$", PAGE, re.MULTILINE)
-    assert [int(size) for size, _ in rows] == list(displacement_table.SIZES)
+    assert [int(size) for size, _ in rows] == list(table.SIZES)
     said = np.array([[float(number) for number in cells.split(" | ")] for _, cells in rows])
-    case = displacement_table.head()
-    found = [displacement_table.numbers(displacement_table.measure(case, size, 40_000))
+    case = table.head()
+    found = [table.numbers(table.measure(case, size, 40_000))
              for size in (256, 512)]  # fmt: skip
     np.testing.assert_allclose(np.array(found)[:, 1:3], said[:2, 1:3], rtol=0.15)
     np.testing.assert_array_less(np.array(found)[:, [0, 3]], 1.1 * said[:2, [0, 3]])
@@ -80,8 +79,8 @@ def test_page_tells_the_custom_property():
     bpy.app.version >= (5, 0), reason="suns are brighter there than in the committed picture"
 )
 def test_picture_is_what_the_operator_gives(tmp_path):
-    displacement_picture.make(tmp_path / "again.png", samples=4)
+    picture.make(tmp_path, samples=4)
     committed = ROOT / "docs/images/displacement.png"
-    mean, worst = pictures.differences(tmp_path / "again.png", committed)
+    mean, worst = comparison.of_renders(tmp_path / "displacement.png", committed)
     assert mean < 1
     assert worst < 16

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import scenes
 import sculpts
+from figures.rendering.quiet import quiet
 from limit_surface import images
-from quiet import quiet
 
 PIXELS = (96, 72)
 LEVELS = {"Holes": 5, "Sculpt": 3}

@@ -4,10 +4,9 @@ operator gives."""
 
 import re
 
-import bake_maps_picture
 import bpy
-import pictures
 import pytest
+from figures import bake_maps, comparison
 from limit_surface.bake_maps.maps import KINDS
 from processes import ROOT
 
@@ -63,7 +62,7 @@ def test_table_lists_the_maps():
     bpy.app.version >= (5, 0), reason="suns are brighter there than in the committed picture"
 )
 def test_picture_is_what_the_operator_gives(tmp_path):
-    bake_maps_picture.make(tmp_path / "again.png", samples=4)
-    mean, worst = pictures.differences(tmp_path / "again.png", PICTURE)
+    bake_maps.make(tmp_path, samples=4)
+    mean, worst = comparison.of_renders(tmp_path / "bake_maps.png", PICTURE)
     assert mean < 0.7
     assert worst < 40  # shadows' edges, seen by few samples; with a wrong map it is 125

@@ -5,10 +5,9 @@ the operator gives."""
 import re
 
 import bpy
-import curvature_picture
-import pictures
 import pytest
 import scenes
+from figures import comparison, curvature
 from limit_surface import ids
 from processes import ROOT
 
@@ -55,7 +54,9 @@ def test_page_lists_the_attributes():
     bpy.app.version >= (5, 0), reason="suns are brighter there than in the committed picture"
 )
 def test_picture_is_what_the_operator_gives(tmp_path):
-    curvature_picture.make(tmp_path / "again.png", samples=2)
-    mean, worst = pictures.differences(tmp_path / "again.png", ROOT / "docs/images/curvature.png")
+    curvature.make(tmp_path, samples=2)
+    mean, worst = comparison.of_renders(
+        tmp_path / "curvature.png", ROOT / "docs/images/curvature.png"
+    )
     assert mean < 1
     assert worst < 16

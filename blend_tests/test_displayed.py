@@ -3,9 +3,9 @@
 
 import bpy
 import numpy as np
-import parity_zoo
 import pytest
 import scenes
+from figures.parity import zoo as parity_zoo
 from limit_surface import attributes, cage, displayed, ids, subdivided
 from limit_surface.errors import CageError, DisplayedError
 

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the pictures of docs/exactness.md show, without rendering them."""
 
-import exactness_sheet as sheet
-import exactness_zoo as zoo
 import numpy as np
 import pytest
-from exactness_measure import compare
+from figures.exactness import sheet, zoo
+from figures.exactness.distances import compare
 from PIL import Image
 from processes import ROOT
 

@@ -10,9 +10,9 @@ from processes import ROOT
 
 
 def test_figure_and_scene_are_written(tmp_path):
-    size = ("--width", "300", "--height", "112", "--samples", "1")
-    program = (sys.executable, str(ROOT / "tools/figure1.py"), "--output", str(tmp_path))
-    done = subprocess.run([*program, *size], capture_output=True, text=True, timeout=300)
+    program = (sys.executable, str(ROOT / "docs/figures/make.py"), "figure1", "--keep-scene")
+    options = ("--width", "300", "--samples", "1", "--output", str(tmp_path))
+    done = subprocess.run([*program, *options], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     for said in ("12 vertices, 5 faces", "2000 strands", "24500 strands", "rendered in"):
         assert said in done.stdout

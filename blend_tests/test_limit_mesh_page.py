@@ -5,9 +5,8 @@ is what the operator makes."""
 import re
 
 import bpy
-import limit_mesh_picture
-import pictures
 import scenes
+from figures import comparison, limit_mesh
 from processes import ROOT
 
 PAGE = (ROOT / "docs/limit_mesh.md").read_text()
@@ -42,7 +41,9 @@ def test_table_lists_the_properties_and_their_defaults():
 
 
 def test_picture_is_what_the_operator_makes(tmp_path):
-    limit_mesh_picture.make(tmp_path / "again.png", samples=4)
-    mean, worst = pictures.differences(tmp_path / "again.png", ROOT / "docs/images/limit_mesh.png")
+    limit_mesh.make(tmp_path, samples=4)
+    mean, worst = comparison.of_renders(
+        tmp_path / "limit_mesh.png", ROOT / "docs/images/limit_mesh.png"
+    )
     assert mean < 0.8
     assert worst < 16

@@ -3,10 +3,10 @@
 
 import bpy
 import numpy as np
-import parity_zoo
 import pytest
+from figures.parity import zoo as parity_zoo
+from figures.parity.distances import Comparison
 from limit_surface import attributes, ids, rules, uv_map
-from parity_measure import Comparison
 
 BEST = 10
 BOUND = 1e-6  # of the diagonal, or on the UV map; Blender computes in single precision

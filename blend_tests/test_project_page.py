@@ -6,10 +6,9 @@ import re
 
 import bpy
 import numpy as np
-import pictures
-import project_image_picture
 import projection_truth as truth
 import scenes
+from figures import comparison, project_image
 from processes import ROOT
 
 PAGE = (ROOT / "docs/project_image.md").read_text()
@@ -44,8 +43,8 @@ def test_table_lists_the_properties_and_their_defaults():
 
 
 def test_picture_is_what_the_operator_gives(tmp_path):
-    project_image_picture.make(tmp_path / "again.png", samples=2)
+    project_image.make(tmp_path, samples=2)
     committed = ROOT / "docs/images/project_image.png"
-    mean, worst = pictures.differences(tmp_path / "again.png", committed)
+    mean, worst = comparison.of_renders(tmp_path / "project_image.png", committed)
     assert mean < 2  # Blender 5 shades all of it a little differently
     assert worst < 16

@@ -6,10 +6,10 @@ import re
 
 import bpy
 import numpy as np
-import project_image_picture as picture
 import projection_truth as truth
 import pytest
 import scenes
+from figures import project_image as picture
 from processes import ROOT
 
 SQUARES, TEXELS = 8, 1024

@@ -11,9 +11,9 @@ from unittest.mock import MagicMock
 import bpy
 import limitsurf
 import numpy as np
-import parity_zoo
 import pytest
 import scenes
+from figures.parity import zoo as parity_zoo
 from limit_surface import attributes, cage, ids, subdivided
 from limit_surface import watched as watched_module
 from limit_surface.errors import CancelledError

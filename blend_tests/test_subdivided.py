@@ -7,8 +7,8 @@ smoothed, bilinear on each Ptex face, so that positions and UVs name the place.
 
 import bpy
 import numpy as np
-import parity_zoo
 import pytest
+from figures.parity import zoo as parity_zoo
 from limit_surface import attributes, ids, subdivided
 from scenes import bilinear, ptex_corners
 

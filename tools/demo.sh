@@ -7,4 +7,4 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 set_up
 cd "$ROOT"
-exec python tools/figure1.py "$@"
+exec python docs/figures/make.py figure1 --output out --keep-scene "$@"

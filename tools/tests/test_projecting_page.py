@@ -1,45 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """The example of docs/projecting.md runs, and its picture is what the program draws."""
 
-import importlib.util
 import re
 from pathlib import Path
 
 import limitsurf as ls
 import matplotlib.image
 import numpy as np
-import pytest
+from figures import comparison
+from figures import projecting as program
 
 ROOT = Path(__file__).parents[2]
 BLOCK = 20  # pixels a side
 
 
-@pytest.fixture(scope="module")
-def program():
-    spec = importlib.util.spec_from_file_location(
-        "projecting_picture", ROOT / "tools/projecting_picture.py"
-    )
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def differences(one: np.ndarray, other: np.ndarray) -> tuple[float, float]:
-    """Of all pixels, and of the worst block of them."""
-    error = np.abs(one - other).mean(axis=2)
-    rows, columns = (size // BLOCK for size in error.shape)
-    blocks = error[: rows * BLOCK, : columns * BLOCK].reshape(rows, BLOCK, columns, BLOCK)
-    return error.mean(), blocks.mean(axis=(1, 3)).max()
-
-
-def test_picture_is_up_to_date(program):
+def test_picture_is_up_to_date():
     shown = matplotlib.image.imread(ROOT / "docs/images/projecting.png")[..., :3]
-    mean, worst = differences(program.picture(), shown)
+    mean, worst = comparison.of_plots(program.picture(), shown, BLOCK)
     assert mean < 0.004
     assert worst < 0.03
 
 
-def test_wrong_pictures_are_seen(program, monkeypatch):
+def test_wrong_pictures_are_seen(monkeypatch):
     shown = matplotlib.image.imread(ROOT / "docs/images/projecting.png")[: program.PANEL, :, :3]
     project = ls.LimitSurface.project
 
@@ -47,7 +29,8 @@ def test_wrong_pictures_are_seen(program, monkeypatch):
         return project(surface, *args, **options | {"occlusion": False})
 
     monkeypatch.setattr(ls.LimitSurface, "project", through)
-    assert differences(program.side_by_side(program.top_row()), shown)[1] > 0.06
+    drawn = program.side_by_side(program.top_row())
+    assert comparison.of_plots(drawn, shown, BLOCK)[1] > 0.06
 
 
 def test_example():

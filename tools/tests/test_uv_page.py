@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The example of docs/uv.md runs, and its picture is what the program draws."""
 
-import importlib.util
 import re
 from pathlib import Path
 
@@ -9,25 +8,11 @@ import limitsurf as ls
 import matplotlib.image
 import numpy as np
 import pytest
+from figures import comparison
+from figures import uv as program
 
 ROOT = Path(__file__).parents[2]
 BLOCK = 16  # pixels a side
-
-
-@pytest.fixture(scope="module")
-def program():
-    spec = importlib.util.spec_from_file_location("uv_pictures", ROOT / "tools/uv_pictures.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def differences(one: np.ndarray, other: np.ndarray) -> tuple[float, float]:
-    """Of all pixels, and of the worst block of them."""
-    error = np.abs(one - other).mean(axis=2)
-    rows, columns = (size // BLOCK for size in error.shape)
-    blocks = error[: rows * BLOCK, : columns * BLOCK].reshape(rows, BLOCK, columns, BLOCK)
-    return error.mean(), blocks.mean(axis=(1, 3)).max()
 
 
 @pytest.fixture(scope="module")
@@ -35,8 +20,8 @@ def shown():
     return matplotlib.image.imread(ROOT / "docs/images/uv_locations.png")[..., :3]
 
 
-def test_picture_is_up_to_date(program, shown):
-    mean, worst = differences(program.picture(), shown)
+def test_picture_is_up_to_date(shown):
+    mean, worst = comparison.of_plots(program.picture(), shown, BLOCK)
     assert mean < 0.002
     assert worst < 0.04
 
@@ -73,10 +58,10 @@ def nearest_elsewhere(fields):
 
 
 @pytest.mark.parametrize("spoil", [shifted, without_overlaps, unmirrored, nearest_elsewhere])
-def test_wrong_pictures_are_seen(program, shown, monkeypatch, spoil):
+def test_wrong_pictures_are_seen(shown, monkeypatch, spoil):
     uv_map, *rest = program.islands()
     monkeypatch.setattr(program, "islands", lambda: (Sabotaged(uv_map, spoil), *rest))
-    mean, worst = differences(program.picture(), shown)
+    mean, worst = comparison.of_plots(program.picture(), shown, BLOCK)
     assert mean > 0.002 or worst > 0.04
 
 

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The picture of docs/curvature.md: what object.limit_curvature stores of an open mesh with a pole,
+as colours and as strokes along the principal directions."""
+
+import tempfile
+from pathlib import Path
+
+import bpy
+import numpy as np
+from limit_surface import attributes, ids
+from limit_surface.curvature import colours
+from PIL import Image, ImageDraw
+
+from figures.rendering import scene
+from figures.rendering.scene import View
+from figures.rendering.sheet import GREY, INK, colour_bar, font, on_screen, save
+
+SECTORS, SIDE = 7, 3  # around the pole; quads along the side of each
+HOLE = (1, 1, 1)  # sector and place of the quad that is missing
+LEVELS = 4
+SPACING = 0.115  # of the strokes
+STROKE, RADIUS, MARK = 0.075, 0.005, 0.013
+LIFT = 0.004  # of strokes, off the surface
+PIXELS, WIDTH = (560, 430), 2.8
+VIEW, TARGET = View(18, 42), np.array([-0.01, 0.0, 0.02])
+PANELS = (("MEAN", "Mean curvature", 2.5), ("GAUSSIAN", "Gaussian curvature", 5.0))
+GAP, TOP, BOTTOM = 14, 40, 92
+DARK, PALE = (0.01, 0.01, 0.015), (0.9, 0.75, 0.1)
+
+
+def make(folder: Path, samples: int = 32) -> None:
+    scene.start()
+    cage = sheet()
+    with tempfile.TemporaryDirectory() as temporary:
+        parts = [Path(temporary) / f"{quantity}.png" for quantity, _, _ in PANELS]
+        for part, (quantity, _, full) in zip(parts, PANELS, strict=True):
+            draw(cage, quantity, full)
+            scene.render(part, VIEW, TARGET, WIDTH, PIXELS, samples)
+            scene.clear()
+        save(composed(parts), folder / "curvature.png")
+
+
+def sheet() -> bpy.types.Object:
+    """Bent sectors of quads around a pole, with a hole; not rendered itself."""
+    numbers: dict[tuple[int, int, int], int] = {}
+    plan: list[np.ndarray] = []
+
+    def vertex(sector: int, i: int, j: int) -> int:
+        if i == 0:  # the border with the next sector
+            sector, i, j = (sector + 1) % SECTORS, j, 0
+        key = (0, 0, 0) if i == 0 else (sector, i, j)
+        if key not in numbers:
+            angle = 2 * np.pi * (sector + j / max(i + j, 1)) / SECTORS
+            numbers[key] = len(plan)
+            plan.append(max(i, j) / SIDE * np.array([np.cos(angle), np.sin(angle)]))
+        return numbers[key]
+
+    faces = [
+        [vertex(s, i, j), vertex(s, i + 1, j), vertex(s, i + 1, j + 1), vertex(s, i, j + 1)]
+        for s in range(SECTORS)
+        for i in range(SIDE)
+        for j in range(SIDE)
+        if (s, i, j) != HOLE
+    ]
+    flat = 1.3 * np.array(plan)
+    radius, angle = np.hypot(*flat.T), np.arctan2(flat[:, 1], flat[:, 0])
+    height = 0.15 * radius**2 * np.cos(3 * angle) + 0.7 * np.exp(-3.5 * radius**2)
+    mesh = bpy.data.meshes.new("Sheet")
+    mesh.from_pydata(np.column_stack([flat, height]).tolist(), [], faces)
+    ob = bpy.data.objects.new("Sheet", mesh)
+    bpy.context.collection.objects.link(ob)
+    ob.hide_render = True
+    return ob
+
+
+def draw(cage: bpy.types.Object, quantity: str, full: float) -> None:
+    """Everything that is seen is what the operator has stored."""
+    run(cage, on="TESSELLATION", levels=LEVELS, color=quantity, full_color=full)
+    made = bpy.context.active_object
+    color = attributes.read(made.data, ids.CURVATURE_COLOR)[:, :3]
+    position = attributes.read(made.data, ids.POSITION)
+    quads = attributes.read(made.data, ids.CORNER_VERTEX).reshape(-1, 4)
+    irregular = position[attributes.read(made.data, ids.CURVATURE_IRREGULAR)]
+    bpy.data.batch_remove([made, made.data])
+    scene.add_surface(quads, position, color)
+    toward = scene.axes(VIEW)[:, 2]
+    scene.add_lines("Marks", [squares(irregular + 2 * MARK * toward)], MARK, DARK)
+
+    if quantity == "MEAN":
+        add_strokes(cage, toward)
+
+
+def add_strokes(cage: bpy.types.Object, toward: np.ndarray) -> None:
+    select(cage)
+    bpy.ops.object.limit_points_add(distribution="BLUE_NOISE", distance=SPACING, seed=1)
+    points = bpy.context.active_object
+    run(points, on="ROOTS")
+    root = attributes.read(points.data, ids.POSITION) + LIFT * toward
+    for name, attribute, ink in (
+        ("K1", ids.CURVATURE_DIRECTION1, DARK),
+        ("K2", ids.CURVATURE_DIRECTION2, PALE),
+    ):
+        half = STROKE / 2 * attributes.read(points.data, attribute)
+        scene.add_lines(name, [np.stack([root - half, root + half], axis=1)], RADIUS, ink)
+    bpy.data.batch_remove([points, points.data])
+
+
+def run(ob: bpy.types.Object, **properties: object) -> None:
+    select(ob)
+    bpy.ops.object.limit_curvature(**properties)
+
+
+def select(ob: bpy.types.Object) -> None:
+    for other in bpy.context.selected_objects:
+        other.select_set(False)
+    ob.select_set(True)
+    bpy.context.view_layer.objects.active = ob
+
+
+def squares(place: np.ndarray) -> np.ndarray:
+    """Lines across the view that are as long as they are wide."""
+    aside = MARK * scene.axes(VIEW)[:, 0]
+    return np.stack([place - aside, place + aside], axis=1)
+
+
+def composed(parts: list[Path]) -> Image.Image:
+    """Side by side, each with its scale below."""
+    width = len(parts) * (PIXELS[0] + GAP) + GAP
+    picture = Image.new("RGB", (width, TOP + PIXELS[1] + BOTTOM), "white")
+    pen = ImageDraw.Draw(picture)
+    for i, (part, (_, title, full)) in enumerate(zip(parts, PANELS, strict=True)):
+        left, panel = GAP + i * (PIXELS[0] + GAP), Image.open(part)
+        picture.paste(panel, (left, TOP), panel)
+        middle = left + PIXELS[0] / 2
+        pen.text((middle, 10), title, INK, font(17), anchor="ma")
+        draw_scale(picture, pen, int(middle), TOP + PIXELS[1] + 8, full)
+    said = (
+        "strokes: principal directions, dark of k1, the larger one, yellow of k2; "
+        "squares: irregular vertices, averaged"
+    )
+    pen.text((width / 2, picture.height - 26), said, GREY, font(13), anchor="ma")
+    return picture
+
+
+def draw_scale(
+    picture: Image.Image, pen: ImageDraw.ImageDraw, middle: int, y: int, full: float
+) -> None:
+    bar = on_screen(colours.of_values(np.linspace(-full, full, 301), full)[:, :3])
+    x = middle - len(bar) // 2
+    picture.paste(colour_bar(bar), (x, y))
+    for part in (-1, -0.5, 0, 0.5, 1):
+        tick = middle + part * (len(bar) // 2)
+        pen.line((tick, y + 14, tick, y + 19), fill=GREY)
+        pen.text((tick, y + 21), f"{part * full:g}", INK, font(13), anchor="ma")

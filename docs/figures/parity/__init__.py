@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's subdivided meshes measured against the limit surface, on many meshes."""
