@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 import scenes
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from mathutils.kdtree import KDTree
 
 BEST = 10  # quality at which Blender's vertices are on the limit surface

@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 

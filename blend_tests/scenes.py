@@ -7,7 +7,8 @@ import bpy
 import limitsurf
 import numpy as np
 from figures.meshes import obj
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 
 BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
 

@@ -6,7 +6,8 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 import scenes
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 
 
 def subdivided_copy(ob: bpy.types.Object, levels: int, name: str = "Sculpt") -> bpy.types.Object:

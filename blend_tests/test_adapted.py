@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from figures.parity import zoo as parity_zoo
 from figures.parity.distances import Comparison
-from limit_surface import adapted, attributes, cage, ids
+from limit_surface import ids
 from limit_surface.errors import CageError
+from limit_surface.reading import attributes, cage, element_numbers
 
 LEVELS = 2
 BOUND = 1e-6
@@ -41,14 +42,14 @@ def shown(ob):
 
 @pytest.mark.parametrize("mesh_name", ["sheet", "polygons", "fin"])
 @pytest.mark.parametrize("domain", DOMAINS)
-@pytest.mark.parametrize("kind", adapted.TYPES)
+@pytest.mark.parametrize("kind", element_numbers.TYPES)
 @pytest.mark.parametrize("name", CREASES)
 def test_blender_subdivides_as_with_the_adapted_values(name, kind, domain, mesh_name):
     effect = 0.0
     for seed in range(3):
         ob = add(mesh_name, name, kind, domain, seed)
         expected = shown(ob)
-        values = adapted.numbers(ob.data, name, CREASES[name])
+        values = element_numbers.numbers(ob.data, name, CREASES[name])
         ob.data.attributes.remove(ob.data.attributes[name])
         without = shown(ob)
         attributes.write(ob.data, name, "FLOAT", CREASES[name], values)
@@ -58,7 +59,7 @@ def test_blender_subdivides_as_with_the_adapted_values(name, kind, domain, mesh_
 
 
 @pytest.mark.parametrize("domain", DOMAINS)
-@pytest.mark.parametrize("kind", adapted.TYPES)
+@pytest.mark.parametrize("kind", element_numbers.TYPES)
 @pytest.mark.parametrize("name", CREASES)
 def test_the_limit_surface_follows(name, kind, domain):
     found = Comparison(add("sheet", name, kind, domain, 0), LEVELS)
@@ -67,7 +68,7 @@ def test_the_limit_surface_follows(name, kind, domain):
 
 
 @pytest.mark.parametrize("domain", DOMAINS)
-@pytest.mark.parametrize("kind", adapted.WITHOUT_NUMBERS)
+@pytest.mark.parametrize("kind", element_numbers.WITHOUT_NUMBERS)
 @pytest.mark.parametrize("name", CREASES)
 def test_what_is_no_number_is_no_crease(name, kind, domain):
     ob = parity_zoo.add("sheet")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from limit_surface import attributes
 from limit_surface.errors import RefusalError
-from limit_surface.rotations import WorldSpace, quaternions
+from limit_surface.placing.rotations import WorldSpace, quaternions
+from limit_surface.reading import attributes
 from mathutils import Quaternion
 
 unit_quaternions = (

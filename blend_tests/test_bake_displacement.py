@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import scenes
 import sculpts
-from limit_surface import attributes, ids, images, subdivided
+from limit_surface import ids
+from limit_surface.images import image_pixels
+from limit_surface.reading import attributes, subdivided_mesh
 from mathutils import Matrix
 
 SINGLE = 1e-6  # what Blender rounds coordinates up to 5 by
@@ -48,7 +50,7 @@ def surface(ob):
 
 def there(ob, target, levels, face, uv):
     """The limit of the subdivided mesh, found polygon by polygon as Blender has them."""
-    finder = subdivided.PolygonFinder(attributes.face_sizes(ob.data), levels)
+    finder = subdivided_mesh.PolygonFinder(attributes.face_sizes(ob.data), levels)
     polygon, within = finder.find(face, uv)
     return surface(target).evaluate(polygon, np.clip(within, 0, 1)).position
 
@@ -69,13 +71,15 @@ def test_what_blender_only_subdivides_is_not_displaced(name, levels):
     scenes.add_subsurf(ob)
     target = sculpts.subdivided_copy(ob, levels)
     image = bake(ob, target, layout_kind="PTEX", face_resolution="8", space="OBJECT")
-    pixels = images.read(image)
+    pixels = image_pixels.read(image)
     assert np.abs(pixels[..., :3]).max() < SINGLE
     assert (pixels[..., 3] == 1).all()
     moved = sculpts.reshape(target, lambda at: at + [0.25, 0, -1])
     layout = json.loads(image[ids.DISPLACEMENT])
     texels = limitsurf.PtexLayout(layout["face_count"], layout["resolution"]).texels()
-    pixels = images.read(bake(ob, moved, layout_kind="PTEX", face_resolution="8", space="OBJECT"))
+    pixels = image_pixels.read(
+        bake(ob, moved, layout_kind="PTEX", face_resolution="8", space="OBJECT")
+    )
     np.testing.assert_allclose(
         pixels[texels.y, texels.x, :3], np.tile([0.25, 0, -1], (len(texels), 1)), atol=SINGLE
     )
@@ -83,7 +87,7 @@ def test_what_blender_only_subdivides_is_not_displaced(name, levels):
 
 def test_vectors_in_object_space(base, sculpt):
     image = bake(base, sculpt, space="OBJECT")
-    pixels = images.read(image)
+    pixels = image_pixels.read(image)
     own, _, texels = texels_of(base, image)
     assert len(texels.x) > 3000
     expected = there(base, sculpt, 2, texels.face, texels.uv)
@@ -101,7 +105,7 @@ def test_vectors_in_tangent_space(base, sculpt):
     tangent, bitangent, normal = np.moveaxis(
         own.tangent_frames(uv_map, texels.face, texels.uv), 2, 0
     )
-    x, y, z = images.read(image)[texels.y, texels.x, :3].T.astype(float)
+    x, y, z = image_pixels.read(image)[texels.y, texels.x, :3].T.astype(float)
     moved = x[:, None] * tangent + y[:, None] * normal + z[:, None] * bitangent
     expected = there(base, sculpt, 2, texels.face, texels.uv)
     found = own.evaluate(texels.face, texels.uv).position + moved
@@ -117,7 +121,7 @@ def test_a_tile_for_each_face_needs_no_map(sculpt, base):
         "face_count": 18, "resolution": 4, "columns": 5,
     }  # fmt: skip
     assert tuple(image.size) == (25, 20)
-    pixels = images.read(image)
+    pixels = image_pixels.read(image)
     rng = np.random.default_rng(1)
     own = surface(base)
     for _ in range(60):  # as the page says where a sample is
@@ -136,21 +140,21 @@ STRETCHED = (
 
 
 def test_where_the_sculpted_mesh_lies(base, sculpt):
-    plain = images.read(bake(base, sculpt, space="OBJECT"))
+    plain = image_pixels.read(bake(base, sculpt, space="OBJECT"))
     base.matrix_world = STRETCHED
     bpy.context.view_layer.update()
-    own = images.read(bake(base, sculpt, space="OBJECT", transform="OWN"))
+    own = image_pixels.read(bake(base, sculpt, space="OBJECT", transform="OWN"))
     np.testing.assert_array_equal(own, plain)
     sculpt.matrix_world = STRETCHED
     bpy.context.view_layer.update()
     np.testing.assert_allclose(
-        images.read(bake(base, sculpt, space="OBJECT")), plain, atol=3 * SINGLE
+        image_pixels.read(bake(base, sculpt, space="OBJECT")), plain, atol=3 * SINGLE
     )
     sculpt.matrix_world = STRETCHED @ Matrix.Translation((0, 0, 1))
     bpy.context.view_layer.update()
     image = bake(base, sculpt, space="OBJECT")
     texels = texels_of(base, image)[2]
-    moved = images.read(image) - plain
+    moved = image_pixels.read(image) - plain
     expected = np.tile([0, 0, 1, 0], (len(texels.x), 1))
     np.testing.assert_allclose(moved[texels.y, texels.x], expected, atol=5 * SINGLE)
 
@@ -167,7 +171,7 @@ def test_distances(capfd):
     sculpts.reshape(slope, lambda at: at + [0, 0, 0.1] * at[:, :1])
     image = bake(ob, slope, mode="SCALAR", width=64, height=64, margin=0)
     said = capfd.readouterr().out
-    pixels = images.read(image)
+    pixels = image_pixels.read(image)
     y, x = np.mgrid[:64, :64]
     across = ((x + 0.5) / 64 - 0.1) * 5
     inside = (np.abs(x - 31.5) < 14) & (np.abs(y - 31.5) < 14)
@@ -196,12 +200,12 @@ def test_polygons_of_multiresolution(base):
     image = bake(base, copy, target_shape="POLYGONS", layout_kind="PTEX", face_resolution="4",
                  space="OBJECT")  # fmt: skip
     shown = copy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    at = subdivided.corner_locations(attributes.face_sizes(base.data), 2)
+    at = subdivided_mesh.corner_locations(attributes.face_sizes(base.data), 2)
     vertex = attributes.read(shown, ids.CORNER_VERTEX)
     expected = attributes.read(shown, ids.POSITION)[vertex]
     expected = expected - surface(base).evaluate(at.face, at.uv).position
     i, j = np.rint(at.uv * 4).astype(int).T
-    found = images.read(image)[at.face // 5 * 5 + j, at.face % 5 * 5 + i, :3]
+    found = image_pixels.read(image)[at.face // 5 * 5 + j, at.face % 5 * 5 + i, :3]
     np.testing.assert_allclose(found, expected, atol=3 * SINGLE)
 
 
@@ -212,7 +216,7 @@ def test_creases_that_blender_leaves_on_a_subdivided_mesh(base):
     values[::3] = 1
     crease.data.foreach_set("value", values)
     target = sculpts.subdivided_copy(base, 2)
-    pixels = images.read(bake(base, target, layout_kind="PTEX", space="OBJECT"))
+    pixels = image_pixels.read(bake(base, target, layout_kind="PTEX", space="OBJECT"))
     assert np.abs(pixels[..., :3]).max() < SINGLE
 
 
@@ -223,10 +227,10 @@ def test_udim_tiles(sculpt, base):
     image = bake(base, sculpt, use_tiles=True, space="OBJECT", width=64, height=64)
     assert image.source == "TILED"
     assert [tile.number for tile in image.tiles] == [1001, 1002]
-    left, right = (images.read(image, tile) for tile in (1001, 1002))
+    left, right = (image_pixels.read(image, tile) for tile in (1001, 1002))
     assert np.abs(left[:, :30, :3]).max() == 0 < np.abs(left[..., :3]).max()
     assert np.abs(right[:, 60:, :3]).max() == 0 < np.abs(right[..., :3]).max()
-    alone = images.read(bake(base, sculpt, space="OBJECT", width=64, height=64))
+    alone = image_pixels.read(bake(base, sculpt, space="OBJECT", width=64, height=64))
     np.testing.assert_allclose(alone, left, atol=1e-7)
 
 
@@ -236,9 +240,9 @@ def test_the_file_holds_the_numbers(sculpt, base, tmp_path):
     loaded = bpy.data.images.load(str(path), check_existing=False)
     loaded.colorspace_settings.name = "Non-Color"
     assert loaded.is_float
-    plain = images.read(bake(base, sculpt))
-    np.testing.assert_array_equal(images.read(loaded)[..., :3], plain[..., :3])
-    np.testing.assert_array_equal(images.read(image)[..., :3], plain[..., :3])
+    plain = image_pixels.read(bake(base, sculpt))
+    np.testing.assert_array_equal(image_pixels.read(loaded)[..., :3], plain[..., :3])
+    np.testing.assert_array_equal(image_pixels.read(image)[..., :3], plain[..., :3])
     assert image.colorspace_settings.name == "Non-Color"
     assert bpy.path.abspath(image.filepath) == str(path)
     numbered = bake(base, sculpt, filepath=str(tmp_path / "tile.<UDIM>.exr"))
@@ -249,9 +253,11 @@ def test_the_file_holds_the_numbers(sculpt, base, tmp_path):
 def test_polygons_that_no_viewport_shows(sculpt, base):
     """Hidden from view they are there; not so where the object is not evaluated at all."""
     sculpt.modifiers.clear()
-    shown = images.read(bake(base, sculpt, target_shape="POLYGONS"))
+    shown = image_pixels.read(bake(base, sculpt, target_shape="POLYGONS"))
     sculpt.hide_set(True)
-    np.testing.assert_array_equal(images.read(bake(base, sculpt, target_shape="POLYGONS")), shown)
+    np.testing.assert_array_equal(
+        image_pixels.read(bake(base, sculpt, target_shape="POLYGONS")), shown
+    )
     sculpt.hide_viewport = True
     refused(base, "Sculpt is disabled", target="Sculpt", target_shape="POLYGONS")
     sculpt.hide_viewport = False
@@ -291,7 +297,7 @@ def test_tiles_in_tangent_space(base, sculpt):
     own, uv_map, _ = texels_of(base, image)
     frames = own.tangent_frames(uv_map, texels.face, texels.uv)
     moved = own.displaced(
-        texels.face, texels.uv, images.read(image)[texels.y, texels.x, :3], frames=frames
+        texels.face, texels.uv, image_pixels.read(image)[texels.y, texels.x, :3], frames=frames
     )
     expected = there(base, sculpt, 2, texels.face, texels.uv)
     np.testing.assert_allclose(moved, expected, atol=3 * SINGLE)
@@ -357,5 +363,5 @@ def test_undo_takes_the_image_away(base, sculpt):
     bpy.ops.ed.undo()
     assert "Holes Displacement" not in bpy.data.images
     bpy.ops.ed.redo()
-    pixels = images.read(bpy.data.images["Holes Displacement"])
+    pixels = image_pixels.read(bpy.data.images["Holes Displacement"])
     assert np.abs(pixels[..., :3]).max() > 0.05

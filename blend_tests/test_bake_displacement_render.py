@@ -10,7 +10,7 @@ import pytest
 import scenes
 import sculpts
 from figures.rendering.quiet import quiet
-from limit_surface import images
+from limit_surface.images import image_pixels
 
 PIXELS = (96, 72)
 LEVELS = {"Holes": 5, "Sculpt": 3}
@@ -64,7 +64,7 @@ def seen(ob) -> np.ndarray:
         bpy.ops.render.render(write_still=True)
     image = bpy.data.images.load(bpy.context.scene.render.filepath, check_existing=False)
     image.colorspace_settings.name = "Non-Color"
-    found = images.read(image).copy()
+    found = image_pixels.read(image).copy()
     bpy.data.images.remove(image)
     return found
 

@@ -9,10 +9,10 @@ import bpy
 import pytest
 import scenes
 import sculpts
-from limit_surface import watched as watched_module
 from limit_surface.bake_displacement import operator as baking_operator
 from limit_surface.errors import CancelledError
-from limit_surface.watched import WatchedOperator
+from limit_surface.tasks import watched_operator as watched_module
+from limit_surface.tasks.watched_operator import WatchedOperator
 
 
 @pytest.fixture

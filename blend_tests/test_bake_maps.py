@@ -11,12 +11,13 @@ import limitsurf
 import numpy as np
 import pytest
 import scenes
-from limit_surface import cage, image_files, images
-from limit_surface import watched as watched_module
-from limit_surface.bake_maps import baked
+from limit_surface.bake_maps import map_images
 from limit_surface.bake_maps.maps import KINDS
 from limit_surface.errors import RefusalError
-from limit_surface.watched import WatchedOperator
+from limit_surface.images import image_files, image_pixels
+from limit_surface.reading import cage
+from limit_surface.tasks import watched_operator as watched_module
+from limit_surface.tasks.watched_operator import WatchedOperator
 from mathutils import Matrix
 
 SIDE = 8  # quads
@@ -57,7 +58,7 @@ def bake(**how) -> dict[str, np.ndarray]:
     assert bpy.ops.object.limit_bake_maps(**how) == {"FINISHED"}
     name = how.get("name") or bpy.context.active_object.name
     return {
-        key: images.read(bpy.data.images[f"{name} {KINDS[key].name}"])[INNER, INNER, :3]
+        key: image_pixels.read(bpy.data.images[f"{name} {KINDS[key].name}"])[INNER, INNER, :3]
         for key in how["maps"]
     }
 
@@ -126,7 +127,7 @@ def test_every_map_is_what_the_formulas_say():
 def test_distortion_is_against_the_whole_map():
     paraboloid()
     bake(maps={"AREA_DISTORTION"})
-    image = images.read(bpy.data.images["Bowl Distortion"])
+    image = image_pixels.read(bpy.data.images["Bowl Distortion"])
     assert np.exp2(image[..., 0][image[..., 3] > 0]).mean() == pytest.approx(1, abs=1e-6)
 
 
@@ -175,7 +176,7 @@ def test_colors_of_8_and_16_bits():
 def test_ranges_that_are_found_hold_most_values():
     paraboloid()
     bake(maps={"CURVATURE_MEAN"}, format="PNG_16")
-    image = images.read(bpy.data.images["Bowl Mean Curvature"])
+    image = image_pixels.read(bpy.data.images["Bowl Mean Curvature"])
     values = image[..., 0][image[..., 3] > 0]
     at_ends = ((values == 0) | (values == 1)).mean()
     assert 0.03 < at_ends < 0.07
@@ -185,11 +186,11 @@ def test_margin_and_what_is_not_covered():
     ob = paraboloid()
     add_uv(ob, lambda xy: xy / SIDE / 2 + 0.5)  # the middle quarter
     bake(maps={"POSITION"}, margin=4)
-    alpha = images.read(bpy.data.images["Bowl Position"])[..., 3]
+    alpha = image_pixels.read(bpy.data.images["Bowl Position"])[..., 3]
     rows = np.flatnonzero(alpha.any(axis=1))
     assert (rows[0], rows[-1]) == (16 - 4, 47 + 4)
     assert set(np.unique(alpha)) == {0, 1}
-    assert not images.read(bpy.data.images["Bowl Position"])[0].any()
+    assert not image_pixels.read(bpy.data.images["Bowl Position"])[0].any()
 
 
 def test_new_images_or_those_of_the_name():
@@ -199,7 +200,7 @@ def test_new_images_or_those_of_the_name():
     first.pixels.foreach_set(np.zeros(SIZE * SIZE * 4, np.float32))
     bake(maps={"POSITION"})
     assert sorted(bpy.data.images.keys()) == ["Bowl Cavity", "Bowl Position"]
-    assert images.read(first).any()
+    assert image_pixels.read(first).any()
     bake(maps={"POSITION"}, reuse=False)
     assert "Bowl Position.001" in bpy.data.images
     assert first.colorspace_settings.name == "Non-Color"
@@ -217,7 +218,7 @@ def test_undo_takes_images_and_pixels_back():
         )
 
     def farthest():
-        return np.abs(images.read(bpy.data.images["Bowl Position"])[..., :3]).max()
+        return np.abs(image_pixels.read(bpy.data.images["Bowl Position"])[..., :3]).max()
 
     twice = farthest()
     bpy.ops.ed.undo()
@@ -239,7 +240,9 @@ def test_files(tmp_path):
         assert bpy.path.abspath(image.filepath) == str(path)
         loaded = bpy.data.images.load(str(path))
         loaded.colorspace_settings.name = "Non-Color"
-        np.testing.assert_array_equal(images.read(loaded)[INNER, INNER, :3], got["NORMAL_OBJECT"])
+        np.testing.assert_array_equal(
+            image_pixels.read(loaded)[INNER, INNER, :3], got["NORMAL_OBJECT"]
+        )
         values = got["NORMAL_OBJECT"] if suffix == "exr" else 2 * got["NORMAL_OBJECT"] - 1
         step = {"EXR_32": SINGLE, "EXR_16": 5e-4, "PNG_16": 2e-5, "PNG_8": 4e-3}[form]
         np.testing.assert_allclose(values, Truth().normal, atol=step)
@@ -255,7 +258,7 @@ def test_tiles(tmp_path):
     bake(maps={"POSITION"}, tiles="ALL", **half)
     image = bpy.data.images["Bowl Position"]
     assert image.source == "TILED"
-    both = np.concatenate([images.read(image, tile) for tile in (1001, 1002)], axis=1)
+    both = np.concatenate([image_pixels.read(image, tile) for tile in (1001, 1002)], axis=1)
     np.testing.assert_allclose(both[INNER, INNER, :3], Truth().position, atol=SINGLE)
     bake(maps={"POSITION"}, tiles="ALL", folder=str(tmp_path), reuse=False, **half)
     assert sorted(p.name for p in tmp_path.iterdir()) == [
@@ -263,26 +266,26 @@ def test_tiles(tmp_path):
         "Bowl_Position.1002.exr",
     ]
     saved = bpy.data.images["Bowl Position.001"]
-    np.testing.assert_array_equal(images.read(saved, 1002), images.read(image, 1002))
+    np.testing.assert_array_equal(image_pixels.read(saved, 1002), image_pixels.read(image, 1002))
     bake(maps={"POSITION"}, name="First", **half)
-    first = images.read(bpy.data.images["First Position"])
-    np.testing.assert_allclose(first, images.read(image, 1001), atol=SINGLE)
+    first = image_pixels.read(bpy.data.images["First Position"])
+    np.testing.assert_allclose(first, image_pixels.read(image, 1001), atol=SINGLE)
     # Into what is there: both tiles take it
     ob.location.x = 5
     bpy.context.view_layer.update()
     bake(maps={"POSITION"}, tiles="ALL", space="WORLD", **half)
-    moved = images.read(image, 1002)[INNER, : SIZE // 4, 0]
+    moved = image_pixels.read(image, 1002)[INNER, : SIZE // 4, 0]
     np.testing.assert_allclose(moved, both[INNER, SIZE // 2 : 3 * SIZE // 4, 0] + 5, atol=1e-5)
 
 
 def refused(match, **how):
     before = scenes.file_contents()
-    kept = {image.name: images.read(image) for image in bpy.data.images}
+    kept = {image.name: image_pixels.read(image) for image in bpy.data.images}
     with pytest.raises(RuntimeError, match=match):
         bpy.ops.object.limit_bake_maps(**{"width": 16, "height": 16, "maps": {"POSITION"}, **how})
     assert scenes.file_contents() == before
     for name, pixels in kept.items():
-        np.testing.assert_array_equal(images.read(bpy.data.images[name]), pixels)
+        np.testing.assert_array_equal(image_pixels.read(bpy.data.images[name]), pixels)
 
 
 def test_refusals(tmp_path):
@@ -337,7 +340,7 @@ def test_warnings(capfd):
 def test_escape_leaves_everything(monkeypatch):
     paraboloid()
     bake(maps={"POSITION"}, width=16, height=16)
-    before, pixels = scenes.file_contents(), images.read(bpy.data.images["Bowl Position"])
+    before, pixels = scenes.file_contents(), image_pixels.read(bpy.data.images["Bowl Position"])
     kind, go_on = bpy.types.OBJECT_OT_limit_bake_maps, threading.Event()
     own = ("start", "finish", "_output", "too_large", "cancelled")
     operator = type("StandIn", (WatchedOperator,), {name: getattr(kind, name) for name in own})()
@@ -349,7 +352,7 @@ def test_escape_leaves_everything(monkeypatch):
     context = MagicMock(wraps=bpy.context)
     context.active_object = bpy.context.active_object
     context.window_manager, context.workspace = MagicMock(), MagicMock()
-    bake_all = baked.bake
+    bake_all = map_images.bake
 
     def slowly(order, progress):
         assert go_on.wait(20)
@@ -366,4 +369,4 @@ def test_escape_leaves_everything(monkeypatch):
     assert job.wait(20)
     operator.report.assert_called_with({"INFO"}, "Cancelled: nothing was baked")
     assert scenes.file_contents() == before
-    np.testing.assert_array_equal(images.read(bpy.data.images["Bowl Position"]), pixels)
+    np.testing.assert_array_equal(image_pixels.read(bpy.data.images["Bowl Position"]), pixels)

@@ -6,7 +6,9 @@ import bpy
 import limitsurf
 import numpy as np
 import pytest
-from limit_surface import attributes, cage, ids, images, subdivided
+from limit_surface import ids
+from limit_surface.images import image_pixels
+from limit_surface.reading import attributes, cage, subdivided_mesh
 
 SIZE = 128
 
@@ -61,7 +63,7 @@ def shaded(ob: bpy.types.Object, normal_map: bpy.types.Image) -> np.ndarray:
     links.new(normal.outputs[0], diffuse.inputs["Normal"])
     links.new(diffuse.outputs[0], output.inputs[0])
     bpy.ops.object.bake(type="NORMAL")
-    found = images.read(result)[..., :3]
+    found = image_pixels.read(result)[..., :3]
     return np.where(found.any(axis=-1, keepdims=True), 2 * found - 1, 0)
 
 
@@ -84,7 +86,7 @@ def test_polygons_are_shaded_as_the_limit_surface(make, target, smooth):
         ob.modifiers.clear()
     elif target == "VIEWPORT":
         ob.modifiers[0].render_levels = 1  # bakes are renders
-    exact = images.read(bpy.data.images[f"{ob.name} Normal"])[..., :3]
+    exact = image_pixels.read(bpy.data.images[f"{ob.name} Normal"])[..., :3]
     found = shaded(ob, bpy.data.images[f"{ob.name} Tangent Normal"])
     there = found.any(axis=-1) & exact.any(axis=-1)
     assert there.sum() > 0.5 * SIZE**2
@@ -100,9 +102,9 @@ def flat_map(ob: bpy.types.Object) -> float:
     """How far off shading is without the map, in the median."""
     bpy.ops.object.limit_bake_maps(maps={"NORMAL_OBJECT"}, width=SIZE, height=SIZE, overlap="ALLOW")
     ob.modifiers.clear()
-    plain = images.new("plain", 4, 4, is_float=True, is_data=True)
+    plain = image_pixels.new("plain", 4, 4, is_float=True, is_data=True)
     plain.pixels.foreach_set(np.tile(np.float32([0, 0, 1, 1]), 16))
-    exact = images.read(bpy.data.images[f"{ob.name} Normal"])[..., :3]
+    exact = image_pixels.read(bpy.data.images[f"{ob.name} Normal"])[..., :3]
     found = shaded(ob, plain)
     there = found.any(axis=-1) & exact.any(axis=-1)
     return float(np.median(angles(found[there], exact[there])))
@@ -122,13 +124,13 @@ def replaced(size: int) -> np.ndarray:
     found = cage.read(ob, depsgraph)
     shown = ob.evaluated_get(depsgraph).data
     uv = attributes.read(shown, shown.uv_layers.active.name)
-    values = images.read(bpy.data.images["Suzanne Position"])[..., :3]
+    values = image_pixels.read(bpy.data.images["Suzanne Position"])[..., :3]
     place = uv * size - 0.5
     low = np.floor(place).astype(int).clip(0, size - 2)
     (x, y), (s, t) = low.T, (place - low).T[:, :, None]
     at = (1 - t) * ((1 - s) * values[y, x] + s * values[y, x + 1])
     at += t * ((1 - s) * values[y + 1, x] + s * values[y + 1, x + 1])
-    places = subdivided.corner_locations(found.face_sizes, 2)
+    places = subdivided_mesh.corner_locations(found.face_sizes, 2)
     limit = limitsurf.LimitSurface(found.mesh).evaluate(places.face, places.uv).position
     bpy.data.objects.remove(ob)
     bpy.data.images.remove(bpy.data.images["Suzanne Position"])

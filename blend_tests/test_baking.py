@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from limit_surface import baking, native, overlap
+from limit_surface import native
 from limit_surface.errors import RefusalError, TooLargeError
+from limit_surface.images import overlap, texel_places
 
 
 def grid(uv_scale=(1.0, 1.0), uv_offset=(0.0, 0.0), name="UVMap") -> bpy.types.Object:
@@ -25,12 +26,12 @@ def grid(uv_scale=(1.0, 1.0), uv_offset=(0.0, 0.0), name="UVMap") -> bpy.types.O
 
 
 def read(ob, name=""):
-    return baking.read_cage(ob, bpy.context.evaluated_depsgraph_get(), name)
+    return texel_places.read_cage(ob, bpy.context.evaluated_depsgraph_get(), name)
 
 
 def mapped(ob):
     found = read(ob)
-    return baking.uv_data(native.limitsurf.LimitSurface(found.mesh), found, ob.name)
+    return texel_places.uv_data(native.limitsurf.LimitSurface(found.mesh), found, ob.name)
 
 
 def test_the_named_map_or_the_active_one():
@@ -64,14 +65,14 @@ def test_maps_that_are_refused():
 
 def test_faces_without_area_are_counted():
     ob = grid()
-    assert baking.faces_without_area(read(ob)) == 0
+    assert texel_places.faces_without_area(read(ob)) == 0
     for corner in range(4):
         ob.data.uv_layers[0].uv[corner].vector = (0.5, 0.25 * corner)
-    assert baking.faces_without_area(read(ob)) == 1
+    assert texel_places.faces_without_area(read(ob)) == 1
 
 
 def test_texels_lie_where_the_map_says():
-    at = baking.texels(mapped(grid()), (16, 8))
+    at = texel_places.texels(mapped(grid()), (16, 8))
     assert at.inside.all()
     found = mapped(grid()).evaluate(at.face, at.uv).value
     np.testing.assert_allclose(found, np.stack([(at.x + 0.5) / 16, (at.y + 0.5) / 8], axis=1))
@@ -79,12 +80,12 @@ def test_texels_lie_where_the_map_says():
 
 def test_other_tiles():
     shifted = mapped(grid(uv_offset=(1, 2)))
-    assert len(baking.texels(shifted, (8, 8)).x) == 0
-    assert len(baking.texels(shifted, (8, 8), 1022).x) > 20
-    assert baking.tile_corner(1022) == (1, 2)
-    assert baking.tiles_of(read(grid(uv_offset=(1, 2)))) == [1022]
-    assert baking.tiles_of(read(grid(uv_offset=(0.5, 0)))) == [1001, 1002]
-    assert baking.tiles_of(read(grid(uv_scale=(2, 2)))) == [1001, 1002, 1011, 1012]
+    assert len(texel_places.texels(shifted, (8, 8)).x) == 0
+    assert len(texel_places.texels(shifted, (8, 8), 1022).x) > 20
+    assert texel_places.tile_corner(1022) == (1, 2)
+    assert texel_places.tiles_of(read(grid(uv_offset=(1, 2)))) == [1022]
+    assert texel_places.tiles_of(read(grid(uv_offset=(0.5, 0)))) == [1001, 1002]
+    assert texel_places.tiles_of(read(grid(uv_scale=(2, 2)))) == [1001, 1002, 1011, 1012]
 
 
 def test_maps_that_overlap():
@@ -93,8 +94,8 @@ def test_maps_that_overlap():
     for corner in range(4):
         layer.uv[4 + corner].vector = layer.uv[corner].vector
     with pytest.raises(RefusalError, match=r"overlaps itself at \d+ of \d+ texels"):
-        baking.texels(mapped(ob), (32, 32))
-    at = baking.texels(mapped(ob), (32, 32), allow_overlap=True)
+        texel_places.texels(mapped(ob), (32, 32))
+    at = texel_places.texels(mapped(ob), (32, 32), allow_overlap=True)
     assert at.overlap.any()
     assert not at.overlap.all()
 
@@ -105,16 +106,16 @@ def test_folds_are_no_refusal():
     layer = ob.data.uv_layers[0]
     for corner, place in enumerate([(0, 0), (0.03, 0), (0.03, 0.03), (0, 0.03)]):
         layer.uv[4 + corner].vector = 0.1 + np.array(place)
-    at = baking.texels(mapped(ob), (64, 64))
+    at = texel_places.texels(mapped(ob), (64, 64))
     assert overlap.overlapping(at) == 4
     layer.uv[6].vector = (0.25, 0.25)
     more = mapped(ob)
     with pytest.raises(RefusalError, match=r"overlaps itself at \d+ of [\d,]+ texels"):
-        baking.texels(more, (64, 64))
+        texel_places.texels(more, (64, 64))
 
 
 def test_large_images_have_to_be_allowed():
-    baking.check_size(4096, 4096, 1, 6, allow_large=False)
+    texel_places.check_size(4096, 4096, 1, 6, allow_large=False)
     with pytest.raises(TooLargeError, match=r"8,192 x 8,192 pixels take about \d+\.\d GiB"):
-        baking.check_size(8192, 8192, 1, 4, allow_large=False)
-    baking.check_size(8192, 8192, 1, 4, allow_large=True)
+        texel_places.check_size(8192, 8192, 1, 4, allow_large=False)
+    texel_places.check_size(8192, 8192, 1, 4, allow_large=True)

@@ -7,7 +7,7 @@ import bpy
 import limitsurf
 import numpy as np
 import pytest
-from limit_surface import cage
+from limit_surface.reading import cage
 from mathutils.bvhtree import BVHTree
 
 

@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import cage
 from limit_surface.errors import CageError
+from limit_surface.reading import cage
 from scenes import add_mesh, add_subsurf
 
 

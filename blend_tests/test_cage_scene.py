@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, cage, ids
+from limit_surface import ids
+from limit_surface.reading import attributes, cage
 from scenes import add_subsurf
 
 

@@ -7,9 +7,10 @@ import limitsurf
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, cage, ids
+from limit_surface import ids
 from limit_surface.curvature import colours, values
 from limit_surface.errors import CancelledError
+from limit_surface.reading import attributes, cage
 from mathutils import Matrix
 
 A, B, C = 0.15, -0.06, 0.04  # z = A x^2 + B y^2 + C x y

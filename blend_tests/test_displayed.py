@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 import scenes
 from figures.parity import zoo as parity_zoo
-from limit_surface import attributes, cage, displayed, ids, subdivided
+from limit_surface import ids
 from limit_surface.errors import CageError, DisplayedError
+from limit_surface.reading import attributes, cage, displayed_mesh, subdivided_mesh
 
 PER_FACE = 12
 
 
 def read(ob, kind):
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return displayed.read(ob, depsgraph, cage.read(ob, depsgraph), kind)
+    return displayed_mesh.read(ob, depsgraph, cage.read(ob, depsgraph), kind)
 
 
 def shown_in_viewport(ob):
@@ -69,7 +70,7 @@ def test_positions_are_on_the_triangles_that_are_drawn(name, level):
     if name == "monkey":
         face, uv = face[::37], uv[::37]
     mesh = shown_in_viewport(ob)
-    corners = subdivided.corner_locations(attributes.face_sizes(ob.data), level)
+    corners = subdivided_mesh.corner_locations(attributes.face_sizes(ob.data), level)
     expected, facing = on_drawn_triangles(mesh, corners, face, uv)
 
     shown = read(ob, "VIEWPORT")
@@ -142,7 +143,7 @@ def test_loose_edges_and_isolated_vertices():
     parity_zoo.crease(ob.data, "loose edges")
     ob.modifiers[0].levels = 2
     face, uv = some_locations(ob)
-    corners = subdivided.corner_locations(attributes.face_sizes(ob.data), 2)
+    corners = subdivided_mesh.corner_locations(attributes.face_sizes(ob.data), 2)
     expected, _ = on_drawn_triangles(shown_in_viewport(ob), corners, face, uv)
     np.testing.assert_allclose(read(ob, "VIEWPORT").positions(face, uv), expected, atol=1e-12)
 
@@ -189,7 +190,7 @@ def check_render(ob, rendered, level):
     shown = read(ob, "RENDER")
     assert shown.level == level
     sizes = attributes.face_sizes(ob.data)
-    corners = subdivided.corner_locations(sizes, level)
+    corners = subdivided_mesh.corner_locations(sizes, level)
     assert polygons == len(corners.face) // 4
     found = shown.positions(*corners)
     assert {tuple(p) for p in found} <= {tuple(p) for p in positions}
@@ -258,7 +259,7 @@ def test_modifiers_that_make_vertices_before_the_subdivision():
     ob.modifiers.move(1, 0)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     found = cage.read(ob, depsgraph)
-    shown = displayed.read(ob, depsgraph, found, "VIEWPORT")
+    shown = displayed_mesh.read(ob, depsgraph, found, "VIEWPORT")
     face, uv = some_locations(ob)
     # Mirrored faces start at the same corner and run the other way round.
     mirrored = shown.positions(face + found.ptex_face_count // 2, uv[:, ::-1])

@@ -6,7 +6,8 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from mathutils import Vector
 from refusals import check_refused
 from scenes import add_hair, add_points, add_subsurf, locations

@@ -10,7 +10,7 @@ import bpy
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.distribution import live_count
+from limit_surface.placing import live_count
 from scenes import add_hair, add_points, add_subsurf
 
 

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes
+from limit_surface.reading import attributes
 from refusals import check_refused
 from scenes import add_hair, add_points, locations
 

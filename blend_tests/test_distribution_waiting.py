@@ -14,9 +14,12 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids, scatter, watched
+from limit_surface import ids
 from limit_surface.errors import CancelledError
-from limit_surface.job import Job, part_of
+from limit_surface.placing import scatter_operator
+from limit_surface.reading import attributes
+from limit_surface.tasks import watched_operator
+from limit_surface.tasks.job import Job, part_of
 
 OPERATORS = {"hair": "limit_hair_add", "points": "limit_points_add"}
 
@@ -25,7 +28,9 @@ def stand_in(name, **chosen):
     kind = getattr(bpy.ops.object, OPERATORS[name]).get_rna_type()
     operator = getattr(bpy.types, kind.identifier)
     own = ("maker", "add", "noun", "bl_label", "elements_per_location", "check_properties")
-    cls = type("StandIn", (scatter.ScatterOperator,), {n: getattr(operator, n) for n in own})
+    cls = type(
+        "StandIn", (scatter_operator.ScatterOperator,), {n: getattr(operator, n) for n in own}
+    )
     made = cls()
     for prop in kind.properties:
         if prop.identifier != "rna_type":
@@ -58,14 +63,14 @@ def event(kind, value="PRESS"):
 def slowly(monkeypatch):
     """Evaluation that waits until it is let go on."""
     go_on = threading.Event()
-    evaluate = scatter.Ground.evaluate
+    evaluate = scatter_operator.Ground.evaluate
 
     def wait(self, face, uv):
         assert go_on.wait(20)
         return evaluate(self, face, uv)
 
-    monkeypatch.setattr(scatter.Ground, "evaluate", wait)
-    monkeypatch.setattr(watched, "PATIENCE", 0.01)
+    monkeypatch.setattr(scatter_operator.Ground, "evaluate", wait)
+    monkeypatch.setattr(watched_operator, "PATIENCE", 0.01)
     yield go_on
     go_on.set()
 
@@ -151,7 +156,7 @@ def failed(monkeypatch, error):
     def fail(*_arguments):
         raise error
 
-    monkeypatch.setattr(scatter.Ground, "evaluate", fail)
+    monkeypatch.setattr(scatter_operator.Ground, "evaluate", fail)
     operator, context = stand_in("hair"), window_context()
     monkeypatch.setattr(Job, "wait", lambda self, seconds: self._done.wait(20) and seconds > 1)
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}

@@ -5,7 +5,9 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids, scatter
+from limit_surface import ids
+from limit_surface.placing import scatter_operator
+from limit_surface.reading import attributes
 from scenes import add_hair, add_mesh, add_subsurf, add_uv_map, locations, strands
 
 
@@ -179,7 +181,7 @@ def test_millions_need_consent(properties):
 
 def test_consent_is_enough(monkeypatch):
     ob = scenes.cross()
-    monkeypatch.setattr("limit_surface.request.LARGE_COUNT", 10)
+    monkeypatch.setattr("limit_surface.tasks.request_size.LARGE_COUNT", 10)
     with pytest.raises(RuntimeError, match="80 strands"):
         bpy.ops.object.limit_hair_add(per_side=4)
     assert len(add_hair(ob, allow_large=True).data.curves) == 80
@@ -200,7 +202,7 @@ def test_memory_that_runs_out(monkeypatch):
     def exhausted(*_arguments):
         raise MemoryError
 
-    monkeypatch.setattr("limit_surface.roots.evaluate", exhausted)
+    monkeypatch.setattr("limit_surface.placing.roots.evaluate", exhausted)
     before = scenes.file_contents()
     with pytest.raises(RuntimeError, match="Not enough memory"):
         bpy.ops.object.limit_hair_add()
@@ -211,7 +213,7 @@ def test_large_counts_in_parts(monkeypatch):
     """The parts that are evaluated one after the other change no value."""
     ob = scenes.cross()
     whole = strands(add_hair(ob, random=0.3, tilt=(0.1, 0.2)))
-    monkeypatch.setattr("limit_surface.roots.PART", 7)
+    monkeypatch.setattr("limit_surface.placing.roots.PART", 7)
     np.testing.assert_array_equal(strands(add_hair(ob, random=0.3, tilt=(0.1, 0.2))), whole)
 
 
@@ -234,4 +236,4 @@ def test_everything_has_a_tooltip(operator):
     for prop in own:
         assert prop.description, prop.identifier
         assert prop.name, prop.identifier
-    assert issubclass(getattr(bpy.types, kind.identifier), scatter.ScatterOperator)
+    assert issubclass(getattr(bpy.types, kind.identifier), scatter_operator.ScatterOperator)

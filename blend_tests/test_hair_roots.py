@@ -6,7 +6,8 @@ import limitsurf
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from scenes import add_hair, add_points, add_subsurf, locations, strands, surface_without_addon
 
 

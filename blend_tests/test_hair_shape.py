@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes
+from limit_surface.reading import attributes
 from scenes import add_hair, add_subsurf, locations, strands, surface_without_addon, transformed
 
 TRANSFORMS = {

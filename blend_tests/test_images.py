@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import image_files, images
 from limit_surface.errors import RefusalError
+from limit_surface.images import image_files, image_pixels
 
 SIZE = (6, 4)  # width, height
 
@@ -27,13 +27,13 @@ def raw(image: bpy.types.Image) -> np.ndarray:
 def new_image(kind: str, folder) -> bpy.types.Image:
     """generated, packed or file; 8-bit or float."""
     source, depth = kind.split()
-    image = images.new(kind, *SIZE, is_float=depth == "float", is_data=False)
+    image = image_pixels.new(kind, *SIZE, is_float=depth == "float", is_data=False)
     image.pixels.foreach_set(some_pixels(0).ravel())
     if source == "packed":
         image.pack()
     if source == "file":
         kind = image_files.EXR_32 if depth == "float" else image_files.PNG_8
-        images.save(image, folder / f"image{kind.suffix}", kind)
+        image_pixels.save(image, folder / f"image{kind.suffix}", kind)
     return image
 
 
@@ -45,11 +45,11 @@ KINDS = [
 @pytest.mark.parametrize("kind", KINDS)
 def test_pixels_are_read_and_written(kind, tmp_path):
     image = new_image(kind, tmp_path)
-    described = images.checked(image, to_write=True)
+    described = image_pixels.checked(image, to_write=True)
     assert (described.width, described.height, described.channels) == (*SIZE, 4)
     assert described.is_float == kind.endswith("float")
-    np.testing.assert_allclose(images.read(image), some_pixels(0), atol=1e-6)
-    images.write(image, some_pixels(1))
+    np.testing.assert_allclose(image_pixels.read(image), some_pixels(0), atol=1e-6)
+    image_pixels.write(image, some_pixels(1))
     np.testing.assert_allclose(raw(image), some_pixels(1), atol=1e-6)
     assert image.is_dirty
     assert image.colorspace_settings.name == described.colorspace
@@ -69,8 +69,8 @@ class Writes(bpy.types.Operator):
     def execute(self, _context):
         image = bpy.data.images.get(self.image)
         if image is None:
-            image = images.new(self.image, *SIZE, is_float=True, is_data=True)
-        images.write(image, some_pixels(self.seed), self.tile)
+            image = image_pixels.new(self.image, *SIZE, is_float=True, is_data=True)
+        image_pixels.write(image, some_pixels(self.seed), self.tile)
         return {"FINISHED"}
 
 
@@ -145,32 +145,34 @@ def test_a_new_image_comes_back(write):
 
 def test_new_images_are_kept_in_the_file(tmp_path):
     for is_float in (True, False):
-        image = images.new("new", *SIZE, is_float=is_float, is_data=True)
+        image = image_pixels.new("new", *SIZE, is_float=is_float, is_data=True)
         pixels = some_pixels(0)
         if is_float:
             pixels[0, 0, :3] = (-3, 1e-4, 7.5)
-        images.write(image, pixels, is_new=True)
+        image_pixels.write(image, pixels, is_new=True)
         image.colorspace_settings.name = "Non-Color"  # Blender takes the pixels anew
         np.testing.assert_allclose(raw(image), pixels, rtol=1e-7, atol=1e-7)
         bpy.data.images.remove(image)
 
 
 def test_new_images_that_nothing_uses_outlast_saving(tmp_path):
-    images.write(images.new("one", *SIZE, is_float=True, is_data=True), some_pixels(1), is_new=True)
+    image_pixels.write(
+        image_pixels.new("one", *SIZE, is_float=True, is_data=True), some_pixels(1), is_new=True
+    )
     tiles = {1001: some_pixels(2), 1002: some_pixels(3)}
-    images.new_tiled("tiled", tiles, is_float=True, is_data=True)
+    image_pixels.new_tiled("tiled", tiles, is_float=True, is_data=True)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
     assert shows("one", 1)
     for tile, pixels in tiles.items():
-        found = images.read(bpy.data.images["tiled"], tile)
+        found = image_pixels.read(bpy.data.images["tiled"], tile)
         np.testing.assert_allclose(found, pixels, atol=1e-6)
 
 
 def test_a_write_that_fails_leaves_the_pixels(tmp_path):
     image = new_image("generated 8", tmp_path)
     with pytest.raises(ValueError, match="expected"):
-        images.write(image, some_pixels(1, width=5))
+        image_pixels.write(image, some_pixels(1, width=5))
     np.testing.assert_allclose(raw(image), some_pixels(0), atol=1e-6)
     assert not image.keys()
 
@@ -178,13 +180,13 @@ def test_a_write_that_fails_leaves_the_pixels(tmp_path):
 @pytest.mark.parametrize("name", sorted(image_files.KINDS))
 def test_data_are_saved_as_they_are(name, tmp_path):
     kind = image_files.KINDS[name]
-    image = images.new("data", *SIZE, is_float=True, is_data=True)
+    image = image_pixels.new("data", *SIZE, is_float=True, is_data=True)
     pixels = some_pixels(0)
     pixels[0, 0] = (0.1, 0.2, 0.3, 1)
     if kind.is_float:
         pixels[1, 1, :3] = (-3, 7.5, 1000)
-    images.write(image, pixels)
-    images.save(image, tmp_path / f"data{kind.suffix}", kind)
+    image_pixels.write(image, pixels)
+    image_pixels.save(image, tmp_path / f"data{kind.suffix}", kind)
     step = {"EXR_32": 0, "EXR_16": 5e-4, "PNG_16": 0.6 / 65535, "PNG_8": 0.6 / 255}[name]
     np.testing.assert_allclose(raw(image), pixels, rtol=5e-4 if name == "EXR_16" else 0, atol=step)
     assert image.colorspace_settings.name == "Non-Color"
@@ -197,49 +199,49 @@ def test_data_are_saved_as_they_are(name, tmp_path):
 
 def test_colours_are_saved_in_their_space(tmp_path):
     image = new_image("generated 8", tmp_path)
-    images.save(image, tmp_path / "colour.png", image_files.PNG_8)
+    image_pixels.save(image, tmp_path / "colour.png", image_files.PNG_8)
     np.testing.assert_allclose(raw(image), some_pixels(0), atol=1e-6)
     image = new_image("generated float", tmp_path)
-    images.save(image, tmp_path / "colour.exr", image_files.EXR_32)
+    image_pixels.save(image, tmp_path / "colour.exr", image_files.EXR_32)
     np.testing.assert_allclose(raw(image), some_pixels(0), atol=1e-6)
 
 
 def test_a_tiled_image(tmp_path, write):
     tiles = {1001: some_pixels(0), 1002: some_pixels(5), 1011: some_pixels(6, 3, 2)}
-    image = images.new_tiled("tiled", tiles, is_float=False, is_data=True)
-    assert images.checked(image).tiles == {1001: SIZE, 1002: SIZE, 1011: (3, 2)}
+    image = image_pixels.new_tiled("tiled", tiles, is_float=False, is_data=True)
+    assert image_pixels.checked(image).tiles == {1001: SIZE, 1002: SIZE, 1011: (3, 2)}
     bpy.ops.ed.undo_push(message="an image")
     write("tiled", 7, 1002)
     image = bpy.data.images["tiled"]
     for number, seed in ((1001, 0), (1002, 7)):
-        np.testing.assert_allclose(images.read(image, number), some_pixels(seed), atol=1e-6)
-    np.testing.assert_allclose(images.read(image, 1011), tiles[1011], atol=1e-6)
+        np.testing.assert_allclose(image_pixels.read(image, number), some_pixels(seed), atol=1e-6)
+    np.testing.assert_allclose(image_pixels.read(image, 1011), tiles[1011], atol=1e-6)
     bpy.ops.ed.undo()
     np.testing.assert_allclose(
-        images.read(bpy.data.images["tiled"], 1002), some_pixels(5), atol=1e-6
+        image_pixels.read(bpy.data.images["tiled"], 1002), some_pixels(5), atol=1e-6
     )
     bpy.ops.ed.redo()
     image = bpy.data.images["tiled"]
-    np.testing.assert_allclose(images.read(image, 1002), some_pixels(7), atol=1e-6)
-    images.save(image, tmp_path / "saved.<UDIM>.png", image_files.PNG_8)
+    np.testing.assert_allclose(image_pixels.read(image, 1002), some_pixels(7), atol=1e-6)
+    image_pixels.save(image, tmp_path / "saved.<UDIM>.png", image_files.PNG_8)
     assert sorted(p.name for p in tmp_path.iterdir()) == [
         f"saved.{number}.png" for number in sorted(tiles)
     ]
-    np.testing.assert_allclose(images.read(image, 1002), some_pixels(7), atol=1e-6)
-    images.write(image, some_pixels(8), 1001)
+    np.testing.assert_allclose(image_pixels.read(image, 1002), some_pixels(7), atol=1e-6)
+    image_pixels.write(image, some_pixels(8), 1001)
     file = bpy.data.images.load(str(tmp_path / "saved.1001.png"))
     file.colorspace_settings.name = "Non-Color"
     np.testing.assert_allclose(raw(file), some_pixels(0), atol=1e-6)
-    np.testing.assert_allclose(images.read(image), some_pixels(8), atol=1e-6)
+    np.testing.assert_allclose(image_pixels.read(image), some_pixels(8), atol=1e-6)
 
 
 def test_what_is_refused(tmp_path):
     def refused(image, message, **how):
         with pytest.raises(RefusalError, match=message):
-            images.checked(image, **how)
+            image_pixels.checked(image, **how)
 
     refused(None, "No image")
-    missing = images.new("missing", *SIZE, is_float=False, is_data=False)
+    missing = image_pixels.new("missing", *SIZE, is_float=False, is_data=False)
     missing.source, missing.filepath = "FILE", str(tmp_path / "nothing.png")
     refused(missing, "missing has no pixels: is its file missing")
     movie = bpy.data.images.new("movie", 2, 2)
@@ -247,9 +249,9 @@ def test_what_is_refused(tmp_path):
     refused(movie, "movie is a movie")
     image = new_image("generated 8", tmp_path)
     with pytest.raises(RefusalError, match="no tile 1002"):
-        images.read(image, 1002)
+        image_pixels.read(image, 1002)
     with pytest.raises(RefusalError, match="no folder"):
-        images.save(image, tmp_path / "nowhere" / "a.png", image_files.PNG_8)
+        image_pixels.save(image, tmp_path / "nowhere" / "a.png", image_files.PNG_8)
     assert image.source == "GENERATED"
 
 
@@ -261,9 +263,9 @@ def test_linked_images_are_read_but_not_written(tmp_path):
     with bpy.data.libraries.load(path, link=True) as (_, to):
         to.images = ["packed 8"]
     image = bpy.data.images["packed 8"]
-    np.testing.assert_allclose(images.read(image), some_pixels(0), atol=1e-6)
+    np.testing.assert_allclose(image_pixels.read(image), some_pixels(0), atol=1e-6)
     with pytest.raises(RefusalError, match="linked"):
-        images.checked(image, to_write=True)
+        image_pixels.checked(image, to_write=True)
 
 
 def test_nothing_is_left_behind(tmp_path, write):

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import scenes
 from limit_mesh_truth import make, match
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from mathutils import Matrix
 
 LEVELS = 2

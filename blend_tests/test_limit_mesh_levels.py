@@ -8,8 +8,9 @@ import pytest
 import scenes
 from bpy_extras.object_utils import world_to_camera_view
 from limit_mesh_truth import make
-from limit_surface import attributes, ids
+from limit_surface import ids
 from limit_surface.errors import CancelledError
+from limit_surface.reading import attributes
 from mathutils import Matrix, Vector
 
 STRETCHED = Matrix.Translation((1, 2, 3)) @ Matrix.Diagonal((3.0, 2.0, 0.5, 1))
@@ -199,12 +200,12 @@ def test_large_counts_have_to_be_asked_for(sheet):
 
 
 def test_cancelled_work_makes_nothing(sheet, monkeypatch):
-    from limit_surface.limit_mesh import making
+    from limit_surface.limit_mesh import tessellation
 
     def stop(*_arguments):
         raise CancelledError("Cancelled: nothing was made")
 
-    monkeypatch.setattr(making, "part_of", lambda *_: stop)
+    monkeypatch.setattr(tessellation, "part_of", lambda *_: stop)
     refused("Cancelled", level_source="FLATNESS")
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from figures.parity import zoo as parity_zoo
 from figures.parity.distances import Comparison
-from limit_surface import attributes, ids, rules, uv_map
+from limit_surface import ids
+from limit_surface.reading import attributes, rules, uv_map
 
 BEST = 10
 BOUND = 1e-6  # of the diagonal, or on the UV map; Blender computes in single precision

@@ -5,7 +5,8 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from scenes import add_hair, add_mesh, add_points, add_subsurf, locations, surface_without_addon
 
 

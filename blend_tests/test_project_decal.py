@@ -6,9 +6,10 @@ import numpy as np
 import projection_truth as truth
 import pytest
 import scenes
-from limit_surface import attributes, cage, ids
+from limit_surface import ids
 from limit_surface.native import limitsurf
-from limit_surface.rotations import quaternions
+from limit_surface.placing.rotations import quaternions
+from limit_surface.reading import attributes, cage
 from mathutils import Matrix
 
 SINGLE = 2e-6

@@ -10,7 +10,7 @@ import projection_truth as truth
 import pytest
 import scenes
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from limit_surface import images
+from limit_surface.images import image_pixels
 from mathutils import Matrix, Vector
 
 TEXTURE = (256, 256)
@@ -384,7 +384,7 @@ def test_tiles():
     ob.data.uv_layers.new(name="Map").data.foreach_set("uv", [0, 0, 2, 0, 2, 1, 0, 1])
     scenes.add_subsurf(ob).subdivision_type = "SIMPLE"
     blank = np.full((32, 32, 4), 0.5, np.float32)
-    target = images.new_tiled(
+    target = image_pixels.new_tiled(
         "Tiles", dict.fromkeys((1001, 1002, 1011), blank), is_float=False, is_data=True
     )
     values = noise((32, 64), alpha=False)
@@ -394,7 +394,7 @@ def test_tiles():
     project(ob, output="EXISTING", target="Tiles", margin=0, **planar)
     values = truth.pixels(bpy.data.images["Shown"])
     for tile, expected in ((1001, values[:, :32]), (1002, values[:, 32:]), (1011, blank)):
-        np.testing.assert_allclose(images.read(target, tile), expected, atol=1.01 / 255)
+        np.testing.assert_allclose(image_pixels.read(target, tile), expected, atol=1.01 / 255)
     refused(ob, "The image Tiles is tiled", **planar | {"image": "Tiles"})
 
 

@@ -10,7 +10,8 @@ import pytest
 from bpy_extras.object_utils import world_to_camera_view
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from limit_surface.errors import RefusalError
-from limit_surface.project_image import camera, empties, view
+from limit_surface.project_image import empties, view
+from limit_surface.reading import camera
 from mathutils import Matrix, Vector
 
 POINTS = np.random.default_rng(6).uniform(-1, 1, (20, 3))

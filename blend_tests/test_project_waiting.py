@@ -10,10 +10,10 @@ import numpy as np
 import projection_truth as truth
 import pytest
 import scenes
-from limit_surface import watched as watched_module
 from limit_surface.errors import CancelledError
 from limit_surface.project_image import decal_job, properties, texture_job
-from limit_surface.watched import WatchedOperator
+from limit_surface.tasks import watched_operator as watched_module
+from limit_surface.tasks.watched_operator import WatchedOperator
 
 OPERATOR = "OBJECT_OT_limit_project_image"
 

@@ -14,11 +14,12 @@ import numpy as np
 import pytest
 import scenes
 from figures.parity import zoo as parity_zoo
-from limit_surface import attributes, cage, ids, subdivided
-from limit_surface import watched as watched_module
+from limit_surface import ids
 from limit_surface.errors import CancelledError
+from limit_surface.reading import attributes, cage, subdivided_mesh
 from limit_surface.report import distances
-from limit_surface.watched import WatchedOperator
+from limit_surface.tasks import watched_operator as watched_module
+from limit_surface.tasks.watched_operator import WatchedOperator
 from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
 from processes import ROOT
@@ -47,7 +48,7 @@ def crowd(ob, level):
     vertex = attributes.read(mesh, ids.CORNER_VERTEX)
     vertices = scenes.transformed(matrix, attributes.read(mesh, ids.POSITION).astype(float))
     triangles = vertices[vertex[corners]]
-    places = subdivided.corner_locations(attributes.face_sizes(ob.data), level)
+    places = subdivided_mesh.corner_locations(attributes.face_sizes(ob.data), level)
 
     x, y = np.mgrid[: AMONG + 1, : AMONG + 1].reshape(2, -1)
     x, y = x[x + y <= AMONG], y[x + y <= AMONG]
@@ -115,7 +116,7 @@ def test_the_attribute_is_the_largest_distance_around_each_vertex():
     expected = crowd(ob, 2)
     report(ob, levels="VIEWPORT")
     sizes = attributes.face_sizes(ob.data)
-    at = subdivided.cage_corners(sizes)
+    at = subdivided_mesh.cage_corners(sizes)
     near = np.zeros(len(ob.data.vertices))
     vertex = attributes.read(ob.data, ids.CORNER_VERTEX)
     for v, face, uv, size in zip(vertex, at.face, at.uv, np.repeat(sizes, sizes), strict=True):

@@ -9,7 +9,8 @@ import limitsurf
 import numpy as np
 import pytest
 import scenes
-from limit_surface import cage, native, rules
+from limit_surface import native
+from limit_surface.reading import cage, rules
 from scenes import add_mesh, add_subsurf
 
 

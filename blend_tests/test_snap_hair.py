@@ -5,7 +5,8 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from snap_truth import Truth, mirrored, near, snap, stretched
 
 EXACT = 1e-6

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from mathutils import Matrix
 from snap_truth import Truth, add_object, near, snap, stretched, world_locations
 from test_snap_bones import BONES

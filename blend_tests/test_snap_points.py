@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes
+from limit_surface.reading import attributes
 from snap_truth import Truth, add_object, near, stretched
 
 EXACT = 1e-6

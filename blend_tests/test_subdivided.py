@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import pytest
 from figures.parity import zoo as parity_zoo
-from limit_surface import attributes, ids, subdivided
+from limit_surface import ids
+from limit_surface.reading import attributes, subdivided_mesh
 from scenes import bilinear, ptex_corners
 
 
@@ -28,12 +29,12 @@ def test_blender_agrees(name, levels):
 
     shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     sizes = attributes.face_sizes(mesh)
-    corners = subdivided.corner_locations(sizes, levels)
+    corners = subdivided_mesh.corner_locations(sizes, levels)
     np.testing.assert_allclose(
         bilinear(uvs, *corners), attributes.read(shown, "UV"), atol=1e-5 * np.abs(uvs).max()
     )
     shown_vertex = attributes.read(shown, ids.CORNER_VERTEX)
-    vertices = subdivided.vertex_locations(corners, shown_vertex, len(shown.vertices))
+    vertices = subdivided_mesh.vertex_locations(corners, shown_vertex, len(shown.vertices))
     used = vertices.face >= 0
     assert np.count_nonzero(~used) == (1 if name == "fans" else 0)  # an isolated vertex
     expected = attributes.read(shown, "position")
@@ -60,9 +61,9 @@ def test_loose_edges_have_no_place():
     ob.modifiers[0].levels = 2
     shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     sizes = attributes.face_sizes(ob.data)
-    corners = subdivided.corner_locations(sizes, 2)
+    corners = subdivided_mesh.corner_locations(sizes, 2)
     shown_vertex = attributes.read(shown, ids.CORNER_VERTEX)
-    found = subdivided.vertex_locations(corners, shown_vertex, len(shown.vertices))
+    found = subdivided_mesh.vertex_locations(corners, shown_vertex, len(shown.vertices))
     loose = len(ob.data.vertices) - 30
     assert loose > 3
     assert np.count_nonzero(found.face < 0) == loose * 4  # its end, and three along the edge
@@ -70,4 +71,4 @@ def test_loose_edges_have_no_place():
 
 def test_level_0_has_no_polygons_of_its_own():
     with pytest.raises(ValueError, match="level 1"):
-        subdivided.corner_locations(np.array([4]), 0)
+        subdivided_mesh.corner_locations(np.array([4]), 0)

@@ -8,7 +8,8 @@ import bpy
 import numpy as np
 import pytest
 import scenes
-from limit_surface import attributes, ids, rules
+from limit_surface import ids
+from limit_surface.reading import attributes, rules
 from scenes import add_hair, add_subsurf
 
 LEVELS = 6  # polygons of 1/64 of a face: within 1e-3 of the surface that they approximate

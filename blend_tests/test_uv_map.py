@@ -6,7 +6,8 @@ import pytest
 import scenes
 from hypothesis import given
 from hypothesis import strategies as st
-from limit_surface import attributes, ids, uv_map
+from limit_surface import ids
+from limit_surface.reading import attributes, uv_map
 
 
 def leaders(vertex, uv, mirrored):

@@ -22,7 +22,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "addon"))
 
 import bench_blender_truth as truth  # noqa: E402
-from limit_surface import cage  # noqa: E402
+from limit_surface.reading import cage  # noqa: E402
 from mathutils.bvhtree import BVHTree  # noqa: E402
 
 #: The viewport's levels of a new modifier, and a fine mesh

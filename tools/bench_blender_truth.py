@@ -6,7 +6,7 @@ from typing import NamedTuple
 import bpy
 import limitsurf
 import numpy as np
-from limit_surface import subdivided
+from limit_surface.reading import subdivided_mesh
 from mathutils.bvhtree import BVHTree
 
 WIDTH = 1.0  # of a face
@@ -68,7 +68,7 @@ def nearest(
 ) -> np.ndarray:
     """The nearest points of the limit surface, by brute force: every face that comes into question
     by its level 4 polygons, in `tree`, is sampled ever more closely around its best sample."""
-    polygon_face = subdivided.corner_locations(face_sizes, 4).face[::4]
+    polygon_face = subdivided_mesh.corner_locations(face_sizes, 4).face[::4]
     row, face = [], []
     for i, point in enumerate(points.tolist()):
         distance = tree.find_nearest(point)[3]

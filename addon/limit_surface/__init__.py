@@ -9,10 +9,8 @@ from . import (
     bake_displacement,
     bake_maps,
     curvature,
-    distribution,
     hair,
     limit_mesh,
-    pixel_undo,
     points,
     preferences,
     project_image,
@@ -21,6 +19,8 @@ from . import (
     snap_modal,
     ui,
 )
+from .images import pixel_undo
+from .placing import live_count
 
 _parts = (
     preferences,
@@ -29,7 +29,6 @@ _parts = (
     snap,
     snap_modal,
     ui,
-    distribution,
     report,
     curvature,
     limit_mesh,
@@ -49,7 +48,7 @@ def register() -> None:
                 cls.bl_description = " ".join(cls.__doc__.split())  # tooltips keep line breaks
             bpy.utils.register_class(cls)
     snap.attach_settings()
-    distribution.attach_handlers()
+    live_count.attach_handlers()
     pixel_undo.attach_handlers()
     ui.append_menus()
     if _is_module:
@@ -60,7 +59,7 @@ def unregister() -> None:
     atexit.unregister(unregister)
     ui.remove_menus()
     pixel_undo.detach_handlers()
-    distribution.detach_handlers()
+    live_count.detach_handlers()
     snap.detach_settings()
     for part in reversed(_parts):
         for cls in reversed(part.classes):

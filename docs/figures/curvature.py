@@ -7,8 +7,9 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from limit_surface import attributes, ids
+from limit_surface import ids
 from limit_surface.curvature import colours
+from limit_surface.reading import attributes
 from PIL import Image, ImageDraw
 
 from figures.rendering import scene

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from limit_surface import attributes, ids, native
-from limit_surface import cage as cages
+from limit_surface import ids, native
+from limit_surface.reading import attributes
+from limit_surface.reading import cage as cages
 from PIL import Image, ImageDraw
 
 from figures.rendering import scene

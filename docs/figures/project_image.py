@@ -7,7 +7,8 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 from mathutils import Vector
 from PIL import Image, ImageDraw
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import bpy
 import limitsurf
 import numpy as np
-from limit_surface import attributes
+from limit_surface.reading import attributes
 from PIL import Image, ImageDraw
 
 from figures.rendering import scene

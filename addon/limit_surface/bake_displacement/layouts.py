@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import bpy
 import numpy as np
 
-from .. import baking, native
+from .. import native
 from ..errors import RefusalError, TooLargeError
-from ..images import FIRST_TILE
-from ..job import Progress
+from ..images import texel_places
+from ..images.image_pixels import FIRST_TILE
+from ..tasks.job import Progress
 from .surfaces import Surfaces
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class UvLayout:
     allow_overlap: bool
 
     def texels(self, tile: int, progress: Progress) -> Texels:
-        found = baking.texels(
+        found = texel_places.texels(
             self.uv_data,
             (self.width, self.height),
             tile,
@@ -87,12 +88,14 @@ def of(
             )
         except ValueError as error:
             raise TooLargeError(str(error)) from error
-        baking.check_size(layout.width, layout.height, 1, 1, properties.allow_large)
+        texel_places.check_size(layout.width, layout.height, 1, 1, properties.allow_large)
         return PtexLayout(layout)
-    tiles = baking.tiles_of(surfaces.found) if properties.use_tiles else [FIRST_TILE]
+    tiles = texel_places.tiles_of(surfaces.found) if properties.use_tiles else [FIRST_TILE]
     if not tiles:
         raise RefusalError(f"{whose}: the UV map {surfaces.found.uv_map.name} touches no UDIM tile")
-    baking.check_size(properties.width, properties.height, len(tiles), 1, properties.allow_large)
+    texel_places.check_size(
+        properties.width, properties.height, len(tiles), 1, properties.allow_large
+    )
     return UvLayout(
         surfaces.uv_data,
         properties.width,
@@ -113,5 +116,5 @@ def with_surface(texels: Texels, surface: limitsurf.LimitSurface) -> Texels:
 
 def parts(texels: Texels, progress: Progress) -> Iterator[tuple[slice, Texels]]:
     """A piece after the other."""
-    for rows in baking.parts(len(texels.x), progress):
+    for rows in texel_places.parts(len(texels.x), progress):
         yield rows, Texels(*(column[rows] for column in texels))

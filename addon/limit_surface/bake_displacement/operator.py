@@ -9,15 +9,18 @@ from pathlib import Path
 
 import bpy
 
-from .. import ids, image_files, images, objects, overlap, polling
+from .. import ids
 from ..errors import RefusalError
-from ..image_files import EXR_32
-from ..images import FIRST_TILE
-from ..job import Job, Progress
-from ..watched import WatchedOperator
+from ..images import image_files, image_pixels, overlap
+from ..images.image_files import EXR_32
+from ..images.image_pixels import FIRST_TILE
+from ..placing import new_objects
+from ..tasks import polling
+from ..tasks.job import Job, Progress
+from ..tasks.watched_operator import WatchedOperator
 from . import layouts, material, properties, surfaces
+from .displacement import Measured, Request, measure
 from .layouts import PtexLayout
-from .measuring import Measured, Request, measure
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class OBJECT_OT_limit_bake_displacement(
         )
         if self.filepath:
             self._check_path(len(request.layout.tiles))
-        key = objects.key(ob)
+        key = new_objects.key(ob)
 
         def work(progress: Progress) -> Made:
             return Made(key, request, measure(request, progress))
@@ -80,7 +83,7 @@ class OBJECT_OT_limit_bake_displacement(
         return self.watch(context, Job(work), f"Displacing {ob.name}")
 
     def finish(self, _context: bpy.types.Context, made: Made) -> set[str]:
-        ob, request, measured = objects.find(made.surface), made.request, made.measured
+        ob, request, measured = new_objects.find(made.surface), made.request, made.measured
         image = self._image(self.image_name or f"{ob.name} Displacement", measured)
         image[ids.DISPLACEMENT] = json.dumps(self._described(request))
         if self.create_material:
@@ -115,13 +118,13 @@ class OBJECT_OT_limit_bake_displacement(
         if measured.tiles.keys() == {FIRST_TILE}:
             pixels = measured.tiles[FIRST_TILE]
             height, width, _ = pixels.shape
-            image = images.new(name, width, height, is_float=True, is_data=True, alpha=False)
-            images.write(image, pixels, is_new=True)
+            image = image_pixels.new(name, width, height, is_float=True, is_data=True, alpha=False)
+            image_pixels.write(image, pixels, is_new=True)
         else:
-            image = images.new_tiled(name, measured.tiles, is_float=True, is_data=True)
+            image = image_pixels.new_tiled(name, measured.tiles, is_float=True, is_data=True)
         if self.filepath:
             try:
-                images.save(image, self._path, EXR_32)
+                image_pixels.save(image, self._path, EXR_32)
             except RefusalError:
                 bpy.data.images.remove(image)
                 raise

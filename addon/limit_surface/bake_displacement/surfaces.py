@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import attributes, baking, cage, ids, native
+from .. import ids, native
 from ..errors import RefusalError
+from ..images import texel_places
+from ..reading import attributes, cage
 
 if TYPE_CHECKING:
     import limitsurf
@@ -36,11 +38,11 @@ def read(
     if properties.layout_kind == "PTEX" and needs_map and not ob.data.uv_layers:
         raise RefusalError(f"{ob.name}: tangent space needs a UV map: choose the space Object")
     if needs_map:
-        found = baking.read_cage(ob, depsgraph, properties.uv_map)
+        found = texel_places.read_cage(ob, depsgraph, properties.uv_map)
     else:
         found = cage.read(ob, depsgraph)
     base = _surface(found.mesh, ob.name)
-    uv_data = baking.uv_data(base, found, ob.name) if needs_map else None
+    uv_data = texel_places.uv_data(base, found, ob.name) if needs_map else None
     if properties.target_shape == "LIMIT":
         found_target = cage.read(target, depsgraph)
         mesh, matrix = found_target.mesh, found_target.matrix

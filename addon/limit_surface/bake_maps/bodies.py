@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import baking, cage, native
+from .. import native
+from ..images import texel_places
+from ..reading import cage
 
 if TYPE_CHECKING:
     import limitsurf
@@ -19,7 +21,7 @@ class Body:
 
     def __init__(self, found: cage.Cage, whose: str, *, in_world: bool) -> None:
         self.surface = native.limitsurf.LimitSurface(found.mesh)
-        self.uv_map = baking.uv_data(self.surface, found, whose)
+        self.uv_map = texel_places.uv_data(self.surface, found, whose)
         self.outward = 1.0
         if in_world:
             self.surface.set_positions(found.world_positions())

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .. import baking, cage
-from .baked import Order
+from ..images import texel_places
+from ..reading import cage
 from .bodies import Body
+from .map_images import Order
 from .maps import NORMAL_TANGENT, Settings
 from .shading import Corners, Polygons
 
@@ -28,7 +29,7 @@ class Inputs:
 
     @property
     def flat_faces(self) -> int:
-        return baking.faces_without_area(self.found)
+        return texel_places.faces_without_area(self.found)
 
     def order(self) -> Order:
         body = Body(self.found, self.whose, in_world=self.in_world)

@@ -7,13 +7,15 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import baking, ids, image_files, images, polling
+from .. import ids
 from ..errors import RefusalError
-from ..job import Job, Progress
-from ..watched import WatchedOperator
+from ..images import image_files, image_pixels, texel_places
+from ..tasks import polling
+from ..tasks.job import Job, Progress
+from ..tasks.watched_operator import WatchedOperator
 from . import properties, shading, text
-from .baked import Baked, bake
 from .inputs import Inputs
+from .map_images import Baked, bake
 from .maps import IRREGULAR_RADIUS, KINDS, NORMAL_TANGENT, Settings
 from .output import Output
 
@@ -53,11 +55,15 @@ class OBJECT_OT_limit_bake_maps(WatchedOperator, properties.BakeProperties, bpy.
         if not maps:
             raise RefusalError("No map is chosen")
         depsgraph = context.evaluated_depsgraph_get()
-        found = baking.read_cage(ob, depsgraph, self.uv_map)
-        tiles = tuple(baking.tiles_of(found)) if self.tiles == "ALL" else (images.FIRST_TILE,)
+        found = texel_places.read_cage(ob, depsgraph, self.uv_map)
+        tiles = (
+            tuple(texel_places.tiles_of(found))
+            if self.tiles == "ALL"
+            else (image_pixels.FIRST_TILE,)
+        )
         if not tiles:
             raise RefusalError("The UV map touches no tile that has a UDIM number")
-        baking.check_size(self.width, self.height, len(tiles), len(maps), self.allow_large)
+        texel_places.check_size(self.width, self.height, len(tiles), len(maps), self.allow_large)
         output = self._output(ob, tiles)
         output.check(maps)
         corners = None

@@ -14,9 +14,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from .. import image_files, images
 from ..errors import RefusalError
-from ..image_files import FileKind
+from ..images import image_files, image_pixels
+from ..images.image_files import FileKind
 from .maps import KINDS
 
 
@@ -49,11 +49,11 @@ class Output:
             image, tiles = self._existing(name), baked.pop(name)
             path = files.get(name)
             if image:
-                images.write(image, tiles)
+                image_pixels.write(image, tiles)
                 if path:
-                    images.attach(image, path)
+                    image_pixels.attach(image, path)
             elif path:
-                image = images.load(path, list(tiles))
+                image = image_pixels.load(path, list(tiles))
                 image.name = self.image_name(name)
             else:
                 image = self._new(self.image_name(name), tiles)
@@ -65,7 +65,7 @@ class Output:
 
     def _check_fits(self, image: bpy.types.Image) -> None:
         whose = f"There is an image {image.name}"
-        described = images.checked(image, to_write=True)
+        described = image_pixels.checked(image, to_write=True)
         missing = set(self.tiles) - described.tiles.keys()
         if missing:
             raise RefusalError(f"{whose} without the tile {min(missing)}")
@@ -91,9 +91,9 @@ class Output:
 
     def _new(self, name: str, tiles: Mapping[int, np.ndarray]) -> bpy.types.Image:
         if len(self.tiles) > 1:
-            return images.new_tiled(name, tiles, is_float=self._is_float, is_data=True)
-        image = images.new(name, *self.size, is_float=self._is_float, is_data=True)
-        images.write(image, tiles, is_new=True)
+            return image_pixels.new_tiled(name, tiles, is_float=self._is_float, is_data=True)
+        image = image_pixels.new(name, *self.size, is_float=self._is_float, is_data=True)
+        image_pixels.write(image, tiles, is_new=True)
         return image
 
     def _write_files(self, baked: Mapping[str, Mapping[int, np.ndarray]]) -> dict[str, Path]:

@@ -4,8 +4,8 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
-from ..image_files import PATH_OPTIONS
-from ..texture_properties import TextureProperties
+from ..images.image_files import PATH_OPTIONS
+from ..images.texture_properties import TextureProperties
 from .maps import AREA_DISTORTION, KINDS, NORMAL_TANGENT
 
 CURVATURES = {"CURVATURE_MEAN", "CURVATURE_GAUSSIAN", "CURVATURE_PRINCIPAL"}

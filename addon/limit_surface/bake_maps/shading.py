@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import attributes, baking, cage, displayed, ids, native, rules
+from .. import ids, native
 from ..errors import RefusalError
-from ..job import Progress
+from ..images import texel_places
+from ..reading import attributes, cage, displayed_mesh, rules
+from ..tasks.job import Progress
 
 if TYPE_CHECKING:
     import limitsurf
@@ -63,7 +65,7 @@ class Polygons:
 
     def over(self, size: tuple[int, int], tile: int, margin: float, progress: Progress) -> Shading:
         """Where polygons overlap, one of them."""
-        found = baking.texels(
+        found = texel_places.texels(
             self._uv, size, tile, margin=margin, allow_overlap=True, progress=progress
         )
         return Shading(found, self._columns.evaluate(found.face, found.uv).value)
@@ -86,7 +88,7 @@ def _opened(
         with cage.opened(ob, depsgraph) as (_, mesh):
             yield mesh, f"{ob.name}: the mesh before the subdivision"
     else:
-        with displayed.opened(ob, depsgraph, kind) as (mesh, _, whose):
+        with displayed_mesh.opened(ob, depsgraph, kind) as (mesh, _, whose):
             yield mesh, whose
 
 

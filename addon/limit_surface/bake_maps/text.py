@@ -3,8 +3,8 @@
 
 import numpy as np
 
-from .. import overlap
-from .baked import Baked
+from ..images import overlap
+from .map_images import Baked
 from .maps import KINDS, NORMAL_TANGENT, Range
 
 

@@ -4,11 +4,11 @@
 import bpy
 import numpy as np
 
-from .. import cage, objects
 from ..errors import RefusalError
-from ..job import Progress
-from ..report.storing import why_not_on_mesh
-from . import storing
+from ..placing import new_objects
+from ..reading import cage
+from ..tasks.job import Progress
+from . import storage
 from .settings import Settings
 from .values import CurvedSurface, Values
 
@@ -20,7 +20,7 @@ class ControlMesh:
     def __init__(self, context: bpy.types.Context, settings: Settings) -> None:
         ob = context.active_object
         self._found = cage.read(ob, context.evaluated_depsgraph_get())
-        self._key = objects.key(ob)
+        self._key = new_objects.key(ob)
         self._settings = settings
         self._check(ob)
 
@@ -32,13 +32,13 @@ class ControlMesh:
     def store(
         self, _context: bpy.types.Context, values: list[Values], colors: list[np.ndarray]
     ) -> str:
-        ob = objects.find(self._key)
+        ob = new_objects.find(self._key)
         self._check(ob)
-        storing.write_on_mesh(ob.data, values[0], colors[0])
+        storage.write_on_mesh(ob.data, values[0], colors[0])
         return ob.name
 
     def _check(self, ob: bpy.types.Object) -> None:
-        reason = why_not_on_mesh(ob, self._found)
+        reason = cage.why_not_on_mesh(ob, self._found)
         if reason:
             raise RefusalError(f"Curvature cannot be stored on the control mesh: {reason}")
-        storing.check(ob, "POINT")
+        storage.check(ob, "POINT")

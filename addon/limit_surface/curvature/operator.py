@@ -6,13 +6,14 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from .. import ids, polling
+from .. import ids
 from ..errors import RefusalError
-from ..job import Job, Progress
-from ..watched import WatchedOperator
+from ..tasks import polling
+from ..tasks.job import Job, Progress
+from ..tasks.watched_operator import WatchedOperator
 from . import colours, text
 from .control_mesh import ControlMesh
-from .rooted import Rooted
+from .roots import Rooted
 from .settings import Settings
 from .tessellation import Tessellation
 from .values import Values

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import attributes, cage, ids, objects
-from ..job import Progress, part_of
-from ..request import RequestSize
-from . import storing
+from .. import ids
+from ..placing import new_objects
+from ..reading import attributes, cage
+from ..tasks.job import Progress, part_of
+from ..tasks.request_size import RequestSize
+from . import storage
 from .settings import Settings
 from .values import CurvedSurface, Values
 
@@ -28,7 +30,7 @@ class Tessellation:
     def __init__(self, context: bpy.types.Context, settings: Settings) -> None:
         ob = context.active_object
         self._found = cage.read(ob, context.evaluated_depsgraph_get())
-        self._key = objects.key(ob)
+        self._key = new_objects.key(ob)
         self._settings = settings
         quads = np.where(self._found.face_sizes == 4, 4, self._found.face_sizes).sum() // 4
         count = int(quads * 4**settings.levels)
@@ -49,12 +51,12 @@ class Tessellation:
     def store(
         self, context: bpy.types.Context, values: list[Values], colors: list[np.ndarray]
     ) -> str:
-        surface = objects.find(self._key)
+        surface = new_objects.find(self._key)
         mesh = bpy.data.meshes.new(ids.CURVATURE_OBJECT)
         try:
             self._fill(mesh)
-            storing.write_on_mesh(mesh, values[0], colors[0])
-            return objects.add_on_surface(context, ids.CURVATURE_OBJECT, mesh, surface).name
+            storage.write_on_mesh(mesh, values[0], colors[0])
+            return new_objects.add_on_surface(context, ids.CURVATURE_OBJECT, mesh, surface).name
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import cage, native
+from .. import native
 from ..errors import RefusalError
-from ..job import Progress
-from ..rotations import WorldSpace, unit
+from ..placing.rotations import WorldSpace, unit
+from ..reading import cage
+from ..tasks.job import Progress
 
 PART = 1 << 16  # so many places are looked at at once: a progress bar moves, memory stays small
 NOWHERE = -1  # the face of what is on no surface

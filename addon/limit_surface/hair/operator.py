@@ -8,12 +8,14 @@ import bpy
 import numpy as np
 from bpy.props import FloatProperty, FloatVectorProperty, IntProperty
 
-from .. import attributes, cage, ids, roots
-from ..binding import Binding
-from ..job import Progress
-from ..objects import add_on_surface
-from ..rotations import WorldSpace
-from ..scatter import Ground, ScatterOperator
+from .. import ids
+from ..placing import roots
+from ..placing.binding import Binding
+from ..placing.new_objects import add_on_surface
+from ..placing.rotations import WorldSpace
+from ..placing.scatter_operator import Ground, ScatterOperator
+from ..reading import attributes, cage
+from ..tasks.job import Progress
 from .strands import Shape
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rotations import WorldSpace
+from ..placing.rotations import WorldSpace
 
 
 @dataclass(frozen=True)

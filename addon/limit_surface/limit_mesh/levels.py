@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import adapted, attributes, cage
 from ..errors import RefusalError
-from ..job import Progress
-from ..project_image import camera
+from ..reading import attributes, cage, camera, element_numbers
+from ..tasks.job import Progress
 
 if TYPE_CHECKING:
     import limitsurf
@@ -94,7 +93,7 @@ def _whole_levels(mesh: bpy.types.Mesh, name: str, ob: bpy.types.Object) -> np.n
         raise RefusalError(
             f"{ob.name} has no attribute of faces, and no vertex group, named {name!r}"
         )
-    if attribute.domain != "FACE" or attribute.data_type not in adapted.TYPES:
+    if attribute.domain != "FACE" or attribute.data_type not in element_numbers.TYPES:
         raise RefusalError(
             f"The attribute {name} is {attribute.data_type} on {attribute.domain}: levels are "
             "numbers on FACE"

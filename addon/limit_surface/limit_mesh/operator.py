@@ -6,18 +6,21 @@ from dataclasses import dataclass
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from .. import cage, ids, objects, polling
-from ..distribution.region import reasons
+from .. import ids
 from ..errors import RefusalError
-from ..job import Job, Progress
-from ..watched import WatchedOperator
-from . import building, levels, making
+from ..placing import new_objects
+from ..reading import cage
+from ..tasks import polling
+from ..tasks.job import Job, Progress
+from ..tasks.refused_faces import reasons
+from ..tasks.watched_operator import WatchedOperator
+from . import blender_mesh, levels, tessellation
 
 
 @dataclass(frozen=True)
 class _Result:
     surface: tuple[str, str | None]  # the object's key
-    made: making.Made
+    made: tessellation.Made
     notes: list[str]
 
 
@@ -129,11 +132,13 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
     def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
         ob, depsgraph = context.active_object, context.evaluated_depsgraph_get()
-        source = making.read(ob, depsgraph, self._chooser(context, ob), not self.exact_normals)
+        source = tessellation.read(
+            ob, depsgraph, self._chooser(context, ob), not self.exact_normals
+        )
         notes = [*source.carried.notes]
         if ob.data.shape_keys:
             notes.append("shape keys are not carried over")
-        key, exact_normals, allow_large = objects.key(ob), self.exact_normals, self.allow_large
+        key, exact_normals, allow_large = new_objects.key(ob), self.exact_normals, self.allow_large
 
         def work(progress: Progress) -> _Result:
             return _Result(key, source.make(exact_normals, allow_large, progress), notes)
@@ -141,13 +146,13 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
         return self.watch(context, Job(work), f"Making polygons on {ob.name}")
 
     def finish(self, context: bpy.types.Context, result: _Result) -> set[str]:
-        surface, made = objects.find(result.surface), result.made
-        mesh = building.build(made, surface, context.evaluated_depsgraph_get())
+        surface, made = new_objects.find(result.surface), result.made
+        mesh = blender_mesh.build(made, surface, context.evaluated_depsgraph_get())
         try:
             if self.store_locations:
-                building.store_locations(mesh, made)
-            ob = objects.add_on_surface(context, ids.LIMIT_MESH_OBJECT, mesh, surface)
-            building.copy_object_materials(surface, ob)
+                blender_mesh.store_locations(mesh, made)
+            ob = new_objects.add_on_surface(context, ids.LIMIT_MESH_OBJECT, mesh, surface)
+            blender_mesh.copy_object_materials(surface, ob)
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
@@ -157,7 +162,7 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
         self._report(surface, result)
         return {"FINISHED"}
 
-    def _chooser(self, context: bpy.types.Context, ob: bpy.types.Object) -> making.Chooser:
+    def _chooser(self, context: bpy.types.Context, ob: bpy.types.Object) -> tessellation.Chooser:
         choice = None
         if self.level_source == "UNIFORM":
             choice = levels.uniform(self.levels)
@@ -170,7 +175,9 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
             raise RefusalError("Name an attribute of faces, or a vertex group, that has the levels")
         name, most = self.level_attribute, self.levels
 
-        def choose(mesh: bpy.types.Mesh, found: cage.Cage, groups: making.Groups) -> levels.Choice:
+        def choose(
+            mesh: bpy.types.Mesh, found: cage.Cage, groups: tessellation.Groups
+        ) -> levels.Choice:
             return choice or levels.named(name, most, mesh, found, ob, groups.by_name())
 
         return choose

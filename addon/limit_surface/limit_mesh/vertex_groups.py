@@ -12,7 +12,8 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from .. import attributes, cage, ids
+from .. import ids
+from ..reading import attributes, cage
 
 Adjust = Callable[[bpy.types.Object, bpy.types.Scene], None]
 

@@ -8,13 +8,15 @@ import bpy
 import numpy as np
 from bpy.props import StringProperty
 
-from .. import attributes, cage, ids, roots
-from ..binding import Binding
+from .. import ids
 from ..errors import RefusalError
-from ..job import Progress
-from ..objects import add_on_surface
-from ..scatter import Ground, ScatterOperator
-from .instances import put_instances
+from ..nodes.instances import put_instances
+from ..placing import roots
+from ..placing.binding import Binding
+from ..placing.new_objects import add_on_surface
+from ..placing.scatter_operator import Ground, ScatterOperator
+from ..reading import attributes, cage
+from ..tasks.job import Progress
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..job import Progress
+from ..tasks.job import Progress
 from .rays import Hits, Rays, joined
 
 CAST, HALVED = 0.2, 0.35  # parts of the progress: the grid; each end of the cells' sides

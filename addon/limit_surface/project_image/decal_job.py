@@ -10,10 +10,10 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
-from ..job import Progress, part_of
-from ..request import RequestSize
+from ..reading.projector import Projector, fitted
+from ..tasks.job import Progress, part_of
+from ..tasks.request_size import RequestSize
 from . import decal, decal_object, inputs, material
-from .projector import Projector, fitted
 from .world import WorldSurface
 
 CAST = 0.9  # of the progress, when the polygons are known

@@ -4,9 +4,11 @@
 import bpy
 import numpy as np
 
-from .. import attributes, ids, objects, roots
-from ..binding import Binding
-from ..job import Progress
+from .. import ids
+from ..placing import new_objects, roots
+from ..placing.binding import Binding
+from ..reading import attributes
+from ..tasks.job import Progress
 from .decal import Decal
 from .world import WorldSurface
 
@@ -44,7 +46,7 @@ def add(
     mesh = bpy.data.meshes.new(name)
     try:
         _fill(mesh, placed)
-        return objects.add_on_surface(context, name, mesh, surface)
+        return new_objects.add_on_surface(context, name, mesh, surface)
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise

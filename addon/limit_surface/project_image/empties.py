@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from .projector import Projector, fitted, inverse
+from ..reading.projector import Projector, fitted, inverse
 
 ROOM = 0.01  # of the surface's extent, before and behind it, where no depths are given
 

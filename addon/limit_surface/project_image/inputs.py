@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import baking, cage, images, native
+from .. import native
 from ..errors import RefusalError
-from . import camera, colours, empties, view
-from .projector import Projector, fitted
+from ..images import image_pixels, texel_places
+from ..reading import cage, camera
+from ..reading.projector import Projector, fitted
+from . import colours, empties, view
 from .sources import AlongNormals, FromBox, FromProjector, Seen, Source
 from .world import WorldSurface
 
@@ -26,7 +28,7 @@ def image(name: str) -> bpy.types.Image:
     found = bpy.data.images.get(name)
     if found is None:
         raise RefusalError(f"There is no image {name!r}")
-    if list(images.checked(found).tiles) != [images.FIRST_TILE]:
+    if list(image_pixels.checked(found).tiles) != [image_pixels.FIRST_TILE]:
         raise RefusalError(f"The image {name} is tiled (UDIM): such images cannot be projected")
     return found
 
@@ -82,7 +84,7 @@ def facing(properties: bpy.types.OperatorProperties) -> tuple[float, float]:
 
 
 def _filtered(shown: bpy.types.Image, extension: str) -> limitsurf.FilteredImage:
-    pixels = colours.of(shown).decoded(images.read(shown))
+    pixels = colours.of(shown).decoded(image_pixels.read(shown))
     if not np.isfinite(pixels).all():
         raise RefusalError(f"The image {shown.name} has values that are not finite numbers")
     return native.limitsurf.FilteredImage(pixels, extension.lower())
@@ -99,7 +101,7 @@ def _along_normals(
         raise RefusalError(f"There is no mesh {name!r}" if name else "No mesh is chosen")
     found = cage.read(ob, context.evaluated_depsgraph_get())
     carrier = WorldSurface(found, ob.name)
-    carrier_map = baking.uv_data(carrier.surface, found, ob.name)
+    carrier_map = texel_places.uv_data(carrier.surface, found, ob.name)
     reach = properties.max_distance or np.inf
     pixels = _filtered(shown, properties.extension)
     return AlongNormals(world, carrier, carrier_map, pixels, reach, properties.direction.lower())

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import material_slots
+from ..images import material_slots
 
 SHADER = "BSDF_PRINCIPLED"
 COLOR = "Base Color"

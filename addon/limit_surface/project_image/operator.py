@@ -3,10 +3,14 @@
 
 import bpy
 
-from .. import baking, cage, ids, objects, polling
+from .. import ids
 from ..errors import RefusalError
-from ..job import Job
-from ..watched import WatchedOperator
+from ..images import texel_places
+from ..placing import new_objects
+from ..reading import cage
+from ..tasks import polling
+from ..tasks.job import Job
+from ..tasks.watched_operator import WatchedOperator
 from . import decal_job, properties, texture_job
 from .world import WorldSurface
 
@@ -49,15 +53,15 @@ class OBJECT_OT_limit_project_image(
         if self.mode == "DECAL":
             found = cage.read(ob, depsgraph)
         else:
-            found = baking.read_cage(ob, depsgraph, self.uv_map)
+            found = texel_places.read_cage(ob, depsgraph, self.uv_map)
         world = WorldSurface(found, ob.name)
-        order = MODES[self.mode].order(self.properties, context, world, objects.key(ob))
+        order = MODES[self.mode].order(self.properties, context, world, new_objects.key(ob))
         return self.watch(context, Job(order.work), f"Projecting {self.image}")
 
     def finish(
         self, context: bpy.types.Context, made: texture_job.Made | decal_job.Made
     ) -> set[str]:
-        ob = objects.find(made.order.surface)
+        ob = new_objects.find(made.order.surface)
         self.summary = made.put(context, ob)
         world = made.order.world
         if made.warning:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import baking, native
-from ..job import Progress
+from .. import native
+from ..images import texel_places
+from ..tasks.job import Progress
 from .colours import Encoding
 from .sources import Places, Source
 
@@ -45,7 +46,7 @@ def paint(
     """How many texels have taken something. All others keep their values to the last bit."""
     count = 0
     whole = Places(uv_map, texels.face, texels.uv, canvas.texel)
-    for rows in baking.parts(len(texels.face), progress):
+    for rows in texel_places.parts(len(texels.face), progress):
         above, weight = source.look(whole.take(rows))
         weight = (opacity * weight).clip(0, 1)  # rounding may have left more than 1
         taken = weight * above[:, 3] > 0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .projector import Projector
+from ..reading.projector import Projector
 from .world import WorldSurface
 
 HALVINGS = 16  # a border is found to so many halves of a cell's side

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from .. import native
-from .projector import Projector
+from ..reading.projector import Projector
 from .world import WorldSurface
 
 if TYPE_CHECKING:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import baking, images, objects, overlap
 from ..errors import RefusalError
-from ..job import Progress, part_of
+from ..images import image_pixels, overlap, texel_places
+from ..placing import new_objects
+from ..tasks.job import Progress, part_of
 from . import colours, inputs, material
 from .painting import Canvas, paint
 from .sources import Source
@@ -50,7 +51,7 @@ class Order:
         count, overlapping, whole = 0, 0, len(self.canvases)
         for i, (tile, canvas) in enumerate(self.canvases.items()):
             part = part_of(progress, i / whole, (i + 1) / whole)
-            texels = baking.texels(
+            texels = texel_places.texels(
                 self.uv_map,
                 canvas.size,
                 tile,
@@ -75,7 +76,7 @@ class Made:
     def put(self, _context: bpy.types.Context, surface: bpy.types.Object) -> str:
         target, canvases = self.order.target, self.order.canvases
         if isinstance(target, NewImage):
-            image = images.new(
+            image = image_pixels.new(
                 target.name,
                 target.width,
                 target.height,
@@ -87,11 +88,11 @@ class Made:
             image = bpy.data.images.get(target)
             if image is None:
                 raise RefusalError(f"{target} is not there any more")
-            sizes = images.checked(image, to_write=True).tiles
+            sizes = image_pixels.checked(image, to_write=True).tiles
             if any(sizes.get(tile) != canvas.size for tile, canvas in canvases.items()):
                 raise RefusalError(f"{target} has another size meanwhile")
         pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
-        images.write(image, pixels, is_new=isinstance(target, NewImage))
+        image_pixels.write(image, pixels, is_new=isinstance(target, NewImage))
         if self.order.create_material:
             material.show(surface, image, self.order.world.cage.uv_map.name)
         return f"{self.count:,} texels of {image.name}"
@@ -106,13 +107,13 @@ def order(
     if not properties.opacity:
         raise RefusalError("Opacity is 0: nothing would be seen of the image")
     if properties.create_material:
-        material.check(objects.find(surface))
+        material.check(new_objects.find(surface))
     shown = inputs.image(properties.image)
     target = _target(properties)
     return Order(
         surface=surface,
         world=world,
-        uv_map=baking.uv_data(world.surface, world.cage, surface[0]),
+        uv_map=texel_places.uv_data(world.surface, world.cage, surface[0]),
         source=inputs.source(properties, context, world, shown),
         image=shown.name,
         target=target,
@@ -139,10 +140,10 @@ def _target(properties: bpy.types.OperatorProperties) -> str | NewImage:
 
 def _canvases(target: str | NewImage, allow_large: bool) -> dict[int, Canvas]:
     if isinstance(target, NewImage):
-        baking.check_size(target.width, target.height, 1, 1, allow_large)
+        texel_places.check_size(target.width, target.height, 1, 1, allow_large)
         blank = np.zeros((target.height, target.width, 4), np.float32)
-        return {images.FIRST_TILE: Canvas(blank, colours.of_new(target.is_float))}
+        return {image_pixels.FIRST_TILE: Canvas(blank, colours.of_new(target.is_float))}
     image = bpy.data.images[target]
-    tiles = images.checked(image, to_write=True).tiles
+    tiles = image_pixels.checked(image, to_write=True).tiles
     encoding = colours.of(image)
-    return {tile: Canvas(images.read(image, tile), encoding) for tile in tiles}
+    return {tile: Canvas(image_pixels.read(image, tile), encoding) for tile in tiles}

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from .projector import Projector, fitted
+from ..reading.projector import Projector, fitted
 
 NO_VIEW = "There is no 3D view to project from: run the operator in one, or choose another source"
 

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import cage, native
+from .. import native
 from ..errors import RefusalError
-from ..rotations import WorldSpace
-from .projector import Projector
+from ..placing.rotations import WorldSpace
+from ..reading import cage
+from ..reading.projector import Projector
 
 if TYPE_CHECKING:
     import limitsurf

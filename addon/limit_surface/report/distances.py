@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import cage, displayed, native
+from .. import native
 from ..errors import RefusalError
-from ..job import Progress, part_of
+from ..reading import cage, displayed_mesh
+from ..tasks.job import Progress, part_of
 from .places import Patches, patches
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ class Distances:
 
 
 def measure_all(
-    found: cage.Cage, meshes: Mapping[str, displayed.DisplayedMesh], progress: Progress
+    found: cage.Cage, meshes: Mapping[str, displayed_mesh.DisplayedMesh], progress: Progress
 ) -> tuple[dict[str, Distances], int]:
     """Of each mesh; and how many faces of the cage have no limit surface. Nothing of Blender is
     touched."""
@@ -64,7 +65,7 @@ def measure_all(
 def measure(
     surface: limitsurf.LimitSurface,
     found: cage.Cage,
-    shown: displayed.DisplayedMesh,
+    shown: displayed_mesh.DisplayedMesh,
     progress: Progress,
 ) -> Distances:
     """Of all faces that have a limit surface; `surface` is that of the cage in the world."""

@@ -6,11 +6,14 @@ from dataclasses import dataclass
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from .. import cage, displayed, ids, objects, polling
-from ..job import Job, Progress
-from ..watched import WatchedOperator
+from .. import ids
+from ..placing import new_objects
+from ..reading import cage, displayed_mesh
+from ..tasks import polling
+from ..tasks.job import Job, Progress
+from ..tasks.watched_operator import WatchedOperator
 from .distances import Distances, measure_all
-from .storing import check_attributes, store_numbers, store_on_mesh, why_not_on_mesh
+from .storage import check_attributes, store_numbers, store_on_mesh
 from .text import numbers, sentence
 
 
@@ -84,12 +87,13 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         self.summary = ""
         ob, depsgraph = context.active_object, context.evaluated_depsgraph_get()
         found = cage.read(ob, depsgraph)
-        if not why_not_on_mesh(ob, found):
+        if not cage.why_not_on_mesh(ob, found):
             check_attributes(ob)
         meshes = {
-            name: displayed.read(ob, depsgraph, found, kind) for name, kind in self._kinds().items()
+            name: displayed_mesh.read(ob, depsgraph, found, kind)
+            for name, kind in self._kinds().items()
         }
-        key = objects.key(ob)
+        key = new_objects.key(ob)
 
         def work(progress: Progress) -> Measured:
             return Measured(key, found, *measure_all(found, meshes, progress))
@@ -97,8 +101,8 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         return self.watch(context, Job(work), f"Measuring {ob.name}")
 
     def finish(self, context: bpy.types.Context, made: Measured) -> set[str]:
-        ob = objects.find(made.surface)
-        not_stored = why_not_on_mesh(ob, made.cage)
+        ob = new_objects.find(made.surface)
+        not_stored = cage.why_not_on_mesh(ob, made.cage)
         if not_stored:
             self.report({"WARNING"}, f"Attributes are not stored: {not_stored}")
         else:
@@ -111,7 +115,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         self._report(ob, made.cage, kept, made.refused)
         return {"FINISHED"}
 
-    def _kinds(self) -> dict[str, displayed.Kind]:
+    def _kinds(self) -> dict[str, displayed_mesh.Kind]:
         if self.levels == "LEVEL":
             return {"LEVEL": self.level}
         names = ("VIEWPORT", "RENDER") if self.levels == "BOTH" else (self.levels,)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import cage, displayed, subdivided
+from ..reading import cage, displayed_mesh, subdivided_mesh
 
 PART = 1 << 17  # so many places are looked at at once: a progress bar moves, memory stays small
 ENOUGH = 100_000  # polygons are looked at as one cell each where that makes so many places
@@ -107,7 +107,7 @@ class Patches:
 
 
 def patches(
-    found: cage.Cage, shown: displayed.DisplayedMesh, refused: dict[int, str]
+    found: cage.Cage, shown: displayed_mesh.DisplayedMesh, refused: dict[int, str]
 ) -> list[Patches]:
     """Of all faces but the refused ones: those of quads, and those of other faces' corners."""
     sizes = found.face_sizes
@@ -115,13 +115,13 @@ def patches(
     refuses[list(refused)] = True
     kept = ~np.repeat(refuses, sizes)
     is_quad = np.repeat(sizes == 4, sizes)
-    vertex, face = found.mesh.face_vertices, subdivided.cage_corners(sizes).face
+    vertex, face = found.mesh.face_vertices, subdivided_mesh.cage_corners(sizes).face
     per_polygon = _cells_per_polygon(len(shown.quads.corners))
     result = []
     for corners, in_face, size in ((is_quad & kept, 4, 4), (~is_quad & kept, 1, 3)):
         if corners.any():
             faces = face[corners][::in_face]
-            cells = per_polygon * subdivided.polygons_per_side(size, shown.level)
+            cells = per_polygon * subdivided_mesh.polygons_per_side(size, shown.level)
             flipped = _flipped(shown, faces, cells)
             result.append(Patches(faces, vertex[corners].reshape(-1, in_face), cells, flipped))
     return result
@@ -132,7 +132,7 @@ def _cells_per_polygon(polygons: int) -> int:
     return int(np.clip(np.sqrt(ENOUGH / (6 * polygons)), 1, MOST_CELLS))
 
 
-def _flipped(shown: displayed.DisplayedMesh, faces: np.ndarray, cells: int) -> np.ndarray:
+def _flipped(shown: displayed_mesh.DisplayedMesh, faces: np.ndarray, cells: int) -> np.ndarray:
     middle = (np.arange(cells) + 0.5) / cells
     uv = np.stack(np.meshgrid(middle, middle, indexing="ij"), axis=-1).reshape(-1, 2)
     face = np.repeat(faces, len(uv))

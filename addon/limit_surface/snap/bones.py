@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import bpy
 import numpy as np
 
-from ..rotations import WorldSpace, unit
+from ..placing.rotations import WorldSpace, unit
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .surface import transformed

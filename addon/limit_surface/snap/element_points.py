@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 import bpy
 import numpy as np
 
-from ..rotations import WorldSpace, unit
+from ..placing.rotations import WorldSpace, unit
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .surface import transformed

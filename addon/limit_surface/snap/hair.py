@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 
-from .. import attributes, ids
-from ..rotations import WorldSpace, unit
+from .. import ids
+from ..placing.rotations import WorldSpace, unit
+from ..reading import attributes
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .hair_binding import HairBinding

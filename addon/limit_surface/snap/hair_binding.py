@@ -4,9 +4,10 @@
 import bpy
 import numpy as np
 
-from .. import attributes, ids
+from .. import ids
 from ..errors import RefusalError
-from ..rotations import quaternions
+from ..placing.rotations import quaternions
+from ..reading import attributes
 from .surface import Places, TargetSurface
 from .turns import matrices
 

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..rotations import unit
+from ..placing.rotations import unit
 from .turns import shortest
 
 # Blender's matrices are in single precision: of the largest coordinate, and an angle

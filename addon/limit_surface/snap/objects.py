@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..rotations import unit
+from ..placing.rotations import unit
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .object_move import ELSEWHERE, ObjectMove

@@ -7,11 +7,11 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 
 from .. import ids, native
 from ..errors import RefusalError
-from ..progress import progress_bar
+from ..tasks.progress import progress_bar
 from .aim import Aim, View
 from .choices import Choices, Outcome, merged
-from .gather import HAIR_MODES, MODES, check_target, find_target, gather
 from .properties import PlacingProperties
+from .selection import HAIR_MODES, MODES, check_target, find_target, gather
 from .surface import TargetSurface
 
 

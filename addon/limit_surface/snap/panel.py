@@ -4,7 +4,7 @@
 import bpy
 
 from .. import ids, native
-from .gather import find_target
+from .selection import find_target
 
 
 class VIEW3D_PT_limit_snap(bpy.types.Panel):

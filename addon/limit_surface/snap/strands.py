@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ..rotations import unit
+from ..placing.rotations import unit
 
 
 class Strands:

@@ -6,9 +6,10 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from .. import cage, displayed, native, rules
+from .. import native
 from ..errors import RefusalError
-from ..rotations import WorldSpace
+from ..placing.rotations import WorldSpace
+from ..reading import cage, displayed_mesh, rules
 
 SAME = 1e-6  # of the largest coordinate: as exactly as Blender's single precision allows
 
@@ -32,7 +33,9 @@ class TargetSurface:
             raise RefusalError(f"No face of {ob.name} has a limit surface")
         self.in_world.set_positions(self.cage.world_positions())
         self._in_object = native.limitsurf.LimitSurface(self.cage.mesh)
-        self._shown = None if kind == "LIMIT" else displayed.read(ob, depsgraph, self.cage, kind)
+        self._shown = (
+            None if kind == "LIMIT" else displayed_mesh.read(ob, depsgraph, self.cage, kind)
+        )
         # du x dv points inwards in the world if the object is mirrored there.
         self.outward = np.sign(np.linalg.det(self.cage.matrix[:3, :3]))
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
-from ..rotations import WorldSpace
+from ..placing.rotations import WorldSpace
 from ..snap.hair_binding import HairBinding
 from ..snap.object_move import ObjectMove
 from ..snap.strands import Strands

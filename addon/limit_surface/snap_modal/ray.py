@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
-from ..rotations import unit
+from ..placing.rotations import unit
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .. import attributes, ids
+from .. import ids
 from ..errors import RefusalError
-from ..snap.gather import ancestors
+from ..reading import attributes
 from ..snap.mesh_vertices import as_edited
+from ..snap.selection import ancestors
 from ..snap.surface import TargetSurface, transformed
 from .handles import DraggedObject, DraggedStrand, DraggedVertex, Handle
 

@@ -3,8 +3,9 @@
 
 import bpy
 
-from .. import ids, native, rules
+from .. import ids, native
 from ..preferences import draw_unavailable
+from ..reading import rules
 
 
 class VIEW3D_PT_limit_surface(bpy.types.Panel):

@@ -3,7 +3,8 @@
 
 import bpy
 import numpy as np
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 
 LEVELS = 3  # subdivisions of the sculpt
 QUALITY = 8  # of Blender's own limit surface: the sculpt's polygons as they are rendered

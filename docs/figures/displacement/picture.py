@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from limit_surface import images
+from limit_surface.images import image_pixels
 from PIL import Image, ImageDraw
 
 from figures.displacement import head as heads
@@ -42,7 +42,7 @@ def make(folder: Path, samples: int = 32) -> None:
         render(head, parts[1], samples)
         render(sculpt, parts[2], samples)
         shown = [Image.open(part) for part in parts]
-        shown.insert(1, drawn(images.read(bpy.data.images["Head Displacement"])))
+        shown.insert(1, drawn(image_pixels.read(bpy.data.images["Head Displacement"])))
         save(composed(shown), folder / "displacement.png")
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import bpy
 import limitsurf as ls
 import numpy as np
-from limit_surface import cage
+from limit_surface.reading import cage
 
 from figures import tables
 from figures.displacement import head as heads

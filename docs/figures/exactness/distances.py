@@ -7,7 +7,8 @@ from typing import NamedTuple
 import bpy
 import limitsurf
 import numpy as np
-from limit_surface import attributes, cage, ids, subdivided
+from limit_surface import ids
+from limit_surface.reading import attributes, cage, subdivided_mesh
 
 
 class Distance(NamedTuple):
@@ -26,11 +27,13 @@ class Comparison:
         self._ob, self._subsurf, self.levels = ob, ob.modifiers[0], levels
         self.cage = cage.read(ob, bpy.context.evaluated_depsgraph_get())
         self.surface = limitsurf.LimitSurface(self.cage.mesh)
-        self.corners = subdivided.corner_locations(self.cage.face_sizes, levels)
+        self.corners = subdivided_mesh.corner_locations(self.cage.face_sizes, levels)
         mesh = self._evaluated(1)
         corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)
         self.quads = corner_vertex.reshape(-1, 4)
-        self.places = subdivided.vertex_locations(self.corners, corner_vertex, len(mesh.vertices))
+        self.places = subdivided_mesh.vertex_locations(
+            self.corners, corner_vertex, len(mesh.vertices)
+        )
 
     @cached_property
     def cage_edges(self) -> np.ndarray:

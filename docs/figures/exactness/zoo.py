@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
-from limit_surface import attributes, ids
+from limit_surface import ids
+from limit_surface.reading import attributes
 
 from figures.meshes.shapes import Faces, cubes, fan, plateau, raised, ridge, sheet, taken
 from figures.rendering.scene import View

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 import bpy
 import numpy as np
-from limit_surface import attributes
+from limit_surface.reading import attributes
 
 Faces = Sequence[Sequence[int]]
 Height = Callable[[np.ndarray, np.ndarray], np.ndarray]

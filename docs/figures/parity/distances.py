@@ -6,8 +6,9 @@ from collections.abc import Callable
 import bpy
 import limitsurf
 import numpy as np
-from limit_surface import attributes, cage, ids, sharpness, subdivided
-from limit_surface.subdivided import SurfaceLocations
+from limit_surface import ids
+from limit_surface.reading import attributes, cage, sharpness, subdivided_mesh
+from limit_surface.reading.subdivided_mesh import SurfaceLocations
 
 
 class Comparison:
@@ -19,10 +20,10 @@ class Comparison:
         self._subsurf.use_limit_surface, self._subsurf.levels = use_limit_surface, levels
         self.cage = cage.read(ob, bpy.context.evaluated_depsgraph_get())
         self.surface = limitsurf.LimitSurface(self.cage.mesh)
-        self.corners = subdivided.corner_locations(self.cage.face_sizes, levels)
+        self.corners = subdivided_mesh.corner_locations(self.cage.face_sizes, levels)
         shown = self._shown(1)
         self._corner_vertex = attributes.read(shown, ids.CORNER_VERTEX)
-        self.vertices = subdivided.vertex_locations(
+        self.vertices = subdivided_mesh.vertex_locations(
             self.corners, self._corner_vertex, len(shown.vertices)
         )
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from limit_surface import rules
+from limit_surface.reading import rules
 
 from figures import NotDrawnError, tables
 from figures.parity import zoo

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from limit_surface import attributes
+from limit_surface.reading import attributes
 from mathutils import Euler, Vector
 
 from figures.rendering.quiet import quiet

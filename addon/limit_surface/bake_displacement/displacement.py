@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The image's numbers: displacement at each texel's place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import RefusalError
+from ..tasks.job import Progress, part_of
+from . import layouts
+from .layouts import PtexLayout, Texels, UvLayout
+from .surfaces import Surfaces
+
+PLACED = 0.4  # of a tile's progress, when its texels' places are known
+
+
+@dataclass(frozen=True)
+class Request:
+    surfaces: Surfaces
+    layout: UvLayout | PtexLayout
+    is_vector: bool
+    in_frames: bool
+    max_distance: float
+    direction: str
+
+
+@dataclass(frozen=True)
+class Measured:
+    tiles: dict[int, np.ndarray]  # pixels, (height, width, 4)
+    count: int  # texels
+    missing: int  # of them, where nothing was met: they hold 0
+    overlapping: int  # of them, that several places share
+    lowest: float  # distance, or length of a vector
+    highest: float
+
+
+def measure(request: Request, progress: Progress) -> Measured:
+    """RefusalError where no texel has a place, or nothing is met at all."""
+    layout, tiles = request.layout, {}
+    ranges, count, missing, overlapping = [], 0, 0, 0
+    for i, tile in enumerate(layout.tiles):
+        part = part_of(progress, i / len(layout.tiles), (i + 1) / len(layout.tiles))
+        texels = layout.texels(tile, part_of(part, 0, PLACED))
+        texels = layouts.with_surface(texels, request.surfaces.base)
+        pixels = np.zeros((layout.height, layout.width, 4), np.float32)
+        pixels[:, :, 3] = 1
+        for _, some in layouts.parts(texels, part_of(part, PLACED, 1)):
+            values, sizes = _measured(request, some)
+            found = np.isfinite(sizes)
+            missing += len(found) - int(found.sum())
+            if found.any():
+                ranges.append((sizes[found].min(), sizes[found].max()))
+            pixels[some.y, some.x, :3] = np.where(found[:, None], values, 0)
+        count += len(texels.x)
+        overlapping += int(texels.overlap.sum())
+        tiles[tile] = pixels
+    if not count:
+        raise RefusalError("No texel lies on the surface: is the UV map elsewhere?")
+    if not ranges:
+        raise RefusalError(
+            f"{request.surfaces.target_name} is met nowhere along the normals: nothing was made"
+        )
+    lows, highs = zip(*ranges, strict=True)
+    return Measured(tiles, count, missing, overlapping, float(min(lows)), float(max(highs)))
+
+
+def _measured(request: Request, texels: Texels) -> tuple[np.ndarray, np.ndarray]:
+    """Colors (n, 3), and what the range is told of (n,): NaN where nothing is met."""
+    surfaces = request.surfaces
+    base, target = surfaces.base, surfaces.target
+    if not request.is_vector:
+        distances = base.scalar_displacement(
+            target,
+            texels.face,
+            texels.uv,
+            request.max_distance or np.inf,
+            direction=request.direction.lower(),
+        )
+        return np.repeat(distances[:, None], 3, axis=1), distances
+    frames = None
+    if request.in_frames:
+        frames = base.tangent_frames(surfaces.uv_data, texels.face, texels.uv)
+    vectors = base.vector_displacement(target, texels.face, texels.uv, frames=frames)
+    return vectors, np.linalg.norm(vectors, axis=1)

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From an order to the pixels of its images. Nothing here touches Blender's data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import RefusalError
+from ..images import overlap, texel_places
+from ..tasks.job import Progress, part_of
+from .bodies import Body, Places
+from .maps import (
+    AREA_DISTORTION,
+    KINDS,
+    NORMAL_TANGENT,
+    Range,
+    Settings,
+    compared,
+    encoded,
+    mean_octave,
+)
+from .shading import Polygons
+
+if TYPE_CHECKING:
+    import limitsurf
+
+MAPPED = 0.3  # of a tile's progress, when its texels are known
+
+
+@dataclass(frozen=True)
+class Order:
+    body: Body  # in the space of the maps
+    in_object: Body  # the same, or in the object's space
+    polygons: Polygons | None  # if a map in tangent space is wanted
+    maps: tuple[str, ...]
+    settings: Settings
+    size: tuple[int, int]
+    tiles: tuple[int, ...]
+    margin: int
+    allow_overlap: bool
+    is_encoded: bool  # to 0..1
+
+
+@dataclass
+class _Tile:
+    texels: limitsurf.Texels
+    values: dict[str, np.ndarray]  # (n, 3) or (n,) float32
+
+
+@dataclass
+class Baked:
+    """Images by map and tile, and what their values mean."""
+
+    pixels: dict[str, dict[int, np.ndarray]] = field(default_factory=dict)
+    ranges: dict[str, Range] = field(default_factory=dict)  # of those that are encoded
+    texels: int = 0  # inside the map's islands
+    overlapping: int = 0
+    without_values: int = 0  # of one map or another
+    without_polygons: int = 0  # that tangent-space normals were wanted for
+
+
+def bake(order: Order, progress: Progress) -> Baked:
+    made = Baked()
+    tiles = {}
+    for i, tile in enumerate(order.tiles):
+        part = part_of(progress, 0.9 * i / len(order.tiles), 0.9 * (i + 1) / len(order.tiles))
+        found = _values(order, tile, made, part)
+        if len(found.texels.x):
+            tiles[tile] = found
+    if not made.texels:
+        where = "tile 1001" if order.tiles == (1001,) else "the tiles"
+        raise RefusalError(f"The UV map covers no texel of {where}")
+    for name in order.maps:
+        if name == AREA_DISTORTION:
+            _compare(tiles)
+        _paint(order, name, tiles, made)
+    return made
+
+
+def _values(order: Order, tile: int, made: Baked, progress: Progress) -> _Tile:
+    mapping = part_of(progress, 0, MAPPED)
+    texels = texel_places.texels(
+        order.body.uv_map,
+        order.size,
+        tile,
+        margin=order.margin,
+        allow_overlap=order.allow_overlap,
+        progress=part_of(mapping, 0, 0.5),
+    )
+    count = len(texels.x)
+    made.texels += int(np.count_nonzero(texels.inside))
+    made.overlapping += overlap.overlapping(texels)
+    plain = [name for name in order.maps if name != NORMAL_TANGENT]
+    values: dict[str, np.ndarray] = {}
+    for rows in texel_places.parts(count, part_of(progress, MAPPED, 0.8)):
+        places = Places(order.body, texels.face[rows], texels.uv[rows], order.settings.radius)
+        for name in plain:
+            found = KINDS[name].values(places, order.settings)
+            if name not in values:
+                values[name] = np.empty((count, *found.shape[1:]), np.float32)
+            values[name][rows] = found
+    if order.polygons and count:
+        values[NORMAL_TANGENT] = _in_tangent_space(order, tile, texels, made, progress)
+    for of_map in values.values():
+        lost = ~np.isfinite(of_map)
+        if lost.any():
+            made.without_values += int(np.count_nonzero(lost.reshape(count, -1).any(axis=1)))
+            of_map[lost] = 0
+    return _Tile(texels, values)
+
+
+def _in_tangent_space(
+    order: Order, tile: int, texels: limitsurf.Texels, made: Baked, progress: Progress
+) -> np.ndarray:
+    """Straight up where there are no polygons: nothing is ever drawn there."""
+    width, height = order.size
+    shading = order.polygons.over(order.size, tile, order.margin, part_of(progress, 0.8, 0.9))
+    row_at = np.full(width * height, -1, np.int32)
+    row_at[_flat(shading.texels, width)] = np.arange(len(shading.texels.x), dtype=np.int32)
+    rows = row_at[_flat(texels, width)]
+    met = rows >= 0
+    made.without_polygons += int(np.count_nonzero(texels.inside & ~met))
+    out = np.zeros((len(rows), 3), np.float32)
+    out[:, 2] = 1
+    indices = np.flatnonzero(met)
+    for part in texel_places.parts(len(indices), part_of(progress, 0.9, 1)):
+        at = indices[part]
+        places = Places(order.in_object, texels.face[at], texels.uv[at], order.settings.radius)
+        out[at] = shading.tangent_space(rows[at], places.normal)
+    return out
+
+
+def _compare(tiles: dict[int, _Tile]) -> None:
+    inside = [tile.values[AREA_DISTORTION][tile.texels.inside] for tile in tiles.values()]
+    mean = mean_octave(np.concatenate(inside))
+    for tile in tiles.values():
+        tile.values[AREA_DISTORTION] = compared(tile.values[AREA_DISTORTION], mean)
+
+
+def _paint(order: Order, name: str, tiles: dict[int, _Tile], made: Baked) -> None:
+    if order.is_encoded:
+        inside = [tile.values[name][tile.texels.inside] for tile in tiles.values()]
+        made.ranges[name] = KINDS[name].range(order.body, order.settings, np.concatenate(inside))
+    width, height = order.size
+    made.pixels[name] = {}
+    for number, tile in tiles.items():
+        values = tile.values.pop(name)
+        if order.is_encoded:
+            values = encoded(values, made.ranges[name])
+        pixels = np.zeros((height * width, 4), np.float32)
+        at = _flat(tile.texels, width)
+        pixels[at, :3] = values if values.ndim == 2 else values[:, None]
+        pixels[at, 3] = 1
+        made.pixels[name][number] = pixels.reshape(height, width, 4)
+
+
+def _flat(texels: limitsurf.Texels, width: int) -> np.ndarray:
+    return texels.y.astype(np.int64) * width + texels.x

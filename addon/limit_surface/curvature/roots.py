@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curvature where hair and points stand that carry their locations, stored on them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..placing import new_objects
+from ..reading import attributes, cage
+from ..tasks.job import Progress, part_of
+from . import storage
+from .settings import Settings
+from .values import NOWHERE, CurvedSurface, Values
+
+_DOMAINS = {"CURVES": "CURVE", "MESH": "POINT"}
+
+
+class _Rooted(NamedTuple):
+    key: tuple[str, str | None]  # the object's
+    face: np.ndarray
+    uv: np.ndarray
+    matrix: np.ndarray
+    found: cage.Cage
+
+
+class Rooted:
+    """The selected objects that carry locations; where none does, all that stand on the active
+    one."""
+
+    noun = "roots"
+
+    def __init__(self, context: bpy.types.Context, settings: Settings) -> None:
+        self._settings = settings
+        self._parts: list[_Rooted] = []
+        failures: Counter[str] = Counter()
+        cages: dict[bpy.types.Object, cage.Cage] = {}
+        depsgraph, seen = context.evaluated_depsgraph_get(), set()
+        for ob in _chosen(context):
+            if ob.data in seen:
+                continue
+            seen.add(ob.data)
+            try:
+                surface = _surface(ob)
+                if surface is None or surface.type != "MESH":
+                    raise RefusalError(f"{ob.name} has no surface: parent it to the mesh below it")
+                if surface not in cages:
+                    cages[surface] = cage.read(surface, depsgraph)
+                self._parts.append(_read(ob, cages[surface], surface.name))
+            except RefusalError as error:
+                failures[str(error)] += 1
+        if not self._parts:
+            raise RefusalError(
+                "; ".join(failures)
+                or f"Nothing that is selected, or stands on the active object, carries {ids.FACE} "
+                f"and {ids.UV}"
+            )
+        self.notes = tuple(f"{n:,} left out: {reason}" for reason, n in failures.items())
+
+    def measure(self, progress: Progress) -> list[Values]:
+        surfaces: dict[int, CurvedSurface] = {}
+        result = []
+        for i, part in enumerate(self._parts):
+            key = id(part.found)
+            if key not in surfaces:
+                surfaces[key] = CurvedSurface(
+                    part.found, self._settings.in_world, self._settings.radius
+                )
+            here = part_of(progress, i / len(self._parts), (i + 1) / len(self._parts))
+            result.append(surfaces[key].values(part.face, part.uv, part.matrix, here))
+        return result
+
+    def store(
+        self, _context: bpy.types.Context, values: list[Values], colors: list[np.ndarray]
+    ) -> str:
+        stored = [new_objects.find(part.key) for part in self._parts]
+        for ob, part in zip(stored, self._parts, strict=True):
+            _check(ob)
+            if len(attributes.read(ob.data, ids.FACE)) != len(part.face):
+                raise RefusalError(f"{ob.name} has changed meanwhile")
+        for ob, of, color in zip(stored, values, colors, strict=True):
+            storage.write(ob.data, _DOMAINS[ob.type], of, color)
+            ob.data.update_tag()
+        return ", ".join(ob.name for ob in stored)
+
+
+def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
+    active = context.active_object
+    selected = dict.fromkeys([active, *context.selected_objects])
+    carriers = [ob for ob in selected if _carries(ob)]
+    if carriers:
+        return carriers
+    return [ob for ob in context.view_layer.objects if _carries(ob) and _surface(ob) == active]
+
+
+def _carries(ob: bpy.types.Object) -> bool:
+    return ob.type in _DOMAINS and {ids.FACE, ids.UV} <= set(ob.data.attributes.keys())
+
+
+def _surface(ob: bpy.types.Object) -> bpy.types.Object | None:
+    return (ob.data.surface if ob.type == "CURVES" else None) or ob.parent
+
+
+def _check(ob: bpy.types.Object) -> None:
+    domain = _DOMAINS[ob.type]
+    if not ob.data.is_editable:
+        raise RefusalError(f"{ob.data.name} is linked from another file")
+    for name, kind in ((ids.FACE, "INT"), (ids.UV, "FLOAT2")):
+        there = ob.data.attributes[name]
+        if (there.data_type, there.domain) != (kind, domain):
+            raise RefusalError(f"{ob.data.name}: the attribute {name} exists as another kind")
+    storage.check(ob, domain)
+
+
+def _read(ob: bpy.types.Object, found: cage.Cage, surface: str) -> _Rooted:
+    _check(ob)
+    face = attributes.read(ob.data, ids.FACE)
+    uv = attributes.read(ob.data, ids.UV).astype(np.float64)
+    there = face != NOWHERE
+    known = (face[there] >= 0) & (face[there] < found.ptex_face_count)
+    if not (known.all() and ((uv[there] >= 0) & (uv[there] <= 1)).all()):
+        raise RefusalError(f"{ob.name} stands on faces that {surface} does not have")
+    return _Rooted(new_objects.key(ob), face, uv, np.array(ob.matrix_world, np.float64), found)

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images as files, OpenEXR and PNG, through Blender's own image I/O.
+
+How deep a file is only a scene's settings can say, so a private one does. Its view is Standard:
+data and float images arrive in EXR files as they are, colors in PNG files as the screen has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+
+#: Color spaces whose float values are kept in files as they are in the buffer
+UNCONVERTED = ("Non-Color", "Linear Rec.709", "Linear", "Raw", "Generic Data")
+
+
+#: Options of properties that hold paths
+PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5) else set()
+
+
+@dataclass(frozen=True)
+class FileKind:
+    file_format: str
+    depth: str  # bits a channel
+    suffix: str
+
+    @property
+    def is_float(self) -> bool:
+        return self.file_format == "OPEN_EXR"
+
+
+EXR_32 = FileKind("OPEN_EXR", "32", ".exr")
+EXR_16 = FileKind("OPEN_EXR", "16", ".exr")
+PNG_16 = FileKind("PNG", "16", ".png")
+PNG_8 = FileKind("PNG", "8", ".png")
+KINDS = {"EXR_32": EXR_32, "EXR_16": EXR_16, "PNG_16": PNG_16, "PNG_8": PNG_8}
+
+
+def save_copy(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
+    """The image itself stays what it is. RefusalError where the file cannot be written."""
+    path = Path(path)
+    check_folder(path.parent)
+    try:
+        with _scene_that_saves(kind, image.colorspace_settings.name) as scene:
+            image.save_render(str(path), scene=scene)
+    except RuntimeError as error:
+        raise RefusalError(f"{path} cannot be written: {str(error).strip()}") from error
+
+
+def save_pixels(pixels: np.ndarray, path: str | Path, kind: FileKind) -> None:
+    """(height, width, 4): the numbers as they are; PNG files hold 0 to 1."""
+    height, width, _ = pixels.shape
+    image = bpy.data.images.new(
+        ids.TEMPORARY_IMAGE,
+        width,
+        height,
+        alpha=True,
+        float_buffer=kind.is_float or kind.depth == "16",
+        is_data=True,
+    )
+    try:
+        image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
+        save_copy(image, path, kind)
+    finally:
+        bpy.data.images.remove(image)
+
+
+def given_path(text: str) -> Path:
+    """RefusalError for paths that begin where a file lies that has not been saved."""
+    if text.startswith("//") and not bpy.data.filepath:
+        raise RefusalError(f"{text} begins at the .blend file's folder: save that file first")
+    return Path(bpy.path.abspath(text))
+
+
+def check_folder(folder: Path) -> None:
+    if not folder.is_dir():
+        raise RefusalError(f"There is no folder {folder}")
+
+
+@contextmanager
+def _scene_that_saves(kind: FileKind, colorspace: str) -> Iterator[bpy.types.Scene]:
+    scene = bpy.data.scenes.new(ids.CAGE_SCENE)
+    try:
+        scene.display_settings.display_device = _first(
+            scene.display_settings, "display_device", "sRGB"
+        )
+        wanted = "Raw" if colorspace in ("Non-Color", "Raw") else "Standard"
+        scene.view_settings.view_transform = _first(scene.view_settings, "view_transform", wanted)
+        settings = scene.render.image_settings
+        if hasattr(settings, "media_type"):  # from Blender 5.0 on
+            settings.media_type = "IMAGE"
+        settings.file_format, settings.color_mode = kind.file_format, "RGBA"
+        settings.color_depth = kind.depth
+        settings.compression = 15
+        yield scene
+    finally:
+        bpy.data.scenes.remove(scene)
+
+
+def _first(settings: bpy.types.bpy_struct, name: str, wanted: str) -> str:
+    """What is wanted where Blender's color configuration has it, else what is set."""
+    with suppress(TypeError):
+        setattr(settings, name, wanted)
+    return getattr(settings, name)

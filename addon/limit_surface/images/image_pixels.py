@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images as arrays of pixels: what can be read, and how to write it so that it can be undone.
+
+Pixels are (height, width, 4) float32, the lowest row first, just as Blender's buffers hold them:
+- 8-bit images: in the image's own color space (sRGB mostly), 0 to 1, alpha straight;
+- float images, and 16-bit files: scene linear, colors multiplied by alpha; images of color space
+  Non-Color: the numbers themselves.
+
+Blender's undo brings back everything about an image but its pixels, whatever the image's source.
+So operators change an image through `write` alone, from their `finish`: it keeps the pixels that
+were there, and `pixel_undo` puts them back. Files that have been saved stay.
+
+Tiles are told by their UDIM numbers, 1001 for the square from (0, 0) to (1, 1) on the map; images
+without tiles have the one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError
+from . import image_files, image_tiles, pixel_undo
+from .image_files import FileKind
+from .image_tiles import FIRST_TILE
+
+_WITHOUT_PIXELS = {
+    "MOVIE": "is a movie",
+    "SEQUENCE": "is a sequence of images",
+    "VIEWER": "shows what is rendered",
+}
+
+
+@dataclass(frozen=True)
+class Description:
+    name: str
+    width: int  # of the first tile
+    height: int
+    channels: int
+    is_float: bool  # so scene linear, and multiplied by alpha
+    colorspace: str
+    tiles: Mapping[int, tuple[int, int]]  # UDIM number -> width, height
+
+    @property
+    def is_data(self) -> bool:
+        return self.colorspace in ("Non-Color", "Raw", "Generic Data")
+
+
+def checked(image: bpy.types.Image | None, *, to_write: bool = False) -> Description:
+    """RefusalError where there are no pixels, or they cannot be changed. Reads the file."""
+    if image is None:
+        raise RefusalError("No image has been chosen")
+    whose = f"The image {image.name}"
+    if image.source in _WITHOUT_PIXELS:
+        raise RefusalError(f"{whose} {_WITHOUT_PIXELS[image.source]}, which is not supported")
+    if image.type == "MULTILAYER":
+        raise RefusalError(f"{whose} has several layers, which is not supported")
+    if to_write and not image.is_editable:
+        raise RefusalError(f"{whose} is linked from another file and cannot be changed")
+    if not len(image.pixels):
+        raise RefusalError(f"{whose} has no pixels: is its file missing?")
+    tiles = {FIRST_TILE: tuple(image.size)}
+    if image.source == "TILED":
+        tiles = image_tiles.sizes(image)
+    width, height = next(iter(tiles.values()))
+    return Description(
+        image.name,
+        width,
+        height,
+        image.channels,
+        image.is_float,
+        image.colorspace_settings.name,
+        tiles,
+    )
+
+
+def read(image: bpy.types.Image, tile: int = FIRST_TILE) -> np.ndarray:
+    """(height, width, 4) float32. Missing channels: grey in all three, alpha 1."""
+    if tile not in checked(image).tiles:
+        raise RefusalError(f"The image {image.name} has no tile {tile}")
+    return image_tiles.read_all(image)[tile]
+
+
+def write(
+    image: bpy.types.Image,
+    pixels: np.ndarray | Mapping[int, np.ndarray],
+    tile: int = FIRST_TILE,
+    *,
+    is_new: bool = False,
+) -> None:
+    """Of the whole tile, or of several: a mapping of their numbers to their pixels. `is_new`: the
+    image has been made by the same operator, so that undo removes it; it is packed, too.
+
+    Takes part in undo and redo. Marks the image as changed, so that Blender asks to save it; tiled
+    images are packed instead, as their files must not change behind the user's back."""
+    described = checked(image, to_write=True)
+    given = pixels if isinstance(pixels, Mapping) else {tile: pixels}
+    for number, values in given.items():
+        if number not in described.tiles:
+            raise RefusalError(f"The image {image.name} has no tile {number}")
+        width, height = described.tiles[number]
+        if values.shape != (height, width, 4):
+            raise ValueError(f"pixels have shape {values.shape}; expected ({height}, {width}, 4)")
+    if is_new:
+        # Left as it is, a generated image would lose its pixels to any change of its settings.
+        image_tiles.write_some(image, given)
+        image.pack()
+    else:
+        with pixel_undo.recorded(image):
+            image_tiles.write_some(image, given)
+
+
+def new(
+    name: str, width: int, height: int, *, is_float: bool, is_data: bool, alpha: bool = True
+) -> bpy.types.Image:
+    """Black, and transparent if it has alpha. Saved with the .blend file, like all that is made
+    here, whether anything uses it or not."""
+    image = bpy.data.images.new(
+        name, width, height, alpha=alpha, float_buffer=is_float, is_data=is_data
+    )
+    image.generated_color = (0.0, 0.0, 0.0, 0.0 if alpha else 1.0)
+    image.use_fake_user = True
+    return image
+
+
+def new_tiled(
+    name: str,
+    tiles: Mapping[int, np.ndarray],
+    *,
+    is_float: bool,
+    is_data: bool,
+) -> bpy.types.Image:
+    """An image of the given tiles, packed."""
+    image = image_tiles.new(name, tiles, is_float=is_float, is_data=is_data)
+    image.use_fake_user = True
+    return image
+
+
+def save(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
+    """To a file, or of a tiled image to one for each tile: <UDIM> in the path stands for its
+    number. From then on that is the image's file. RefusalError where it cannot be written."""
+    if image.source == "TILED":
+        for number, pixels in image_tiles.read_all(image).items():
+            image_files.save_pixels(pixels, str(path).replace("<UDIM>", str(number)), kind)
+    else:
+        path = str(path).replace("<UDIM>", str(FIRST_TILE))
+        image_files.save_copy(image, path, kind)
+    attach(image, path)
+
+
+def attach(image: bpy.types.Image, path: str | Path) -> None:
+    """Makes a file the image's own, with the image's color space."""
+    colorspace = image.colorspace_settings.name
+    if image.packed_files:
+        image.unpack(method="REMOVE")
+    if image.source != "TILED":
+        image.source = "FILE"
+    image.filepath = str(path)
+    image.reload()
+    image.colorspace_settings.name = colorspace
+
+
+def load(path: str | Path, tiles: list[int]) -> bpy.types.Image:
+    """An image of files that hold data; with <UDIM> in the path a tiled one."""
+    if "<UDIM>" in str(path):
+        image = image_tiles.opened(str(path), tiles[0])
+    else:
+        image = bpy.data.images.load(str(path))
+    image.colorspace_settings.name = "Non-Color"
+    image.use_fake_user = True
+    return image

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pixels of images with and without UDIM tiles.
+
+Of a tiled image Blender gives scripts the first tile alone. The others are had through their files,
+or what is packed of them: so a tiled image has to be saved or packed before its tiles can be read.
+To change one, all its tiles are saved in a temporary folder and packed from there; the image keeps
+its path, and what lies there stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError
+from . import image_files
+
+FIRST_TILE = 1001
+
+
+def sizes(image: bpy.types.Image) -> dict[int, tuple[int, int]]:
+    """Of a tiled image's tiles, those that have pixels."""
+    return {tile.number: tuple(tile.size) for tile in image.tiles if all(tile.size)}
+
+
+def read_all(image: bpy.types.Image) -> dict[int, np.ndarray]:
+    """(height, width, 4) float32 each, by the tiles' numbers."""
+    if image.source != "TILED":
+        return {FIRST_TILE: _pixels(image)}
+    _check_readable(image)
+    found = {}
+    for number in sizes(image):
+        with _tile_file(image, number) as file, _loaded(file) as tile:
+            tile.colorspace_settings.name = image.colorspace_settings.name
+            tile.alpha_mode = image.alpha_mode
+            found[number] = _pixels(tile)
+    return found
+
+
+def write_some(image: bpy.types.Image, tiles: Mapping[int, np.ndarray]) -> None:
+    """The others stay. Nothing is kept for undo: that is what image_pixels.write does."""
+    image.update_tag()  # or a viewport that has nothing else to draw goes on showing the old ones
+    if image.source != "TILED":
+        channels = _narrowed(tiles[FIRST_TILE], image.channels)
+        image.pixels.foreach_set(np.ascontiguousarray(channels, np.float32).ravel())
+        image.update()
+        return
+    all_tiles = {**read_all(image), **tiles}
+    path, colorspace = image.filepath_raw, image.colorspace_settings.name
+    with _saved(all_tiles, image.is_float) as files:
+        if image.packed_files:
+            image.unpack(method="REMOVE")
+        image.filepath = files
+        image.reload()
+        image.pack()
+        image.colorspace_settings.name = colorspace
+    image.filepath_raw = path
+    image.update()
+
+
+def new(
+    name: str, tiles: Mapping[int, np.ndarray], *, is_float: bool, is_data: bool
+) -> bpy.types.Image:
+    """A packed image of these tiles."""
+    with _saved(tiles, is_float) as files:
+        image = opened(files, min(tiles))
+        if is_data:
+            image.colorspace_settings.name = "Non-Color"
+        elif not is_float:
+            image.colorspace_settings.name = "sRGB"
+        image.pack()
+    image.name = name
+    image.filepath_raw = ""
+    return image
+
+
+def opened(path: str, tile: int) -> bpy.types.Image:
+    """The tiled image of the files whose path has <UDIM> in place of a number; `tile` is one."""
+    image = bpy.data.images.load(path.replace("<UDIM>", str(tile)))
+    image.source = "TILED"
+    image.filepath = path
+    return image
+
+
+def _pixels(image: bpy.types.Image) -> np.ndarray:
+    width, height = image.size
+    flat = np.empty(len(image.pixels), np.float32)
+    if not flat.size:
+        raise RefusalError(f"The image {image.name} has no pixels: is its file missing?")
+    image.pixels.foreach_get(flat)
+    channels = flat.reshape(height, width, -1)
+    if channels.shape[2] == 4:
+        return channels
+    wide = np.ones((height, width, 4), np.float32)
+    wide[:, :, :3] = channels[:, :, : 1 if channels.shape[2] < 3 else 3]
+    if channels.shape[2] == 2:
+        wide[:, :, 3] = channels[:, :, 1]
+    return wide
+
+
+def _narrowed(pixels: np.ndarray, channels: int) -> np.ndarray:
+    """Grey and alpha are of the first and the last; the others begin with the first."""
+    return pixels[:, :, [0, 3]] if channels == 2 else pixels[:, :, :channels]
+
+
+def _check_readable(image: bpy.types.Image) -> None:
+    whose = f"The tiled image {image.name}"
+    if image.is_dirty:
+        raise RefusalError(f"{whose} has changes that are not saved: save it first")
+    if not (image.packed_files or image.filepath):
+        raise RefusalError(f"{whose} has no files yet: save it first")
+    linear = image.colorspace_settings.name in image_files.UNCONVERTED
+    if image.is_float and not linear:
+        raise RefusalError(
+            f"{whose} has float pixels in the color space {image.colorspace_settings.name}, which "
+            "is not supported"
+        )
+
+
+@contextmanager
+def _tile_file(image: bpy.types.Image, number: int) -> Iterator[str]:
+    packed = [p for p in image.packed_files if p.tile_number == number]
+    if not packed:
+        path = bpy.path.abspath(image.filepath_raw, library=image.library)
+        across, up = (number - FIRST_TILE) % 10 + 1, (number - FIRST_TILE) // 10 + 1
+        yield path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{across}_v{up}")
+        return
+    with TemporaryDirectory(dir=bpy.app.tempdir) as folder:
+        file = Path(folder, f"tile{Path(packed[0].filepath).suffix}")
+        file.write_bytes(packed[0].packed_file.data)
+        yield str(file)
+
+
+@contextmanager
+def _loaded(path: str) -> Iterator[bpy.types.Image]:
+    try:
+        image = bpy.data.images.load(path)
+    except RuntimeError as error:
+        raise RefusalError(str(error).strip()) from error
+    try:
+        yield image
+    finally:
+        bpy.data.images.remove(image)
+
+
+@contextmanager
+def _saved(tiles: Mapping[int, np.ndarray], is_float: bool) -> Iterator[str]:
+    """Files of the numbers as they are; gives their common path, with <UDIM>."""
+    kind = image_files.EXR_32 if is_float else image_files.PNG_8
+    with TemporaryDirectory(dir=bpy.app.tempdir) as folder:
+        for number, pixels in tiles.items():
+            image_files.save_pixels(pixels, f"{folder}/tile.{number}{kind.suffix}", kind)
+        yield f"{folder}/tile.<UDIM>{kind.suffix}"

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where operators put the materials that they make."""
+
+import bpy
+
+from ..errors import RefusalError
+
+
+def check(ob: bpy.types.Object) -> None:
+    """RefusalError where `put` would change a linked mesh: the file would not keep that."""
+    if not (ob.data.is_editable or _takes_its_own(ob)):
+        raise RefusalError(
+            f"{ob.name} cannot be given a material: its mesh {ob.data.name} is linked from another "
+            "file"
+        )
+
+
+def put(ob: bpy.types.Object, material: bpy.types.Material) -> None:
+    """Into the active slot where that is empty, else into a new one, which all faces take only if
+    there was none before."""
+    if ob.active_material is None and ob.material_slots:
+        ob.active_material = material
+        return
+    ob.data.materials.append(material)
+    ob.active_material_index = len(ob.material_slots) - 1
+
+
+def _takes_its_own(ob: bpy.types.Object) -> bool:
+    if not (ob.is_editable and ob.material_slots and ob.active_material is None):
+        return False
+    return ob.material_slots[ob.active_material_index].link == "OBJECT"

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Undo and redo of pixels that operators have written.
+
+Blender's undo steps hold an image's properties, but not its pixels. So each write leaves a mark in
+a property of the image, and keeps the pixels before and after it in Blender's temporary folder:
+behind an undo or a redo the mark says which of them the image has to show. Where the mark is still
+the same Blender may have dropped pixels that were not saved: then it shows those again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from uuid import uuid4
+
+import bpy
+import numpy as np
+
+from .. import ids
+from . import image_tiles
+
+MOST_KEPT = 8 << 30  # bytes: the oldest are dropped beyond
+
+_GONE = "gone"  # no mark: the image is not there at this moment of the history
+
+
+@dataclass(frozen=True)
+class _Kept:
+    files: Mapping[int, Path]  # by tile
+
+    @classmethod
+    def of(cls, image: bpy.types.Image, mark: str) -> _Kept:
+        files = {}
+        for number, pixels in image_tiles.read_all(image).items():
+            files[number] = Path(bpy.app.tempdir, f"limit_surface_{mark}_{number}.npy")
+            np.save(files[number], pixels)
+        return cls(files)
+
+    @property
+    def size(self) -> int:
+        return sum(file.stat().st_size for file in self.files.values() if file.exists())
+
+    def show(self, image: bpy.types.Image) -> None:
+        tiles = {number: np.load(file) for number, file in self.files.items() if file.exists()}
+        if tiles.keys() == self.files.keys():
+            image_tiles.write_some(image, tiles)
+
+    def drop(self) -> None:
+        for file in self.files.values():
+            file.unlink(missing_ok=True)
+
+
+@dataclass(frozen=True)
+class _Write:
+    onto: str | None  # the mark that the image had
+    before: _Kept
+    after: _Kept
+
+    def drop(self) -> None:
+        self.before.drop()
+        self.after.drop()
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """What an image holds."""
+
+    mark: str | None
+    kept: _Kept | None
+
+
+_writes: dict[str, _Write] = {}  # by mark, the oldest first
+_shown: dict[int, _Shown] = {}  # by the image's session
+_unsaved: set[int] = set()  # images that held unsaved pixels before an undo or a redo
+
+
+@contextmanager
+def recorded(image: bpy.types.Image) -> Iterator[None]:
+    """Around a change of the image's pixels. If it fails the pixels are as they were."""
+    mark, onto = uuid4().hex, image.get(ids.PIXELS_MARK)
+    before = _Kept.of(image, f"{mark}_before")
+    try:
+        yield
+        after = _Kept.of(image, f"{mark}_after")
+    except BaseException:
+        before.show(image)
+        before.drop()
+        raise
+    _writes[mark] = _Write(onto, before, after)
+    image[ids.PIXELS_MARK] = mark
+    _shown[image.session_uid] = _Shown(mark, after)
+    _drop_oldest()
+
+
+def attach_handlers() -> None:
+    for handlers, function in _HANDLERS:
+        handlers.append(function)
+
+
+def detach_handlers() -> None:
+    for handlers, function in _HANDLERS:
+        handlers.remove(function)
+    _forget()
+
+
+@bpy.app.handlers.persistent
+def _look(*_scene: object) -> None:
+    _unsaved.clear()
+    _unsaved.update(
+        i.session_uid for i in bpy.data.images if i.session_uid in _shown and i.is_dirty
+    )
+
+
+@bpy.app.handlers.persistent
+def _follow(*_scene: object) -> None:
+    there = {image.session_uid: image for image in bpy.data.images}
+    for uid, shown in _shown.items():
+        image = there.get(uid)
+        mark = image.get(ids.PIXELS_MARK) if image else _GONE
+        kept = shown.kept if mark == shown.mark else _pixels_at(mark, shown.mark)
+        is_dropped = image and uid in _unsaved and not image.is_dirty
+        if image and kept and (mark != shown.mark or is_dropped):
+            kept.show(image)
+        _shown[uid] = _Shown(mark, kept)
+
+
+def _pixels_at(mark: str | None, shown: str | None) -> _Kept | None:
+    """From the state of one mark to that of another: back to before the first write between them,
+    or ahead to after the last."""
+    while shown in _writes:
+        write = _writes[shown]
+        if write.onto == mark:
+            return write.before
+        shown = write.onto
+    return _writes[mark].after if mark in _writes else None
+
+
+def _drop_oldest() -> None:
+    sizes = [write.before.size + write.after.size for write in _writes.values()]
+    while len(_writes) > 1 and sum(sizes) > MOST_KEPT:
+        _writes.pop(next(iter(_writes))).drop()
+        sizes.pop(0)
+
+
+@bpy.app.handlers.persistent
+def _forget(*_file: object) -> None:
+    for write in _writes.values():
+        write.drop()
+    _writes.clear()
+    _shown.clear()
+
+
+_HANDLERS = (
+    (bpy.app.handlers.undo_pre, _look),
+    (bpy.app.handlers.redo_pre, _look),
+    (bpy.app.handlers.undo_post, _follow),
+    (bpy.app.handlers.redo_post, _follow),
+    (bpy.app.handlers.load_post, _forget),
+)

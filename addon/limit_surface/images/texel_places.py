@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What operators that make textures share: a cage with its UV map, and where the texels of an image
+lie on the limit surface.
+
+    found = texel_places.read_cage(ob, depsgraph, "UVMap")          # "" for the active map
+    surface = limitsurf.LimitSurface(found.mesh)
+    uv_data = texel_places.uv_data(surface, found, ob.name)         # the map on the limit
+    at = texel_places.texels(uv_data, (1024, 1024), margin=16)      # at.x, at.y, at.face, at.uv
+    for rows in texel_places.parts(len(at.x), progress): ...  # a piece at a time
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError, TooLargeError
+from ..reading import attributes, cage, uv_map
+from ..tasks.job import Progress
+from . import overlap
+from .image_pixels import FIRST_TILE
+
+if TYPE_CHECKING:
+    import limitsurf
+
+PART = 1 << 18  # texels at once: a progress bar moves, memory stays small
+
+LARGE_MEMORY = 4 << 30  # bytes
+BYTES_PER_TEXEL = 40  # of its place on the surface, measured at the peak
+BYTES_PER_PIXEL = 32  # of each image, what it is made of, and packed
+
+
+def read_cage(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, name: str = "") -> cage.Cage:
+    """The object's cage with the UV map of that name, or the active one. RefusalError where there
+    is none, or it has no area."""
+    with cage.opened(ob, depsgraph) as (found, mesh):
+        if name:
+            found = replace(found, uv_map=_named(ob, mesh, name), without_uv_map="")
+    check_uv_map(found, ob.name)
+    return found
+
+
+def check_uv_map(found: cage.Cage, whose: str) -> None:
+    """RefusalError where the cage has no UV map, or none of its faces has an area there."""
+    if found.uv_map is None:
+        raise RefusalError(f"{whose}: {found.without_uv_map or 'there is no UV map'}")
+    if faces_without_area(found) == len(found.face_sizes):
+        raise RefusalError(f"{whose}: no face has an area on the UV map {found.uv_map.name}")
+
+
+def faces_without_area(found: cage.Cage) -> int:
+    """How many of the cage's faces are no more than a line on its UV map."""
+    at = found.uv_map.values[found.uv_map.indices]
+    starts = np.cumsum(found.face_sizes) - found.face_sizes
+    following = np.arange(len(at)) + 1
+    following[starts + found.face_sizes - 1] = starts
+    around = at - np.repeat(at[starts], found.face_sizes, axis=0)
+    cross = around[:, 0] * around[following, 1] - around[:, 1] * around[following, 0]
+    return int((np.add.reduceat(cross, starts) == 0).sum())
+
+
+def uv_data(surface: limitsurf.LimitSurface, found: cage.Cage, whose: str) -> limitsurf.SurfaceData:
+    """The cage's UV map on the limit surface, by the rules of its modifier."""
+    check_uv_map(found, whose)
+    return surface.face_varying(
+        found.uv_map.values, found.uv_map.indices, found.rules.uv_interpolation
+    )
+
+
+def texels(
+    uv_data: limitsurf.SurfaceData,
+    size: tuple[int, int],
+    tile: int = FIRST_TILE,
+    *,
+    margin: float = 0,
+    allow_overlap: bool = False,
+    progress: Progress | None = None,
+) -> limitsurf.Texels:
+    """Of an image of so many texels across and up, for a UDIM tile. There may be none: whether that
+    is wrong depends on what other tiles hold. RefusalError where the map overlaps itself by more
+    than folds, unless that is allowed."""
+    width, height = size
+    found = uv_data.rasterize(
+        width, height, tile=tile_corner(tile), margin=margin, progress=progress
+    )
+    if not allow_overlap:
+        overlap.check(found, f" of tile {tile}" if tile != FIRST_TILE else "")
+    return found
+
+
+def tile_corner(tile: int) -> tuple[int, int]:
+    """The lower left corner of a UDIM tile on the map."""
+    return (tile - FIRST_TILE) % 10, (tile - FIRST_TILE) // 10
+
+
+def tiles_of(found: cage.Cage) -> list[int]:
+    """The UDIM tiles that the UV map's faces touch, as far as UDIM numbers go."""
+    at = found.uv_map.values[found.uv_map.indices]
+    starts = np.cumsum(found.face_sizes) - found.face_sizes
+    low = np.floor(np.minimum.reduceat(at, starts)).astype(int)
+    high = np.ceil(np.maximum.reduceat(at, starts)).astype(int) - 1
+    numbers = set()
+    for across, up, last_across, last_up in np.unique(np.hstack([low, high]), axis=0):
+        numbers |= {
+            FIRST_TILE + x + 10 * y
+            for x in range(max(across, 0), min(last_across, 9) + 1)
+            for y in range(max(up, 0), min(last_up, 99) + 1)
+        }
+    return sorted(numbers)
+
+
+def parts(count: int, progress: Progress) -> Iterator[slice]:
+    """Of so many rows; tells how far it is."""
+    for begin in range(0, count, PART):
+        yield slice(begin, begin + PART)
+        progress(min(begin + PART, count) / count)
+
+
+def check_size(width: int, height: int, tiles: int, images: int, allow_large: bool) -> None:
+    """TooLargeError where the images would take more memory than one expects, unless that is
+    allowed."""
+    pixels = width * height
+    needed = pixels * BYTES_PER_TEXEL + pixels * tiles * images * BYTES_PER_PIXEL
+    if needed > LARGE_MEMORY and not allow_large:
+        tiled = f", {tiles} tiles" if tiles > 1 else ""
+        raise TooLargeError(
+            f"{images} image{'s' if images > 1 else ''} of {width:,} x {height:,} pixels{tiled} "
+            f"take about {needed / 2**30:.1f} GiB of memory: set Allow Large Images (allow_large) "
+            "to make them"
+        )
+
+
+def _named(ob: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> uv_map.UvMap:
+    if name not in ob.data.uv_layers and name not in mesh.uv_layers:
+        raise RefusalError(f"{ob.name} has no UV map {name!r}")
+    if name not in mesh.uv_layers:
+        raise RefusalError(f"{ob.name}: the UV map {name} does not outlast the modifiers")
+    if not np.isfinite(attributes.read(mesh, name)).all():
+        raise RefusalError(
+            f"{ob.name}: the UV map {name} has coordinates that are not finite numbers"
+        )
+    return uv_map.read(mesh, name)

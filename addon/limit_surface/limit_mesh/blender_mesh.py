@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A tessellation as a mesh of Blender."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..reading import attributes
+from . import cage_attributes, vertex_groups
+from .places import next_corner
+from .tessellation import Made
+
+_SAME = 1e-4  # components of normals that differ by less
+# From there on normals can be stored as they are; before, as angles of 16 bits.
+_FREE_NORMALS = bpy.app.version >= (4, 5)
+
+
+def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bpy.types.Mesh:
+    """Without locations; nothing stays behind if it fails."""
+    mesh = bpy.data.meshes.new(ids.LIMIT_MESH_OBJECT)
+    try:
+        _add_polygons(mesh, made)
+        for each in made.attributes:
+            cage_attributes.write(mesh, each)
+        for each in made.carrier.on_edges(mesh):
+            cage_attributes.write(mesh, each)
+        if made.groups.names:
+            grouped = vertex_groups.with_groups(
+                mesh, made.groups.names, made.groups.weights, depsgraph
+            )
+            bpy.data.meshes.remove(mesh)
+            mesh = grouped
+            mesh.name = ids.LIMIT_MESH_OBJECT
+        _activate_as(source.data, mesh)
+        for slot in source.material_slots:
+            mesh.materials.append(slot.material if slot.link == "DATA" else None)
+        if made.tessellation.corner_normals is not None:
+            on = made.tessellation
+            _set_normals(mesh, on.corner_normals, on.face_sizes)
+    except BaseException:
+        bpy.data.meshes.remove(mesh)
+        raise
+    return mesh
+
+
+def store_locations(mesh: bpy.types.Mesh, made: Made) -> None:
+    at = made.tessellation.locations
+    attributes.write(mesh, ids.FACE, "INT", "POINT", at.face)
+    attributes.write(mesh, ids.UV, "FLOAT2", "POINT", at.uv)
+
+
+def copy_object_materials(source: bpy.types.Object, target: bpy.types.Object) -> None:
+    """Those that belong to the object rather than to its mesh."""
+    for own, slot in zip(source.material_slots, target.material_slots, strict=True):
+        if own.link == "OBJECT":
+            slot.link, slot.material = "OBJECT", own.material
+
+
+def _add_polygons(mesh: bpy.types.Mesh, made: Made) -> None:
+    t = made.tessellation
+    mesh.vertices.add(len(t.positions))
+    mesh.loops.add(len(t.face_vertices))
+    mesh.polygons.add(len(t.face_sizes))
+    attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", t.positions)
+    mesh.loops.foreach_set("vertex_index", t.face_vertices)
+    starts = np.cumsum(t.face_sizes) - t.face_sizes
+    mesh.polygons.foreach_set("loop_start", starts.astype(np.int32))
+    mesh.update(calc_edges=True)
+    mesh.shade_smooth()
+
+
+def _activate_as(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
+    """The same UV maps and colours are active, and rendered."""
+    for layer in source.uv_layers:
+        made = mesh.uv_layers.get(layer.name)
+        if made and layer.active_render:
+            made.active_render = True
+    active = source.uv_layers.active
+    if active and active.name in mesh.uv_layers:
+        mesh.uv_layers.active = mesh.uv_layers[active.name]
+    colours = mesh.color_attributes
+    if source.color_attributes.active_color_name in colours:
+        colours.active_color_name = source.color_attributes.active_color_name
+    rendered = source.color_attributes.render_color_index
+    if 0 <= rendered < len(source.color_attributes):
+        name = source.color_attributes[rendered].name
+        if name in colours:
+            colours.render_color_index = colours.find(name)
+
+
+def _set_normals(mesh: bpy.types.Mesh, normals: np.ndarray, face_sizes: np.ndarray) -> None:
+    """Edges are sharp where they part normals: Cycles keeps several at a vertex only there."""
+    edge = attributes.read(mesh, ids.CORNER_EDGE)
+    part = _parting(edge, normals, normals[next_corner(face_sizes)], len(mesh.edges))
+    if ids.SHARP_EDGE in mesh.attributes:  # the cage's
+        part |= attributes.read(mesh, ids.SHARP_EDGE)
+    attributes.write(mesh, ids.SHARP_EDGE, "BOOLEAN", "EDGE", part)
+    if _FREE_NORMALS:
+        attributes.write(mesh, ids.CUSTOM_NORMAL, "FLOAT_VECTOR", "CORNER", normals)
+        mesh.update()
+    else:
+        mesh.normals_split_custom_set(normals)
+
+
+def _parting(
+    edge: np.ndarray, at_corner: np.ndarray, at_next: np.ndarray, count: int
+) -> np.ndarray:
+    """Which edges have polygons on their two sides whose normals differ at an end. `edge` leads
+    from each corner to the next."""
+    order = np.argsort(edge, kind="stable")
+    paired = edge[order[1:]] == edge[order[:-1]]
+    one, other = order[:-1][paired], order[1:][paired]
+    apart = np.maximum(
+        np.abs(at_corner[one] - at_next[other]).max(axis=1),
+        np.abs(at_next[one] - at_corner[other]).max(axis=1),
+    )
+    part = np.zeros(count, bool)
+    part[edge[one[apart > _SAME]]] = True
+    return part

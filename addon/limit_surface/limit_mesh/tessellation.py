@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A tessellation of an object's limit surface with all that it carries, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import native
+from ..errors import RefusalError
+from ..reading import cage
+from ..tasks.job import Progress, part_of
+from ..tasks.refused_faces import reasons
+from ..tasks.request_size import RequestSize
+from . import cage_attributes, levels, vertex_groups
+from .cage_attributes import Attribute, Carried, Carrier
+
+if TYPE_CHECKING:
+    import limitsurf
+
+# Of the progress, when levels are chosen, and when the polygons are there
+_CHOSEN, _TESSELLATED = 0.3, 0.7
+
+
+@dataclass(frozen=True)
+class Groups:
+    """The cage's vertex groups, or the tessellation's."""
+
+    names: Sequence[str]
+    weights: np.ndarray  # (vertices, groups)
+
+    def by_name(self) -> dict[str, np.ndarray]:
+        return dict(zip(self.names, self.weights.T, strict=True))
+
+
+#: From the mesh that a cage is read from, the cage and its vertex groups to the choice of levels
+Chooser = Callable[[bpy.types.Mesh, cage.Cage, Groups], levels.Choice]
+
+
+@dataclass(frozen=True)
+class Source:
+    """An object, read from Blender: the rest needs arrays alone."""
+
+    cage: cage.Cage
+    carried: Carried
+    groups: Groups
+    choice: levels.Choice
+
+    def make(self, exact_normals: bool, allow_large: bool, progress: Progress) -> Made:
+        mesh = self.cage.mesh
+        surface = native.limitsurf.LimitSurface(mesh)
+        refused = surface.refused
+        if len(refused) == len(self.cage.face_sizes):
+            raise RefusalError(f"No face has a limit surface: {reasons(refused)}")
+        surface.set_positions(self.cage.world_positions())
+        chosen, warning = self.choice(surface, part_of(progress, 0, _CHOSEN))
+        RequestSize("polygons", _expected(self.cage, chosen, refused), 1, False).check(allow_large)
+        surface.set_positions(mesh.positions)
+        tessellation = surface.tessellate(
+            chosen,
+            corner_normals=exact_normals,
+            progress=part_of(progress, _CHOSEN, _TESSELLATED),
+        )
+        carrier = Carrier(self.carried, surface, tessellation)
+        rule = self.cage.rules.uv_interpolation
+        on_it = list(carrier.attributes(rule, part_of(progress, _TESSELLATED, 1)))
+        weights = carrier.weights(self.groups.weights) if self.groups.names else np.empty((0, 0))
+        kept = np.delete(chosen, list(refused))
+        return Made(
+            self.cage,
+            tessellation,
+            on_it,
+            carrier,
+            Groups(self.groups.names, weights),
+            (int(kept.min()), int(kept.max())),
+            refused,
+            [warning] if warning else [],
+        )
+
+
+@dataclass(frozen=True)
+class Made:
+    cage: cage.Cage
+    tessellation: limitsurf.Tessellation
+    attributes: list[Attribute]
+    carrier: Carrier  # of edges' attributes, whose numbers only the mesh knows
+    groups: Groups
+    levels: tuple[int, int]  # the lowest and the highest
+    refused: dict[int, str]
+    warnings: list[str]
+
+
+def read(
+    ob: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    choose: Chooser,
+    with_sharp_faces: bool,
+) -> Source:
+    names = ob.vertex_groups.keys()
+    with (
+        vertex_groups.kept(names) as keep,
+        cage.opened(ob, depsgraph, keep) as (found, mesh),
+    ):
+        groups = Groups(names, vertex_groups.read(mesh, names))
+        source = cage_attributes.read(mesh, with_sharp_faces)
+        return Source(found, source, groups, choose(mesh, found, groups))
+
+
+def _expected(found: cage.Cage, chosen: np.ndarray, refused: dict[int, str]) -> int:
+    """Polygons, but for those that lead from one level to another."""
+    quads = np.where(found.face_sizes == 4, 4.0, found.face_sizes) / 4 * 4.0**chosen
+    quads[list(refused)] = 0
+    return int(quads.sum())

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What ties generated things to their places on the surface."""
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..reading import attributes
+from . import roots
+from .rotations import quaternions
+
+
+class Binding:
+    """What is stored with each location, so that it can be found again on any pose."""
+
+    def __init__(self, locations: roots.Locations) -> None:
+        self._locations = locations
+        self.root = np.empty((len(locations), 3), np.float32)
+        self.rotation = np.empty((len(locations), 4), np.float32)
+
+    def fill(self, part: roots.Roots) -> None:
+        self.root[part.rows] = part.position
+        self.rotation[part.rows] = quaternions(part.frame)
+
+    def write(self, data: bpy.types.ID, domain: str) -> None:
+        attributes.write(data, ids.FACE, "INT", domain, self._locations.face)
+        attributes.write(data, ids.UV, "FLOAT2", domain, self._locations.uv)
+        attributes.write(data, ids.REST_ROOT, "FLOAT_VECTOR", domain, self.root)
+        attributes.write(data, ids.REST_ROTATION, "QUATERNION", domain, self.rotation)

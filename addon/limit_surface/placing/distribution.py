@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Locations over a region by one of the distributions, and how many there will be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import RefusalError
+from ..tasks.job import Progress
+from .region import Region
+from .roots import Locations
+
+#: Locations on the area of a square whose side is the distance between them, when no other fits
+#: anywhere.
+PACKING = 0.7
+
+NOWHERE = "The density is 0 everywhere"
+TOO_LOW = "The density is too low: nothing is made"
+
+
+@dataclass(frozen=True)
+class Expected:
+    count: int
+    is_exact: bool
+
+
+@dataclass(frozen=True)
+class Scattered:
+    locations: Locations
+    distance: float | None  # in the world, that they keep from each other
+
+
+@dataclass(frozen=True)
+class Spread:
+    distribution: str  # JITTERED, UNIFORM or BLUE_NOISE
+    amount: str  # COUNT, DENSITY or DISTANCE
+    per_side: int
+    count: int
+    density: float  # of a square unit in the world
+    distance: float  # world units
+    seed: int
+
+    def expected(self, region: Region) -> Expected:
+        if self.distribution == "JITTERED":
+            cells = region.ptex_face_count * self.per_side**2
+            if region.density is None:
+                return Expected(cells, True)
+            return Expected(round(cells * region.sums.weight), False)
+        if self.amount == "COUNT":
+            return Expected(self.count, True)
+        if self.amount == "DENSITY":
+            return Expected(round(self.density * region.sums.weighted_area), True)
+        self._check_distance()
+        if not region.sums.largest:
+            raise RefusalError(NOWHERE)
+        fit = PACKING * region.sums.weighted_area / region.sums.largest / self.distance**2
+        return Expected(max(round(fit), 1), False)
+
+    def scatter(self, region: Region, progress: Progress) -> Scattered:
+        """Locations of single precision, as files hold them: what is evaluated there lies exactly
+        where its stored location says."""
+        if self.distribution == "JITTERED":
+            return Scattered(self._jittered(region), None)
+        count = None if self.amount == "DISTANCE" else self.expected(region).count
+        if count == 0:
+            raise RefusalError(TOO_LOW if region.sums.largest else NOWHERE)
+        self._check_distance()
+        common = {"seed": self.seed, "density": region.density, "progress": progress}
+        try:
+            with region.in_world():
+                if self.distribution == "UNIFORM":
+                    found = region.surface.scatter_uniform(count, **common)
+                    return Scattered(_rounded(found), None)
+                radius = self.distance if count is None else None
+                found = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
+                return Scattered(_rounded(found), float(found.radius))
+        except ValueError as error:  # nowhere to put them, or no room for so many
+            reason = str(error) if region.sums.largest else NOWHERE
+            raise RefusalError(f"{reason[0].upper()}{reason[1:]}") from error
+
+    def _check_distance(self) -> None:
+        if self.distribution == "UNIFORM" and self.amount == "DISTANCE":
+            raise RefusalError(
+                "Uniform keeps no distance: choose Blue Noise, or a count or a density"
+            )
+
+    def _jittered(self, region: Region) -> Locations:
+        """With a density, each stays as probably as that is."""
+        at = _rounded(region.surface.scatter_jittered(self.per_side, self.seed))
+        if region.density is None:
+            return at
+        density = region.density(at.face, at.uv.astype(np.float64))
+        stays = np.random.default_rng(self.seed).random(len(at)) < density
+        return Locations(at.face[stays], at.uv[stays])
+
+
+def _rounded(found: Locations) -> Locations:
+    return Locations(np.asarray(found.face, np.int32), np.asarray(found.uv, np.float32))

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many an operator would make on the active mesh, for panels to show.
+
+Drawing may change nothing in the file, but reading a cage does for a moment: so the count is only
+asked for while drawing, found a little later, and drawn then. Adding up over the surface runs in a
+thread.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+
+from .. import native
+from ..errors import RefusalError
+from ..reading import cage
+from ..tasks.job import Job, Progress
+from . import distribution_properties, new_objects, region
+from .density import DensityChoice
+from .distribution import Spread
+from .mask import MaskChoice
+
+PAUSE = 0.2  # seconds until something is looked at that was asked for, or waited for
+
+
+@dataclass(frozen=True)
+class Question:
+    """What has to be read from Blender to know how many there will be."""
+
+    surface: tuple[str, str | None]  # the object's key
+    density: DensityChoice
+    mask: MaskChoice
+
+    def read(self) -> region.Region:
+        ob = new_objects.find(self.surface)
+        return region.read(ob, bpy.context.evaluated_depsgraph_get(), self.density, self.mask)
+
+
+class LiveCount:
+    """The answer to the question that was asked last, and again when things have changed."""
+
+    def __init__(self) -> None:
+        self._look_later = self._look  # one object, by which Blender knows it again
+        self.forget()
+
+    def text(self, question: Question, spread: Spread, noun: str) -> str:
+        """How many, or why there is no telling."""
+        if question != self._question:
+            self.forget()
+            self._question = question
+        if self._is_stale and not bpy.app.timers.is_registered(self._look_later):
+            bpy.app.timers.register(self._look_later, first_interval=PAUSE)
+        if self._trouble:
+            return self._trouble
+        if self._region is None:
+            return "Counting"
+        expected = spread.expected(self._region)
+        about = "" if expected.is_exact else "About "
+        return f"{about}{expected.count:,} {noun}"
+
+    def notice(self, changed: set[str]) -> None:
+        """Things of these names have changed."""
+        question = self._question
+        if question and {question.surface[0], question.density.image} & changed:
+            self._is_stale = True
+
+    def forget(self) -> None:
+        self._question: Question | None = None
+        self._region: region.Region | None = None
+        self._job: Job | None = None
+        self._trouble = ""
+        self._is_stale = True
+
+    def _look(self) -> float | None:
+        """What a timer calls: gives the seconds until the next call, or None."""
+        if self._question is None:
+            return None
+        try:
+            if self._job is None:
+                self._is_stale = False
+                self._job = _add_up(self._question.read())
+            if not self._job.is_done:
+                return PAUSE
+            self._region, self._trouble = self._job.result(), ""
+        except (RefusalError, *native.errors) as error:
+            self._trouble = str(error)
+        self._job = None
+        _redraw()
+        return None
+
+
+def _add_up(found: region.Region) -> Job:
+    def work(_progress: Progress) -> region.Region:
+        found.sums  # noqa: B018 - asked for here, kept there
+        return found
+
+    job = Job(work)
+    job.start()
+    return job
+
+
+_counts: dict[str, LiveCount] = {}
+
+
+def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, noun: str) -> str:
+    """For the panel about things of that name."""
+    if context.screen and context.screen.is_animation_playing:
+        return "Not counted during playback"
+    question = Question(
+        new_objects.key(context.active_object),
+        distribution_properties.density_choice(settings),
+        distribution_properties.mask_choice(settings),
+    )
+    try:
+        count = _counts.setdefault(noun, LiveCount())
+        return count.text(question, distribution_properties.spread(settings), noun)
+    except RefusalError as error:
+        return str(error)
+
+
+@bpy.app.handlers.persistent
+def _notice(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    if _counts and not cage.is_busy():
+        changed = {update.id.name for update in depsgraph.updates}
+        for count in _counts.values():
+            count.notice(changed)
+
+
+@bpy.app.handlers.persistent
+def _forget(*_arguments: object) -> None:
+    _counts.clear()
+
+
+def _redraw() -> None:
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+_HANDLERS = (
+    (bpy.app.handlers.depsgraph_update_post, _notice),
+    (bpy.app.handlers.undo_post, _forget),
+    (bpy.app.handlers.redo_post, _forget),
+    (bpy.app.handlers.load_post, _forget),
+)
+
+
+def attach_handlers() -> None:
+    for handlers, handler in _HANDLERS:
+        handlers.append(handler)
+
+
+def detach_handlers() -> None:
+    _counts.clear()
+    for handlers, handler in _HANDLERS:
+        handlers.remove(handler)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces that are covered, chosen by material slots and by selection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError
+from ..reading import attributes
+
+
+@dataclass(frozen=True)
+class MaskChoice:
+    material_slots: frozenset[int]  # of all, if empty
+    faces: str  # ALL, SELECTED or ATTRIBUTE
+    attribute: str
+
+    def uncovered(self, mesh: bpy.types.Mesh, whose: str) -> np.ndarray:
+        """The faces of a cage's mesh that stay bare. RefusalError if all of them do."""
+        bare = np.zeros(len(mesh.polygons), bool)
+        if self.material_slots:
+            bare |= ~np.isin(_material_slots(mesh), list(self.material_slots))
+            if bare.all():
+                slots = ", ".join(str(slot) for slot in sorted(self.material_slots))
+                raise RefusalError(f"{whose}: no face has a material of the slots {slots}")
+        if self.faces != "ALL":
+            bare |= ~(_selected(mesh) if self.faces == "SELECTED" else self._attribute(mesh, whose))
+            if bare.all():
+                raise RefusalError(f"{whose}: no face that could be covered is {self._called()}")
+        return np.flatnonzero(bare)
+
+    def _attribute(self, mesh: bpy.types.Mesh, whose: str) -> np.ndarray:
+        found = mesh.attributes.get(self.attribute)
+        if found is None:
+            raise RefusalError(f"{whose} has no attribute {self.attribute!r} to choose faces by")
+        if (found.data_type, found.domain) != ("BOOLEAN", "FACE"):
+            raise RefusalError(
+                f"{whose}: the attribute {self.attribute} cannot choose faces: it is "
+                f"{found.data_type} on {found.domain}, not BOOLEAN on FACE"
+            )
+        return attributes.read(mesh, self.attribute)
+
+    def _called(self) -> str:
+        return "selected" if self.faces == "SELECTED" else f"true in {self.attribute}"
+
+
+def _selected(mesh: bpy.types.Mesh) -> np.ndarray:
+    values = np.empty(len(mesh.polygons), bool)
+    mesh.polygons.foreach_get("select", values)
+    return values
+
+
+def _material_slots(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Of each face; a slot beyond the last one means that one, as in renders."""
+    values = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("material_index", values)
+    return values.clip(0, max(len(mesh.materials) - 1, 0))

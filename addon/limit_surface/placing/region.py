@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The part of a surface that is covered, and how densely."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+
+import bpy
+import numpy as np
+
+from .. import native
+from ..errors import RefusalError
+from ..reading import cage, vertex_weights
+from ..tasks.refused_faces import reasons
+from .density import Density, DensityChoice, DensityMap
+from .mask import MaskChoice
+
+SAMPLES = 1 << 20  # about so many at most are taken where something is added up over the surface
+MOST_PER_SIDE = 16  # of a face
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Over what is covered; areas as they are in the world."""
+
+    weight: float  # the mean of the density over the faces' (u, v)
+    weighted_area: float
+    largest: float  # density
+
+
+class Region:
+    """Holds arrays alone: whatever is read from Blender is read when it is made."""
+
+    def __init__(self, found: cage.Cage, bare: np.ndarray, density_map: DensityMap | None) -> None:
+        self.cage = found
+        self.bare = frozenset(bare.tolist())  # faces
+        mesh = found.with_holes(bare) if len(bare) else found.mesh
+        self.surface = native.limitsurf.LimitSurface(mesh)
+        self.density: Density | None = density_map and density_map.on(self.surface)
+
+    @cached_property
+    def refused(self) -> dict[int, str]:
+        """Faces that should be covered, but have no surface, with the reason."""
+        refused = self.surface.refused
+        return {face: reason for face, reason in refused.items() if face not in self.bare}
+
+    @property
+    def face_count(self) -> int:
+        """Faces of the mesh that are covered."""
+        return len(self.cage.face_sizes) - len(self.surface.refused)
+
+    @cached_property
+    def ptex_face_count(self) -> int:
+        parts = np.where(self.cage.face_sizes == 4, 1, self.cage.face_sizes)
+        return int(parts.sum() - parts[list(self.surface.refused)].sum())
+
+    @contextmanager
+    def in_world(self) -> Iterator[None]:
+        """The surface is as it lies in the world, as long as the context lasts."""
+        self.surface.set_positions(self.cage.world_positions())
+        try:
+            yield
+        finally:
+            self.surface.set_positions(self.cage.mesh.positions)
+
+    @cached_property
+    def area(self) -> float:
+        with self.in_world():
+            return self.surface.area()
+
+    @cached_property
+    def sums(self) -> Sums:
+        """Where there is a density, by samples: as many on each face, at places of no pattern."""
+        if self.density is None:
+            return Sums(1.0, self.area, 1.0)
+        per_side = int(np.sqrt(SAMPLES / max(self.ptex_face_count, 1)))
+        per_side = min(max(per_side, 1), MOST_PER_SIDE)
+        at = self.surface.scatter_jittered(per_side, 0)
+        weight = self.density(at.face, at.uv)
+        with self.in_world():
+            tangents = self.surface.evaluate(at.face, at.uv, derivatives=1)
+        across = np.nan_to_num(np.cross(tangents.du, tangents.dv))
+        area = np.linalg.norm(across, axis=1) / per_side**2
+        return Sums(weight.clip(max=1).mean(), float(weight @ area), weight.max())
+
+
+def read(
+    ob: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    density: DensityChoice,
+    mask: MaskChoice,
+) -> Region:
+    """RefusalError where there is nothing to cover, or a choice that means nothing here."""
+    with (
+        vertex_weights.kept(density.wanted_vertex_group(ob)) as keep,
+        cage.opened(ob, depsgraph, keep) as (found, mesh),
+    ):
+        bare = mask.uncovered(mesh, ob.name)
+        density_map = density.read(mesh, found, ob)
+    covered = Region(found, bare, density_map)
+    if not covered.face_count:
+        raise RefusalError(f"No face has a limit surface: {reasons(covered.refused)}")
+    return covered

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames as Blender wants them: quaternions, and directions in world space."""
+
+import numpy as np
+
+from ..errors import RefusalError
+
+
+def quaternions(rotation: np.ndarray) -> np.ndarray:
+    """Rotation matrices (n, 3, 3) as unit quaternions (n, 4), w x y z, w >= 0.
+
+    Each row of `candidates` is the quaternion times four times one of its own components; the one
+    with the largest is taken, so nothing cancels.
+    """
+    r = rotation
+    trace = np.einsum("nii->n", r)
+    candidates = np.empty((len(r), 4, 4))
+    candidates[:, 0, 0] = 1 + trace
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        candidates[:, i + 1, i + 1] = 1 + 2 * r[:, i, i] - trace
+        candidates[:, 0, i + 1] = candidates[:, i + 1, 0] = r[:, k, j] - r[:, j, k]
+        candidates[:, j + 1, k + 1] = candidates[:, k + 1, j + 1] = r[:, j, k] + r[:, k, j]
+    largest = np.argmax(np.einsum("nii->ni", candidates), axis=1)
+    chosen = candidates[np.arange(len(r)), largest]
+    chosen *= np.where(chosen[:, :1] < 0, -1, 1)
+    return unit(chosen)
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Along the last axis; NaN where there is no direction."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+class WorldSpace:
+    """Frames of an object's surface as they are seen in the world, whatever the object's scale."""
+
+    def __init__(self, matrix: np.ndarray) -> None:
+        self._linear = matrix[:3, :3]
+        self._handedness = np.sign(np.linalg.det(self._linear))
+        singular_values = np.linalg.svd(self._linear, compute_uv=False)
+        if singular_values[-1] <= 1e-12 * singular_values[0]:
+            raise RefusalError("The object is flattened to nothing: its scale is 0 along an axis")
+        self._inverse = np.linalg.inv(self._linear)
+        self.mean_scale = float(np.cbrt(singular_values.prod()))
+
+    def frames(self, frame: np.ndarray) -> np.ndarray:
+        """Columns tangent, across, normal: orthonormal, the normal outward, `across` to the side
+        of growing v (of a mirrored object, these are left-handed)."""
+        tangent = unit(frame[:, :, 0] @ self._linear.T)
+        normal = unit(frame[:, :, 2] @ self._inverse)
+        across = self._handedness * np.cross(normal, tangent)
+        return np.stack([tangent, across, normal], axis=2)
+
+    def to_local(self, vectors: np.ndarray) -> np.ndarray:
+        return vectors @ self._inverse.T

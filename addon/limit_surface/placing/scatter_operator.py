@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the operators that scatter things over a limit surface have in common."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, StringProperty
+
+from ..errors import RefusalError
+from ..reading import cage, displayed_mesh
+from ..tasks import polling
+from ..tasks.job import Job, Progress, part_of
+from ..tasks.refused_faces import reasons
+from ..tasks.request_size import RequestSize
+from ..tasks.watched_operator import WatchedOperator
+from . import distribution_properties, new_objects, region, roots
+from .distribution import TOO_LOW, Scattered, Spread
+
+SCATTERED = 0.5  # of the progress, when the locations are there
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What things are scattered over, as plain arrays, with their places."""
+
+    cage: cage.Cage
+    region: region.Region
+    scattered: Scattered
+    shown: displayed_mesh.DisplayedMesh | None  # None: things stand on the surface itself
+
+    @property
+    def locations(self) -> roots.Locations:
+        return self.scattered.locations
+
+    def evaluate(self, face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Positions and frames. On the polygons that are shown frames are the surface's all the
+        same: there are no kinks in them."""
+        surface = self.region.surface
+        on = self.shown.positions(face, uv) if self.shown else surface.evaluate(face, uv).position
+        return on, surface.frames(face, uv)
+
+    def surface_uv(self) -> np.ndarray | None:
+        """The locations on the UV map of the mesh that the viewport shows, smoothed where that is
+        subdivided: where Blender's nodes look for them, on the evaluated mesh."""
+        found = self.cage.uv_map
+        if found is None:
+            return None
+        smoothed = self.region.surface.face_varying(
+            found.values, found.indices, self.cage.shown_uv_interpolation
+        )
+        return smoothed.evaluate(self.locations.face, self.locations.uv.astype(np.float64)).value
+
+
+@dataclass(frozen=True)
+class Order:
+    """All that is asked for, read from Blender: the rest needs arrays alone."""
+
+    surface: tuple[str, str | None]  # the object's key
+    region: region.Region
+    spread: Spread
+    shown: displayed_mesh.DisplayedMesh | None
+    size: RequestSize
+
+    def ground(self, progress: Progress) -> Ground:
+        scattered = self.spread.scatter(self.region, progress)
+        if not len(scattered.locations):
+            raise RefusalError(TOO_LOW)
+        return Ground(self.region.cage, self.region, scattered, self.shown)
+
+
+@dataclass(frozen=True)
+class Made:
+    surface: tuple[str, str | None]  # the object's key
+    ground: Ground
+    things: Any  # what the operator's maker makes
+
+
+class ScatterOperator(WatchedOperator, distribution_properties.DistributionProperties):
+    """Mixin: locations by one of the distributions, and the rules of asking and reporting.
+
+    A subclass names what it makes (`noun`, plural) and makes it in two steps: `maker` gives a
+    function that makes arrays, which may run in a thread of its own, and `add` puts them into the
+    file. Until `add` returns it cleans up after itself.
+    """
+
+    bl_options = {"REGISTER", "UNDO"}
+    noun = ""
+
+    allow_large: BoolProperty(
+        name="Allow Large Counts",
+        description="Make millions of elements without asking. Scripts need it, as nobody can "
+        "answer there",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    summary: StringProperty(
+        name="Result",
+        description="What the operator made",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    @property
+    def too_large(self) -> str:
+        return f"Not enough memory for so many {self.noun}"
+
+    @property
+    def cancelled(self) -> str:
+        return f"Cancelled: no {self.noun} were made"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return polling.mesh_in_object_mode(cls, context, _surface_object(context))
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        return self._guarded(self._ask, context, event)
+
+    def start(self, context: bpy.types.Context) -> set[str]:
+        order = self._order(context)
+        order.size.check(self.allow_large)
+        return self._begin(context, order)
+
+    def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
+        self.add(context, new_objects.find(made.surface), made.things)
+        self._report(made.ground)
+        return {"FINISHED"}
+
+    def maker(self, found: cage.Cage) -> Any:
+        """A function of the ground and of progress, that makes what `add` gets. It is called
+        where nothing of Blender may be touched."""
+        raise NotImplementedError
+
+    def add(self, context: bpy.types.Context, surface: bpy.types.Object, made: Any) -> None:
+        raise NotImplementedError
+
+    def elements_per_location(self) -> int:
+        """Vertices or curve points that one location becomes."""
+        return 1
+
+    def check_properties(self) -> None:
+        """Refuses properties that make no sense together."""
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        distribution_properties.draw(layout, self.properties, context)
+        self.draw_own(layout)
+        layout.prop(self, "allow_large")
+        if self.summary:
+            layout.label(text=self.summary, icon="INFO")
+
+    def draw_own(self, layout: bpy.types.UILayout) -> None:
+        """The subclass's own properties."""
+
+    def _ask(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Whether so much is meant, where that is not settled."""
+        order = self._order(context)
+        self._someone_waits = True
+        if order.size.is_large and not self.allow_large:
+            self.allow_large = True  # what the dialog asks for; declining it runs nothing
+            return context.window_manager.invoke_confirm(
+                self, event, title=self.bl_label, message=f"Make {order.size}?", confirm_text="Make"
+            )
+        order.size.check(self.allow_large)
+        return self._begin(context, order)
+
+    def _begin(self, context: bpy.types.Context, order: Order) -> set[str]:
+        self.summary, self.surface = "", order.surface[0]
+        self.amount = order.spread.amount  # the redo panel shows it
+        make = self.maker(order.region.cage)
+
+        def work(progress: Progress) -> Made:
+            ground = order.ground(part_of(progress, 0, SCATTERED))
+            return Made(order.surface, ground, make(ground, part_of(progress, SCATTERED, 1)))
+
+        return self.watch(context, Job(work), f"Making {order.size.how_many}")
+
+    def _order(self, context: bpy.types.Context) -> Order:
+        self.check_properties()
+        ob, depsgraph = _surface_object(context), context.evaluated_depsgraph_get()
+        spread = distribution_properties.spread(self.properties)
+        covered = region.read(
+            ob,
+            depsgraph,
+            distribution_properties.density_choice(self.properties),
+            distribution_properties.mask_choice(self.properties),
+        )
+        expected = spread.expected(covered)
+        size = RequestSize(
+            self.noun, expected.count, self.elements_per_location(), expected.is_exact
+        )
+        shown = None
+        if self.target != "LIMIT":
+            shown = displayed_mesh.read(ob, depsgraph, covered.cage, self.target)
+        return Order(new_objects.key(ob), covered, spread, shown, size)
+
+    def _report(self, ground: Ground) -> None:
+        found, refused = ground.cage, ground.region.refused
+        faces = ground.region.face_count
+        self.summary = f"{len(ground.locations):,} {self.noun} on {faces:,} faces"
+        if ground.scattered.distance is not None:
+            self.summary += f", at least {ground.scattered.distance:.4g} apart"
+        if refused:
+            self.report(
+                {"WARNING"},
+                f"{len(refused):,} of {len(found.face_sizes):,} faces have no limit surface and "
+                f"were left out: {reasons(refused)}",
+            )
+        notes = [f"{self.summary} of {self.surface}", *found.notes]
+        if found.without_uv_map:
+            notes.append(f"no UVs stored: {found.without_uv_map}")
+        self.report({"INFO"}, "; ".join(notes))
+
+
+def _surface_object(context: bpy.types.Context) -> bpy.types.Object | None:
+    """The active mesh, or the one that the active hair is on: new hair is active, and Blender asks
+    `poll` before it undoes what is to be made anew with other settings."""
+    ob = context.active_object
+    if ob is not None and ob.type == "CURVES":
+        ob = ob.data.surface
+    return ob if ob is not None and ob.type == "MESH" else None

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From an object to the control mesh of its limit surface.
+
+The cage is the mesh after all modifiers that stand before the first enabled Subdivision Surface
+modifier; that modifier states the rules. No state of Blender's own evaluation shows the cage, so a
+private scene evaluates a copy of the object whose modifiers end there. Both are removed before
+anybody else sees them, and no frame-change handlers are called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import ids, native
+from ..errors import CageError
+from . import attributes, private_scene, rules, sharpness, uv_map
+
+if TYPE_CHECKING:
+    import limitsurf
+
+# These carry a state from frame to frame, which a copy does not have.
+SIMULATIONS = {"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "EXPLODE"}
+
+_busy = False
+
+
+def is_busy() -> bool:
+    """Whether handlers are being called for the private scene: they have nothing to do there."""
+    return _busy
+
+
+@dataclass(frozen=True)
+class Cage:
+    mesh: limitsurf.ControlMesh
+    rules: rules.Rules
+    face_sizes: np.ndarray
+    matrix: np.ndarray  # object to world, 4x4
+    uv_map: uv_map.UvMap | None  # the active one, as it is on the cage
+    without_uv_map: str  # why, if there is an active one
+    shown_uv_interpolation: str  # of the mesh that the viewport shows
+    ignored: tuple[str, ...]  # enabled modifiers behind the subdivision
+
+    @property
+    def notes(self) -> list[str]:
+        """What reports say of it."""
+        if not self.ignored:
+            return [str(self.rules)]
+        return [str(self.rules), f"ignored behind {self.rules.subsurf}: {', '.join(self.ignored)}"]
+
+    @property
+    def ptex_face_count(self) -> int:
+        return int(np.where(self.face_sizes == 4, 1, self.face_sizes).sum())
+
+    def world_positions(self) -> np.ndarray:
+        """Of the vertices. They make the surface as it lies in the world, to the last digit."""
+        return self.to_world(self.mesh.positions)
+
+    def to_world(self, points: np.ndarray) -> np.ndarray:
+        return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
+
+    def with_holes(self, faces: np.ndarray) -> limitsurf.ControlMesh:
+        """The control mesh, some of whose faces have no surface."""
+        mesh = self.mesh
+        return native.limitsurf.ControlMesh(
+            mesh.positions,
+            mesh.face_sizes,
+            mesh.face_vertices,
+            edge_sharpness=mesh.edge_sharpness,
+            vertex_sharpness=mesh.vertex_sharpness,
+            boundary=mesh.boundary,
+            creasing=mesh.creasing,
+            triangles=mesh.triangles,
+            scheme=mesh.scheme,
+            holes=faces,
+        )
+
+
+def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
+    """The object's cage at the depsgraph's frame. CageError where it has none."""
+    with opened(ob, depsgraph) as (found, _):
+        return found
+
+
+def why_not_on_mesh(ob: bpy.types.Object, found: Cage) -> str:
+    """Why the mesh cannot hold what the cage's vertices have, if so."""
+    mesh = ob.data
+    if not mesh.is_editable:
+        return f"the mesh {mesh.name} is linked from another file"
+    if len(mesh.vertices) != len(found.mesh.positions) or not np.array_equal(
+        attributes.read(mesh, ids.CORNER_VERTEX), found.mesh.face_vertices
+    ):
+        return "modifiers before the subdivision make other vertices than the mesh has"
+    return ""
+
+
+@contextmanager
+def opened(
+    ob: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
+) -> Iterator[tuple[Cage, bpy.types.Mesh]]:
+    """The cage, and the mesh that it is read from: that lasts as long as the context."""
+    subsurf = rules.find_subsurf(ob)
+    cut = ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
+    check_modifiers(ob, cut)
+    found = rules.read(subsurf)
+    with evaluated_copy(ob, cut, depsgraph, adjust) as evaluated:
+        mesh = evaluated.data
+        if not mesh.polygons:
+            raise CageError(f"{ob.name} has no faces")
+        active, without = _read_uv_map(ob, mesh)
+        read_cage = Cage(
+            mesh=_control_mesh(mesh, found, ob.name),
+            rules=found,
+            face_sizes=attributes.face_sizes(mesh),
+            matrix=np.array(evaluated.matrix_world, np.float64),
+            uv_map=active,
+            without_uv_map=without,
+            shown_uv_interpolation=rules.shown_uv_interpolation(ob, depsgraph.scene),
+            ignored=tuple(m.name for m in ob.modifiers[cut + 1 :] if m.show_viewport),
+        )
+        yield read_cage, mesh
+
+
+def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules, whose: str) -> limitsurf.ControlMesh:
+    if found.scheme == "bilinear":
+        sharp = sharpness.NOTHING  # all of it is as sharp as can be
+    else:
+        sharp = sharpness.read(mesh, found.use_creases, whose)
+    return native.limitsurf.ControlMesh(
+        attributes.read(mesh, "position").astype(np.float64),
+        attributes.face_sizes(mesh),
+        attributes.read(mesh, ids.CORNER_VERTEX),
+        edge_sharpness=(sharp.edges, sharp.edge_values),
+        vertex_sharpness=(sharp.vertices, sharp.vertex_values),
+        boundary=found.boundary,
+        scheme=found.scheme,
+    )
+
+
+@contextmanager
+def evaluated_copy(
+    ob: bpy.types.Object,
+    cut: int,
+    depsgraph: bpy.types.Depsgraph,
+    adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
+) -> Iterator[bpy.types.Object]:
+    """The object as it evaluates with its first `cut` modifiers; `adjust` may change the copy and
+    its private scene before that."""
+    global _busy
+    was_busy, _busy = _busy, True
+    try:
+        with private_scene.like(depsgraph.scene) as scene, _copied(ob) as copy:
+            copy.hide_viewport = False
+            for modifier in copy.modifiers[cut:]:
+                copy.modifiers.remove(modifier)
+            if adjust:
+                adjust(copy, scene)
+            scene.collection.objects.link(copy)
+            layer = private_scene.layer(scene, depsgraph.view_layer)
+            layer.update()
+            evaluated = copy.evaluated_get(layer.depsgraph)
+            if evaluated.hide_viewport:  # animated or driven: such an object is not evaluated
+                raise CageError(f"{ob.name} is hidden in the viewport at this frame")
+            yield evaluated
+    finally:
+        _busy = was_busy
+
+
+@contextmanager
+def _copied(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    copy = ob.copy()
+    try:
+        yield copy
+    finally:
+        bpy.data.objects.remove(copy)
+
+
+def check_modifiers(ob: bpy.types.Object, cut: int, shown: str = "show_viewport") -> None:
+    """CageError if one of the first `cut` that are shown cannot be evaluated on a copy."""
+    for modifier in ob.modifiers[:cut]:
+        if not getattr(modifier, shown):
+            continue
+        if modifier.type == "MULTIRES":
+            raise CageError(
+                f"{ob.name}: Multiresolution ({modifier.name}) is not supported: apply it, or "
+                "switch it off"
+            )
+        if modifier.type in SIMULATIONS or (
+            modifier.type == "NODES" and _has_simulation(modifier.node_group)
+        ):
+            raise CageError(
+                f"{ob.name}: the simulation {modifier.name} stands before the subdivision, which "
+                "is not supported: apply it, or bake it to a mesh cache"
+            )
+
+
+def _has_simulation(group: bpy.types.NodeTree | None) -> bool:
+    nodes = group.nodes if group else ()
+    return any(
+        node.bl_idname == "GeometryNodeSimulationOutput"
+        or (node.bl_idname == "GeometryNodeGroup" and _has_simulation(node.node_tree))
+        for node in nodes
+    )
+
+
+def _read_uv_map(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[uv_map.UvMap | None, str]:
+    """The active one, or why there is none."""
+    active = ob.data.uv_layers.active
+    if active is None:
+        return None, ""
+    if active.name not in mesh.uv_layers:
+        return None, f"the UV map {active.name} does not outlast the modifiers"
+    if not np.isfinite(attributes.read(mesh, active.name)).all():
+        return None, f"the UV map {active.name} has coordinates that are not finite numbers"
+    return uv_map.read(mesh, active.name), ""

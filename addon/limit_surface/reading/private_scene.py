@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene without objects in which modifiers and drivers find what they find in the user's."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+
+from .. import ids
+
+# Before, a copy of a scene counts itself twice as a user of the objects that it links.
+_CAN_COPY = bpy.app.version >= (4, 5)
+
+_CARRIED = {
+    "": ("frame_start", "frame_end", "camera", "gravity", "use_gravity"),
+    "render": ("fps", "fps_base", "frame_map_old", "frame_map_new"),
+    "unit_settings": ("system", "scale_length", "length_unit", "system_rotation"),
+}
+
+
+@contextmanager
+def like(scene: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
+    """There is one as long as the context lasts."""
+    private = scene.copy() if _CAN_COPY else bpy.data.scenes.new(ids.CAGE_SCENE)
+    try:
+        private.name = ids.CAGE_SCENE
+        if _CAN_COPY:
+            _empty(private)
+        else:
+            _carry_over(scene, private)
+        # Assigned, animation is evaluated; frame_set would call everybody's frame-change handlers.
+        private.frame_float = scene.frame_float
+        yield private
+    finally:
+        bpy.data.scenes.remove(private)
+
+
+def layer(scene: bpy.types.Scene, shown: bpy.types.ViewLayer) -> bpy.types.ViewLayer:
+    """The private scene's counterpart of a view layer."""
+    if _CAN_COPY:
+        return scene.view_layers[shown.name]
+    _carry_properties(shown, scene.view_layers[0])
+    return scene.view_layers[0]
+
+
+def _empty(scene: bpy.types.Scene) -> None:
+    """Leaves what can be asked of a scene, and nothing that would be evaluated with it."""
+    scene.background_set = None
+    scene.sequence_editor_clear()
+    if scene.rigidbody_world:
+        scene.rigidbody_world.collection = scene.rigidbody_world.constraints = None
+    scene.collection.hide_viewport = False
+    for child in scene.collection.children.values():
+        scene.collection.children.unlink(child)
+    for ob in scene.collection.objects.values():
+        scene.collection.objects.unlink(ob)
+
+
+def _carry_over(scene: bpy.types.Scene, private: bpy.types.Scene) -> None:
+    for part, names in _CARRIED.items():
+        source, target = (getattr(s, part) if part else s for s in (scene, private))
+        for name in names:
+            setattr(target, name, getattr(source, name))
+    _carry_properties(scene, private)
+
+
+def _carry_properties(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct) -> None:
+    for name, value in source.items():
+        target[name] = value.to_dict() if hasattr(value, "to_dict") else value

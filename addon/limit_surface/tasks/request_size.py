@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How much an operator is asked to make, and whether somebody has to agree to it."""
+
+from dataclasses import dataclass
+
+from ..errors import TooLargeError
+
+LARGE_COUNT = 3_000_000  # more than so many are made only if the user insists
+LARGE_MEMORY = 4 << 30  # bytes
+MOST_ELEMENTS = 2**31 - 1  # what Blender counts to
+
+# Measured at the peak: attributes and the arrays they are filled from; positions, and the finer
+# curve that Blender evaluates between them.
+BYTES_PER_LOCATION = 130
+BYTES_PER_ELEMENT = 200
+
+
+@dataclass(frozen=True)
+class RequestSize:
+    noun: str
+    count: int
+    elements_per_location: int
+    is_exact: bool = True
+
+    @property
+    def elements(self) -> int:
+        return self.count * self.elements_per_location
+
+    @property
+    def memory(self) -> int:
+        """Bytes."""
+        return self.count * BYTES_PER_LOCATION + self.elements * BYTES_PER_ELEMENT
+
+    @property
+    def is_large(self) -> bool:
+        return self.count > LARGE_COUNT or self.memory > LARGE_MEMORY
+
+    def check(self, allow_large: bool) -> None:
+        if self.elements > MOST_ELEMENTS:
+            raise TooLargeError(f"{self} are more than the {MOST_ELEMENTS:,} that Blender holds")
+        if self.is_large and not allow_large:
+            raise TooLargeError(f"{self}: set Allow Large Counts (allow_large) to make them")
+
+    @property
+    def how_many(self) -> str:
+        return f"{'' if self.is_exact else 'about '}{self.count:,} {self.noun}"
+
+    def __str__(self) -> str:
+        many = f" of {self.elements_per_location} points" if self.elements_per_location > 1 else ""
+        return f"{self.how_many}{many} (about {self.memory / 2**30:.1f} GiB of memory)"

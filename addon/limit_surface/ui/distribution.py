@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""In the sidebar tab: how the next strands or points will be spread, and how many there will be."""
+
+from typing import ClassVar
+
+import bpy
+
+from .. import ids, native
+from ..placing import distribution_properties, live_count
+
+
+class _DistributionPanel:
+    """Mixin: the settings that an operator is called with next, from a menu or a button."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = ids.TAB
+    bl_parent_id = ids.PANEL
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
+    operator = ""
+    noun = ""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        ob = context.active_object
+        return (
+            native.available() and ob and ob.type == "MESH" and context.mode == "OBJECT"
+        ) or False
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        settings = context.window_manager.operator_properties_last(self.operator)
+        distribution_properties.draw(layout, settings, context)
+        layout.label(text=live_count.text(context, settings, self.noun), icon="INFO")
+        layout.operator(self.operator)
+
+
+class VIEW3D_PT_limit_hair(_DistributionPanel, bpy.types.Panel):
+    bl_idname = ids.HAIR_PANEL
+    bl_label = "Hair"
+    operator = ids.HAIR_ADD
+    noun = "strands"
+
+
+class VIEW3D_PT_limit_points(_DistributionPanel, bpy.types.Panel):
+    bl_idname = ids.POINTS_PANEL
+    bl_label = "Points"
+    operator = ids.POINTS_ADD
+    noun = "points"
