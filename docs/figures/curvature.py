@@ -12,12 +12,13 @@ from limit_surface.curvature import colours
 from limit_surface.reading import attributes
 from PIL import Image, ImageDraw
 
+from figures.meshes.grids import fan
 from figures.rendering import scene
 from figures.rendering.scene import View
 from figures.rendering.sheet import GREY, INK, colour_bar, font, on_screen, save
 
 SECTORS, SIDE = 7, 3  # around the pole; quads along the side of each
-HOLE = (1, 1, 1)  # sector and place of the quad that is missing
+HOLE = 13  # the face that is missing
 LEVELS = 4
 SPACING = 0.115  # of the strokes
 STROKE, RADIUS, MARK = 0.075, 0.005, 0.013
@@ -43,31 +44,14 @@ def make(folder: Path, samples: int = 32) -> None:
 
 def sheet() -> bpy.types.Object:
     """Bent sectors of quads around a pole, with a hole; not rendered itself."""
-    numbers: dict[tuple[int, int, int], int] = {}
-    plan: list[np.ndarray] = []
-
-    def vertex(sector: int, i: int, j: int) -> int:
-        if i == 0:  # the border with the next sector
-            sector, i, j = (sector + 1) % SECTORS, j, 0
-        key = (0, 0, 0) if i == 0 else (sector, i, j)
-        if key not in numbers:
-            angle = 2 * np.pi * (sector + j / max(i + j, 1)) / SECTORS
-            numbers[key] = len(plan)
-            plan.append(max(i, j) / SIDE * np.array([np.cos(angle), np.sin(angle)]))
-        return numbers[key]
-
-    faces = [
-        [vertex(s, i, j), vertex(s, i + 1, j), vertex(s, i + 1, j + 1), vertex(s, i, j + 1)]
-        for s in range(SECTORS)
-        for i in range(SIDE)
-        for j in range(SIDE)
-        if (s, i, j) != HOLE
-    ]
-    flat = 1.3 * np.array(plan)
-    radius, angle = np.hypot(*flat.T), np.arctan2(flat[:, 1], flat[:, 0])
+    made = fan(SECTORS, SIDE)
+    faces = np.delete(made.faces, HOLE, axis=0)
+    angle = 2 * np.pi * (made.sector + made.j / np.maximum(made.i + made.j, 1)) / SECTORS
+    radius = 1.3 / SIDE * np.maximum(made.i, made.j)
+    flat = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     height = 0.15 * radius**2 * np.cos(3 * angle) + 0.7 * np.exp(-3.5 * radius**2)
     mesh = bpy.data.meshes.new("Sheet")
-    mesh.from_pydata(np.column_stack([flat, height]).tolist(), [], faces)
+    mesh.from_pydata(np.column_stack([flat, height]).tolist(), [], faces.tolist())
     ob = bpy.data.objects.new("Sheet", mesh)
     bpy.context.collection.objects.link(ob)
     ob.hide_render = True

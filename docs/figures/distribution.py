@@ -12,6 +12,7 @@ from limit_surface import ids
 from limit_surface.reading import attributes
 from PIL import Image, ImageDraw
 
+from figures.meshes.grids import grid_faces
 from figures.rendering import scene
 from figures.rendering.scene import View
 from figures.rendering.sheet import GREY, INK, font, save
@@ -128,8 +129,7 @@ def sheet() -> bpy.types.Object:
     at = np.linspace(0, 1, SIDE + 1) ** 1.6 - 0.5
     y, x = (grid.ravel() for grid in np.meshgrid(at, at, indexing="ij"))
     height = 0.10 * np.sin(5 * x + 1) * np.cos(4 * y)
-    first = (np.arange(SIDE) * (SIDE + 1))[:, None] + np.arange(SIDE)
-    faces = first.reshape(-1, 1) + [0, 1, SIDE + 2, SIDE + 1]
+    faces = grid_faces(SIDE, SIDE)
     mesh = bpy.data.meshes.new("Sheet")
     mesh.from_pydata(np.stack([x, y, height], axis=1).tolist(), [], faces.tolist())
     mesh.materials.append(surface_material("Clay", CLAY))

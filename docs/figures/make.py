@@ -16,9 +16,9 @@ from importlib import import_module
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-# Not this folder, whose modules would hide others of the same names.
-sys.path[0] = str(ROOT / "docs")
-sys.path.insert(1, str(ROOT / "addon"))
+if not __package__:
+    # Not this folder, whose modules would hide others of the same names
+    sys.path[:1] = [str(ROOT / "docs"), str(ROOT / "addon")]
 
 from figures import NotDrawnError  # noqa: E402
 

@@ -18,7 +18,7 @@ from figures.rendering.scene import View
 from figures.rendering.sheet import GREY, INK, font, on_screen, save
 
 SECTORS, SIDE = 5, 4
-HOLES = (7, 21)  # faces that are missing
+HOLES = (13, 21)  # faces that are missing
 TEXELS = 1024
 IMAGE = 512
 SQUARES = 8

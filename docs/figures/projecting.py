@@ -7,6 +7,8 @@ import limitsurf as ls
 import matplotlib.image
 import numpy as np
 
+from figures.meshes.grids import grid_faces
+
 PANEL, GAP, TEXTURE = 300, 8, 384
 CLAY, PAPER = np.array([0.80, 0.78, 0.74]), np.full(3, 0.94)
 DARK, LIGHT = np.array([0.11, 0.31, 0.56]), np.array([0.97, 0.93, 0.84])
@@ -40,8 +42,7 @@ def hill() -> tuple[ls.LimitSurface, ls.SurfaceData]:
     hump = 0.34 * np.exp(-40 * ((x - 0.6) ** 2 + (y - 0.55) ** 2))
     z = hump + 0.05 * np.sin(6 * x) * np.cos(5 * y)
     positions = np.stack([x, y, z], axis=-1).reshape(-1, 3)
-    first = (np.arange(12) + 13 * np.arange(12)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + 14, first + 13], axis=1)
+    faces = grid_faces(12, 12)
     surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces, boundary="corners"))
     return surface, surface.face_varying(positions[:, :2], faces.ravel(), "corners_only")
 

@@ -7,6 +7,7 @@ import limitsurf as ls
 import numpy as np
 from matplotlib.collections import LineCollection
 
+from figures.meshes.grids import fan, grid_faces
 from figures.plots import plt, save
 
 INK, FAINT, POINT, OTHER = "#222222", "#c9c5ba", "#1b4f8f", "#c2571a"
@@ -21,8 +22,7 @@ def extruded(profile: np.ndarray) -> ls.LimitSurface:
     positions = np.zeros((rows, count, 3))
     positions[..., [0, 2]] = profile
     positions[..., 1] = np.arange(rows)[:, None]
-    first = (np.arange(count - 1) + count * np.arange(rows - 1)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + count + 1, first + count], axis=1)
+    faces = grid_faces(count - 1, rows - 1)
     return ls.LimitSurface(ls.ControlMesh.from_faces(positions.reshape(-1, 3), faces))
 
 
@@ -104,31 +104,10 @@ def draw_ray_hits(axis: plt.Axes) -> None:
 
 def shell() -> ls.LimitSurface:
     """An open bowl over a grid with a hole and a pole of valence 7."""
-    ring, side = 7, 4
-    corner = [0]
-    positions = [[0.0, 0.0]]
-    index: dict[tuple[int, int, int], int] = {}
-
-    def vertex(sector: int, i: int, j: int) -> int:
-        if i == j == 0:
-            return corner[0]
-        if i == 0:  # the border with the next sector
-            sector, i, j = (sector + 1) % ring, j, 0
-        if (sector, i, j) not in index:
-            a, b = (2 * np.pi * (sector + k) / ring for k in (0, 1))
-            x = i * np.array([np.cos(a), np.sin(a)]) + j * np.array([np.cos(b), np.sin(b)])
-            index[sector, i, j] = len(positions)
-            positions.append(x.tolist())
-        return index[sector, i, j]
-
-    faces = [
-        [vertex(s, i, j), vertex(s, i + 1, j), vertex(s, i + 1, j + 1), vertex(s, i, j + 1)]
-        for s in range(ring)
-        for i in range(side)
-        for j in range(side)
-        if not (s == 4 and i == j == 1)
-    ]
-    plan = np.array(positions) / side
+    side = 4
+    made = fan(7, side)
+    faces = np.delete(made.faces, 69, axis=0)
+    plan = made.plan() / side
     radius = np.hypot(*plan.T)
     angle = np.arctan2(plan[:, 1], plan[:, 0])
     height = 0.2 * radius**2 * np.cos(3 * angle) - 0.15 * radius**2 + 0.6 * np.exp(-3 * radius**2)

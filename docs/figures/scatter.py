@@ -7,6 +7,7 @@ import limitsurf as ls
 import numpy as np
 from matplotlib.collections import LineCollection
 
+from figures.meshes.grids import grid_faces
 from figures.plots import plt, save
 
 INK, FAINT, POINT = "#222222", "#c9c5ba", "#1b4f8f"
@@ -22,8 +23,7 @@ def sheet() -> ls.LimitSurface:
     x, y = 0.35 * x + 0.65 * x**2, 0.6 * y + 0.4 * y**2
     x += 0.25 * y * (1 - y)
     z = 0.25 * np.sin(3 * x) * np.cos(2.5 * y)
-    first = (np.arange(side) + (side + 1) * np.arange(side)[:, None]).ravel()
-    quads = np.stack([first, first + 1, first + side + 2, first + side + 1], axis=1)
+    quads = grid_faces(side, side)
     faces = [q.tolist() for i, q in enumerate(quads) if i not in (9, 22, 23, 35)]
     a, b, c, d = quads[22]
     faces += [[a, b, c], [a, c, d]]  # triangles, and where they meet irregular vertices
@@ -71,8 +71,7 @@ def unit_square() -> ls.LimitSurface:
     """Flat, with its corners: the plane, on which spectra mean something."""
     side = np.linspace(0, 1, SPECTRUM_SIDE + 1)
     x, y = np.meshgrid(side, side)
-    first = (np.arange(SPECTRUM_SIDE) + side.size * np.arange(SPECTRUM_SIDE)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + side.size + 1, first + side.size], axis=1)
+    faces = grid_faces(SPECTRUM_SIDE, SPECTRUM_SIDE)
     positions = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
     return ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces, boundary="corners"))
 

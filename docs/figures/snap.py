@@ -11,6 +11,7 @@ import numpy as np
 from limit_surface.reading import attributes
 from PIL import Image, ImageDraw
 
+from figures.meshes.grids import grid_faces
 from figures.rendering import scene
 from figures.rendering.scene import View
 from figures.rendering.sheet import INK, font, save
@@ -65,8 +66,7 @@ def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def add_cage() -> bpy.types.Object:
     """An open sheet: its corners and border are those of the limit surface."""
     y, x = np.mgrid[: SIDE + 1, : SIDE + 1].reshape(2, -1) * 3 / SIDE - 1.5
-    first = (np.arange(SIDE) * (SIDE + 1))[:, None] + np.arange(SIDE)
-    faces = first.reshape(-1, 1) + [0, 1, SIDE + 2, SIDE + 1]
+    faces = grid_faces(SIDE, SIDE)
     mesh = bpy.data.meshes.new("Cage")
     mesh.from_pydata(np.stack([x, y, height(x, y)], axis=1), [], faces.tolist())
     ob = bpy.data.objects.new("Cage", mesh)

@@ -7,6 +7,7 @@ import limitsurf as ls
 import numpy as np
 from matplotlib.collections import LineCollection
 
+from figures.meshes.grids import fan, grid_faces
 from figures.plots import plt
 
 SIZE, MARGIN = 448, 6  # texels
@@ -16,30 +17,15 @@ INK, PAPER, OVERLAP, CONTROL = "#222222", (1, 1, 1), (0.86, 0.2, 0.15), "#c2571a
 
 def star(sectors: int, side: int) -> tuple[np.ndarray, np.ndarray]:
     """Quads around a vertex, in the plane, within about [-1, 1]^2."""
-    points: dict[tuple[float, float], int] = {}
-    faces = []
-    for sector in range(sectors):
-        a, b = (2 * np.pi * (sector + k) / sectors for k in (0, 1))
-        along = np.array([[np.cos(a), np.sin(a)], [np.cos(b), np.sin(b)]]) / side
-
-        def vertex(i: int, j: int, along: np.ndarray = along) -> int:
-            x, y = i * along[0] + j * along[1]
-            return points.setdefault((round(x, 9) + 0.0, round(y, 9) + 0.0), len(points))
-
-        faces += [
-            [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)]
-            for i in range(side)
-            for j in range(side)
-        ]
-    return np.array(list(points)), np.array(faces)
+    made = fan(sectors, side)
+    return made.plan() / side, made.faces
 
 
 def sheet(columns: int, rows: int, holes: tuple[int, ...] = ()) -> tuple[np.ndarray, np.ndarray]:
     """Quads in [-1, 1]^2."""
     x, y = np.meshgrid(np.linspace(-1, 1, columns + 1), np.linspace(-1, 1, rows + 1))
-    first = (np.arange(columns) + (columns + 1) * np.arange(rows)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + columns + 2, first + columns + 1], axis=1)
-    return np.stack([x.ravel(), y.ravel()], axis=1), np.delete(faces, holes, axis=0)
+    faces = np.delete(grid_faces(columns, rows), holes, axis=0)
+    return np.stack([x.ravel(), y.ravel()], axis=1), faces
 
 
 def islands() -> tuple[ls.SurfaceData, np.ndarray, np.ndarray]:

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sheets, fans and blocks of cubes."""
+"""Sheets, fans and blocks of cubes, with their heights."""
 
 from collections.abc import Callable, Sequence
 
 import bpy
 import numpy as np
 from limit_surface.reading import attributes
+
+from figures.meshes import grids
 
 Faces = Sequence[Sequence[int]]
 Height = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -31,25 +33,17 @@ def raised(flat: np.ndarray, height: Height = hill) -> np.ndarray:
 def sheet(columns: int, rows: int, height: Height = hill) -> tuple[np.ndarray, Faces]:
     """Unit squares around the origin."""
     j, i = np.mgrid[: rows + 1, : columns + 1].reshape(2, -1)
-    first = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
-    around = np.array([0, 1, columns + 2, columns + 1])
     flat = np.stack([i - columns / 2, j - rows / 2], axis=1)
-    return raised(flat, height), (first[:, None] + around).tolist()
+    return raised(flat, height), grids.grid_faces(columns, rows).tolist()
 
 
 def fan(sectors: int, rings: int, angle: float, height: Height = hill) -> tuple[np.ndarray, Faces]:
     """Squares of rings x rings faces around a vertex, filling the angle."""
-    b, a = np.mgrid[: rings + 1, : rings + 1].reshape(2, -1)
-    share = b / np.maximum(a + b, 1)
-    reach = (a**8.0 + b**8.0) ** (1 / 8)
-    turn = (np.arange(sectors)[:, None] + share) * (angle / sectors)
-    flat = np.stack([reach * np.cos(turn), reach * np.sin(turn)], axis=-1).reshape(-1, 2)
-    # Sectors share the vertices on the spokes between them.
-    flat, shared = np.unique(np.round(flat, 9) + 0.0, axis=0, return_inverse=True)
-    first = (np.arange(rings)[:, None] * (rings + 1) + np.arange(rings)).ravel()
-    corners = first[:, None] + np.array([0, 1, rings + 2, rings + 1])
-    corners = corners + (np.arange(sectors) * (rings + 1) ** 2)[:, None, None]
-    return raised(flat, height), shared.ravel()[corners.reshape(-1, 4)].tolist()
+    made = grids.fan(sectors, rings, closed=angle == 2 * np.pi)
+    turn = (made.sector + made.j / np.maximum(made.i + made.j, 1)) * (angle / sectors)
+    reach = (made.i**8.0 + made.j**8.0) ** (1 / 8)
+    flat = np.stack([reach * np.cos(turn), reach * np.sin(turn)], axis=1)
+    return raised(flat, height), made.faces.tolist()
 
 
 def cubes(middles: np.ndarray) -> tuple[np.ndarray, Faces]:
