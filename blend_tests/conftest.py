@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "docs"), str(ROOT / "tools")]
+SUPPORT = Path(__file__).resolve().parent / "support"
+sys.path[:0] = [str(SUPPORT), str(ROOT / "addon"), str(ROOT / "docs"), str(ROOT / "tools")]
 
 import bpy  # noqa: E402
 import limit_surface  # noqa: E402

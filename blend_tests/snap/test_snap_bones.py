@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scenes
 from mathutils import Matrix
+from snap_scenes import BONES
 from snap_truth import Truth, add_object, stretched
 
 EXACT = 1e-6
@@ -17,15 +18,6 @@ def target():
     bpy.context.scene.limit_surface.target = ob
     ob.select_set(False)
     return ob
-
-
-BONES = {  # head, tail, parent, connected
-    "root": ((0, 0, 0.3), (0.1, 0.5, 0.5), None, False),
-    "middle": ((0.1, 0.5, 0.5), (0.2, 0.9, 0.3), "root", True),
-    "other": ((0.1, 0.5, 0.5), (0.7, 0.6, 0.5), "root", True),
-    "tip": ((0.2, 0.9, 0.3), (0.1, 1.2, 0.8), "middle", True),
-    "loose": ((1, 0.2, 0.6), (1.2, 0.3, 0.9), "root", False),
-}
 
 
 @pytest.fixture

@@ -9,16 +9,10 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface.reading import attributes
+from snap_scenes import add_cloud, add_curve, choose_target, world_vertices
 from snap_truth import Truth, add_object, near, stretched
 
 EXACT = 1e-6
-
-
-def choose_target(ob):
-    bpy.context.scene.limit_surface.target = ob
-    ob.select_set(False)
-    bpy.context.view_layer.update()
-    return ob
 
 
 @contextmanager
@@ -39,18 +33,6 @@ def select_vertices(ob, chosen):
         vertex.select = vertex.index in chosen
     edited.select_flush_mode()
     bmesh.update_edit_mesh(ob.data)
-
-
-def add_cloud(target, count=12, spread=0.3):
-    """Loose vertices around the target, in a stretched object of their own."""
-    cloud = scenes.add_mesh("Cloud", near(target, count, spread), [])
-    cloud.rotation_euler, cloud.scale = (0.3, 0.1, 0.2), (1, 2, 0.5)
-    bpy.context.view_layer.update()
-    return cloud
-
-
-def world_vertices(ob):
-    return scenes.transformed(ob.matrix_world, attributes.read(ob.data, "position"))
 
 
 def snap(**properties):
@@ -152,23 +134,6 @@ def test_shape_keys_follow_as_in_blenders_own_editing(active):
     for name, values in blenders.items():
         np.testing.assert_allclose(ours[name], values, atol=1e-6, err_msg=name)
     np.testing.assert_allclose(mesh, its_mesh, atol=1e-6)
-
-
-def add_curve(kind, points):
-    data = bpy.data.curves.new("Curve", "CURVE")
-    data.dimensions = "3D"
-    spline = data.splines.new(kind)
-    many = spline.bezier_points if kind == "BEZIER" else spline.points
-    many.add(len(points) - 1)
-    for point, co in zip(many, points, strict=True):
-        point.co = co if kind == "BEZIER" else (*co, 1.5)
-        if kind == "BEZIER":
-            point.handle_left = np.add(co, (-0.1, 0.2, 0.1))
-            point.handle_right = np.add(co, (0.2, 0.1, 0))
-    ob = add_object((0.1, 0.2, 0.3), data, "Curve")
-    ob.scale = (1, 2, 0.5)
-    bpy.context.view_layer.update()
-    return ob
 
 
 def bezier(ob):

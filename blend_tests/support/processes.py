@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 # Blender's clean-up at exit can hang after a Python error: leave at once, with the right code.
 LEAVE = """

@@ -7,40 +7,10 @@ import pytest
 import scenes
 from limit_surface import ids
 from limit_surface.reading import attributes
-from snap_truth import Truth, mirrored, near, snap, stretched
+from snap_scenes import SIZES, add_hair, roots, world_strands
+from snap_truth import Truth, mirrored, snap, stretched
 
 EXACT = 1e-6
-SIZES = [4, 2, 5, 1, 3, 4]
-
-
-def add_hair(target, sizes=SIZES, seed=1):
-    """Strands of various lengths near the target, in a space of their own; selected."""
-    rng = np.random.default_rng(seed)
-    data = bpy.data.hair_curves.new("Hair")
-    data.add_curves(sizes)
-    ob = bpy.data.objects.new("Hair", data)
-    ob.rotation_euler, ob.scale, ob.location = (0.2, 0.1, 0.3), (1, 2, 0.5), (0.1, 0.2, 0.3)
-    bpy.context.collection.objects.link(ob)
-    ob.select_set(True)
-    bpy.context.view_layer.update()
-    points = np.repeat(near(target, len(sizes), 0.3, seed), sizes, axis=0)
-    points += 0.2 * rng.random((len(points), 3)).cumsum(axis=0) % 0.7
-    local = scenes.transformed(ob.matrix_world.inverted(), points)
-    data.points.foreach_set("position", local.astype(np.float32).ravel())
-    return ob
-
-
-def world_strands(ob):
-    """One array (points, 3) for each strand."""
-    bpy.context.view_layer.update()
-    points = attributes.read(ob.data, "position").astype(np.float64)
-    points = scenes.transformed(ob.matrix_world, points)
-    sizes = [curve.points_length for curve in ob.data.curves]
-    return np.split(points, np.cumsum(sizes)[:-1])
-
-
-def roots(strands):
-    return np.array([strand[0] for strand in strands])
 
 
 def check_stored(hair, target, chosen=slice(None)):

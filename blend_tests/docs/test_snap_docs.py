@@ -7,8 +7,8 @@ import bpy
 import numpy as np
 import scenes
 from processes import ROOT
+from snap_scenes import add_hair, roots, world_strands
 from snap_truth import Truth, stretched
-from test_snap_hair import add_hair, roots, world_strands
 
 PAGE = (ROOT / "docs/snap.md").read_text()
 

@@ -10,7 +10,7 @@ import bpy
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live_count
+from limit_surface.placing import distribution_properties, live_count
 from scenes import add_hair, add_points, add_subsurf
 
 
@@ -164,6 +164,5 @@ def test_the_redo_panel_finds_the_surface_of_what_was_made():
     ob.vertex_groups.new(name="Some").add([0, 1], 1.0, "REPLACE")
     hair = add_hair(ob, density_source="VERTEX_GROUP", vertex_group="Some")
     assert bpy.context.active_object == hair
-    properties = live_count.properties
-    found = properties.surface_object(SimpleNamespace(surface="Cross"), bpy.context)
+    found = distribution_properties.surface_object(SimpleNamespace(surface="Cross"), bpy.context)
     assert found == ob

@@ -12,10 +12,17 @@ import scenes
 from limit_surface import ids
 from limit_surface.reading import attributes
 from mathutils import Matrix
+from snap_scenes import (
+    BONES,
+    add_cloud,
+    add_curve,
+    add_hair,
+    choose_target,
+    roots,
+    world_strands,
+    world_vertices,
+)
 from snap_truth import Truth, add_object, near, snap, stretched, world_locations
-from test_snap_bones import BONES
-from test_snap_hair import add_hair, roots, world_strands
-from test_snap_points import add_cloud, add_curve, choose_target, world_vertices
 
 EXACT = 1e-6
 
