@@ -30,6 +30,8 @@ TREE_LEVELS = (1, 4)
 #: Queries whose right answers are found by brute force
 CHECKED = 500
 REPEATS = 3
+#: In a large file
+OTHER_OBJECTS = 3000
 
 
 @dataclass
@@ -76,6 +78,14 @@ class Bench:
         depsgraph = bpy.context.evaluated_depsgraph_get()
         depsgraph.update()
         return depsgraph
+
+    def reading(self, others: int) -> float:
+        """Seconds that it takes to read the cage in a file that has so many other objects."""
+        for _ in range(others):
+            thing = bpy.data.objects.new("Thing", None)
+            bpy.context.scene.collection.objects.link(thing)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return timed(lambda: cage.read(self.ob, depsgraph))[1]
 
     def limit_surface(self, threads: int) -> Row:
         clock = time.process_time if threads == 1 else time.perf_counter
@@ -196,6 +206,9 @@ def main(arguments: list[str]) -> None:
     rows = [bench.limit_surface(threads) for threads in (1, 0)]
     rows += [bench.tree(levels) for levels in TREE_LEVELS]
     print(table(rows))
+    for others in (0, OTHER_OBJECTS):
+        seconds = bench.reading(others)
+        print(f"The cage is read in {1e3 * seconds:.1f} ms among {others:,} other objects")
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from limit_surface.bake_displacement import operator as baking_operator
 from limit_surface.errors import CancelledError
 from limit_surface.tasks import watched_operator as watched_module
 from limit_surface.tasks.watched_operator import WatchedOperator
+from waiting import wait_for
 
 
 @pytest.fixture
@@ -44,7 +45,7 @@ def let_go(monkeypatch):
 
     def slowly(request, progress):
         progress(0.5)
-        assert event.wait(20)
+        wait_for(event)
         return measure(request, progress)
 
     monkeypatch.setattr(baking_operator, "measure", slowly)
@@ -65,7 +66,7 @@ def test_it_can_be_cancelled(waiting, let_go):
     assert operator.modal(context, event_of("TIMER")) == {"RUNNING_MODAL"}
     assert operator.modal(context, event_of("ESC")) == {"CANCELLED"}
     let_go.set()
-    assert job.wait(20)
+    wait_for(job)
     with pytest.raises(CancelledError):
         job.result()
     assert scenes.file_contents() == before
@@ -76,7 +77,7 @@ def test_it_ends_with_an_image(waiting, let_go):
     operator, context = waiting
     assert operator.execute(context) == {"RUNNING_MODAL"}
     let_go.set()
-    assert operator._job.wait(20)
+    wait_for(operator._job)
     assert operator.modal(context, event_of("TIMER")) == {"FINISHED"}
     assert tuple(bpy.data.images["Flat Displacement"].size) == (32, 32)
 
@@ -87,7 +88,7 @@ def test_a_mesh_that_is_gone_by_then(waiting, let_go):
     bpy.data.objects.remove(bpy.data.objects["Flat"])
     before = scenes.file_contents()
     let_go.set()
-    assert operator._job.wait(20)
+    wait_for(operator._job)
     assert operator.modal(context, event_of("TIMER")) == {"CANCELLED"}
     assert scenes.file_contents() == before
     assert "Flat is not there any more" in str(operator.report.call_args)

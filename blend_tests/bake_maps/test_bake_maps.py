@@ -19,6 +19,7 @@ from limit_surface.reading import cage
 from limit_surface.tasks import watched_operator as watched_module
 from limit_surface.tasks.watched_operator import WatchedOperator
 from mathutils import Matrix
+from waiting import wait_for
 
 SIDE = 8  # quads
 SIZE = 64  # texels along a side of the image: 8 a quad
@@ -355,7 +356,7 @@ def test_escape_leaves_everything(monkeypatch):
     bake_all = map_images.bake
 
     def slowly(order, progress):
-        assert go_on.wait(20)
+        wait_for(go_on)
         return bake_all(order, progress)
 
     monkeypatch.setattr("limit_surface.bake_maps.operator.bake", slowly)
@@ -366,7 +367,7 @@ def test_escape_leaves_everything(monkeypatch):
     press = SimpleNamespace(type="ESC", value="PRESS")
     assert operator.modal(context, press) == {"CANCELLED"}
     go_on.set()
-    assert job.wait(20)
+    wait_for(job)
     operator.report.assert_called_with({"INFO"}, "Cancelled: nothing was baked")
     assert scenes.file_contents() == before
     np.testing.assert_array_equal(image_pixels.read(bpy.data.images["Bowl Position"]), pixels)

@@ -6,7 +6,6 @@ Python that has them is called in its place.
 """
 
 import threading
-import time
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
@@ -20,6 +19,7 @@ from limit_surface.placing import scatter_operator
 from limit_surface.reading import attributes
 from limit_surface.tasks import watched_operator
 from limit_surface.tasks.job import Job, part_of
+from waiting import LIMIT, wait_for
 
 OPERATORS = {"hair": "limit_hair_add", "points": "limit_points_add"}
 
@@ -66,17 +66,13 @@ def slowly(monkeypatch):
     evaluate = scatter_operator.Ground.evaluate
 
     def wait(self, face, uv):
-        assert go_on.wait(20)
+        wait_for(go_on)
         return evaluate(self, face, uv)
 
     monkeypatch.setattr(scatter_operator.Ground, "evaluate", wait)
     monkeypatch.setattr(watched_operator, "PATIENCE", 0.01)
     yield go_on
     go_on.set()
-
-
-def wait_for(job):
-    assert job.wait(20)
 
 
 @pytest.mark.parametrize("name", OPERATORS)
@@ -156,9 +152,13 @@ def failed(monkeypatch, error):
     def fail(*_arguments):
         raise error
 
+    def wait_too_long(self, seconds):
+        wait_for(self._done)
+        return seconds > 1
+
     monkeypatch.setattr(scatter_operator.Ground, "evaluate", fail)
     operator, context = stand_in("hair"), window_context()
-    monkeypatch.setattr(Job, "wait", lambda self, seconds: self._done.wait(20) and seconds > 1)
+    monkeypatch.setattr(Job, "wait", wait_too_long)
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}
     wait_for(operator._job)
     return operator, context
@@ -188,7 +188,8 @@ def test_mistakes_in_the_thread_keep_their_traceback(monkeypatch):
         operator.modal(context, event("TIMER"))
 
 
-def test_short_work_is_not_waited_for():
+def test_short_work_is_not_waited_for(monkeypatch):
+    monkeypatch.setattr(watched_operator, "PATIENCE", LIMIT)
     scenes.cross()
     operator, context = stand_in("hair", per_side=3), window_context()
     assert operator.invoke(context, None) == {"FINISHED"}
@@ -242,20 +243,22 @@ def test_progress_goes_from_0_to_1():
 
 
 def test_a_cancelled_job_ends_where_it_tells_its_progress():
-    reached = []
+    reached, halfway, go_on = [], threading.Event(), threading.Event()
 
     def work(progress):
-        for step in range(1000):
-            progress(step / 1000)
+        for step in range(4):
+            progress(step / 4)
             reached.append(step)
-            time.sleep(0.005)
+            if step == 2:
+                halfway.set()
+                wait_for(go_on)
 
     job = Job(work)
     job.start()
-    while not reached:
-        time.sleep(0.001)
+    wait_for(halfway)
     job.cancel()
+    go_on.set()
     wait_for(job)
     with pytest.raises(CancelledError):
         job.result()
-    assert len(reached) < 1000
+    assert reached == [0, 1, 2]

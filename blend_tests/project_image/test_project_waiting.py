@@ -14,6 +14,7 @@ from limit_surface.errors import CancelledError
 from limit_surface.project_image import decal_job, properties, texture_job
 from limit_surface.tasks import watched_operator as watched_module
 from limit_surface.tasks.watched_operator import WatchedOperator
+from waiting import wait_for
 
 OPERATOR = "OBJECT_OT_limit_project_image"
 
@@ -47,7 +48,7 @@ def slowly(monkeypatch):
     def delayed(work):
         def wait(self, progress):
             progress(0.5)
-            assert go_on.wait(20)
+            wait_for(go_on)
             return work(self, progress)
 
         return wait
@@ -90,7 +91,7 @@ def test_long_work_can_be_cancelled(slowly, mode):
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
     assert operator.report.call_args.args[1] == "Cancelled: nothing was projected"
     slowly.set()
-    assert job.wait(20)
+    wait_for(job)
     with pytest.raises(CancelledError):
         job.result()
     np.testing.assert_array_equal(truth.pixels(target), before[0])
@@ -108,7 +109,7 @@ def test_what_is_removed_meanwhile_is_told_of(slowly, gone):
     operator.execute(context)
     bpy.data.images.remove(bpy.data.images[gone])
     slowly.set()
-    assert operator._job.wait(20)
+    wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
     operator.report.assert_called_once_with({"ERROR"}, f"{gone} is not there any more")
 
@@ -120,7 +121,7 @@ def test_targets_of_another_size_meanwhile_are_told_of(slowly):
     operator.execute(context)
     target.scale(32, 32)
     slowly.set()
-    assert operator._job.wait(20)
+    wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
     operator.report.assert_called_once_with({"ERROR"}, "Target has another size meanwhile")
 

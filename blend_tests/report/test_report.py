@@ -23,6 +23,7 @@ from limit_surface.tasks.watched_operator import WatchedOperator
 from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
 from processes import ROOT
+from waiting import LIMIT, wait_for
 
 AMONG = 8  # parts along a side of each triangle
 SINGLE = 1e-6  # what Blender rounds coordinates up to 5 by
@@ -392,7 +393,7 @@ def slowly(monkeypatch):
 
     def wait(surface, found, shown, progress):
         progress(0.5)
-        assert go_on.wait(20)
+        wait_for(go_on)
         return measure(surface, found, shown, progress)
 
     monkeypatch.setattr(distances, "measure", wait)
@@ -415,7 +416,7 @@ def test_long_work_is_waited_for(slowly):
     assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}
     assert ids.DISTANCE not in ob.data.attributes
     slowly.set()
-    assert operator._job.wait(20)
+    wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"FINISHED"}
     context.window_manager.event_timer_remove.assert_called_once()
     waited_for = dict(ob[ids.REPORT]["VIEWPORT"])
@@ -433,7 +434,7 @@ def test_escape_leaves_nothing(slowly):
     operator.report.assert_called_with({"INFO"}, "Cancelled: nothing was measured")
     context.window_manager.event_timer_remove.assert_called_once()
     slowly.set()
-    assert job.wait(20)
+    wait_for(job)
     with pytest.raises(CancelledError):
         job.result()
     assert (scenes.file_contents(), sorted(ob.data.attributes.keys())) == before
@@ -447,7 +448,7 @@ def test_what_has_gone_meanwhile(slowly):
     assert operator.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
     bpy.data.objects.remove(ob)
     slowly.set()
-    assert operator._job.wait(20)
+    wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
     operator.report.assert_called_with({"ERROR"}, "sheet is not there any more")
 
@@ -457,6 +458,6 @@ def test_little_work_is_done_at_once():
     scenes.activate(ob)
     operator, context = watched()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(watched_module, "PATIENCE", 20)
+        patch.setattr(watched_module, "PATIENCE", LIMIT)
         assert operator.invoke(context, event("LEFTMOUSE")) == {"FINISHED"}
     assert ids.REPORT in ob
