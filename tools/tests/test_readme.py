@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the README shows is what runs."""
+"""What the README and the pages about the Python module and the C++ library show is what runs."""
 
 import re
 import subprocess
@@ -12,10 +12,10 @@ ROOT = Path(__file__).parents[2]
 CONSUMER = ROOT / "native/tests/consumer"
 
 
-def blocks(kind: str) -> list[str]:
-    """The README's code blocks that open with exactly ```kind."""
-    readme = (ROOT / "README.md").read_text()
-    return re.findall(rf"^```{kind}\n(.*?)^```$", readme, flags=re.MULTILINE | re.DOTALL)
+def blocks(page: str, kind: str) -> list[str]:
+    """The page's code blocks that open with exactly ```kind."""
+    text = (ROOT / page).read_text()
+    return re.findall(rf"^```{kind}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
 
 
 def without_licence_line(path: Path) -> str:
@@ -30,15 +30,16 @@ def run(code: str, folder: Path) -> str:
     return done.stdout
 
 
-def test_python_examples_run_one_after_the_other(tmp_path):
-    examples = blocks("python")
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_python_examples_run_one_after_the_other(page, tmp_path):
+    examples = blocks(page, "python")
     assert examples
     run("\n".join(examples), tmp_path)
 
 
 def test_blender_example_makes_hair(tmp_path):
     pytest.importorskip("bpy")
-    (example,) = blocks("python blender")
+    (example,) = blocks("README.md", "python blender")
     # A process of the `bpy` module does not end while classes are registered.
     before = (
         f"import sys; sys.path.insert(0, {str(ROOT / 'addon')!r})\n"
@@ -49,6 +50,15 @@ def test_blender_example_makes_hair(tmp_path):
     assert f"has {faces * 20 * 20} strands" in run(before + example + after, tmp_path)
 
 
-@pytest.mark.parametrize(("kind", "file"), [("cpp", "main.cpp"), ("cmake", "CMakeLists.txt")])
-def test_cpp_example_is_the_one_that_is_built(kind, file):
-    assert blocks(kind) == [without_licence_line(CONSUMER / file)]
+@pytest.mark.parametrize(("page", "file"), [("README.md", "readme.cpp"), ("docs/cpp.md", "main.cpp")])
+def test_cpp_programs_are_those_that_are_built(page, file):
+    assert blocks(page, "cpp") == [without_licence_line(CONSUMER / file)]
+
+
+def test_cmake_example_is_what_builds_the_program():
+    (example,) = blocks("docs/cpp.md", "cmake")
+    assert without_licence_line(CONSUMER / "CMakeLists.txt").startswith(example)
+
+
+def test_readme_is_short():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 150

@@ -22,3 +22,9 @@ if(NOT printed MATCHES "\\(0, 0\\): position 0.166667 0.166667 0.000000"
     OR NOT printed MATCHES "closest: 0.500000 0.250000 -?0.000000, distance 2\n")
   message(FATAL_ERROR "This is not the limit surface of a square.")
 endif()
+
+execute_process(COMMAND ${WORK}/build/readme OUTPUT_VARIABLE printed
+  COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+if(NOT printed STREQUAL "0.166667 0.166667\n")
+  message(FATAL_ERROR "The README's program prints ${printed}")
+endif()
