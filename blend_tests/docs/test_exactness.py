@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the pictures of docs/exactness.md show, without rendering them."""
+"""What the pictures of docs/accuracy.md show, without rendering them."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from figures.exactness.distances import compare
 from PIL import Image
 from processes import ROOT
 
-PAGE = (ROOT / "docs/exactness.md").read_text()
+PAGE = (ROOT / "docs/accuracy.md").read_text()
 
 
 @pytest.mark.parametrize("name", zoo.FEATURES)

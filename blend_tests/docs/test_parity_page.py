@@ -9,7 +9,7 @@ import pytest
 from figures.parity import zoo as parity_zoo
 from processes import ROOT
 
-PAGE = (ROOT / "docs/parity.md").read_text()
+PAGE = (ROOT / "docs/accuracy.md").read_text()
 NAMES = ("best positions", "best uvs", "default positions", "default uvs")
 LAGGING = "lagging"
 
@@ -45,7 +45,7 @@ def test_what_is_left_out_comes_nearer_with_the_quality():
 
 @pytest.mark.slow
 def test_program_writes_the_page(tmp_path):
-    output = tmp_path / "parity.md"
+    output = tmp_path / "accuracy.md"
     program = (sys.executable, str(ROOT / "docs/figures/make.py"), "parity_tables")
     done = subprocess.run(
         [*program, "--output", str(tmp_path)], capture_output=True, text=True, timeout=1800

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of docs/projecting.md: a checker projected onto a surface, and filtered look-ups."""
+"""The picture of docs/project_image.md that Python makes: a projected checker, and filters."""
 
 from pathlib import Path
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of docs/scatter.md: points of the three distributions, and their spectra."""
+"""The pictures of docs/distribution.md: points of the three distributions, and their spectra."""
 
 from pathlib import Path
 

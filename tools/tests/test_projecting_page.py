@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The example of docs/projecting.md runs, and its picture is what the program draws."""
+"""The Python example of docs/project_image.md runs, and its picture is the program's."""
 
 import re
 from pathlib import Path
@@ -49,9 +49,9 @@ def test_example():
         "pixels": np.tile(np.float32([1, 0.5, 0, 1]), (8, 8, 1)),
         "texture": np.zeros((512, 512, 4), np.float32),
     }
-    page = (ROOT / "docs/projecting.md").read_text()
-    for example in re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL):
-        exec(example, known)
+    page = (ROOT / "docs/project_image.md").read_text().split("\n## In Python\n")[1]
+    (example,) = re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    exec(example, known)
     texture = known["texture"]
     np.testing.assert_allclose(texture[:330, :330], np.broadcast_to([1, 0.5, 0, 1], (330, 330, 4)))
     assert not texture[350:].any()

@@ -50,7 +50,9 @@ def test_blender_example_makes_hair(tmp_path):
     assert f"has {faces * 20 * 20} strands" in run(before + example + after, tmp_path)
 
 
-@pytest.mark.parametrize(("page", "file"), [("README.md", "readme.cpp"), ("docs/cpp.md", "main.cpp")])
+@pytest.mark.parametrize(
+    ("page", "file"), [("README.md", "readme.cpp"), ("docs/cpp.md", "main.cpp")]
+)
 def test_cpp_programs_are_those_that_are_built(page, file):
     assert blocks(page, "cpp") == [without_licence_line(CONSUMER / file)]
 

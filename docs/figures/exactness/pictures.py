@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of docs/exactness.md, OpenSubdiv's approximation beside the exact limit surface, and
+"""The pictures of docs/accuracy.md, OpenSubdiv's approximation beside the exact limit surface, and
 its table of distances."""
 
 import tempfile
@@ -24,7 +24,7 @@ def make(folder: Path, name: str, samples: int = 16) -> None:
 
 
 def make_table(folder: Path) -> None:
-    tables.write("exactness.md", {"distances": table()}, folder)
+    tables.write("accuracy.md", {"distances": table()}, folder)
 
 
 def table() -> str:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blender's Subdivision Surface against the limit surface, on many meshes.
 
-Fills in the tables of docs/parity.md: the distances at Blender's best quality, which are its
+Fills in the tables of docs/accuracy.md: the distances at Blender's best quality, which are its
 rounding errors, and at its default quality, which are what its shortcuts cost. Fails where the
 former are no rounding errors.
 """
@@ -114,7 +114,7 @@ def make(folder: Path) -> None:
         ),
         "default uvs": table({key: f"{row.default_uv:.0e}" for key, row in rows.items()}),
     }
-    tables.write("parity.md", found, folder)
+    tables.write("accuracy.md", found, folder)
     beyond = [key for key, row in rows.items() if max(row.position, row.uv) > BOUND]
     if beyond:
         names = "; ".join(", ".join(key) for key in beyond)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Python example of docs/distribution.md runs and gives what it says."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+PAGE = Path(__file__).parents[2] / "docs/distribution.md"
+
+
+def test_example():
+    side = np.linspace(0, 1, 4)
+    x, y = np.meshgrid(side, side)
+    first = (np.arange(3) + 4 * np.arange(3)[:, None]).ravel()
+    known = {
+        "positions": np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1),
+        "faces": np.stack([first, first + 1, first + 5, first + 4], axis=1),
+    }
+    section = PAGE.read_text().split("\n## In Python\n")[1]
+    (example,) = re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
+    counts = []
+    for line in example.splitlines():
+        exec(line, known)
+        if line.startswith("at ="):
+            counts.append(len(known["at"]))
+    assert counts[:2] == [100_000, 20_000]
+    points = known["roots"].position
+    assert len(points) == counts[2] > 2000
+    apart = np.linalg.norm(points[:1000, None] - points[None], axis=2)
+    np.fill_diagonal(apart, np.inf)
+    assert apart.min() >= 0.01
+    assert known["roots"].normal.shape == (counts[2], 3)
