@@ -11,8 +11,8 @@ import scenes
 import sculpts
 from limit_surface.bake_displacement import operator as baking_operator
 from limit_surface.errors import CancelledError
+from limit_surface.images.texture_operator import TextureOperator
 from limit_surface.tasks import watched_operator as watched_module
-from limit_surface.tasks.watched_operator import WatchedOperator
 from waiting import wait_for
 
 
@@ -26,7 +26,7 @@ def waiting():
     sculpts.subdivided_copy(base, 1)
     kind = baking_operator.OBJECT_OT_limit_bake_displacement
     own = {name: value for name, value in vars(kind).items() if not name.startswith("__")}
-    operator = type("StandIn", (WatchedOperator,), own)()
+    operator = type("StandIn", (TextureOperator,), own)()
     for p in bpy.ops.object.limit_bake_displacement.get_rna_type().properties:
         setattr(operator, p.identifier, getattr(p, "default", None))
     operator.target, operator.width, operator.height = "Sculpt", 32, 32

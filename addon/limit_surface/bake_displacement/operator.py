@@ -14,10 +14,10 @@ from ..errors import RefusalError
 from ..images import image_files, image_pixels, overlap
 from ..images.image_files import EXR_32
 from ..images.image_pixels import FIRST_TILE
-from ..placing import new_objects
-from ..tasks import polling
+from ..images.texture_operator import TextureOperator
 from ..tasks.job import Job, Progress
-from ..tasks.watched_operator import WatchedOperator
+from ..tasks.object_keys import ObjectKey
+from ..tasks.refused_faces import left_out
 from . import layouts, material, properties, surfaces
 from .displacement import Measured, Request, measure
 from .layouts import PtexLayout
@@ -25,37 +25,24 @@ from .layouts import PtexLayout
 
 @dataclass(frozen=True)
 class Made:
-    surface: tuple[str, str | None]  # the object's key
+    surface: ObjectKey
     request: Request
     measured: Measured
 
 
 class OBJECT_OT_limit_bake_displacement(
-    WatchedOperator, properties.DisplacementProperties, bpy.types.Operator
+    TextureOperator, properties.DisplacementProperties, bpy.types.Operator
 ):
     """Make an image of the displacement that turns the active mesh's limit surface into that of
     the other selected mesh"""
 
     bl_idname = ids.BAKE_DISPLACEMENT
     bl_label = "Bake Displacement on Limit Surface"
-    bl_options = {"REGISTER", "UNDO"}
     too_large = "Not enough memory for so many texels"
     cancelled = "Cancelled: nothing was made"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.mesh_in_object_mode(cls, context, context.active_object)
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        self._someone_waits = True
-        return context.window_manager.invoke_props_dialog(self, width=380)
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        properties.draw(layout, self.properties)
-        for line in self.summary.splitlines():
-            layout.label(text=line, icon="INFO")
+    def draw_properties(self) -> None:
+        properties.draw(self.layout, self.properties)
 
     def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
@@ -75,7 +62,7 @@ class OBJECT_OT_limit_bake_displacement(
         )
         if self.filepath:
             self._check_path(len(request.layout.tiles))
-        key = new_objects.key(ob)
+        key = ObjectKey.of(ob)
 
         def work(progress: Progress) -> Made:
             return Made(key, request, measure(request, progress))
@@ -83,7 +70,7 @@ class OBJECT_OT_limit_bake_displacement(
         return self.watch(context, Job(work), f"Displacing {ob.name}")
 
     def finish(self, _context: bpy.types.Context, made: Made) -> set[str]:
-        ob, request, measured = new_objects.find(made.surface), made.request, made.measured
+        ob, request, measured = made.surface.find(), made.request, made.measured
         image = self._image(self.image_name or f"{ob.name} Displacement", measured)
         image[ids.DISPLACEMENT] = json.dumps(self._described(request))
         if self.create_material:
@@ -152,11 +139,8 @@ class OBJECT_OT_limit_bake_displacement(
     ) -> None:
         base = request.surfaces.base
         if base.refused:
-            self.report(
-                {"WARNING"},
-                f"{len(base.refused):,} of {len(request.surfaces.found.face_sizes):,} faces have "
-                "no limit surface and were left out",
-            )
+            faces = len(request.surfaces.found.face_sizes)
+            self.report({"WARNING"}, left_out(len(base.refused), faces))
         if measured.missing:
             self.report(
                 {"WARNING"},

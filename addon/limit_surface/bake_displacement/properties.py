@@ -5,7 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from ..images.image_files import PATH_OPTIONS
-from ..images.texture_properties import TextureProperties
+from ..images.texture_operator import TextureProperties
 
 FACE_RESOLUTIONS = tuple(2**exponent for exponent in range(11))
 

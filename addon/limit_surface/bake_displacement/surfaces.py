@@ -13,6 +13,7 @@ from .. import ids, native
 from ..errors import RefusalError
 from ..images import texel_places
 from ..reading import attributes, cage
+from ..tasks.refused_faces import check_some_left
 
 if TYPE_CHECKING:
     import limitsurf
@@ -98,8 +99,7 @@ def _polygons(
 
 def _surface(mesh: limitsurf.ControlMesh, name: str) -> limitsurf.LimitSurface:
     surface = native.limitsurf.LimitSurface(mesh)
-    if len(surface.refused) == len(mesh.face_sizes):
-        raise RefusalError(f"No face of {name} has a limit surface")
+    check_some_left(surface, name)
     return surface
 
 

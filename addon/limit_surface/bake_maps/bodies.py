@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import native
 from ..images import texel_places
 from ..reading import cage
 
@@ -20,13 +19,9 @@ class Body:
     """In the object's space, or as it lies in the world."""
 
     def __init__(self, found: cage.Cage, whose: str, *, in_world: bool) -> None:
-        self.surface = native.limitsurf.LimitSurface(found.mesh)
+        self.surface = found.surface(in_world=in_world)
         self.uv_map = texel_places.uv_data(self.surface, found, whose)
-        self.outward = 1.0
-        if in_world:
-            self.surface.set_positions(found.world_positions())
-            # du x dv points inwards in the world if the object is mirrored there.
-            self.outward = float(np.sign(np.linalg.det(found.matrix[:3, :3])) or 1.0)
+        self.outward = -1.0 if in_world and found.is_mirrored else 1.0
 
     @cached_property
     def bounds(self) -> np.ndarray:

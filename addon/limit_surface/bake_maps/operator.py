@@ -10,9 +10,8 @@ import bpy
 from .. import ids
 from ..errors import RefusalError
 from ..images import image_files, image_pixels, texel_places
-from ..tasks import polling
+from ..images.texture_operator import TextureOperator
 from ..tasks.job import Job, Progress
-from ..tasks.watched_operator import WatchedOperator
 from . import properties, shading, text
 from .inputs import Inputs
 from .map_images import Baked, bake
@@ -26,28 +25,17 @@ class Done(NamedTuple):
     flat_faces: int
 
 
-class OBJECT_OT_limit_bake_maps(WatchedOperator, properties.BakeProperties, bpy.types.Operator):
+class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.types.Operator):
     """Bake position, normal, curvature and other maps of the active mesh's limit surface into
     images, exactly and without rays"""
 
     bl_idname = ids.BAKE_MAPS
     bl_label = "Bake Maps of Limit Surface"
-    bl_options = {"REGISTER", "UNDO"}
     too_large = "Not enough memory for images of this size"
     cancelled = "Cancelled: nothing was baked"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.mesh_in_object_mode(cls, context, context.active_object)
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        self._someone_waits = True
-        return context.window_manager.invoke_props_dialog(self, width=380)
-
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw_properties(self) -> None:
         properties.draw(self.layout, self.properties)
-        for line in self.summary.splitlines():
-            self.layout.label(text=line, icon="INFO")
 
     def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""

@@ -5,7 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from ..images.image_files import PATH_OPTIONS
-from ..images.texture_properties import TextureProperties
+from ..images.texture_operator import TextureProperties
 from .maps import AREA_DISTORTION, KINDS, NORMAL_TANGENT
 
 CURVATURES = {"CURVATURE_MEAN", "CURVATURE_GAUSSIAN", "CURVATURE_PRINCIPAL"}
@@ -110,7 +110,8 @@ class BakeProperties(TextureProperties):
 
 
 def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
-    names = layout.grid_flow(columns=2, even_columns=True, align=True)  # side by side: unreadable
+    layout.use_property_split = False  # side by side the maps' names cannot be read
+    names = layout.grid_flow(columns=2, even_columns=True, align=True)
     names.prop(properties, "maps")
     layout.use_property_split = True
     wanted = properties.maps

@@ -5,9 +5,9 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..placing import new_objects
 from ..reading import cage
 from ..tasks.job import Progress
+from ..tasks.object_keys import ObjectKey
 from . import storage
 from .settings import Settings
 from .values import CurvedSurface, Values
@@ -20,7 +20,7 @@ class ControlMesh:
     def __init__(self, context: bpy.types.Context, settings: Settings) -> None:
         ob = context.active_object
         self._found = cage.read(ob, context.evaluated_depsgraph_get())
-        self._key = new_objects.key(ob)
+        self._key = ObjectKey.of(ob)
         self._settings = settings
         self._check(ob)
 
@@ -32,7 +32,7 @@ class ControlMesh:
     def store(
         self, _context: bpy.types.Context, values: list[Values], colors: list[np.ndarray]
     ) -> str:
-        ob = new_objects.find(self._key)
+        ob = self._key.find()
         self._check(ob)
         storage.write_on_mesh(ob.data, values[0], colors[0])
         return ob.name

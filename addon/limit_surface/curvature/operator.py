@@ -10,16 +10,16 @@ from .. import ids
 from ..errors import RefusalError
 from ..tasks import polling
 from ..tasks.job import Job, Progress
-from ..tasks.watched_operator import WatchedOperator
+from ..tasks.watched_operator import WatchedOperator, draw_summary
 from . import colours, text
 from .control_mesh import ControlMesh
-from .roots import Rooted
+from .roots import StoredRoots
 from .settings import Settings
 from .tessellation import Tessellation
 from .values import Values
 
-_PLACES = {"CONTROL_MESH": ControlMesh, "TESSELLATION": Tessellation, "ROOTS": Rooted}
-Places = ControlMesh | Tessellation | Rooted
+_PLACES = {"CONTROL_MESH": ControlMesh, "TESSELLATION": Tessellation, "ROOTS": StoredRoots}
+Places = ControlMesh | Tessellation | StoredRoots
 
 
 class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
@@ -118,8 +118,7 @@ class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
             layout.prop(self, "allow_large")
         for name in ("space", "radius", "color", "full_color"):
             layout.prop(self, name)
-        for line in self.summary.splitlines():
-            layout.label(text=line, icon="INFO")
+        draw_summary(layout, self.summary)
 
     def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""

@@ -11,9 +11,9 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
-from ..placing import new_objects
 from ..reading import attributes, cage
 from ..tasks.job import Progress, part_of
+from ..tasks.object_keys import ObjectKey
 from . import storage
 from .settings import Settings
 from .values import NOWHERE, CurvedSurface, Values
@@ -21,15 +21,15 @@ from .values import NOWHERE, CurvedSurface, Values
 _DOMAINS = {"CURVES": "CURVE", "MESH": "POINT"}
 
 
-class _Rooted(NamedTuple):
-    key: tuple[str, str | None]  # the object's
+class _Part(NamedTuple):
+    key: ObjectKey
     face: np.ndarray
     uv: np.ndarray
     matrix: np.ndarray
     found: cage.Cage
 
 
-class Rooted:
+class StoredRoots:
     """The selected objects that carry locations; where none does, all that stand on the active
     one."""
 
@@ -37,7 +37,7 @@ class Rooted:
 
     def __init__(self, context: bpy.types.Context, settings: Settings) -> None:
         self._settings = settings
-        self._parts: list[_Rooted] = []
+        self._parts: list[_Part] = []
         failures: Counter[str] = Counter()
         cages: dict[bpy.types.Object, cage.Cage] = {}
         depsgraph, seen = context.evaluated_depsgraph_get(), set()
@@ -78,7 +78,7 @@ class Rooted:
     def store(
         self, _context: bpy.types.Context, values: list[Values], colors: list[np.ndarray]
     ) -> str:
-        stored = [new_objects.find(part.key) for part in self._parts]
+        stored = [part.key.find() for part in self._parts]
         for ob, part in zip(stored, self._parts, strict=True):
             _check(ob)
             if len(attributes.read(ob.data, ids.FACE)) != len(part.face):
@@ -117,7 +117,7 @@ def _check(ob: bpy.types.Object) -> None:
     storage.check(ob, domain)
 
 
-def _read(ob: bpy.types.Object, found: cage.Cage, surface: str) -> _Rooted:
+def _read(ob: bpy.types.Object, found: cage.Cage, surface: str) -> _Part:
     _check(ob)
     face = attributes.read(ob.data, ids.FACE)
     uv = attributes.read(ob.data, ids.UV).astype(np.float64)
@@ -125,4 +125,4 @@ def _read(ob: bpy.types.Object, found: cage.Cage, surface: str) -> _Rooted:
     known = (face[there] >= 0) & (face[there] < found.ptex_face_count)
     if not (known.all() and ((uv[there] >= 0) & (uv[there] <= 1)).all()):
         raise RefusalError(f"{ob.name} stands on faces that {surface} does not have")
-    return _Rooted(new_objects.key(ob), face, uv, np.array(ob.matrix_world, np.float64), found)
+    return _Part(ObjectKey.of(ob), face, uv, np.array(ob.matrix_world, np.float64), found)

@@ -5,7 +5,6 @@ import bpy
 import numpy as np
 
 from .. import ids
-from ..errors import RefusalError
 from ..reading import attributes
 from .values import Values
 
@@ -23,16 +22,7 @@ _KINDS = {
 
 def check(ob: bpy.types.Object, domain: str) -> None:
     """RefusalError where something else has these names."""
-    data = ob.data
-    for name, kind in _KINDS.items():
-        there = data.attributes.get(name)
-        if there and (there.data_type, there.domain) != (kind, domain):
-            raise RefusalError(
-                f"{data.name} has an attribute {name} of another kind "
-                f"({there.data_type} on {there.domain}): rename or remove it"
-            )
-        if name in ob.vertex_groups:  # they share names with attributes
-            raise RefusalError(f"{ob.name} has a vertex group {name}: rename or remove it")
+    attributes.check_names(ob, _KINDS, domain)
 
 
 def write(data: bpy.types.ID, domain: str, values: Values, color: np.ndarray) -> None:

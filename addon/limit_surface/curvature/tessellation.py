@@ -10,8 +10,10 @@ import numpy as np
 
 from .. import ids
 from ..placing import new_objects
-from ..reading import attributes, cage
+from ..reading import cage
+from ..reading.subdivided_mesh import polygon_counts
 from ..tasks.job import Progress, part_of
+from ..tasks.object_keys import ObjectKey
 from ..tasks.request_size import RequestSize
 from . import storage
 from .settings import Settings
@@ -30,10 +32,9 @@ class Tessellation:
     def __init__(self, context: bpy.types.Context, settings: Settings) -> None:
         ob = context.active_object
         self._found = cage.read(ob, context.evaluated_depsgraph_get())
-        self._key = new_objects.key(ob)
+        self._key = ObjectKey.of(ob)
         self._settings = settings
-        quads = np.where(self._found.face_sizes == 4, 4, self._found.face_sizes).sum() // 4
-        count = int(quads * 4**settings.levels)
+        count = int(polygon_counts(self._found.face_sizes, settings.levels).sum())
         RequestSize("polygons", count, 1, is_exact=False).check(settings.allow_large)
         self._mesh: limitsurf.Tessellation | None = None
 
@@ -51,7 +52,7 @@ class Tessellation:
     def store(
         self, context: bpy.types.Context, values: list[Values], colors: list[np.ndarray]
     ) -> str:
-        surface = new_objects.find(self._key)
+        surface = self._key.find()
         mesh = bpy.data.meshes.new(ids.CURVATURE_OBJECT)
         try:
             self._fill(mesh)
@@ -62,13 +63,7 @@ class Tessellation:
             raise
 
     def _fill(self, mesh: bpy.types.Mesh) -> None:
-        faces = np.ascontiguousarray(self._mesh.faces, np.int32)
-        mesh.vertices.add(len(self._mesh.positions))
-        mesh.loops.add(faces.size)
-        mesh.polygons.add(len(faces))
-        attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", self._mesh.positions)
-        mesh.loops.foreach_set("vertex_index", faces.ravel())
-        mesh.polygons.foreach_set("loop_start", np.arange(0, faces.size, 4, dtype=np.int32))
-        mesh.update(calc_edges=True)
-        mesh.shade_smooth()
-        mesh.normals_split_custom_set_from_vertices(self._mesh.normals.astype(np.float32))
+        made = self._mesh
+        sizes = np.full(len(made.faces), 4)
+        new_objects.add_polygons(mesh, made.positions, sizes, made.faces.ravel())
+        mesh.normals_split_custom_set_from_vertices(made.normals.astype(np.float32))

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import native
 from ..errors import RefusalError
 from ..placing.rotations import WorldSpace, unit
 from ..reading import cage
@@ -40,7 +39,7 @@ class CurvedSurface:
 
     def __init__(self, found: cage.Cage, in_world: bool, radius: float) -> None:
         self.cage, self.in_world, self._radius = found, in_world, radius
-        self.surface = native.limitsurf.LimitSurface(found.mesh)
+        self.surface = found.surface(in_world=in_world)
         refused = self.surface.refused
         if len(refused) == len(found.face_sizes):
             raise RefusalError(f"No face has a limit surface: {next(iter(refused.values()))}")
@@ -48,10 +47,8 @@ class CurvedSurface:
         self._is_inwards = False
         if in_world:
             WorldSpace(found.matrix)  # refuses what is flattened to nothing
-            self.surface.set_positions(found.world_positions())
             self._to_world = np.eye(4)
-            # du x dv points inwards in the world if the object is mirrored there.
-            self._is_inwards = np.linalg.det(found.matrix[:3, :3]) < 0
+            self._is_inwards = found.is_mirrored
 
     def values(
         self, face: np.ndarray, uv: np.ndarray, matrix: np.ndarray, progress: Progress

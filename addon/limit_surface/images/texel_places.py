@@ -19,8 +19,9 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError, TooLargeError
-from ..reading import attributes, cage, uv_map
+from ..reading import attributes, cage, ragged_rows, uv_map
 from ..tasks.job import Progress
+from ..tasks.request_size import LARGE_MEMORY, memory_text
 from . import overlap
 from .image_pixels import FIRST_TILE
 
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
 PART = 1 << 18  # texels at once: a progress bar moves, memory stays small
 
-LARGE_MEMORY = 4 << 30  # bytes
 BYTES_PER_TEXEL = 40  # of its place on the surface, measured at the peak
 BYTES_PER_PIXEL = 32  # of each image, what it is made of, and packed
 
@@ -55,9 +55,8 @@ def check_uv_map(found: cage.Cage, whose: str) -> None:
 def faces_without_area(found: cage.Cage) -> int:
     """How many of the cage's faces are no more than a line on its UV map."""
     at = found.uv_map.values[found.uv_map.indices]
-    starts = np.cumsum(found.face_sizes) - found.face_sizes
-    following = np.arange(len(at)) + 1
-    following[starts + found.face_sizes - 1] = starts
+    starts = ragged_rows.starts(found.face_sizes)
+    following = ragged_rows.following(found.face_sizes)
     around = at - np.repeat(at[starts], found.face_sizes, axis=0)
     cross = around[:, 0] * around[following, 1] - around[:, 1] * around[following, 0]
     return int((np.add.reduceat(cross, starts) == 0).sum())
@@ -100,7 +99,7 @@ def tile_corner(tile: int) -> tuple[int, int]:
 def tiles_of(found: cage.Cage) -> list[int]:
     """The UDIM tiles that the UV map's faces touch, as far as UDIM numbers go."""
     at = found.uv_map.values[found.uv_map.indices]
-    starts = np.cumsum(found.face_sizes) - found.face_sizes
+    starts = ragged_rows.starts(found.face_sizes)
     low = np.floor(np.minimum.reduceat(at, starts)).astype(int)
     high = np.ceil(np.maximum.reduceat(at, starts)).astype(int) - 1
     numbers = set()
@@ -129,8 +128,7 @@ def check_size(width: int, height: int, tiles: int, images: int, allow_large: bo
         tiled = f", {tiles} tiles" if tiles > 1 else ""
         raise TooLargeError(
             f"{images} image{'s' if images > 1 else ''} of {width:,} x {height:,} pixels{tiled} "
-            f"take about {needed / 2**30:.1f} GiB of memory: set Allow Large Images (allow_large) "
-            "to make them"
+            f"take {memory_text(needed)}: set Allow Large Images (allow_large) to make them"
         )
 
 

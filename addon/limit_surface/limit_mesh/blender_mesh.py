@@ -7,9 +7,9 @@ import bpy
 import numpy as np
 
 from .. import ids
-from ..reading import attributes
+from ..placing import new_objects
+from ..reading import attributes, ragged_rows
 from . import cage_attributes, vertex_groups
-from .places import next_corner
 from .tessellation import Made
 
 _SAME = 1e-4  # components of normals that differ by less
@@ -21,7 +21,8 @@ def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) 
     """Without locations; nothing stays behind if it fails."""
     mesh = bpy.data.meshes.new(ids.LIMIT_MESH_OBJECT)
     try:
-        _add_polygons(mesh, made)
+        of = made.tessellation
+        new_objects.add_polygons(mesh, of.positions, of.face_sizes, of.face_vertices)
         for each in made.attributes:
             cage_attributes.write(mesh, each)
         for each in made.carrier.on_edges(mesh):
@@ -58,19 +59,6 @@ def copy_object_materials(source: bpy.types.Object, target: bpy.types.Object) ->
             slot.link, slot.material = "OBJECT", own.material
 
 
-def _add_polygons(mesh: bpy.types.Mesh, made: Made) -> None:
-    t = made.tessellation
-    mesh.vertices.add(len(t.positions))
-    mesh.loops.add(len(t.face_vertices))
-    mesh.polygons.add(len(t.face_sizes))
-    attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", t.positions)
-    mesh.loops.foreach_set("vertex_index", t.face_vertices)
-    starts = np.cumsum(t.face_sizes) - t.face_sizes
-    mesh.polygons.foreach_set("loop_start", starts.astype(np.int32))
-    mesh.update(calc_edges=True)
-    mesh.shade_smooth()
-
-
 def _activate_as(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
     """The same UV maps and colours are active, and rendered."""
     for layer in source.uv_layers:
@@ -93,7 +81,7 @@ def _activate_as(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
 def _set_normals(mesh: bpy.types.Mesh, normals: np.ndarray, face_sizes: np.ndarray) -> None:
     """Edges are sharp where they part normals: Cycles keeps several at a vertex only there."""
     edge = attributes.read(mesh, ids.CORNER_EDGE)
-    part = _parting(edge, normals, normals[next_corner(face_sizes)], len(mesh.edges))
+    part = _parting(edge, normals, normals[ragged_rows.following(face_sizes)], len(mesh.edges))
     if ids.SHARP_EDGE in mesh.attributes:  # the cage's
         part |= attributes.read(mesh, ids.SHARP_EDGE)
     attributes.write(mesh, ids.SHARP_EDGE, "BOOLEAN", "EDGE", part)

@@ -16,9 +16,9 @@ import bpy
 import numpy as np
 
 from .. import ids
-from ..reading import attributes, uv_map
+from ..reading import attributes, ragged_rows, uv_map
 from ..tasks.job import Progress
-from .places import CageElements, next_corner
+from .places import CageElements
 
 if TYPE_CHECKING:
     import limitsurf
@@ -38,8 +38,8 @@ class Attribute(NamedTuple):
 
 
 @dataclass
-class Carried:
-    """Of a cage, or of its tessellation."""
+class CageAttributes:
+    """What a cage carries besides its shape, and what of it cannot be carried over."""
 
     attributes: list[Attribute] = field(default_factory=list)
     uv_maps: list[uv_map.UvMap] = field(default_factory=list)
@@ -47,9 +47,9 @@ class Carried:
     corner_edge: np.ndarray | None = None  # of the cage
 
 
-def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> Carried:
+def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
     """From the mesh that a cage is read from."""
-    found = Carried(corner_edge=attributes.read(mesh, ids.CORNER_EDGE))
+    found = CageAttributes(corner_edge=attributes.read(mesh, ids.CORNER_EDGE))
     uv_names = set(mesh.uv_layers.keys())
     for attribute in mesh.attributes:
         name, kind = attribute.name, attribute.data_type
@@ -86,7 +86,7 @@ class Carrier:
     """Evaluates a cage's attributes on a tessellation of its limit surface."""
 
     def __init__(
-        self, cage: Carried, surface: limitsurf.LimitSurface, on: limitsurf.Tessellation
+        self, cage: CageAttributes, surface: limitsurf.LimitSurface, on: limitsurf.Tessellation
     ) -> None:
         self._cage, self._surface, self._on = cage, surface, on
         self._elements = CageElements(surface)
@@ -112,7 +112,7 @@ class Carrier:
             return
         uv = self._on.corner_uv
         side = self._elements.corner_of_side(
-            self._corner_face, uv, uv[next_corner(self._on.face_sizes)]
+            self._corner_face, uv, uv[ragged_rows.following(self._on.face_sizes)]
         )
         edge, on_cage = attributes.read(mesh, ids.CORNER_EDGE), side >= 0
         from_edge = self._cage.corner_edge[side[on_cage]]

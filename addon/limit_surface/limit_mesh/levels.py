@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..reading import attributes, cage, camera, element_numbers
+from ..reading import attributes, cage, camera, element_numbers, ragged_rows
 from ..tasks.job import Progress
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def named(
         return of_faces(_whole_levels(mesh, name, ob))
     if not weights[name].any():
         raise RefusalError(f"The vertex group {name} of {ob.name} has no weights")
-    starts = np.cumsum(found.face_sizes) - found.face_sizes
+    starts = ragged_rows.starts(found.face_sizes)
     largest = np.maximum.reduceat(weights[name][found.mesh.face_vertices], starts)
     return of_faces(np.rint(largest * levels).astype(np.int64))
 

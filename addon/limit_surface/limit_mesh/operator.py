@@ -10,16 +10,16 @@ from .. import ids
 from ..errors import RefusalError
 from ..placing import new_objects
 from ..reading import cage
-from ..tasks import polling
 from ..tasks.job import Job, Progress
-from ..tasks.refused_faces import reasons
-from ..tasks.watched_operator import WatchedOperator
+from ..tasks.object_keys import ObjectKey
+from ..tasks.refused_faces import left_out, reasons
+from ..tasks.watched_operator import WatchedOperator, draw_summary
 from . import blender_mesh, levels, tessellation
 
 
 @dataclass(frozen=True)
 class _Result:
-    surface: tuple[str, str | None]  # the object's key
+    surface: ObjectKey
     made: tessellation.Made
     notes: list[str]
 
@@ -114,10 +114,6 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.mesh_in_object_mode(cls, context, context.active_object)
-
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
@@ -126,8 +122,7 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
             layout.prop(self, name)
         for name in ("exact_normals", "store_locations", "hide_original", "allow_large"):
             layout.prop(self, name)
-        if self.summary:
-            layout.label(text=self.summary, icon="INFO")
+        draw_summary(layout, self.summary)
 
     def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
@@ -135,10 +130,10 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
         source = tessellation.read(
             ob, depsgraph, self._chooser(context, ob), not self.exact_normals
         )
-        notes = [*source.carried.notes]
+        notes = [*source.attributes.notes]
         if ob.data.shape_keys:
             notes.append("shape keys are not carried over")
-        key, exact_normals, allow_large = new_objects.key(ob), self.exact_normals, self.allow_large
+        key, exact_normals, allow_large = ObjectKey.of(ob), self.exact_normals, self.allow_large
 
         def work(progress: Progress) -> _Result:
             return _Result(key, source.make(exact_normals, allow_large, progress), notes)
@@ -146,7 +141,7 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
         return self.watch(context, Job(work), f"Making polygons on {ob.name}")
 
     def finish(self, context: bpy.types.Context, result: _Result) -> set[str]:
-        surface, made = new_objects.find(result.surface), result.made
+        surface, made = result.surface.find(), result.made
         mesh = blender_mesh.build(made, surface, context.evaluated_depsgraph_get())
         try:
             if self.store_locations:
@@ -193,11 +188,8 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
         for warning in made.warnings:
             self.report({"WARNING"}, warning)
         if made.refused:
-            self.report(
-                {"WARNING"},
-                f"{len(made.refused):,} of {len(made.cage.face_sizes):,} faces have no limit "
-                f"surface and were left out: {reasons(made.refused)}",
-            )
+            refused, faces = made.refused, len(made.cage.face_sizes)
+            self.report({"WARNING"}, left_out(len(refused), faces, reasons(refused)))
         notes = [f"{self.summary} of {surface.name}", *made.cage.notes, *result.notes]
         self.report({"INFO"}, "; ".join(notes))
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..reading import ragged_rows
+
 if TYPE_CHECKING:
     import limitsurf
 
@@ -19,9 +21,8 @@ class CageElements:
 
     def __init__(self, surface: limitsurf.LimitSurface) -> None:
         sizes = surface.mesh.face_sizes.astype(np.int64)
-        starts = np.cumsum(sizes) - sizes
         self._size = sizes[surface.base_face]
-        self._start = starts[surface.base_face]
+        self._start = ragged_rows.starts(sizes)[surface.base_face]
         self._corner = surface.corner
 
     def nearest_corner(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
@@ -44,11 +45,3 @@ class CageElements:
         corner = np.where(is_quad & high[:, 0], 1, corner)
         corner = np.where(is_quad & high[:, 1], 2, corner)
         return np.where(corner >= 0, self._start[face] + corner, -1)
-
-
-def next_corner(face_sizes: np.ndarray) -> np.ndarray:
-    """Of each corner: the one that follows around its polygon."""
-    ends = np.cumsum(face_sizes)
-    following = np.arange(1, face_sizes.sum() + 1)
-    following[ends - 1] = ends - face_sizes
-    return following

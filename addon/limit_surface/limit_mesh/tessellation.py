@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import native
 from ..errors import RefusalError
 from ..reading import cage
+from ..reading.subdivided_mesh import polygon_counts
 from ..tasks.job import Progress, part_of
 from ..tasks.refused_faces import reasons
 from ..tasks.request_size import RequestSize
 from . import cage_attributes, levels, vertex_groups
-from .cage_attributes import Attribute, Carried, Carrier
+from .cage_attributes import Attribute, CageAttributes, Carrier
 
 if TYPE_CHECKING:
     import limitsurf
@@ -46,26 +46,24 @@ class Source:
     """An object, read from Blender: the rest needs arrays alone."""
 
     cage: cage.Cage
-    carried: Carried
+    attributes: CageAttributes
     groups: Groups
     choice: levels.Choice
 
     def make(self, exact_normals: bool, allow_large: bool, progress: Progress) -> Made:
-        mesh = self.cage.mesh
-        surface = native.limitsurf.LimitSurface(mesh)
+        surface = self.cage.surface(in_world=True)
         refused = surface.refused
         if len(refused) == len(self.cage.face_sizes):
             raise RefusalError(f"No face has a limit surface: {reasons(refused)}")
-        surface.set_positions(self.cage.world_positions())
         chosen, warning = self.choice(surface, part_of(progress, 0, _CHOSEN))
         RequestSize("polygons", _expected(self.cage, chosen, refused), 1, False).check(allow_large)
-        surface.set_positions(mesh.positions)
+        surface.set_positions(self.cage.mesh.positions)
         tessellation = surface.tessellate(
             chosen,
             corner_normals=exact_normals,
             progress=part_of(progress, _CHOSEN, _TESSELLATED),
         )
-        carrier = Carrier(self.carried, surface, tessellation)
+        carrier = Carrier(self.attributes, surface, tessellation)
         rule = self.cage.rules.uv_interpolation
         on_it = list(carrier.attributes(rule, part_of(progress, _TESSELLATED, 1)))
         weights = carrier.weights(self.groups.weights) if self.groups.names else np.empty((0, 0))
@@ -112,6 +110,6 @@ def read(
 
 def _expected(found: cage.Cage, chosen: np.ndarray, refused: dict[int, str]) -> int:
     """Polygons, but for those that lead from one level to another."""
-    quads = np.where(found.face_sizes == 4, 4.0, found.face_sizes) / 4 * 4.0**chosen
-    quads[list(refused)] = 0
-    return int(quads.sum())
+    counts = polygon_counts(found.face_sizes, chosen.astype(np.int64))
+    counts[list(refused)] = 0
+    return int(counts.sum())

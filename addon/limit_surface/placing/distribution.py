@@ -33,8 +33,8 @@ class Scattered:
 
 
 @dataclass(frozen=True)
-class Spread:
-    distribution: str  # JITTERED, UNIFORM or BLUE_NOISE
+class Distribution:
+    kind: str  # JITTERED, UNIFORM or BLUE_NOISE
     amount: str  # COUNT, DENSITY or DISTANCE
     per_side: int
     count: int
@@ -43,7 +43,7 @@ class Spread:
     seed: int
 
     def expected(self, region: Region) -> Expected:
-        if self.distribution == "JITTERED":
+        if self.kind == "JITTERED":
             cells = region.ptex_face_count * self.per_side**2
             if region.density is None:
                 return Expected(cells, True)
@@ -61,7 +61,7 @@ class Spread:
     def scatter(self, region: Region, progress: Progress) -> Scattered:
         """Locations of single precision, as files hold them: what is evaluated there lies exactly
         where its stored location says."""
-        if self.distribution == "JITTERED":
+        if self.kind == "JITTERED":
             return Scattered(self._jittered(region), None)
         count = None if self.amount == "DISTANCE" else self.expected(region).count
         if count == 0:
@@ -70,7 +70,7 @@ class Spread:
         common = {"seed": self.seed, "density": region.density, "progress": progress}
         try:
             with region.in_world():
-                if self.distribution == "UNIFORM":
+                if self.kind == "UNIFORM":
                     found = region.surface.scatter_uniform(count, **common)
                     return Scattered(_rounded(found), None)
                 radius = self.distance if count is None else None
@@ -81,7 +81,7 @@ class Spread:
             raise RefusalError(f"{reason[0].upper()}{reason[1:]}") from error
 
     def _check_distance(self) -> None:
-        if self.distribution == "UNIFORM" and self.amount == "DISTANCE":
+        if self.kind == "UNIFORM" and self.amount == "DISTANCE":
             raise RefusalError(
                 "Uniform keeps no distance: choose Blue Noise, or a count or a density"
             )

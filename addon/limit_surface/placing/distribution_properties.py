@@ -12,7 +12,7 @@ from bpy.props import (
 
 from ..errors import RefusalError
 from .density import DensityChoice
-from .distribution import Spread
+from .distribution import Distribution
 from .mask import MaskChoice
 
 _MOST_SLOTS = 31  # choices that a property can hold at once
@@ -227,10 +227,14 @@ class DistributionProperties:
     )
 
 
-def spread(properties: bpy.types.OperatorProperties) -> Spread:
+def distribution(properties: bpy.types.OperatorProperties) -> Distribution:
     """RefusalError where nobody could know what is meant."""
-    names = ("distribution", "per_side", "count", "density", "distance", "seed")
-    return Spread(amount=_amount(properties), **{name: getattr(properties, name) for name in names})
+    numbers = ("per_side", "count", "density", "distance", "seed")
+    return Distribution(
+        kind=properties.distribution,
+        amount=_amount(properties),
+        **{name: getattr(properties, name) for name in numbers},
+    )
 
 
 def _amount(properties: bpy.types.OperatorProperties) -> str:

@@ -16,9 +16,10 @@ from .. import native
 from ..errors import RefusalError
 from ..reading import cage
 from ..tasks.job import Job, Progress
-from . import distribution_properties, new_objects, region
+from ..tasks.object_keys import ObjectKey
+from . import distribution_properties, region
 from .density import DensityChoice
-from .distribution import Spread
+from .distribution import Distribution
 from .mask import MaskChoice
 
 PAUSE = 0.2  # seconds until something is looked at that was asked for, or waited for
@@ -28,12 +29,12 @@ PAUSE = 0.2  # seconds until something is looked at that was asked for, or waite
 class Question:
     """What has to be read from Blender to know how many there will be."""
 
-    surface: tuple[str, str | None]  # the object's key
+    surface: ObjectKey
     density: DensityChoice
     mask: MaskChoice
 
     def read(self) -> region.Region:
-        ob = new_objects.find(self.surface)
+        ob = self.surface.find()
         return region.read(ob, bpy.context.evaluated_depsgraph_get(), self.density, self.mask)
 
 
@@ -44,7 +45,7 @@ class LiveCount:
         self._look_later = self._look  # one object, by which Blender knows it again
         self.forget()
 
-    def text(self, question: Question, spread: Spread, noun: str) -> str:
+    def text(self, question: Question, distribution: Distribution, noun: str) -> str:
         """How many, or why there is no telling."""
         if question != self._question:
             self.forget()
@@ -55,14 +56,14 @@ class LiveCount:
             return self._trouble
         if self._region is None:
             return "Counting"
-        expected = spread.expected(self._region)
+        expected = distribution.expected(self._region)
         about = "" if expected.is_exact else "About "
         return f"{about}{expected.count:,} {noun}"
 
     def notice(self, changed: set[str]) -> None:
         """Things of these names have changed."""
         question = self._question
-        if question and {question.surface[0], question.density.image} & changed:
+        if question and {question.surface.name, question.density.image} & changed:
             self._is_stale = True
 
     def forget(self) -> None:
@@ -108,13 +109,13 @@ def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, nou
     if context.screen and context.screen.is_animation_playing:
         return "Not counted during playback"
     question = Question(
-        new_objects.key(context.active_object),
+        ObjectKey.of(context.active_object),
         distribution_properties.density_choice(settings),
         distribution_properties.mask_choice(settings),
     )
     try:
         count = _counts.setdefault(noun, LiveCount())
-        return count.text(question, distribution_properties.spread(settings), noun)
+        return count.text(question, distribution_properties.distribution(settings), noun)
     except RefusalError as error:
         return str(error)
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""New objects that belong to a surface."""
+"""New meshes, and new objects that belong to a surface."""
 
 import bpy
+import numpy as np
 
-from ..errors import RefusalError
+from .. import ids
+from ..reading import attributes, ragged_rows
 
 
 def add_on_surface(
@@ -23,17 +25,19 @@ def add_on_surface(
     return ob
 
 
-def key(ob: bpy.types.Object) -> tuple[str, str | None]:
-    """By which `find` tells it from those of the same name in other files."""
-    return ob.name, ob.library.filepath if ob.library else None
-
-
-def find(known: tuple[str, str | None]) -> bpy.types.Object:
-    """RefusalError if it has been removed."""
-    ob = bpy.data.objects.get(known)
-    if ob is None:
-        raise RefusalError(f"{known[0]} is not there any more")
-    return ob
+def add_polygons(
+    mesh: bpy.types.Mesh, positions: np.ndarray, sizes: np.ndarray, vertices: np.ndarray
+) -> None:
+    """Fills an empty mesh with smooth polygons of so many corners, whose vertices come in order."""
+    mesh.vertices.add(len(positions))
+    mesh.loops.add(len(vertices))
+    mesh.polygons.add(len(sizes))
+    attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", positions)
+    starts = ragged_rows.starts(sizes)
+    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(vertices, np.int32))
+    mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(starts, np.int32))
+    mesh.update(calc_edges=True)
+    mesh.shade_smooth()
 
 
 def _collection(context: bpy.types.Context) -> bpy.types.Collection:

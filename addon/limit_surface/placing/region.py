@@ -13,7 +13,7 @@ import numpy as np
 
 from .. import native
 from ..errors import RefusalError
-from ..reading import cage, vertex_weights
+from ..reading import cage, subdivided_mesh, vertex_weights
 from ..tasks.refused_faces import reasons
 from .density import Density, DensityChoice, DensityMap
 from .mask import MaskChoice
@@ -54,7 +54,7 @@ class Region:
 
     @cached_property
     def ptex_face_count(self) -> int:
-        parts = np.where(self.cage.face_sizes == 4, 1, self.cage.face_sizes)
+        parts = subdivided_mesh.ptex_face_counts(self.cage.face_sizes)
         return int(parts.sum() - parts[list(self.surface.refused)].sum())
 
     @contextmanager

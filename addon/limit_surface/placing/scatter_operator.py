@@ -12,11 +12,12 @@ from ..errors import RefusalError
 from ..reading import cage, displayed_mesh
 from ..tasks import polling
 from ..tasks.job import Job, Progress, part_of
-from ..tasks.refused_faces import reasons
+from ..tasks.object_keys import ObjectKey
+from ..tasks.refused_faces import left_out, reasons
 from ..tasks.request_size import RequestSize
-from ..tasks.watched_operator import WatchedOperator
-from . import distribution_properties, new_objects, region, roots
-from .distribution import TOO_LOW, Scattered, Spread
+from ..tasks.watched_operator import WatchedOperator, draw_summary
+from . import distribution_properties, region, roots
+from .distribution import TOO_LOW, Distribution, Scattered
 
 SCATTERED = 0.5  # of the progress, when the locations are there
 
@@ -57,14 +58,14 @@ class Ground:
 class Order:
     """All that is asked for, read from Blender: the rest needs arrays alone."""
 
-    surface: tuple[str, str | None]  # the object's key
+    surface: ObjectKey
     region: region.Region
-    spread: Spread
+    distribution: Distribution
     shown: displayed_mesh.DisplayedMesh | None
     size: RequestSize
 
     def ground(self, progress: Progress) -> Ground:
-        scattered = self.spread.scatter(self.region, progress)
+        scattered = self.distribution.scatter(self.region, progress)
         if not len(scattered.locations):
             raise RefusalError(TOO_LOW)
         return Ground(self.region.cage, self.region, scattered, self.shown)
@@ -72,7 +73,7 @@ class Order:
 
 @dataclass(frozen=True)
 class Made:
-    surface: tuple[str, str | None]  # the object's key
+    surface: ObjectKey
     ground: Ground
     things: Any  # what the operator's maker makes
 
@@ -80,9 +81,17 @@ class Made:
 class ScatterOperator(WatchedOperator, distribution_properties.DistributionProperties):
     """Mixin: locations by one of the distributions, and the rules of asking and reporting.
 
-    A subclass names what it makes (`noun`, plural) and makes it in two steps: `maker` gives a
-    function that makes arrays, which may run in a thread of its own, and `add` puts them into the
-    file. Until `add` returns it cleans up after itself.
+    A subclass names what it makes (`noun`, plural). These are the steps of the work, each within
+    one of the steps that `tasks/watched_operator.py` lists, with the class that provides them:
+
+    1. in `invoke` or `start`, `check_properties`: the subclass refuses what makes no sense;
+    2. `_order`: ScatterOperator reads the region and the distribution from Blender;
+    3. in `invoke`, `_ask`: ScatterOperator has users confirm what is very large;
+    4. `maker`: the subclass gives the function that makes its arrays;
+    5. in the job, `Order.ground`, then the function from step 4: neither touches Blender's data;
+    6. in `finish`, `add`: the subclass puts the arrays into the file. Until `add` returns it
+       cleans up after itself;
+    7. `_report`: ScatterOperator says what was made.
     """
 
     bl_options = {"REGISTER", "UNDO"}
@@ -117,12 +126,10 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
         return self._guarded(self._ask, context, event)
 
     def start(self, context: bpy.types.Context) -> set[str]:
-        order = self._order(context)
-        order.size.check(self.allow_large)
-        return self._begin(context, order)
+        return self._begin(context, self._order(context))
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
-        self.add(context, new_objects.find(made.surface), made.things)
+        self.add(context, made.surface.find(), made.things)
         self._report(made.ground)
         return {"FINISHED"}
 
@@ -147,8 +154,7 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
         distribution_properties.draw(layout, self.properties, context)
         self.draw_own(layout)
         layout.prop(self, "allow_large")
-        if self.summary:
-            layout.label(text=self.summary, icon="INFO")
+        draw_summary(layout, self.summary)
 
     def draw_own(self, layout: bpy.types.UILayout) -> None:
         """The subclass's own properties."""
@@ -162,12 +168,12 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
             return context.window_manager.invoke_confirm(
                 self, event, title=self.bl_label, message=f"Make {order.size}?", confirm_text="Make"
             )
-        order.size.check(self.allow_large)
         return self._begin(context, order)
 
     def _begin(self, context: bpy.types.Context, order: Order) -> set[str]:
-        self.summary, self.surface = "", order.surface[0]
-        self.amount = order.spread.amount  # the redo panel shows it
+        order.size.check(self.allow_large)
+        self.summary, self.surface = "", order.surface.name
+        self.amount = order.distribution.amount  # the redo panel shows it
         make = self.maker(order.region.cage)
 
         def work(progress: Progress) -> Made:
@@ -179,21 +185,21 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
     def _order(self, context: bpy.types.Context) -> Order:
         self.check_properties()
         ob, depsgraph = _surface_object(context), context.evaluated_depsgraph_get()
-        spread = distribution_properties.spread(self.properties)
+        distribution = distribution_properties.distribution(self.properties)
         covered = region.read(
             ob,
             depsgraph,
             distribution_properties.density_choice(self.properties),
             distribution_properties.mask_choice(self.properties),
         )
-        expected = spread.expected(covered)
+        expected = distribution.expected(covered)
         size = RequestSize(
             self.noun, expected.count, self.elements_per_location(), expected.is_exact
         )
         shown = None
         if self.target != "LIMIT":
             shown = displayed_mesh.read(ob, depsgraph, covered.cage, self.target)
-        return Order(new_objects.key(ob), covered, spread, shown, size)
+        return Order(ObjectKey.of(ob), covered, distribution, shown, size)
 
     def _report(self, ground: Ground) -> None:
         found, refused = ground.cage, ground.region.refused
@@ -202,11 +208,8 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
         if ground.scattered.distance is not None:
             self.summary += f", at least {ground.scattered.distance:.4g} apart"
         if refused:
-            self.report(
-                {"WARNING"},
-                f"{len(refused):,} of {len(found.face_sizes):,} faces have no limit surface and "
-                f"were left out: {reasons(refused)}",
-            )
+            warning = left_out(len(refused), len(found.face_sizes), reasons(refused))
+            self.report({"WARNING"}, warning)
         notes = [f"{self.summary} of {self.surface}", *found.notes]
         if found.without_uv_map:
             notes.append(f"no UVs stored: {found.without_uv_map}")

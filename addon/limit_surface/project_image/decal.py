@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..reading import ragged_rows
 from ..tasks.job import Progress
 from .rays import Hits, Rays, joined
 
@@ -69,7 +70,7 @@ def make(rays: Rays, cells: tuple[int, int], progress: Progress) -> Decal:
 
 def sag(rays: Rays, decal: Decal) -> float:
     """How far the middle of a polygon with four corners lies below the surface, at most."""
-    first = (np.cumsum(decal.sizes) - decal.sizes)[decal.sizes == 4]
+    first = ragged_rows.starts(decal.sizes)[decal.sizes == 4]
     quads = decal.vertices[first[:, None] + np.arange(4)]
     middle = rays.cast(decal.hits.st[quads].mean(axis=1))
     below = middle.position - decal.hits.position[quads].mean(axis=1)

@@ -12,6 +12,7 @@ from .. import ids
 from ..errors import RefusalError
 from ..reading.projector import Projector, fitted
 from ..tasks.job import Progress, part_of
+from ..tasks.object_keys import ObjectKey
 from ..tasks.request_size import RequestSize
 from . import decal, decal_object, inputs, material
 from .world import WorldSurface
@@ -21,7 +22,7 @@ CAST = 0.9  # of the progress, when the polygons are known
 
 @dataclass(frozen=True)
 class Order:
-    surface: tuple[str, str | None]  # the object's key
+    surface: ObjectKey
     world: WorldSurface
     projector: Projector
     image: str
@@ -74,7 +75,7 @@ def order(
     properties: bpy.types.OperatorProperties,
     context: bpy.types.Context,
     world: WorldSurface,
-    surface: tuple[str, str | None],
+    surface: ObjectKey,
 ) -> Order:
     image = inputs.image(properties.image)
     size = tuple(image.size)

@@ -53,20 +53,11 @@ def add(
 
 
 def _fill(mesh: bpy.types.Mesh, placed: PlacedDecal) -> None:
-    starts = np.cumsum(placed.sizes) - placed.sizes
-    vertices = placed.vertices
+    sizes, vertices = placed.sizes, placed.vertices
     if placed.is_turned:
-        vertices = vertices[::-1]
-        starts = (len(vertices) - starts - placed.sizes)[::-1]
-    mesh.vertices.add(len(placed.position))
-    mesh.loops.add(len(vertices))
-    mesh.polygons.add(len(starts))
-    attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", placed.position)
-    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(vertices, np.int32))
-    mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(starts, np.int32))
-    mesh.update(calc_edges=True)
+        sizes, vertices = sizes[::-1], vertices[::-1]
+    new_objects.add_polygons(mesh, placed.position, sizes, vertices)
     layer = mesh.uv_layers.new(name=ids.DECAL_UV)
     attributes.write(mesh, layer.name, "FLOAT2", "CORNER", placed.st[vertices])
     placed.binding.write(mesh, "POINT")
-    mesh.shade_smooth()
     mesh.normals_split_custom_set_from_vertices(placed.normal.astype(np.float32))

@@ -12,7 +12,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..images.texture_properties import TextureProperties
+from ..images.texture_operator import TextureProperties
 
 # Sources that throw the image from somewhere: rays can be followed through its pixels.
 THROWN = {"CAMERA", "VIEW", "PLANAR"}

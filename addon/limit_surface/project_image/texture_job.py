@@ -11,8 +11,8 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..images import image_pixels, overlap, texel_places
-from ..placing import new_objects
 from ..tasks.job import Progress, part_of
+from ..tasks.object_keys import ObjectKey
 from . import colours, inputs, material
 from .painting import Canvas, paint
 from .sources import Source
@@ -34,7 +34,7 @@ class NewImage:
 
 @dataclass(frozen=True)
 class Order:
-    surface: tuple[str, str | None]  # the object's key
+    surface: ObjectKey
     world: WorldSurface
     uv_map: limitsurf.SurfaceData
     source: Source
@@ -102,18 +102,18 @@ def order(
     properties: bpy.types.OperatorProperties,
     context: bpy.types.Context,
     world: WorldSurface,
-    surface: tuple[str, str | None],
+    surface: ObjectKey,
 ) -> Order:
     if not properties.opacity:
         raise RefusalError("Opacity is 0: nothing would be seen of the image")
     if properties.create_material:
-        material.check(new_objects.find(surface))
+        material.check(surface.find())
     shown = inputs.image(properties.image)
     target = _target(properties)
     return Order(
         surface=surface,
         world=world,
-        uv_map=texel_places.uv_data(world.surface, world.cage, surface[0]),
+        uv_map=texel_places.uv_data(world.surface, world.cage, surface.name),
         source=inputs.source(properties, context, world, shown),
         image=shown.name,
         target=target,

@@ -3,18 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from .. import native
 from ..errors import RefusalError
 from ..placing.rotations import WorldSpace
 from ..reading import cage
 from ..reading.projector import Projector
-
-if TYPE_CHECKING:
-    import limitsurf
+from ..tasks.refused_faces import check_some_left
 
 MIRROR = np.diag([-1.0, 1, 1, 1])
 
@@ -26,12 +21,10 @@ class WorldSurface:
     def __init__(self, found: cage.Cage, called: str) -> None:
         self.cage = found
         self.axes = WorldSpace(found.matrix)  # refuses what is flattened to nothing
-        self.is_mirrored = np.linalg.det(found.matrix[:3, :3]) < 0
+        self.is_mirrored = found.is_mirrored
         self.from_world = MIRROR if self.is_mirrored else np.eye(4)
-        self.surface: limitsurf.LimitSurface = native.limitsurf.LimitSurface(found.mesh)
-        if len(self.surface.refused) == len(found.face_sizes):
-            raise RefusalError(f"No face of {called} has a limit surface")
-        self.local: limitsurf.LimitSurface = native.limitsurf.LimitSurface(found.mesh)
+        self.surface, self.local = found.surface(), found.surface()
+        check_some_left(self.surface, called)
         self.surface.set_positions(self.to_surface(found.world_positions()))
 
     def to_surface(self, points: np.ndarray) -> np.ndarray:

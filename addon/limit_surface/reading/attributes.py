@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Attributes of meshes and curves as whole numpy arrays."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import bpy
 import numpy as np
+
+from ..errors import RefusalError
 
 
 class Layout(NamedTuple):
@@ -48,6 +51,21 @@ def read(data: bpy.types.ID, name: str) -> np.ndarray:
     values = np.empty(len(attribute.data) * layout.width, layout.dtype)
     attribute.data.foreach_get(layout.key, values)
     return values if layout.width == 1 else values.reshape(-1, layout.width)
+
+
+def check_names(ob: bpy.types.Object, kinds: Mapping[str, str], domain: str) -> None:
+    """RefusalError where the object has something else of the names that attributes of these kinds
+    are to be written by."""
+    data = ob.data
+    for name, kind in kinds.items():
+        there = data.attributes.get(name)
+        if there and (there.data_type, there.domain) != (kind, domain):
+            raise RefusalError(
+                f"{data.name} has an attribute {name} of another kind "
+                f"({there.data_type} on {there.domain}): rename or remove it"
+            )
+        if name in ob.vertex_groups:  # they share names with attributes
+            raise RefusalError(f"{ob.name} has a vertex group {name}: rename or remove it")
 
 
 def face_sizes(mesh: bpy.types.Mesh) -> np.ndarray:

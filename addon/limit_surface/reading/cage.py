@@ -19,7 +19,7 @@ import numpy as np
 
 from .. import ids, native
 from ..errors import CageError
-from . import attributes, private_scene, rules, sharpness, uv_map
+from . import attributes, private_scene, rules, sharpness, subdivided_mesh, uv_map
 
 if TYPE_CHECKING:
     import limitsurf
@@ -55,7 +55,7 @@ class Cage:
 
     @property
     def ptex_face_count(self) -> int:
-        return int(np.where(self.face_sizes == 4, 1, self.face_sizes).sum())
+        return int(subdivided_mesh.ptex_face_counts(self.face_sizes).sum())
 
     def world_positions(self) -> np.ndarray:
         """Of the vertices. They make the surface as it lies in the world, to the last digit."""
@@ -63,6 +63,19 @@ class Cage:
 
     def to_world(self, points: np.ndarray) -> np.ndarray:
         return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether the object is mirrored in the world: du x dv points inwards there."""
+        return bool(np.linalg.det(self.matrix[:3, :3]) < 0)
+
+    def surface(self, *, in_world: bool = False) -> limitsurf.LimitSurface:
+        """A limit surface of its own for each caller: in the object's space, or as it lies in the
+        world. Subdivision does not mind which, but distances, angles and curvature do."""
+        surface = native.limitsurf.LimitSurface(self.mesh)
+        if in_world:
+            surface.set_positions(self.world_positions())
+        return surface
 
     def with_holes(self, faces: np.ndarray) -> limitsurf.ControlMesh:
         """The control mesh, some of whose faces have no surface."""

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from .. import ids
-from . import attributes
+from . import attributes, ragged_rows
 
 TYPES = ("FLOAT", "INT", "INT8", "BOOLEAN")
 #: no way leads from these to a number: to Blender there is no such attribute
@@ -47,10 +47,8 @@ def _neighbours(mesh: bpy.types.Mesh, source: str, target: str) -> tuple[np.ndar
     corner = np.arange(len(to))
     if target == "POINT":
         return to, corner
-    following = corner + 1
-    ends = np.cumsum(sizes)
-    following[ends - 1] = ends - sizes
-    return np.repeat(to, 2), np.stack([corner, following], axis=1).ravel()
+    both_ends = np.stack([corner, ragged_rows.following(sizes)], axis=1)
+    return np.repeat(to, 2), both_ends.ravel()
 
 
 def _mean(values: np.ndarray, element: np.ndarray, count: int) -> np.ndarray:

@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .ragged_rows import places, starts
+
 #: (u, v) of a polygon's corners, in Blender's order: from the one nearest to (0, 0)
 _AROUND = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
 
@@ -32,9 +34,9 @@ def corner_locations(face_sizes: np.ndarray, levels: int) -> SurfaceLocations:
     """Of every corner of every polygon, for a cage whose faces have so many corners."""
     if levels < 1:
         raise ValueError("Blender subdivides from level 1 on")
-    first_ptex_face = _starts(ptex_face_counts(face_sizes))
+    first_ptex_face = starts(ptex_face_counts(face_sizes))
     polygons = polygon_counts(face_sizes, levels)
-    first_polygon = _starts(polygons)
+    first_polygon = starts(polygons)
     face = np.empty((polygons.sum(), 4), np.int32)
     uv = np.empty((polygons.sum(), 4, 2))
     for size in np.unique(face_sizes):
@@ -61,9 +63,9 @@ def vertex_locations(
 def cage_corners(face_sizes: np.ndarray) -> SurfaceLocations:
     """Of every corner of every face of the cage."""
     size_at = np.repeat(face_sizes, face_sizes)
-    corner = np.arange(len(size_at)) - np.repeat(_starts(face_sizes), face_sizes)
+    corner = places(face_sizes)
     parts = ptex_face_counts(face_sizes)
-    first = np.repeat(_starts(parts), face_sizes)
+    first = np.repeat(starts(parts), face_sizes)
     is_quad = size_at == 4
     face = np.where(is_quad, first, first + corner)
     return SurfaceLocations(face, _AROUND[np.where(is_quad, corner, 0)].astype(np.float64))
@@ -73,9 +75,10 @@ def ptex_face_counts(face_sizes: np.ndarray) -> np.ndarray:
     return np.where(face_sizes == 4, 1, face_sizes)
 
 
-def polygon_counts(face_sizes: np.ndarray, levels: int) -> np.ndarray:
-    """Of each cage face, from level 1 on."""
-    return np.where(face_sizes == 4, 4, face_sizes).astype(np.int64) * 4 ** (levels - 1)
+def polygon_counts(face_sizes: np.ndarray, levels: int | np.ndarray) -> np.ndarray:
+    """Of each cage face, from level 1 on; quads stay what they are at level 0. `levels` may be an
+    array with one level for each face."""
+    return np.where(face_sizes == 4, 4, face_sizes).astype(np.int64) * 4**levels // 4
 
 
 class PolygonFinder:
@@ -85,8 +88,8 @@ class PolygonFinder:
         parts = ptex_face_counts(face_sizes)
         self._sizes, self._levels = face_sizes, levels
         self._base = np.repeat(np.arange(len(face_sizes)), parts)
-        self._part = np.arange(parts.sum()) - np.repeat(_starts(parts), parts)
-        self._first_polygon = _starts(polygon_counts(face_sizes, levels))
+        self._part = places(parts)
+        self._first_polygon = starts(polygon_counts(face_sizes, levels))
 
     def find(self, face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Polygons (n,), and how far along them (n, 2): (0, 0) at their first corner, (1, 0) at
@@ -157,7 +160,3 @@ def _joined(*strips: _Strip) -> _Cells:
     parts, columns, rows = zip(*(np.broadcast_arrays(*strip) for strip in strips), strict=True)
     cell = np.stack([np.concatenate(columns), np.concatenate(rows)], axis=1)
     return _Cells(np.concatenate(parts), cell)
-
-
-def _starts(counts: np.ndarray) -> np.ndarray:
-    return np.concatenate([[0], np.cumsum(counts)[:-1]])

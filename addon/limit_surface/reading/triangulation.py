@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import ragged_rows
+
 
 @dataclass(frozen=True)
 class TriangulatedQuads:
@@ -35,13 +37,12 @@ class TriangulatedQuads:
     ) -> TriangulatedQuads:
         """Of polygons of any size: the quads themselves, and the others' parts between a corner,
         the middles of its two sides and the mean of all corners."""
-        first = np.cumsum(sizes) - sizes
+        first = ragged_rows.starts(sizes)
         is_quad = sizes == 4
         split = ~np.repeat(is_quad, sizes)  # corners that have a part of their own
         polygon = np.repeat(np.arange(len(sizes)), sizes)
         corner = np.arange(len(corner_vertex))
-        following = np.where(corner + 1 == (first + sizes)[polygon], first[polygon], corner + 1)
-        before = np.where(corner == first[polygon], (first + sizes - 1)[polygon], corner - 1)
+        following, before = ragged_rows.following(sizes), ragged_rows.preceding(sizes)
 
         middles = (vertices[corner_vertex] + vertices[corner_vertex[following]]) / 2
         centres = np.add.reduceat(vertices[corner_vertex], first) / sizes[:, None]
@@ -53,7 +54,7 @@ class TriangulatedQuads:
         parts = np.stack([corner_vertex, middle_at, centre_at, middle_at[before]], axis=1)
         whole = corner_vertex[np.minimum(first[polygon, None] + np.arange(4), len(corner) - 1)]
         corners = np.where(split[:, None], parts, whole)[kept]
-        first_triangle = np.cumsum(sizes - 2) - (sizes - 2)
+        first_triangle = ragged_rows.starts(sizes - 2)
         flipped = _is_flipped(triangles[first_triangle], first) & is_quad
         return cls(np.concatenate([vertices, middles, centres]), corners, flipped[polygon[kept]])
 

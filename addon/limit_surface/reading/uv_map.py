@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from .. import ids
-from . import attributes
+from . import attributes, ragged_rows
 
 LIMIT = np.float32(1e-4)  # corners of a vertex that differ by less along each axis share a value
 
@@ -55,8 +55,6 @@ def _leaders(uv: np.ndarray, corner_vertex: np.ndarray, mirrored: np.ndarray) ->
 
 def _is_mirrored(uv: np.ndarray, face_sizes: np.ndarray) -> np.ndarray:
     """Whether a face's corners run clockwise on the map; faces of no area there do not."""
-    starts = np.cumsum(face_sizes) - face_sizes
-    before = np.arange(len(uv)) - 1
-    before[starts] = starts + face_sizes - 1
+    before = ragged_rows.preceding(face_sizes)
     strips = (uv[before, 0] - uv[:, 0]) * (uv[:, 1] + uv[before, 1])
-    return np.add.reduceat(strips, starts) < 0
+    return np.add.reduceat(strips, ragged_rows.starts(face_sizes)) < 0

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import native
 from ..errors import RefusalError
 from ..reading import cage, displayed_mesh
 from ..tasks.job import Progress, part_of
@@ -50,8 +49,7 @@ def measure_all(
 ) -> tuple[dict[str, Distances], int]:
     """Of each mesh; and how many faces of the cage have no limit surface. Nothing of Blender is
     touched."""
-    surface = native.limitsurf.LimitSurface(found.mesh)
-    surface.set_positions(found.world_positions())
+    surface = found.surface(in_world=True)
     refused = len(surface.refused)
     if refused == len(found.face_sizes):
         raise RefusalError(f"No face has a limit surface: {next(iter(surface.refused.values()))}")

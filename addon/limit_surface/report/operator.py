@@ -7,11 +7,11 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import ids
-from ..placing import new_objects
 from ..reading import cage, displayed_mesh
-from ..tasks import polling
 from ..tasks.job import Job, Progress
-from ..tasks.watched_operator import WatchedOperator
+from ..tasks.object_keys import ObjectKey
+from ..tasks.refused_faces import left_out
+from ..tasks.watched_operator import WatchedOperator, draw_summary
 from .distances import Distances, measure_all
 from .storage import check_attributes, store_numbers, store_on_mesh
 from .text import numbers, sentence
@@ -19,7 +19,7 @@ from .text import numbers, sentence
 
 @dataclass(frozen=True)
 class Measured:
-    surface: tuple[str, str | None]  # the object's key
+    surface: ObjectKey
     cage: cage.Cage
     results: dict[str, Distances]
     refused: int
@@ -69,10 +69,6 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.mesh_in_object_mode(cls, context, context.active_object)
-
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
@@ -80,8 +76,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         if self.levels == "LEVEL":
             layout.prop(self, "level")
         layout.prop(self, "full_color")
-        for line in self.summary.splitlines():
-            layout.label(text=line, icon="INFO")
+        draw_summary(layout, self.summary)
 
     def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
@@ -93,7 +88,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
             name: displayed_mesh.read(ob, depsgraph, found, kind)
             for name, kind in self._kinds().items()
         }
-        key = new_objects.key(ob)
+        key = ObjectKey.of(ob)
 
         def work(progress: Progress) -> Measured:
             return Measured(key, found, *measure_all(found, meshes, progress))
@@ -101,7 +96,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         return self.watch(context, Job(work), f"Measuring {ob.name}")
 
     def finish(self, context: bpy.types.Context, made: Measured) -> set[str]:
-        ob = new_objects.find(made.surface)
+        ob = made.surface.find()
         not_stored = cage.why_not_on_mesh(ob, made.cage)
         if not_stored:
             self.report({"WARNING"}, f"Attributes are not stored: {not_stored}")
@@ -131,9 +126,5 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         lines = [sentence(*item) for item in kept.items()]
         self.summary = "\n".join(lines)
         if refused:
-            self.report(
-                {"WARNING"},
-                f"{refused:,} of {len(found.face_sizes):,} faces have no limit surface and were "
-                "left out",
-            )
+            self.report({"WARNING"}, left_out(refused, len(found.face_sizes)))
         self.report({"INFO"}, "; ".join([f"{ob.name}: {'; '.join(lines)}", *found.notes]))

@@ -5,9 +5,10 @@ import bpy
 import numpy as np
 
 from .. import ids
-from ..errors import RefusalError
 from ..reading import attributes
 from . import colours
+
+_KINDS = {ids.DISTANCE: "FLOAT", ids.DISTANCE_COLOR: "FLOAT_COLOR"}
 
 
 def store_numbers(ob: bpy.types.Object, results: dict[str, dict[str, float]]) -> None:
@@ -17,16 +18,7 @@ def store_numbers(ob: bpy.types.Object, results: dict[str, dict[str, float]]) ->
 
 def check_attributes(ob: bpy.types.Object) -> None:
     """RefusalError where something else has these names."""
-    mesh = ob.data
-    for name, kind in ((ids.DISTANCE, "FLOAT"), (ids.DISTANCE_COLOR, "FLOAT_COLOR")):
-        there = mesh.attributes.get(name)
-        if there and (there.data_type, there.domain) != (kind, "POINT"):
-            raise RefusalError(
-                f"{mesh.name} has an attribute {name} of another kind "
-                f"({there.data_type} on {there.domain}): rename or remove it"
-            )
-        if name in ob.vertex_groups:  # they share names with attributes
-            raise RefusalError(f"{ob.name} has a vertex group {name}: rename or remove it")
+    attributes.check_names(ob, _KINDS, "POINT")
 
 
 def store_on_mesh(mesh: bpy.types.Mesh, distance: np.ndarray, full: float) -> None:

@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
+from ..reading import ragged_rows
 from .element_points import SnappedPoints
 
 
@@ -26,13 +27,12 @@ class SnappedCurvePoints(SnappedPoints):
 
     def move(self, rows: np.ndarray, moves: np.ndarray) -> None:
         splines = self.ob.data.splines
-        ends = np.cumsum([len(_points(spline)) for spline in splines])
-        first = np.searchsorted(rows, ends - [len(_points(spline)) for spline in splines])
-        last = np.searchsorted(rows, ends)
-        for spline, begin, end, behind in zip(splines, first, last, ends, strict=True):
+        sizes = np.array([len(_points(spline)) for spline in splines], np.int64)
+        starts = ragged_rows.starts(sizes)
+        first, last = np.searchsorted(rows, starts), np.searchsorted(rows, starts + sizes)
+        for spline, begin, end, start in zip(splines, first, last, starts, strict=True):
             if begin < end:
-                own = rows[begin:end] - (behind - len(_points(spline)))
-                _move(spline, own, moves[begin:end])
+                _move(spline, rows[begin:end] - start, moves[begin:end])
         self.ob.data.update_tag()
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import ids
 from ..placing.rotations import WorldSpace, unit
-from ..reading import attributes
+from ..reading import attributes, ragged_rows
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .hair_binding import HairBinding
@@ -129,4 +129,4 @@ def _selected(data: bpy.types.Curves, sizes: np.ndarray) -> np.ndarray:
     selected = attributes.read(data, _SELECTION) > 0
     if data.attributes[_SELECTION].domain == "CURVE":
         return selected
-    return np.logical_or.reduceat(selected, np.cumsum(sizes) - sizes)
+    return np.logical_or.reduceat(selected, ragged_rows.starts(sizes))

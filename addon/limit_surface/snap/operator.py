@@ -8,6 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from .. import ids, native
 from ..errors import RefusalError
 from ..tasks.progress import progress_bar
+from ..tasks.watched_operator import draw_summary
 from .aim import Aim, View
 from .choices import Choices, Outcome, merged
 from .properties import PlacingProperties
@@ -156,8 +157,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
             row.active = self.hair != "STRAND"
             row.prop(self, "keep_length")
         layout.prop(self, "target")
-        for line in self.summary.splitlines():
-            layout.label(text=line, icon="INFO")
+        draw_summary(layout, self.summary)
 
     def _run(self, context: bpy.types.Context) -> set[str]:
         aim = self._aim(context)

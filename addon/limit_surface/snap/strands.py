@@ -4,6 +4,7 @@
 import numpy as np
 
 from ..placing.rotations import unit
+from ..reading import ragged_rows
 
 
 class Strands:
@@ -11,10 +12,9 @@ class Strands:
 
     def __init__(self, points: np.ndarray, sizes: np.ndarray) -> None:
         self.points = points  # (n, 3)
-        ends = np.cumsum(sizes)
-        self.root = ends - sizes  # (m,) rows of the roots
+        self.root = ragged_rows.starts(sizes)  # (m,) rows of the roots
         self.curve = np.repeat(np.arange(len(sizes)), sizes)  # (n,)
-        self._last = ends - 1
+        self._last = self.root + sizes - 1
 
     def directions(self) -> np.ndarray:
         """(m, 3) unit vectors from the roots to the second points; NaN where there is none."""

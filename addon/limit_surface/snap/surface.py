@@ -6,10 +6,9 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from .. import native
-from ..errors import RefusalError
 from ..placing.rotations import WorldSpace
 from ..reading import cage, displayed_mesh, rules
+from ..tasks.refused_faces import check_some_left
 
 SAME = 1e-6  # of the largest coordinate: as exactly as Blender's single precision allows
 
@@ -28,16 +27,13 @@ class TargetSurface:
         self._stood = ob.matrix_world.copy()
         self.cage = cage.read(ob, depsgraph)
         WorldSpace(self.cage.matrix)  # refuses what is flattened to nothing
-        self.in_world = native.limitsurf.LimitSurface(self.cage.mesh)
-        if len(self.in_world.refused) == len(self.cage.face_sizes):
-            raise RefusalError(f"No face of {ob.name} has a limit surface")
-        self.in_world.set_positions(self.cage.world_positions())
-        self._in_object = native.limitsurf.LimitSurface(self.cage.mesh)
+        self.in_world = self.cage.surface(in_world=True)
+        check_some_left(self.in_world, ob.name)
+        self._in_object = self.cage.surface()
         self._shown = (
             None if kind == "LIMIT" else displayed_mesh.read(ob, depsgraph, self.cage, kind)
         )
-        # du x dv points inwards in the world if the object is mirrored there.
-        self.outward = np.sign(np.linalg.det(self.cage.matrix[:3, :3]))
+        self.outward = -1.0 if self.cage.is_mirrored else 1.0
 
     def has_changed(self, depsgraph: bpy.types.Depsgraph) -> bool:
         """Since it was read: what was put on it has a part in it."""

@@ -6,6 +6,7 @@ A side is a straight line in a Ptex face's (u, v): what is found lies exactly on
 
 import numpy as np
 
+from ..reading import ragged_rows
 from ..snap.surface import TargetSurface
 from .ray import Ray
 
@@ -24,7 +25,7 @@ class Borders:
         others = np.flatnonzero(sizes[base] != 4)
         sides = [
             (faces, begin, end, first[base[faces]] + (corner[faces] + ahead) % sizes[base[faces]])
-            for first in [np.cumsum(sizes) - sizes]
+            for first in [ragged_rows.starts(sizes)]
             for faces, begin, end, ahead in (
                 (quads, (0, 0), (1, 0), 0),
                 (quads, (1, 0), (1, 1), 1),
@@ -79,10 +80,8 @@ class Borders:
 def _edges(sizes: np.ndarray, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """For each face corner the edge that leads on from it, and for each edge whether it has but one
     face."""
-    following = np.arange(1, len(vertices) + 1)
-    ends = np.cumsum(sizes)
-    following[ends - 1] = ends - sizes
-    low, high = np.sort(np.stack([vertices, vertices[following]]).astype(np.int64), axis=0)
+    following = vertices[ragged_rows.following(sizes)]
+    low, high = np.sort(np.stack([vertices, following]).astype(np.int64), axis=0)
     pair = low * (high.max() + 1) + high
     _pairs, edge, count = np.unique(pair, return_inverse=True, return_counts=True)
     return edge.ravel(), count == 1

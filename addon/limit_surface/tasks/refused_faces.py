@@ -1,7 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Faces that have no limit surface, in words."""
 
+from __future__ import annotations
+
 from collections import Counter
+from typing import TYPE_CHECKING
+
+from ..errors import RefusalError
+
+if TYPE_CHECKING:
+    import limitsurf
+
+
+def check_some_left(surface: limitsurf.LimitSurface, whose: str) -> None:
+    """RefusalError where no face has a limit surface."""
+    if len(surface.refused) == len(surface.mesh.face_sizes):
+        raise RefusalError(f"No face of {whose} has a limit surface")
+
+
+def left_out(count: int, faces: int, reasons: str = "") -> str:
+    """The warning that so many of a mesh's faces have no part in what was made."""
+    warning = f"{count:,} of {faces:,} faces have no limit surface and were left out"
+    return f"{warning}: {reasons}" if reasons else warning
 
 
 def reasons(refused: dict[int, str]) -> str:

@@ -15,6 +15,11 @@ BYTES_PER_LOCATION = 130
 BYTES_PER_ELEMENT = 200
 
 
+def memory_text(count: int) -> str:
+    """Of so many bytes."""
+    return f"about {count / 2**30:.1f} GiB of memory"
+
+
 @dataclass(frozen=True)
 class RequestSize:
     noun: str
@@ -47,4 +52,4 @@ class RequestSize:
 
     def __str__(self) -> str:
         many = f" of {self.elements_per_location} points" if self.elements_per_location > 1 else ""
-        return f"{self.how_many}{many} (about {self.memory / 2**30:.1f} GiB of memory)"
+        return f"{self.how_many}{many} ({memory_text(self.memory)})"

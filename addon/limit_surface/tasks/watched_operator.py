@@ -1,5 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators whose work may take long."""
+"""Operators whose work may take long.
+
+The steps of such an operator, in the order in which they run, with the method that takes each step
+and the class that provides it:
+
+1. `poll`: WatchedOperator, for operators on the active mesh in Object Mode.
+2. `invoke`, where a user has chosen the operator: WatchedOperator remembers that somebody waits and
+   goes on with step 3. A TextureOperator shows its dialog first, which leads to step 3. A
+   ScatterOperator reads its order first: the user has to confirm what is very large, which leads to
+   step 3; with anything else it goes on with step 5.
+3. `execute`: WatchedOperator calls `start`, and reports refusals as errors. This is where scripts,
+   the redo panel and confirmed dialogs begin.
+4. `start`: the operator reads from Blender what the work needs, and hands a job to `watch`.
+5. `watch`: WatchedOperator runs the job. It is done at once for scripts; where somebody waits, it
+   runs in a thread, and `modal` looks after it until it is done or ESC ends it by `cancel`.
+6. `finish`: the operator gets what the job has made, and is the first to change anything.
+
+`placing/scatter_operator.py` says how a ScatterOperator divides steps 4 to 6 further.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +29,7 @@ import bpy
 from .. import native
 from ..errors import RefusalError
 from .job import Job
+from .polling import mesh_in_object_mode
 from .progress import Waiting, progress_bar
 
 #: Work lets the user wait, and watch it, from here on
@@ -23,14 +42,17 @@ class WatchedOperator:
     """Mixin: where somebody waits, long work goes on beside Blender until it is done or ESC ends
     it; scripts get it done at once. Refusals are reported as errors.
 
-    A subclass's `start` reads what the work needs and hands a job to `watch`; `finish` gets what
-    the job has made, and is the first to change anything.
+    A subclass provides `start` and `finish`.
     """
 
     too_large = "Not enough memory"
     cancelled = "Cancelled"
     _someone_waits = False
     _job: Job | None = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return mesh_in_object_mode(cls, context, context.active_object)
 
     def start(self, context: bpy.types.Context) -> set[str]:
         raise NotImplementedError
@@ -98,3 +120,9 @@ class WatchedOperator:
             reason = self.too_large
         self.report({"ERROR"}, reason)
         return {"CANCELLED"}
+
+
+def draw_summary(layout: bpy.types.UILayout, summary: str) -> None:
+    """In redo panels and dialogs: what an operator has done, line by line."""
+    for line in summary.splitlines():
+        layout.label(text=line, icon="INFO")

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Properties that all operators that make textures have."""
+"""What all operators that make textures share: properties, and the dialog that shows them."""
 
+import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+
+from ..tasks.watched_operator import WatchedOperator, draw_summary
 
 LARGEST = 16384  # texels along a side
 
 
 class TextureProperties:
-    """Mixin for the operators."""
+    """Mixin for the operators' own properties."""
 
     width: IntProperty(
         name="Width",
@@ -67,3 +70,25 @@ class TextureProperties:
         description="What the operator made",
         options={"HIDDEN", "SKIP_SAVE"},
     )
+
+
+class TextureOperator(WatchedOperator):
+    """Mixin: users get a dialog of the operator's properties before it runs.
+
+    Its place among the steps of an operator stands in `tasks/watched_operator.py`. A subclass has
+    TextureProperties, too, and lays its properties out in `draw_properties`.
+    """
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        self._someone_waits = True
+        return context.window_manager.invoke_props_dialog(self, width=380)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        self.layout.use_property_split = True
+        self.draw_properties()
+        draw_summary(self.layout, self.summary)
+
+    def draw_properties(self) -> None:
+        raise NotImplementedError

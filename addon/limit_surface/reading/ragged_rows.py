@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Arrays of rows that follow each other end to end, each row with a size of its own, at least 1.
+
+So numpy holds the corners of polygons, face by face, and the points of curves, curve by curve.
+"""
+
+import numpy as np
+
+
+def starts(sizes: np.ndarray) -> np.ndarray:
+    """Where each row begins."""
+    return np.cumsum(sizes) - sizes
+
+
+def places(sizes: np.ndarray) -> np.ndarray:
+    """For each element its place in its row, counted from 0."""
+    return np.arange(np.sum(sizes)) - np.repeat(starts(sizes), sizes)
+
+
+def following(sizes: np.ndarray) -> np.ndarray:
+    """For each element the next one of its row; for the last one the row's first."""
+    first = starts(sizes)
+    result = np.arange(np.sum(sizes)) + 1
+    result[first + sizes - 1] = first
+    return result
+
+
+def preceding(sizes: np.ndarray) -> np.ndarray:
+    """For each element the one before it in its row; for the first one the row's last."""
+    first = starts(sizes)
+    result = np.arange(np.sum(sizes)) - 1
+    result[first] = first + sizes - 1
+    return result

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects of a task, by names that outlast the task.
+
+While a task runs Blender may remove an object, or move it in memory: so no reference to it is kept.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import bpy
+
+from ..errors import RefusalError
+
+
+class ObjectKey(NamedTuple):
+    """The library tells an object from those of the same name in other files."""
+
+    name: str
+    library: str | None  # the path of its file; None for the open file
+
+    @classmethod
+    def of(cls, ob: bpy.types.Object) -> ObjectKey:
+        return cls(ob.name, ob.library.filepath if ob.library else None)
+
+    def find(self) -> bpy.types.Object:
+        """RefusalError if the object has been removed."""
+        ob = bpy.data.objects.get((self.name, self.library))
+        if ob is None:
+            raise RefusalError(f"{self.name} is not there any more")
+        return ob
