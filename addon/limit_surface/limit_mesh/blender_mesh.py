@@ -8,8 +8,8 @@ import numpy as np
 
 from .. import ids
 from ..placing import new_objects
-from ..reading import attributes, ragged_rows
-from . import cage_attributes, vertex_groups
+from ..reading import attributes, ragged_rows, vertex_weights
+from . import cage_attributes
 from .tessellation import Made
 
 _SAME = 1e-4  # components of normals that differ by less
@@ -28,7 +28,7 @@ def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) 
         for each in made.carrier.on_edges(mesh):
             cage_attributes.write(mesh, each)
         if made.groups.names:
-            grouped = vertex_groups.with_groups(
+            grouped = vertex_weights.with_groups(
                 mesh, made.groups.names, made.groups.weights, depsgraph
             )
             bpy.data.meshes.remove(mesh)

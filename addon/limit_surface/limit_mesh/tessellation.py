@@ -11,12 +11,12 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..reading import cage
+from ..reading import cage, vertex_weights
 from ..reading.subdivided_mesh import polygon_counts
 from ..tasks.job import Progress, part_of
 from ..tasks.refused_faces import reasons
 from ..tasks.request_size import RequestSize
-from . import cage_attributes, levels, vertex_groups
+from . import cage_attributes, levels
 from .cage_attributes import Attribute, CageAttributes, Carrier
 
 if TYPE_CHECKING:
@@ -32,6 +32,15 @@ class Groups:
 
     names: Sequence[str]
     weights: np.ndarray  # (vertices, groups)
+
+    @classmethod
+    def read(cls, mesh: bpy.types.Mesh, names: Sequence[str]) -> Groups:
+        """From a mesh that has kept them; 0 in groups that modifiers drop."""
+        weights = np.zeros((len(mesh.vertices), len(names)), np.float32)
+        for i, found in enumerate(vertex_weights.read(mesh, len(names))):
+            if found is not None:
+                weights[:, i] = found
+        return cls(names, weights)
 
     def by_name(self) -> dict[str, np.ndarray]:
         return dict(zip(self.names, self.weights.T, strict=True))
@@ -100,10 +109,10 @@ def read(
 ) -> Source:
     names = ob.vertex_groups.keys()
     with (
-        vertex_groups.kept(names) as keep,
+        vertex_weights.kept(names) as keep,
         cage.opened(ob, depsgraph, keep) as (found, mesh),
     ):
-        groups = Groups(names, vertex_groups.read(mesh, names))
+        groups = Groups.read(mesh, names)
         source = cage_attributes.read(mesh, with_sharp_faces)
         return Source(found, source, groups, choose(mesh, found, groups))
 

@@ -58,9 +58,9 @@ class DensityChoice:
     extension: str
     invert: bool
 
-    def wanted_vertex_group(self, ob: bpy.types.Object) -> str:
+    def wanted_vertex_groups(self, ob: bpy.types.Object) -> list[str]:
         if self.source != "VERTEX_GROUP":
-            return ""
+            return []
         if self.vertex_group not in ob.vertex_groups:
             raise RefusalError(f"{ob.name} has no vertex group {self.vertex_group!r}")
         if self.vertex_group in ob.data.attributes:
@@ -68,7 +68,7 @@ class DensityChoice:
                 f"{ob.name} has an attribute that is called {self.vertex_group} like the vertex "
                 "group, and would be taken for it: rename the group"
             )
-        return self.vertex_group
+        return [self.vertex_group]
 
     def read(
         self, mesh: bpy.types.Mesh, found: cage.Cage, ob: bpy.types.Object
@@ -88,7 +88,7 @@ class DensityChoice:
     def _of_vertex_group(
         self, mesh: bpy.types.Mesh, found: cage.Cage, ob: bpy.types.Object
     ) -> tuple[np.ndarray, np.ndarray]:
-        values = vertex_weights.read(mesh)
+        (values,) = vertex_weights.read(mesh, 1)
         if values is None:
             raise RefusalError(
                 f"{ob.name}: the vertex group {self.vertex_group} does not outlast the modifiers"

@@ -95,7 +95,7 @@ def read(
 ) -> Region:
     """RefusalError where there is nothing to cover, or a choice that means nothing here."""
     with (
-        vertex_weights.kept(density.wanted_vertex_group(ob)) as keep,
+        vertex_weights.kept(density.wanted_vertex_groups(ob)) as keep,
         cage.opened(ob, depsgraph, keep) as (found, mesh),
     ):
         bare = mask.uncovered(mesh, ob.name)

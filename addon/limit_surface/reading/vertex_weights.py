@@ -1,69 +1,115 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The weights of a vertex group as a whole array.
+"""The weights of vertex groups as whole arrays, read from a mesh and put on one.
 
-Python sees them vertex by vertex only; geometry nodes, run for the evaluation of a mesh, copy them
-to an attribute.
+Python sees them vertex by vertex only. Geometry nodes, run for the evaluation of a mesh, copy them
+to attributes and back.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 import bpy
 import numpy as np
 
 from .. import ids
-from . import attributes
+from . import attributes, cage
+
+Adjust = Callable[[bpy.types.Object, bpy.types.Scene], None]
 
 _MISSING = -1.0  # weights are 0 to 1
 
 
 @contextmanager
-def kept(
-    vertex_group: str,
-) -> Iterator[Callable[[bpy.types.Object, bpy.types.Scene], None] | None]:
+def kept(groups: Sequence[str]) -> Iterator[Adjust | None]:
     """Gives what is to be done to a copied object before it is evaluated, so that its mesh can be
-    `read`; None for no name."""
-    if not vertex_group:
+    `read`; None for no groups."""
+    pairs = [(name, _attribute(i)) for i, name in enumerate(groups)]
+    with _copying(pairs, _MISSING) as add_nodes:
+        yield add_nodes
+
+
+def read(mesh: bpy.types.Mesh, count: int) -> list[np.ndarray | None]:
+    """Of so many groups that the mesh has kept, one weight for each vertex; None for groups that
+    modifiers drop."""
+    found = [attributes.read(mesh, _attribute(i)) for i in range(count)]
+    return [None if (weights == _MISSING).all() else weights for weights in found]
+
+
+def with_groups(
+    mesh: bpy.types.Mesh,
+    groups: Sequence[str],
+    weights: np.ndarray,
+    depsgraph: bpy.types.Depsgraph,
+) -> bpy.types.Mesh:
+    """Another mesh, alike but for its weights (vertices, groups)."""
+    for i, weight in enumerate(weights.T):
+        attributes.write(mesh, _attribute(i), "FLOAT", "POINT", weight)
+    ob = bpy.data.objects.new(ids.TEMPORARY_MESH, mesh)
+    try:
+        for group in groups:
+            ob.vertex_groups.new(name=group)
+        pairs = [(_attribute(i), group) for i, group in enumerate(groups)]
+        with (
+            _copying(pairs) as add_nodes,
+            cage.evaluated_copy(ob, 0, depsgraph, add_nodes) as evaluated,
+        ):
+            made = bpy.data.meshes.new_from_object(evaluated)
+    finally:
+        bpy.data.objects.remove(ob)
+    for i in range(len(groups)):
+        made.attributes.remove(made.attributes[_attribute(i)])
+    return made
+
+
+def _attribute(group: int) -> str:
+    return f"{ids.VERTEX_WEIGHT}_{group}"
+
+
+@contextmanager
+def _copying(
+    pairs: Sequence[tuple[str, str]], missing: float | None = None
+) -> Iterator[Adjust | None]:
+    """Of attributes or groups to others, by name. What has no source becomes `missing`, or 0."""
+    if not pairs:
         yield None
         return
-    group = _make_nodes(vertex_group)
+    tree = bpy.data.node_groups.new(ids.WEIGHTS_GROUP, "GeometryNodeTree")
+    _fill(tree, pairs, missing)
 
     def add_nodes(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
-        copy.modifiers.new(group.name, "NODES").node_group = group
+        copy.modifiers.new(tree.name, "NODES").node_group = tree
 
     try:
         yield add_nodes
     finally:
-        bpy.data.node_groups.remove(group)
+        bpy.data.node_groups.remove(tree)
 
 
-def read(mesh: bpy.types.Mesh) -> np.ndarray | None:
-    """One for each vertex of a mesh that has kept them; None where modifiers drop the group."""
-    values = attributes.read(mesh, ids.VERTEX_WEIGHT)
-    return None if (values == _MISSING).all() else values
-
-
-def _make_nodes(vertex_group: str) -> bpy.types.NodeTree:
-    group = bpy.data.node_groups.new(ids.WEIGHTS_GROUP, "GeometryNodeTree")
+def _fill(
+    tree: bpy.types.NodeTree, pairs: Sequence[tuple[str, str]], missing: float | None
+) -> None:
     for in_out in ("INPUT", "OUTPUT"):
-        group.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
-    nodes, links = group.nodes, group.links
-    inputs, outputs = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
-    weight = nodes.new("GeometryNodeInputNamedAttribute")
-    weight.data_type = "FLOAT"
-    weight.inputs["Name"].default_value = vertex_group
-    known = nodes.new("GeometryNodeSwitch")
-    known.input_type = "FLOAT"
-    known.inputs["False"].default_value = _MISSING
-    store = nodes.new("GeometryNodeStoreNamedAttribute")
-    store.data_type, store.domain = "FLOAT", "POINT"
-    store.inputs["Name"].default_value = ids.VERTEX_WEIGHT
-
-    links.new(weight.outputs["Exists"], known.inputs["Switch"])
-    links.new(weight.outputs["Attribute"], known.inputs["True"])
-    links.new(known.outputs["Output"], store.inputs["Value"])
-    links.new(inputs.outputs["Geometry"], store.inputs["Geometry"])
-    links.new(store.outputs["Geometry"], outputs.inputs["Geometry"])
-    return group
+        tree.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
+    nodes, links = tree.nodes, tree.links
+    geometry = nodes.new("NodeGroupInput").outputs["Geometry"]
+    for source, target in pairs:
+        weight = nodes.new("GeometryNodeInputNamedAttribute")
+        weight.data_type = "FLOAT"
+        weight.inputs["Name"].default_value = source
+        value = weight.outputs["Attribute"]
+        if missing is not None:
+            known = nodes.new("GeometryNodeSwitch")
+            known.input_type = "FLOAT"
+            known.inputs["False"].default_value = missing
+            links.new(weight.outputs["Exists"], known.inputs["Switch"])
+            links.new(value, known.inputs["True"])
+            value = known.outputs["Output"]
+        store = nodes.new("GeometryNodeStoreNamedAttribute")
+        store.data_type, store.domain = "FLOAT", "POINT"
+        store.inputs["Name"].default_value = target
+        links.new(value, store.inputs["Value"])
+        links.new(geometry, store.inputs["Geometry"])
+        geometry = store.outputs["Geometry"]
+    links.new(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
