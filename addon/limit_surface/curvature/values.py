@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import RefusalError
 from ..placing.rotations import WorldSpace, unit
 from ..reading import cage
-from ..tasks.job import Progress
+from ..tasks.job import Progress, slices
 
 PART = 1 << 16  # so many places are looked at at once: a progress bar moves, memory stays small
 NOWHERE = -1  # the face of what is on no surface
@@ -60,8 +60,8 @@ class CurvedSurface:
         directions = np.full((2, count, 3), np.nan)
         irregular = np.zeros(count, bool)
         there = np.flatnonzero(face != NOWHERE)
-        for begin in range(0, len(there), PART):
-            rows = there[begin : begin + PART]
+        for part in slices(len(there), PART, progress):
+            rows = there[part]
             c = self.surface.curvature(
                 face[rows], uv[rows], irregular="average", radius=self._radius
             )
@@ -72,7 +72,6 @@ class CurvedSurface:
                 numbers[:, rows] = c.mean, c.gaussian, c.k1, c.k2
                 directions[:, rows] = c.direction1, c.direction2
             irregular[rows] = c.irregular
-            progress((begin + len(rows)) / len(there))
         return Values(*numbers, *self._seen_from(matrix, directions), irregular)
 
     def _seen_from(self, matrix: np.ndarray, directions: np.ndarray) -> np.ndarray:

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..errors import RefusalError, TooLargeError
 from ..reading import attributes, cage, ragged_rows, uv_map
-from ..tasks.job import Progress
+from ..tasks.job import Progress, slices
 from ..tasks.request_size import LARGE_MEMORY, memory_text
 from . import overlap
 from .image_pixels import FIRST_TILE
@@ -113,10 +113,8 @@ def tiles_of(found: cage.Cage) -> list[int]:
 
 
 def parts(count: int, progress: Progress) -> Iterator[slice]:
-    """Of so many rows; tells how far it is."""
-    for begin in range(0, count, PART):
-        yield slice(begin, begin + PART)
-        progress(min(begin + PART, count) / count)
+    """Of so many texels; tells how far it is."""
+    return slices(count, PART, progress)
 
 
 def check_size(width: int, height: int, tiles: int, images: int, allow_large: bool) -> None:

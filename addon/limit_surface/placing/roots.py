@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..tasks.job import Progress
+from ..tasks.job import Progress, slices
 
 PART = 1 << 16  # so many are evaluated at once: a progress bar moves, memory stays small
 
@@ -35,8 +35,6 @@ class Roots:
 
 
 def evaluate(on: Evaluate, locations: Locations, progress: Progress) -> Iterator[Roots]:
-    for begin in range(0, len(locations), PART):
-        rows = slice(begin, min(begin + PART, len(locations)))
+    for rows in slices(len(locations), PART, progress):
         face, uv = locations.face[rows], locations.uv[rows].astype(np.float64)
         yield Roots(rows, *on(face, uv))
-        progress(rows.stop / len(locations))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from threading import Event, Thread
 from typing import Any
 
@@ -15,6 +15,14 @@ Progress = Callable[[float], None]
 def part_of(progress: Progress, begin: float, end: float) -> Progress:
     """For a piece of the work: what to call with the part of the piece that is done."""
     return lambda part: progress(begin + (end - begin) * part)
+
+
+def slices(count: int, size: int, progress: Progress) -> Iterator[slice]:
+    """Of so many rows, a piece of at most `size` after the other; tells how far the work is."""
+    for begin in range(0, count, size):
+        rows = slice(begin, min(begin + size, count))
+        yield rows
+        progress(rows.stop / count)
 
 
 class Job:
