@@ -8,6 +8,8 @@ colour-blind can read too, in the linear values that Blender's colour attributes
 
 import numpy as np
 
+from ..reading import srgb
+
 AUTOMATIC = 95  # per cent of the values are paler than the fullest colour
 
 _STEPS = np.linspace(-1, 1, 11)
@@ -26,8 +28,7 @@ def full_of(values: np.ndarray) -> float:
 
 def of_values(values: np.ndarray, full: float) -> np.ndarray:
     """(n, 4) for values (n,), of which `full` and more, either way, are the fullest."""
-    srgb = np.array(_SRGB) / 255
-    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    linear = srgb.to_linear(np.array(_SRGB) / 255)
     missing = ~np.isfinite(values)
     part = np.where(missing, 0, values) / full if full > 0 else np.zeros(len(values))
     rgb = np.stack([np.interp(part, _STEPS, channel) for channel in linear.T], axis=1)

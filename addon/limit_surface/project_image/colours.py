@@ -15,6 +15,7 @@ import numpy as np
 from mathutils import Color
 
 from ..errors import RefusalError
+from ..reading import srgb
 
 SRGB = "sRGB"
 LINEAR = "Linear Rec.709"  # the same primaries, without the curve
@@ -34,7 +35,7 @@ class Encoding:
         """From the image's own values (..., 4), float32, to what shaders read."""
         out = np.array(values, np.float32)
         if self.is_curved:
-            out[..., :3] = to_linear(out[..., :3])
+            out[..., :3] = srgb.to_linear(out[..., :3])
         if self.primaries is not None:
             out[..., :3] = out[..., :3] @ self.primaries.T
         if self.is_multiplied:
@@ -51,7 +52,7 @@ class Encoding:
         if self.primaries is not None:
             out[..., :3] = out[..., :3] @ np.linalg.inv(self.primaries).T
         if self.is_curved:
-            out[..., :3] = to_srgb(out[..., :3])
+            out[..., :3] = srgb.from_linear(out[..., :3])
         return out
 
 
@@ -77,19 +78,6 @@ def of_new(is_float: bool) -> Encoding:
     if is_float:
         return Encoding(False, None, True, True)
     return Encoding(True, _primaries(), False, True)
-
-
-def to_linear(values: np.ndarray) -> np.ndarray:
-    """sRGB's curve (IEC 61966-2-1)."""
-    return np.where(
-        values <= 0.04045, values / 12.92, ((np.maximum(values, 0) + 0.055) / 1.055) ** 2.4
-    )
-
-
-def to_srgb(values: np.ndarray) -> np.ndarray:
-    return np.where(
-        values <= 0.0031308, values * 12.92, 1.055 * np.maximum(values, 0) ** (1 / 2.4) - 0.055
-    )
 
 
 def _primaries() -> np.ndarray | None:

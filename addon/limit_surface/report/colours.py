@@ -7,6 +7,8 @@ that Blender's colour attributes hold.
 
 import numpy as np
 
+from ..reading import srgb
+
 _STEPS = np.linspace(0, 1, 9)
 _SRGB = (
     (0.267, 0.005, 0.329), (0.279, 0.175, 0.483), (0.230, 0.322, 0.546), (0.173, 0.449, 0.558),
@@ -17,8 +19,7 @@ _SRGB = (
 
 def of_distances(distance: np.ndarray, full: float) -> np.ndarray:
     """(n, 4) for distances (n,), of which `full` and more are yellow."""
-    srgb = np.array(_SRGB)
-    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    linear = srgb.to_linear(np.array(_SRGB))
     part = np.clip(distance / full, 0, 1) if full > 0 else np.zeros(len(distance))
     rgb = np.stack([np.interp(part, _STEPS, channel) for channel in linear.T], axis=1)
     return np.column_stack([rgb, np.ones(len(rgb))])
