@@ -19,7 +19,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError, TooLargeError
-from ..reading import attributes, cage, ragged_rows, uv_map
+from ..reading import cage, ragged_rows, uv_map
 from ..tasks.job import Progress, slices
 from ..tasks.request_size import LARGE_MEMORY, memory_text
 from . import overlap
@@ -133,10 +133,7 @@ def check_size(width: int, height: int, tiles: int, images: int, allow_large: bo
 def _named(ob: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> uv_map.UvMap:
     if name not in ob.data.uv_layers and name not in mesh.uv_layers:
         raise RefusalError(f"{ob.name} has no UV map {name!r}")
-    if name not in mesh.uv_layers:
-        raise RefusalError(f"{ob.name}: the UV map {name} does not outlast the modifiers")
-    if not np.isfinite(attributes.read(mesh, name)).all():
-        raise RefusalError(
-            f"{ob.name}: the UV map {name} has coordinates that are not finite numbers"
-        )
+    reason = uv_map.obstacle(mesh, name)
+    if reason:
+        raise RefusalError(f"{ob.name}: {reason}")
     return uv_map.read(mesh, name)

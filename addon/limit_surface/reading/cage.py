@@ -228,8 +228,5 @@ def _read_uv_map(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[uv_map.UvM
     active = ob.data.uv_layers.active
     if active is None:
         return None, ""
-    if active.name not in mesh.uv_layers:
-        return None, f"the UV map {active.name} does not outlast the modifiers"
-    if not np.isfinite(attributes.read(mesh, active.name)).all():
-        return None, f"the UV map {active.name} has coordinates that are not finite numbers"
-    return uv_map.read(mesh, active.name), ""
+    reason = uv_map.obstacle(mesh, active.name)
+    return (None, reason) if reason else (uv_map.read(mesh, active.name), "")

@@ -25,6 +25,15 @@ class UvMap:
     indices: np.ndarray  # one per face corner of the cage
 
 
+def obstacle(mesh: bpy.types.Mesh, name: str) -> str:
+    """Why the map of that name cannot be read from a mesh as modifiers leave it, if so."""
+    if name not in mesh.uv_layers:
+        return f"the UV map {name} does not outlast the modifiers"
+    if not np.isfinite(attributes.read(mesh, name)).all():
+        return f"the UV map {name} has coordinates that are not finite numbers"
+    return ""
+
+
 def read(mesh: bpy.types.Mesh, name: str) -> UvMap:
     uv = attributes.read(mesh, name)
     corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)
