@@ -16,6 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "native/python/tests"))
+from golden import path_of, read_golden  # noqa: E402
+
 QUANTITIES = ("position", "du", "dv", "duu", "duv", "dvv", "normal")
 NONE, STORED, AS_BASE = 0, 1, 2
 
@@ -92,10 +95,7 @@ def encode(mesh: dict, base: dict | None) -> bytes:
 
 def check(folder: Path, name: str, mesh: dict) -> None:
     """Reads the file as the Python tests do and compares every bit."""
-    sys.path.insert(0, str(Path(__file__).parents[1] / "native/python/tests"))
-    from golden import read_golden
-
-    read = read_golden(folder / f"{name}.golden")
+    read = read_golden(path_of(name, folder))
     for quantity in QUANTITIES:
         for sample, row in enumerate(mesh[quantity]):
             expected = struct.pack("<3d", *(row or [np.nan] * 3))
@@ -130,14 +130,15 @@ def main() -> None:
     meshes = {}
     for path in sorted(arguments.json_folder.glob("*.json")):
         meshes[path.stem] = {**json.loads(path.read_text()), "name": path.stem}
-    arguments.out_folder.mkdir(parents=True, exist_ok=True)
     for name, mesh in meshes.items():
         base = meshes.get(base_name(name, set(meshes)))
-        (arguments.out_folder / f"{name}.golden").write_bytes(encode(mesh, base))
+        path = path_of(name, arguments.out_folder)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(encode(mesh, base))
     total = 0
     for name, mesh in meshes.items():
         check(arguments.out_folder, name, mesh)
-        total += (arguments.out_folder / f"{name}.golden").stat().st_size
+        total += path_of(name, arguments.out_folder).stat().st_size
     print(f"{len(meshes)} meshes, {total / 1e6:.2f} MB, read back bit for bit")
 
 

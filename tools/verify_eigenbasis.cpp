@@ -22,10 +22,10 @@
 #include "limitsurf/eigen/eigenbasis.h"
 #include "limitsurf/eigen/ring_cells.h"
 #include "limitsurf/surface/limit_surface.h"
-#include "support/deep_subdivision.h"
-#include "support/meshes.h"
+#include "support/cages/meshes.h"
+#include "support/cages/sharp_meshes.h"
 #include "support/random.h"
-#include "support/sharp_meshes.h"
+#include "support/truth/deep_subdivision.h"
 
 namespace limitsurf {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cages.h"
-#include "limitsurf/bake/uv_map.h"
+#include "limitsurf/uv/uv_map.h"
 #include "process_cost.h"
 #include "random.h"
 

@@ -7,12 +7,11 @@
 #include <map>
 #include <utility>
 
+#include "limitsurf/pi.h"
 #include "random.h"
 
 namespace limitsurf::bench {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 class CageBuilder {
  public:
@@ -64,7 +63,7 @@ class Lattice {
 void addFan(CageBuilder& builder, Random& random, double x, double y, int sectors, bool closed,
             int side) {
   const int spoke_count = closed ? sectors : sectors + 1;
-  const double angle = (closed ? 2 * kPi : 1.5 * kPi) / sectors;
+  const double angle = (closed ? 2 * kPi<double> : 1.5 * kPi<double>) / sectors;
   const auto place = [&](double s, double t, int sector) {
     const double a = angle * sector;
     return builder.addVertex(x + s * std::cos(a) + t * std::cos(a + angle),
@@ -97,7 +96,7 @@ Cage torus(int size, const std::function<bool(int, int)>& is_hole) {
   const auto at = [&](int i, int j) {
     const auto [entry, is_new] = known.try_emplace({i % size, j % size}, -1);
     if (is_new) {
-      const double a = 2 * kPi * i / size, b = 2 * kPi * j / size;
+      const double a = 2 * kPi<double> * i / size, b = 2 * kPi<double> * j / size;
       const double tube = 1 + random.between(-0.05, 0.05), ring = 3 + tube * std::cos(b);
       entry->second = builder.addVertex(ring * std::cos(a), ring * std::sin(a), tube * std::sin(b));
     }

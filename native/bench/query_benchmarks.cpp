@@ -13,8 +13,10 @@
 
 #include "cages.h"
 #include "embree_peer.h"
-#include "limitsurf/query/area_sampler.h"
-#include "limitsurf/query/surface_search.h"
+#include "limitsurf/sample/area.h"
+#include "limitsurf/sample/area_sampler.h"
+#include "limitsurf/search/surface_search.h"
+#include "limitsurf/tessellate/tessellation.h"
 #include "process_cost.h"
 #include "random.h"
 
@@ -49,7 +51,7 @@ bool measureSetUp(const Cage& cage) {
   const auto with_surface = [&] { surface = std::make_unique<LimitSurface>(cage.controlMesh()); };
   const auto with_mesh = [&] {
     with_surface();
-    mesh = surface->tessellate(kPeerLevel);
+    mesh = tessellate(*surface, kPeerLevel);
   };
   struct Row {
     const char* name;
@@ -62,7 +64,7 @@ bool measureSetUp(const Cage& cage) {
       {"limitsurf AreaSampler", [&] { return std::make_shared<AreaSampler>(*surface); },
        with_surface},
       {"tessellate(4)",
-       [&] { return std::make_shared<Tessellation>(surface->tessellate(kPeerLevel)); },
+       [&] { return std::make_shared<Tessellation>(tessellate(*surface, kPeerLevel)); },
        with_surface},
       {"Embree over its triangles", [&] { return std::make_shared<EmbreePeer>(mesh); }, with_mesh},
   };
@@ -197,9 +199,9 @@ int measureQueries(int count) {
   const LimitSurface surface(cage.controlMesh());
   const SurfaceSearch search(surface);
   const AreaSampler sampler(surface);
-  const EmbreePeer peer(surface.tessellate(kPeerLevel));
+  const EmbreePeer peer(tessellate(surface, kPeerLevel));
   const Points on_surface = surface.evaluate(sampler.uniform(count, 1)).position;
-  const double face_width = std::sqrt(surface.area() / cage.faceCount());
+  const double face_width = std::sqrt(area(surface) / cage.faceCount());
   std::printf(
       "| | limitsurf s | CPU s | Embree s | CPU s | Embree / ours | its distance: max | RMS | its "
       "position: max | "
@@ -213,7 +215,7 @@ int measureQueries(int count) {
       search, peer, diagonal);
   compare(raysTo("rays, from all sides", on_surface, diagonal, randomDirection), search, peer,
           diagonal);
-  timeScattering(sampler, count, surface.area());
+  timeScattering(sampler, count, area(surface));
   return 0;
 }
 

@@ -9,7 +9,9 @@
 #include <unordered_map>
 
 #include "cages.h"
-#include "limitsurf/query/area_sampler.h"
+#include "limitsurf/sample/area.h"
+#include "limitsurf/sample/area_sampler.h"
+#include "limitsurf/tessellate/tessellation.h"
 #include "random.h"
 
 namespace limitsurf::bench {
@@ -21,7 +23,7 @@ struct ScatterCage {
   explicit ScatterCage(Cage made)
       : cage(std::move(made)), surface(cage.controlMesh()), sampler(surface) {}
   /// Of as much blue noise.
-  double radius(int count) const { return std::sqrt(0.7 * surface.area() / count); }
+  double radius(int count) const { return std::sqrt(0.7 * area(surface) / count); }
 
   Cage cage;
   LimitSurface surface;
@@ -32,7 +34,7 @@ struct ScatterCage {
 class TriangleSampler {
  public:
   explicit TriangleSampler(const LimitSurface& surface)
-      : mesh_(surface.tessellate(kPeerLevel, TessellationOptions{1})) {
+      : mesh_(tessellate(surface, kPeerLevel, TessellationOptions{1})) {
     double sum = 0;
     for (std::size_t quad = 0; quad < mesh_.face_vertices.size() / 4; ++quad) {
       for (const int half : {0, 1}) {

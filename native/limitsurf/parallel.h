@@ -49,6 +49,9 @@ inline void checkThreads(int threads) {
   }
 }
 
+/// The rows of a batch that make one task, where a row costs about as much as an evaluation.
+constexpr std::size_t kRowsPerTask = 512;
+
 /// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or at most
 /// `threads` of them, with an InterruptionPoint after every so many. Bodies must not depend on how
 /// the range is cut.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "limitsurf/pi.h"
+
 namespace limitsurf {
 
 /// cos and sin at multiples of 2 pi / period, exact where they are 0, 1/2 or 1 in size, and with
@@ -31,14 +33,13 @@ class Circle {
   }
 
   Real firstQuarter(std::int64_t q) const {
-    constexpr Real kPi = 3.14159265358979323846264338327950288L;
     if (q == period_) {
       return 0;
     }
     if (3 * q == 2 * period_) {
       return Real(1) / 2;
     }
-    const Real unit = kPi / (2 * static_cast<Real>(period_));
+    const Real unit = kPi<Real> / (2 * static_cast<Real>(period_));
     return 2 * q > period_ ? std::sin(unit * static_cast<Real>(period_ - q))
                            : std::cos(unit * static_cast<Real>(q));
   }

@@ -6,12 +6,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "limitsurf/pi.h"
+
 namespace limitsurf {
 namespace {
 
 using Real = DartSpectrum::Real;
 using Complex = DartSpectrum::Complex;
-constexpr Real kPi = 3.14159265358979323846264338327950288L;
 
 /// The parts of the secular equation that are polynomials in s.
 template <typename Scalar>
@@ -69,7 +70,7 @@ Real signChange(Real a, Real b, const Value& value) {
 
 /// The eigenvalue between poles k and k + 1, seen from the closer one.
 CircleWave<Real> between(int faces, int k) {
-  const Real half = kPi / (2 * static_cast<Real>(faces));
+  const Real half = kPi<Real> / (2 * static_cast<Real>(faces));
   const auto from = [&](int pole) {
     return [=](Real delta) { return Secular<Real>(faces, {faces, pole, delta}).value; };
   };
@@ -120,7 +121,7 @@ struct Traces {
 /// A solution of the secular equation by Newton's method.
 CircleWave<Complex> refined(int faces, const Complex& lambda) {
   const Complex psi = std::acos((Real(4) * lambda - Real(1)) / (Real(2) * std::sqrt(lambda)));
-  const Real spacing = kPi / static_cast<Real>(faces);
+  const Real spacing = kPi<Real> / static_cast<Real>(faces);
   const int pole = std::clamp(static_cast<int>(std::floor(psi.real() / spacing)), 0, faces - 1);
   Complex delta = psi - (static_cast<Real>(pole) + Real(1) / 2) * spacing;
   for (int i = 0; i < 8; ++i) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limitsurf/eigen/tile_grid.h"
-#include "limitsurf/mesh/subdivision_rules.h"
+#include "limitsurf/rules/subdivision_rules.h"
 
 namespace limitsurf {
 

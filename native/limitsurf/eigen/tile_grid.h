@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "limitsurf/mesh/subdivision_rules.h"
+#include "limitsurf/rules/subdivision_rules.h"
 
 namespace limitsurf {
 

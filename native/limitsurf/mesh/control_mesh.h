@@ -6,24 +6,10 @@
 #include <vector>
 
 #include "limitsurf/error.h"
+#include "limitsurf/rules/subdivision_options.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
-
-enum class Boundary {
-  smooth,   ///< every boundary is a uniform cubic B-spline curve, corners rounded (EDGE_ONLY)
-  corners,  ///< boundary vertices with one face are pinned (EDGE_AND_CORNER)
-};
-
-enum class Creasing {
-  uniform,  ///< a child edge's sharpness is its parent's less 1
-  chaikin,  ///< before that, it is averaged with the sharp edges at the end vertex
-};
-
-enum class Triangles {
-  catmark,  ///< Catmull-Clark's own edge rule everywhere
-  smooth,   ///< OpenSubdiv's TRI_SUB_SMOOTH: other edge weights beside triangles
-};
 
 enum class Scheme {
   catmark,
@@ -45,10 +31,7 @@ struct VertexSharpness {
   std::vector<double> values;
 };
 
-struct MeshOptions {
-  Boundary boundary = Boundary::smooth;
-  Creasing creasing = Creasing::uniform;
-  Triangles triangles = Triangles::catmark;
+struct MeshOptions : SubdivisionOptions {
   Scheme scheme = Scheme::catmark;
   EdgeSharpness edge_sharpness;
   VertexSharpness vertex_sharpness;

@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "limitsurf/mesh/decaying_sharpness.h"
 #include "limitsurf/mesh/messages.h"
-#include "limitsurf/mesh/subdivision_rules.h"
+#include "limitsurf/rules/decaying_sharpness.h"
+#include "limitsurf/rules/subdivision_rules.h"
 
 namespace limitsurf {
 namespace {

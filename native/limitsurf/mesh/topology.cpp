@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "limitsurf/mesh/messages.h"
-#include "limitsurf/mesh/subdivision_rules.h"
+#include "limitsurf/rules/subdivision_rules.h"
 
 namespace limitsurf {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limitsurf/mesh/subdivision_rules.h"
+#include "limitsurf/rules/subdivision_rules.h"
 
 namespace limitsurf {
 

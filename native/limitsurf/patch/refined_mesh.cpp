@@ -7,7 +7,8 @@
 namespace limitsurf {
 
 RefinedMesh::RefinedMesh(FaceMesh& parent, const std::vector<int>& faces,
-                         const MeshOptions& options, bool has_sharpness, RefinedPoints& points)
+                         const SubdivisionOptions& options, bool has_sharpness,
+                         RefinedPoints& points)
     : parent_(parent),
       has_sharpness_(has_sharpness),
       crease_(sdcOptions(options)),

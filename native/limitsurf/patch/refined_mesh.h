@@ -19,7 +19,7 @@ namespace limitsurf {
 /// be when they are asked for.
 class RefinedMesh final : public FaceMesh {
  public:
-  RefinedMesh(FaceMesh& parent, const std::vector<int>& faces, const MeshOptions& options,
+  RefinedMesh(FaceMesh& parent, const std::vector<int>& faces, const SubdivisionOptions& options,
               bool has_sharpness, RefinedPoints& points);
 
   int child(FaceCorner at) const { return child_of_corner_[parent_.cornerNumber(at)]; }

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "limitsurf/mesh/subdivision_rules.h"
+#include "limitsurf/rules/subdivision_rules.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -17,7 +17,7 @@ namespace limitsurf {
 /// topology and sharpness alone and are shared by all points that have the same.
 class RefinedPoints {
  public:
-  RefinedPoints(int cage_points, const MeshOptions& options)
+  RefinedPoints(int cage_points, const SubdivisionOptions& options)
       : cage_points_(cage_points), rules_(options) {}
 
   int cagePoints() const { return cage_points_; }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limitsurf/eigen/eigenbasis.h"
+#include "limitsurf/mesh/ptex_faces.h"
 #include "limitsurf/patch/refined_points.h"
 
 namespace limitsurf {
@@ -77,13 +78,6 @@ struct TileTable {
 
   /// The deepest split: sharpness decays in 10 steps, and one or two more part the vertices.
   static constexpr int kMostDepth = 14;
-};
-
-/// Numbers the Ptex faces of a mesh.
-struct PtexFaces {
-  explicit PtexFaces(const ControlMesh& mesh);
-  std::vector<int> base_face, corner;  ///< per Ptex face
-  std::vector<int> first;              ///< per face of the mesh; one more at the end
 };
 
 /// Throws nothing: faces that `topology` refuses get tiles of kind kNone.

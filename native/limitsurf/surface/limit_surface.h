@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -27,10 +26,6 @@ constexpr double kSecondDerivativeError = 1e-11;
 /// Normals: radians; at a smooth corner of one face only outside 2^-20 of the vertex, where du and
 /// dv are antiparallel.
 constexpr double kNormalError = 1e-11;
-
-/// Area: relative to the area. Not where du x dv vanishes along a curve, as on a mesh folded over
-/// in a plane: there the integrand has a kink and 1e-7 is reached.
-constexpr double kAreaError = 1e-9;
 
 enum class Derivatives { none = 0, first = 1, second = 2 };
 
@@ -79,35 +74,6 @@ using DataRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 class SurfaceData;     // surface_data.h
 class SurfacePatches;  // surface_patches.h
-
-/// Polygons on the limit surface. Points come face of the mesh by face, in the order in which that
-/// face's polygons first name them.
-struct Tessellation {
-  /// u and v of a polygon's corner on the polygon's own Ptex face, in parts of kSteps.
-  struct Corner {
-    static constexpr int kSteps = 4096;
-    std::uint16_t u, v;
-  };
-
-  Points positions, normals;
-  std::vector<Location> locations;  ///< of the points
-
-  std::vector<int> face_sizes;     ///< 3 or 4 corners each
-  std::vector<int> face_vertices;  ///< the corners' points, one polygon after the other
-  std::vector<int> base_face;      ///< per polygon: the face of the mesh
-  std::vector<int> ptex_face;      ///< per polygon: the Ptex face that it lies on
-  std::vector<Corner> corners;
-  Points corner_normals;  ///< only if asked for
-
-  /// Of a corner, counted over all polygons, which is one of that polygon's.
-  Location cornerLocation(std::size_t polygon, std::size_t corner) const;
-};
-
-struct TessellationOptions {
-  int threads = 0;
-  bool corner_normals = false;                  ///< of each polygon's corners as well
-  std::function<void(double part)> progress{};  ///< told which part is done, 0 to 1
-};
 
 /// The Catmull-Clark limit surface of a control mesh, evaluated exactly at any location.
 ///
@@ -232,42 +198,12 @@ class LimitSurface {
   /// surface uses.
   std::vector<Location> vertexLocations() const;
 
-  /// per_side x per_side stratified random locations on each Ptex face that has a surface (paper,
-  /// figure 1), in face order. The same seed gives the same locations on every machine.
-  std::vector<Location> scatterJittered(int per_side, std::uint64_t seed, int threads = 0) const;
-
-  /// Watertight quads on the limit surface: a quad becomes 2^levels x 2^levels of them, each
-  /// sub-face of an n-gon half as many a side. Points on shared edges exist once.
-  ///
-  /// A point's normal is the one seen from its location: one of several along creases, and at
-  /// irregular vertices without one the direction of frames(). Corner normals are those of each
-  /// polygon's own face.
-  ///
-  /// Throws std::invalid_argument for levels below 0, below 1 where the mesh has faces other than
-  /// quads, or above 12. Memory: 72 bytes a point and 8 a polygon corner, 24 more with corner
-  /// normals, and 12 a polygon.
-  Tessellation tessellate(int levels, const TessellationOptions& options = {}) const;
-
-  /// The same with a level for each face of the mesh; those of refused faces mean nothing. An edge
-  /// has 2^level segments for the largest level of its faces. In coarser faces cells become smaller
-  /// towards it, and some of them triangles around their centre (GradedFace tells which). No vertex
-  /// lies on another polygon's side, and a face's polygons cover it once, oriented as it is.
-  ///
-  /// Throws std::invalid_argument for another number of levels, and naming the first face whose
-  /// level is not allowed.
-  Tessellation tessellate(std::vector<int> levels, const TessellationOptions& options = {}) const;
-
-  /// Area of the limit surface; relative error: see kAreaError.
-  double area(int threads = 0) const;
-
   /// The tightest axis-aligned box around the limit surface (rows: minimum, maximum), to
   /// kPositionError.
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> bounds(int threads = 0) const;
 
  private:
   friend class SurfacePatches;
-  Tessellation tessellateAs(const std::vector<int>& levels, const std::string& whose,
-                            const TessellationOptions& options) const;
   struct Data;
   std::unique_ptr<Data> data_;
 };

@@ -14,9 +14,6 @@
 
 namespace limitsurf {
 
-/// Rows that one thread takes at a time.
-constexpr std::size_t kRowsPerTask = 512;
-
 inline void evaluateJet(TileEvaluator& evaluator, const TileLocation& at, Derivatives derivatives,
                         Jet& jet) {
   if (derivatives == Derivatives::none) {

@@ -5,9 +5,9 @@
 
 #include "arrays.h"
 #include "batches.h"
-#include "limitsurf/bake/map_distortion.h"
-#include "limitsurf/bake/shading_frames.h"
-#include "limitsurf/bake/tangent_frames.h"
+#include "limitsurf/surface/shading_frames.h"
+#include "limitsurf/surface/tangent_frames.h"
+#include "limitsurf/uv/map_distortion.h"
 #include "surface_data.h"
 
 namespace limitsurf::python {

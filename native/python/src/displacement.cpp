@@ -10,8 +10,8 @@
 #include "batches.h"
 #include "choices.h"
 #include "displacement_docstrings.h"
-#include "limitsurf/bake/displacement.h"
-#include "limitsurf/query/checks.h"
+#include "limitsurf/displace/displacement.h"
+#include "limitsurf/search/checks.h"
 #include "progress.h"
 
 namespace limitsurf::python {

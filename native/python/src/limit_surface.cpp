@@ -16,6 +16,8 @@
 #include "choices.h"
 #include "displacement.h"
 #include "docstrings.h"
+#include "limitsurf/sample/area.h"
+#include "limitsurf/sample/jittered.h"
 #include "projection.h"
 #include "shared_surface.h"
 #include "surface_data.h"
@@ -248,7 +250,7 @@ void bindLimitSurface(py::module_& module) {
             {
               const py::gil_scoped_release release;
               const InterruptionPoint point = interruptible();
-              at = shared.surface().scatterJittered(per_side, seed, threads);
+              at = scatterJittered(shared.surface(), per_side, seed, threads);
             }
             return locations(at);
           },
@@ -260,7 +262,7 @@ void bindLimitSurface(py::module_& module) {
             const py::gil_scoped_release release;
             const std::shared_lock<std::shared_mutex> lock(shared.mutex);
             const InterruptionPoint point = interruptible();
-            return shared.surface().area(threads);
+            return area(shared.surface(), threads);
           },
           py::kw_only(), "threads"_a = 0,
           "Area of the limit surface, refused faces left out; relative error below 1e-9.")

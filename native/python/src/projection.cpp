@@ -11,7 +11,7 @@
 
 #include "batches.h"
 #include "choices.h"
-#include "limitsurf/bake/projection.h"
+#include "limitsurf/project/projection.h"
 #include "matrices.h"
 #include "progress.h"
 #include "projection_docstrings.h"

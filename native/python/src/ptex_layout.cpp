@@ -8,8 +8,8 @@
 
 #include "batches.h"
 #include "control_mesh.h"
-#include "limitsurf/bake/bilinear_image.h"
-#include "limitsurf/bake/ptex_layout.h"
+#include "limitsurf/displace/ptex_layout.h"
+#include "limitsurf/image/bilinear_image.h"
 
 namespace limitsurf::python {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "batches.h"
 #include "docstrings.h"
-#include "limitsurf/query/checks.h"
+#include "limitsurf/search/checks.h"
 #include "progress.h"
 #include "shared_surface.h"
 

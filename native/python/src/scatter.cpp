@@ -7,7 +7,7 @@
 
 #include "batches.h"
 #include "docstrings.h"
-#include "limitsurf/query/area_sampler.h"
+#include "limitsurf/sample/area_sampler.h"
 #include "progress.h"
 #include "shared_surface.h"
 

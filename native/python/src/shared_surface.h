@@ -12,8 +12,8 @@
 #include "control_mesh.h"
 #include "held_still.h"
 #include "lazily.h"
-#include "limitsurf/query/area_sampler.h"
-#include "limitsurf/query/surface_search.h"
+#include "limitsurf/sample/area_sampler.h"
+#include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
 
 namespace limitsurf::python {

@@ -9,8 +9,8 @@
 
 #include "control_mesh.h"
 #include "lazily.h"
-#include "limitsurf/bake/uv_map.h"
 #include "limitsurf/surface/surface_data.h"
+#include "limitsurf/uv/uv_map.h"
 
 namespace limitsurf::python {
 

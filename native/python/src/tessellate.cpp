@@ -8,7 +8,8 @@
 
 #include "batches.h"
 #include "docstrings.h"
-#include "limitsurf/surface/tessellation_levels.h"
+#include "limitsurf/tessellate/tessellation.h"
+#include "limitsurf/tessellate/tessellation_levels.h"
 #include "progress.h"
 #include "shared_surface.h"
 
@@ -35,7 +36,7 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
     const py::gil_scoped_release release;
     const HeldPose held(shared);
     const InterruptionPoint point = interruptible();
-    return shared.surface().tessellate(level, options);
+    return tessellate(shared.surface(), level, options);
   }
   const Integers each = integers<std::invalid_argument>(levels, "levels");
   requireVector<std::invalid_argument>(each, "levels");
@@ -44,7 +45,7 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
   const py::gil_scoped_release release;
   const HeldPose held(shared);
   const InterruptionPoint point = interruptible();
-  return shared.surface().tessellate(std::move(of_faces), options);
+  return tessellate(shared.surface(), std::move(of_faces), options);
 }
 
 py::array_t<double> pointArray(const Points& points) {

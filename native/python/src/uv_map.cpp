@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/bake/uv_map.h"
+#include "limitsurf/uv/uv_map.h"
 
 #include <pybind11/stl.h>
 

@@ -32,7 +32,16 @@ class Golden:
 
 
 def names() -> list[str]:
-    return sorted(path.stem for path in FOLDER.glob("*.golden"))
+    return sorted(path.stem for path in FOLDER.glob("*/*.golden"))
+
+
+def family(name: str) -> str:
+    """The sub-folder of a mesh: fans of all valences of one kind stand in one of their own."""
+    return name.partition("_valence")[0] if "_valence" in name else "meshes"
+
+
+def path_of(name: str, folder: Path = FOLDER) -> Path:
+    return folder / family(name) / f"{name}.golden"
 
 
 def read_golden(path: Path) -> Golden:
@@ -70,7 +79,7 @@ def read_golden(path: Path) -> Golden:
     table = np.full((len(states), len(QUANTITIES), 3), np.nan)
     table[codes == 1] = stored
     if header["base"] != "-":
-        base = read_golden(path.with_name(header["base"] + ".golden"))
+        base = read_golden(path_of(header["base"], path.parents[1]))
         others = np.stack([base.values[quantity] for quantity in QUANTITIES], axis=1)
         table[codes == 2] = others[codes == 2]
 

@@ -31,7 +31,7 @@ def away_from_corners(uv):
     ],
 )
 def test_values_are_reached(name):
-    truth = golden.read_golden(golden.FOLDER / f"{name}.golden")
+    truth = golden.read_golden(golden.path_of(name))
     mesh = ls.ControlMesh.from_faces(
         truth.positions, truth.faces, boundary=truth.boundary, triangles=truth.triangles
     )
@@ -57,6 +57,6 @@ def test_values_are_reached(name):
 
 @pytest.mark.parametrize("name", golden.names())
 def test_files_are_read_whole(name):
-    values = golden.read_golden(golden.FOLDER / f"{name}.golden")
+    values = golden.read_golden(golden.path_of(name))
     assert len(values.face) == len(values.uv) == len(values.values["normal"])
     assert np.isfinite(values.values["position"]).all()

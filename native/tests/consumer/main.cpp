@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "limitsurf/query/surface_search.h"
+#include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
 
 int main() {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "limitsurf/rules/subdivision_rules.h"
+
+namespace limitsurf {
+
+/// The sharpness of edges around a vertex as it decays, step by step.
+class DecayingSharpness {
+ public:
+  DecayingSharpness(const SubdivisionOptions& options, std::vector<float> edges)
+      : crease_(sdcOptions(options)), edges_(std::move(edges)) {
+    step();
+  }
+
+  const std::vector<float>& edges() const { return edges_; }
+  const std::vector<float>& nextEdges() const { return next_; }
+  bool semiSharp() const { return anySemiSharp(edges_); }
+  bool nextSemiSharp() const { return anySemiSharp(next_); }
+  void advance() {
+    edges_ = next_;
+    step();
+  }
+
+  /// How much of the sharp rule is left in a step that makes the first `count` edges smooth.
+  float weight(int count) const {
+    return std::min(
+        1.f, crease_.ComputeFractionalWeightAtVertex(0, 0, count, edges_.data(), next_.data()));
+  }
+
+ private:
+  static bool anySemiSharp(const std::vector<float>& edges) {
+    return std::any_of(edges.begin(), edges.end(), isSemiSharp);
+  }
+  void step() {
+    next_.resize(edges_.size());
+    crease_.SubdivideEdgeSharpnessesAroundVertex(static_cast<int>(edges_.size()), edges_.data(),
+                                                 next_.data());
+  }
+
+  OpenSubdiv::Sdc::Crease crease_;
+  std::vector<float> edges_, next_;
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opensubdiv/sdc/catmarkScheme.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "limitsurf/rules/subdivision_options.h"
+
+namespace limitsurf {
+
+/// Which rule moves a vertex.
+enum class VertexRule {
+  smooth,  ///< interior
+  crease,  ///< a boundary curve runs through it
+  corner,  ///< pinned
+};
+
+/// Sdc's view of a mesh's rules.
+inline OpenSubdiv::Sdc::Options sdcOptions(const SubdivisionOptions& options) {
+  using OpenSubdiv::Sdc::Options;
+  Options sdc;
+  sdc.SetVtxBoundaryInterpolation(options.boundary == Boundary::smooth
+                                      ? Options::VTX_BOUNDARY_EDGE_ONLY
+                                      : Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+  sdc.SetTriangleSubdivision(options.triangles == Triangles::smooth ? Options::TRI_SUB_SMOOTH
+                                                                    : Options::TRI_SUB_CATMARK);
+  sdc.SetCreasingMethod(options.creasing == Creasing::chaikin ? Options::CREASE_CHAIKIN
+                                                              : Options::CREASE_UNIFORM);
+  return sdc;
+}
+
+inline bool isSharp(float sharpness) { return OpenSubdiv::Sdc::Crease::IsSharp(sharpness); }
+inline bool isSemiSharp(float sharpness) { return OpenSubdiv::Sdc::Crease::IsSemiSharp(sharpness); }
+inline bool isInfinitelySharp(float sharpness) {
+  return OpenSubdiv::Sdc::Crease::IsInfinite(sharpness);
+}
+constexpr float kInfinitelySharp = 10;  // Sdc's SHARPNESS_INFINITE, which has no address here
+
+/// A vertex's sharpness and that of its edges, before and after a step.
+struct SharpnessAround {
+  float vertex = 0, child_vertex = 0;
+  std::vector<float> edges, child_edges;
+};
+
+/// Weights of one Catmull-Clark step, taken from OpenSubdiv's Sdc, in any precision.
+/// Face weights apply to the new face points (Sdc's "face centers").
+template <typename Real>
+class SubdivisionRules {
+ public:
+  explicit SubdivisionRules(const SubdivisionOptions& options = {}) {
+    scheme_.SetOptions(sdcOptions(options));
+  }
+
+  struct VertexMask {
+    Real vertex = 0;
+    std::vector<Real> edges;  ///< of the far ends of the vertex's edges; empty: all 0
+    std::vector<Real> faces;  ///< of the new points of the vertex's faces; empty: all 0
+  };
+
+  struct EdgeMask {
+    Real vertices[2] = {0, 0};
+    Real faces[2] = {0, 0};  ///< both 0 on a boundary
+  };
+
+  /// The weight of each of a face's `size` vertices in its face point.
+  Real faceMask(int size) const {
+    Mask mask(size, 0, 0);
+    scheme_.ComputeFaceVertexMask(Face{size}, mask);
+    return mask.VertexWeight(0);
+  }
+
+  /// `face_sizes`: the two faces' sizes, which only Triangles::smooth looks at.
+  EdgeMask edgeMask(bool boundary, int face_size_0 = 4, int face_size_1 = 4) const {
+    using OpenSubdiv::Sdc::Crease;
+    Mask mask(2, 0, 2);
+    const Crease::Rule rule = boundary ? Crease::RULE_CREASE : Crease::RULE_SMOOTH;
+    scheme_.ComputeEdgeVertexMask(Edge{boundary ? 1 : 2, {face_size_0, face_size_1}, 0, {0, 0}},
+                                  mask, rule, rule);
+    return edgeMaskOf(mask);
+  }
+
+  /// An edge between two faces whose sharpness decays to that of its children.
+  EdgeMask edgeMask(float sharpness, const float child_sharpness[2], int face_size_0,
+                    int face_size_1) const {
+    const Edge edge{
+        2, {face_size_0, face_size_1}, sharpness, {child_sharpness[0], child_sharpness[1]}};
+    Mask mask(2, 0, 2);
+    scheme_.ComputeEdgeVertexMask(edge, mask);
+    return edgeMaskOf(mask);
+  }
+
+  /// A vertex with `face_count` faces and sharp edges, or sharp itself.
+  VertexMask vertexMask(const SharpnessAround& around, int face_count) const {
+    const Vertex vertex{static_cast<int>(around.edges.size()), face_count, &around};
+    Mask mask(1, vertex.edge_count, vertex.edge_count);
+    scheme_.ComputeVertexVertexMask(vertex, mask);
+    return vertexMaskOf(mask);
+  }
+
+  /// Edges and faces are counted counter-clockwise; on a boundary the first and last edge lie on
+  /// it.
+  VertexMask vertexMask(VertexRule rule, int edge_count) const {
+    using OpenSubdiv::Sdc::Crease;
+    VertexMask result;
+    if (rule == VertexRule::smooth && edge_count > kLargestSquarableValence) {
+      // Sdc squares the valence in an int.
+      const Real n = static_cast<Real>(edge_count);
+      result.vertex = (n - 2) / n;
+      result.edges.assign(edge_count, 1 / (n * n));
+      result.faces = result.edges;
+      return result;
+    }
+    Mask mask(1, edge_count, edge_count);
+    const Crease::Rule sdc_rule = rule == VertexRule::smooth   ? Crease::RULE_SMOOTH
+                                  : rule == VertexRule::crease ? Crease::RULE_CREASE
+                                                               : Crease::RULE_CORNER;
+    const bool smooth = rule == VertexRule::smooth;
+    SharpnessAround around;
+    if (rule == VertexRule::crease) {
+      around.edges.assign(edge_count, 0);
+      around.edges.front() = around.edges.back() = kInfinitelySharp;
+      around.child_edges = around.edges;
+    }
+    scheme_.ComputeVertexVertexMask(
+        Vertex{edge_count, smooth ? edge_count : edge_count - 1, &around}, mask, sdc_rule,
+        sdc_rule);
+    return vertexMaskOf(mask);
+  }
+
+ private:
+  static constexpr int kLargestSquarableValence = 46340;
+
+  // The neighbourhoods and the mask that Sdc's templates ask for.
+  struct Face {
+    int size;
+    int GetNumVertices() const { return size; }
+  };
+
+  struct Edge {
+    int face_count;
+    int face_sizes[2];
+    float sharpness;
+    float child_sharpness[2];
+    int GetNumFaces() const { return face_count; }
+    float GetSharpness() const { return sharpness; }
+    void GetChildSharpnesses(const OpenSubdiv::Sdc::Crease&, float out[2]) const {
+      out[0] = child_sharpness[0];
+      out[1] = child_sharpness[1];
+    }
+    void GetNumVerticesPerFace(int out[]) const {
+      out[0] = face_sizes[0];
+      out[1] = face_sizes[1];
+    }
+  };
+
+  struct Vertex {
+    int edge_count, face_count;
+    const SharpnessAround* around;
+    int GetNumEdges() const { return edge_count; }
+    int GetNumFaces() const { return face_count; }
+    float GetSharpness() const { return around->vertex; }
+    float* GetSharpnessPerEdge(float out[]) const {
+      return std::copy(around->edges.begin(), around->edges.end(), out), out;
+    }
+    float GetChildSharpness(const OpenSubdiv::Sdc::Crease&) const { return around->child_vertex; }
+    float* GetChildSharpnessPerEdge(const OpenSubdiv::Sdc::Crease&, float out[]) const {
+      return std::copy(around->child_edges.begin(), around->child_edges.end(), out), out;
+    }
+  };
+
+  struct Mask {
+    using Weight = Real;
+    std::vector<Real> vertices, edges, faces;
+    bool vertex_count = false, edge_count = false, face_count = false, centers = false;
+
+    Mask(int v, int e, int f) : vertices(v), edges(e), faces(f) {}
+    int GetNumVertexWeights() const { return vertex_count ? int(vertices.size()) : 0; }
+    int GetNumEdgeWeights() const { return edge_count ? int(edges.size()) : 0; }
+    int GetNumFaceWeights() const { return face_count ? int(faces.size()) : 0; }
+    void SetNumVertexWeights(int count) { vertex_count = count > 0; }
+    void SetNumEdgeWeights(int count) { edge_count = count > 0; }
+    void SetNumFaceWeights(int count) { face_count = count > 0; }
+    bool AreFaceWeightsForFaceCenters() const { return centers; }
+    void SetFaceWeightsForFaceCenters(bool on) { centers = on; }
+    Real& VertexWeight(int i) { return vertices[i]; }
+    Real& EdgeWeight(int i) { return edges[i]; }
+    Real& FaceWeight(int i) { return faces[i]; }
+    const Real& VertexWeight(int i) const { return vertices[i]; }
+    const Real& EdgeWeight(int i) const { return edges[i]; }
+    const Real& FaceWeight(int i) const { return faces[i]; }
+  };
+
+  static EdgeMask edgeMaskOf(const Mask& mask) {
+    EdgeMask result;
+    for (int i = 0; i < 2; ++i) {
+      result.vertices[i] = mask.VertexWeight(i);
+      result.faces[i] = mask.GetNumFaceWeights() ? mask.FaceWeight(i) : Real(0);
+    }
+    return result;
+  }
+
+  static VertexMask vertexMaskOf(const Mask& mask) {
+    VertexMask result;
+    result.vertex = mask.VertexWeight(0);
+    if (mask.GetNumEdgeWeights()) {
+      result.edges = mask.edges;
+    }
+    if (mask.GetNumFaceWeights()) {
+      result.faces = mask.faces;
+    }
+    return result;
+  }
+
+  OpenSubdiv::Sdc::Scheme<OpenSubdiv::Sdc::SCHEME_CATMARK> scheme_;
+};
+
+}  // namespace limitsurf

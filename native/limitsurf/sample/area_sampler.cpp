@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/sample/area_sampler.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/random_bits.h"
+#include "limitsurf/sample/area_form.h"
+#include "limitsurf/sample/area_sampler_data.h"
+#include "limitsurf/sample/core_tail.h"
+
+namespace limitsurf {
+namespace {
+
+/// More than any machine's memory holds today.
+constexpr std::int64_t kMostLocations = std::int64_t{1} << 40;
+/// Samples between two calls of Progress.
+constexpr std::size_t kSlab = std::size_t{1} << 17;
+constexpr std::size_t kSamplesPerTask = 2048;
+
+/// Independent locations with probability in proportion to area times the table's densities, each
+/// from an endless sequence of its own of candidates, most of which are accepted.
+class Candidates {
+ public:
+  Candidates(const SurfacePatches& patches, const std::vector<AreaCell>& cells,
+             const CellTable& table, const DensityField& density, std::uint64_t seed)
+      : patches_(patches), cells_(cells), table_(table), density_(density), key_(mixed(seed)) {}
+
+  /// The next accepted candidate of a sample; `attempt` counts them.
+  Location next(std::size_t sample, std::uint32_t& attempt) const {
+    const std::uint64_t stream = mixed(key_ ^ mixed(sample));
+    Location at;
+    while (!accept(stream + kNumbers * attempt++, at)) {
+    }
+    return at;
+  }
+
+  /// One more random number for the candidate before `attempt`.
+  double number(std::size_t sample, std::uint32_t attempt) const {
+    const std::uint64_t stream = mixed(key_ ^ mixed(sample));
+    return uniformIn01(mixed(stream + kNumbers * (attempt - 1) + kNumbers - 1));
+  }
+
+ private:
+  /// Of a candidate.
+  static constexpr std::uint64_t kNumbers = 5;
+
+  bool accept(std::uint64_t stream, Location& at) const {
+    const CellTable::Choice choice = table_.pick(uniformIn01(mixed(stream)));
+    const AreaCell& cell = cells_[choice.cell];
+    double s = uniformIn01(mixed(stream + 1)), t = uniformIn01(mixed(stream + 2));
+    const double test = uniformIn01(mixed(stream + 3));
+    SurfacePiece piece = cell.piece;
+    double bound = cell.bound, size = 1;
+    if (piece.isCore()) {
+      if (!pickFromCore(cell, choice.rest, piece, bound)) {
+        return false;
+      }
+    } else if (cell.level > 0) {
+      const double side = 1. / (1 << cell.level);
+      s = side * (cell.column + s);
+      t = side * (cell.row + t);
+      size = side * side;
+    }
+    const BezierPatch patch = patches_.patch(piece);
+    BezierPatch::Values values;
+    patch.evaluate<1>(s, t, values);
+    const double area = length(cross(values.ds, values.dt)) * size;
+    at = patch.on.at(s, t);
+    return test * bound * table_.largest(choice.cell) < area * density_.at(at);
+  }
+
+  /// A patch of a core, with the bound on its |ds x dt|.
+  bool pickFromCore(const AreaCell& cell, double number, SurfacePiece& piece, double& bound) const {
+    double rest = number * cell.bound;
+    CoreTail tail(patches_, cell.piece, cell.outer);
+    for (; !tail.ended() && rest >= 3 * tail.bound(); tail.step()) {
+      rest -= 3 * tail.bound();
+    }
+    bound = tail.bound();
+    if (tail.ended() || !(bound > 0)) {
+      return false;
+    }
+    piece = tail.piece(std::min(static_cast<int>(rest / bound), 2));
+    return true;
+  }
+
+  const SurfacePatches& patches_;
+  const std::vector<AreaCell>& cells_;
+  const CellTable& table_;
+  const DensityField& density_;
+  std::uint64_t key_;
+};
+
+void report(const Progress& progress, std::size_t done, std::size_t all) {
+  if (progress) {
+    progress(static_cast<double>(done) / static_cast<double>(all));
+  }
+}
+
+std::vector<Location> allAccepted(const Candidates& candidates, std::size_t count, int threads,
+                                  const Progress& progress) {
+  std::vector<Location> result(count);
+  for (std::size_t first = 0; first < count; first += kSlab) {
+    report(progress, first, count);
+    const std::size_t size = std::min(kSlab, count - first);
+    parallelFor(size, kSamplesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        std::uint32_t attempt = 0;
+        result[i] = candidates.next(i, attempt);
+      }
+    });
+  }
+  report(progress, 1, 1);
+  return result;
+}
+
+/// Thins candidates by a function whose largest value is only known from what it has shown.
+class Thinning {
+ public:
+  Thinning(const Candidates& candidates, const Density& density, std::size_t count, int threads,
+           const Progress& progress)
+      : candidates_(candidates),
+        density_(density),
+        threads_(threads),
+        progress_(progress),
+        samples_(count) {}
+
+  /// Asks about these before all others.
+  void pilot(Span<Location> at) {
+    for (std::size_t first = 0; first < at.size(); first += kSlab) {
+      const auto part = at.subspan(first, std::min(kSlab, at.size() - first));
+      for (const double weight : density_.weights(part)) {
+        largest_ = std::max(largest_, weight);
+      }
+      InterruptionPoint::pass();
+    }
+    asked_ = at.size();
+  }
+
+  std::vector<Location> run() {
+    std::vector<std::size_t> open(samples_.size());
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      open[i] = i;
+    }
+    while (!open.empty()) {
+      const double before = largest_;
+      std::vector<std::size_t> still_open;
+      for (std::size_t first = 0; first < open.size(); first += kSlab) {
+        report(progress_, samples_.size() - (open.size() - first) - still_open.size(),
+               samples_.size());
+        tryNext(Span<std::size_t>(open).subspan(first, std::min(kSlab, open.size() - first)),
+                still_open);
+      }
+      open.swap(still_open);
+      if (largest_ > before) {
+        reopen(open);
+      }
+    }
+    report(progress_, 1, 1);
+    std::vector<Location> result(samples_.size());
+    std::transform(samples_.begin(), samples_.end(), result.begin(),
+                   [](const Sample& sample) { return sample.at; });
+    return result;
+  }
+
+ private:
+  struct Sample {
+    Location at;
+    double weight = 0;
+    double test = 0;  ///< times the largest weight must stay below the weight
+    std::uint32_t attempt = 0;
+
+    bool accepted(double largest) const { return test * largest < weight; }
+  };
+
+  void tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_open) {
+    std::vector<Location> at(open.size());
+    parallelFor(open.size(), kSamplesPerTask, threads_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Sample& sample = samples_[open[i]];
+        at[i] = sample.at = candidates_.next(open[i], sample.attempt);
+        sample.test = candidates_.number(open[i], sample.attempt);
+      }
+    });
+    const std::vector<double> weights = density_.weights(at);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      samples_[open[i]].weight = weights[i];
+      largest_ = std::max(largest_, weights[i]);
+    }
+    asked_ += open.size();
+    if (largest_ == 0 && asked_ >= kMostZeros) {
+      throw std::invalid_argument("density is 0 at all of " + std::to_string(asked_) +
+                                  " locations");
+    }
+    for (const std::size_t i : open) {
+      if (!samples_[i].accepted(largest_)) {
+        still_open.push_back(i);
+      }
+    }
+  }
+
+  /// Lists all samples again that are not accepted: with a larger maximum fewer are.
+  void reopen(std::vector<std::size_t>& open) const {
+    open.clear();
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (!samples_[i].accepted(largest_)) {
+        open.push_back(i);
+      }
+    }
+  }
+
+  static constexpr std::size_t kMostZeros = std::size_t{1} << 20;
+
+  const Candidates& candidates_;
+  const Density& density_;
+  int threads_;
+  const Progress& progress_;
+  std::vector<Sample> samples_;
+  double largest_ = 0;
+  std::size_t asked_ = 0;
+};
+
+/// Corners and middles of the faces that have a surface, at most a million or so.
+std::vector<Location> pilotLocations(const std::vector<bool>& has_surface) {
+  const std::size_t stride = has_surface.size() / 200000 + 1;
+  std::vector<Location> at;
+  for (std::size_t face = 0; face < has_surface.size(); face += stride) {
+    if (has_surface[face]) {
+      for (const double v : {0., 1.}) {
+        for (const double u : {0., 1.}) {
+          at.push_back({static_cast<int>(face), u, v});
+        }
+      }
+      at.push_back({static_cast<int>(face), 0.5, 0.5});
+    }
+  }
+  return at;
+}
+
+}  // namespace
+
+std::vector<bool> AreaSampler::Data::hasSurface() const {
+  std::vector<bool> result(static_cast<std::size_t>(surface.faceCount()), false);
+  std::vector<SurfacePiece> pieces;
+  for (int tile = 0; tile < patches.tileCount(); ++tile) {
+    pieces.clear();
+    patches.appendPieces(tile, pieces);
+    result[static_cast<std::size_t>(patches.rectangle(pieces.front()).face)] = true;
+  }
+  return result;
+}
+
+AreaSampler::AreaSampler(const LimitSurface& surface, int threads)
+    : data_(std::make_unique<Data>(surface, threads)) {}
+AreaSampler::~AreaSampler() = default;
+AreaSampler::AreaSampler(AreaSampler&&) noexcept = default;
+AreaSampler& AreaSampler::operator=(AreaSampler&&) noexcept = default;
+
+std::vector<Location> AreaSampler::uniform(std::int64_t count, std::uint64_t seed,
+                                           const Density& density, int threads,
+                                           const Progress& progress) const {
+  if (count < 0 || count > kMostLocations) {
+    throw std::invalid_argument("count is " + std::to_string(count) + "; it must be 0 to " +
+                                std::to_string(kMostLocations));
+  }
+  if (count == 0) {
+    return {};
+  }
+  if (!data_->hasArea()) {
+    throw std::invalid_argument("the surface has no area");
+  }
+  const std::size_t samples = static_cast<std::size_t>(count);
+  if (density.function()) {
+    const DensityField constant;
+    const Candidates candidates(data_->patches, data_->cells, data_->plain, constant, seed);
+    Thinning thinning(candidates, density, samples, threads, progress);
+    thinning.pilot(pilotLocations(data_->hasSurface()));
+    return thinning.run();
+  }
+  const DensityField field(density);
+  if (field.isConstant()) {
+    return allAccepted(Candidates(data_->patches, data_->cells, data_->plain, field, seed), samples,
+                       threads, progress);
+  }
+  const CellTable table(data_->patches, data_->cells, field, threads);
+  if (!(table.total() > 0)) {
+    throw std::invalid_argument("density is 0 everywhere on the surface");
+  }
+  return allAccepted(Candidates(data_->patches, data_->cells, table, field, seed), samples, threads,
+                     progress);
+}
+
+}  // namespace limitsurf

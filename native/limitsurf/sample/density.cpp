@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/sample/density.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "limitsurf/surface/surface_data.h"
+
+namespace limitsurf {
+namespace {
+
+bool isWeight(double value) { return value >= 0 && std::isfinite(value); }
+
+}  // namespace
+
+Density::Density(const LimitSurface& surface, const Eigen::VectorXd& weights, int threads) {
+  const Eigen::Index vertices = surface.positions().rows();
+  if (weights.size() != vertices) {
+    throw std::invalid_argument("density has " + std::to_string(weights.size()) +
+                                " weights; the mesh has " + std::to_string(vertices) + " vertices");
+  }
+  for (Eigen::Index vertex = 0; vertex < vertices; ++vertex) {
+    if (!isWeight(weights[vertex])) {
+      std::ostringstream message;
+      message << "density is " << weights[vertex] << " at vertex " << vertex
+              << "; it must be finite and at least 0";
+      throw std::invalid_argument(message.str());
+    }
+  }
+  const std::vector<int>& base_face = surface.baseFace();
+  std::vector<Location> at;
+  at.reserve(4 * base_face.size());
+  for (int face = 0; face < surface.faceCount(); ++face) {
+    if (surface.refused().count(base_face[face]) == 0) {
+      for (int corner = 0; corner < 4; ++corner) {
+        at.push_back({face, static_cast<double>(corner & 1), static_cast<double>(corner >> 1)});
+      }
+    }
+  }
+  corners_.resize(4 * base_face.size(), 0);
+  const DataRows values = surface.varying(weights, threads).evaluate(at, {}, threads).value;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    // Sums of weights may round to less than 0 where all are 0.
+    corners_[4 * static_cast<std::size_t>(at[i].face) + i % 4] =
+        std::max(values(static_cast<Eigen::Index>(i), 0), 0.);
+  }
+}
+
+std::vector<double> Density::weights(Span<Location> at) const {
+  std::vector<double> result(at.size(), 0);
+  function_(at, result.data());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (!isWeight(result[i])) {
+      std::ostringstream message;
+      message << "density is " << result[i] << " at face " << at[i].face << ", (u, v) = ("
+              << at[i].u << ", " << at[i].v << "); it must be finite and at least 0";
+      throw std::invalid_argument(message.str());
+    }
+  }
+  return result;
+}
+
+}  // namespace limitsurf

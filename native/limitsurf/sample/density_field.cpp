@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/sample/density_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "limitsurf/parallel.h"
+
+namespace limitsurf {
+namespace {
+
+/// Locations that a function is asked about at a time.
+constexpr std::size_t kBatch = std::size_t{1} << 16;
+
+/// The grid's square that a coordinate lies in, and where in it.
+struct GridPlace {
+  GridPlace(double x, int side) {
+    const double scaled = x * side;
+    square = std::min(static_cast<int>(scaled), side - 1);
+    part = scaled - square;
+  }
+  int square;
+  double part;
+};
+
+double between(double a, double b, double part) { return (1 - part) * a + part * b; }
+
+}  // namespace
+
+DensityField::DensityField(const Density& density) {
+  if (density.isConstant()) {
+    return;
+  }
+  values_ = density.corners();
+  levels_.assign(values_.size() / 4, 0);
+  first_.resize(levels_.size());
+  for (std::size_t face = 0; face < first_.size(); ++face) {
+    first_[face] = 4 * face;
+  }
+  normalise();
+}
+
+DensityField::DensityField(const Density& density, const std::vector<int>& levels)
+    : levels_(levels), first_(levels.size()) {
+  std::size_t count = 0;
+  for (std::size_t face = 0; face < levels.size(); ++face) {
+    first_[face] = count;
+    const std::size_t points = levels[face] < 0 ? 0 : (std::size_t{1} << levels[face]) + 1;
+    count += points * points;
+  }
+  values_.reserve(count);
+  std::vector<Location> at;
+  at.reserve(kBatch);
+  const auto ask = [&] {
+    const std::vector<double> weights = density.weights(at);
+    values_.insert(values_.end(), weights.begin(), weights.end());
+    at.clear();
+    InterruptionPoint::pass();
+  };
+  for (std::size_t face = 0; face < levels.size(); ++face) {
+    const int side = levels[face] < 0 ? -1 : 1 << levels[face];
+    for (int y = 0; y <= side; ++y) {
+      for (int x = 0; x <= side; ++x) {
+        at.push_back(
+            {static_cast<int>(face), static_cast<double>(x) / side, static_cast<double>(y) / side});
+        if (at.size() == kBatch) {
+          ask();
+        }
+      }
+    }
+  }
+  ask();
+  if (std::all_of(values_.begin(), values_.end(), [](double value) { return value == 0; })) {
+    throw std::invalid_argument("density is 0 at all of " + std::to_string(values_.size()) +
+                                " locations");
+  }
+  normalise();
+}
+
+void DensityField::normalise() {
+  largest_ = values_.empty() ? 0 : *std::max_element(values_.begin(), values_.end());
+  if (!(largest_ > 0)) {
+    throw std::invalid_argument("density is 0 everywhere");
+  }
+  for (double& value : values_) {
+    value /= largest_;
+  }
+}
+
+double DensityField::at(const Location& location) const {
+  if (isConstant()) {
+    return 1;
+  }
+  const int side = 1 << levels_[location.face];
+  const GridPlace u(location.u, side), v(location.v, side);
+  const double* row = grid(location.face) + v.square * (side + 1) + u.square;
+  const double* next = row + side + 1;
+  return between(between(row[0], row[1], u.part), between(next[0], next[1], u.part), v.part);
+}
+
+double DensityField::largestOn(const FaceRectangle& rectangle) const {
+  if (isConstant()) {
+    return 1;
+  }
+  const Location a = rectangle.at(0, 0), b = rectangle.at(1, 1);
+  const auto [u0, u1] = std::minmax(a.u, b.u);
+  const auto [v0, v1] = std::minmax(a.v, b.v);
+  double largest = 0;
+  for (const double v : {v0, v1}) {
+    for (const double u : {u0, u1}) {
+      largest = std::max(largest, at({rectangle.face, u, v}));
+    }
+  }
+  // On each square of the grid the largest is at a corner: lines of the grid that cross the
+  // rectangle's sides, and points inside it.
+  const int side = 1 << levels_[rectangle.face];
+  const auto inside = [side](double low, double high) {
+    return std::pair(static_cast<int>(std::floor(low * side)) + 1,
+                     static_cast<int>(std::ceil(high * side)) - 1);
+  };
+  const auto [x0, x1] = inside(u0, u1);
+  const auto [y0, y1] = inside(v0, v1);
+  for (int x = x0; x <= x1; ++x) {
+    const double u = static_cast<double>(x) / side;
+    largest = std::max({largest, at({rectangle.face, u, v0}), at({rectangle.face, u, v1})});
+  }
+  for (int y = y0; y <= y1; ++y) {
+    const double v = static_cast<double>(y) / side;
+    largest = std::max({largest, at({rectangle.face, u0, v}), at({rectangle.face, u1, v})});
+    const double* row = grid(rectangle.face) + y * (side + 1);
+    for (int x = x0; x <= x1; ++x) {
+      largest = std::max(largest, row[x]);
+    }
+  }
+  return largest;
+}
+
+double DensityField::meanOn(const FaceRectangle& rectangle) const {
+  if (isConstant()) {
+    return 1;
+  }
+  double sum = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    sum += at(rectangle.at(corner & 1, corner >> 1));
+  }
+  return (sum + 2 * at(rectangle.at(0.5, 0.5))) / 6;
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/search/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace limitsurf {
+
+BoxF::BoxF() {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  low << kInfinity, kInfinity, kInfinity, 0;
+  high << -kInfinity, -kInfinity, -kInfinity, 0;
+}
+
+BoxF::BoxF(const Box& box) : BoxF() {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    low[i] = std::nextafter(static_cast<float>(box.low[i]), -kInfinity);
+    high[i] = std::nextafter(static_cast<float>(box.high[i]), kInfinity);
+  }
+}
+
+void BoxF::include(const BoxF& box) {
+  low = low.min(box.low);
+  high = high.max(box.high);
+}
+
+float BoxF::halfArea() const {
+  const Corner size = high - low;
+  return size[0] < 0 ? 0 : size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+}
+
+class BoxTree::Builder {
+ public:
+  Builder(const std::vector<BoxF>& leaves, std::vector<std::int32_t>& order,
+          std::vector<Node>& nodes)
+      : leaves_(leaves), order_(order), nodes_(nodes) {
+    order_.resize(leaves.size());
+    std::iota(order_.begin(), order_.end(), 0);
+  }
+
+  void build() {
+    if (leaves_.empty()) {
+      return;
+    }
+    nodes_.reserve(leaves_.size());
+    const Part all{0, static_cast<std::int32_t>(leaves_.size())};
+    if (all.size() == 1) {
+      nodes_.push_back({{leaves_[0], BoxF()}, {~0, ~0}});
+    } else {
+      addNode(all, 1);
+    }
+  }
+
+ private:
+  static constexpr int kBins = 16;
+  /// From here on halves of equal number end the matter within 32 more levels.
+  static constexpr int kHeuristicDepth = kMostDepth - 32;
+
+  struct Part {
+    std::int32_t begin, end;
+    std::int32_t size() const { return end - begin; }
+  };
+
+  std::int32_t addNode(const Part& part, int depth) {
+    const std::int32_t index = static_cast<std::int32_t>(nodes_.size());
+    nodes_.emplace_back();
+    const std::int32_t middle = divide(part, depth);
+    const Part halves[2] = {{part.begin, middle}, {middle, part.end}};
+    for (int side = 0; side < 2; ++side) {
+      BoxF box;
+      for (std::int32_t i = halves[side].begin; i < halves[side].end; ++i) {
+        box.include(leaves_[order_[i]]);
+      }
+      const std::int32_t child =
+          halves[side].size() == 1 ? ~halves[side].begin : addNode(halves[side], depth + 1);
+      nodes_[index].boxes[side] = box;
+      nodes_[index].children[side] = child;
+    }
+    return index;
+  }
+
+  float centre(std::int32_t leaf, int axis) const {
+    return leaves_[leaf].low[axis] + leaves_[leaf].high[axis];
+  }
+
+  /// Where to cut a part of two and more leaves, sorted so that neither half is empty.
+  std::int32_t divide(const Part& part, int depth) {
+    float low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::numeric_limits<float>::infinity();
+      high[axis] = -low[axis];
+      for (std::int32_t i = part.begin; i < part.end; ++i) {
+        low[axis] = std::min(low[axis], centre(order_[i], axis));
+        high[axis] = std::max(high[axis], centre(order_[i], axis));
+      }
+    }
+    int axis = 0;
+    for (int i = 1; i < 3; ++i) {
+      axis = high[i] - low[i] > high[axis] - low[axis] ? i : axis;
+    }
+    const float extent = high[axis] - low[axis];
+    if (part.size() > 2 && depth < kHeuristicDepth && extent > 0 && std::isfinite(extent)) {
+      const std::int32_t middle = divideByArea(part, axis, low[axis], kBins / extent);
+      if (middle > part.begin && middle < part.end) {
+        return middle;
+      }
+    }
+    const std::int32_t middle = part.begin + part.size() / 2;
+    std::nth_element(order_.begin() + part.begin, order_.begin() + middle,
+                     order_.begin() + part.end, [&](std::int32_t a, std::int32_t b) {
+                       const float x = centre(a, axis), y = centre(b, axis);
+                       return x != y ? x < y : a < b;
+                     });
+    return middle;
+  }
+
+  std::int32_t divideByArea(const Part& part, int axis, float low, float scale) {
+    const auto bin = [&](std::int32_t leaf) {
+      return std::clamp(static_cast<int>((centre(leaf, axis) - low) * scale), 0, kBins - 1);
+    };
+    BoxF boxes[kBins];
+    std::int32_t counts[kBins] = {};
+    for (std::int32_t i = part.begin; i < part.end; ++i) {
+      const int b = bin(order_[i]);
+      boxes[b].include(leaves_[order_[i]]);
+      ++counts[b];
+    }
+    float right_costs[kBins];
+    BoxF right;
+    std::int32_t right_count = 0;
+    for (int b = kBins - 1; b > 0; --b) {
+      right.include(boxes[b]);
+      right_count += counts[b];
+      right_costs[b] = right.halfArea() * static_cast<float>(right_count);
+    }
+    BoxF left;
+    std::int32_t left_count = 0;
+    float best = std::numeric_limits<float>::infinity();
+    int cut = 0;
+    for (int b = 1; b < kBins; ++b) {
+      left.include(boxes[b - 1]);
+      left_count += counts[b - 1];
+      const float cost = left.halfArea() * static_cast<float>(left_count) + right_costs[b];
+      if (left_count > 0 && left_count < part.size() && cost < best) {
+        best = cost;
+        cut = b;
+      }
+    }
+    const auto middle = std::partition(order_.begin() + part.begin, order_.begin() + part.end,
+                                       [&](std::int32_t leaf) { return bin(leaf) < cut; });
+    return static_cast<std::int32_t>(middle - order_.begin());
+  }
+
+  const std::vector<BoxF>& leaves_;
+  std::vector<std::int32_t>& order_;
+  std::vector<Node>& nodes_;
+};
+
+BoxTree::BoxTree(const std::vector<BoxF>& leaves, std::vector<std::int32_t>& order) {
+  Builder(leaves, order, nodes_).build();
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/search/checks.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "limitsurf/pi.h"
+
+namespace limitsurf {
+namespace {
+
+/// Beyond, squared distances overflow.
+constexpr double kFarthest = 1e150;
+
+[[noreturn]] void refuse(const char* name, Eigen::Index row, const Points& rows,
+                         const char* reason) {
+  std::ostringstream message;
+  message.precision(17);
+  message << "row " << row << ": the " << name << " (" << rows(row, 0) << ", " << rows(row, 1)
+          << ", " << rows(row, 2) << ") " << reason;
+  throw std::invalid_argument(message.str());
+}
+
+}  // namespace
+
+void checkFinite(const Points& rows, const char* name) {
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    if (!rows.row(row).allFinite()) {
+      refuse(name, row, rows, "is not finite");
+    }
+    if (rows.row(row).cwiseAbs().maxCoeff() > kFarthest) {
+      refuse(name, row, rows, "is too far away: coordinates may go up to 1e150");
+    }
+  }
+}
+
+void checkDirections(const Points& rows) {
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    if (!rows.row(row).allFinite()) {
+      refuse("direction", row, rows, "is not finite");
+    }
+    if ((rows.row(row).array() == 0).all()) {
+      refuse("direction", row, rows, "has no length");
+    }
+  }
+}
+
+void checkRows(const Points& rows, Eigen::Index expected, const char* name) {
+  if (rows.rows() != expected) {
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows.rows()) +
+                                " rows; expected " + std::to_string(expected));
+  }
+}
+
+void checkDistance(double max_distance) {
+  if (!(max_distance >= 0)) {
+    throw std::invalid_argument("max_distance is " + std::to_string(max_distance) +
+                                "; it must be 0 or more");
+  }
+}
+
+void checkAngle(double max_angle) {
+  if (!(max_angle >= 0 && max_angle <= std::nextafter(kPi<double>, 4.))) {
+    throw std::invalid_argument("max_angle is " + std::to_string(max_angle) +
+                                "; it must be between 0 and pi");
+  }
+}
+
+Hits hitsAt(const LimitSurface& surface, std::vector<Location> at, int threads) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  Hits hits;
+  hits.at = std::move(at);
+  std::vector<Location> found;
+  found.reserve(hits.at.size());
+  for (Location& location : hits.at) {
+    if (location.face >= 0) {
+      found.push_back(location);
+    } else {
+      location.u = location.v = kNaN;
+    }
+  }
+  Evaluation e = surface.evaluate(found, Derivatives::first, true, threads);
+  if (found.size() == hits.at.size()) {
+    hits.position = std::move(e.position);
+    hits.normal = std::move(e.normal);
+    return hits;
+  }
+  hits.position.setConstant(static_cast<Eigen::Index>(hits.at.size()), 3, kNaN);
+  hits.normal = hits.position;
+  Eigen::Index next = 0;
+  for (std::size_t row = 0; row < hits.at.size(); ++row) {
+    if (hits.at[row].face >= 0) {
+      hits.position.row(static_cast<Eigen::Index>(row)) = e.position.row(next);
+      hits.normal.row(static_cast<Eigen::Index>(row)) = e.normal.row(next);
+      ++next;
+    }
+  }
+  return hits;
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "limitsurf/search/box_tree.h"
+#include "limitsurf/search/oriented_box.h"
+#include "limitsurf/search/surface_search.h"
+#include "limitsurf/surface/surface_patches.h"
+
+namespace limitsurf {
+
+/// A leaf of the search tree: a bicubic patch, or a core that searches split as they come to it.
+struct SearchLeaf {
+  OrientedBox box;
+  SurfacePiece piece;
+};
+
+/// A surface's patches under a tree of boxes. Boxes have coordinates of their own, of which single
+/// precision can hold squares: relative to `middle`, times `scale`, which makes the diagonal about
+/// 1.
+struct SearchTree {
+  SearchTree(const LimitSurface& limit_surface, int threads);
+
+  const LimitSurface& surface;
+  SurfacePatches patches;
+  Vector3 middle;
+  double diagonal;
+  double scale;  ///< a power of two
+  /// What a search may leave undone: a tenth of kSearchError.
+  double tolerance;
+  Vector3 inBoxes(const Vector3& point) const { return scale * (point - middle); }
+  Box inBoxes(const Box& box) const { return {inBoxes(box.low), inBoxes(box.high)}; }
+
+  std::vector<SearchLeaf> leaves;  ///< in the order of the tree
+  std::unique_ptr<BoxTree> tree;
+  /// The leaves' patches, as long as all together stay below kPatchBytes; those of cores are unset.
+  std::vector<BezierPatch> kept;
+
+ private:
+  static constexpr std::size_t kPatchBytes = std::size_t{64} << 20;
+
+  /// A tile's pieces with boxes around them, cores split so far that they fit closely.
+  void addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
+};
+
+/// The patches of leaves. Where they are not kept, searches near each other need the same ones
+/// again and again. One cache belongs to one thread.
+class PatchCache {
+ public:
+  explicit PatchCache(const SearchTree& data) : data_(data) {
+    if (data.kept.empty()) {
+      patches_.reset(new BezierPatch[kSize]);
+      std::fill(leaves_, leaves_ + kSize, -1);
+    }
+  }
+
+  const BezierPatch& patch(std::int32_t leaf) {
+    if (!data_.kept.empty()) {
+      return data_.kept[static_cast<std::size_t>(leaf)];
+    }
+    const std::size_t slot = static_cast<std::uint32_t>(leaf) % kSize;
+    if (leaves_[slot] != leaf) {
+      patches_[slot] = data_.patches.patch(data_.leaves[leaf].piece);
+      leaves_[slot] = leaf;
+    }
+    return patches_[slot];
+  }
+
+ private:
+  static constexpr std::size_t kSize = 256;
+  const SearchTree& data_;
+  std::unique_ptr<BezierPatch[]> patches_;
+  std::int32_t leaves_[kSize];
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/search/surface_search.h"
+
+#include <cmath>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/search/search_tree.h"
+
+namespace limitsurf {
+namespace {
+
+using PatchPoints = Eigen::Matrix<double, 16, 3, Eigen::RowMajor>;
+
+PatchPoints pointsOf(const BezierPatch& patch, const Vector3& middle, double scale) {
+  PatchPoints points;
+  const Vector3 anchor = patch.anchor.head<3>().matrix() - middle;
+  for (int i = 0; i < 16; ++i) {
+    points.row(i) = scale * (patch.points[i].head<3>().matrix() + anchor).transpose();
+  }
+  return points;
+}
+
+Box boxOf(const PatchPoints& points) {
+  return {points.colwise().minCoeff().transpose(), points.colwise().maxCoeff().transpose()};
+}
+
+OrientedBox orientedBox(const PatchPoints& points) {
+  const auto side = [&](int to, int from) -> Vector3 {
+    return (points.row(to) - points.row(from)).transpose();
+  };
+  return {points, side(3, 0) + side(15, 12), side(12, 0) + side(15, 3)};
+}
+
+}  // namespace
+
+SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
+    : surface(limit_surface),
+      patches(limit_surface, threads),
+      middle(patches.middle()),
+      diagonal(patches.diagonal()),
+      scale(diagonal > 0 ? std::ldexp(1., -std::ilogb(diagonal)) : 1),
+      tolerance(kSearchError / 10 * diagonal) {
+  constexpr std::size_t kBlock = 1024;
+  const std::size_t tiles = static_cast<std::size_t>(patches.tileCount());
+  struct Block {
+    std::vector<SearchLeaf> leaves;
+    std::vector<BoxF> boxes;
+  };
+  std::vector<Block> blocks((tiles + kBlock - 1) / kBlock);
+  parallelFor(blocks.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      for (std::size_t tile = block * kBlock; tile < std::min(tiles, (block + 1) * kBlock);
+           ++tile) {
+        addLeaves(static_cast<int>(tile), blocks[block].leaves, blocks[block].boxes);
+      }
+    }
+  });
+  std::vector<SearchLeaf> unordered;
+  std::vector<BoxF> boxes;
+  for (Block& block : blocks) {
+    unordered.insert(unordered.end(), block.leaves.begin(), block.leaves.end());
+    boxes.insert(boxes.end(), block.boxes.begin(), block.boxes.end());
+    block = {};
+  }
+  std::vector<std::int32_t> order;
+  tree = std::make_unique<BoxTree>(boxes, order);
+  leaves.reserve(unordered.size());
+  for (const std::int32_t leaf : order) {
+    leaves.push_back(unordered[leaf]);
+  }
+  if (leaves.size() * sizeof(BezierPatch) <= kPatchBytes) {
+    kept.resize(leaves.size());
+    parallelFor(leaves.size(), 1024, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t leaf = begin; leaf < end; ++leaf) {
+        if (!leaves[leaf].piece.isCore()) {
+          kept[leaf] = patches.patch(leaves[leaf].piece);
+        }
+      }
+    });
+  }
+}
+
+void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const {
+  std::vector<SurfacePiece> pieces;
+  patches.appendPieces(tile, pieces);
+  const auto addPatch = [&](const SurfacePiece& piece, const BezierPatch& patch) {
+    const PatchPoints points = pointsOf(patch, middle, scale);
+    out.push_back({orientedBox(points), piece});
+    boxes.emplace_back(boxOf(points));
+  };
+  for (const SurfacePiece& piece : pieces) {
+    if (!piece.isCore()) {
+      addPatch(piece, patches.patch(piece));
+      continue;
+    }
+    // Small tiles are split once, whole faces twice; further steps only narrow the core's box.
+    const FaceRectangle on = patches.rectangle(piece);
+    const int steps = std::abs(on.us + on.ut) == 1 ? 2 : 1;
+    SurfacePatches::SplitCore split;
+    SurfacePiece core = piece, rest = piece;
+    Box box;
+    for (int step = 1; step <= steps + 2; ++step) {
+      patches.split(rest, split);
+      rest = split.core;
+      for (int quarter = 0; quarter < 3; ++quarter) {
+        if (step <= steps) {
+          addPatch(split.pieces[quarter], split.patches[quarter]);
+        } else {
+          box.include(boxOf(pointsOf(split.patches[quarter], middle, scale)));
+        }
+      }
+      if (step == steps) {
+        core = rest;
+      }
+    }
+    box.include(inBoxes(split.core_box));
+    out.push_back({OrientedBox(box), core});
+    boxes.emplace_back(box);
+  }
+}
+
+SurfaceSearch::SurfaceSearch(const LimitSurface& surface, int threads)
+    : data_(std::make_unique<SearchTree>(surface, threads)) {}
+SurfaceSearch::~SurfaceSearch() = default;
+SurfaceSearch::SurfaceSearch(SurfaceSearch&&) noexcept = default;
+SurfaceSearch& SurfaceSearch::operator=(SurfaceSearch&&) noexcept = default;
+
+}  // namespace limitsurf

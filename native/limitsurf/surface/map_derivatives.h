@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "limitsurf/surface/limit_surface.h"
+#include "limitsurf/surface/surface_data.h"
+
+namespace limitsurf {
+
+/// Throws std::invalid_argument for a map that does not have two columns or that belongs to a
+/// surface with another number of faces. `name` is the argument's name, as in "uv_map".
+void checkMap(const LimitSurface& surface, const SurfaceData& map, const char* name);
+
+/// A surface and a map (U, V) on it, evaluated at the same locations.
+struct MapDerivatives {
+  Evaluation on_surface;  ///< with unit normals
+  DataEvaluation on_map;  ///< two columns
+
+  /// Columns: the derivatives of (U, V) with respect to u and v.
+  Eigen::Matrix2d jacobian(Eigen::Index row) const {
+    Eigen::Matrix2d result;
+    result << on_map.du.row(row).transpose(), on_map.dv.row(row).transpose();
+    return result;
+  }
+  /// The Jacobian's: dU/du dV/dv - dU/dv dV/du.
+  double determinant(Eigen::Index row) const {
+    return on_map.du(row, 0) * on_map.dv(row, 1) - on_map.dv(row, 0) * on_map.du(row, 1);
+  }
+};
+
+/// First derivatives of the map, and those of the surface up to `order`, as
+/// LimitSurface::evaluate() and SurfaceData::evaluate() give them. Throws as those do.
+MapDerivatives evaluateWithMap(const LimitSurface& surface, const SurfaceData& map,
+                               Span<Location> at, Derivatives order, int threads);
+
+/// At a vertex where the surface or the map is irregular, or one of them is flat to first order,
+/// derivatives are those seen from so far inside the face, along its diagonal: directions and
+/// ratios converge on the way to the vertex, while the derivatives themselves vanish or diverge.
+constexpr double kSeenFrom = 0x1p-20;
+
+/// First derivatives from which directions and ratios can be told at every location (kSeenFrom says
+/// what stands at irregular vertices), with normals that are complete (complete_normals.h) and
+/// belong to the location itself. Throws as checkMap() and LimitSurface::evaluate().
+MapDerivatives directionalDerivatives(const LimitSurface& surface, const SurfaceData& uv_map,
+                                      Span<Location> at, int threads);
+
+}  // namespace limitsurf

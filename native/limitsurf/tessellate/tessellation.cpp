@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/tessellate/tessellation.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "limitsurf/mesh/ptex_faces.h"
+#include "limitsurf/parallel.h"
+#include "limitsurf/surface/complete_normals.h"
+#include "limitsurf/tessellate/tessellation_numbers.h"
+
+namespace limitsurf {
+namespace {
+
+/// Evaluated at a time: derivatives need little memory, and progress is told.
+constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
+/// Of the progress, when all but the normals of corners is there.
+constexpr double kPointsPart = 0.8;
+
+static_assert(Tessellation::Corner::kSteps == kGridSide);
+
+std::string allowedLevels(int least) {
+  return "; expected " + std::to_string(least) + " to " + std::to_string(kMostTessellationLevels);
+}
+
+/// Throws std::invalid_argument where points could not be counted with an int.
+void checkSize(std::size_t points, const std::string& whose) {
+  if (points > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    throw std::invalid_argument(whose + ": " + std::to_string(points) +
+                                " points or more are too many");
+  }
+}
+
+/// Of the points inside faces; no face has fewer.
+std::size_t leastPoints(const ControlMesh& mesh, const std::vector<int>& levels) {
+  std::size_t points = 0;
+  for (int face = 0; face < mesh.faceCount(); ++face) {
+    const bool is_quad = mesh.faceSize(face) == 4;
+    const std::size_t side = (std::size_t{1} << (is_quad ? levels[face] : levels[face] - 1)) - 1;
+    points += side * side * (is_quad ? 1 : static_cast<std::size_t>(mesh.faceSize(face)));
+  }
+  return points;
+}
+
+/// Evaluates positions and normals part by part.
+template <typename Take>
+void evaluateParts(const LimitSurface& surface, Span<Location> at, int threads, const Take& take) {
+  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
+    const Span<Location> part = at.subspan(begin, std::min(kRowsPerPart, at.size() - begin));
+    Evaluation e = surface.evaluate(part, Derivatives::first, true, threads);
+    completeNormals(surface, part, e.normal, threads);
+    take(begin, e);
+  }
+}
+
+void evaluatePoints(const LimitSurface& surface, Tessellation& result, int threads,
+                    const Progress& progress) {
+  const auto count = static_cast<Eigen::Index>(result.locations.size());
+  result.positions.resize(count, 3);
+  result.normals.resize(count, 3);
+  evaluateParts(surface, result.locations, threads, [&](std::size_t begin, const Evaluation& e) {
+    const auto first = static_cast<Eigen::Index>(begin);
+    result.positions.middleRows(first, e.position.rows()) = e.position;
+    result.normals.middleRows(first, e.normal.rows()) = e.normal;
+    progress(static_cast<double>(first + e.position.rows()) / static_cast<double>(count));
+  });
+}
+
+/// A corner has its point's normal where both are seen from the same Ptex face.
+void evaluateCornerNormals(const LimitSurface& surface, Tessellation& result, int threads,
+                           const Progress& progress) {
+  result.corner_normals.resize(static_cast<Eigen::Index>(result.face_vertices.size()), 3);
+  std::vector<Location> others;
+  std::vector<Eigen::Index> rows;
+  std::size_t corner = 0;
+  for (std::size_t polygon = 0; polygon < result.face_sizes.size(); ++polygon) {
+    const int face = result.ptex_face[polygon];
+    for (int k = 0; k < result.face_sizes[polygon]; ++k, ++corner) {
+      const int point = result.face_vertices[corner];
+      const auto row = static_cast<Eigen::Index>(corner);
+      if (result.locations[point].face == face) {
+        result.corner_normals.row(row) = result.normals.row(point);
+      } else {
+        others.push_back(result.cornerLocation(polygon, corner));
+        rows.push_back(row);
+      }
+    }
+  }
+  evaluateParts(surface, others, threads, [&](std::size_t begin, const Evaluation& e) {
+    for (Eigen::Index row = 0; row < e.normal.rows(); ++row) {
+      result.corner_normals.row(rows[begin + static_cast<std::size_t>(row)]) = e.normal.row(row);
+    }
+    progress(static_cast<double>(begin + static_cast<std::size_t>(e.normal.rows())) /
+             static_cast<double>(others.size()));
+  });
+}
+
+/// `whose`: what an error says of the levels.
+Tessellation tessellateAs(const LimitSurface& surface, const std::vector<int>& levels,
+                          const std::string& whose, const TessellationOptions& options) {
+  checkSize(leastPoints(surface.mesh(), levels), whose);
+  const PtexFaces ptex(surface.mesh());
+  const TessellationNumbers numbers(surface.mesh(), ptex, surface.refused(), levels,
+                                    options.threads);
+  checkSize(numbers.slotCount(), whose);
+  checkSize(numbers.pointCount(), whose);
+  Tessellation result;
+  numbers.fill(result, options.threads);
+  const double points_part = options.corner_normals ? kPointsPart : 1;
+  const auto tell = [&](double part) {
+    if (options.progress) {
+      options.progress(part);
+    }
+  };
+  evaluatePoints(surface, result, options.threads, [&](double part) { tell(part * points_part); });
+  if (options.corner_normals) {
+    evaluateCornerNormals(surface, result, options.threads,
+                          [&](double part) { tell(points_part + part * (1 - points_part)); });
+  }
+  return result;
+}
+
+}  // namespace
+
+Location Tessellation::cornerLocation(std::size_t polygon, std::size_t corner) const {
+  return {ptex_face[polygon], static_cast<double>(corners[corner].u) / Corner::kSteps,
+          static_cast<double>(corners[corner].v) / Corner::kSteps};
+}
+
+Tessellation tessellate(const LimitSurface& surface, int levels,
+                        const TessellationOptions& options) {
+  checkThreads(options.threads);
+  const ControlMesh& mesh = surface.mesh();
+  const int least = surface.faceCount() == mesh.faceCount() ? 0 : 1;
+  if (levels < least || levels > kMostTessellationLevels) {
+    throw std::invalid_argument("levels is " + std::to_string(levels) + allowedLevels(least));
+  }
+  return tessellateAs(
+      surface, std::vector<int>(static_cast<std::size_t>(mesh.faceCount()), levels),
+      "levels is " + std::to_string(levels) + " on " + std::to_string(mesh.faceCount()) + " faces",
+      options);
+}
+
+Tessellation tessellate(const LimitSurface& surface, std::vector<int> levels,
+                        const TessellationOptions& options) {
+  checkThreads(options.threads);
+  const ControlMesh& mesh = surface.mesh();
+  if (levels.size() != static_cast<std::size_t>(mesh.faceCount())) {
+    throw std::invalid_argument("levels has " + std::to_string(levels.size()) + " values for " +
+                                std::to_string(mesh.faceCount()) + " faces");
+  }
+  for (int face = 0; face < mesh.faceCount(); ++face) {
+    const int least = mesh.faceSize(face) == 4 ? 0 : 1;
+    int& level = levels[static_cast<std::size_t>(face)];
+    if (surface.refused().count(face)) {
+      level = least;
+    } else if (level < least || level > kMostTessellationLevels) {
+      throw std::invalid_argument("levels: face " + std::to_string(face) + ", of " +
+                                  std::to_string(mesh.faceSize(face)) + " corners, has level " +
+                                  std::to_string(level) + allowedLevels(least));
+    }
+  }
+  return tessellateAs(surface, levels, "levels", options);
+}
+
+}  // namespace limitsurf

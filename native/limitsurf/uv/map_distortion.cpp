@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/uv/map_distortion.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "limitsurf/surface/map_derivatives.h"
+
+namespace limitsurf {
+namespace {
+
+/// The larger singular value of the matrix with these columns.
+double largestStretch(const Vector3& x, const Vector3& y) {
+  const double scale = std::max(x.cwiseAbs().maxCoeff(), y.cwiseAbs().maxCoeff());
+  if (!(scale > 0)) {
+    return scale;
+  }
+  const Vector3 a = x / scale, b = y / scale;
+  const double mean = (a.squaredNorm() + b.squaredNorm()) / 2;
+  const double half = (a.squaredNorm() - b.squaredNorm()) / 2;
+  return scale * std::sqrt(mean + std::hypot(half, a.dot(b)));
+}
+
+}  // namespace
+
+MapDistortion mapDistortion(const LimitSurface& surface, const SurfaceData& uv_map,
+                            Span<Location> at, int threads) {
+  const MapDerivatives d = directionalDerivatives(surface, uv_map, at, threads);
+  const auto rows = static_cast<Eigen::Index>(at.size());
+  MapDistortion out{Eigen::VectorXd(rows), Eigen::VectorXd(rows), Eigen::VectorXd(rows)};
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const double determinant = d.determinant(row);
+    const Vector3 du = d.on_surface.du.row(row).transpose(),
+                  dv = d.on_surface.dv.row(row).transpose();
+    out.area(row) = du.cross(dv).norm() / std::abs(determinant);
+    if (determinant == 0) {
+      out.stretch_high(row) = std::numeric_limits<double>::infinity();
+      out.stretch_low(row) = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    out.stretch_high(row) =
+        largestStretch((du * d.on_map.dv(row, 1) - dv * d.on_map.du(row, 1)) / determinant,
+                       (dv * d.on_map.du(row, 0) - du * d.on_map.dv(row, 0)) / determinant);
+    out.stretch_low(row) = out.stretch_high(row) > 0 ? out.area(row) / out.stretch_high(row) : 0;
+  }
+  return out;
+}
+
+}  // namespace limitsurf

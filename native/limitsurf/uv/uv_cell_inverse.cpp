@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/uv/uv_cell_inverse.h"
+
+#include <algorithm>
+
+namespace limitsurf {
+namespace {
+
+/// A cubic's Bezier points, `stride` apart, to its powers from the middle.
+void toPowers(Point2* p, int stride) {
+  const Point2 a = p[0], b = p[stride], c = p[2 * stride], d = p[3 * stride];
+  p[0] = 0.125 * ((a + d) + 3 * (b + c));
+  p[stride] = 0.75 * ((d - a) + (c - b));
+  p[2 * stride] = 1.5 * ((a - b) + (d - c));
+  p[3 * stride] = (d - a) + 3 * (b - c);
+}
+
+}  // namespace
+
+bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
+  const Point2* p = cell.points;
+  Point2 ds[12], dt[12];
+  Point2 mean_s = Point2::Zero(), mean_t = Point2::Zero();
+  for (int i = 0; i < 12; ++i) {
+    const int s = i / 3 * 4 + i % 3;
+    ds[i] = 3 * (p[s + 1] - p[s]);
+    dt[i] = 3 * (p[i + 4] - p[i]);
+    mean_s += ds[i] / 12;
+    mean_t += dt[i] / 12;
+  }
+  const double determinant = cross(mean_s, mean_t);
+  if (determinant == 0) {
+    return false;
+  }
+  m_s_ = Point2(mean_t[1], -mean_s[1]) / determinant;
+  m_t_ = Point2(-mean_t[0], mean_s[0]) / determinant;
+  // Row r of M J - 1, entry by entry.
+  Point2 from_s = Point2::Zero(), from_t = Point2::Zero();
+  for (int i = 0; i < 12; ++i) {
+    from_s = from_s.max((ds[i][0] * m_s_ + ds[i][1] * m_t_ - Point2(1, 0)).abs());
+    from_t = from_t.max((dt[i][0] * m_s_ + dt[i][1] * m_t_ - Point2(0, 1)).abs());
+  }
+  const double variation = (from_s + from_t).maxCoeff();
+  if (!(variation <= kMostVariation)) {
+    return false;
+  }
+  tolerance_ = tolerance;
+  const double newton = 2 * variation / (1 - variation);
+  contraction_ = newton / (1 - newton);
+  Point2 second = Point2::Zero();  // bounds |ss| + 2 |st| + |tt|
+  {
+    Point2 ss = Point2::Zero(), st = Point2::Zero(), tt = Point2::Zero();
+    for (int row = 0; row < 4; ++row) {
+      for (int i = 0; i < 2; ++i) {
+        ss = ss.max((ds[3 * row + i + 1] - ds[3 * row + i]).abs());
+        tt = tt.max((dt[4 * (i + 1) + row] - dt[4 * i + row]).abs());
+      }
+    }
+    for (int row = 0; row < 3; ++row) {
+      for (int i = 0; i < 3; ++i) {
+        st = st.max((ds[3 * (row + 1) + i] - ds[3 * row + i]).abs());
+      }
+    }
+    second = 2 * ss + 6 * st + 2 * tt;
+  }
+  // Half of the second derivative, and a quarter of the tolerance.
+  curvature_ = 2 * (second / tolerance).maxCoeff();
+  const double m_norm = (m_s_.abs() * tolerance[0] + m_t_.abs() * tolerance[1]).maxCoeff();
+  border_width_ = 8 * m_norm;
+
+  std::copy(p, p + 16, c_);
+  for (int i = 0; i < 4; ++i) {
+    toPowers(c_ + 4 * i, 1);
+  }
+  for (int i = 0; i < 4; ++i) {
+    toPowers(c_ + i, 4);
+  }
+  return true;
+}
+
+Point2 CellInverse::guess(const Point2& target) const {
+  const Point2 r = target - c_[0];
+  return r[0] * m_s_ + r[1] * m_t_;
+}
+
+inline void CellInverse::evaluate(const Point2& x, const Point2& target, Point2& rest, Point2& ds,
+                                  Point2& dt) const {
+  const double s = x[0], t = x[1];
+  Point2 row[4], row_ds[4];
+  for (int j = 0; j < 4; ++j) {
+    const Point2* c = c_ + 4 * j;
+    const Point2 c3s = s * c[3], high = s * (c[2] + c3s);
+    row[j] = s * (c[1] + high);
+    row_ds[j] = (c[1] + high) + s * (c[2] + 2 * c3s);
+  }
+  // The constant last: what it leaves of the target is small.
+  for (int j = 1; j < 4; ++j) {
+    row[j] += c_[4 * j];
+  }
+  const Point2 r3t = t * row[3], high = t * (row[2] + r3t);
+  rest = (target - c_[0]) - (row[0] + t * (row[1] + high));
+  dt = (row[1] + high) + t * (row[2] + 2 * r3t);
+  ds = row_ds[0] + t * (row_ds[1] + t * (row_ds[2] + t * row_ds[3]));
+}
+
+void CellInverse::derivatives(const Point2& x, Point2& ds, Point2& dt) const {
+  Point2 unused;
+  evaluate(x, Point2::Zero(), unused, ds, dt);
+}
+
+bool CellInverse::find(const Point2& target, Place& out) const {
+  out.x = out.x.max(-0.5).min(0.5);
+  for (int step = 0; step < kMostSteps; ++step) {
+    Point2 rest;
+    evaluate(out.x, target, rest, out.ds, out.dt);
+    out.determinant = cross(out.ds, out.dt);
+    const Point2 move = Point2(cross(rest, out.dt), cross(out.ds, rest)) / out.determinant;
+    out.beyond = out.x + move;
+    out.x = out.beyond.max(-0.5).min(0.5);
+    const Point2 outside = out.beyond - out.x;
+    const double length = move.abs().maxCoeff();
+    if (curvature_ * length * length <= 1) {
+      return ((out.ds * outside[0] + out.dt * outside[1]).abs() <= tolerance_).all();
+    }
+    if (outside.abs().maxCoeff() > contraction_ * length) {
+      return false;
+    }
+  }
+  return false;
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "limitsurf/search/box_tree.h"
+#include "limitsurf/uv/uv_map.h"
+#include "limitsurf/uv/uv_patches.h"
+
+namespace limitsurf {
+
+/// Looks up single points in a map.
+class UvSearch {
+ public:
+  /// Refers to `map`.
+  explicit UvSearch(const UvPatches& map);
+
+  MapLocations locate(const PlanePoints& points, int threads) const;
+
+ private:
+  const UvPatches& map_;
+  Point2 middle_;
+  double scale_;  // a power of two
+  std::vector<std::int32_t> order_;
+  std::unique_ptr<BoxTree> tree_;
+};
+
+}  // namespace limitsurf

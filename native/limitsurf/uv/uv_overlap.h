@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limitsurf/uv/uv_inverse.h"
+
+namespace limitsurf {
+
+/// A find on the border of its cell, as one of those at a lattice point.
+struct BorderFind {
+  std::int64_t point;
+  int wedge_count;
+  Wedge wedges[2];
+};
+
+/// Whether the images of cells around a point overlap, each being given by its wedges. Those of
+/// neighbours on the surface only touch.
+bool doWedgesOverlap(const BorderFind* begin, const BorderFind* end);
+
+}  // namespace limitsurf

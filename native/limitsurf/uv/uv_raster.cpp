@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/uv/uv_raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/uv/uv_margin.h"
+
+namespace limitsurf {
+namespace {
+
+/// An image is done in bands of about so many texels: a band's slots stay in the cache, and there
+/// are enough of them for all threads.
+constexpr int kTexelsPerBand = 1 << 17;
+
+/// Where pieces lie on each other in more layers than this, bands are the smaller, so that work is
+/// never long without a word on the progress. Boxes make two or three layers of any map.
+constexpr double kFewLayers = 8;
+/// But pieces shall not stand in more lists than these together, besides one each.
+constexpr double kMostListed = 1 << 25;
+
+/// Between two words on the progress: so many texels of all layers, in so many bands.
+constexpr double kTexelsPerReport = 1 << 22;
+constexpr double kFewestBandsPerReport = 4, kMostBandsPerReport = 16;
+
+void checkRange(const char* name, double value, double least, double most) {
+  if (!(value >= least && value <= most)) {
+    std::ostringstream message;
+    message << name << " is " << value << "; it must be " << least << " to " << most;
+    throw std::invalid_argument(message.str());
+  }
+}
+
+/// An image's bands of rows, and which pieces of the map have a part in which of them.
+class Bands {
+ public:
+  Bands(const UvPatches& map, const RasterOptions& options)
+      : width_(options.width),
+        height_(options.height),
+        frame_{{static_cast<double>(options.tile_x), static_cast<double>(options.tile_y)},
+               {static_cast<double>(width_), static_cast<double>(height_)},
+               -0.5},
+        tolerance_(map.tolerance() * frame_.scale) {
+    chooseRows(map);
+    std::vector<std::size_t>& begins = begins_;
+    begins.assign(count() + 2, 0);
+    const auto forEachBand = [&](const auto& body) {
+      for (std::size_t piece = 0; piece < map.pieces().size(); ++piece) {
+        const Lattice inside = texelsOf(map.pieces()[piece]);
+        if (!inside.empty()) {
+          for (int band = inside.y0 / rows_; band <= inside.y1 / rows_; ++band) {
+            body(static_cast<int>(piece), band);
+          }
+        }
+      }
+    };
+    forEachBand([&](int, int band) { ++begins[band + 2]; });
+    for (std::size_t band = 2; band < begins.size(); ++band) {
+      begins[band] += begins[band - 1];
+    }
+    pieces_.resize(begins.back());
+    forEachBand([&](int piece, int band) { pieces_[begins[band + 1]++] = piece; });
+  }
+
+  int rows() const { return rows_; }
+  Lattice image() const { return {0, 0, width_ - 1, height_ - 1}; }
+  std::size_t count() const { return static_cast<std::size_t>((height_ + rows_ - 1) / rows_); }
+  Lattice lattice(std::size_t band) const {
+    const int first = static_cast<int>(band) * rows_;
+    return {0, first, width_ - 1, std::min(first + rows_, height_) - 1};
+  }
+  Span<int> pieces(std::size_t band) const {
+    return Span<int>(pieces_).subspan(begins_[band], begins_[band + 1] - begins_[band]);
+  }
+  std::size_t countPerReport() const { return per_report_; }
+  const PlaneFrame& frame() const { return frame_; }
+  const Point2& tolerance() const { return tolerance_; }
+
+ private:
+  /// Those in the piece's box.
+  Lattice texelsOf(const UvPiece& piece) const {
+    return image().within(frame_.at(piece.box).grown(tolerance_));
+  }
+
+  void chooseRows(const UvPatches& map) {
+    double texels = 0, rows = 0;  // of all pieces
+    for (const UvPiece& piece : map.pieces()) {
+      const Lattice inside = texelsOf(piece);
+      if (!inside.empty()) {
+        const double high = inside.y1 - inside.y0 + 1;
+        rows += high;
+        texels += high * (inside.x1 - inside.x0 + 1);
+      }
+    }
+    const double layers = texels / width_ / height_;
+    const double wanted = kTexelsPerBand / width_ / std::max(1., layers / kFewLayers);
+    rows_ = static_cast<int>(
+        std::clamp(std::max(wanted, rows / kMostListed), 1., static_cast<double>(height_)));
+    per_report_ =
+        static_cast<std::size_t>(std::clamp(kTexelsPerReport / (layers * width_ * rows_ + 1),
+                                            kFewestBandsPerReport, kMostBandsPerReport));
+  }
+
+  int width_, height_, rows_ = 1;
+  std::size_t per_report_ = 1;
+  PlaneFrame frame_;
+  Point2 tolerance_;
+  std::vector<std::size_t> begins_;  // of each band, and one more
+  std::vector<int> pieces_;          // band after band
+};
+
+class TexelWriter {
+ public:
+  explicit TexelWriter(Texels& out) : out_(out) {}
+
+  void add(int x, int y, const LatticeFinds::Slot& slot) {
+    add(x, y, {slot.face, slot.u, slot.v}, true, slot.overlap, slot.flipped);
+  }
+  void add(int x, int y, const NearestChords::Foot& foot) {
+    add(x, y, foot.at, false, false, foot.flipped);
+  }
+
+ private:
+  void add(int x, int y, const Location& at, bool inside, bool overlap, bool flipped) {
+    out_.x.push_back(x);
+    out_.y.push_back(y);
+    out_.face.push_back(at.face);
+    out_.uv.push_back({at.u, at.v});
+    out_.inside.push_back(inside);
+    out_.overlap.push_back(overlap);
+    out_.flipped.push_back(flipped);
+  }
+
+  Texels& out_;
+};
+
+void append(const LatticeFinds& finds, const Lattice& lattice, TexelWriter out) {
+  for (int y = lattice.y0; y <= lattice.y1; ++y) {
+    for (int x = lattice.x0; x <= lattice.x1; ++x) {
+      if (finds.at(x, y).face >= 0) {
+        out.add(x, y, finds.at(x, y));
+      }
+    }
+  }
+}
+
+/// The same with the margin around the finds.
+void append(const LatticeFinds& finds, const Lattice& lattice, const BorderChords& chords,
+            std::size_t band, TexelWriter out) {
+  NearestChords nearest(chords, lattice);
+  for (const BorderChords::Chord& chord : chords.inBand(band)) {
+    nearest.add(chord, [&](int x, int y) { return finds.at(x, y).face < 0; });
+  }
+  for (int y = lattice.y0; y <= lattice.y1; ++y) {
+    for (int x = lattice.x0; x <= lattice.x1; ++x) {
+      NearestChords::Foot foot;
+      if (finds.at(x, y).face >= 0) {
+        out.add(x, y, finds.at(x, y));
+      } else if (nearest.foot(x, y, foot)) {
+        out.add(x, y, foot);
+      }
+    }
+  }
+}
+
+template <typename T>
+void moveTo(std::vector<T>& from, std::vector<T>& to, std::size_t begin) {
+  std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(begin));
+  from = {};
+}
+
+Texels concatenate(std::vector<Texels>& parts, int threads) {
+  std::vector<std::size_t> begins;
+  std::size_t size = 0;
+  for (const Texels& part : parts) {
+    begins.push_back(size);
+    size += part.size();
+  }
+  Texels all;
+  all.x.resize(size);
+  all.y.resize(size);
+  all.face.resize(size);
+  all.uv.resize(size);
+  all.inside.resize(size);
+  all.overlap.resize(size);
+  all.flipped.resize(size);
+  parallelFor(parts.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      moveTo(parts[i].x, all.x, begins[i]);
+      moveTo(parts[i].y, all.y, begins[i]);
+      moveTo(parts[i].face, all.face, begins[i]);
+      moveTo(parts[i].uv, all.uv, begins[i]);
+      moveTo(parts[i].inside, all.inside, begins[i]);
+      moveTo(parts[i].overlap, all.overlap, begins[i]);
+      moveTo(parts[i].flipped, all.flipped, begins[i]);
+    }
+  });
+  return all;
+}
+
+}  // namespace
+
+void LatticeFinds::add(const Find& find) {
+  const std::int64_t point = (find.y - lattice_.y0) * width_ + (find.x - lattice_.x0);
+  Slot& slot = slots_[static_cast<std::size_t>(point)];
+  if (find.on_border) {
+    border_finds_.push_back({point, find.wedge_count, {find.wedges[0], find.wedges[1]}});
+  } else {
+    slot.overlap |= slot.within_cell;
+    slot.within_cell = true;
+  }
+  const Location at = on_.at(find.s, find.t);
+  const bool better =
+      slot.face < 0 || at.face < slot.face ||
+      (at.face == slot.face && (at.v < slot.v || (at.v == slot.v && at.u < slot.u)));
+  if (better) {
+    slot.face = at.face;
+    slot.u = at.u;
+    slot.v = at.v;
+    slot.flipped = find.flipped;
+  }
+}
+
+void LatticeFinds::finish() {
+  std::stable_sort(border_finds_.begin(), border_finds_.end(),
+                   [](const BorderFind& a, const BorderFind& b) { return a.point < b.point; });
+  const BorderFind* const end = border_finds_.data() + border_finds_.size();
+  for (const BorderFind* first = border_finds_.data(); first != end;) {
+    const BorderFind* last = first + 1;
+    bool known = first->wedge_count > 0;
+    while (last != end && last->point == first->point) {
+      known |= last->wedge_count > 0;
+      ++last;
+    }
+    Slot& slot = slots_[static_cast<std::size_t>(first->point)];
+    slot.overlap |= (slot.within_cell && known) || doWedgesOverlap(first, last);
+    first = last;
+  }
+  border_finds_.clear();
+}
+
+void checkOptions(const RasterOptions& options) {
+  checkRange("width", options.width, 1, RasterOptions::kMostTexels);
+  checkRange("height", options.height, 1, RasterOptions::kMostTexels);
+  checkRange("tile's column", options.tile_x, -RasterOptions::kMostTile, RasterOptions::kMostTile);
+  checkRange("tile's row", options.tile_y, -RasterOptions::kMostTile, RasterOptions::kMostTile);
+  checkRange("margin", options.margin, 0, RasterOptions::kMostMargin);
+}
+
+Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& borders,
+                 const RasterOptions& options, int threads, const Progress& progress) {
+  const Bands bands(map, options);
+  std::optional<BorderChords> chords;
+  if (options.margin > 0) {
+    chords.emplace(borders(), bands.frame(), bands.image(), bands.rows(), options.margin);
+  }
+  std::vector<Texels> parts(bands.count());
+  for (std::size_t begin = 0; begin < parts.size(); begin += bands.countPerReport()) {
+    const std::size_t count = std::min(bands.countPerReport(), parts.size() - begin);
+    parallelFor(count, 1, threads, [&](std::size_t first, std::size_t last) {
+      for (std::size_t band = begin + first; band < begin + last; ++band) {
+        const Lattice lattice = bands.lattice(band);
+        LatticeFinds finds(lattice);
+        LatticeInverse inverse(lattice, bands.tolerance(), finds);
+        for (const int piece : bands.pieces(band)) {
+          map.invert(map.pieces()[static_cast<std::size_t>(piece)], bands.frame(), inverse, finds);
+        }
+        finds.finish();
+        if (chords) {
+          append(finds, lattice, *chords, band, TexelWriter(parts[band]));
+        } else {
+          append(finds, lattice, TexelWriter(parts[band]));
+        }
+      }
+    });
+    if (progress) {
+      progress(static_cast<double>(begin + count) / static_cast<double>(parts.size()));
+    }
+  }
+  return concatenate(parts, threads);
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "limitsurf/uv/uv_border.h"
+#include "limitsurf/uv/uv_map.h"
+#include "limitsurf/uv/uv_overlap.h"
+#include "limitsurf/uv/uv_patches.h"
+
+namespace limitsurf {
+
+/// The best find of each point of a lattice.
+class LatticeFinds : public UvPatches::Sink {
+ public:
+  struct Slot {
+    double u, v;
+    std::int32_t face = -1;
+    bool overlap = false;
+    bool flipped = false;
+    bool within_cell = false;  ///< a find that is not on a border of its cell
+  };
+
+  explicit LatticeFinds(const Lattice& lattice)
+      : lattice_(lattice),
+        width_(lattice.x1 - lattice.x0 + 1),
+        slots_(static_cast<std::size_t>(width_) * (lattice.y1 - lattice.y0 + 1)) {}
+
+  void enter(const FaceRectangle& on) override { on_ = on; }
+  void add(const Find& find) override;
+  /// To be called when all finds have been added.
+  void finish();
+
+  const Slot& at(int x, int y) const {
+    return slots_[static_cast<std::size_t>(y - lattice_.y0) * width_ + (x - lattice_.x0)];
+  }
+
+ private:
+  const Lattice lattice_;
+  const std::int64_t width_;
+  FaceRectangle on_;
+  std::vector<Slot> slots_;
+  std::vector<BorderFind> border_finds_;
+};
+
+/// Throws std::invalid_argument.
+void checkOptions(const RasterOptions& options);
+
+/// `borders` are asked for a margin only.
+Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& borders,
+                 const RasterOptions& options, int threads, const Progress& progress);
+
+}  // namespace limitsurf

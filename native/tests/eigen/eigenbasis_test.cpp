@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The eigenbasis of every kind of ring, against the subdivision step itself.
+#include "limitsurf/eigen/eigenbasis.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <complex>
+#include <cstdio>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "limitsurf/eigen/ring_cells.h"
+#include "support/cages/meshes.h"
+#include "support/cages/sharp_meshes.h"
+#include "support/random.h"
+
+namespace limitsurf::test {
+namespace {
+
+using Big = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
+                                          boost::multiprecision::et_off>;
+using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+using LongComplex = std::complex<long double>;
+
+constexpr RingKind kKinds[] = {RingKind::interior, RingKind::boundary, RingKind::pinned,
+                               RingKind::cone, RingKind::dart};
+
+std::string describe(const Ring& ring) {
+  const char* names[] = {"interior", "boundary", "pinned", "cone", "dart"};
+  return std::string(names[static_cast<int>(ring.kind)]) + " of " + std::to_string(ring.faces);
+}
+
+bool exists(const Ring& ring) { return ring.faces >= (ring.closed() ? 2 : 1); }
+
+/// What a step does to the coefficients of the modes.
+LongMatrix jordanForm(const Eigenbasis& basis) {
+  LongMatrix j = LongMatrix::Zero(basis.modeCount(), basis.modeCount());
+  for (int mode = 0; mode < basis.modeCount(); ++mode) j(mode, mode) = basis.eigenvalue(mode);
+  for (const auto& chain : basis.chains()) j(chain.to, chain.from) = chain.rate;
+  for (const ModePair& pair : basis.pairs()) {
+    j(pair.b, pair.a) = pair.forth;
+    j(pair.a, pair.b) = pair.back;
+  }
+  return j;
+}
+
+void compareWithRingMatrix(const Ring& ring) {
+  const Eigenbasis basis(ring);
+  const int n = ring.size();
+  const LongMatrix identity = LongMatrix::Identity(n, n), j = jordanForm(basis);
+  const LongMatrix s = subdivideRing<LongMatrix>(ring, identity);
+  LongMatrix right(n, n);
+  for (int mode = 0; mode < n; ++mode) {
+    const std::vector<double> vector = basis.ringVector(mode);
+    right.col(mode) = Eigen::Map<const Eigen::VectorXd>(vector.data(), n).cast<long double>();
+  }
+  const Eigen::MatrixXd left = basis.projectTransposed(Eigen::MatrixXd::Identity(n, n)).transpose();
+  const LongMatrix wide_left = left.cast<long double>();
+  EXPECT_LE((s * right - right * j).cwiseAbs().maxCoeff(), 2e-15L) << describe(ring);
+  // The rest adds up rounding of all modes.
+  const long double allowed = 1e-14L * std::max(1.L, ring.faces / 100.L);
+  EXPECT_LE((wide_left * right - identity).cwiseAbs().maxCoeff(), 2 * allowed) << describe(ring);
+  EXPECT_LE((s - right * j * wide_left).cwiseAbs().maxCoeff(), allowed) << describe(ring);
+
+  Random random(n);
+  Points points(n, 3), coefficients;
+  for (int i = 0; i < n; ++i) points.row(i) = random.vector(1);
+  basis.project(points, coefficients);
+  EXPECT_LE((coefficients - left * points).cwiseAbs().maxCoeff(), 1e-14 * left.norm())
+      << describe(ring);
+}
+
+TEST(Eigenbasis, FactorisesTheRingMatrix) {
+  for (RingKind kind : kKinds) {
+    for (int faces = 1; faces <= 40; ++faces) {
+      if (exists({kind, faces})) compareWithRingMatrix({kind, faces});
+    }
+    for (int faces : {63, 64, 65, 66, 100, 101, 102}) compareWithRingMatrix({kind, faces});
+  }
+}
+
+TEST(SlowEigenbasis, FactorisesTheRingMatrix) {
+  for (RingKind kind : kKinds) {
+    for (int faces = 41; faces <= 100; ++faces) compareWithRingMatrix({kind, faces});
+    for (int faces : {125, 150, 169, 183, 198, 200}) compareWithRingMatrix({kind, faces});
+  }
+}
+
+/// The eigenvalues that the basis knows of.
+std::vector<LongComplex> knownSpectrum(const Eigenbasis& basis) {
+  std::vector<LongComplex> result;
+  for (int mode = 0; mode < basis.modeCount(); ++mode) result.push_back(basis.eigenvalue(mode));
+  for (const ModePair& pair : basis.pairs()) {
+    const LongComplex root =
+        std::sqrt(LongComplex(static_cast<long double>(pair.forth) * pair.back));
+    result[pair.a] += root;
+    result[pair.b] -= root;
+  }
+  return result;
+}
+
+/// Eigenvalues of S on the vectors that a dart's mirror leaves as they are, or negates.
+std::vector<LongComplex> numericSpectrum(const Ring& dart) {
+  const int n = dart.faces;
+  std::vector<LongComplex> result;
+  for (const int sign : {1, -1}) {
+    std::vector<std::pair<int, int>> points;  // with their images
+    if (sign > 0) points.emplace_back(0, 0);
+    for (int i = 0; 2 * i <= n; ++i) {
+      const int image = (n - i) % n;
+      if (sign > 0 || image != i) points.emplace_back(dart.edge(i), dart.edge(image));
+    }
+    for (int j = 0; 2 * j < n; ++j) {
+      if (sign > 0 || n - 1 - j != j) points.emplace_back(dart.face(j), dart.face(n - 1 - j));
+    }
+    const int size = static_cast<int>(points.size());
+    LongMatrix vectors = LongMatrix::Zero(dart.size(), size);
+    for (int i = 0; i < size; ++i) {
+      vectors(points[i].second, i) = sign;
+      vectors(points[i].first, i) = 1;
+    }
+    const LongMatrix next = subdivideRing<LongMatrix>(dart, vectors);
+    LongMatrix part(size, size);
+    for (int i = 0; i < size; ++i) part.row(i) = next.row(points[i].first);
+    const auto eigenvalues = Eigen::EigenSolver<LongMatrix>(part, false).eigenvalues().eval();
+    result.insert(result.end(), eigenvalues.data(), eigenvalues.data() + eigenvalues.size());
+  }
+  return result;
+}
+
+void compareSpectrum(int faces) {
+  const Ring ring{RingKind::dart, faces};
+  const std::vector<LongComplex> known = knownSpectrum(Eigenbasis(ring));
+  std::vector<LongComplex> found = numericSpectrum(ring);
+  ASSERT_EQ(known.size(), found.size()) << faces;
+  for (const LongComplex& eigenvalue : known) {
+    const auto nearest = std::min_element(found.begin(), found.end(), [&](auto a, auto b) {
+      return std::abs(a - eigenvalue) < std::abs(b - eigenvalue);
+    });
+    // The solver's error grows where two eigenvalues almost meet.
+    EXPECT_LE(std::abs(*nearest - eigenvalue), 1e-14L) << faces << " faces: " << eigenvalue;
+    found.erase(nearest);
+  }
+}
+
+TEST(Eigenbasis, HasTheSpectrumOfDarts) {
+  for (int faces = 2; faces <= 60; ++faces) compareSpectrum(faces);
+  compareSpectrum(100);
+}
+
+TEST(SlowEigenbasis, HasTheSpectrumOfDarts) {
+  for (int faces = 61; faces <= 200; ++faces) compareSpectrum(faces);
+}
+
+TEST(Eigenbasis, OfDartsHasComplexPairs) {
+  for (int faces = 2; faces <= 102; ++faces) {
+    const Eigenbasis basis({RingKind::dart, faces});
+    ASSERT_EQ(basis.pairs().size(), 1u);
+    const bool complex = basis.pairs()[0].forth * basis.pairs()[0].back < 0;
+    if (faces < 6 || (faces % 4 == 0 && faces >= 20)) {
+      EXPECT_FALSE(complex) << faces;
+    } else if (faces <= 33 || faces % 4 == 2) {
+      EXPECT_TRUE(complex) << faces;
+    }
+  }
+}
+
+// One coordinate on one face, subdivided.
+
+struct Tile {
+  Ring ring;
+  int face;
+  int ring_steps;
+  std::vector<double> ring_points, outer_points;
+};
+
+Tile randomTile(const Eigenbasis& basis, int face, int ring_steps, Random& random) {
+  Tile tile{basis.ring(), face, ring_steps, {}, {}};
+  for (int i = 0; i < basis.ring().size(); ++i) {
+    tile.ring_points.push_back(random.uniform(-1, 1));
+  }
+  for (int i = 0; i < basis.outerModes(face).count(); ++i) {
+    tile.outer_points.push_back(random.uniform(-1, 1));
+  }
+  return tile;
+}
+
+using BigGrid = std::array<Big, tile_grid::kCells>;
+
+class SubdividedTile {
+ public:
+  explicit SubdividedTile(const Tile& tile)
+      : tile_(tile),
+        ring_step_(tile.ring),
+        tile_step_(tile.ring.sides(tile.face)),
+        ring_(tile.ring_points.begin(), tile.ring_points.end()) {
+    for (int i = 0; i < tile.ring_steps; ++i) stepRing();
+    grid_.fill(0);
+    std::size_t next = 0;
+    for (const int c : tile_grid::kOuterCells) {
+      if (tile_grid::exists(tile.ring.sides(tile.face), c)) grid_[c] = tile.outer_points[next++];
+    }
+    takeRing();
+  }
+
+  void step() {
+    BigGrid next;
+    next.fill(0);
+    tile_step_.apply(grid_, next);
+    grid_ = next;
+    stepRing();
+    takeRing();
+  }
+
+  const BigGrid& grid() const { return grid_; }
+
+  /// Where the vertex ends.
+  Big limit() const {
+    SubdividedTile copy(*this);
+    for (int i = 0; i < 600; ++i) copy.stepRing();
+    return copy.ring_[0];
+  }
+
+  /// The ring's largest distance from there.
+  Big size(const Big& limit) const {
+    Big result = 0;
+    for (const Big& point : ring_) result = std::max<Big>(result, abs(point - limit));
+    return result;
+  }
+
+ private:
+  void stepRing() {
+    std::vector<Big> next(ring_.size());
+    ring_step_.apply([&](int i) -> const Big& { return ring_[i]; },
+                     [&](int i) -> Big& { return next[i]; });
+    ring_ = next;
+  }
+  void takeRing() {
+    forEachRingCell(tile_.ring, tile_.face,
+                    [&](int cell, int point) { grid_[cell] = ring_[point]; });
+  }
+
+  Tile tile_;
+  RingStep<Big> ring_step_;
+  TileStep<Big> tile_step_;
+  std::vector<Big> ring_;
+  BigGrid grid_;
+};
+
+/// A uniform cubic B-spline of four points, or its derivative; a missing first point is the linear
+/// continuation.
+Big spline(std::array<Big, 4> p, bool low, double parameter, int derivative) {
+  if (low) p[0] = 2 * p[1] - p[2];
+  const Big t = parameter, s = 1 - t;
+  switch (derivative) {
+    case 0:
+      return (s * s * s * p[0] + (3 * t * t * t - 6 * t * t + 4) * p[1] +
+              (3 * s * s * s - 6 * s * s + 4) * p[2] + t * t * t * p[3]) /
+             6;
+    case 1:
+      return (s * s * (p[1] - p[0]) + (1 + 2 * s * t) * (p[2] - p[1]) + t * t * (p[3] - p[2])) / 2;
+    default:
+      return s * (p[2] - 2 * p[1] + p[0]) + t * (p[3] - 2 * p[2] + p[1]);
+  }
+}
+
+struct Place {
+  int a, b;  // the quarter
+  double u, v;
+};
+
+Big patch(const BigGrid& grid, Sides sides, const Place& at, int du, int dv) {
+  std::array<Big, 4> rows;
+  for (int y = 0; y < 4; ++y) {
+    std::array<Big, 4> row;
+    for (int x = 0; x < 4; ++x) row[x] = grid[(at.b + y) * tile_grid::kSize + at.a + x];
+    rows[y] = spline(row, onRight(sides) && at.a == 0, at.u, du);
+  }
+  return spline(rows, onLeft(sides) && at.b == 0, at.v, dv);
+}
+
+constexpr std::array<std::array<int, 2>, 6> kDerivatives = {
+    {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
+
+double asDouble(const Big& value) { return static_cast<double>(value); }
+
+/// The worst errors of values, first and second derivatives.
+using Errors = std::array<double, 3>;
+
+/// weights() and controlGrid() of a random tile after some steps. Derivatives count in the face's
+/// own parameters; errors are relative to the largest after as many steps, or after the first;
+/// those of first derivatives also to what the ring's size after as many steps makes of them
+/// elsewhere.
+void compareTile(const Eigenbasis& basis, int face, int ring_steps, Random& random,
+                 Errors& errors) {
+  const Tile tile = randomTile(basis, face, ring_steps, random);
+  const Sides sides = basis.sides(face);
+  Points ring_points = Points::Zero(basis.ring().size(), 3), coefficients;
+  for (int i = 0; i < basis.ring().size(); ++i) ring_points(i, 0) = tile.ring_points[i];
+  basis.project(ring_points, coefficients);
+
+  SubdividedTile truth(tile);
+  const Big limit = truth.limit();
+  errors[0] = std::max(errors[0], std::abs(coefficients(0, 0) - asDouble(limit)));
+  Points relative = coefficients;
+  relative(0, 0) = 0;
+  Eigen::Array4d outer[tile_grid::kOuter];
+  for (std::size_t i = 0; i < tile.outer_points.size(); ++i) {
+    outer[i] = Eigen::Array4d::Zero();
+    outer[i][0] = asDouble(tile.outer_points[i] - limit);
+  }
+
+  Errors first_scale = {};
+  int done = 0;
+  for (const int steps : {1, 2, 3, 5, 10, 20, 40, 70}) {
+    for (; done < steps; ++done) truth.step();
+    const Place places[] = {{1, 0, random.uniform(), random.uniform()},
+                            {1, 1, random.uniform(), random.uniform()},
+                            {0, 1, random.uniform(), random.uniform()},
+                            {1, 0, 0, 0},
+                            {1, 1, 0, 0}};
+    Errors differences = {}, scale = {1, first_scale[1], std::ldexp(first_scale[2], 1 - steps)};
+    for (const Place& at : places) {
+      GridWindow window{at.a, at.b, CubicWeights(at.u, onRight(sides) && at.a == 0, false),
+                        CubicWeights(at.v, onLeft(sides) && at.b == 0, false), 2};
+      Eigen::MatrixXd on_modes, on_outer;
+      basis.weights(face, steps, ring_steps, window, on_modes, on_outer);
+      for (std::size_t functional = 0; functional < kDerivatives.size(); ++functional) {
+        const auto [du, dv] = kDerivatives[functional];
+        const int order = du + dv;
+        // Second derivatives leave 2^(steps - 1) to the caller.
+        const double exact = asDouble(boost::multiprecision::ldexp(
+            patch(truth.grid(), sides, at, du, dv), order == 2 ? steps + 1 : order * steps));
+        const Eigen::Index row = static_cast<Eigen::Index>(functional);
+        double got = on_modes.row(row).dot(coefficients.col(0));
+        for (std::size_t i = 0; i < tile.outer_points.size(); ++i) {
+          got += on_outer(row, static_cast<Eigen::Index>(i)) * tile.outer_points[i];
+        }
+        scale[order] = std::max(scale[order], std::abs(exact));
+        differences[order] = std::max(differences[order], std::abs(got - exact));
+      }
+    }
+
+    Eigen::Array4d grid[tile_grid::kCells];
+    basis.controlGrid(face, steps, ring_steps, relative, outer, grid);
+    for (int c = 0; c < tile_grid::kCells; ++c) {
+      if (!tile_grid::exists(sides, c)) continue;
+      const double exact =
+          asDouble(boost::multiprecision::ldexp(truth.grid()[c] - limit, steps - 1));
+      scale[1] = std::max(scale[1], std::abs(exact));
+      differences[1] = std::max(differences[1], std::abs(grid[c][0] - exact));
+    }
+    scale[1] =
+        std::max(scale[1], asDouble(boost::multiprecision::ldexp(truth.size(limit), steps - 1)));
+    if (steps == 1) first_scale = scale;
+    for (int order = 0; order < 3; ++order) {
+      errors[order] = std::max(errors[order], differences[order] / scale[order]);
+    }
+  }
+}
+
+void compareTiles(RingKind kind, const std::vector<int>& face_counts) {
+  for (const int faces : face_counts) {
+    const Ring ring{kind, faces};
+    if (!exists(ring)) continue;
+    const Eigenbasis basis(ring);
+    Random random(faces);
+    Errors errors = {};
+    std::vector<int> some = {0, 1, faces / 2, faces - 1};
+    std::sort(some.begin(), some.end());
+    some.erase(std::unique(some.begin(), some.end()), some.end());
+    for (const int face : some) {
+      if (face >= faces) continue;
+      for (const int ring_steps : {0, 1, 2}) compareTile(basis, face, ring_steps, random, errors);
+    }
+    std::printf("%-18s position %.1e  first derivatives %.1e  second %.1e\n",
+                describe(ring).c_str(), errors[0], errors[1], errors[2]);
+    // Darts of valence 16 are next to having a triple eigenvalue.
+    EXPECT_LE(errors[0], 4e-15) << describe(ring);
+    EXPECT_LE(errors[1], 1e-13) << describe(ring);
+    EXPECT_LE(errors[2], 1e-12) << describe(ring);
+  }
+}
+
+TEST(Eigenbasis, ReachesSubdividedTiles) {
+  for (RingKind kind : kKinds) compareTiles(kind, {1, 2, 3, 4, 5, 6, 7, 8, 10, 16, 20, 33, 34});
+}
+
+TEST(SlowEigenbasis, ReachesSubdividedTiles) {
+  std::vector<int> all(100);
+  std::iota(all.begin(), all.end(), 1);
+  for (RingKind kind : kKinds) compareTiles(kind, all);
+}
+
+TEST(Eigenbasis, OfLargeDartsReachesAStep) {
+  for (const int faces : {999, 1000, 1002}) {
+    const Ring ring{RingKind::dart, faces};
+    const Eigenbasis basis(ring);
+    Random random(faces);
+    Points points(ring.size(), 3), before, after;
+    for (int i = 0; i < ring.size(); ++i) points.row(i) = random.vector(1);
+    basis.project(points, before);
+    basis.project(subdivideRing<Points>(ring, points), after);
+    Points expected = before, sum = Points::Zero(ring.size(), 3);
+    for (int mode = 0; mode < basis.modeCount(); ++mode) {
+      expected.row(mode) = basis.eigenvalue(mode) * before.row(mode);
+      const std::vector<double> vector = basis.ringVector(mode);
+      sum += Eigen::Map<const Eigen::VectorXd>(vector.data(), ring.size()) * before.row(mode);
+    }
+    const ModePair& pair = basis.pairs()[0];
+    expected.row(pair.a) += pair.back * before.row(pair.b);
+    expected.row(pair.b) += pair.forth * before.row(pair.a);
+    EXPECT_LE((after - expected).cwiseAbs().maxCoeff(), 1e-14) << faces;
+    EXPECT_LE((sum - points).cwiseAbs().maxCoeff(), 3e-14) << faces;
+  }
+}
+
+// Darts and cones on a surface, at the vertex and as close to it as doubles go.
+
+Cage dartFan(int faces) {
+  Cage cage = fan(faces, true, 31 * faces);
+  const int middle = cage.faces[0][1];
+  sharpenEdge(cage, cage.faces[0][0], middle, INFINITY);
+  sharpenEdge(cage, middle, cage.faces[1][1], INFINITY);
+  return cage;
+}
+
+TEST(Darts, HaveANormalThatAllFacesApproach) {
+  for (int faces = 3; faces <= 12; ++faces) {
+    const LimitSurface surface = limitSurface(dartFan(faces));
+    const double near = std::ldexp(1., -400);
+    for (int face = 0; face < faces; ++face) {
+      const std::vector<Location> at = {{4 * face, 0, 0},
+                                        {4 * face, near, 0},
+                                        {4 * face, near, near},
+                                        {4 * face, 0.3 * near, near}};
+      const Evaluation e = surface.evaluate(at, Derivatives::first, true);
+      EXPECT_TRUE(e.du.row(0).array().isNaN().all() && e.dv.row(0).array().isNaN().all());
+      for (int i = 0; i < 4; ++i) {
+        EXPECT_LE((e.normal.row(i) - e.normal.row(0)).norm(), 1e-6) << faces << ", face " << face;
+      }
+    }
+  }
+  const LimitSurface two = limitSurface(dartFan(2));
+  const Evaluation e = two.evaluate(std::vector<Location>{{0, 0, 0}}, Derivatives::first, true);
+  EXPECT_TRUE(e.normal.array().isNaN().all());
+}
+
+TEST(Darts, HaveTheFramesThatTheDiagonalApproaches) {
+  for (int faces = 3; faces <= 8; ++faces) {
+    const LimitSurface surface = limitSurface(dartFan(faces));
+    const double near = std::ldexp(1., -400);
+    for (int face = 0; face < faces; ++face) {
+      const std::vector<Location> at = {{4 * face, 0, 0}, {4 * face, near, near}};
+      const auto frames = surface.frames(at);
+      EXPECT_LE((frames.row(0) - frames.row(1)).norm(), 1e-6) << faces << ", face " << face;
+    }
+  }
+}
+
+TEST(Cones, HaveNoNormal) {
+  for (int faces = 2; faces <= 9; ++faces) {
+    Cage cage = fan(faces, true, faces);
+    sharpenVertex(cage, cage.faces[0][0], INFINITY);
+    const LimitSurface surface = limitSurface(cage);
+    const Evaluation e =
+        surface.evaluate(std::vector<Location>{{0, 0, 0}}, Derivatives::second, true);
+    EXPECT_EQ(Vector3(e.position.row(0)), Vector3(cage.positions.row(cage.faces[0][0])));
+    for (const Points* missing : {&e.du, &e.dv, &e.duu, &e.duv, &e.dvv, &e.normal}) {
+      EXPECT_TRUE(missing->array().isNaN().all()) << faces;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limitsurf::test

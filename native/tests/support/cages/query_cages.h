@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "support/cages/strange_meshes.h"
+#include "support/random.h"
+#include "support/truth/corner_points.h"
+
+namespace limitsurf::test {
+
+/// Small cages with everything that makes a surface hard to search: creases of all kinds, darts,
+/// corners, boundaries, extraordinary vertices of valence 2 to 100, polygons, pinned sectors, holes
+/// and refused faces, sheets that meet, the bilinear scheme, planes.
+NamedCages queryCages();
+
+/// Those of them without boundaries.
+NamedCages closedCages();
+
+/// Cages that are no surface at all, or hardly: points, lines, faces without area.
+NamedCages degenerateCages();
+
+/// `count` locations on faces that have a surface: anywhere, on sides, at corners and within 2^-5
+/// to 2^-40 of these.
+std::vector<Location> searchedLocations(const LimitSurface& surface, int count, Random& random);
+
+/// Whether the location lies within a side of its face, corners apart, that is a boundary or an
+/// infinitely sharp edge. Not for the bilinear scheme.
+bool isOnBorder(const CornerPoints& corners, const Location& at);
+
+/// All coordinates times `factor`, plus `offset`.
+Cage placed(Cage cage, double factor, const Vector3& offset = Vector3::Zero());
+
+}  // namespace limitsurf::test

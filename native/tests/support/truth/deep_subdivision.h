@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "support/cages/cage.h"
+#include "support/truth/accuracy.h"
+
+namespace limitsurf::test {
+
+/// The limit surface by nothing but subdivision: an independent witness of LimitSurface.
+///
+/// The faces around the location's face are refined by the rules of Catmull and Clark and of
+/// OpenSubdiv's sharpness, written out here from their definition, in floating point numbers of 50
+/// decimal digits (sharpness itself in float32, as OpenSubdiv has it), down to a face whose
+/// neighbourhood is a regular grid; there the surface is a bicubic B-spline. No eigenvalue, no
+/// limit mask, nothing of the library, of Sdc or Far. Refined neighbourhoods are kept, so that many
+/// locations near the same vertex cost little more than one.
+///
+/// Knows: faces of any size, both boundary rules, both triangle rules, both kinds of creasing, any
+/// sharpness, edges of any number of faces and windings, vertices of several fans. Knows not: faces
+/// that use a vertex twice, the bilinear scheme.
+class DeepSubdivision {
+ public:
+  explicit DeepSubdivision(const Cage& cage);
+  ~DeepSubdivision();
+
+  /// All seven quantities, each the double nearest to the truth. Throws std::runtime_error exactly
+  /// at irregular vertices. The normal is NaN where du x dv vanishes.
+  Truth evaluate(const Location& at);
+
+  /// What there is at a face's corner that is an irregular vertex. The position: the vertex after
+  /// so many levels that it moves no more. du, dv, duu and dvv along infinitely sharp edges that
+  /// bound a sector: the crease curve's, a B-spline; du = dv = 0 around two and three smooth faces.
+  /// All else is NaN.
+  Truth corner(int face, int corner);
+  Vector3 cornerPosition(int face, int corner);
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace limitsurf::test

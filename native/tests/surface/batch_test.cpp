@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A location's result does not depend on threads, nor on what else is in the batch, to the bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "support/cages/meshes.h"
+#include "support/truth/witness.h"
+
+namespace limitsurf::test {
+namespace {
+
+bool sameBits(const Points& a, const Points& b) {
+  return a.rows() == b.rows() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+bool sameBits(const Evaluation& a, const Evaluation& b) {
+  return sameBits(a.position, b.position) && sameBits(a.du, b.du) && sameBits(a.dv, b.dv) &&
+         sameBits(a.duu, b.duu) && sameBits(a.duv, b.duv) && sameBits(a.dvv, b.dvv) &&
+         sameBits(a.normal, b.normal);
+}
+
+/// Locations of all kinds in random order, several times as many as one task would take.
+std::vector<Location> manyLocations(const Cage& cage, int count) {
+  Random random(11);
+  const int faces = static_cast<int>(ptexFaces(cage).size());
+  std::vector<Location> at;
+  while (static_cast<int>(at.size()) < count) {
+    const int face = random.below(faces);
+    at += anywhere(face, 3, random);
+    at += shells(face, random.below(4), {random.below(45)});
+    at.push_back(cornerLocation(face, random.below(4)));
+  }
+  return at;
+}
+
+class Batch : public testing::TestWithParam<int> {
+ protected:
+  Cage cage() const {
+    switch (GetParam()) {
+      case 0:
+        return mixture(21);
+      case 1:
+        return fan(11, true, 1);
+      default:
+        return cross();
+    }
+  }
+};
+
+TEST_P(Batch, ThreadsDoNotChangeABit) {
+  const LimitSurface surface = limitSurface(cage());
+  const std::vector<Location> at = manyLocations(cage(), 20000);
+  const Evaluation one = surface.evaluate(at, Derivatives::second, true, 1);
+  for (int threads : {0, 2, 3, 7}) {
+    EXPECT_TRUE(sameBits(one, surface.evaluate(at, Derivatives::second, true, threads)));
+  }
+  const auto frames = surface.frames(at, 1);
+  EXPECT_EQ(
+      std::memcmp(frames.data(), surface.frames(at, 0).data(), frames.size() * sizeof(double)), 0);
+}
+
+TEST_P(Batch, OtherLocationsDoNotChangeABit) {
+  const LimitSurface surface = limitSurface(cage());
+  const std::vector<Location> at = manyLocations(cage(), 3000);
+  const Evaluation whole = surface.evaluate(at, Derivatives::second, true);
+  for (int size : {1, 2, 3, 7, 64, 1000}) {
+    for (int begin = 0; begin < static_cast<int>(at.size()); begin += size) {
+      const int count = std::min<int>(size, static_cast<int>(at.size()) - begin);
+      const Evaluation part =
+          surface.evaluate(Span<Location>(at).subspan(begin, count), Derivatives::second, true);
+      const Points position = whole.position.middleRows(begin, count);
+      const Points dvv = whole.dvv.middleRows(begin, count);
+      const Points normal = whole.normal.middleRows(begin, count);
+      ASSERT_TRUE(sameBits(part.position, position) && sameBits(part.dvv, dvv) &&
+                  sameBits(part.normal, normal))
+          << "rows " << begin << " to " << begin + count;
+    }
+  }
+}
+
+TEST_P(Batch, OrderDoesNotChangeABit) {
+  const LimitSurface surface = limitSurface(cage());
+  const std::vector<Location> at = manyLocations(cage(), 5000);
+  std::vector<int> order(at.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::tie(at[a].face, at[a].v, at[a].u) < std::tie(at[b].face, at[b].v, at[b].u);
+  });
+  std::vector<Location> sorted;
+  for (int i : order) sorted.push_back(at[i]);
+  const Evaluation mixed = surface.evaluate(at, Derivatives::second, true);
+  const Evaluation ordered = surface.evaluate(sorted, Derivatives::second, true);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (const auto& [a, b] :
+         {std::pair(&mixed.position, &ordered.position), std::pair(&mixed.du, &ordered.du),
+          std::pair(&mixed.duv, &ordered.duv)}) {
+      ASSERT_EQ(std::memcmp(a->data() + 3 * order[i], b->data() + 3 * i, 3 * sizeof(double)), 0)
+          << describe(sorted[i]);
+    }
+  }
+}
+
+TEST_P(Batch, GivesWhatWasAskedFor) {
+  const LimitSurface surface = limitSurface(cage());
+  const std::vector<Location> at = manyLocations(cage(), 2000);
+  const Evaluation all = surface.evaluate(at, Derivatives::second, true);
+  const Evaluation first = surface.evaluate(at, Derivatives::first);
+  const Evaluation none = surface.evaluate(at);
+  EXPECT_EQ(all.dvv.rows(), static_cast<int>(at.size()));
+  EXPECT_EQ(all.normal.rows(), static_cast<int>(at.size()));
+  EXPECT_EQ(none.du.rows(), 0);
+  EXPECT_EQ(first.duu.rows(), 0);
+  EXPECT_EQ(first.normal.rows(), 0);
+  // Not the same bits: each order may take the way that is the fastest for it.
+  const double allowed = kPositionError * diagonal(cage().positions);
+  EXPECT_LE((all.position - none.position).cwiseAbs().maxCoeff(), allowed);
+  EXPECT_LE((all.position - first.position).cwiseAbs().maxCoeff(), allowed);
+}
+
+TEST_P(Batch, SettingPositionsEqualsANewSurface) {
+  LimitSurface surface = limitSurface(cage());
+  const Cage moved = perturbed(cage(), 0.3, 5);
+  const std::vector<Location> at = manyLocations(cage(), 5000);
+  for (int threads : {1, 0}) {
+    surface.setPositions(cage().positions);
+    surface.setPositions(moved.positions, threads);
+    EXPECT_TRUE(sameBits(surface.positions(), moved.positions));
+    EXPECT_TRUE(sameBits(surface.evaluate(at, Derivatives::second, true),
+                         limitSurface(moved).evaluate(at, Derivatives::second, true)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cages, Batch, testing::Values(0, 1, 2));
+
+TEST(Batch, EmptyOnesGiveEmptyResults) {
+  const LimitSurface surface = limitSurface(cross());
+  const std::vector<Location> none;
+  const Evaluation e = surface.evaluate(none, Derivatives::second, true);
+  EXPECT_EQ(e.position.rows(), 0);
+  EXPECT_EQ(e.normal.rows(), 0);
+  EXPECT_EQ(surface.frames(none).rows(), 0);
+  EXPECT_EQ(surface.curvature(none).gaussian.size(), 0);
+  EXPECT_EQ(surface.stencils(none).offsets, std::vector<std::int64_t>{0});
+}
+
+TEST(SetPositions, RefusesWhatIsNotFiniteAndKeepsThePose) {
+  LimitSurface surface = limitSurface(cross());
+  const std::vector<Location> at = manyLocations(cross(), 100);
+  const Evaluation before = surface.evaluate(at, Derivatives::second, true);
+  Points bad = cross().positions;
+  bad(4, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(surface.setPositions(bad), MeshError);
+  EXPECT_THROW(surface.setPositions(cross().positions.topRows(11)), MeshError);
+  EXPECT_TRUE(sameBits(before, surface.evaluate(at, Derivatives::second, true)));
+  EXPECT_TRUE(sameBits(surface.positions(), cross().positions));
+}
+
+}  // namespace
+}  // namespace limitsurf::test
