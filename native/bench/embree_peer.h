@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "limitsurf/surface/limit_surface.h"
+#include "limitsurf/tessellate/tessellation.h"
 
 namespace limitsurf::bench {
 

@@ -201,7 +201,7 @@ int measureQueries(int count) {
   const AreaSampler sampler(surface);
   const EmbreePeer peer(tessellate(surface, kPeerLevel));
   const Points on_surface = surface.evaluate(sampler.uniform(count, 1)).position;
-  const double face_width = std::sqrt(area(surface) / cage.faceCount());
+  const double face_width = std::sqrt(surfaceArea(surface) / cage.faceCount());
   std::printf(
       "| | limitsurf s | CPU s | Embree s | CPU s | Embree / ours | its distance: max | RMS | its "
       "position: max | "
@@ -215,7 +215,7 @@ int measureQueries(int count) {
       search, peer, diagonal);
   compare(raysTo("rays, from all sides", on_surface, diagonal, randomDirection), search, peer,
           diagonal);
-  timeScattering(sampler, count, area(surface));
+  timeScattering(sampler, count, surfaceArea(surface));
   return 0;
 }
 

@@ -23,7 +23,7 @@ struct ScatterCage {
   explicit ScatterCage(Cage made)
       : cage(std::move(made)), surface(cage.controlMesh()), sampler(surface) {}
   /// Of as much blue noise.
-  double radius(int count) const { return std::sqrt(0.7 * area(surface) / count); }
+  double radius(int count) const { return std::sqrt(0.7 * surfaceArea(surface) / count); }
 
   Cage cage;
   LimitSurface surface;

@@ -104,7 +104,7 @@ double areaOfCore(const SurfacePatches& patches, SurfacePiece core) {
 
 }  // namespace
 
-double area(const LimitSurface& surface, int threads) {
+double surfaceArea(const LimitSurface& surface, int threads) {
   checkThreads(threads);
   const SurfacePatches patches(surface, threads);
   std::vector<double> areas(static_cast<std::size_t>(patches.tileCount()));

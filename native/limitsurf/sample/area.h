@@ -10,6 +10,6 @@ namespace limitsurf {
 constexpr double kAreaError = 1e-9;
 
 /// Area of the limit surface; relative error: see kAreaError.
-double area(const LimitSurface& surface, int threads = 0);
+double surfaceArea(const LimitSurface& surface, int threads = 0);
 
 }  // namespace limitsurf

@@ -262,7 +262,7 @@ void bindLimitSurface(py::module_& module) {
             const py::gil_scoped_release release;
             const std::shared_lock<std::shared_mutex> lock(shared.mutex);
             const InterruptionPoint point = interruptible();
-            return area(shared.surface(), threads);
+            return surfaceArea(shared.surface(), threads);
           },
           py::kw_only(), "threads"_a = 0,
           "Area of the limit surface, refused faces left out; relative error below 1e-9.")

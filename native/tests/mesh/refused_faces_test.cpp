@@ -81,7 +81,7 @@ void expectRefusedBesideAGrid(const Cage& cage, int refused_face,
     if (location.face < 0) continue;
     EXPECT_EQ(surface.refused().count(base[location.face]), 0u);
   }
-  EXPECT_GT(area(surface), area(alone) * (1 - 1e-9));
+  EXPECT_GT(surfaceArea(surface), surfaceArea(alone) * (1 - 1e-9));
   EXPECT_TRUE(surface.bounds().allFinite());
 }
 

@@ -136,7 +136,7 @@ TEST(Bilinear, EverythingElseWorksOnIt) {
       }
     }
   }
-  EXPECT_NEAR(area(surface) / area, 1, 1e-5);
+  EXPECT_NEAR(surfaceArea(surface) / area, 1, 1e-5);
   const auto bounds = surface.bounds();
   Points corners(0, 3);
   for (const auto& p : patches(cage)) {

@@ -175,8 +175,8 @@ TEST(Area, IsThatOfFineTessellations) {
     const double a4 = polygonArea(tessellate(surface, 4)), a5 = polygonArea(tessellate(surface, 5)),
                  a6 = polygonArea(tessellate(surface, 6));
     const double b5 = a5 + (a5 - a4) / 3, b6 = a6 + (a6 - a5) / 3;
-    EXPECT_NEAR(area(surface), b6, 10 * std::abs(b6 - b5) + 1e-8 * b6);
-    EXPECT_EQ(area(surface, 1), area(surface, 0));
+    EXPECT_NEAR(surfaceArea(surface), b6, 10 * std::abs(b6 - b5) + 1e-8 * b6);
+    EXPECT_EQ(surfaceArea(surface, 1), surfaceArea(surface, 0));
   }
 }
 
@@ -184,7 +184,7 @@ TEST(Area, IsExactOnPlanes) {
   // Boundary curves of a straight-sided grid with pinned corners are its sides.
   Cage cage = grid(3, 2);
   cage.options.boundary = Boundary::corners;
-  EXPECT_NEAR(area(limitSurface(cage)), 6, 6e-9);
+  EXPECT_NEAR(surfaceArea(limitSurface(cage)), 6, 6e-9);
 }
 
 TEST(Bounds, AreTight) {

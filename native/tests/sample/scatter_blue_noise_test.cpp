@@ -35,7 +35,7 @@ BlueNoiseOptions byCount(std::int64_t count, std::uint64_t seed = 1) {
 
 /// The radius by which about so many points come out.
 double radiusFor(const LimitSurface& surface, double count) {
-  return std::sqrt(0.7 * area(surface) / count);
+  return std::sqrt(0.7 * surfaceArea(surface) / count);
 }
 
 bool same(const BlueNoise& a, const BlueNoise& b) {
@@ -115,7 +115,7 @@ TEST(BlueNoise, IsAsDenseAsRandomPackingsAre) {
   const LimitSurface surface = limitSurface(bent(torus(24, 12)));
   const BlueNoise noise = AreaSampler(surface).blueNoise(byRadius(radiusFor(surface, 30000)));
   const double covered = static_cast<double>(noise.at.size()) * kPi<double> / 4 * noise.radius *
-                         noise.radius / area(surface);
+                         noise.radius / surfaceArea(surface);
   EXPECT_NEAR(covered, 0.547, 0.01);
 }
 
