@@ -326,7 +326,7 @@ def or_refused(call: Callable[[], Any]) -> Iterator[Any]:
 
 
 def _golden_subject(name: str, threads: int) -> Subject:
-    truth = golden.read_golden(golden.FOLDER / f"{name}.golden")
+    truth = golden.read_golden(golden.path_of(name))
     surface, uv_map = projectors.mapped(
         truth.positions,
         truth.faces,
