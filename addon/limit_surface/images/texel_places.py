@@ -113,7 +113,7 @@ def tiles_of(found: cage.Cage) -> list[int]:
 
 
 def parts(count: int, progress: Progress) -> Iterator[slice]:
-    """Of so many texels; tells how far it is."""
+    """Gives `count` texels piece by piece, and tells the progress after each piece."""
     return slices(count, PART, progress)
 
 

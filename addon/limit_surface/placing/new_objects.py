@@ -28,7 +28,8 @@ def add_on_surface(
 def add_polygons(
     mesh: bpy.types.Mesh, positions: np.ndarray, sizes: np.ndarray, vertices: np.ndarray
 ) -> None:
-    """Fills an empty mesh with smooth polygons of so many corners, whose vertices come in order."""
+    """Fills an empty mesh with smooth polygons. `sizes` holds the number of corners of each
+    polygon, `vertices` the vertex of each corner, polygon by polygon."""
     mesh.vertices.add(len(positions))
     mesh.loops.add(len(vertices))
     mesh.polygons.add(len(sizes))

@@ -54,8 +54,8 @@ def read(data: bpy.types.ID, name: str) -> np.ndarray:
 
 
 def check_names(ob: bpy.types.Object, kinds: Mapping[str, str], domain: str) -> None:
-    """RefusalError where the object has something else of the names that attributes of these kinds
-    are to be written by."""
+    """RefusalError where one of these names, under which attributes of these kinds are to be
+    written, belongs to a vertex group or to an attribute of another kind."""
     data = ob.data
     for name, kind in kinds.items():
         there = data.attributes.get(name)

@@ -70,8 +70,8 @@ class Cage:
         return bool(np.linalg.det(self.matrix[:3, :3]) < 0)
 
     def surface(self, *, in_world: bool = False) -> limitsurf.LimitSurface:
-        """A limit surface of its own for each caller: in the object's space, or as it lies in the
-        world. Subdivision does not mind which, but distances, angles and curvature do."""
+        """A new limit surface of the cage, in the object's space or as it lies in the world.
+        Subdivision gives the same surface in both; distances, angles and curvature differ."""
         surface = native.limitsurf.LimitSurface(self.mesh)
         if in_world:
             surface.set_positions(self.world_positions())

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Arrays of rows that follow each other end to end, each row with a size of its own, at least 1.
 
-So numpy holds the corners of polygons, face by face, and the points of curves, curve by curve.
+The corners of polygons are such an array, with one row for each polygon, and so are the points of
+curves.
 """
 
 import numpy as np

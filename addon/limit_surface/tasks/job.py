@@ -18,7 +18,8 @@ def part_of(progress: Progress, begin: float, end: float) -> Progress:
 
 
 def slices(count: int, size: int, progress: Progress) -> Iterator[slice]:
-    """Of so many rows, a piece of at most `size` after the other; tells how far the work is."""
+    """Gives `count` rows piece by piece, `size` of them at most, and tells the progress after each
+    piece."""
     for begin in range(0, count, size):
         rows = slice(begin, min(begin + size, count))
         yield rows

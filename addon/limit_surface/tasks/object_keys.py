@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects of a task, by names that outlast the task.
+"""Keys by which a task finds its objects again when it is done.
 
-While a task runs Blender may remove an object, or move it in memory: so no reference to it is kept.
+While a task runs, Blender may remove an object or move it in memory, so no reference to it is kept.
 """
 
 from __future__ import annotations

@@ -15,9 +15,9 @@ BYTES_PER_LOCATION = 130
 BYTES_PER_ELEMENT = 200
 
 
-def memory_text(count: int) -> str:
-    """Of so many bytes."""
-    return f"about {count / 2**30:.1f} GiB of memory"
+def memory_text(size: int) -> str:
+    """How messages state an amount of memory, which is given in bytes."""
+    return f"about {size / 2**30:.1f} GiB of memory"
 
 
 @dataclass(frozen=True)
