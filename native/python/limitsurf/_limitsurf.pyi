@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -25,10 +25,12 @@ from ._results import (
 
 __version__: str
 
+class _BoundType(type): ...  # of all classes that pybind11 binds
+
 class MeshError(ValueError): ...
 class LocationError(ValueError): ...
 
-class ControlMesh:
+class ControlMesh(metaclass=_BoundType):
     def __init__(
         self,
         positions: ArrayLike,
@@ -75,7 +77,8 @@ class ControlMesh:
     @property
     def holes(self) -> NDArray[np.int64]: ...
 
-class SurfaceData:
+class SurfaceData(metaclass=_BoundType):
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...  # surfaces make them
     @property
     def shape(self) -> tuple[int, int]: ...
     def set_values(self, values: ArrayLike, threads: int = 0) -> None: ...
@@ -106,7 +109,7 @@ class SurfaceData:
         progress: Callable[[float], object] | None = None,
     ) -> MapLocations: ...
 
-class FilteredImage:
+class FilteredImage(metaclass=_BoundType):
     def __init__(
         self,
         pixels: ArrayLike,
@@ -139,7 +142,7 @@ def box_weights(
     normals: ArrayLike, blend: float = 0.0, matrix: ArrayLike | None = None
 ) -> NDArray[np.float64]: ...
 
-class SubdividedFaces:
+class SubdividedFaces(metaclass=_BoundType):
     def __init__(self, base: ControlMesh, subdivided: ControlMesh) -> None: ...
     @property
     def levels(self) -> int: ...
@@ -147,7 +150,7 @@ class SubdividedFaces:
     def order(self) -> Literal["blender", "opensubdiv"]: ...
     def locate(self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0) -> Locations: ...
 
-class PtexLayout:
+class PtexLayout(metaclass=_BoundType):
     def __init__(self, face_count: int, resolution: int) -> None: ...
     @property
     def face_count(self) -> int: ...
@@ -164,7 +167,7 @@ class PtexLayout:
 
 def bilinear(pixels: ArrayLike, st: ArrayLike, *, threads: int = 0) -> NDArray[np.float64]: ...
 
-class LimitSurface:
+class LimitSurface(metaclass=_BoundType):
     def __init__(self, mesh: ControlMesh) -> None: ...
     @property
     def mesh(self) -> ControlMesh: ...

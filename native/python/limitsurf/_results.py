@@ -81,16 +81,20 @@ class Locations:
         return len(self.face)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class BlueNoise(Locations):
     """Locations, and the distance that they keep from each other where the density is largest."""
+
+    __slots__ = ("radius",)
 
     radius: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class MapLocations(Locations):
     """Locations at points of a UV map; face is -1 and uv NaN where it does not cover them."""
+
+    __slots__ = ("overlap", "flipped")
 
     overlap: NDArray[np.bool_]
     flipped: NDArray[np.bool_]
@@ -126,9 +130,11 @@ class Hits:
         return len(self.face)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class RayHits(Hits):
     """All hits of rays: those of ray i are rows offsets[i] to offsets[i + 1] - 1."""
+
+    __slots__ = ("offsets",)
 
     offsets: NDArray[np.int64]
 
