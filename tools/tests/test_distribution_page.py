@@ -9,14 +9,8 @@ import numpy as np
 PAGE = Path(__file__).parents[2] / "docs/distribution.md"
 
 
-def test_example():
-    side = np.linspace(0, 1, 4)
-    x, y = np.meshgrid(side, side)
-    first = (np.arange(3) + 4 * np.arange(3)[:, None]).ravel()
-    known = {
-        "positions": np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1),
-        "faces": np.stack([first, first + 1, first + 5, first + 4], axis=1),
-    }
+def test_example(sheet):
+    known = {"positions": sheet["positions"] / 3, "faces": sheet["faces"]}
     section = PAGE.read_text().split("\n## In Python\n")[1]
     (example,) = re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
     counts = []

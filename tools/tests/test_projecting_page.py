@@ -33,16 +33,11 @@ def test_wrong_pictures_are_seen(monkeypatch):
     assert comparison.of_plots(drawn, shown, BLOCK)[1] > 0.06
 
 
-def test_example():
-    side = np.arange(4.0)
-    x, y = np.meshgrid(side, side)
-    positions = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
-    first = (np.arange(3) + 4 * np.arange(3)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + 5, first + 4], axis=1)
+def test_example(sheet):
+    positions, faces = sheet["positions"], sheet["faces"]
     camera = np.diag([0.5, 0.5, -0.1, 1.0])  # straight down on (-2, -2) to (2, 2)
     known = {
-        "positions": positions,
-        "faces": faces,
+        **sheet,
         "uvs": positions[:, :2] / 3,
         "uv_indices": faces.ravel(),
         "camera_matrix": camera,

@@ -9,16 +9,11 @@ import numpy as np
 PAGE = Path(__file__).parents[2] / "docs/queries.md"
 
 
-def test_examples():
-    side = np.arange(4.0)
-    x, y = np.meshgrid(side, side)
-    positions = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
-    first = (np.arange(3) + 4 * np.arange(3)[:, None]).ravel()
+def test_examples(sheet):
     above = np.array([[1.2, 1.7, 0.5], [1.5, 1.5, 2.0], [9.0, 9.0, 1.0]])
     known = {
         "np": np,
-        "positions": positions,
-        "faces": np.stack([first, first + 1, first + 5, first + 4], axis=1),
+        **sheet,
         "points": above,
         "origins": above,
         "directions": np.tile([0.0, 0.0, -3.0], (3, 1)),

@@ -65,16 +65,11 @@ def test_wrong_pictures_are_seen(shown, monkeypatch, spoil):
     assert mean > 0.002 or worst > 0.04
 
 
-def test_example():
-    side = np.arange(4.0)
-    x, y = np.meshgrid(side, side)
-    positions = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
-    first = (np.arange(3) + 4 * np.arange(3)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + 5, first + 4], axis=1)
+def test_example(sheet):
+    positions, faces = sheet["positions"], sheet["faces"]
     known = {
         "np": np,
-        "positions": positions,
-        "faces": faces,
+        **sheet,
         "uvs": 0.05 + 0.3 * positions[:, :2],
         "uv_indices": faces.ravel(),
     }
