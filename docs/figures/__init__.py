@@ -11,4 +11,4 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 class NotDrawnError(Exception):
-    """A figure that could not be drawn, or shows what it must not; with the reason."""
+    """A figure could not be drawn, or its measurements break a bound. The message says why."""

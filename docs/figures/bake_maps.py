@@ -18,12 +18,12 @@ from figures.rendering.sheet import GREY, INK, font, save
 TEXELS = 512
 VIEW, TARGET, WIDTH = View(24, 12), np.array([0.05, 0.0, -0.02]), 2.95
 LARGE, SMALL = (420, 320), (205, 160)
-FINE = 4  # levels of what stands for the limit surface, with exact normals at its quality
+FINE = 4  # levels of the mesh that is shown as the limit surface
 GAP, TOP, BOTTOM = 10, 34, 40
 PAPER = (226, 226, 222)
 CLAY = (0.55, 0.5, 0.42)
 
-#: Those that are shown, by what object.limit_bake_maps calls them and their images
+#: The maps that are shown: their names in object.limit_bake_maps, and those of their images
 MAPS = (
     ("NORMAL_TANGENT", "Tangent Normal"),
     ("NORMAL_OBJECT", "Normal"),
@@ -105,7 +105,7 @@ def clay(tree: bpy.types.ShaderNodeTree, with_map: bool) -> None:
 
 
 def emission(tree: bpy.types.ShaderNodeTree, image: bpy.types.Image) -> None:
-    """On screen the numbers of the image's file."""
+    """Shows the numbers of the image's file unchanged on screen."""
     texture, shader, output = (
         add(tree, kind) for kind in ("TexImage", "Emission", "OutputMaterial")
     )

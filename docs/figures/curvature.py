@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of docs/curvature.md: what object.limit_curvature stores of an open mesh with a pole,
-as colours and as strokes along the principal directions."""
+"""The picture of docs/curvature.md: the curvature of an open mesh with a pole, as
+object.limit_curvature stores it: as colours and as strokes along the principal directions."""
 
 import tempfile
 from pathlib import Path
@@ -15,18 +15,17 @@ from PIL import Image, ImageDraw
 from figures.meshes.grids import fan
 from figures.rendering import scene
 from figures.rendering.scene import View
-from figures.rendering.sheet import GREY, INK, colour_bar, font, on_screen, save
+from figures.rendering.sheet import GREY, INK, colour_bar, font, on_screen, row_of_panels, save
 
 SECTORS, SIDE = 7, 3  # around the pole; quads along the side of each
 HOLE = 13  # the face that is missing
 LEVELS = 4
 SPACING = 0.115  # of the strokes
 STROKE, RADIUS, MARK = 0.075, 0.005, 0.013
-LIFT = 0.004  # of strokes, off the surface
+LIFT = 0.004  # distance of the strokes from the surface
 PIXELS, WIDTH = (560, 430), 2.8
 VIEW, TARGET = View(18, 42), np.array([-0.01, 0.0, 0.02])
 PANELS = (("MEAN", "Mean curvature", 2.5), ("GAUSSIAN", "Gaussian curvature", 5.0))
-GAP, TOP, BOTTOM = 14, 40, 92
 DARK, PALE = (0.01, 0.01, 0.015), (0.9, 0.75, 0.1)
 
 
@@ -43,7 +42,7 @@ def make(folder: Path, samples: int = 32) -> None:
 
 
 def sheet() -> bpy.types.Object:
-    """Bent sectors of quads around a pole, with a hole; not rendered itself."""
+    """A bent sheet of sectors of quads around a pole, with a hole. It is not rendered itself."""
     made = fan(SECTORS, SIDE)
     faces = np.delete(made.faces, HOLE, axis=0)
     angle = 2 * np.pi * (made.sector + made.j / np.maximum(made.i + made.j, 1)) / SECTORS
@@ -59,7 +58,7 @@ def sheet() -> bpy.types.Object:
 
 
 def draw(cage: bpy.types.Object, quantity: str, full: float) -> None:
-    """Everything that is seen is what the operator has stored."""
+    """Shows only what the operator has stored."""
     run(cage, on="TESSELLATION", levels=LEVELS, color=quantity, full_color=full)
     made = bpy.context.active_object
     color = attributes.read(made.data, ids.CURVATURE_COLOR)[:, :3]
@@ -103,28 +102,22 @@ def select(ob: bpy.types.Object) -> None:
 
 
 def squares(place: np.ndarray) -> np.ndarray:
-    """Lines across the view that are as long as they are wide."""
+    """Lines that are as long as wide, at right angles to the line of sight."""
     aside = MARK * scene.axes(VIEW)[:, 0]
     return np.stack([place - aside, place + aside], axis=1)
 
 
 def composed(parts: list[Path]) -> Image.Image:
-    """Side by side, each with its scale below."""
-    width = len(parts) * (PIXELS[0] + GAP) + GAP
-    picture = Image.new("RGB", (width, TOP + PIXELS[1] + BOTTOM), "white")
-    pen = ImageDraw.Draw(picture)
-    for i, (part, (_, title, full)) in enumerate(zip(parts, PANELS, strict=True)):
-        left, panel = GAP + i * (PIXELS[0] + GAP), Image.open(part)
-        picture.paste(panel, (left, TOP), panel)
-        middle = left + PIXELS[0] / 2
-        pen.text((middle, 10), title, INK, font(17), anchor="ma")
-        draw_scale(picture, pen, int(middle), TOP + PIXELS[1] + 8, full)
+    """The panels side by side, each with its scale below."""
+    row = row_of_panels([Image.open(part) for part in parts], [title for _, title, _ in PANELS], 92)
+    for middle, (_, _, full) in zip(row.middle, PANELS, strict=True):
+        draw_scale(row.sheet, row.pen, int(middle), row.bottom + 8, full)
     said = (
         "strokes: principal directions, dark of k1, the larger one, yellow of k2; "
         "squares: irregular vertices, averaged"
     )
-    pen.text((width / 2, picture.height - 26), said, GREY, font(13), anchor="ma")
-    return picture
+    row.pen.text((row.sheet.width / 2, row.sheet.height - 26), said, GREY, font(13), anchor="ma")
+    return row.sheet
 
 
 def draw_scale(

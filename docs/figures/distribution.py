@@ -10,15 +10,14 @@ import bpy
 import numpy as np
 from limit_surface import ids
 from limit_surface.reading import attributes
-from PIL import Image, ImageDraw
+from PIL import Image
 
 from figures.meshes.grids import grid_faces
 from figures.rendering import scene
 from figures.rendering.scene import View
-from figures.rendering.sheet import GREY, INK, font, save
+from figures.rendering.sheet import GREY, font, row_of_panels, save
 
 PIXELS = (400, 350)
-GAP, TOP, BOTTOM = 14, 40, 34
 SIDE = 8  # faces along each side of the sheet
 CLAY, SEED = (0.55, 0.50, 0.44), (0.02, 0.05, 0.16)
 
@@ -32,7 +31,7 @@ class Panel:
 
 
 def paint_group(ob: bpy.types.Object) -> None:
-    """Growing from left to right."""
+    """The weights grow from left to right."""
     group = ob.vertex_groups.new(name="Scalp")
     for vertex in ob.data.vertices:
         group.add([vertex.index], float(np.clip(vertex.co.x + 0.5, 0, 1)) ** 2, "REPLACE")
@@ -50,7 +49,7 @@ def paint_image(ob: bpy.types.Object) -> None:
 
 
 def paint_slots(ob: bpy.types.Object) -> None:
-    """A second material on a chequered pattern of faces."""
+    """Gives a second material to a chequered pattern of faces."""
     ob.data.materials.append(surface_material("Other", (0.30, 0.36, 0.42)))
     row, column = np.divmod(np.arange(SIDE * SIDE), SIDE)
     chosen = ((row // 2 + column // 2) % 2).astype(np.int32)
@@ -125,7 +124,7 @@ def draw(panel: Panel, path: Path, samples: int) -> None:
 
 
 def sheet() -> bpy.types.Object:
-    """Open, bent, its faces narrower to the left and to the front."""
+    """An open, bent sheet whose faces are narrower to the left and to the front."""
     at = np.linspace(0, 1, SIDE + 1) ** 1.6 - 0.5
     y, x = (grid.ravel() for grid in np.meshgrid(at, at, indexing="ij"))
     height = 0.10 * np.sin(5 * x + 1) * np.cos(4 * y)
@@ -143,7 +142,7 @@ def sheet() -> bpy.types.Object:
 
 
 def seed() -> bpy.types.Object:
-    """What stands on each point."""
+    """The small ball that stands on each point."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=12, ring_count=8, radius=0.0042)
     ball = bpy.context.active_object
     ball.location = (0, 0, -50)  # itself out of sight
@@ -153,26 +152,12 @@ def seed() -> bpy.types.Object:
 
 
 def surface_material(name: str, colour: Sequence[float]) -> bpy.types.Material:
-    made = bpy.data.materials.get(name) or bpy.data.materials.new(name)
-    made.use_nodes = True
-    shader = made.node_tree.nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = (*colour, 1)
-    shader.inputs["Roughness"].default_value = 0.6
-    shader.inputs["Specular IOR Level"].default_value = 0.2
-    shader.inputs["Emission Color"].default_value = (*colour, 1)
-    shader.inputs["Emission Strength"].default_value = 0.3
-    return made
+    return scene.material(name, colour, glow=0.3, roughness=0.6, specular=0.2)
 
 
 def composed(parts: Sequence[Path], panels: Sequence[Panel]) -> Image.Image:
-    """Side by side, titles above, notes below."""
-    width = len(parts) * (PIXELS[0] + GAP) + GAP
-    whole = Image.new("RGB", (width, TOP + PIXELS[1] + BOTTOM), "white")
-    pen = ImageDraw.Draw(whole)
-    for i, (part, panel) in enumerate(zip(parts, panels, strict=True)):
-        left, picture = GAP + i * (PIXELS[0] + GAP), Image.open(part)
-        whole.paste(picture, (left, TOP), picture)
-        middle = left + PIXELS[0] / 2
-        pen.text((middle, 10), panel.title, INK, font(17), anchor="ma")
-        pen.text((middle, TOP + PIXELS[1] + 6), panel.note, GREY, font(14), anchor="ma")
-    return whole
+    """The panels side by side, titles above and notes below."""
+    row = row_of_panels([Image.open(part) for part in parts], [panel.title for panel in panels], 34)
+    for middle, panel in zip(row.middle, panels, strict=True):
+        row.pen.text((middle, row.bottom + 6), panel.note, GREY, font(14), anchor="ma")
+    return row.sheet

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The figure 1 of Lacewell and Burley (2007): hair on an open mesh's limit surface.
+"""Figure 1 of Lacewell and Burley (2007): hair on an open mesh's limit surface.
 
 The control mesh is a cross of five faces whose twelve vertices are all extraordinary and on the
 boundary. The picture shows it with its limit surface, then 20 x 20 and 70 x 70 strands of hair on
@@ -17,12 +17,13 @@ import numpy as np
 from mathutils import Vector
 
 from figures.meshes import obj
+from figures.rendering import scene as scenes
 from figures.rendering.quiet import quiet
 
 PROPORTION = 1500 / 560  # width to height of the picture
 SPACING = 3.5  # between the three surfaces
-TURN = math.radians(24)  # of each about its axis, so that no side is seen edge on
-LEVELS = 6  # of the surface as it is drawn: 64 x 64 polygons a face
+TURN = math.radians(24)  # of each about its axis, so that every side is visible
+LEVELS = 6  # of the drawn surface: 64 x 64 polygons a face
 HAIRS = {20: 0.0035, 70: 0.0017}  # strands along each side of a face, and their radius
 LENGTH = 0.26
 
@@ -118,15 +119,7 @@ def add_hairy_surface(
 
 
 def material(name: str, colour: tuple[float, float, float], roughness: float) -> bpy.types.Material:
-    found = bpy.data.materials.get(name)
-    if found:
-        return found
-    made = bpy.data.materials.new(name)
-    made.use_nodes = True
-    shader = made.node_tree.nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = (*colour, 1)
-    shader.inputs["Roughness"].default_value = roughness
-    return made
+    return scenes.material(name, colour, glow=0, roughness=roughness)
 
 
 def set_up_picture(width: int, samples: int) -> None:
@@ -150,7 +143,7 @@ def set_up_picture(width: int, samples: int) -> None:
 
 
 def white_paper() -> bpy.types.World:
-    """White to the camera, a dimmer sky to everything else."""
+    """A world that is white to the camera, and a dimmer sky for everything else."""
     world = bpy.data.worlds.new("Paper")
     world.use_nodes = True
     nodes, links = world.node_tree.nodes, world.node_tree.links
@@ -163,7 +156,7 @@ def white_paper() -> bpy.types.World:
 
 
 def add_camera(scene: bpy.types.Scene) -> None:
-    """Looks along a slope at the middle one, without perspective: three equal views."""
+    """An orthographic camera that looks down at the middle one, so that all three look alike."""
     camera = bpy.data.cameras.new("Camera")
     camera.type = "ORTHO"
     camera.ortho_scale = 3 * SPACING

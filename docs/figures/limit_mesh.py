@@ -22,10 +22,11 @@ from figures.rendering.sheet import GREY, INK, font, save
 TOLERANCE = 0.005
 GAP, TITLE, NOTE = 14, 34, 26
 WIRE, DARK = 0.0024, (0.02, 0.02, 0.03)
+CLAY = (0.62, 0.56, 0.42)
 STRIPES = 12.0  # half waves of the pattern from the middle of a ball to its rim
 SIDES = 6  # of the vase
 PROFILE = ((0.55, 0.0), (1.1, 0.5), (1.15, 1.2), (0.5, 1.45), (0.75, 2.0))  # radii and heights
-SHOULDER = 2  # of these
+SHOULDER = 2  # the ring of these that is creased
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Panel:
     width: float
     pixels: tuple[int, int]
     striped: bool = False
-    found: list[str] = field(default_factory=list)  # what is said below
+    found: list[str] = field(default_factory=list)  # the note below
 
 
 def monkey() -> bpy.types.Object:
@@ -47,7 +48,7 @@ def monkey() -> bpy.types.Object:
 
 
 def vase() -> bpy.types.Object:
-    """Open at the top, with a creased line around its shoulder."""
+    """A vase that is open at the top and has a crease around its shoulder."""
     angle = 2 * np.pi * np.arange(SIDES) / SIDES
     circle = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
     rings = [radius * circle + [0, 0, height] for radius, height in PROFILE]
@@ -132,19 +133,11 @@ def add_wires(mesh: bpy.types.Mesh, toward: np.ndarray) -> None:
 
 
 def clay() -> bpy.types.Material:
-    made = bpy.data.materials.new("Clay")
-    made.use_nodes = True
-    shader = made.node_tree.nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = (0.62, 0.56, 0.42, 1)
-    shader.inputs["Roughness"].default_value = 0.6
-    shader.inputs["Specular IOR Level"].default_value = 0.2
-    shader.inputs["Emission Color"].default_value = (0.62, 0.56, 0.42, 1)
-    shader.inputs["Emission Strength"].default_value = scene.GLOW
-    return made
+    return scene.material("Clay", CLAY, glow=scene.GLOW, roughness=0.6, specular=0.2)
 
 
 def stripes() -> bpy.types.Material:
-    """Light and dark by how far the shading normal turns from the line of sight."""
+    """Light and dark stripes by the angle between the shading normal and the line of sight."""
     made = bpy.data.materials.new("Stripes")
     made.use_nodes = True
     nodes, links = made.node_tree.nodes, made.node_tree.links

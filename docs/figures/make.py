@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 if not __package__:
-    # Not this folder, whose modules would hide others of the same names
+    # This folder is left out: its modules would hide others of the same names.
     sys.path[:1] = [str(ROOT / "docs"), str(ROOT / "addon")]
 
 from figures import NotDrawnError  # noqa: E402
@@ -55,7 +55,7 @@ def table(module: str, shows: str, function: str = "make") -> Figure:
     return Figure(module, shows, function, in_blender=True, folder=ROOT / "docs")
 
 
-#: By the name of the picture's file, or of the table
+#: The figures by the name of the picture's file, or of the table
 FIGURES = {
     "figure1": rendered("figure1", "the paper's figure 1: hair on an open mesh's limit surface"),
     "bake_maps": rendered("bake_maps", "a mesh with its normal map, and other baked maps"),

@@ -10,12 +10,12 @@ import numpy as np
 from limit_surface import ids
 from limit_surface.reading import attributes
 from mathutils import Vector
-from PIL import Image, ImageDraw
+from PIL import Image
 
 from figures.meshes.shapes import fan
 from figures.rendering import scene
 from figures.rendering.scene import View
-from figures.rendering.sheet import GREY, INK, font, on_screen, save
+from figures.rendering.sheet import GREY, on_screen, row_of_panels, save
 
 SECTORS, SIDE = 5, 4
 HOLES = (13, 21)  # faces that are missing
@@ -26,7 +26,6 @@ EYE, AIM, LENS = (0.9, -5.4, 4.3), (0.1, -0.1, 0.3), 33.0
 SIDE_VIEW, SIDE_TARGET, SIDE_WIDTH = View(58, 22), np.array([0.75, -1.0, 1.2]), 8.8
 CLOSE_VIEW, CLOSE_TARGET, CLOSE_WIDTH = View(38, 42), np.array([0.3, -0.05, 0.4]), 7.0
 PIXELS = (440, 400)
-GAP, TOP, BOTTOM = 14, 40, 14
 RED, CREAM, BLUE = (0.70, 0.16, 0.10), (0.95, 0.90, 0.78), (0.10, 0.25, 0.50)
 CLAY = (0.55, 0.53, 0.50)
 PANELS = ("Through the camera", "From the side", "A decal")
@@ -50,7 +49,7 @@ def make(folder: Path, samples: int = 32) -> None:
 
 
 def add_sheet() -> bpy.types.Object:
-    """Around a pole of five faces, with a hump that hides what is behind it, and holes."""
+    """A sheet around a pole of five faces, with holes and a hump that hides what is behind it."""
 
     def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         return 1.9 * np.exp(-1.1 * ((x - 0.5) ** 2 + (y + 0.3) ** 2)) + 0.3 * np.sin(
@@ -104,14 +103,14 @@ def sticker_image() -> bpy.types.Image:
 
 
 def add_image(name: str, colors: np.ndarray, alpha: np.ndarray) -> bpy.types.Image:
-    """Of amounts of light."""
+    """`colors` are amounts of light."""
     image = bpy.data.images.new(name, IMAGE, IMAGE, alpha=True)
     image.pixels.foreach_set(np.dstack([on_screen(colors), alpha]).astype(np.float32).ravel())
     return image
 
 
 def paint(sheet: bpy.types.Object, camera: bpy.types.Object, image: str) -> bpy.types.Image:
-    """Over a texture of clay."""
+    """Projects the image onto a texture of clay."""
     target = bpy.data.images.new("Texture", TEXELS, TEXELS, alpha=True)
     target.pixels.foreach_set(np.tile(np.float32([*on_screen(np.array(CLAY)), 1]), TEXELS**2))
     select(sheet)
@@ -145,7 +144,7 @@ def select(ob: bpy.types.Object) -> None:
 def material(
     name: str, image: bpy.types.Image | None, with_alpha: bool = False
 ) -> bpy.types.Material:
-    """The image's colours, or clay's, somewhat brighter than the light makes them."""
+    """Shows the image, or clay, also where no light falls."""
     made = bpy.data.materials.new(name)
     made.use_nodes = True
     nodes, links = made.node_tree.nodes, made.node_tree.links
@@ -180,12 +179,8 @@ def add_camera_rays(camera: bpy.types.Object) -> bpy.types.Object:
 
 
 def composed(parts: list[Path]) -> Image.Image:
-    width = len(parts) * (PIXELS[0] + GAP) + GAP
-    sheet = Image.new("RGB", (width, TOP + PIXELS[1] + BOTTOM), "white")
-    pen = ImageDraw.Draw(sheet)
-    for i, (part, title) in enumerate(zip(parts, PANELS, strict=True)):
-        left, picture = GAP + i * (PIXELS[0] + GAP), Image.open(part)
-        sheet.paste(picture, (left, TOP), picture)
-        pen.rectangle((left, TOP, left + PIXELS[0] - 1, TOP + PIXELS[1] - 1), outline=GREY)
-        pen.text((left + PIXELS[0] / 2, 10), title, INK, font(17), anchor="ma")
-    return sheet
+    row = row_of_panels([Image.open(part) for part in parts], PANELS, 14)
+    for left in row.left:
+        top = row.bottom - PIXELS[1]
+        row.pen.rectangle((left, top, left + PIXELS[0] - 1, row.bottom - 1), outline=GREY)
+    return row.sheet

@@ -13,11 +13,11 @@ PANEL, GAP, TEXTURE = 300, 8, 384
 CLAY, PAPER = np.array([0.80, 0.78, 0.74]), np.full(3, 0.94)
 DARK, LIGHT = np.array([0.11, 0.31, 0.56]), np.array([0.97, 0.93, 0.84])
 LAMP = np.array([-0.35, -0.45, 0.82])
-PARTS = 6  # a pixel is cut into so many a side where the truth is wanted
+PARTS = 6  # samples along each side of a pixel for the reference
 
 
 def view_from(eye, at) -> np.ndarray:
-    """From the world to a camera that looks along its -z, z up."""
+    """The matrix from the world, with z up, to a camera that looks along its own -z."""
     eye, back = np.asarray(eye, float), np.asarray(eye, float) - at
     back /= np.linalg.norm(back)
     right = np.cross([0, 0, 1], back)
@@ -67,7 +67,7 @@ def painted(surface, uv_map, camera: np.ndarray, image: ls.FilteredImage) -> np.
 
 
 def rays(camera: np.ndarray, side: int) -> tuple[np.ndarray, np.ndarray]:
-    """Through the middles of a square picture's pixels, from the top."""
+    """Rays through the centres of a square picture's pixels, from the top row down."""
     middles = (np.arange(side) + 0.5) / side * 2 - 1
     x, y = np.meshgrid(middles, -middles)
     ends = np.stack([x.ravel(), y.ravel()])
@@ -92,7 +92,7 @@ def rendered(surface, uv_map, camera: np.ndarray, texture: np.ndarray) -> np.nda
 
 
 def ground(part: int) -> tuple[np.ndarray, np.ndarray]:
-    """Where a plane shows a checker in each pixel's part of a picture, and its footprint."""
+    """Where the rays of a picture's pixels, or of their parts, meet a plane; their footprints."""
     camera = lens(0.7) @ view_from((0.5, -0.3, 0.13), (0.5, 0.0, 0.0))
     start, along = rays(camera, PANEL * part)
     places = (start - along * (start[:, 2:] / along[:, 2:]))[:, :2].reshape(PANEL * part, -1, 2)
@@ -140,7 +140,7 @@ def side_by_side(panels: list[np.ndarray]) -> np.ndarray:
 
 
 def picture() -> np.ndarray:
-    """Colors from the top row down, 0 to 1."""
+    """The picture's colors from 0 to 1, from the top row down."""
     top, bottom = side_by_side(top_row()), side_by_side(bottom_row())
     return np.concatenate([top, np.ones((GAP, top.shape[1], 3)), bottom])
 

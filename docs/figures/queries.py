@@ -115,7 +115,7 @@ def shell() -> ls.LimitSurface:
 
 
 class Camera:
-    """Parallel rays, one for each pixel; all lengths in the surface's own."""
+    """Parallel rays, one for each pixel. All lengths are in the units of the surface."""
 
     def __init__(self, middle: np.ndarray, width: float) -> None:
         self.towards = np.array([0.25, 0.9, -0.42])
@@ -134,7 +134,7 @@ class Camera:
         return origins, np.broadcast_to(self.towards, origins.shape)
 
     def seen(self, points: np.ndarray) -> np.ndarray:
-        """In pixels."""
+        """Where points are in the picture, in pixels."""
         step = self.width / SIZE[0]
         offset = points - self.middle
         return np.stack([offset @ self.right, -(offset @ self.up)], axis=-1) / step + SIZE / 2
@@ -145,7 +145,7 @@ def picture(surface: ls.LimitSurface, camera: Camera, line: float) -> np.ndarray
     hits = surface.ray_cast(*camera.rays())
     seen = hits.face >= 0
     normal, uv = hits.normal[seen], hits.uv[seen]
-    normal *= -np.sign(normal @ camera.towards)[:, None]  # both sides alike
+    normal *= -np.sign(normal @ camera.towards)[:, None]  # both sides look alike
     light = np.clip(normal @ np.array([-0.5, -0.45, 0.74]), 0, 1)
     color = (0.25 + 0.75 * light[:, None]) * np.array([0.55, 0.68, 0.86])
     color[np.minimum(uv, 1 - uv).min(axis=1) < line] *= 0.72

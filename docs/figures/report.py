@@ -9,16 +9,15 @@ import bpy
 import numpy as np
 from limit_surface import ids
 from limit_surface.report import colours
-from PIL import Image, ImageDraw
+from PIL import Image
 
 from figures.rendering import scene
 from figures.rendering.scene import View
-from figures.rendering.sheet import GREY, INK, colour_bar, font, on_screen, save
+from figures.rendering.sheet import GREY, INK, colour_bar, font, on_screen, row_of_panels, save
 
 LEVELS = (1, 2)
 PIXELS = (520, 430)
-GAP, TOP, BOTTOM = 14, 40, 100
-FULL = 0.015  # distance that is yellow
+FULL = 0.015  # this distance is yellow
 
 
 def make(folder: Path, samples: int = 32) -> None:
@@ -30,7 +29,7 @@ def make(folder: Path, samples: int = 32) -> None:
 
 
 def draw(level: int, path: Path, samples: int) -> dict[str, float]:
-    """Renders what is measured: the mesh of the render's level, its polygons flat."""
+    """Renders the mesh that is measured, with flat polygons, and returns the distances."""
     bpy.ops.mesh.primitive_monkey_add()
     ob = bpy.context.active_object
     ob.modifiers.new("Subdivision", "SUBSURF").render_levels = level
@@ -43,7 +42,7 @@ def draw(level: int, path: Path, samples: int) -> dict[str, float]:
 
 
 def material() -> bpy.types.Material:
-    """The attribute's colours, as they are where no light falls and somewhat brighter elsewhere."""
+    """Shows the attribute's colours, also where no light falls."""
     made = bpy.data.materials.get("Distance") or bpy.data.materials.new("Distance")
     made.use_nodes = True
     nodes, links = made.node_tree.nodes, made.node_tree.links
@@ -58,19 +57,15 @@ def material() -> bpy.types.Material:
 
 
 def composed(parts: list[Path], found: list[dict[str, float]]) -> Image.Image:
-    """Side by side, the scale below."""
-    width = len(parts) * (PIXELS[0] + GAP) + GAP
-    sheet = Image.new("RGB", (width, TOP + PIXELS[1] + BOTTOM), "white")
-    pen = ImageDraw.Draw(sheet)
-    for i, (part, numbers) in enumerate(zip(parts, found, strict=True)):
-        left, picture = GAP + i * (PIXELS[0] + GAP), Image.open(part)
-        sheet.paste(picture, (left, TOP), picture)
-        middle, below = left + PIXELS[0] / 2, TOP + PIXELS[1]
-        pen.text((middle, 10), f"Level {numbers['level']}", INK, font(17), anchor="ma")
+    """The panels side by side, and the scale below."""
+    titles = [f"Level {numbers['level']}" for numbers in found]
+    row = row_of_panels([Image.open(part) for part in parts], titles, 100)
+    sheet, pen, width = row.sheet, row.pen, row.sheet.width
+    for middle, numbers in zip(row.middle, found, strict=True):
         said = f"at most {numbers['max']:.2g}, in the mean {numbers['mean']:.2g}"
-        pen.text((middle, below + 6), said, INK, font(14), anchor="ma")
+        pen.text((middle, row.bottom + 6), said, INK, font(14), anchor="ma")
     bar = on_screen(colours.of_distances(np.linspace(0, FULL, 380), FULL)[:, :3])
-    x, y = (width - len(bar)) // 2, TOP + PIXELS[1] + 36
+    x, y = (width - len(bar)) // 2, row.bottom + 36
     sheet.paste(colour_bar(bar), (x, y))
     for value in (0, 0.005, 0.01, FULL):
         tick = x + len(bar) * value / FULL

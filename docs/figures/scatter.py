@@ -26,7 +26,7 @@ def sheet() -> ls.LimitSurface:
     quads = grid_faces(side, side)
     faces = [q.tolist() for i, q in enumerate(quads) if i not in (9, 22, 23, 35)]
     a, b, c, d = quads[22]
-    faces += [[a, b, c], [a, c, d]]  # triangles, and where they meet irregular vertices
+    faces += [[a, b, c], [a, c, d]]  # triangles, which make irregular vertices
     positions = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
     return ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
 
@@ -68,7 +68,7 @@ def make_points(folder: Path) -> None:
 
 
 def unit_square() -> ls.LimitSurface:
-    """Flat, with its corners: the plane, on which spectra mean something."""
+    """A flat square with pinned corners, because spectra are defined in the plane."""
     side = np.linspace(0, 1, SPECTRUM_SIDE + 1)
     x, y = np.meshgrid(side, side)
     faces = grid_faces(SPECTRUM_SIDE, SPECTRUM_SIDE)
@@ -112,7 +112,7 @@ def make_spectra(folder: Path) -> None:
             power += periodogram(points, highest) / SEEDS
             if seed < 3:
                 gaps.append(nearest(points))
-        power[highest, :] = power[:, highest] = np.nan  # the square itself, not the points in it
+        power[highest, :] = power[:, highest] = np.nan  # they show the square, not the points
         row[0].imshow(power, cmap="gray", vmin=0, vmax=2.5, extent=[-2.2, 2.2, -2.2, 2.2])
         row[0].set_ylabel(name, fontsize=12)
         known = ~np.isnan(power.ravel())

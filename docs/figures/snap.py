@@ -64,7 +64,7 @@ def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def add_cage() -> bpy.types.Object:
-    """An open sheet: its corners and border are those of the limit surface."""
+    """The control mesh: an open sheet."""
     y, x = np.mgrid[: SIDE + 1, : SIDE + 1].reshape(2, -1) * 3 / SIDE - 1.5
     faces = grid_faces(SIDE, SIDE)
     mesh = bpy.data.meshes.new("Cage")
@@ -114,7 +114,7 @@ def add_pins() -> None:
         ):
             faces.append([k + i for i in face])
     mesh.from_pydata(vertices, [], faces)
-    mesh.materials.append(lit("Pin", PIN))
+    mesh.materials.append(scene.material("Pin", PIN, glow=scene.GLOW))
     rng = np.random.default_rng(2)
     for spot in spots(13, 4, 0.55):
         ob = bpy.data.objects.new("Pin", mesh)
@@ -124,7 +124,7 @@ def add_pins() -> None:
 
 
 def add_hair() -> None:
-    """Curls that float above the sheet."""
+    """Curls whose roots are above the sheet."""
     rng = np.random.default_rng(3)
     roots = spots(30, 5, 0.36)
     along = np.linspace(0, 1, POINTS)
@@ -135,23 +135,13 @@ def add_hair() -> None:
     curves.add_curves([POINTS] * len(roots))
     curves.points.foreach_set("position", points.astype(np.float32).ravel())
     attributes.write(curves, "radius", "FLOAT", "POINT", np.full(points.size // 3, 0.013))
-    curves.materials.append(lit("Hair", HAIR))
+    curves.materials.append(scene.material("Hair", HAIR, glow=scene.GLOW))
     ob = bpy.data.objects.new("Hair", curves)
     bpy.context.collection.objects.link(ob)
     ob.select_set(True)
 
 
 ADD: dict[str, Callable[[], None]] = {"pins": add_pins, "hair": add_hair}
-
-
-def lit(name: str, colour: tuple[float, float, float]) -> bpy.types.Material:
-    made = bpy.data.materials.new(name)
-    made.use_nodes = True
-    shader = made.node_tree.nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = (*colour, 1)
-    shader.inputs["Emission Color"].default_value = (*colour, 1)
-    shader.inputs["Emission Strength"].default_value = scene.GLOW
-    return made
 
 
 def composed(parts: list[Path]) -> Image.Image:

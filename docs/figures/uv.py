@@ -22,7 +22,7 @@ def star(sectors: int, side: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sheet(columns: int, rows: int, holes: tuple[int, ...] = ()) -> tuple[np.ndarray, np.ndarray]:
-    """Quads in [-1, 1]^2."""
+    """A grid of quads in [-1, 1]^2, without some of them."""
     x, y = np.meshgrid(np.linspace(-1, 1, columns + 1), np.linspace(-1, 1, rows + 1))
     faces = np.delete(grid_faces(columns, rows), holes, axis=0)
     return np.stack([x.ravel(), y.ravel()], axis=1), faces
@@ -122,7 +122,7 @@ def figure() -> plt.Figure:
 
 
 def picture() -> np.ndarray:
-    """Pixels from the top, RGB from 0 to 1."""
+    """The picture's pixels from the top row down, RGB from 0 to 1."""
     drawn = figure()
     drawn.canvas.draw()
     pixels = np.asarray(drawn.canvas.buffer_rgba())[..., :3] / 255

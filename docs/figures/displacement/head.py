@@ -7,7 +7,7 @@ from limit_surface import ids
 from limit_surface.reading import attributes
 
 LEVELS = 3  # subdivisions of the sculpt
-QUALITY = 8  # of Blender's own limit surface: the sculpt's polygons as they are rendered
+QUALITY = 8  # of the modifier, for the polygons that are rendered
 
 
 def add_base() -> bpy.types.Object:
@@ -19,7 +19,7 @@ def add_base() -> bpy.types.Object:
 
 
 def add_sculpt(base: bpy.types.Object) -> bpy.types.Object:
-    """Wrinkles that hang over, so that no displacement along normals could make them."""
+    """A copy with wrinkles that overhang, which no displacement along normals can make."""
     ob = base.copy()
     ob.data, ob.name = base.data.copy(), "Sculpt"
     bpy.context.collection.objects.link(ob)
@@ -38,7 +38,7 @@ def add_sculpt(base: bpy.types.Object) -> bpy.types.Object:
 
 
 def moves(at: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Ridges around the head, that grow outward and hang down."""
+    """How far the vertices move: ridges around the head that grow outward and hang down."""
     x, y, z = at.T
     ridges = ((1 + np.sin(20 * z + 2 * np.sin(4 * x) + 3 * y)) ** 2)[:, None] / 4
     fade = 1 / (1 + (at[:, :1] / 0.75) ** 6)  # less on the ears
@@ -48,4 +48,4 @@ def moves(at: np.ndarray, normals: np.ndarray) -> np.ndarray:
 def _add_subsurf(ob: bpy.types.Object) -> None:
     subsurf = ob.modifiers.new("Subdivision", "SUBSURF")
     subsurf.quality = QUALITY
-    subsurf.uv_smooth = "SMOOTH_ALL"  # the map's other rules fold it over beside the eyes
+    subsurf.uv_smooth = "SMOOTH_ALL"  # under the other rules the map folds over beside the eyes

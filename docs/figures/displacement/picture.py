@@ -8,21 +8,20 @@ from pathlib import Path
 import bpy
 import numpy as np
 from limit_surface.images import image_pixels
-from PIL import Image, ImageDraw
+from PIL import Image
 
 from figures.displacement import head as heads
 from figures.rendering import scene
 from figures.rendering.scene import View
-from figures.rendering.sheet import GREY, INK, font, save
+from figures.rendering.sheet import GREY, font, row_of_panels, save
 
 SIZE = 1024  # texels along a side of the map
 RENDERED = {"Head": 4, "Sculpt": 1}  # levels
 PIXELS, WIDTH = (330, 330), 2.75
 VIEW, TARGET = View(24, 10), np.array([0.1, 0.0, 0.02])
 TITLES = ("Mesh", "Displacement map", "Mesh and map, rendered", "Sculpted mesh")
-FULL = 0.11  # length of a vector's component that is as bright, or dark, as can be
-CLAY = (0.55, 0.42, 0.33, 1)
-GAP, TOP, BOTTOM = 12, 38, 34
+FULL = 0.11  # a component of this length is shown as bright, or as dark, as possible
+CLAY = (0.55, 0.42, 0.33)
 
 
 def make(folder: Path, samples: int = 32) -> None:
@@ -31,7 +30,8 @@ def make(folder: Path, samples: int = 32) -> None:
     sculpt = heads.add_sculpt(head)
     for ob in (head, sculpt):
         ob.modifiers[0].render_levels = RENDERED[ob.name]
-        ob.data.materials.append(clay())
+        # Each has its own, because the operator adds the displacement to that of the head.
+        ob.data.materials.append(scene.material(f"{ob.name} clay", CLAY, glow=0.06, specular=0))
         ob.data.shade_smooth()
     with tempfile.TemporaryDirectory() as temporary:
         parts = [Path(temporary) / f"{i}.png" for i in range(3)]
@@ -46,17 +46,6 @@ def make(folder: Path, samples: int = 32) -> None:
         save(composed(shown), folder / "displacement.png")
 
 
-def clay() -> bpy.types.Material:
-    made = bpy.data.materials.new("Clay")
-    made.use_nodes = True
-    shader = made.node_tree.nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = CLAY
-    shader.inputs["Specular IOR Level"].default_value = 0
-    shader.inputs["Emission Color"].default_value = CLAY
-    shader.inputs["Emission Strength"].default_value = 0.06
-    return made
-
-
 def render(ob: bpy.types.Object, path: Path, samples: int) -> None:
     for other in bpy.context.scene.objects:
         other.hide_render = other.type == "MESH" and other != ob
@@ -64,7 +53,7 @@ def render(ob: bpy.types.Object, path: Path, samples: int) -> None:
 
 
 def drawn(pixels: np.ndarray) -> Image.Image:
-    """Numbers as colours, 0 in grey; white where no place of the surface is."""
+    """The numbers as colours: 0 is grey, and texels without a place are white."""
     shown = np.clip(0.5 + 0.5 * pixels[::-1, :, :3] / FULL, 0, 1)
     shown[(pixels[::-1, :, :3] == 0).all(axis=2)] = 1
     made = Image.fromarray(np.uint8(np.rint(255 * shown)))
@@ -72,16 +61,10 @@ def drawn(pixels: np.ndarray) -> Image.Image:
 
 
 def composed(shown: list[Image.Image]) -> Image.Image:
-    width = len(shown) * (PIXELS[0] + GAP) + GAP
-    sheet = Image.new("RGB", (width, TOP + PIXELS[1] + BOTTOM), "white")
-    pen = ImageDraw.Draw(sheet)
-    for i, (title, picture) in enumerate(zip(TITLES, shown, strict=True)):
-        left = GAP + i * (PIXELS[0] + GAP)
-        sheet.paste(picture, (left, TOP), picture if picture.mode == "RGBA" else None)
-        pen.text((left + PIXELS[0] / 2, 10), title, INK, font(17), anchor="ma")
+    row = row_of_panels(shown, TITLES, 34, gap=12, top=38)
     said = (
         f"{SIZE} x {SIZE} texels; red, green, blue along tangent, normal, bitangent, "
         "grey where nothing moves"
     )
-    pen.text((width / 2, TOP + PIXELS[1] + 10), said, GREY, font(14), anchor="ma")
-    return sheet
+    row.pen.text((row.sheet.width / 2, row.bottom + 10), said, GREY, font(14), anchor="ma")
+    return row.sheet

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of docs/displacement.md: how closely a displacement map gives the sculpt back."""
+"""The table of docs/displacement.md: how closely a displacement map reproduces the sculpt."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -27,11 +27,11 @@ class Case(NamedTuple):
 
 
 class Errors(NamedTuple):
-    """Relative to the diagonal."""
+    """Distances from the sculpt, relative to the diagonal."""
 
     size: int
     inner: np.ndarray  # where all four texels that are read lie on the map
-    border: np.ndarray  # at seams: some of them are of the margin
+    border: np.ndarray  # at seams, where some of them belong to the margin
 
 
 def head() -> Case:
@@ -62,7 +62,7 @@ def measure(case: Case, size: int, samples: int) -> Errors:
 
 
 def baked(case: Case, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """The map's pixels (size, size, 3), and which of them are not its margin."""
+    """The map's pixels (size, size, 3), and whether each lies on the map and not on its margin."""
     base, target, uv_map, _ = case
     texels = uv_map.rasterize(size, size, margin=MARGIN)
     pixels = np.zeros((size, size, 3), np.float32)
@@ -79,7 +79,7 @@ def baked(case: Case, size: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def numbers(errors: Errors) -> list[float]:
-    """Largest, largest of 99 in 100, root mean square; largest at seams."""
+    """The largest error, the largest of 99 %, the root mean square, and the largest at seams."""
     inner = errors.inner
     root_mean_square = np.sqrt((inner**2).mean())
     return [inner.max(), np.quantile(inner, 0.99), root_mean_square, errors.border.max()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How far what Blender shows is from the limit surface."""
+"""Distances of the mesh that Blender shows from the limit surface."""
 
 from functools import cached_property
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from limit_surface.reading import attributes, cage, subdivided_mesh
 
 
 class Distance(NamedTuple):
-    """Of each vertex from its place on the limit surface, in mean edges of the cage."""
+    """Each vertex's distance from its place on the limit surface, in mean edges of the cage."""
 
     whole: np.ndarray
     along: np.ndarray  # in the tangent plane of the limit surface
@@ -86,7 +86,7 @@ class Comparison:
 
 
 class UvComparison(Comparison):
-    """The same for the UV map, as a surface of its own, flat: each polygon's corners apart."""
+    """The same for the UV map, as a flat surface. Every polygon has corners of its own."""
 
     def __init__(self, ob: bpy.types.Object, levels: int) -> None:
         super().__init__(ob, levels)
@@ -119,7 +119,7 @@ class UvComparison(Comparison):
 
 
 def compare(ob: bpy.types.Object, levels: int) -> Comparison:
-    """UV maps where the object has one."""
+    """Compares the UV map if the object has one, and else the mesh."""
     return (UvComparison if ob.data.uv_layers else Comparison)(ob, levels)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Panels, words and the colour scale on one sheet."""
+"""Panels, notes and the colour scale on one sheet."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 from PIL import Image, ImageDraw
 
-from figures.rendering.sheet import GREY, INK, colour_bar, font, save
+from figures.rendering.sheet import GREY, INK, colour_bar, font, row_of_panels, save
 
 #: Distances on the colour scale, in mean edges
 LEAST, MOST, TICKS = 3e-4, 6e-2, (3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 6e-2)
@@ -18,8 +18,8 @@ LEAST, MOST, TICKS = 3e-4, 6e-2, (3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 6e-2)
 SCALE = LinearSegmentedColormap.from_list(
     "scale", [(0.96, 0.95, 0.92), *matplotlib.colormaps["inferno_r"](np.linspace(0.1, 0.74, 12))]
 )
-SMOOTH = 4  # times finer are lines drawn than they are shown
-GAP, TOP, BOTTOM = 14, 40, 74
+SMOOTH = 4  # lines are drawn this many times larger than they are shown
+GAP, BOTTOM = 14, 74
 
 
 def shades(distances: np.ndarray) -> np.ndarray:
@@ -38,34 +38,31 @@ class Panel:
 def compose(panels: Sequence[Panel], notes: Sequence[str], output: Path) -> None:
     """The panels in a row, each under its title; the scale below the first, notes to its right."""
     pictures = [Image.open(panel.picture) for panel in panels]
-    widths, height = [p.width for p in pictures], pictures[0].height
-    total = sum(widths) + GAP * (len(panels) + 1)
-    sheet = Image.new("RGB", (total, TOP + height + BOTTOM), "white")
-    draw = ImageDraw.Draw(sheet)
+    row = row_of_panels(pictures, [panel.title for panel in panels], BOTTOM)
+    sheet = row.sheet
     mask = Image.new("L", (SMOOTH * sheet.width, SMOOTH * sheet.height))
     marks = ImageDraw.Draw(mask)
-    left = GAP
-    for panel, picture in zip(panels, pictures, strict=True):
-        sheet.paste(picture, (left, TOP), picture)
-        draw.text((left + picture.width / 2, 10), panel.title, INK, font(17), anchor="ma")
+    top = row.bottom - pictures[0].height
+    for panel, picture, left in zip(panels, pictures, row.left, strict=True):
         if panel.circle:
             x, y, r = (picture.width * number for number in panel.circle)
-            box = (left + x - r, TOP + y - r, left + x + r, TOP + y + r)
+            box = (left + x - r, top + y - r, left + x + r, top + y + r)
             marks.ellipse([SMOOTH * number for number in box], outline=255, width=2 * SMOOTH)
-            for end in (-1, 1):
-                line = _tangent(left + x, TOP + y, r, end, picture, left)
+            right = np.array([left + picture.width + GAP, top])
+            for end in (0, 1):
+                corner = right + [0, end * picture.height]
+                line = _tangent(np.array([left + x, top + y]), r, 2 * end - 1, corner)
                 marks.line([SMOOTH * number for number in line], fill=255, width=SMOOTH)
-        left += picture.width + GAP
     sheet.paste(INK, (0, 0), mask.resize(sheet.size, Image.Resampling.BOX))
-    _scale(sheet, draw, GAP + 20, TOP + height + 14, min(380, total // 3))
-    at = max(GAP + widths[0] + GAP, 460)
+    _scale(sheet, row.pen, GAP + 20, row.bottom + 14, min(380, sheet.width // 3))
+    at = max(GAP + pictures[0].width + GAP, 460)
     for i, note in enumerate(notes):
-        draw.text((at, TOP + height + 10 + 20 * i), note, INK, font(14))
+        row.pen.text((at, row.bottom + 10 + 20 * i), note, INK, font(14))
     save(_with_few_colours(sheet), output)
 
 
 def _with_few_colours(sheet: Image.Image) -> Image.Image:
-    """In 256 colours at most, a third of the size. The paper stays white."""
+    """At most 256 colours, which makes the file a third as large. The paper stays white."""
     palette = sheet.quantize(255, method=Image.Quantize.MEDIANCUT, kmeans=5)
     dithered = sheet.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
     pixels, colours = np.array(dithered), [*dithered.getpalette(), 255, 255, 255]
@@ -75,15 +72,12 @@ def _with_few_colours(sheet: Image.Image) -> Image.Image:
     return small
 
 
-def _tangent(
-    x: float, y: float, r: float, end: int, picture: Image.Image, left: float
-) -> tuple[float, ...]:
-    """From a circle to a corner of the next picture: its upper left one, or (end = 1) lower."""
-    corner = np.array([left + picture.width + GAP, TOP + picture.height * (end > 0)])
-    towards = corner - (x, y)
+def _tangent(middle: np.ndarray, r: float, side: int, corner: np.ndarray) -> tuple[float, ...]:
+    """From a circle to a corner of the next picture, along the upper side or (1) the lower one."""
+    towards = corner - middle
     reach = np.hypot(*towards)
-    turn = np.arctan2(towards[1], towards[0]) + end * np.arccos(r / reach)
-    return x + r * np.cos(turn), y + r * np.sin(turn), *corner
+    turn = np.arctan2(towards[1], towards[0]) + side * np.arccos(r / reach)
+    return middle[0] + r * np.cos(turn), middle[1] + r * np.sin(turn), *corner
 
 
 def _scale(sheet: Image.Image, draw: ImageDraw.ImageDraw, x: int, y: int, width: int) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A mesh for each thing that makes a limit surface hard to evaluate.
+"""A mesh for each feature that makes a limit surface hard to evaluate.
 
 Each shows its one feature and as little else as possible. Where the mesh has corners that are not
 the subject, they are pinned, because OpenSubdiv is exact there.

@@ -14,7 +14,7 @@ Height = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 def hill(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Bent in both directions, and not symmetric."""
+    """A height that bends in both directions and has no symmetry."""
     return 0.45 * np.sin(0.9 * x + 0.3) * np.cos(0.8 * y - 0.2) - 0.06 * (x**2 + y**2)
 
 
@@ -31,7 +31,7 @@ def raised(flat: np.ndarray, height: Height = hill) -> np.ndarray:
 
 
 def sheet(columns: int, rows: int, height: Height = hill) -> tuple[np.ndarray, Faces]:
-    """Unit squares around the origin."""
+    """A sheet of unit squares around the origin."""
     j, i = np.mgrid[: rows + 1, : columns + 1].reshape(2, -1)
     flat = np.stack([i - columns / 2, j - rows / 2], axis=1)
     return raised(flat, height), grids.grid_faces(columns, rows).tolist()
@@ -47,7 +47,7 @@ def fan(sectors: int, rings: int, angle: float, height: Height = hill) -> tuple[
 
 
 def cubes(middles: np.ndarray) -> tuple[np.ndarray, Faces]:
-    """What is outside of unit cubes on a grid."""
+    """The outer faces of unit cubes on a grid."""
     square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) / 2
     found = []
     for axis in range(3):
@@ -65,7 +65,7 @@ def _keys(places: np.ndarray) -> np.ndarray:
 
 
 def taken() -> tuple[np.ndarray, Faces]:
-    """The mesh that an operator has just added, which goes."""
+    """Takes the mesh of the object that an operator has just added, and removes the object."""
     ob = bpy.context.active_object
     positions = attributes.read(ob.data, "position").astype(np.float64)
     faces = [polygon.vertices[:] for polygon in ob.data.polygons]

@@ -17,10 +17,10 @@ from figures import NotDrawnError, tables
 from figures.parity import zoo
 from figures.parity.distances import Comparison
 
-BOUND = 1e-6  # single precision, some steps of it
+BOUND = 1e-6  # some rounding errors of single precision
 BEST, DEFAULT = 10, 3
 LEVELS = 3
-LEVELS_AT_DEFAULT = 5  # finer than the quality, or the vertices would miss what is wrong
+LEVELS_AT_DEFAULT = 5  # above the quality: vertices of lower levels are exact
 LAGGING_QUALITIES = (4, 6, 8, 10)
 
 

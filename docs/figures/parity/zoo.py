@@ -42,7 +42,7 @@ def polygons() -> tuple[np.ndarray, Faces]:
 
 
 def prism() -> tuple[np.ndarray, Faces]:
-    """Closed, of two pentagons and five quads, leaning."""
+    """A closed, sloping prism of two pentagons and five quads."""
     angle = 2 * np.pi * np.arange(5) / 5
     ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
     side = [(i, (i + 1) % 5, 5 + (i + 1) % 5, 5 + i) for i in range(5)]
@@ -106,8 +106,8 @@ def add(name: str, seed: int = 0) -> bpy.types.Object:
 
 
 def _add_uv_map(mesh: bpy.types.Mesh, rng: np.random.Generator) -> None:
-    """Three islands, strewn over the faces: seams between them, which end where two islands
-    share the value at a vertex, branch and turn as it happens."""
+    """Three islands, distributed at random over the faces. The seams between them branch and turn
+    at random, and end where two islands share the value at a vertex."""
     corner_vertex = _column(mesh.loops, "vertex_index")
     sizes = _column(mesh.polygons, "loop_total")
     position = np.empty(3 * len(mesh.vertices), np.float32)
@@ -140,7 +140,7 @@ def _sharp_loops(mesh: bpy.types.Mesh, rng: np.random.Generator) -> None:
 
 
 def _sharp_edges(mesh: bpy.types.Mesh, rng: np.random.Generator) -> None:
-    """Some infinitely sharp edges, wherever they end."""
+    """Some infinitely sharp edges, chosen at random, so that some end inside the mesh."""
     _set(mesh.edge_creases_ensure(), np.ones(len(mesh.edges)), rng, 0.25)
 
 
@@ -157,7 +157,7 @@ def _both(mesh: bpy.types.Mesh, rng: np.random.Generator) -> None:
 
 
 def _loose_edges(mesh: bpy.types.Mesh, rng: np.random.Generator) -> None:
-    """Edges that belong to no face, from every fourth vertex into the air."""
+    """Edges that belong to no face, from every fourth vertex upwards."""
     count, edges = len(mesh.vertices), len(mesh.edges)
     held = np.arange(0, count, 4, dtype=np.int32)
     position = np.empty(3 * count, np.float32)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders without a word."""
+"""Silence while Blender renders."""
 
 import os
 import sys
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Without the lines that Blender writes about each part of a render."""
+    """Suppresses the lines that Blender prints about each part of a render."""
     sys.stdout.flush()
     shown = os.dup(1)
     with open(os.devnull, "w") as nowhere:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surfaces, lines and cameras in Blender.
+"""Surfaces, lines, materials and cameras in Blender.
 
 Nothing here is left to chance: suns without a size and no bounces make pictures without noise.
 """
@@ -19,12 +19,12 @@ COLOUR = "colour"
 INK = (0.01, 0.01, 0.015)
 GREY = (0.3, 0.28, 0.2)
 CAGE_BLUE = (0.02, 0.10, 0.35)
-#: Of lines, relative to the width of the picture
+#: The radius of lines, relative to the width of the picture
 RADIUS = 0.0018
 
-#: Directions that light comes from, seen by the camera (right, up, towards it), and strengths
+#: The directions to the lights in the camera's axes (right, up, towards it), and their strengths
 SUNS = (((-0.7, 0.6, 0.4), 2.2), ((0.5, 0.1, 0.9), 1.0))
-GLOW = 0.12  # of every colour, without any light
+GLOW = 0.12  # how bright a colour is where no light falls
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def start() -> None:
 
 
 def add_surface(quads: np.ndarray, positions: np.ndarray, colours: np.ndarray) -> None:
-    """Of quads (n, 4) of some of the vertices, each of which has a position and a colour."""
+    """Adds the mesh of quads (n, 4); every vertex has a position and a colour."""
     used, corners = np.unique(quads, return_inverse=True)
     mesh = bpy.data.meshes.new("Surface")
     mesh.vertices.add(len(used))
@@ -76,7 +76,7 @@ def add_surface(quads: np.ndarray, positions: np.ndarray, colours: np.ndarray) -
 def add_lines(
     name: str, lines: Sequence[np.ndarray], radius: float, colour: Sequence[float]
 ) -> None:
-    """Tubes along lines, each given as an array (lines, points, 3)."""
+    """Adds tubes along lines, which are given as arrays (lines, points, 3)."""
     curves = bpy.data.hair_curves.new(name)
     curves.add_curves([some.shape[1] for some in lines for _ in range(len(some))])
     points = np.concatenate([some.reshape(-1, 3) for some in lines])
@@ -89,7 +89,7 @@ def add_lines(
 
 
 def _material(name: str, colour: Sequence[float] | None) -> bpy.types.Material:
-    """Of one colour that no light changes, or else of the vertices' colours, lit."""
+    """A material of one colour that no light changes, or else of the vertices' lit colours."""
     found = bpy.data.materials.get(name)
     if found:
         return found
@@ -113,10 +113,32 @@ def _material(name: str, colour: Sequence[float] | None) -> bpy.types.Material:
     return made
 
 
+def material(
+    name: str,
+    colour: Sequence[float],
+    glow: float,
+    roughness: float = 0.5,
+    specular: float = 0.5,
+) -> bpy.types.Material:
+    """A material of one colour, which `glow` shows where no light falls."""
+    made = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    made.use_nodes = True
+    shader = made.node_tree.nodes["Principled BSDF"]
+    for socket, value in (
+        ("Base Color", (*colour, 1)),
+        ("Roughness", roughness),
+        ("Specular IOR Level", specular),
+        ("Emission Color", (*colour, 1)),
+        ("Emission Strength", glow),
+    ):
+        shader.inputs[socket].default_value = value
+    return made
+
+
 def render(
     path: Path, view: View, target: np.ndarray, width: float, pixels: tuple[int, int], samples: int
-) -> np.ndarray:
-    """What a camera without perspective sees of so much of the scene; (height, width, 4)."""
+) -> None:
+    """Renders through an orthographic camera that sees this width of the scene."""
     scene = bpy.context.scene
     camera = bpy.data.cameras.new("Camera")
     camera.type, camera.ortho_scale, camera.sensor_fit = "ORTHO", width, "HORIZONTAL"
@@ -133,7 +155,7 @@ def render(
 def render_through(
     camera: bpy.types.Object, path: Path, pixels: tuple[int, int], samples: int
 ) -> None:
-    """With the light that comes from where any camera has it."""
+    """Renders with lights that have the same directions relative to every camera."""
     scene = bpy.context.scene
     scene.camera = camera
     turned = camera.matrix_world.to_3x3().normalized()
@@ -162,6 +184,6 @@ def _turned(view: View) -> Euler:
 
 
 def clear() -> None:
-    """Takes away what `add_surface` and `add_lines` have put there."""
+    """Removes what `add_surface` and `add_lines` have added."""
     for ob in [some for some in bpy.context.scene.objects if not some.hide_render]:
         bpy.data.batch_remove([ob.data, ob])
