@@ -96,7 +96,7 @@ def test_errors_and_types(mapped):
     with pytest.raises(ValueError, match="uv_map has 3 columns"):
         surface.tangent_frames(surface.vertex_data(surface.positions), at.face, at.uv)
     other = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.cube()))
-    with pytest.raises(ValueError, match="12 Ptex faces; this one has 6"):
+    with pytest.raises(ValueError, match="uv_map has 12 Ptex faces and the surface 6"):
         other.tangent_frames(uv_map, [0], [[0.5, 0.5]])
     with pytest.raises(ls.LocationError):
         surface.map_distortion(uv_map, [99], [[0, 0]])
