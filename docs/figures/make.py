@@ -79,7 +79,7 @@ FIGURES = {
     "report": rendered("report", "distances from the limit surface at two levels, as colours"),
     "snap": rendered("snap", "objects and hair before and after snapping"),
     "eigenbasis_error": Figure("eigenbasis", "errors by valence, as tools/verify_eigenbasis found"),
-    "projecting": Figure("projecting", "a projected checker, and filtered look-ups"),
+    "projection": Figure("projection", "a projected checker, and filtered look-ups"),
     "query_rays": Figure("queries", "a picture of 614,400 rays, and its outline", "make_rays"),
     "query_section": Figure("queries", "closest points and hits of rays", "make_sections"),
     "scatter_points": Figure("scatter", "points of the three distributions", "make_points"),

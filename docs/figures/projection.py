@@ -147,4 +147,4 @@ def picture() -> np.ndarray:
 
 def make(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    matplotlib.image.imsave(folder / "projecting.png", picture())
+    matplotlib.image.imsave(folder / "projection.png", picture())

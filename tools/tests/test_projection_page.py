@@ -8,21 +8,21 @@ import limitsurf as ls
 import matplotlib.image
 import numpy as np
 from figures import comparison
-from figures import projecting as program
+from figures import projection as program
 
 ROOT = Path(__file__).parents[2]
 BLOCK = 20  # pixels a side
 
 
 def test_picture_is_up_to_date():
-    shown = matplotlib.image.imread(ROOT / "docs/images/projecting.png")[..., :3]
+    shown = matplotlib.image.imread(ROOT / "docs/images/projection.png")[..., :3]
     mean, worst = comparison.of_plots(program.picture(), shown, BLOCK)
     assert mean < 0.004
     assert worst < 0.03
 
 
 def test_wrong_pictures_are_seen(monkeypatch):
-    shown = matplotlib.image.imread(ROOT / "docs/images/projecting.png")[: program.PANEL, :, :3]
+    shown = matplotlib.image.imread(ROOT / "docs/images/projection.png")[: program.PANEL, :, :3]
     project = ls.LimitSurface.project
 
     def through(surface, *args, **options):
