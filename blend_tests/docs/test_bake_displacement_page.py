@@ -8,6 +8,7 @@ import re
 import bpy
 import limitsurf
 import numpy as np
+import pages
 import pytest
 import scenes
 import sculpts
@@ -16,8 +17,8 @@ from figures.displacement import picture, table
 from limit_surface import ids
 from processes import ROOT
 
-PAGE = (ROOT / "docs/displacement.md").read_text()
-EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+PAGE = pages.text("displacement")
+EXAMPLES = pages.examples(PAGE)
 
 
 def test_example_in_blender(capsys):
@@ -38,15 +39,7 @@ def test_examples_without_blender(example, capsys):
 
 
 def test_table_lists_the_properties_and_their_defaults():
-    rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]+?)`? \|", PAGE, re.MULTILINE))
-    properties = bpy.ops.object.limit_bake_displacement.get_rna_type().properties
-    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
-    assert set(rows) == set(shown)
-    for name, said in rows.items():
-        default = shown[name].default
-        if isinstance(default, bool):
-            default = "on" if default else "off"
-        assert said == ((default or "none") if isinstance(default, str) else f"{default:g}")
+    pages.check_properties(PAGE, "limit_bake_displacement")
 
 
 def test_table_of_errors():

@@ -5,14 +5,15 @@ operator gives."""
 import re
 
 import bpy
+import pages
 import pytest
 from figures import bake_maps, comparison
 from limit_surface.bake_maps.maps import KINDS
 from processes import ROOT
 
-PAGE = (ROOT / "docs/bake_maps.md").read_text()
+PAGE = pages.text("bake_maps")
 PICTURE = ROOT / "docs/images/bake_maps.png"
-EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+EXAMPLES = pages.examples(PAGE)
 
 
 def test_example_in_blender(capfd):
@@ -30,23 +31,7 @@ def test_example_without_blender(capsys):
 
 
 def test_table_lists_the_properties_and_their_defaults():
-    section = PAGE.split("## The maps")[0]
-    rows = {}
-    for names, said in re.findall(r"^\| (`[^|]+`) \| `?([^|`]+?)`? \|", section, re.MULTILINE):
-        rows |= dict.fromkeys(re.findall(r"`(\w+)`", names), said)
-    properties = bpy.ops.object.limit_bake_maps.get_rna_type().properties
-    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
-    assert set(rows) == set(shown)
-    for name, said in rows.items():
-        prop = shown[name]
-        if getattr(prop, "is_enum_flag", False):
-            assert {said} == prop.default_flag
-        elif isinstance(prop.default, bool):
-            assert said == ("on" if prop.default else "off")
-        elif isinstance(prop.default, str):
-            assert said == (prop.default or "none")
-        else:
-            assert said == f"{prop.default:g}"
+    pages.check_properties(PAGE.split("## The maps")[0], "limit_bake_maps")
 
 
 def test_table_lists_the_maps():

@@ -5,14 +5,15 @@ the operator gives."""
 import re
 
 import bpy
+import pages
 import pytest
 import scenes
 from figures import comparison, curvature
 from limit_surface import ids
 from processes import ROOT
 
-PAGE = (ROOT / "docs/curvature.md").read_text()
-EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+PAGE = pages.text("curvature")
+EXAMPLES = pages.examples(PAGE)
 
 
 def test_example_in_blender(capsys):
@@ -31,16 +32,7 @@ def test_example_without_blender(capsys):
 
 
 def test_table_lists_the_properties_and_their_defaults():
-    section = PAGE.split("## What is stored")[0]
-    rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]+?)`? \|", section, re.MULTILINE))
-    properties = bpy.ops.object.limit_curvature.get_rna_type().properties
-    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
-    assert set(rows) == set(shown)
-    for name, said in rows.items():
-        default = shown[name].default
-        if isinstance(default, bool):
-            default = "on" if default else "off"
-        assert said == (default if isinstance(default, str) else f"{default:g}")
+    pages.check_properties(PAGE.split("## What is stored")[0], "limit_curvature")
 
 
 def test_page_lists_the_attributes():

@@ -1,20 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page about distributions: its examples run one after the other."""
 
-import re
-
 import bpy
 import numpy as np
+import pages
 from limit_surface import ids
-from processes import ROOT
 from scenes import locations
 
-PAGE = (ROOT / "docs/distribution.md").read_text().split("\n## In Python\n")[0]
+PAGE = pages.text("distribution").split("\n## In Python\n")[0]
 
 
 def test_examples_run():
     known, made = {}, []
-    for example in re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL):
+    for example in pages.examples(PAGE):
         exec(example, known)
         made.append(bpy.context.active_object)
     hair, points = made

@@ -2,15 +2,14 @@
 """The page about object.limit_mesh: its examples run, its table is the operator's, and its picture
 is what the operator makes."""
 
-import re
-
 import bpy
+import pages
 import scenes
 from figures import comparison, limit_mesh
 from processes import ROOT
 
-PAGE = (ROOT / "docs/limit_mesh.md").read_text()
-EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+PAGE = pages.text("limit_mesh")
+EXAMPLES = pages.examples(PAGE)
 
 
 def test_example_in_blender(capsys):
@@ -28,16 +27,7 @@ def test_example_without_blender(capsys):
 
 
 def test_table_lists_the_properties_and_their_defaults():
-    section = PAGE.split("## Levels")[0]
-    rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]+?)`? \|", section, re.MULTILINE))
-    properties = bpy.ops.object.limit_mesh.get_rna_type().properties
-    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
-    assert set(rows) == set(shown)
-    for name, said in rows.items():
-        default = shown[name].default
-        if isinstance(default, bool):
-            default = "on" if default else "off"
-        assert said == ((default or "none") if isinstance(default, str) else f"{default:g}")
+    pages.check_properties(PAGE.split("## Levels")[0], "limit_mesh")
 
 
 def test_picture_is_what_the_operator_makes(tmp_path):

@@ -2,7 +2,6 @@
 """The distances that are reported, against a crowd of points on the triangles that Blender draws
 and a fine tessellation of the limit surface."""
 
-import re
 import threading
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -11,6 +10,7 @@ from unittest.mock import MagicMock
 import bpy
 import limitsurf
 import numpy as np
+import pages
 import pytest
 import scenes
 from figures.parity import zoo as parity_zoo
@@ -22,7 +22,6 @@ from limit_surface.tasks import watched_operator as watched_module
 from limit_surface.tasks.watched_operator import WatchedOperator
 from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
-from processes import ROOT
 from waiting import LIMIT, wait_for
 
 AMONG = 8  # parts along a side of each triangle
@@ -349,23 +348,16 @@ def test_redo_panel_shows_what_was_found():
         assert [call.kwargs["text"] for call in layout.label.call_args_list] == ["one", "two"]
 
 
-PAGE = (ROOT / "docs/report.md").read_text()
+PAGE = pages.text("report")
 
 
 def test_page_lists_the_properties_and_their_defaults():
-    rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]+?)`? \|", PAGE, re.MULTILINE))
-    properties = bpy.ops.object.limit_report.get_rna_type().properties
-    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
-    assert set(rows) == set(shown)
-    for name, said in rows.items():
-        default = shown[name].default
-        assert said == (default if isinstance(default, str) else f"{default:g}")
+    pages.check_properties(PAGE, "limit_report")
 
 
 def test_page_has_an_example_that_runs(capsys):
     scenes.activate(parity_zoo.add("sheet"))
-    example = re.search(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL).group(1)
-    exec(example, {})
+    exec(pages.examples(PAGE)[0], {})
     largest, mean = (float(number) for number in capsys.readouterr().out.split()[-2:])
     assert largest > mean > 0
 

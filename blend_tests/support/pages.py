@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pages of the documentation: their examples, and their tables of an operator's properties."""
+
+import re
+
+import bpy
+import numpy as np
+from processes import ROOT
+
+
+def text(name: str) -> str:
+    return (ROOT / f"docs/{name}.md").read_text()
+
+
+def examples(page: str) -> list[str]:
+    return re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+
+
+def check_properties(section: str, operator: str, empty: str = "none") -> None:
+    """The section's table lists the properties of `bpy.ops.object.<operator>` and their defaults.
+    `empty` is how it shows an empty name."""
+    rows: dict[str, str] = {}
+    row = r"^\| (`[^|]+`) \| *`?([^|`]*?)`? *\|"
+    for names, said in re.findall(row, section, re.MULTILINE):
+        rows |= dict.fromkeys(re.findall(r"`(\w+)`", names), said)
+    properties = getattr(bpy.ops.object, operator).get_rna_type().properties
+    shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
+    assert rows == {name: default_of(rna, empty) for name, rna in shown.items()}
+
+
+def default_of(rna: bpy.types.Property, empty: str) -> str:
+    if rna.type == "BOOLEAN":
+        return "on" if rna.default else "off"
+    if rna.type == "ENUM" and rna.is_enum_flag:
+        return ", ".join(sorted(rna.default_flag)) or empty
+    if rna.type == "FLOAT" and rna.array_length:
+        values = np.degrees(rna.default_array) if rna.unit == "ROTATION" else rna.default_array
+        sign = "°" if rna.unit == "ROTATION" else ""
+        return ", ".join(f"{value:g}{sign}" for value in np.round(values, 5))
+    return rna.default or empty if isinstance(rna.default, str) else f"{rna.default:g}"
