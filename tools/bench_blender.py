@@ -19,7 +19,8 @@ import bpy
 import limitsurf
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "addon"))
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "docs")]
 
 import bench_blender_truth as truth  # noqa: E402
 from limit_surface.reading import cage  # noqa: E402

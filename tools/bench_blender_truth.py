@@ -6,6 +6,7 @@ from typing import NamedTuple
 import bpy
 import limitsurf
 import numpy as np
+from figures.meshes import grids
 from limit_surface.reading import subdivided_mesh
 from mathutils.bvhtree import BVHTree
 
@@ -20,8 +21,7 @@ def add_sheet(side: int, seed: int = 0) -> bpy.types.Object:
     z = 0.9 * np.sin(0.45 * x) * np.cos(0.35 * y) + 0.25 * np.sin(1.1 * (x + y))
     rng = np.random.default_rng(seed)
     rows, columns = np.mgrid[:side, :side].reshape(2, -1)
-    first = rows * (side + 1) + columns
-    quads = np.stack([first, first + 1, first + side + 2, first + side + 1], axis=1)
+    quads = grids.grid_faces(side, side)
     kind = rng.random(len(quads))
     kept = quads[(kind > 0.03) | (rows % 3 != 1) | (columns % 3 != 1)]
     cut = rng.random(len(kept)) < 0.01

@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 import pytest
+from figures.meshes import grids
 from limit_surface import native
 from limit_surface.errors import RefusalError, TooLargeError
 from limit_surface.images import overlap, texel_places
@@ -12,11 +13,11 @@ from limit_surface.images import overlap, texel_places
 def grid(uv_scale=(1.0, 1.0), uv_offset=(0.0, 0.0), name="UVMap") -> bpy.types.Object:
     """Two by two unit quads, and a map of all of them."""
     xy = np.stack(np.meshgrid([0, 1, 2], [0, 1, 2]), axis=-1).reshape(-1, 2)
-    faces = [(i, i + 1, i + 4, i + 3) for i in (0, 1, 3, 4)]
+    faces = grids.grid_faces(2, 2)
     mesh = bpy.data.meshes.new("grid")
-    mesh.from_pydata([(*p, 0) for p in xy.tolist()], [], faces)
+    mesh.from_pydata([(*p, 0) for p in xy.tolist()], [], faces.tolist())
     layer = mesh.uv_layers.new(name=name)
-    uv = xy[np.array(faces).ravel()] / 2 * uv_scale + uv_offset
+    uv = xy[faces.ravel()] / 2 * uv_scale + uv_offset
     layer.uv.foreach_set("vector", uv.astype(np.float32).ravel())
     ob = bpy.data.objects.new("grid", mesh)
     bpy.context.collection.objects.link(ob)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 import bpy
 import limitsurf
 import numpy as np
-from figures.meshes import obj
+from figures.meshes import grids, obj
 from limit_surface import ids
 from limit_surface.reading import attributes
 
@@ -35,25 +35,15 @@ def cross() -> bpy.types.Object:
 
 def grid_with_holes() -> bpy.types.Object:
     """5 x 4 quads on a bent sheet, two of them missing: corners of 1, 2 and 3 faces."""
-    columns, rows = 6, 5
-    positions = [
-        (x, y, 0.3 * np.sin(1.3 * x) + 0.2 * y * y) for y in range(rows) for x in range(columns)
-    ]
-    faces = [
-        (a, a + 1, a + 1 + columns, a + columns)
-        for y in range(rows - 1)
-        for x in range(columns - 1)
-        for a in [y * columns + x]
-        if (x, y) not in {(1, 1), (3, 2)}
-    ]
-    return add_mesh("Holes", positions, faces)
+    positions = [(x, y, 0.3 * np.sin(1.3 * x) + 0.2 * y * y) for y in range(5) for x in range(6)]
+    faces = np.delete(grids.grid_faces(5, 4), [6, 13], axis=0)
+    return add_mesh("Holes", positions, faces.tolist())
 
 
 def flat_grid(side: int) -> bpy.types.Object:
     """Squares of size 1: away from the border the limit surface is the mesh itself."""
     y, x = np.mgrid[: side + 1, : side + 1].reshape(2, -1)
-    first = (np.arange(side) * (side + 1))[:, None] + np.arange(side)
-    faces = first.reshape(-1, 1) + [0, 1, side + 2, side + 1]
+    faces = grids.grid_faces(side, side)
     return add_mesh("Flat", np.stack([x, y, 0 * x], axis=1), faces.tolist())
 
 

@@ -26,7 +26,6 @@ from ._results import (
 __version__: str
 
 class _BoundType(type): ...  # of all classes that pybind11 binds
-
 class MeshError(ValueError): ...
 class LocationError(ValueError): ...
 

@@ -3,6 +3,7 @@
 
 import limitsurf as ls
 import numpy as np
+import shapes
 
 
 def looking(eye, at, up=(0.0, 0.0, 1.0)):
@@ -53,8 +54,7 @@ def sheet(columns=6, rows=5, height=0.3, interpolation="none", seed=1):
     z = height * np.sin(5 * x + 1) * np.cos(4 * y)
     positions = np.stack([x, y, z], axis=-1).reshape(-1, 3)
     positions += rng.uniform(-0.02, 0.02, positions.shape)
-    first = (np.arange(columns) + (columns + 1) * np.arange(rows)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + columns + 2, first + columns + 1], axis=1)
+    faces = shapes.grid_faces(columns, rows)
     surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
     places = np.stack([x, y], axis=-1).reshape(-1, 2)
     places = places + 0.05 * np.sin(7 * places[:, ::-1])
@@ -67,8 +67,7 @@ def plane(side=4, height=0.0, turned=False):
     x, y = np.meshgrid(steps, steps)
     places = np.stack([x, y], axis=-1).reshape(-1, 2)
     positions = np.column_stack([places, np.full(len(places), height)])
-    first = (np.arange(side) + (side + 1) * np.arange(side)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + side + 2, first + side + 1], axis=1)
+    faces = shapes.grid_faces(side, side)
     if turned:
         faces = faces[:, ::-1]
     surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces, scheme="bilinear"))

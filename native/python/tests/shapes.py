@@ -7,9 +7,13 @@ import numpy as np
 def grid(columns: int, rows: int):
     x, y = np.meshgrid(np.arange(columns + 1.0), np.arange(rows + 1.0))
     positions = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    return positions, grid_faces(columns, rows)
+
+
+def grid_faces(columns: int, rows: int):
+    """Of a grid whose vertices are numbered row by row."""
     first = (np.arange(columns) + (columns + 1) * np.arange(rows)[:, None]).ravel()
-    faces = np.stack([first, first + 1, first + columns + 2, first + columns + 1], axis=1)
-    return positions, faces
+    return first[:, None] + [0, 1, columns + 2, columns + 1]
 
 
 def cube():

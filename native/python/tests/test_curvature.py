@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import catmull_clark
 import limitsurf as ls
 import numpy as np
 import pytest
@@ -222,49 +223,16 @@ def test_average_is_that_of_places_around_the_vertex(name, radius):
     assert irregular > 0
 
 
-def subdivided(positions, faces):
-    """Catmull and Clark's rules, boundaries smooth."""
-    faces = [list(map(int, face)) for face in faces]
-    centres = np.array([positions[face].mean(axis=0) for face in faces])
-    around = {}
-    for f, face in enumerate(faces):
-        for a, b in zip(face, face[1:] + face[:1], strict=True):
-            around.setdefault(frozenset((a, b)), []).append(f)
-    number, points = {}, list(centres)
-    for edge, beside in around.items():
-        number[edge] = len(points)
-        ends = positions[sorted(edge)]
-        points.append(np.concatenate([ends, centres[beside]] if len(beside) == 2 else [ends]))
-        points[-1] = points[-1].mean(axis=0)
-    first = len(points)
-    for v, p in enumerate(positions):
-        edges = [edge for edge in around if v in edge]
-        rim = [edge for edge in edges if len(around[edge]) == 1]
-        ends = np.array([positions[next(iter(e - {v}))] for e in rim or edges])
-        if rim:
-            points.append(0.75 * p + ends.sum(axis=0) / 8)
-        else:
-            n, own = len(edges), sorted({f for edge in edges for f in around[edge]})
-            points.append((n - 2) / n * p + (ends.sum(axis=0) + centres[own].sum(axis=0)) / n**2)
-    children = []
-    for f, face in enumerate(faces):
-        for c, v in enumerate(face):
-            after, before = face[(c + 1) % len(face)], face[c - 1]
-            children.append([first + v, number[frozenset((v, after))], f,
-                             number[frozenset((before, v))]])  # fmt: skip
-    return np.array(points), children
-
-
 @pytest.mark.parametrize("shape", ["cube", "house", "boundary fan", "corner"])
 def test_average_of_a_subdivided_mesh_is_the_same_at_twice_the_radius(shape):
     positions, faces = rough(shapes.ALL[shape])
     surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, list(faces)))
-    finer = ls.LimitSurface(ls.ControlMesh.from_faces(*subdivided(positions, faces)))
+    finer = ls.LimitSurface(ls.ControlMesh.from_faces(*catmull_clark.subdivided(positions, faces)))
     ptex, child, checked = ptex_corners(faces), 0, 0
     for f, face in enumerate(faces):
         for c in range(len(face)):
             at, corner, quad = ptex[f, c]
-            places = [(corner, 0)] if quad else [(0, 0), (2, 2)]  # the vertex, the centre
+            places = [(corner, corner)] if quad else [(0, 0), (2, 2)]  # the vertex, the centre
             for own, childs in places:
                 options = {"irregular": "average"}
                 one = surface.curvature(at, CORNERS[[own]], **options, radius=0.1)

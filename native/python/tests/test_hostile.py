@@ -81,12 +81,9 @@ def test_too_many_edges_name_the_vertex(sides, capfd):
 @pytest.mark.parametrize("call", ["tessellate(5)", "area()", "scatter_jittered(60)"])
 def test_ctrl_c_ends_long_calls(call):
     program = textwrap.dedent(f"""
-        import numpy as np, limitsurf as ls
-        n = 120
-        x, y = np.meshgrid(np.arange(n + 1.0), np.arange(n + 1.0))
-        positions = np.stack([x.ravel(), y.ravel(), np.sin(7 * x * y).ravel()], axis=1)
-        i = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
-        faces = np.stack([i, i + 1, i + n + 2, i + n + 1], axis=1)
+        import numpy as np, limitsurf as ls, shapes
+        positions, faces = shapes.grid(120, 120)
+        positions[:, 2] = np.sin(7 * positions[:, 0] * positions[:, 1])
         surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
         print("ready", flush=True)
         while True:

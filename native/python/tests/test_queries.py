@@ -384,12 +384,10 @@ def test_poses_may_change_between_searches_of_other_threads(points):
 @pytest.mark.parametrize("call", ["closest(points)", "ray_cast(points, points)"])
 def test_ctrl_c_ends_a_long_search(call):
     program = f"""
-import limitsurf as ls, numpy as np
-x, y = np.meshgrid(np.arange(101.0), np.arange(101.0))
-corner = (y * 101 + x)[:-1, :-1].astype(int).ravel()
-faces = corner[:, None] + [0, 1, 102, 101]
-mesh = ls.ControlMesh.from_faces(np.c_[x.ravel(), y.ravel(), np.sin(x * y).ravel()], faces)
-surface = ls.LimitSurface(mesh)
+import limitsurf as ls, numpy as np, shapes
+positions, faces = shapes.grid(100, 100)
+positions[:, 2] = np.sin(positions[:, 0] * positions[:, 1])
+surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
 points = np.tile(np.random.default_rng(0).uniform(-100, 200, (100_000, 3)), (50, 1))
 surface.closest(points[:10])
 print("ready", flush=True)

@@ -288,11 +288,8 @@ def test_other_threads_run_meanwhile(uv_map):
 
 def test_ctrl_c_ends_it():
     errors = ctrl_c.errors_of("""
-import limitsurf as ls, numpy as np
-x, y = np.meshgrid(np.arange(4.0), np.arange(4.0))
-positions = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
-first = (np.arange(3) + 4 * np.arange(3)[:, None]).ravel()
-faces = np.stack([first, first + 1, first + 5, first + 4], axis=1)
+import limitsurf as ls, shapes
+positions, faces = shapes.grid(3, 3)
 mesh = ls.ControlMesh.from_faces(positions, faces)
 uv_map = ls.LimitSurface(mesh).face_varying(positions[:, :2] / 3, faces.ravel(), "none")
 print("ready", flush=True)
