@@ -7,6 +7,7 @@ import bpy
 import limitsurf
 import numpy as np
 from figures.meshes import grids, obj
+from figures.parity import zoo
 from limit_surface import ids
 from limit_surface.reading import attributes
 
@@ -49,12 +50,7 @@ def flat_grid(side: int) -> bpy.types.Object:
 
 def mixed_polygons() -> bpy.types.Object:
     """A triangle, a pentagon and quads around a vertex, open all around."""
-    positions = [
-        (0, 0, 0.5), (1, 0, 0.2), (1.1, 1, 0), (0, 1.2, 0.1), (-1, 1, 0), (-1.3, 0.1, 0.2),
-        (-0.9, -1, 0), (0, -1.1, 0.3), (1, -1, -0.1), (0.4, 1.9, -0.2),
-    ]  # fmt: skip
-    faces = [(0, 1, 2, 9, 3), (0, 3, 4, 5), (0, 5, 7), (5, 6, 7), (0, 7, 8, 1)]
-    return add_mesh("Mixed", positions, faces)
+    return add_mesh("Mixed", *zoo.polygons())
 
 
 def monkey() -> bpy.types.Object:

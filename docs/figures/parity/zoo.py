@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from figures.meshes import obj
+from figures.meshes.grids import grid_faces
 
 Faces = Sequence[Sequence[int]]
 
@@ -18,16 +19,10 @@ def cross() -> tuple[np.ndarray, Faces]:
 
 def sheet() -> tuple[np.ndarray, Faces]:
     """5 x 4 quads, two of them missing: boundary vertices of one, two and three faces."""
-    columns, rows = 6, 5
-    y, x = np.mgrid[:rows, :columns].reshape(2, -1)
-    positions = np.stack([x, y, 0.3 * np.sin(1.3 * x) + 0.2 * y * y / rows], axis=1)
-    faces = [
-        (a, a + 1, a + 1 + columns, a + columns)
-        for j in range(rows - 1)
-        for i in range(columns - 1)
-        for a in [j * columns + i]
-        if (i, j) not in {(1, 1), (3, 2)}
-    ]
+    columns, rows = 5, 4
+    y, x = np.mgrid[: rows + 1, : columns + 1].reshape(2, -1)
+    positions = np.stack([x, y, 0.3 * np.sin(1.3 * x) + 0.2 * y * y / (rows + 1)], axis=1)
+    faces = np.delete(grid_faces(columns, rows), (6, 13), axis=0).tolist()
     return positions, faces
 
 
