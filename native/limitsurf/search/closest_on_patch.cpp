@@ -153,10 +153,10 @@ class PatchSearch {
       return;
     }
     if (!facing_) {
-      for (int corner = 0; corner < 4; ++corner) {
-        const double squared = f.corner(corner & 1, corner >> 1);
+      for (int i = 0; i < 4; ++i) {
+        const double squared = f.corner(i & 1, i >> 1);
         if (isBetter(squared)) {
-          offer(cell.s + (corner & 1) * cell.size, cell.t + (corner >> 1) * cell.size);
+          offer(cell.s + (i & 1) * cell.size, cell.t + (i >> 1) * cell.size);
         }
       }
     }

@@ -31,10 +31,10 @@ BorderChords::BorderChords(const UvBorders& borders, const PlaneFrame& frame, co
   }
   const auto forEachBand = [&](const auto& body) {
     for (const Chord& chord : all) {
-      Box2 box;
-      box.include(chord.begin);
-      box.include(chord.end);
-      const Lattice near = image.within(box.grown(Point2::Constant(margin + kSlack)));
+      Box2 chord_box;
+      chord_box.include(chord.begin);
+      chord_box.include(chord.end);
+      const Lattice near = image.within(chord_box.grown(Point2::Constant(margin + kSlack)));
       if (!near.empty()) {
         for (int band = near.y0 / rows; band <= near.y1 / rows; ++band) {
           body(chord, static_cast<std::size_t>(band));
