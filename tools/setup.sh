@@ -104,20 +104,38 @@ make_environment() {
 
 # Sources of the Python module, as one hash: it is rebuilt when one of them changed.
 module_hash() {
-  (cd "$ROOT" && find CMakeLists.txt pyproject.toml native/CMakeLists.txt native/cmake \
-    native/limitsurf native/python/CMakeLists.txt native/python/src native/python/limitsurf \
-    -type f ! -path '*/__pycache__/*' -print0 | LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
+  (cd "$ROOT" && find CMakeLists.txt CMakePresets.json pyproject.toml native/CMakeLists.txt \
+    native/cmake native/limitsurf native/python/CMakeLists.txt native/python/src \
+    native/python/limitsurf -type f ! -path '*/__pycache__/*' -print0 |
+    LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
 }
 
+# configure PRESET OPTIONS...: the build tree that CMakePresets.json describes under this name.
+configure() {
+  local log
+  log=$(mktemp)
+  (cd "$ROOT" && cmake --preset "$@") >"$log" 2>&1 || {
+    tail -n 40 "$log" >&2
+    fail "CMake could not configure the preset $1." "(Its whole output: $log)"
+  }
+  rm -f "$log"
+}
+
+# The library is compiled in the C++ tests' build tree, and the Python module links it from there.
 install_module() {
   local stamp=$VENV/.limit-surface-module hash
   hash=$(module_hash) || fail "The sources of the Python module are incomplete."
   if [[ $(cat "$stamp" 2>/dev/null) == "$hash" ]]; then
     return
   fi
-  say "Python module limitsurf (its C++ is compiled: some minutes the first time)"
+  say "The library limitsurf (some minutes the first time)"
+  configure release
+  cmake --build "$ROOT/build/cpp" --target limitsurf --parallel "$JOBS" ||
+    fail "The library could not be compiled."
+  say "The Python module limitsurf"
   CMAKE_BUILD_PARALLEL_LEVEL=$JOBS "$VENV/bin/python" -m pip install -qq \
-    --disable-pip-version-check --no-build-isolation --no-deps --force-reinstall "$ROOT" ||
+    --disable-pip-version-check --no-build-isolation --no-deps --force-reinstall \
+    -C "cmake.define.LIMITSURF_PREBUILT=$ROOT/build/cpp/native" "$ROOT" ||
     fail "The Python module could not be built."
   echo "$hash" >"$stamp"
 }

@@ -2,11 +2,13 @@
 """Wheels of the native module that carry the libraries they need.
 
 For the Python that runs this, and for others of which there are only the headers: a module needs
-no more to be compiled, and is tried where that Python is.
+no more to be compiled, and is tried where that Python is. All of them link one library, which is
+compiled once, in the build tree of the preset `release`.
 """
 
 import base64
 import csv
+import fcntl
 import hashlib
 import io
 import os
@@ -16,9 +18,12 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+LIBRARY_TREE = ROOT / "build/cpp"
 MULTIARCH = "x86_64-linux-gnu"
 
 
@@ -31,13 +36,16 @@ def build(folder: Path, other_headers: list[Path]) -> None:
 
     Builds without isolation: with what this environment holds, and no network.
     """
-    with tempfile.TemporaryDirectory() as raw:
+    with alone(), tempfile.TemporaryDirectory() as raw:
+        library = compiled_library()
         pip = (sys.executable, "-m", "pip", "--disable-pip-version-check")
-        run(*pip, "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", raw, ROOT)
+        prebuilt = f"cmake.define.LIMITSURF_PREBUILT={library}"
+        options = ("-q", "--no-deps", "--no-build-isolation", "-C", prebuilt)
+        run(*pip, "wheel", *options, "-w", raw, ROOT)
         (own,) = Path(raw).glob("limitsurf-*.whl")
         wheels = [own]
         for headers in other_headers:
-            wheels.append(with_module(own, compiled(headers), interpreter(headers)))
+            wheels.append(with_module(own, compiled_module(headers, library), interpreter(headers)))
         for wheel in wheels:
             run(sys.executable, "-m", "auditwheel", "repair", "-w", folder, wheel)
 
@@ -52,7 +60,29 @@ def interpreter(headers: Path) -> str:
     return f"cp{major}{minor}"
 
 
-def compiled(headers: Path) -> Path:
+@contextmanager
+def alone() -> Iterator[None]:
+    """Waits until no other process builds in this checkout's build trees."""
+    (ROOT / "build").mkdir(exist_ok=True)
+    with (ROOT / "build/wheels.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def compiled_library() -> Path:
+    """The folder of the library's CMake package, after it has been brought up to date."""
+    if not (LIBRARY_TREE / "build.ninja").exists():
+        run("cmake", "-S", ROOT, "--preset", "release")
+    compile_in(LIBRARY_TREE, "--target", "limitsurf")
+    return LIBRARY_TREE / "native"
+
+
+def compile_in(build_tree: Path, *options: str) -> None:
+    jobs = os.environ.get("LIMITSURF_JOBS") or str(os.cpu_count())
+    run("cmake", "--build", build_tree, "--parallel", jobs, *options)
+
+
+def compiled_module(headers: Path, library: Path) -> Path:
     """The native module for the Python whose headers lie in a folder such as include/python3.13."""
     name = interpreter(headers)
     build_folder = ROOT / "build" / f"{name}-headers"
@@ -67,9 +97,7 @@ def compiled(headers: Path) -> Path:
         "CMAKE_SYSTEM_NAME": "Linux",  # set, this is a build for elsewhere: no interpreter is asked
         "CMAKE_SYSTEM_PROCESSOR": "x86_64",
         "CMAKE_CXX_FLAGS": f"-isystem {include}",
-        "LIMITSURF_BUILD_PYTHON": "ON",
-        "LIMITSURF_BUILD_TESTS": "OFF",
-        "LIMITSURF_BUILD_TOOLS": "OFF",
+        "LIMITSURF_PREBUILT": library,
         "Python_INCLUDE_DIR": include / headers.name,
         "PYTHON_IS_DEBUG": "OFF",
         "PYTHON_MODULE_EXTENSION": suffix,
@@ -78,8 +106,7 @@ def compiled(headers: Path) -> Path:
     }
     options = [f"-D{key}={value}" for key, value in definitions.items()]
     run("cmake", "-S", ROOT, "-B", build_folder, "-G", "Ninja", *options)
-    jobs = os.environ.get("LIMITSURF_JOBS") or str(os.cpu_count())
-    run("cmake", "--build", build_folder, "--parallel", jobs)
+    compile_in(build_folder)
     return build_folder / f"native/python/_limitsurf{suffix}"
 
 
