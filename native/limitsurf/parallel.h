@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "limitsurf/loop_order.h"
+
 namespace limitsurf {
 
 /// What the calling thread wants to be asked every now and then while it works for long: may throw,
@@ -63,10 +65,13 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
       body(first, last);
       return;
     }
+    LoopOrder order;
     const auto run = [&] {
-      tbb::parallel_for(
-          tbb::blocked_range<std::size_t>(first, last, grain),
-          [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, grain),
+                        [&](const tbb::blocked_range<std::size_t>& range) {
+                          const LoopOrder::Task task(order);
+                          body(range.begin(), range.end());
+                        });
     };
     if (threads == 0) {
       run();
