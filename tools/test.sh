@@ -3,11 +3,15 @@
 #
 # Sets up, builds, and runs every test, those in a real window included.
 #
-#   tools/test.sh [--slow] [--blender VERSION]
+#   tools/test.sh [--quick | --slow] [--blender VERSION]
+#   tools/test.sh --sanitize address | undefined | thread
 #
-# --slow     also the tests that take minutes
-# --blender  only the Python and Blender tests, under another version of the `bpy` wheel (4.2.23 or
-#            5.0.1, say) in an environment of its own
+# --quick     only the C++ and Python tests and the style: no Blender, no window
+# --slow      also the tests that take minutes, and clang-tidy over all files
+# --blender   only the Python and Blender tests, under another version of the `bpy` wheel (4.2.23 or
+#             5.0.1, say) in an environment of its own
+# --sanitize  only the C++ tests, and the Python module's own ones, under a sanitizer of the
+#             compiler, in a build tree of its own (tools/sanitize/ says what is left out and why)
 #
 # The last line counts the tests. A part that is no test, or did not get as far as its tests, counts
 # as one failure if it fails and not at all if it succeeds. The window tests count as one skipped
@@ -16,26 +20,38 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 usage() {
-  sed -n '4,14s/^# \{0,1\}//p' "$0"
+  sed -n '4,19s/^# \{0,1\}//p' "$0"
   exit 2
 }
 
-slow=false blender=$DEFAULT_BLENDER
+quick=false slow=false blender=$DEFAULT_BLENDER sanitizer=
 while (($#)); do
   case $1 in
+    --quick) quick=true ;;
     --slow) slow=true ;;
     --blender) blender=${2-} && [[ $blender ]] || usage && shift ;;
+    --sanitize) sanitizer=${2-} && [[ $sanitizer =~ ^(address|undefined|thread)$ ]] || usage && shift ;;
     *) usage ;;
   esac
   shift
 done
+$quick && $slow && usage
+
+default=false windows=false
+if [[ $blender == "$DEFAULT_BLENDER" && ! $sanitizer ]]; then
+  default=true
+  $quick || windows=true
+fi
+
+# What runs in the background ends with this script.
+background=()
+trap 'for group in "${background[@]}"; do kill -- -"$group" 2>/dev/null || true; done' EXIT
 
 # The Blender for the window tests is fetched meanwhile.
-if [[ $blender == "$DEFAULT_BLENDER" ]]; then
+if $windows; then
   mkdir -p "$ROOT/build"
   setsid "$ROOT/tools/gui_test.sh" --prepare >"$ROOT/build/window.log" 2>&1 </dev/null &
-  fetching=$!
-  trap 'kill -- -$fetching 2>/dev/null || true' EXIT
+  background+=($!)
 fi
 
 set_up "$blender"
@@ -56,39 +72,59 @@ part() {
 }
 
 build_cpp() {
-  cmake -S . -B build/cpp -G Ninja -D CMAKE_BUILD_TYPE=Release \
-    -D LIMITSURF_BUILD_TESTS=ON -D LIMITSURF_BUILD_TOOLS=ON -D LIMITSURF_BUILD_BENCH=ON \
-    >"$results/configure.log" ||
-    { cat "$results/configure.log" && return 1; }
-  cmake --build build/cpp --parallel "$JOBS"
+  configure "$1"
+  cmake --build "build/$2" --parallel "$JOBS"
 }
 
 run_ctest() {
-  local selection=(-LE slow)
+  local tree=$1 selection=(-LE slow)
   $slow && selection=()
-  ctest --test-dir build/cpp --output-on-failure --no-tests=error --parallel "$JOBS" \
+  ctest --test-dir "$tree" --output-on-failure --no-tests=error --parallel "$JOBS" \
     "${selection[@]}" --output-junit "$results/C++ tests.xml" >"$results/ctest.log" ||
     { grep -v ' Passed ' "$results/ctest.log" && return 1; }
   tail -n 5 "$results/ctest.log"
 }
 
+# Several processes at a time; what a file's tests share is mostly made once.
 run_pytest() {
   local name=$1 selection=()
   shift
   $slow && selection=(-m 'slow or not slow')
-  python -m pytest -q "${selection[@]}" --junitxml "$results/$name.xml" "$@"
+  python -m pytest -q -n "$JOBS" --dist worksteal "${selection[@]}" \
+    --junitxml "$results/$name.xml" "$@"
 }
 
-if [[ $blender == "$DEFAULT_BLENDER" ]]; then
-  if part "C++ build" build_cpp; then
-    part "C++ tests" run_ctest || true
+# The window tests wait for the screen most of the time: other tests run meanwhile.
+start_window_tests() {
+  window_start=$SECONDS
+  setsid "$ROOT/tools/gui_test.sh" >"$results/window.log" 2>&1 </dev/null &
+  window_tests=$!
+  background+=("$window_tests")
+}
+
+finish_window_tests() {
+  local status=0
+  say "Window tests"
+  wait "$window_tests" || status=$?
+  cat "$results/window.log"
+  outcomes+=("Window tests"$'\t'"$status"$'\t'"$((SECONDS - window_start))")
+}
+
+if [[ $sanitizer ]]; then
+  source tools/sanitize/sanitize.sh
+  run_sanitized "$sanitizer"
+else
+  built=false
+  if $default && part "C++ build" build_cpp release cpp; then
+    built=true
   fi
-fi
-part "Python tests" run_pytest "Python tests" native/python/tests tools/tests || true
-part "Blender tests" run_pytest "Blender tests" blend_tests || true
-if [[ $blender == "$DEFAULT_BLENDER" ]]; then
-  part "Window tests" tools/gui_test.sh || true
-  part "Style" tools/format.sh --check || true
+  $windows && start_window_tests
+  $built && { part "C++ tests" run_ctest build/cpp || true; }
+  part "Python tests" run_pytest "Python tests" native/python/tests tools/tests || true
+  $quick || part "Blender tests" run_pytest "Blender tests" blend_tests || true
+  $windows && finish_window_tests
+  $default && { part "Style" tools/format.sh --check || true; }
+  $default && $slow && { part "Lint" tools/lint.sh || true; }
 fi
 
 say "Summary"

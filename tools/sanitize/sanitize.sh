@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# The tests under a sanitizer of the compiler: sourced by tools/test.sh --sanitize.
+#
+# Each sanitizer has a preset and a build tree of its own (CMakePresets.json), and a file of
+# suppressions here. OpenSubdiv, TBB, Python and numpy are Debian's or PyPI's and are not compiled
+# with a sanitizer.
+
+run_sanitized() {
+  local preset
+  case $1 in
+    address) preset=asan ;;
+    undefined) preset=ubsan ;;
+    thread) preset=tsan ;;
+  esac
+  local tree=$ROOT/build/$preset suppressions=$ROOT/tools/sanitize
+  # Leaks are looked for when a C++ test ends. Python's own never-freed objects would drown them.
+  export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1
+  export LSAN_OPTIONS=suppressions=$suppressions/leak.supp:print_suppressions=0
+  export UBSAN_OPTIONS=print_stacktrace=1:suppressions=$suppressions/undefined.supp
+  export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$suppressions/thread.supp
+
+  part "C++ build" build_sanitized "$preset" || return 0
+  part "C++ tests" run_ctest "$tree" || true
+  if [[ $1 != thread ]]; then
+    part "Python tests" run_sanitized_pytest "$1" "$tree" || true
+  fi
+}
+
+build_sanitized() {
+  configure "$1" -D Python_EXECUTABLE="$VENV/bin/python" \
+    -D pybind11_DIR="$(python -m pybind11 --cmakedir)"
+  cmake --build "build/$1" --parallel "$JOBS"
+}
+
+# The package limitsurf with the sanitized module in it stands before the environment's own. Python
+# itself is not linked with the sanitizer's library, which has to be loaded first.
+run_sanitized_pytest() {
+  local package=$2/package preload=
+  rm -rf "$package"
+  cmake --install "$2" --component python --prefix "$package" >/dev/null
+  cp native/python/limitsurf/*.py "$package/limitsurf"
+  if [[ $1 == address ]]; then
+    preload="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so)"
+    export ASAN_OPTIONS=detect_leaks=0
+  fi
+  LD_PRELOAD=$preload PYTHONPATH=$package run_pytest "Python tests" native/python/tests
+}
