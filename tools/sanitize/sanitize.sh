@@ -2,9 +2,9 @@
 #
 # The tests under a sanitizer of the compiler: sourced by tools/test.sh --sanitize.
 #
-# Each sanitizer has a preset and a build tree of its own (CMakePresets.json), and a file of
-# suppressions here. OpenSubdiv, TBB, Python and numpy are Debian's or PyPI's and are not compiled
-# with a sanitizer.
+# Each sanitizer has a preset and a build tree of its own (CMakePresets.json). OpenSubdiv, TBB, Python
+# and numpy are Debian's or PyPI's and are not compiled with a sanitizer. A file of suppressions stands
+# here for the sanitizer that needs one, with the reason for each.
 
 run_sanitized() {
   local preset
@@ -13,12 +13,10 @@ run_sanitized() {
     undefined) preset=ubsan ;;
     thread) preset=tsan ;;
   esac
-  local tree=$ROOT/build/$preset suppressions=$ROOT/tools/sanitize
-  # Leaks are looked for when a C++ test ends. Python's own never-freed objects would drown them.
+  local tree=$ROOT/build/$preset
   export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1
-  export LSAN_OPTIONS=suppressions=$suppressions/leak.supp:print_suppressions=0
-  export UBSAN_OPTIONS=print_stacktrace=1:suppressions=$suppressions/undefined.supp
-  export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$suppressions/thread.supp
+  export UBSAN_OPTIONS=print_stacktrace=1
+  export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$ROOT/tools/sanitize/thread.supp
 
   part "C++ build" build_sanitized "$preset" || return 0
   part "C++ tests" run_ctest "$tree" || true
@@ -42,7 +40,7 @@ run_sanitized_pytest() {
   cp native/python/limitsurf/*.py "$package/limitsurf"
   if [[ $1 == address ]]; then
     preload="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so)"
-    export ASAN_OPTIONS=detect_leaks=0
+    export ASAN_OPTIONS=detect_leaks=0 # Python ends without freeing all of its own objects
   fi
   LD_PRELOAD=$preload PYTHONPATH=$package run_pytest "Python tests" native/python/tests
 }

@@ -168,8 +168,8 @@ void Eigenbasis::Builder::buildRadial() {
     basis_.fixed_[0].tables[i] = ModeContinuation::rounded(wide);
     if (moves && ring_.faces == 2 && i == 0) {  // eigenvalue 1/8, defective with S12's
       basis_.rest_mode_ = 1;
-      for (Eigen::Index q = 0; q < wide.rest.size(); ++q) {
-        basis_.rest_.push_back(static_cast<double>(wide.rest[q]));
+      for (Eigen::Index j = 0; j < wide.rest.size(); ++j) {
+        basis_.rest_.push_back(static_cast<double>(wide.rest[j]));
       }
     }
   }

@@ -276,7 +276,7 @@ void Eigenbasis::weights(int face, int steps, int ring_steps, const GridWindow& 
     const PairNumber all = ring * pairPower(pair, 2, steps - 1);
     const Table tables[2] = {table(pair.a, face), table(pair.b, face)};
     // A mode has become (p, q feeds) times itself and the other one.
-    const auto see = [&](int own, double feeds) -> Functionals {
+    const auto seeFed = [&](int own, double feeds) -> Functionals {
       Functionals result = Functionals::Zero();
       for (const int i : {own, 1 - own}) {
         const double factor = i == own ? 1 : feeds;
@@ -289,8 +289,8 @@ void Eigenbasis::weights(int face, int steps, int ring_steps, const GridWindow& 
       }
       return result;
     };
-    mode_weights.col(pair.a) = see(0, pair.forth).head(count);
-    mode_weights.col(pair.b) = see(1, pair.back).head(count);
+    mode_weights.col(pair.a) = seeFed(0, pair.forth).head(count);
+    mode_weights.col(pair.b) = seeFed(1, pair.back).head(count);
   }
 
   // (lambda + nilpotent)^n = lambda^n + n lambda^(n - 1) (nilpotent)

@@ -47,8 +47,8 @@ class Builder {
     };
     std::vector<RingAge> rings;  ///< per sector
 
-    Level(FaceMesh& mesh, RefinedMesh* refined, bool has_sharpness)
-        : mesh(mesh), refined(refined), sectors(mesh, has_sharpness) {}
+    Level(FaceMesh& face_mesh, RefinedMesh* refined_mesh, bool has_sharpness)
+        : mesh(face_mesh), refined(refined_mesh), sectors(face_mesh, has_sharpness) {}
   };
 
   /// A face whose children are tiles, or split again.

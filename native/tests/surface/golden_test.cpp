@@ -75,7 +75,7 @@ TEST_P(GoldenValues, AreMissingWhereThereIsNoLimit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GoldenValues, testing::ValuesIn(goldenNames()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 TEST(GoldenData, IsComplete) {
   int meshes = 0, sharp = 0;

@@ -83,9 +83,9 @@ TEST(UvRaster, IsSortedAndTheSameForAnyNumberOfThreads) {
     const NamedMap& named = maps[i];
     const UvMap map(named.map);
     const Texels texels = map.rasterize(options, 1);
-    for (std::size_t i = 1; i < texels.size(); ++i) {
-      ASSERT_TRUE(texels.y[i - 1] < texels.y[i] ||
-                  (texels.y[i - 1] == texels.y[i] && texels.x[i - 1] < texels.x[i]));
+    for (std::size_t k = 1; k < texels.size(); ++k) {
+      ASSERT_TRUE(texels.y[k - 1] < texels.y[k] ||
+                  (texels.y[k - 1] == texels.y[k] && texels.x[k - 1] < texels.x[k]));
     }
     EXPECT_TRUE(sameBits(texels, UvMap(named.map, 2).rasterize(options, 2))) << named.name;
   }
