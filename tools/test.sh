@@ -124,6 +124,9 @@ else
   $quick || part "Blender tests" run_pytest "Blender tests" blend_tests || true
   $windows && finish_window_tests
   $default && { part "Style" tools/format.sh --check || true; }
+  if $default && ! $quick; then
+    part "Types and spelling" tools/types.sh || true
+  fi
   $default && $slow && { part "Lint" tools/lint.sh || true; }
 fi
 

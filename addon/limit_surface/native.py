@@ -5,7 +5,15 @@ Nothing else imports it: an extension whose binary part does not fit the machine
 and says what is wrong where the user looks for it.
 """
 
+from __future__ import annotations
+
 from types import ModuleType
+from typing import TYPE_CHECKING
+
+from .errors import RefusalError
+
+if TYPE_CHECKING:
+    import limitsurf
 
 
 def _load() -> tuple[ModuleType | None, str]:
@@ -19,12 +27,17 @@ def _load() -> tuple[ModuleType | None, str]:
     return limitsurf, ""
 
 
-limitsurf, reason = _load()
+if TYPE_CHECKING:
+    reason: str
+else:
+    limitsurf, reason = _load()
 
 #: What evaluation raises for meshes and locations that have no limit surface.
 errors: tuple[type[Exception], ...] = (
     (limitsurf.MeshError, limitsurf.LocationError) if limitsurf else ()
 )
+#: What an operator reports as the reason why it did nothing.
+refusals: tuple[type[Exception], ...] = (RefusalError, *errors)
 
 
 def available() -> bool:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, cast
 
 import numpy as np
 
@@ -23,7 +24,7 @@ class Request:
     is_vector: bool
     in_frames: bool
     max_distance: float
-    direction: str
+    direction: str  # BOTH, OUTWARD or INWARD: in lower case the words of the native module
 
 
 @dataclass(frozen=True)
@@ -76,11 +77,12 @@ def _measured(request: Request, texels: Texels) -> tuple[np.ndarray, np.ndarray]
             texels.face,
             texels.uv,
             request.max_distance or np.inf,
-            direction=request.direction.lower(),
+            direction=cast(Literal["both", "outward", "inward"], request.direction.lower()),
         )
         return np.repeat(distances[:, None], 3, axis=1), distances
     frames = None
     if request.in_frames:
+        assert surfaces.uv_data is not None
         frames = base.tangent_frames(surfaces.uv_data, texels.face, texels.uv)
     vectors = base.vector_displacement(target, texels.face, texels.uv, frames=frames)
     return vectors, np.linalg.norm(vectors, axis=1)

@@ -92,10 +92,13 @@ def of(
         return PtexLayout(layout)
     tiles = texel_places.tiles_of(surfaces.found) if properties.use_tiles else [FIRST_TILE]
     if not tiles:
-        raise RefusalError(f"{whose}: the UV map {surfaces.found.uv_map.name} touches no UDIM tile")
+        raise RefusalError(
+            f"{whose}: the UV map {surfaces.found.chosen_uv_map.name} touches no UDIM tile"
+        )
     texel_places.check_size(
         properties.width, properties.height, len(tiles), 1, properties.allow_large
     )
+    assert surfaces.uv_data is not None
     return UvLayout(
         surfaces.uv_data,
         properties.width,

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials that displace."""
 
+from typing import Any
+
 import bpy
 
 from ..images import material_slots
@@ -33,7 +35,7 @@ def _own(ob: bpy.types.Object) -> bpy.types.Material | None:
     return material if material and material.is_editable and _output(material) else None
 
 
-def _output(material: bpy.types.Material) -> bpy.types.Node | None:
+def _output(material: bpy.types.Material) -> Any:
     tree = material.node_tree
     outputs = [node for node in tree.nodes if node.type == OUTPUT] if tree else []
     return next((node for node in outputs if node.is_active_output), None)

@@ -74,7 +74,7 @@ class OBJECT_OT_limit_bake_displacement(
         image = self._image(self.image_name or f"{ob.name} Displacement", measured)
         image[ids.DISPLACEMENT] = json.dumps(self._described(request))
         if self.create_material:
-            map_name = request.surfaces.found.uv_map.name
+            map_name = request.surfaces.found.chosen_uv_map.name
             material.show(ob, image, map_name, is_vector=request.is_vector, space=self._space)
             self._warn_of_tangents(ob, map_name, request)
         self._tell(ob, image, request, measured)
@@ -122,7 +122,7 @@ class OBJECT_OT_limit_bake_displacement(
         told: dict[str, object] = {"mode": self.mode, "space": self._space}
         if isinstance(request.layout, PtexLayout):
             return {**told, "layout": "PTEX", **request.layout.described()}
-        return {**told, "layout": "UV", "uv_map": request.surfaces.found.uv_map.name}
+        return {**told, "layout": "UV", "uv_map": request.surfaces.found.chosen_uv_map.name}
 
     def _warn_of_tangents(self, ob: bpy.types.Object, map_name: str, request: Request) -> None:
         """The node for vectors has no choice of map: it takes tangents from the rendered one."""

@@ -75,7 +75,8 @@ class Places:
         frames = self.body.surface.tangent_frames(self.body.uv_map, self.face, self.uv)
         against = [np.einsum("ni,ni->n", of, frames[:, :, 0]) < 0 for of in both]
         found = [np.where(down[:, None], -of, of) for of, down in zip(both, against, strict=True)]
-        return tuple(found if self.body.outward > 0 else found[::-1])
+        larger, smaller = found if self.body.outward > 0 else found[::-1]
+        return larger, smaller
 
     @cached_property
     def distortion(self) -> limitsurf.MapDistortion:

@@ -117,6 +117,7 @@ def _in_tangent_space(
 ) -> np.ndarray:
     """Straight up where there are no polygons: nothing is ever drawn there."""
     width, height = order.size
+    assert order.polygons is not None
     shading = order.polygons.over(order.size, tile, order.margin, part_of(progress, 0.8, 0.9))
     row_at = np.full(width * height, -1, np.int32)
     row_at[_flat(shading.texels, width)] = np.arange(len(shading.texels.x), dtype=np.int32)

@@ -56,7 +56,7 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         output.check(maps)
         corners = None
         if NORMAL_TANGENT in maps:
-            corners = shading.read(ob, depsgraph, self.target, found.uv_map.name)
+            corners = shading.read(ob, depsgraph, self.target, found.chosen_uv_map.name)
         inputs = Inputs(
             found,
             ob.name,

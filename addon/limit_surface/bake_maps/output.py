@@ -41,7 +41,7 @@ class Output:
             if image:
                 self._check_fits(image)
 
-    def put(self, baked: dict[str, Mapping[int, np.ndarray]]) -> list[bpy.types.Image]:
+    def put(self, baked: dict[str, dict[int, np.ndarray]]) -> list[bpy.types.Image]:
         """Takes the pixels out of `baked`, so that they are not kept twice."""
         files = self._write_files(baked) if self.folder else {}
         made = []
@@ -97,7 +97,9 @@ class Output:
         return image
 
     def _write_files(self, baked: Mapping[str, Mapping[int, np.ndarray]]) -> dict[str, Path]:
-        files, written = {}, []
+        files: dict[str, Path] = {}
+        written: list[Path] = []
+        assert self.folder is not None
         try:
             for name, tiles in baked.items():
                 stem = bpy.path.clean_name(self.image_name(name))

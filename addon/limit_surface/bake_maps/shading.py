@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import bpy
 import numpy as np
@@ -24,6 +24,8 @@ from ..tasks.job import Progress
 
 if TYPE_CHECKING:
     import limitsurf
+
+Kind = displayed_mesh.Kind | Literal["CAGE"]
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class Polygons:
         return Shading(found, self._columns.evaluate(found.face, found.uv).value)
 
 
-def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: str, uv_name: str) -> Corners:
+def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: Kind, uv_name: str) -> Corners:
     """`kind`: CAGE for the mesh that stands before the subdivision, VIEWPORT or RENDER for that
     behind it. RefusalError where its tangents cannot be had."""
     with _opened(ob, depsgraph, kind) as (mesh, whose):
@@ -82,7 +84,9 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: str, uv_nam
 
 @contextmanager
 def _opened(
-    ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: str
+    ob: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    kind: Kind,
 ) -> Iterator[tuple[bpy.types.Mesh, str]]:
     if kind == "CAGE":
         with cage.opened(ob, depsgraph) as (_, mesh):
@@ -127,6 +131,6 @@ def _corners(mesh: bpy.types.Mesh, uv_name: str) -> Corners:
 def _of(
     data: bpy.types.bpy_prop_collection, key: str, width: int, dtype: type = np.float32
 ) -> np.ndarray:
-    values = np.empty(width * len(data), dtype)
+    values: np.ndarray = np.empty(width * len(data), dtype)
     data.foreach_get(key, values)
     return values.reshape(-1, width)

@@ -18,8 +18,12 @@ from .settings import Settings
 from .tessellation import Tessellation
 from .values import Values
 
-_PLACES = {"CONTROL_MESH": ControlMesh, "TESSELLATION": Tessellation, "ROOTS": StoredRoots}
 Places = ControlMesh | Tessellation | StoredRoots
+_PLACES: dict[str, type[Places]] = {
+    "CONTROL_MESH": ControlMesh,
+    "TESSELLATION": Tessellation,
+    "ROOTS": StoredRoots,
+}
 
 
 class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):

@@ -64,6 +64,7 @@ class Tessellation:
 
     def _fill(self, mesh: bpy.types.Mesh) -> None:
         made = self._mesh
+        assert made is not None
         sizes = np.full(len(made.faces), 4)
         new_objects.add_polygons(mesh, made.positions, sizes, made.faces.ravel())
         mesh.normals_split_custom_set_from_vertices(made.normals.astype(np.float32))

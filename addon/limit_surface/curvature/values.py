@@ -72,7 +72,9 @@ class CurvedSurface:
                 numbers[:, rows] = c.mean, c.gaussian, c.k1, c.k2
                 directions[:, rows] = c.direction1, c.direction2
             irregular[rows] = c.irregular
-        return Values(*numbers, *self._seen_from(matrix, directions), irregular)
+        mean, gaussian, k1, k2 = numbers
+        direction1, direction2 = self._seen_from(matrix, directions)
+        return Values(mean, gaussian, k1, k2, direction1, direction2, irregular)
 
     def _seen_from(self, matrix: np.ndarray, directions: np.ndarray) -> np.ndarray:
         if np.array_equal(matrix, self._to_world):

@@ -54,7 +54,7 @@ def check_uv_map(found: cage.Cage, whose: str) -> None:
 
 def faces_without_area(found: cage.Cage) -> int:
     """How many of the cage's faces are no more than a line on its UV map."""
-    at = found.uv_map.values[found.uv_map.indices]
+    at = found.chosen_uv_map.values[found.chosen_uv_map.indices]
     starts = ragged_rows.starts(found.face_sizes)
     following = ragged_rows.following(found.face_sizes)
     around = at - np.repeat(at[starts], found.face_sizes, axis=0)
@@ -66,7 +66,7 @@ def uv_data(surface: limitsurf.LimitSurface, found: cage.Cage, whose: str) -> li
     """The cage's UV map on the limit surface, by the rules of its modifier."""
     check_uv_map(found, whose)
     return surface.face_varying(
-        found.uv_map.values, found.uv_map.indices, found.rules.uv_interpolation
+        found.chosen_uv_map.values, found.chosen_uv_map.indices, found.rules.uv_interpolation
     )
 
 
@@ -98,7 +98,7 @@ def tile_corner(tile: int) -> tuple[int, int]:
 
 def tiles_of(found: cage.Cage) -> list[int]:
     """The UDIM tiles that the UV map's faces touch, as far as UDIM numbers go."""
-    at = found.uv_map.values[found.uv_map.indices]
+    at = found.chosen_uv_map.values[found.chosen_uv_map.indices]
     starts = ragged_rows.starts(found.face_sizes)
     low = np.floor(np.minimum.reduceat(at, starts)).astype(int)
     high = np.ceil(np.maximum.reduceat(at, starts)).astype(int) - 1

@@ -37,8 +37,8 @@ def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) 
         _activate_as(source.data, mesh)
         for slot in source.material_slots:
             mesh.materials.append(slot.material if slot.link == "DATA" else None)
-        if made.tessellation.corner_normals is not None:
-            on = made.tessellation
+        on = made.tessellation
+        if on.corner_normals is not None:
             _set_normals(mesh, on.corner_normals, on.face_sizes)
     except BaseException:
         bpy.data.meshes.remove(mesh)

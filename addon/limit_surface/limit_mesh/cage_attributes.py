@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 
 from .. import ids
-from ..reading import attributes, ragged_rows, uv_map
+from ..reading import attributes, ragged_rows, rules, uv_map
 from ..tasks.job import Progress
 from .places import CageElements
 
@@ -78,7 +78,7 @@ def write(mesh: bpy.types.Mesh, attribute: Attribute) -> None:
         attribute.name, attribute.kind, attribute.domain
     )
     layout = attributes.LAYOUTS[attribute.kind]
-    values = np.ascontiguousarray(attribute.values, layout.dtype)
+    values: np.ndarray = np.ascontiguousarray(attribute.values, layout.dtype)
     made.data.foreach_set(_key(attribute.kind), values.ravel())
 
 
@@ -92,7 +92,9 @@ class Carrier:
         self._elements = CageElements(surface)
         self._corner_face = np.repeat(on.ptex_face, on.face_sizes)
 
-    def attributes(self, uv_interpolation: str, progress: Progress) -> Iterator[Attribute]:
+    def attributes(
+        self, uv_interpolation: rules.Interpolation, progress: Progress
+    ) -> Iterator[Attribute]:
         """All but those of edges. UV maps come last, as FLOAT2 of CORNER."""
         steps = 3 + len(self._cage.uv_maps)
         yield from self._linear("POINT")
@@ -115,6 +117,7 @@ class Carrier:
             self._corner_face, uv, uv[ragged_rows.following(self._on.face_sizes)]
         )
         edge, on_cage = attributes.read(mesh, ids.CORNER_EDGE), side >= 0
+        assert self._cage.corner_edge is not None
         from_edge = self._cage.corner_edge[side[on_cage]]
         for each in some:
             values = np.zeros((len(mesh.edges), *each.values.shape[1:]), each.values.dtype)
@@ -173,7 +176,7 @@ def _evaluated(data: limitsurf.SurfaceData, face: np.ndarray, uv: np.ndarray) ->
 
 def _read(attribute: bpy.types.Attribute) -> np.ndarray:
     layout = attributes.LAYOUTS[attribute.data_type]
-    values = np.empty(len(attribute.data) * layout.width, layout.dtype)
+    values: np.ndarray = np.empty(len(attribute.data) * layout.width, layout.dtype)
     attribute.data.foreach_get(_key(attribute.data_type), values)
     return values if layout.width == 1 else values.reshape(-1, layout.width)
 

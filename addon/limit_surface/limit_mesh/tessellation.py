@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -97,7 +97,7 @@ class Made:
     carrier: Carrier  # of edges' attributes, whose numbers only the mesh knows
     groups: Groups
     levels: tuple[int, int]  # the lowest and the highest
-    refused: dict[int, str]
+    refused: Mapping[int, str]
     warnings: list[str]
 
 
@@ -117,7 +117,7 @@ def read(
         return Source(found, source, groups, choose(mesh, found, groups))
 
 
-def _expected(found: cage.Cage, chosen: np.ndarray, refused: dict[int, str]) -> int:
+def _expected(found: cage.Cage, chosen: np.ndarray, refused: Mapping[int, str]) -> int:
     """Polygons, but for those that lead from one level to another."""
     counts = polygon_counts(found.face_sizes, chosen.astype(np.int64))
     counts[list(refused)] = 0

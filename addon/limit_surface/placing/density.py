@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..reading import attributes, cage, rules, uv_map, vertex_weights
+from ..reading.uv_map import UvMap
 from .channels import pick
 from .image_map import ImageMap
 from .image_map import read as read_image
@@ -32,7 +33,7 @@ class DensityMap:
 
     values: np.ndarray  # (m, 1), or (m, 2) UV coordinates
     indices: np.ndarray  # one per face corner
-    interpolation: str
+    interpolation: rules.Interpolation
     image: ImageMap | None
     invert: bool
 
@@ -40,8 +41,8 @@ class DensityMap:
         data = surface.face_varying(self.values, self.indices, self.interpolation)
 
         def density(face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-            found = data.evaluate(face, uv).value
-            found = self.image.at(found) if self.image else found[:, 0]
+            value = data.evaluate(face, uv).value
+            found = self.image.at(value) if self.image else value[:, 0]
             return np.maximum(1 - found if self.invert else found, 0)
 
         return density
@@ -123,9 +124,7 @@ class DensityChoice:
             placed.values, placed.indices, found.rules.uv_interpolation, pixels, self.invert
         )
 
-    def _find_uv_map(
-        self, mesh: bpy.types.Mesh, found: cage.Cage, ob: bpy.types.Object
-    ) -> uv_map.UvMap:
+    def _find_uv_map(self, mesh: bpy.types.Mesh, found: cage.Cage, ob: bpy.types.Object) -> UvMap:
         if not self.uv_map:
             if found.uv_map is None:
                 why = found.without_uv_map or f"{ob.name} has no UV map"

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from ..errors import RefusalError
 from ..tasks.job import Progress
 from .region import Region
 from .roots import Locations
+
+if TYPE_CHECKING:
+    import limitsurf
 
 #: Locations on the area of a square whose side is the distance between them, when no other fits
 #: anywhere.
@@ -67,15 +71,20 @@ class Distribution:
         if count == 0:
             raise RefusalError(TOO_LOW if region.sums.largest else NOWHERE)
         self._check_distance()
-        common = {"seed": self.seed, "density": region.density, "progress": progress}
+        common: dict[str, Any] = {
+            "seed": self.seed,
+            "density": region.density,
+            "progress": progress,
+        }
         try:
             with region.in_world():
                 if self.kind == "UNIFORM":
+                    assert count is not None
                     found = region.surface.scatter_uniform(count, **common)
                     return Scattered(_rounded(found), None)
                 radius = self.distance if count is None else None
-                found = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
-                return Scattered(_rounded(found), float(found.radius))
+                apart = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
+                return Scattered(_rounded(apart), float(apart.radius))
         except ValueError as error:  # nowhere to put them, or no room for so many
             reason = str(error) if region.sums.largest else NOWHERE
             raise RefusalError(f"{reason[0].upper()}{reason[1:]}") from error
@@ -96,5 +105,5 @@ class Distribution:
         return Locations(at.face[stays], at.uv[stays])
 
 
-def _rounded(found: Locations) -> Locations:
+def _rounded(found: limitsurf.Locations) -> Locations:
     return Locations(np.asarray(found.face, np.int32), np.asarray(found.uv, np.float32))

@@ -41,6 +41,12 @@ class Question:
 class LiveCount:
     """The answer to the question that was asked last, and again when things have changed."""
 
+    _question: Question | None
+    _region: region.Region | None
+    _job: Job | None
+    _trouble: str
+    _is_stale: bool
+
     def __init__(self) -> None:
         self._look_later = self._look  # one object, by which Blender knows it again
         self.forget()
@@ -67,9 +73,9 @@ class LiveCount:
             self._is_stale = True
 
     def forget(self) -> None:
-        self._question: Question | None = None
-        self._region: region.Region | None = None
-        self._job: Job | None = None
+        self._question = None
+        self._region = None
+        self._job = None
         self._trouble = ""
         self._is_stale = True
 
@@ -84,7 +90,7 @@ class LiveCount:
             if not self._job.is_done:
                 return PAUSE
             self._region, self._trouble = self._job.result(), ""
-        except (RefusalError, *native.errors) as error:
+        except native.refusals as error:
             self._trouble = str(error)
         self._job = None
         _redraw()

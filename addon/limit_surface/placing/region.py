@@ -39,7 +39,7 @@ class Region:
         self.bare = frozenset(bare.tolist())  # faces
         mesh = found.with_holes(bare) if len(bare) else found.mesh
         self.surface = native.limitsurf.LimitSurface(mesh)
-        self.density: Density | None = density_map and density_map.on(self.surface)
+        self.density: Density | None = density_map.on(self.surface) if density_map else None
 
     @cached_property
     def refused(self) -> dict[int, str]:
@@ -82,6 +82,8 @@ class Region:
         weight = self.density(at.face, at.uv)
         with self.in_world():
             tangents = self.surface.evaluate(at.face, at.uv, derivatives=1)
+        assert tangents.du is not None
+        assert tangents.dv is not None
         across = np.nan_to_num(np.cross(tangents.du, tangents.dv))
         area = np.linalg.norm(across, axis=1) / per_side**2
         return Sums(weight.clip(max=1).mean(), float(weight @ area), weight.max())

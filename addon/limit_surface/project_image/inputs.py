@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, cast
 
 import bpy
 import numpy as np
@@ -19,6 +19,10 @@ from .world import WorldSurface
 
 if TYPE_CHECKING:
     import limitsurf
+
+#: The enumerations of the properties, in lower case, are the words of the native module.
+Extension = Literal["clip", "extend", "repeat", "mirror"]
+SAMPLES: dict[str, Literal[1, 4, 16]] = {"1": 1, "4": 4, "16": 16}
 
 
 def image(name: str) -> bpy.types.Image:
@@ -67,7 +71,7 @@ def source(
         facing=facing(properties),
         two_sided=properties.two_sided,
         occlusion=properties.occlusion,
-        samples=int(properties.occlusion_samples),
+        samples=SAMPLES[properties.occlusion_samples],
         soft_edge=properties.soft_edge,
         is_framed=is_framed,
     )
@@ -87,7 +91,7 @@ def _filtered(shown: bpy.types.Image, extension: str) -> limitsurf.FilteredImage
     pixels = colours.of(shown).decoded(image_pixels.read(shown))
     if not np.isfinite(pixels).all():
         raise RefusalError(f"The image {shown.name} has values that are not finite numbers")
-    return native.limitsurf.FilteredImage(pixels, extension.lower())
+    return native.limitsurf.FilteredImage(pixels, cast(Extension, extension.lower()))
 
 
 def _along_normals(

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials that show a projected image."""
 
+from typing import Any
+
 import bpy
 
 from ..images import material_slots
@@ -47,7 +49,7 @@ def _own(ob: bpy.types.Object) -> bpy.types.Material | None:
     return material if material and material.is_editable and _shader(material) else None
 
 
-def _shader(material: bpy.types.Material) -> bpy.types.Node | None:
+def _shader(material: bpy.types.Material) -> Any:
     tree = material.node_tree
     return next((n for n in tree.nodes if n.type == SHADER), None) if tree else None
 

@@ -34,7 +34,7 @@ class Hits:
     def valid(self) -> np.ndarray:
         return self.face >= 0
 
-    def take(self, rows: np.ndarray) -> Hits:
+    def take(self, rows: np.ndarray | slice) -> Hits:
         return Hits(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
     def where(self, chosen: np.ndarray, other: Hits) -> Hits:

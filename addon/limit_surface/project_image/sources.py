@@ -7,7 +7,7 @@ All arrays: nothing of Blender is touched here.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 
@@ -47,7 +47,7 @@ class Seen:
     facing: tuple[float, float]  # angles
     two_sided: bool
     occlusion: bool
-    samples: int
+    samples: Literal[1, 4, 16]
     soft_edge: float
     is_framed: bool  # nothing lies outside the image
 
@@ -137,7 +137,7 @@ class AlongNormals:
     carrier_map: limitsurf.SurfaceData
     image: limitsurf.FilteredImage
     max_distance: float
-    direction: str
+    direction: Literal["both", "outward", "inward"]
 
     def check(self) -> None:
         pass

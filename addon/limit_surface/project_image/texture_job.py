@@ -94,7 +94,7 @@ class Made:
         pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
         image_pixels.write(image, pixels, is_new=isinstance(target, NewImage))
         if self.order.create_material:
-            material.show(surface, image, self.order.world.cage.uv_map.name)
+            material.show(surface, image, self.order.world.cage.chosen_uv_map.name)
         return f"{self.count:,} texels of {image.name}"
 
 

@@ -48,7 +48,7 @@ def read(data: bpy.types.ID, name: str) -> np.ndarray:
     """The attribute's values, (n,) or (n, width). KeyError where there is none of that name."""
     attribute = data.attributes[name]
     layout = LAYOUTS[attribute.data_type]
-    values = np.empty(len(attribute.data) * layout.width, layout.dtype)
+    values: np.ndarray = np.empty(len(attribute.data) * layout.width, layout.dtype)
     attribute.data.foreach_get(layout.key, values)
     return values if layout.width == 1 else values.reshape(-1, layout.width)
 

@@ -20,6 +20,8 @@ import numpy as np
 from .. import ids, native
 from ..errors import CageError
 from . import attributes, private_scene, rules, sharpness, subdivided_mesh, uv_map
+from .rules import Interpolation
+from .uv_map import UvMap
 
 if TYPE_CHECKING:
     import limitsurf
@@ -41,9 +43,9 @@ class Cage:
     rules: rules.Rules
     face_sizes: np.ndarray
     matrix: np.ndarray  # object to world, 4x4
-    uv_map: uv_map.UvMap | None  # the active one, as it is on the cage
+    uv_map: UvMap | None  # the active one, as it is on the cage
     without_uv_map: str  # why, if there is an active one
-    shown_uv_interpolation: str  # of the mesh that the viewport shows
+    shown_uv_interpolation: Interpolation  # of the mesh that the viewport shows
     ignored: tuple[str, ...]  # enabled modifiers behind the subdivision
 
     @property
@@ -52,6 +54,12 @@ class Cage:
         if not self.ignored:
             return [str(self.rules)]
         return [str(self.rules), f"ignored behind {self.rules.subsurf}: {', '.join(self.ignored)}"]
+
+    @property
+    def chosen_uv_map(self) -> UvMap:
+        """For those who have found out that there is one."""
+        assert self.uv_map is not None
+        return self.uv_map
 
     @property
     def ptex_face_count(self) -> int:

@@ -28,10 +28,11 @@ class Projector:
         is [0, 1]^2 from its lower left corner."""
         flat = 2 * np.asarray(st, np.float64) - 1
         back = np.linalg.inv(self.matrix)
-        return tuple(
+        near, far = (
             _divided(np.column_stack([flat, np.full(len(flat), z), np.ones(len(flat))]) @ back.T)
             for z in (-1.0, 1.0)
         )
+        return near, far
 
     def places(self, points: np.ndarray) -> np.ndarray:
         """Of points (n, 3) of the world, in the image (n, 2)."""

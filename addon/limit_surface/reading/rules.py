@@ -4,16 +4,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import bpy
 import numpy as np
 
-BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
+Boundary = Literal["smooth", "corners"]
+Scheme = Literal["catmark", "bilinear"]
+Interpolation = Literal[
+    "none", "corners_only", "corners_plus1", "corners_plus2", "boundaries", "all"
+]
 
-SCHEMES = {"CATMULL_CLARK": "catmark", "SIMPLE": "bilinear"}
+BOUNDARIES: dict[str, Boundary] = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
+
+SCHEMES: dict[str, Scheme] = {"CATMULL_CLARK": "catmark", "SIMPLE": "bilinear"}
 
 # Blender's names say what is preserved, OpenSubdiv's what is interpolated linearly: the same.
-UV_INTERPOLATIONS = {
+UV_INTERPOLATIONS: dict[str, Interpolation] = {
     "NONE": "all",
     "PRESERVE_CORNERS": "corners_only",
     "PRESERVE_CORNERS_AND_JUNCTIONS": "corners_plus1",
@@ -21,7 +28,7 @@ UV_INTERPOLATIONS = {
     "PRESERVE_BOUNDARIES": "boundaries",
     "SMOOTH_ALL": "none",
 }
-LINEAR = UV_INTERPOLATIONS["NONE"]
+LINEAR: Interpolation = UV_INTERPOLATIONS["NONE"]
 
 
 @dataclass(frozen=True)
@@ -29,9 +36,11 @@ class Rules:
     """The defaults are those of a new modifier: they hold for objects that have none."""
 
     subsurf: str = ""  # the modifier's name
-    scheme: str = "catmark"
-    boundary: str = "smooth"
-    uv_interpolation: str = "boundaries"  # on the limit surface, whatever the viewport shows
+    scheme: Scheme = "catmark"
+    boundary: Boundary = "smooth"
+    uv_interpolation: Interpolation = (
+        "boundaries"  # on the limit surface, whatever the viewport shows
+    )
     use_creases: bool = True
 
     def __str__(self) -> str:
@@ -47,7 +56,7 @@ def find_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
     return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_viewport), None)
 
 
-def shown_uv_interpolation(ob: bpy.types.Object, scene: bpy.types.Scene) -> str:
+def shown_uv_interpolation(ob: bpy.types.Object, scene: bpy.types.Scene) -> Interpolation:
     """That of the mesh which the viewport shows: only what is subdivided has smooth UVs."""
     simplify = scene.render.simplify_subdivision if scene.render.use_simplify else np.inf
     shown = (

@@ -113,8 +113,8 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
     def _kinds(self) -> dict[str, displayed_mesh.Kind]:
         if self.levels == "LEVEL":
             return {"LEVEL": self.level}
-        names = ("VIEWPORT", "RENDER") if self.levels == "BOTH" else (self.levels,)
-        return {name: name for name in names}
+        kinds: dict[str, displayed_mesh.Kind] = {"VIEWPORT": "VIEWPORT", "RENDER": "RENDER"}
+        return kinds if self.levels == "BOTH" else {self.levels: kinds[self.levels]}
 
     def _report(
         self,

@@ -9,7 +9,7 @@ third degree at most; distances from a smooth surface are close to that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,16 +98,16 @@ class Patches:
     def keep_largest(self, at_vertices: np.ndarray, values: np.ndarray) -> None:
         """At each vertex of a quad the largest in its quarter, at a part's in all of it."""
         grid, _ = self.split(values)
-        low, high = slice(None, self.cells + 1), slice(self.cells, None)
-        quarters = ((low, low), (high, low), (high, high), (low, high))
+        low, high = slice(0, self.cells + 1), slice(self.cells, None)
+        quarters = [(low, low), (high, low), (high, high), (low, high)]
         if self.vertices.shape[1] == 1:
-            quarters = ((slice(None), slice(None)),)
+            quarters = [(slice(None), slice(None))]
         for vertex, (columns, rows) in zip(self.vertices.T, quarters, strict=True):
             np.maximum.at(at_vertices, vertex, grid[:, columns, rows].max(axis=(1, 2)))
 
 
 def patches(
-    found: cage.Cage, shown: displayed_mesh.DisplayedMesh, refused: dict[int, str]
+    found: cage.Cage, shown: displayed_mesh.DisplayedMesh, refused: Mapping[int, str]
 ) -> list[Patches]:
     """Of all faces but the refused ones: those of quads, and those of other faces' corners."""
     sizes = found.face_sizes

@@ -6,10 +6,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ..placing.rotations import unit
+from ..tasks.job import part_of
 from .surface import TargetSurface
 
 WAYS = {"BOTH": (1.0, -1.0), "POSITIVE": (1.0,), "NEGATIVE": (-1.0,)}
@@ -101,9 +103,11 @@ class Aim:
         if self.mode == "AXIS" and self.orientation == "LOCAL":
             axes = elements.axes
         elif self.mode == "AXIS" and self.orientation == "VIEW":
-            axes = self.view.axes
-            if self.axis == 2 and self.view.eye is not None:
-                return unit(self.view.eye - elements.points)
+            view = self.view
+            assert view is not None
+            axes = view.axes
+            if self.axis == 2 and view.eye is not None:
+                return unit(view.eye - elements.points)
         return np.broadcast_to(axes[..., self.axis], elements.points.shape)
 
     def _closest(
@@ -113,7 +117,7 @@ class Aim:
         directions: np.ndarray,
         progress: Callable[[float], None],
     ) -> tuple[np.ndarray, np.ndarray]:
-        facing = {}
+        facing: dict[str, Any] = {}
         if self.max_angle is not None:
             facing = {"facing": surface.outward * directions, "max_angle": self.max_angle}
         hits = surface.in_world.closest(points, self.max_distance, progress=progress, **facing)
@@ -137,7 +141,7 @@ class Aim:
                 points[away],
                 sign * directions[away],
                 self.max_distance,
-                progress=lambda part, i=i: progress((i + part) / len(ways)),
+                progress=part_of(progress, i / len(ways), (i + 1) / len(ways)),
             )
             distance = np.where(hits.face >= 0, hits.distance, np.inf)
             closer = distance < best

@@ -60,8 +60,10 @@ class HairBinding:
         without = self._why_no_uvs()
         if without:
             return [f"no UVs stored: {without}"]
-        self._data.surface_uv_map = self._surface.cage.uv_map.name
-        self._store(ids.SURFACE_UV, 0, curves, self._surface.surface_uv(face, uv))
+        self._data.surface_uv_map = self._surface.cage.chosen_uv_map.name
+        surface_uv = self._surface.surface_uv(face, uv)
+        assert surface_uv is not None
+        self._store(ids.SURFACE_UV, 0, curves, surface_uv)
         return []
 
     def _why_no_uvs(self) -> str:

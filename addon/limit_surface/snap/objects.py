@@ -90,7 +90,7 @@ def _depth(ob: bpy.types.Object) -> int:
 
 
 def _children() -> dict[bpy.types.Object, list[bpy.types.Object]]:
-    found = {}
+    found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
     for ob in bpy.data.objects:
         if ob.parent:
             found.setdefault(ob.parent, []).append(ob)

@@ -7,6 +7,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 
 from .. import ids, native
 from ..errors import RefusalError
+from ..tasks.job import part_of
 from ..tasks.progress import progress_bar
 from ..tasks.watched_operator import draw_summary
 from .aim import Aim, View
@@ -126,7 +127,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
         self.summary = ""
         try:
             return self._run(context)
-        except (RefusalError, *native.errors) as error:
+        except native.refusals as error:
             self.report({"ERROR"}, str(error))
         except MemoryError:
             self.report({"ERROR"}, "Not enough memory for so much")
@@ -173,7 +174,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
                     surface,
                     part.elements(),
                     part.stores_location,
-                    lambda done, i=i: progress((i + done) / len(parts)),
+                    part_of(progress, i / len(parts), (i + 1) / len(parts)),
                 )
                 for i, part in enumerate(parts)
             ]

@@ -21,9 +21,9 @@ class VIEW3D_PT_limit_snap(bpy.types.Panel):
         layout.prop(context.scene.limit_surface, "target")
         if context.mode == "OBJECT":
             target = find_target(context)
-            is_mesh = target is not None and target.type == "MESH"
+            name = target.name if target is not None and target.type == "MESH" else ""
             layout.label(
-                text=f"Now to the active mesh: {target.name}" if is_mesh else "No active mesh",
+                text=f"Now to the active mesh: {name}" if name else "No active mesh",
                 icon="INFO",
             )
         column = layout.column()

@@ -21,7 +21,7 @@ from .mesh_vertices import SnappedVertices
 from .objects import SnappedObjects
 from .surface import TargetSurface
 
-POINTS = {
+POINTS: dict[str, Callable[[bpy.types.Object], Snapped]] = {
     "EDIT_MESH": SnappedVertices,
     "EDIT_CURVE": SnappedCurvePoints,
     "EDIT_SURFACE": SnappedCurvePoints,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The limit surface that things are snapped to, as it stands in the world."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import bpy
 import numpy as np
@@ -22,7 +22,12 @@ class TargetSurface:
     """Queries are made on the surface of the cage's world-space positions: closest and at right
     angles mean something else in the space of a stretched object, and subdivision does not mind."""
 
-    def __init__(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: str) -> None:
+    def __init__(
+        self,
+        ob: bpy.types.Object,
+        depsgraph: bpy.types.Depsgraph,
+        kind: displayed_mesh.Kind | Literal["LIMIT"],
+    ) -> None:
         self.ob = ob
         self._stood = ob.matrix_world.copy()
         self.cage = cage.read(ob, depsgraph)

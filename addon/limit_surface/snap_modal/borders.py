@@ -62,7 +62,8 @@ class Borders:
             side, step = np.unravel_index(np.argmin(ray.apart(points)), points.shape[:2])
             rows = rows[[side]]
             uv = self._uv(rows, at)[0, step]
-            at = np.linspace(at[max(step - 1, 0)], at[min(step + 1, len(at) - 1)], len(at))
+            before, after = max(int(step) - 1, 0), min(int(step) + 1, len(at) - 1)
+            at = np.linspace(at[before], at[after], len(at))
             points = self._points(rows, self._uv(rows, at))
         return int(self._face[rows[0]]), uv
 

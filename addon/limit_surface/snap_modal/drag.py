@@ -96,6 +96,7 @@ class Drag:
                     f"{self.handle.name} cannot be put there: {self.glide.surface.ob.name} changes "
                     "along with it"
                 )
+            assert self.place is not None
             self.handle.confirm(self.place)
         except RefusalError:
             self.handle.restore()

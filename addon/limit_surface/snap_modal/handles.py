@@ -14,7 +14,7 @@ from ..placing.rotations import WorldSpace
 from ..snap.hair_binding import HairBinding
 from ..snap.object_move import ObjectMove
 from ..snap.strands import Strands
-from ..snap.surface import TargetSurface, transformed
+from ..snap.surface import Places, TargetSurface, transformed
 from ..snap.turns import shortest
 
 _TRANSFORM = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle")
@@ -62,6 +62,7 @@ class DraggedObject:
 
     def confirm(self, place: Place) -> None:
         bpy.context.view_layer.update()
+        assert self._move is not None
         reason = self._move.finish()
         if reason:
             raise RefusalError(f"{self.name} cannot be put there: {reason}")
@@ -147,7 +148,7 @@ class DraggedStrand:
         bound = self._bound_place(place).position
         return (bound + self._space.to_local(place.position - transformed(self._matrix, bound)))[0]
 
-    def _bound_place(self, place: Place):
+    def _bound_place(self, place: Place) -> Places:
         return self._binding.places(np.array([place.face]), place.uv[None], self._matrix)
 
     def _write(self, name: str, values: np.ndarray) -> None:

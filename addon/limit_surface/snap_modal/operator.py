@@ -92,7 +92,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             drag = Drag(glide, subject.handle(self.element, surface))
             drag.put(self.offset, self.align, self.hair)
             drag.confirm()
-        except (RefusalError, *native.errors) as error:
+        except native.refusals as error:
             return self._refuse(error)
         return {"FINISHED"}
 
@@ -104,17 +104,19 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             depsgraph = context.evaluated_depsgraph_get()
             self._glide = Glide(TargetSurface(self._subject.target, depsgraph, self.target))
             self._glide.prepare()
-            self._candidates = self._hovered = self._drag = None
+            self._candidates: np.ndarray | None = None
+            self._hovered: int | None = None
+            self._drag: Drag | None = None
             if self._subject.is_picked:
                 self._candidates = self._subject.candidates()
             else:
                 self._take(-1)
-        except (RefusalError, *native.errors) as error:
+        except native.refusals as error:
             return self._refuse(error)
         self._area = context.area
         self._step = offset_step(self._glide.surface)
         self._typed, self._offset_before_typing = TypedNumber(), self.offset
-        self._pressed_at = None
+        self._pressed_at: tuple[int, int] | None = None
         self._is_astray = False
         self._drawing = Drawing()
         context.window_manager.modal_handler_add(self)
@@ -125,7 +127,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:
             result = self._handle(context, event)
-        except (RefusalError, *native.errors) as error:
+        except native.refusals as error:
             self._restore()
             result = self._refuse(error)
         except BaseException:
@@ -216,15 +218,19 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         return None
 
     def _hover(self, sight: ray.Ray) -> None:
-        self._hovered = nearest_in_sight(self._candidates, sight, self._glide.surface)
+        candidates = self._candidates
+        assert candidates is not None
+        self._hovered = nearest_in_sight(candidates, sight, self._glide.surface)
         self._drawing.mark = None
         if self._hovered is not None:
             across = np.linalg.svd(sight.direction[None])[2].T[:, [1, 2, 0]]
-            self._drawing.mark = Mark(self._candidates[self._hovered], across, None, ())
+            self._drawing.mark = Mark(candidates[self._hovered], across, None, ())
 
     def _put(self) -> None:
-        self._drag.put(self.offset, self.align, self.hair)
-        place = self._drag.place
+        drag = self._drag
+        assert drag is not None
+        drag.put(self.offset, self.align, self.hair)
+        place = drag.place
         if place is not None:
             directions = self._glide.bending().directions
             self._drawing.mark = Mark(place.position, place.frame, place.frame[:, 2], directions)
@@ -250,10 +256,12 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         self._put()
 
     def _confirm(self) -> set[str]:
-        if self._drag.place is None:
+        drag = self._drag
+        assert drag is not None
+        if drag.place is None:
             self.report({"WARNING"}, "Nothing moved: the mouse was never over the surface")
             return {"CANCELLED"}
-        self._drag.confirm()
+        drag.confirm()
         self.face, self.uv = self._glide.face, self._glide.uv
         return {"FINISHED"}
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ..errors import RefusalError
@@ -24,9 +25,9 @@ def left_out(count: int, faces: int, reasons: str = "") -> str:
     return f"{warning}: {reasons}" if reasons else warning
 
 
-def reasons(refused: dict[int, str]) -> str:
+def reasons(refused: Mapping[int, str]) -> str:
     """The commonest reasons, each with a face for example."""
-    example = {reason: face for face, reason in reversed(refused.items())}
+    example = {reason: face for face, reason in reversed(tuple(refused.items()))}
     counted = Counter(refused.values()).most_common()
     parts = [f"{reason} (face {example[reason]}; {n} in all)" for reason, n in counted[:3]]
     if len(counted) > 3:

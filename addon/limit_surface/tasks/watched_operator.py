@@ -22,12 +22,11 @@ and the class that provides it:
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from .. import native
-from ..errors import RefusalError
 from .job import Job
 from .polling import mesh_in_object_mode
 from .progress import Waiting, progress_bar
@@ -45,10 +44,23 @@ class WatchedOperator:
     A subclass provides `start` and `finish`.
     """
 
-    too_large = "Not enough memory"
-    cancelled = "Cancelled"
+    if TYPE_CHECKING:  # of bpy.types.Operator, the other base of its subclasses
+        report: Callable[[set[str], str], None]
+        layout: bpy.types.UILayout
+        properties: bpy.types.OperatorProperties
+        bl_label: str
+        summary: str
+
     _someone_waits = False
     _job: Job | None = None
+
+    @property
+    def too_large(self) -> str:
+        return "Not enough memory"
+
+    @property
+    def cancelled(self) -> str:
+        return "Cancelled"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -76,8 +88,10 @@ class WatchedOperator:
             return {"PASS_THROUGH"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
-        self._waiting.show(self._job.part)
-        if not self._job.is_done:
+        job = self._job
+        assert job is not None
+        self._waiting.show(job.part)
+        if not job.is_done:
             return {"RUNNING_MODAL"}
         self._waiting.end()
         return self._guarded(self._finish, context, self._taken_job())
@@ -114,7 +128,7 @@ class WatchedOperator:
     def _guarded(self, step: Callable[..., set[str]], *arguments: Any) -> set[str]:
         try:
             return step(*arguments)
-        except (RefusalError, *native.errors) as error:
+        except native.refusals as error:
             reason = str(error)
         except MemoryError:
             reason = self.too_large

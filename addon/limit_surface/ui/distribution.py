@@ -19,6 +19,7 @@ class _DistributionPanel:
     bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
     operator = ""
     noun = ""
+    layout: bpy.types.UILayout
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

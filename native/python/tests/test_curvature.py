@@ -233,10 +233,10 @@ def test_average_of_a_subdivided_mesh_is_the_same_at_twice_the_radius(shape):
         for c in range(len(face)):
             at, corner, quad = ptex[f, c]
             places = [(corner, corner)] if quad else [(0, 0), (2, 2)]  # the vertex, the centre
-            for own, childs in places:
+            for own, finer_corner in places:
                 options = {"irregular": "average"}
                 one = surface.curvature(at, CORNERS[[own]], **options, radius=0.1)
-                two = finer.curvature(child, CORNERS[[childs]], **options, radius=0.2)
+                two = finer.curvature(child, CORNERS[[finer_corner]], **options, radius=0.2)
                 assert one.irregular == two.irregular
                 checked += int(one.irregular[0])
                 size = np.abs([one.k1[0], one.k2[0]]).max()

@@ -8,7 +8,7 @@ import limitsurf as ls
 import numpy as np
 import pytest
 
-SQUARE = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+SQUARE = [[0.0, 0, 0], [1.0, 0, 0], [1.0, 1, 0], [0.0, 1, 0]]
 
 
 def square() -> ls.LimitSurface:

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Filtered images, blending, and the sides of a box, as Python sees them."""
 
+from typing import Any
+
 import limitsurf as ls
 import numpy as np
 import pytest
+
+UNKNOWN: Any = "wrap"  # an extension that there is not
 
 
 @pytest.fixture
@@ -55,7 +59,7 @@ def test_any_numbers_will_do(rng):
         (ValueError, "pixels has shape", lambda: ls.FilteredImage(np.zeros((4, 4, 5)))),
         (ValueError, "pixels has shape", lambda: ls.FilteredImage(np.zeros((0, 4, 4)))),
         (ValueError, "pixel .0, 0.: channel 0 is nan", lambda: ls.FilteredImage([[[np.nan]]])),
-        (ValueError, "extension is 'wrap'", lambda: ls.FilteredImage([[[1]]], "wrap")),
+        (ValueError, "extension is 'wrap'", lambda: ls.FilteredImage([[[1]]], UNKNOWN)),
         (TypeError, "pixels has dtype", lambda: ls.FilteredImage([[["x"]]])),
         (ValueError, "never initialised", lambda: ls.FilteredImage.__new__(ls.FilteredImage).shape),
     ],

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The stub _limitsurf.pyi names the parameters that the native module has.
 
-`stubtest` (tools/lint.sh) checks which classes and functions there are. It cannot see the
+`stubtest` (tools/types.sh) checks which classes and functions there are. It cannot see the
 parameters of native functions, which stand in the first line of their docstrings.
 """
 

@@ -50,13 +50,18 @@ def with_holes():
     return ls.ControlMesh.from_faces(positions, [*triangles, *faces[1:].tolist()], holes=[8, 13])
 
 
+def bilinear():
+    positions, faces = shapes.house()
+    return ls.ControlMesh.from_faces(positions, faces, scheme="bilinear")
+
+
 MESHES = {
     **{name: partial(ls.ControlMesh.from_faces, *shape) for name, shape in shapes.ALL.items()},
     "pole": partial(ls.ControlMesh.from_faces, *shapes.pole(7)),
     "three sheets": partial(ls.ControlMesh.from_faces, *three_sheets()),
     "creased house": creased_house,
     "holes": with_holes,
-    "bilinear": lambda: ls.ControlMesh.from_faces(*shapes.house(), scheme="bilinear"),
+    "bilinear": bilinear,
 }
 
 
