@@ -37,7 +37,7 @@ _parts = (
     project_image,
 )
 
-# Blender as a module hangs at the interpreter's exit if classes are registered then.
+# The bpy module hangs at the interpreter's exit if classes are still registered.
 _is_module = not bpy.app.binary_path
 
 
@@ -45,7 +45,8 @@ def register() -> None:
     for part in _parts:
         for cls in part.classes:
             if issubclass(cls, bpy.types.Operator):
-                cls.bl_description = " ".join(cls.__doc__.split())  # tooltips keep line breaks
+                # tooltips would show line breaks
+                cls.bl_description = " ".join(cls.__doc__.split())
             bpy.utils.register_class(cls)
     snap.attach_settings()
     live_count.attach_handlers()

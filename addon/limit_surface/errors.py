@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refusals: what the user asked for cannot be done, and the message says why."""
+"""Errors that tell the user why something cannot be done."""
 
 
 class RefusalError(Exception):
-    """Reported as an error by operators, which leave the scene as it was."""
+    """An error that operators report. They leave the scene as it was."""
 
 
 class CageError(RefusalError):
@@ -11,12 +11,14 @@ class CageError(RefusalError):
 
 
 class DisplayedError(RefusalError):
-    """The polygons that Blender shows cannot be had, or are not those of the subdivided cage."""
+    """The polygons that Blender shows are not available, or are not those of the subdivided
+    cage.
+    """
 
 
 class TooLargeError(RefusalError):
-    """More elements than anyone should get without having been asked."""
+    """An operator would make more elements than are allowed without the user's confirmation."""
 
 
 class CancelledError(RefusalError):
-    """The user did not want to wait."""
+    """The user has cancelled the work."""

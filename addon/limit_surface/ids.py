@@ -27,7 +27,7 @@ FACE = "limit_face"
 UV = "limit_uv"
 REST_ROOT = "rest_root"
 REST_ROTATION = "rest_rot"
-SURFACE_UV = "surface_uv_coordinate"  # Blender's own
+SURFACE_UV = "surface_uv_coordinate"  # defined by Blender
 NORMAL = "normal"
 TANGENT = "tangent"
 ROTATION = "rotation"
@@ -36,7 +36,7 @@ ROTATION = "rotation"
 DISTANCE = "limit_distance"
 DISTANCE_COLOR = "limit_distance_color"
 
-# Attributes of whatever curvature is stored on
+# Attributes of the data on which curvature is stored
 CURVATURE_MEAN = "limit_curvature_mean"
 CURVATURE_GAUSSIAN = "limit_curvature_gaussian"
 CURVATURE_K1 = "limit_curvature_k1"
@@ -46,7 +46,7 @@ CURVATURE_DIRECTION2 = "limit_curvature_direction2"
 CURVATURE_IRREGULAR = "limit_curvature_irregular"
 CURVATURE_COLOR = "limit_curvature_color"
 
-# Attributes of the surface's mesh: Blender's own
+# Attributes of the surface's mesh that Blender defines
 POSITION = "position"
 CORNER_VERTEX = ".corner_vert"
 CORNER_EDGE = ".corner_edge"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The native module `limitsurf`, or the reason why it cannot be used.
 
-Nothing else imports it: an extension whose binary part does not fit the machine still registers,
-and says what is wrong where the user looks for it.
+No other module imports `limitsurf`: an extension whose binary part does not fit the machine can
+still be registered, and shows the reason in the sidebar and in the Preferences.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def _load() -> tuple[ModuleType | None, str]:
     try:
         import limitsurf
-    except Exception as error:  # whatever a broken binary raises is the reason to show
+    except Exception as error:  # a broken binary may raise any error, which is the reason to show
         return None, f"{type(error).__name__}: {error}"
     # A plain folder of that name on sys.path imports as an empty package.
     if not hasattr(limitsurf, "LimitSurface"):
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 else:
     limitsurf, reason = _load()
 
-#: What evaluation raises for meshes and locations that have no limit surface.
+#: The errors that evaluation raises for meshes and locations that have no limit surface
 errors: tuple[type[Exception], ...] = (
     (limitsurf.MeshError, limitsurf.LocationError) if limitsurf else ()
 )
@@ -45,8 +45,8 @@ def available() -> bool:
 
 
 def obstacle() -> str:
-    """Why nothing can be done without it, if so."""
-    return "" if available() else f"The native module does not load: {reason}"
+    """Returns the reason why the native module cannot be used, or None."""
+    return "" if available() else f"The native module could not be loaded: {reason}"
 
 
 def version() -> str:

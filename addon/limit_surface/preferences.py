@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's entry in Preferences: whether its native module works."""
+"""The add-on's entry in Preferences, which shows whether its native module works."""
 
 import textwrap
 
@@ -19,9 +19,9 @@ class LimitSurfacePreferences(bpy.types.AddonPreferences):
 
 
 def draw_unavailable(layout: bpy.types.UILayout) -> None:
-    """Why nothing works, in lines that fit a sidebar."""
+    """Draws the reason why nothing works, in lines that fit a sidebar."""
     box = layout.box()
-    box.label(text="The native module does not load", icon="ERROR")
+    box.label(text="The native module could not be loaded", icon="ERROR")
     for line in textwrap.wrap(native.reason, 44, break_on_hyphens=False):
         box.label(text=line)
 

@@ -179,7 +179,7 @@ def test_distances(capfd):
     np.testing.assert_allclose(pixels[met][:, 0], 0.5 + 0.1 * across[met], atol=SINGLE)
     assert (pixels[inside & (across > 2)][:, :3] == 0).all()
     np.testing.assert_array_equal(pixels[..., 0], pixels[..., 1])
-    assert "Slope is not met at 1,352 of 2,704 texels" in said
+    assert "Slope was not met at 1,352 of 2,704 texels" in said
     assert "they hold 0" in said
     refused(ob, "Slope is met nowhere", target="Slope", mode="SCALAR", max_distance=0.1)
     refused(ob, "Slope is met nowhere", target="Slope", mode="SCALAR", direction="INWARD")
@@ -306,7 +306,7 @@ def test_tiles_in_tangent_space(base, sculpt):
 def test_refusals(base, sculpt):
     for other in list(bpy.context.selected_objects):
         other.select_set(False)
-    refused(base, "No other mesh is selected: select the one that Holes is to become")
+    refused(base, "No other mesh is selected: select Holes and one sculpted mesh")
     refused(base, "There is no object 'Nobody'", target="Nobody")
     refused(base, "Holes is chosen as its own sculpted mesh", target="Holes")
     light = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))

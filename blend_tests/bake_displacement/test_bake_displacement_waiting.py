@@ -70,7 +70,7 @@ def test_it_can_be_cancelled(waiting, let_go):
     with pytest.raises(CancelledError):
         job.result()
     assert scenes.file_contents() == before
-    assert "Cancelled: nothing was made" in str(operator.report.call_args)
+    assert "Cancelled: no image was made" in str(operator.report.call_args)
 
 
 def test_it_ends_with_an_image(waiting, let_go):
@@ -91,7 +91,7 @@ def test_a_mesh_that_is_gone_by_then(waiting, let_go):
     wait_for(operator._job)
     assert operator.modal(context, event_of("TIMER")) == {"CANCELLED"}
     assert scenes.file_contents() == before
-    assert "Flat is not there any more" in str(operator.report.call_args)
+    assert "Flat does not exist any more" in str(operator.report.call_args)
 
 
 def test_the_dialog_shows_what_counts(waiting):

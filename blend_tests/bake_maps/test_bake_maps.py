@@ -294,13 +294,21 @@ def test_refusals(tmp_path):
     refused("No map is chosen", maps=set())
     refused("Bowl has no UV map 'Other'", uv_map="Other")
     refused("There is no folder", folder=str(tmp_path / "nothing"))
-    refused("//maps begins at the .blend file's folder: save that file first", folder="//maps")
+    refused(
+        "//maps is relative to the .blend file, which has not been saved: save it first",
+        folder="//maps",
+    )
     refused("take about .* GiB of memory", width=16384, height=16384)
     bake(maps={"POSITION"})
-    refused("an image Bowl Position of 64 x 64 pixels: choose .* or turn Reuse Images off")
-    refused("of float pixels, which is another format", width=64, height=64, format="PNG_8")
+    refused("The existing image Bowl Position has 64 x 64 pixels: set .* or turn Reuse Images off")
+    refused(
+        "has float pixels, which the chosen format does not have",
+        width=64,
+        height=64,
+        format="PNG_8",
+    )
     bpy.data.images["Bowl Position"].colorspace_settings.name = "sRGB"
-    refused("data need Non-Color", width=64, height=64)
+    refused("but data need Non-Color", width=64, height=64)
     bpy.data.images.remove(bpy.data.images["Bowl Position"])
     add_uv(ob, np.zeros_like)
     refused("no face has an area on the UV map")

@@ -253,7 +253,9 @@ def test_report_tells_ranges_and_counts(capfd):
     mean = attributes.read(data, ids.CURVATURE_MEAN)
     irregular = attributes.read(data, ids.CURVATURE_IRREGULAR)
     assert f"mean {mean.min():.4g} to {mean.max():.4g}" in said
-    assert f"{irregular.sum()} at irregular vertices, averaged 0.01562 edges around" in said
+    assert (
+        f"{irregular.sum()} at irregular vertices, averaged at a distance of 0.01562 edges" in said
+    )
 
 
 def test_undo_takes_it_back():
@@ -286,7 +288,7 @@ def check_refused(match, **properties):
 def test_other_attributes_of_these_names():
     ob = paraboloid()
     ob.data.attributes.new(ids.CURVATURE_K1, "FLOAT", "CORNER")
-    check_refused("limit_curvature_k1 of another kind .FLOAT on CORNER")
+    check_refused("limit_curvature_k1 of another type or domain .FLOAT on CORNER")
     ob.data.attributes.remove(ob.data.attributes[ids.CURVATURE_K1])
     ob.vertex_groups.new(name=ids.CURVATURE_MEAN)
     check_refused("vertex group limit_curvature_mean")
@@ -317,7 +319,7 @@ def test_linked_meshes(tmp_path):
 def test_edit_mode_and_other_objects():
     ob = paraboloid()
     bpy.ops.object.mode_set(mode="EDIT")
-    check_refused("Only in Object Mode")
+    check_refused("Only available in Object Mode")
     bpy.ops.object.mode_set(mode="OBJECT")
     scenes.add_hair(ob, per_side=1)
     check_refused("Make a mesh object active first")
@@ -330,7 +332,7 @@ def test_surfaces_that_are_flattened():
     ob = paraboloid()
     ob.scale = (1, 0, 1)
     bpy.context.view_layer.update()
-    check_refused("flattened to nothing")
+    check_refused("has no volume")
     run(ob, space="LOCAL")
 
 
@@ -341,7 +343,7 @@ def test_too_many_polygons():
 
 def test_roots_of_nothing():
     ob = paraboloid()
-    check_refused("carries limit_face and limit_uv", on="ROOTS")
+    check_refused("has the attributes limit_face and limit_uv", on="ROOTS")
     hair = scenes.add_hair(ob, per_side=1)
     hair.data.surface, hair.parent = None, None
     check_refused("Limit Hair has no surface", on="ROOTS")

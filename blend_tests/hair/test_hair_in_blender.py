@@ -61,7 +61,7 @@ def test_a_uv_map_that_modifiers_drop_is_reported(capfd):
     add_uv_map(ob, flat)
     ob.modifiers.new("Remesh", "REMESH").mode = "BLOCKS"
     hair = add_hair(ob, per_side=1)
-    assert "the UV map Flat does not outlast the modifiers" in capfd.readouterr().out
+    assert "the modifiers remove the UV map Flat" in capfd.readouterr().out
     assert ids.SURFACE_UV not in hair.data.attributes
 
 
@@ -74,7 +74,7 @@ def test_a_uv_map_that_is_not_finite_is_left_out_and_reported(capfd, value):
     uv[[3, 5], 0] = value
     attributes.write(ob.data, "Flat", "FLOAT2", "CORNER", uv)
     hair = add_hair(ob, per_side=1)
-    expected = "no UVs stored: the UV map Flat has coordinates that are not finite numbers"
+    expected = "UVs were not stored: the UV map Flat has coordinates that are not finite numbers"
     assert expected in capfd.readouterr().out
     assert hair.data.surface_uv_map == ""
     assert ids.SURFACE_UV not in hair.data.attributes
@@ -204,7 +204,7 @@ def test_memory_that_runs_out(monkeypatch):
 
     monkeypatch.setattr("limit_surface.placing.roots.evaluate", exhausted)
     before = scenes.file_contents()
-    with pytest.raises(RuntimeError, match="Not enough memory"):
+    with pytest.raises(RuntimeError, match="There is not enough memory"):
         bpy.ops.object.limit_hair_add()
     assert scenes.file_contents() == before
 

@@ -163,7 +163,7 @@ def test_the_first_enabled_subdivision_counts(capfd):
     ob.modifiers.new("Solidify", "SOLIDIFY").show_viewport = False
     hair = add_hair(ob)
     reported = capfd.readouterr().out
-    assert f"ignored behind {second.name}: Wave" in reported
+    assert f"ignored after {second.name}: Wave" in reported
     assert "Solidify" not in reported
     ob.modifiers.remove(first)
     check_roots(hair, surface_without_addon(ob, "PRESERVE_CORNERS"))

@@ -243,7 +243,7 @@ def test_what_is_refused(tmp_path):
     refused(None, "No image")
     missing = image_pixels.new("missing", *SIZE, is_float=False, is_data=False)
     missing.source, missing.filepath = "FILE", str(tmp_path / "nothing.png")
-    refused(missing, "missing has no pixels: is its file missing")
+    refused(missing, "missing has no pixels: check that its file exists")
     movie = bpy.data.images.new("movie", 2, 2)
     movie.source = "MOVIE"
     refused(movie, "movie is a movie")

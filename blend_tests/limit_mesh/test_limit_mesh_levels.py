@@ -95,7 +95,7 @@ def test_a_vertex_group(sheet):
 
 def test_no_such_levels(sheet):
     properties = {"level_source": "ATTRIBUTE", "levels": 3}
-    refused("Name an attribute", **properties)
+    refused("Choose a face attribute or a vertex group", **properties)
     refused("no attribute of faces, and no vertex group, named 'fine'",
             level_attribute="fine", **properties)  # fmt: skip
     sheet.vertex_groups.new(name="empty")
@@ -131,7 +131,7 @@ def test_flatness_is_kept_in_the_world(name, tolerance):
 
 def test_levels_that_are_too_few_are_told(sheet, capfd):
     make(sheet, level_source="FLATNESS", tolerance=1e-6, most_levels=2)
-    assert "faces deviate by more at level 2" in capfd.readouterr().out
+    assert "faces deviate by more than the tolerance at level 2" in capfd.readouterr().out
 
 
 def camera_at(location, kind="PERSP", towards=(2, 2, 0)):
@@ -219,5 +219,5 @@ def test_shape_keys_and_odd_values_are_told(sheet, capfd):
     said = capfd.readouterr().out
     assert "shape keys are not carried over" in said
     assert "odd is not carried over: it has values that are not finite" in said
-    assert "words is not carried over: string attributes are not" in said
+    assert "words is not carried over: attributes of type string are not supported" in said
     assert not {"odd", "words"} & set(made.data.attributes.keys())

@@ -273,7 +273,7 @@ def test_an_image_needs_a_uv_map():
     add_uv_map(ob, flat)
     check_refused("no UV map 'Nix'", **of_image, uv_map="Nix")
     ob.modifiers.new("Remesh", "REMESH").mode = "BLOCKS"
-    check_refused("UV map Flat does not outlast the modifiers", **of_image)
+    check_refused("the modifiers remove the UV map Flat", **of_image)
 
 
 def test_an_image_without_pixels(tmp_path):
@@ -388,4 +388,4 @@ def test_sources_that_modifiers_drop(source, properties):
     weigh(ob)
     colour(ob, "FLOAT_COLOR", "CORNER")
     replace_by_cube(ob)
-    check_refused(f"{source} does not outlast the modifiers", **properties)
+    check_refused(f"the modifiers remove the {source}", **properties)

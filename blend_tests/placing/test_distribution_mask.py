@@ -117,7 +117,7 @@ def test_the_report_counts_covered_faces_alone(capfd):
 def test_nothing_selected():
     ob = scenes.cross()
     ob.data.polygons.foreach_set("select", 5 * [False])
-    check_refused("no face that could be covered is selected", faces="SELECTED")
+    check_refused("none of the faces is selected", faces="SELECTED")
 
 
 def test_slots_without_faces():

@@ -141,7 +141,7 @@ def test_the_surface_is_gone_meanwhile(slowly):
     slowly.set()
     wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
-    operator.report.assert_called_with({"ERROR"}, "Cross is not there any more")
+    operator.report.assert_called_with({"ERROR"}, "Cross does not exist any more")
     assert not bpy.data.hair_curves
 
 
@@ -168,7 +168,7 @@ def test_memory_that_runs_out_in_the_thread(monkeypatch):
     operator, context = failed(monkeypatch, MemoryError())
     before = scenes.file_contents()
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
-    assert "Not enough memory" in operator.report.call_args.args[1]
+    assert "There is not enough memory" in operator.report.call_args.args[1]
     assert scenes.file_contents() == before
 
 

@@ -271,8 +271,8 @@ def test_refusals():
     image()
     before = scenes.file_contents()
     for match, properties in (
-        ("Nothing to see from there: no part of the image Shown", {}),
-        ("Decals are made from a camera, a view or an empty's plane only", {"source": "BOX"}),
+        ("The image cannot be seen on the surface: no part of the image Shown", {}),
+        ("A decal can be made only from a camera, a view or a planar empty", {"source": "BOX"}),
         ("4,194,304 polygons.*allow_large", {"decal_resolution": 2048}),
     ):
         scenes.activate(ob)
@@ -280,7 +280,7 @@ def test_refusals():
             bpy.ops.object.limit_project_image(mode="DECAL", image="Shown", **properties)
         assert scenes.file_contents() == before
     camera.rotation_euler.x += np.pi
-    with pytest.raises(RuntimeError, match="Nothing to see from there"):
+    with pytest.raises(RuntimeError, match="The image cannot be seen on the surface"):
         bpy.ops.object.limit_project_image(mode="DECAL", image="Shown")  # from below: one-sided
     assert add_decal(ob, two_sided=True)
 

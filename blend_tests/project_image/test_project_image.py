@@ -422,11 +422,11 @@ def test_refusals_about_images():
     missing = bpy.data.images.new("Missing", 8, 8)
     missing.source = "FILE"
     missing.filepath = "//nowhere.png"
-    refused(ob, "No image is chosen", image="")
+    refused(ob, "Choose an image to project", image="")
     refused(ob, "There is no image 'nothing'", image="nothing")
     refused(ob, "The image Missing has no pixels", image="Missing")
     existing = {"output": "EXISTING"}
-    refused(ob, "No image is chosen to paint into", **existing)
+    refused(ob, "Choose an image to paint into", **existing)
     refused(ob, "There is no image 'nothing' to paint into", target="nothing", **existing)
     refused(ob, "The image Missing has no pixels", target="Missing", **existing)
     refused(ob, "Shown cannot be painted into itself", target="Shown", **existing)

@@ -111,7 +111,7 @@ def test_what_is_removed_meanwhile_is_told_of(slowly, gone):
     slowly.set()
     wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
-    operator.report.assert_called_once_with({"ERROR"}, f"{gone} is not there any more")
+    operator.report.assert_called_once_with({"ERROR"}, f"{gone} does not exist any more")
 
 
 def test_targets_of_another_size_meanwhile_are_told_of(slowly):
@@ -123,7 +123,9 @@ def test_targets_of_another_size_meanwhile_are_told_of(slowly):
     slowly.set()
     wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
-    operator.report.assert_called_once_with({"ERROR"}, "Target has another size meanwhile")
+    operator.report.assert_called_once_with(
+        {"ERROR"}, "The size of Target has changed since the work began"
+    )
 
 
 def shown(**chosen):

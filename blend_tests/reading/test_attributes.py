@@ -25,7 +25,7 @@ def test_attributes_of_another_kind_or_size_are_not_overwritten():
     mesh = bpy.data.meshes.new("Points")
     mesh.vertices.add(5)
     attributes.write(mesh, "made", "INT", "POINT", np.arange(5))
-    with pytest.raises(RuntimeError, match="another kind"):
+    with pytest.raises(RuntimeError, match="with another type or domain"):
         attributes.write(mesh, "made", "FLOAT", "POINT", np.arange(5))
     with pytest.raises(ValueError, match="for 5 elements"):
         attributes.write(mesh, "made", "INT", "POINT", np.arange(6))

@@ -39,7 +39,7 @@ def test_loose_edges_away_from_all_faces():
 def test_multiresolution():
     ob = scenes.cross()
     modifier = ob.modifiers.new("Multires", "MULTIRES")
-    refusal(ob, "Multiresolution .Multires. is not supported: apply it, or switch it off")
+    refusal(ob, "Multiresolution .Multires. is not supported: apply it or disable it")
     modifier.show_viewport = False
     assert read(ob).ptex_face_count == 5
 

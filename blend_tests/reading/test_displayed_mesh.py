@@ -306,8 +306,8 @@ def test_animated_levels():
     driver = subsurf.driver_add("levels").driver
     driver.expression = "2"
     assert read(ob, "VIEWPORT").level == 2
-    refusal(ob, "RENDER", "cannot be had: display settings of Subdivision are animated")
-    refusal(ob, 4, "the mesh of level 4 cannot be had")
+    refusal(ob, "RENDER", "is not available: display settings of Subdivision are animated")
+    refusal(ob, 4, "the mesh of level 4 is not available")
 
 
 def test_adaptive_subdivision():

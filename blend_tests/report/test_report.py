@@ -225,7 +225,7 @@ def refusal(ob, pattern, **properties):
 def test_attributes_of_somebody_else():
     ob = parity_zoo.add("sheet")
     ob.data.attributes.new(ids.DISTANCE, "FLOAT", "FACE")
-    refusal(ob, "sheet has an attribute limit_distance of another kind .FLOAT on FACE.")
+    refusal(ob, "sheet has an attribute limit_distance of another type or domain .FLOAT on FACE.")
 
 
 @pytest.mark.parametrize("name", [ids.DISTANCE, ids.DISTANCE_COLOR])
@@ -276,7 +276,7 @@ def test_only_on_a_mesh_in_object_mode():
         bpy.ops.object.limit_report()
     scenes.cross()
     bpy.ops.object.mode_set(mode="EDIT")
-    with pytest.raises(RuntimeError, match="Only in Object Mode"):
+    with pytest.raises(RuntimeError, match="Only available in Object Mode"):
         bpy.ops.object.limit_report()
 
 
@@ -442,7 +442,7 @@ def test_what_has_gone_meanwhile(slowly):
     slowly.set()
     wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
-    operator.report.assert_called_with({"ERROR"}, "sheet is not there any more")
+    operator.report.assert_called_with({"ERROR"}, "sheet does not exist any more")
 
 
 def test_little_work_is_done_at_once():

@@ -174,7 +174,7 @@ def test_maximum_distance_and_report(capfd):
     np.testing.assert_allclose([t.location.z for t in things], [0, 0, 3], atol=1e-6)
     said = capfd.readouterr().out
     assert "2 of 3 objects snapped, moved by 0.75 on average, 1 at most (to Flat)" in said
-    assert "1 objects not snapped: 1 with no surface within 2" in said
+    assert "1 objects could not be snapped: 1 with no surface within 2" in said
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -338,14 +338,14 @@ def test_those_that_can_be_moved_are(capfd):
     held.lock_location = (True, True, True)
     snap(target)
     assert [round(ob.location.z, 6) for ob in (free, held)] == [0, 1]
-    assert "1 objects not snapped: 1 locked" in capfd.readouterr().out
+    assert "1 objects could not be snapped: 1 locked" in capfd.readouterr().out
 
 
 def test_what_carries_the_target():
     target = scenes.flat_grid(4)
     carrier = add_object((0, 0, 1))
     target.parent = carrier
-    refused_and_unchanged(target, carrier, "1 that would take Flat along")
+    refused_and_unchanged(target, carrier, "1 that would move Flat with them")
 
 
 def test_a_target_that_comes_along(capfd):
@@ -354,7 +354,7 @@ def test_a_target_that_comes_along(capfd):
     follow = target.constraints.new("COPY_LOCATION")
     follow.target, follow.use_offset = thing, True
     snap(target)
-    assert "Cross has changed with what was snapped" in capfd.readouterr().out
+    assert "Cross moved with the snapped elements" in capfd.readouterr().out
 
 
 def test_a_target_that_is_reshaped(capfd):
@@ -362,7 +362,7 @@ def test_a_target_that_is_reshaped(capfd):
     mirror = target.modifiers.new("Mirror", "MIRROR")
     mirror.mirror_object = add_object((3, 4, 5))
     snap(target)
-    assert "Cross has changed with what was snapped" in capfd.readouterr().out
+    assert "Cross moved with the snapped elements" in capfd.readouterr().out
 
 
 def test_a_target_that_stays_is_not_warned_about(capfd):

@@ -143,11 +143,11 @@ def test_needs_an_active_mesh_and_something_else():
     assert not bpy.ops.object.limit_snap.poll()
     refused("Make the mesh to snap to active")
     scenes.cross()
-    refused("Select what is to be snapped besides the active mesh")
+    refused("Select the objects to snap in addition to the active mesh")
     add_object((0, 0, 1))
     assert bpy.ops.object.limit_snap.poll()
     bpy.ops.object.mode_set(mode="VERTEX_PAINT")
-    refused("Only in Object Mode, and Edit Mode of")
+    refused("Only available in Object Mode, and in Edit Mode of")
 
 
 def test_nothing_within_reach_changes_nothing():
@@ -155,7 +155,7 @@ def test_nothing_within_reach_changes_nothing():
     things = [add_object((0, 0, 9)), add_object((0, 0, 8))]
     scenes.activate(target)
     before = scenes.file_contents()
-    refused("2 objects not snapped: 2 with no surface within 1", max_distance=1)
+    refused("2 objects could not be snapped: 2 with no surface within 1", max_distance=1)
     assert [thing.location.z for thing in things] == [9, 8]
     assert scenes.file_contents() == before
 
@@ -180,7 +180,7 @@ def test_a_flattened_target():
     thing = add_object((0, 0, 1))
     scenes.activate(target)
     bpy.context.view_layer.update()
-    refused("flattened to nothing")
+    refused("has no volume")
     assert tuple(thing.location) == (0, 0, 1)
 
 
@@ -199,7 +199,7 @@ def test_a_flattened_edited_object():
     bpy.context.view_layer.update()
     scenes.activate(cloud)
     bpy.ops.object.mode_set(mode="EDIT")
-    refused("flattened to nothing")
+    refused("has no volume")
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
@@ -253,7 +253,7 @@ def test_panel_chooses_the_target():
     layout = MagicMock()
     bpy.types.VIEW3D_PT_limit_snap.draw(SimpleNamespace(layout=layout), bpy.context)
     layout.prop.assert_called_once_with(bpy.context.scene.limit_surface, "target")
-    assert layout.label.call_args.kwargs["text"] == f"Now to the active mesh: {target.name}"
+    assert layout.label.call_args.kwargs["text"] == f"Target now: active mesh {target.name}"
     assert ids.SNAP in [call.args[0] for call in layout.column().operator.call_args_list]
 
 
@@ -288,7 +288,7 @@ def test_modifiers_before_the_subdivision_count(capfd):
     snap(target)
     np.testing.assert_allclose(truth.distances(world_locations(things)), 0, atol=EXACT)
     np.testing.assert_allclose(world_locations(things)[:, 2], 0.5, atol=EXACT)
-    assert "ignored behind Subdivision: Later" in capfd.readouterr().out
+    assert "ignored after Subdivision: Later" in capfd.readouterr().out
 
 
 def test_hair_keeps_its_roots_through_save_and_load(tmp_path):

@@ -275,7 +275,7 @@ def test_without_a_target():
     cloud = add_cloud(scenes.cross())
     with edit_mode(cloud):
         assert not bpy.ops.object.limit_snap.poll()
-        with pytest.raises(RuntimeError, match="Choose a target in the tab Limit"):
+        with pytest.raises(RuntimeError, match="Choose a target in the sidebar tab Limit"):
             bpy.ops.object.limit_snap()
 
 

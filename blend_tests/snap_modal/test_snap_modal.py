@@ -115,7 +115,7 @@ def test_a_target_that_comes_along(target):
     follow = target.constraints.new("COPY_LOCATION")
     follow.target, follow.use_offset = ob, True
     bpy.context.view_layer.update()
-    refused("Pin cannot be put there: Cross changes along with it")
+    refused("Pin cannot be put there, because Cross depends on it")
 
 
 def refused(match, **properties):
@@ -128,14 +128,14 @@ def refused(match, **properties):
 def test_refusals(target):
     refused("Select one object to drag")
     ob = pin(target)
-    refused("The mouse is needed, and with it a window", face=-1)
+    refused("Dragging needs a window and a mouse", face=-1)
     refused("face", face=1000)
     ob.lock_location = (True, True, True)
     refused("Pin cannot be put there: locked")
     ob.lock_location = (False, False, False)
     target.parent = ob
     bpy.context.view_layer.update()
-    refused("Pin would take Cross along")
+    refused("Pin would move Cross with it")
 
 
 def test_refusals_of_hair(target):
@@ -143,7 +143,7 @@ def test_refusals_of_hair(target):
     refused("no element 7000", element=7000)
     bpy.context.scene.limit_surface.target = None
     hair.data.surface = None
-    refused("Choose a target in the tab Limit", element=0)
+    refused("Choose a target in the sidebar tab Limit", element=0)
 
 
 def test_edited_mesh_is_no_target_of_itself(target):
@@ -154,7 +154,7 @@ def test_edited_mesh_is_no_target_of_itself(target):
 
 def test_without_a_window(target):
     pin(target)
-    with pytest.raises(RuntimeError, match="The mouse is needed, and with it a window"):
+    with pytest.raises(RuntimeError, match="Dragging needs a window and a mouse"):
         bpy.ops.view3d.limit_snap_modal("INVOKE_DEFAULT")
 
 

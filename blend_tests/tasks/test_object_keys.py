@@ -18,7 +18,7 @@ def test_an_object_is_found_again():
 def test_an_object_that_is_gone_is_refused():
     key = ObjectKey.of(scenes.cross())
     bpy.data.objects.remove(bpy.data.objects["Cross"])
-    with pytest.raises(RefusalError, match="Cross is not there any more"):
+    with pytest.raises(RefusalError, match="Cross does not exist any more"):
         key.find()
 
 

@@ -164,7 +164,7 @@ def check_reason_is_shown(spoil, reason):
     lines = [line for line in done.stdout.splitlines() if line.startswith(("POLL", "DRAWN"))]
     assert len(lines) == 4
     for line in lines:
-        assert "does not load" in line
+        assert "could not be loaded" in line
         assert reason in line
     assert "Traceback" not in done.stdout + done.stderr
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The image's numbers: displacement at each texel's place."""
+"""Calculates the image's numbers: the displacement at each texel's place."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from . import layouts
 from .layouts import PtexLayout, Texels, UvLayout
 from .surfaces import Surfaces
 
-PLACED = 0.4  # of a tile's progress, when its texels' places are known
+PLACED = 0.4  # the part of a tile's progress at which its texels' places are known
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,15 @@ class Request:
 @dataclass(frozen=True)
 class Measured:
     tiles: dict[int, np.ndarray]  # pixels, (height, width, 4)
-    count: int  # texels
-    missing: int  # of them, where nothing was met: they hold 0
-    overlapping: int  # of them, that several places share
-    lowest: float  # distance, or length of a vector
+    count: int  # number of texels that have a place
+    missing: int  # number of these at which nothing was met: they hold 0
+    overlapping: int  # number of these that several places share
+    lowest: float  # smallest distance, or length of a vector
     highest: float
 
 
 def measure(request: Request, progress: Progress) -> Measured:
-    """RefusalError where no texel has a place, or nothing is met at all."""
+    """Raises RefusalError where no texel has a place, or nothing is met at all."""
     layout, tiles = request.layout, {}
     ranges, count, missing, overlapping = [], 0, 0, 0
     for i, tile in enumerate(layout.tiles):
@@ -58,17 +58,19 @@ def measure(request: Request, progress: Progress) -> Measured:
         overlapping += int(texels.overlap.sum())
         tiles[tile] = pixels
     if not count:
-        raise RefusalError("No texel lies on the surface: is the UV map elsewhere?")
+        raise RefusalError("No texel lies on the surface: check that the UV map lies on the image")
     if not ranges:
         raise RefusalError(
-            f"{request.surfaces.target_name} is met nowhere along the normals: nothing was made"
+            f"{request.surfaces.target_name} is met nowhere along the normals: no image was made"
         )
     lows, highs = zip(*ranges, strict=True)
     return Measured(tiles, count, missing, overlapping, float(min(lows)), float(max(highs)))
 
 
 def _measured(request: Request, texels: Texels) -> tuple[np.ndarray, np.ndarray]:
-    """Colors (n, 3), and what the range is told of (n,): NaN where nothing is met."""
+    """Returns colors (n, 3), and the numbers (n,) of which the range is reported: NaN where nothing
+    is met.
+    """
     surfaces = request.surfaces
     base, target = surfaces.base, surfaces.target
     if not request.is_vector:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which place of the surface each texel of the image stands for."""
+"""Layouts tell which place of the surface each texel of the image stands for."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 class Texels(NamedTuple):
     x: np.ndarray
-    y: np.ndarray  # upwards
+    y: np.ndarray  # counted upwards
     face: np.ndarray
     uv: np.ndarray
     overlap: np.ndarray  # whether several places share it
@@ -68,7 +68,7 @@ class PtexLayout:
         return Texels(found.x, found.y, found.face, found.uv, np.zeros(len(found.x), bool))
 
     def described(self) -> dict[str, int]:
-        """All that is needed to find a place's texel."""
+        """Describes all that is needed to find a place's texel."""
         layout = self.layout
         return {
             "face_count": layout.face_count,
@@ -80,7 +80,7 @@ class PtexLayout:
 def of(
     properties: bpy.types.OperatorProperties, surfaces: Surfaces, whose: str
 ) -> UvLayout | PtexLayout:
-    """RefusalError where the image cannot be had, or is larger than one expects."""
+    """Raises RefusalError where the image cannot be made, or is larger than users expect."""
     if properties.layout_kind == "PTEX":
         try:
             layout = native.limitsurf.PtexLayout(
@@ -110,7 +110,7 @@ def of(
 
 
 def with_surface(texels: Texels, surface: limitsurf.LimitSurface) -> Texels:
-    """Without those on faces that have no limit surface."""
+    """Drops the texels on faces that have no limit surface."""
     if not surface.refused:
         return texels
     keep = ~np.isin(surface.base_face[texels.face], list(surface.refused))
@@ -118,6 +118,6 @@ def with_surface(texels: Texels, surface: limitsurf.LimitSurface) -> Texels:
 
 
 def parts(texels: Texels, progress: Progress) -> Iterator[tuple[slice, Texels]]:
-    """A piece after the other."""
+    """Yields the texels in parts, one after the other."""
     for rows in texel_places.parts(len(texels.x), progress):
         yield rows, Texels(*(column[rows] for column in texels))

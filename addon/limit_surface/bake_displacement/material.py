@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials that displace."""
+"""Materials that displace the surface when it is rendered."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ OUTPUT = "OUTPUT_MATERIAL"
 
 
 def check(ob: bpy.types.Object) -> None:
-    """RefusalError where the object can show no image."""
+    """Raises RefusalError where the object cannot be given a material."""
     if _own(ob) is None:
         material_slots.check(ob)
 
@@ -19,7 +19,9 @@ def check(ob: bpy.types.Object) -> None:
 def show(
     ob: bpy.types.Object, image: bpy.types.Image, uv_map: str, *, is_vector: bool, space: str
 ) -> bpy.types.Material:
-    """By the object's active material, or by a new one where it has none that can be changed."""
+    """Links the image to the object's active material, or to a new one where it has none that can
+    be changed.
+    """
     material = _own(ob)
     if material is None:
         material = bpy.data.materials.new(image.name)

@@ -38,8 +38,8 @@ class OBJECT_OT_limit_bake_displacement(
 
     bl_idname = ids.BAKE_DISPLACEMENT
     bl_label = "Bake Displacement on Limit Surface"
-    too_large = "Not enough memory for so many texels"
-    cancelled = "Cancelled: nothing was made"
+    too_large = "There is not enough memory for so many texels"
+    cancelled = "Cancelled: no image was made"
 
     def draw_properties(self) -> None:
         properties.draw(self.layout, self.properties)
@@ -48,7 +48,10 @@ class OBJECT_OT_limit_bake_displacement(
         self.summary = ""
         ob = context.active_object
         if self.create_material and self.layout_kind == "PTEX":
-            raise RefusalError("A material finds its texels by a UV map: choose the layout UV Map")
+            raise RefusalError(
+                "A material finds its texels by a UV map: choose the layout UV Map, or turn "
+                "Create Material off"
+            )
         if self.create_material:
             material.check(ob)
         both = surfaces.read(self.properties, context, ob)
@@ -101,7 +104,7 @@ class OBJECT_OT_limit_bake_displacement(
         return self.space if self.mode == "VECTOR" else "OBJECT"
 
     def _image(self, name: str, measured: Measured) -> bpy.types.Image:
-        """Removed again where it cannot be saved."""
+        """Makes the image, and removes it again where it cannot be saved."""
         if measured.tiles.keys() == {FIRST_TILE}:
             pixels = measured.tiles[FIRST_TILE]
             height, width, _ = pixels.shape
@@ -118,14 +121,16 @@ class OBJECT_OT_limit_bake_displacement(
         return image
 
     def _described(self, request: Request) -> dict[str, object]:
-        """For whoever reads the image: what its numbers are."""
+        """Stores with the image what its numbers mean, for programs that read it."""
         told: dict[str, object] = {"mode": self.mode, "space": self._space}
         if isinstance(request.layout, PtexLayout):
             return {**told, "layout": "PTEX", **request.layout.described()}
         return {**told, "layout": "UV", "uv_map": request.surfaces.found.chosen_uv_map.name}
 
     def _warn_of_tangents(self, ob: bpy.types.Object, map_name: str, request: Request) -> None:
-        """The node for vectors has no choice of map: it takes tangents from the rendered one."""
+        """Warns where the node for vectors would use another UV map: it always takes tangents from
+        the one that is active for rendering.
+        """
         rendered = next((layer.name for layer in ob.data.uv_layers if layer.active_render), "")
         if request.is_vector and self.space == "TANGENT" and rendered != map_name:
             self.report(
@@ -144,7 +149,7 @@ class OBJECT_OT_limit_bake_displacement(
         if measured.missing:
             self.report(
                 {"WARNING"},
-                f"{request.surfaces.target_name} is not met at {measured.missing:,} of "
+                f"{request.surfaces.target_name} was not met at {measured.missing:,} of "
                 f"{measured.count:,} texels: they hold 0",
             )
         if measured.overlapping:

@@ -11,29 +11,30 @@ FACE_RESOLUTIONS = tuple(2**exponent for exponent in range(11))
 
 
 class DisplacementProperties(TextureProperties):
-    """Mixin for the operator."""
+    """Mixin with the properties of the operator."""
 
     target: StringProperty(
         name="Sculpted",
-        description="Name of the mesh that the active one is to become. Without one it is the "
-        "other selected mesh",
+        description="Name of the mesh object whose shape the image describes. If empty, the other "
+        "selected mesh is used",
     )
     mode: EnumProperty(
         name="Displacement",
-        description="What the image holds",
+        description="Kind of displacement that the image stores",
         items=(
             (
                 "VECTOR",
                 "Vector",
-                "From every place to the same place on the sculpted mesh, which has the same "
-                "faces, or those of the active mesh subdivided",
+                "Store the vector from each place to the same place on the sculpted mesh, which "
+                "has the same faces as the active mesh or is a subdivided copy of it",
                 "",
                 0,
             ),
             (
                 "SCALAR",
                 "Distance",
-                "Along the exact normal to the sculpted surface, whatever its faces",
+                "Store the distance along the exact normal to the sculpted surface, which may "
+                "have any faces",
                 "",
                 1,
             ),
@@ -42,23 +43,36 @@ class DisplacementProperties(TextureProperties):
     )
     space: EnumProperty(
         name="Space",
-        description="Which axes vectors are given in",
+        description="Axes in which vectors are stored",
         items=(
-            ("TANGENT", "Tangent", "Tangent, normal, bitangent: a UV map gives them", "", 0),
-            ("OBJECT", "Object", "The active object's axes", "", 1),
+            (
+                "TANGENT",
+                "Tangent",
+                "Tangent, normal and bitangent, which a UV map determines",
+                "",
+                0,
+            ),
+            ("OBJECT", "Object", "Axes of the active object", "", 1),
         ),
         default="TANGENT",
     )
     target_shape: EnumProperty(
         name="Sculpted Surface",
-        description="What of the sculpted mesh counts",
+        description="Surface of the sculpted mesh that is used",
         items=(
-            ("LIMIT", "Limit", "Its limit surface, by the rules of its own modifier", "", 0),
+            (
+                "LIMIT",
+                "Limit",
+                "The limit surface of the sculpted mesh, with the settings of its own Subdivision "
+                "Surface modifier",
+                "",
+                0,
+            ),
             (
                 "POLYGONS",
                 "Polygons",
-                "Its polygons as the viewport shows them, behind all modifiers: for a sculpt in "
-                "Multiresolution, switched on or applied",
+                "The polygons that the viewport shows after all modifiers, for example those of a "
+                "sculpted mesh with Multiresolution enabled or applied",
                 "",
                 1,
             ),
@@ -66,14 +80,21 @@ class DisplacementProperties(TextureProperties):
         default="LIMIT",
     )
     transform: EnumProperty(
-        name="Sculpted Lies",
-        description="Where the sculpted mesh is taken to be",
+        name="Compare In",
+        description="Space in which the two meshes are compared",
         items=(
-            ("WORLD", "Where It Is", "As both are seen in the world", "", 0),
+            (
+                "WORLD",
+                "World Space",
+                "Compare the meshes where the objects are in the world",
+                "",
+                0,
+            ),
             (
                 "OWN",
-                "In the Same Place",
-                "Both objects' own coordinates count: for a copy that was moved aside",
+                "Local Space",
+                "Compare the meshes' own coordinates and ignore where the objects are, for a copy "
+                "that was moved aside",
                 "",
                 1,
             ),
@@ -82,62 +103,77 @@ class DisplacementProperties(TextureProperties):
     )
     max_distance: FloatProperty(
         name="Distance",
-        description="How far away the sculpted surface may be, in the active object's units. 0 is "
-        "any distance",
+        description="Largest distance to the sculpted surface, in the active object's units. 0 "
+        "means any distance",
         default=0.0,
         min=0.0,
         subtype="DISTANCE",
     )
     direction: EnumProperty(
         name="Direction",
-        description="Which way the sculpted surface is looked for",
+        description="Direction in which the sculpted surface is searched for",
         items=(
-            ("BOTH", "Both", "The nearer of both ways", "", 0),
-            ("OUTWARD", "Outward", "Along the normal", "", 1),
-            ("INWARD", "Inward", "Against the normal", "", 2),
+            (
+                "BOTH",
+                "Both",
+                "Search along the normal and against it, and take the nearer point",
+                "",
+                0,
+            ),
+            ("OUTWARD", "Outward", "Search along the normal", "", 1),
+            ("INWARD", "Inward", "Search against the normal", "", 2),
         ),
         default="BOTH",
     )
     layout_kind: EnumProperty(
         name="Layout",
-        description="How places are found on the image",
+        description="How places of the surface are arranged in the image",
         items=(
-            ("UV", "UV Map", "By a UV map, as it is on the limit surface", "", 0),
-            ("PTEX", "Tile per Face", "A tile for each Ptex face, whatever the UV map", "", 1),
+            ("UV", "UV Map", "Arrange them by a UV map, as it is on the limit surface", "", 0),
+            (
+                "PTEX",
+                "Tile per Face",
+                "Give each Ptex face a square tile of its own, without a UV map",
+                "",
+                1,
+            ),
         ),
         default="UV",
     )
     use_tiles: BoolProperty(
         name="UDIM Tiles",
-        description="An image with all tiles that the UV map touches, instead of the first alone",
+        description="Make a tiled image with all tiles that the UV map touches, instead of an "
+        "image of the first tile",
         default=False,
     )
     face_resolution: EnumProperty(
         name="Resolution",
-        description="Parts along the side of each Ptex face; its tile has one texel more",
+        description="Number of parts along each side of a Ptex face. The tile of the face is one "
+        "texel wider and higher than this number",
         items=tuple((str(n), str(n), "", n) for n in FACE_RESOLUTIONS),
         default="16",
     )
     image_name: StringProperty(
-        name="Image", description="Name of the new image. Without one it is named after the mesh"
+        name="Image",
+        description="Name of the new image. If empty, the image is named after the object",
     )
     filepath: StringProperty(
         name="File",
-        description="Where the image is saved, as a 32-bit OpenEXR file. <UDIM> in the path stands "
-        "for a tile's number. Without a path it is not saved",
+        description="Path of the 32-bit OpenEXR file to save. <UDIM> in the path stands for a "
+        "tile's number. If empty, the image is not saved",
         subtype="FILE_PATH",
         options=PATH_OPTIONS,
     )
     create_material: BoolProperty(
         name="Create Material",
-        description="Displace the active mesh when it is rendered: link the image to the "
-        "displacement of the active material, or of a new one",
+        description="Link the image to the displacement of the active material, or of a new one, "
+        "so that renders show the active mesh displaced",
         default=False,
     )
 
 
 def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
-    """What counts, and no more."""
+    """Draws the properties that have an effect with the current choices."""
     column = layout.column()
     column.prop_search(properties, "target", bpy.data, "objects", icon="MESH_DATA")
     for name in ("target_shape", "transform", "mode"):

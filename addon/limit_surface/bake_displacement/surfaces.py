@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The two surfaces, in the space of the one that is displaced."""
+"""The two surfaces, in the space of the object that is displaced."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 class Surfaces:
     base: limitsurf.LimitSurface
     target: limitsurf.LimitSurface
-    uv_data: limitsurf.SurfaceData | None  # the base's map, where one is needed
-    found: cage.Cage  # the base's
+    uv_data: limitsurf.SurfaceData | None  # the UV map of the base, where one is needed
+    found: cage.Cage  # the cage of the base
     target_name: str
 
 
 def read(
     properties: bpy.types.OperatorProperties, context: bpy.types.Context, ob: bpy.types.Object
 ) -> Surfaces:
-    """RefusalError where there are not two surfaces."""
+    """Raises RefusalError where there are not two surfaces."""
     depsgraph = context.evaluated_depsgraph_get()
     target = _target(properties.target, context, ob)
     in_tangent_space = properties.mode == "VECTOR" and properties.space == "TANGENT"
@@ -65,7 +65,7 @@ def _target(name: str, context: bpy.types.Context, ob: bpy.types.Object) -> bpy.
         if len(others) != 1:
             raise RefusalError(
                 f"{len(others) or 'No'} other mesh{'es are' if len(others) > 1 else ' is'} "
-                f"selected: select the one that {ob.name} is to become"
+                f"selected: select {ob.name} and one sculpted mesh"
             )
         target = others[0]
     if target == ob:
@@ -78,11 +78,13 @@ def _target(name: str, context: bpy.types.Context, ob: bpy.types.Object) -> bpy.
 def _polygons(
     target: bpy.types.Object, depsgraph: bpy.types.Depsgraph
 ) -> tuple[limitsurf.ControlMesh, np.ndarray]:
-    """As the viewport shows them: a place between vertices lies on a bilinear patch."""
+    """Returns the polygons as the viewport shows them; a place between vertices lies on a bilinear
+    patch.
+    """
     evaluated = target.evaluated_get(depsgraph)
-    if not evaluated.is_evaluated:  # but the mesh without its modifiers
+    if not evaluated.is_evaluated:  # so this would be the mesh without its modifiers
         raise RefusalError(
-            f"{target.name} is disabled in viewports, or not in this view layer: so there are no "
+            f"{target.name} is disabled in viewports or is not in this view layer, so there are no "
             "polygons as the viewport shows them"
         )
     mesh = evaluated.data
@@ -106,9 +108,9 @@ def _surface(mesh: limitsurf.ControlMesh, name: str) -> limitsurf.LimitSurface:
 def _carried(
     positions: np.ndarray, matrix: np.ndarray, base_matrix: np.ndarray, base_name: str
 ) -> np.ndarray:
-    """From one object's space to another's, by way of the world."""
+    """Returns the positions carried from one object's space to another's, by way of the world."""
     try:
         relative = np.linalg.solve(base_matrix, matrix)
     except np.linalg.LinAlgError:
-        raise RefusalError(f"{base_name} is flattened to nothing by its scale") from None
+        raise RefusalError(f"{base_name} has no volume: its scale is 0 along an axis") from None
     return positions @ relative[:3, :3].T + relative[:3, 3]

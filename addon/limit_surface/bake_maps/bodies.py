@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The limit surface that maps are made of, and what it is like at some of its places."""
+"""The limit surface that maps are made of, and its quantities at some of its places."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Body:
-    """In the object's space, or as it lies in the world."""
+    """A limit surface, in its object's space or as it lies in the world."""
 
     def __init__(self, found: cage.Cage, whose: str, *, in_world: bool) -> None:
         self.surface = found.surface(in_world=in_world)
@@ -25,12 +25,12 @@ class Body:
 
     @cached_property
     def bounds(self) -> np.ndarray:
-        """(2, 3) lowest and highest coordinates."""
+        """The lowest and the highest coordinates (2, 3)."""
         return self.surface.bounds()
 
     @property
     def size(self) -> float:
-        """Of the box around it, along its diagonal."""
+        """The length of the diagonal of the bounding box."""
         return float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
 
 
@@ -46,7 +46,7 @@ class Places:
 
     @cached_property
     def normal(self) -> np.ndarray:
-        """Outward; always finite."""
+        """Unit normals that point outward and are always finite."""
         frames = self.body.surface.frames(self.face, self.uv)
         return self.body.outward * frames[:, :, 2]
 
@@ -58,18 +58,20 @@ class Places:
 
     @cached_property
     def mean(self) -> np.ndarray:
-        """Negative where the surface bulges outwards."""
+        """Mean curvature, which is negative where the surface bulges outwards."""
         return self.body.outward * self.curvature.mean
 
     @cached_property
     def principal(self) -> tuple[np.ndarray, np.ndarray]:
-        """The larger and the smaller curvature."""
+        """The larger and the smaller principal curvature."""
         c = self.curvature
         return (c.k1, c.k2) if self.body.outward > 0 else (-c.k2, -c.k1)
 
     @cached_property
     def directions(self) -> tuple[np.ndarray, np.ndarray]:
-        """Theirs, unit vectors, the way that goes up the map's U."""
+        """The principal directions as unit vectors. Of the two opposite vectors each is the one
+        that goes up the map's U.
+        """
         c = self.curvature
         both = c.direction1, c.direction2
         frames = self.body.surface.tangent_frames(self.body.uv_map, self.face, self.uv)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From an order to the pixels of its images. Nothing here touches Blender's data."""
+"""The pixels of all images that were ordered. Nothing here touches Blender's data."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from .shading import Polygons
 if TYPE_CHECKING:
     import limitsurf
 
-MAPPED = 0.3  # of a tile's progress, when its texels are known
+MAPPED = 0.3  # the part of a tile's progress at which its texels are known
 
 
 @dataclass(frozen=True)
 class Order:
     body: Body  # in the space of the maps
-    in_object: Body  # the same, or in the object's space
+    in_object: Body  # the same surface, or one in the object's space
     polygons: Polygons | None  # if a map in tangent space is wanted
     maps: tuple[str, ...]
     settings: Settings
@@ -41,7 +41,7 @@ class Order:
     tiles: tuple[int, ...]
     margin: int
     allow_overlap: bool
-    is_encoded: bool  # to 0..1
+    is_encoded: bool  # values are mapped to 0..1
 
 
 @dataclass
@@ -55,11 +55,11 @@ class Baked:
     """Images by map and tile, and what their values mean."""
 
     pixels: dict[str, dict[int, np.ndarray]] = field(default_factory=dict)
-    ranges: dict[str, Range] = field(default_factory=dict)  # of those that are encoded
-    texels: int = 0  # inside the map's islands
+    ranges: dict[str, Range] = field(default_factory=dict)  # ranges of the maps that are encoded
+    texels: int = 0  # number of texels inside the islands of the UV map
     overlapping: int = 0
-    without_values: int = 0  # of one map or another
-    without_polygons: int = 0  # that tangent-space normals were wanted for
+    without_values: int = 0  # number of values that have no limit, in all maps
+    without_polygons: int = 0  # number of texels that lack a polygon for their tangent-space normal
 
 
 def bake(order: Order, progress: Progress) -> Baked:
@@ -71,7 +71,7 @@ def bake(order: Order, progress: Progress) -> Baked:
         if len(found.texels.x):
             tiles[tile] = found
     if not made.texels:
-        where = "tile 1001" if order.tiles == (1001,) else "the tiles"
+        where = "tile 1001" if order.tiles == (1001,) else "any of the tiles"
         raise RefusalError(f"The UV map covers no texel of {where}")
     for name in order.maps:
         if name == AREA_DISTORTION:
@@ -115,7 +115,9 @@ def _values(order: Order, tile: int, made: Baked, progress: Progress) -> _Tile:
 def _in_tangent_space(
     order: Order, tile: int, texels: limitsurf.Texels, made: Baked, progress: Progress
 ) -> np.ndarray:
-    """Straight up where there are no polygons: nothing is ever drawn there."""
+    """Returns normals in tangent space. Where there are no polygons they point straight up: nothing
+    is ever drawn there.
+    """
     width, height = order.size
     assert order.polygons is not None
     shading = order.polygons.over(order.size, tile, order.margin, part_of(progress, 0.8, 0.9))

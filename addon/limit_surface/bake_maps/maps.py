@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The maps: their names, their values, and how these become colors.
+"""The maps: their names, their values, and how values become colors.
 
-Float files hold the values themselves. Files of 8 and 16 bits hold 0 to 1, so each map says from
-which value to which that goes.
+Float files hold the values themselves. Files of 8 and 16 bits hold 0 to 1, so each map defines the
+range of values that is mapped to 0 to 1.
 """
 
 from __future__ import annotations
@@ -14,24 +14,25 @@ import numpy as np
 
 from .bodies import Body, Places
 
-#: Of the values, so many fit into a range that is found by itself
-FITTING = 95  # percent
+#: A range that is chosen automatically contains this percentage of the values.
+FITTING = 95
 
-#: Area ratios and stretches beyond 2^-16 and 2^16 are those
+#: Ratios of area and of length are clamped to 2^-16 and 2^16.
 MOST_OCTAVES = 16.0
 
-#: At irregular vertices curvature is averaged so far from them, as a share of an edge
+#: At irregular vertices curvature is averaged at this distance from them, as a share of an edge.
 IRREGULAR_RADIUS = 1 / 64
 
-Range = tuple[np.ndarray | float, np.ndarray | float]  # what becomes 0, what becomes 1
+# the value that becomes 0, and the one that becomes 1
+Range = tuple[np.ndarray | float, np.ndarray | float]
 
 
 @dataclass(frozen=True)
 class Settings:
-    curvature: float  # what becomes 1 in 8 and 16 bits; 0: found
-    cavity: float  # the radius of a hollow that is black; 0: found
-    octaves: float  # of area that become 1
-    radius: float  # see limitsurf's curvature()
+    curvature: float  # the value that becomes 1 in 8 and 16 bits; 0: chosen automatically
+    cavity: float  # the radius of a hollow that is black; 0: chosen automatically
+    octaves: float  # the octaves of area or length that become 1
+    radius: float  # see `irregular` of limitsurf's curvature()
 
 
 @dataclass(frozen=True)
@@ -74,17 +75,21 @@ def _as_it_is(_body: Body, _settings: Settings, _values: np.ndarray) -> Range:
 
 
 def cavity_radius(body: Body, settings: Settings) -> float:
-    """1 / 20 of the surface's size, unless it is given."""
+    """The given radius, or 1 / 20 of the surface's size where none is given."""
     return settings.cavity or body.size / 20
 
 
 def _cavity(places: Places, settings: Settings) -> np.ndarray:
-    """1 where nothing is hollow; 0 where mean curvature is that of a hollow of the radius."""
+    """Returns 1 where nothing is hollow, and 0 where mean curvature is that of a hollow of the
+    radius.
+    """
     return 1 - (places.mean * cavity_radius(places.body, settings)).clip(0, 1)
 
 
 def _distortion(places: Places, _settings: Settings) -> np.ndarray:
-    """Octaves of area, largest and smallest length; compared with the whole map afterwards."""
+    """Returns octaves of area, of the largest and of the smallest length. They are compared with
+    the whole map afterwards.
+    """
     d = places.distortion
     columns = np.stack([d.area, d.stretch_high, d.stretch_low], axis=1)
     with np.errstate(divide="ignore"):
@@ -95,13 +100,15 @@ def _distortion(places: Places, _settings: Settings) -> np.ndarray:
 
 
 def mean_octave(octaves: np.ndarray) -> float:
-    """Of area: that of the whole map, if the rows are those of its texels."""
+    """Returns the octave of the whole map's area, if the rows are those of its texels."""
     found = octaves[np.abs(octaves[:, 0]) < MOST_OCTAVES, 0]
     return float(np.log2(np.exp2(found.astype(np.float64)).mean())) if found.size else 0.0
 
 
 def compared(octaves: np.ndarray, mean: float) -> np.ndarray:
-    """0 is what a map without distortion would have everywhere."""
+    """Returns the octaves relative to the whole map, so that a map without distortion has 0
+    everywhere.
+    """
     return (octaves - mean * np.array([1, 0.5, 0.5])).clip(-MOST_OCTAVES, MOST_OCTAVES)
 
 
@@ -113,66 +120,71 @@ def encoded(values: np.ndarray, range_: Range) -> np.ndarray:
 NORMAL_TANGENT = "NORMAL_TANGENT"
 AREA_DISTORTION = "AREA_DISTORTION"
 
-#: In the order of the menu; that of tangent-space normals is made by shading.py
+#: The maps in the order of the menu. The values of tangent-space normals are made by shading.py.
 KINDS = {
     "POSITION": MapKind(
         "Position",
-        "Where each texel lies on the limit surface",
+        "Position of each texel on the limit surface",
         lambda p, _s: p.position,
         _of_positions,
     ),
     "NORMAL_OBJECT": MapKind(
         "Normal",
-        "The exact normal, in the chosen space",
+        "Exact normal in the chosen space",
         lambda p, _s: p.normal,
         _of_unit_vectors,
     ),
     NORMAL_TANGENT: MapKind(
         "Tangent Normal",
-        "The exact normal as a Normal Map node needs it on polygons (MikkTSpace, OpenGL, +Y)",
+        "Exact normal in the form that a Normal Map node needs on polygons (MikkTSpace, OpenGL, "
+        "+Y)",
         lambda p, _s: p.normal,
         _of_unit_vectors,
     ),
     "CURVATURE_MEAN": MapKind(
         "Mean Curvature",
-        "(k1 + k2) / 2: negative where the surface bulges",
+        "Mean curvature (k1 + k2) / 2, negative where the surface bulges outward",
         lambda p, _s: p.mean,
         _of_curvature,
     ),
     "CURVATURE_GAUSSIAN": MapKind(
         "Gaussian Curvature",
-        "k1 k2: negative on saddles",
+        "Gaussian curvature k1 k2, negative on saddles",
         lambda p, _s: p.curvature.gaussian,
         _of_gaussian,
     ),
     "CURVATURE_PRINCIPAL": MapKind(
         "Principal Curvature",
-        "k1 in red and k2 in green, k1 the larger; blue is half their difference",
+        "The larger principal curvature k1 in red, the smaller one k2 in green, and half their "
+        "difference in blue",
         lambda p, _s: np.stack([*p.principal, (p.principal[0] - p.principal[1]) / 2], axis=1),
         _of_curvature,
     ),
     "DIRECTION_1": MapKind(
         "Direction 1",
-        "The direction of k1, a unit vector, towards the map's U, in the chosen space",
+        "Direction of k1 as a unit vector in the chosen space, on the side towards which the "
+        "map's U grows",
         lambda p, _s: p.directions[0],
         _of_unit_vectors,
     ),
     "DIRECTION_2": MapKind(
         "Direction 2",
-        "The direction of k2, a unit vector, towards the map's U, in the chosen space",
+        "Direction of k2 as a unit vector in the chosen space, on the side towards which the "
+        "map's U grows",
         lambda p, _s: p.directions[1],
         _of_unit_vectors,
     ),
     "CAVITY": MapKind(
         "Cavity",
-        "White, and darker where the surface is hollow: 1 - mean curvature times a radius",
+        "1 minus mean curvature times a radius: white where the surface is flat or bulges, darker "
+        "where it is hollow",
         _cavity,
         _as_it_is,
     ),
     AREA_DISTORTION: MapKind(
         "Distortion",
-        "How the UV map stretches the surface, in octaves (log2) against the whole map: area in "
-        "red, the largest and the smallest length in green and blue",
+        "How much the UV map stretches the surface, in octaves (log2) relative to the whole map: "
+        "area in red, the largest and the smallest length in green and blue",
         _distortion,
         _of_octaves,
     ),

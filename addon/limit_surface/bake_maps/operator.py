@@ -31,7 +31,7 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
 
     bl_idname = ids.BAKE_MAPS
     bl_label = "Bake Maps of Limit Surface"
-    too_large = "Not enough memory for images of this size"
+    too_large = "There is not enough memory for images of this size"
     cancelled = "Cancelled: nothing was baked"
 
     def draw_properties(self) -> None:
@@ -50,7 +50,7 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
             else (image_pixels.FIRST_TILE,)
         )
         if not tiles:
-            raise RefusalError("The UV map touches no tile that has a UDIM number")
+            raise RefusalError("The UV map lies on no tile that has a UDIM number")
         texel_places.check_size(self.width, self.height, len(tiles), len(maps), self.allow_large)
         output = self._output(ob, tiles)
         output.check(maps)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where baked pixels go: new images or those of the same name, and files.
+"""Output of baked pixels: new images, images that exist, and files.
 
-Files are written first. So if that fails no image has changed, and files that were not there before
+Files are written first. If that fails, no image has changed, and files that did not exist before
 are removed again.
 """
 
@@ -22,10 +22,10 @@ from .maps import KINDS
 
 @dataclass(frozen=True)
 class Output:
-    name: str  # of the images, before the map's own
+    name: str  # the beginning of the images' names; the name of the map follows
     kind: FileKind
     folder: Path | None
-    reuse: bool  # images of these names
+    reuse: bool  # whether existing images of these names are written to
     tiles: tuple[int, ...]
     size: tuple[int, int]
 
@@ -33,7 +33,7 @@ class Output:
         return f"{self.name} {KINDS[map_name].name}"
 
     def check(self, maps: tuple[str, ...]) -> None:
-        """RefusalError for what could not be written afterwards."""
+        """Raises RefusalError for what could not be written after the bake."""
         if self.folder:
             image_files.check_folder(self.folder)
         for name in maps:
@@ -42,7 +42,7 @@ class Output:
                 self._check_fits(image)
 
     def put(self, baked: dict[str, dict[int, np.ndarray]]) -> list[bpy.types.Image]:
-        """Takes the pixels out of `baked`, so that they are not kept twice."""
+        """Moves the pixels out of `baked`, so that they are not stored twice."""
         files = self._write_files(baked) if self.folder else {}
         made = []
         for name in list(baked):
@@ -64,29 +64,29 @@ class Output:
         return bpy.data.images.get((self.image_name(map_name), None)) if self.reuse else None
 
     def _check_fits(self, image: bpy.types.Image) -> None:
-        whose = f"There is an image {image.name}"
+        whose = f"The existing image {image.name}"
         described = image_pixels.checked(image, to_write=True)
         missing = set(self.tiles) - described.tiles.keys()
         if missing:
-            raise RefusalError(f"{whose} without the tile {min(missing)}")
+            raise RefusalError(f"{whose} lacks the tile {min(missing)}")
         for tile in self.tiles:
             if described.tiles[tile] != self.size:
                 width, height = described.tiles[tile]
                 raise RefusalError(
-                    f"{whose} of {width} x {height} pixels: choose its size, another name, or "
+                    f"{whose} has {width} x {height} pixels: set this size or another name, or "
                     "turn Reuse Images off"
                 )
         if described.is_float != self._is_float:
             depth = "float" if described.is_float else "8-bit"
-            raise RefusalError(f"{whose} of {depth} pixels, which is another format")
+            raise RefusalError(f"{whose} has {depth} pixels, which the chosen format does not have")
         if not described.is_data:
             raise RefusalError(
-                f"{whose} of the color space {described.colorspace}: data need Non-Color"
+                f"{whose} has the color space {described.colorspace}, but data need Non-Color"
             )
 
     @property
     def _is_float(self) -> bool:
-        """Blender holds 16 bits as float, too."""
+        """Tells whether the image has float pixels. In Blender those of 16 bits have, too."""
         return self.kind.depth != "8"
 
     def _new(self, name: str, tiles: Mapping[int, np.ndarray]) -> bpy.types.Image:

@@ -12,11 +12,11 @@ CURVATURES = {"CURVATURE_MEAN", "CURVATURE_GAUSSIAN", "CURVATURE_PRINCIPAL"}
 
 
 class BakeProperties(TextureProperties):
-    """Mixin for the operator."""
+    """Mixin with the properties of the operator."""
 
     maps: EnumProperty(
         name="Maps",
-        description="Which maps are made, an image each",
+        description="Maps to bake. Each becomes an image",
         items=tuple(
             (key, kind.name, kind.description, "", 1 << i)
             for i, (key, kind) in enumerate(KINDS.items())
@@ -26,48 +26,86 @@ class BakeProperties(TextureProperties):
     )
     tiles: EnumProperty(
         name="Tiles",
-        description="Which UDIM tiles of the UV map are made",
+        description="UDIM tiles of the UV map to bake",
         items=(
-            ("FIRST", "First", "What lies between (0, 0) and (1, 1), in plain images", "", 0),
-            ("ALL", "All", "All that the UV map touches, in tiled images if it is several", "", 1),
+            (
+                "FIRST",
+                "First",
+                "Bake the part of the UV map between (0, 0) and (1, 1) into plain images",
+                "",
+                0,
+            ),
+            (
+                "ALL",
+                "All",
+                "Bake all tiles that the UV map touches. If there are several, the images are "
+                "tiled",
+                "",
+                1,
+            ),
         ),
         default="FIRST",
     )
     space: EnumProperty(
         name="Space",
-        description="Of positions, normals, directions, and of the lengths that curvature is "
-        "measured with. Normals in tangent space have none",
+        description="Space of positions, normals and directions, and of the lengths by which "
+        "curvature is measured. It does not affect tangent-space normals",
         items=(
-            ("OBJECT", "Object", "The object's own, without its scale", "", 0),
-            ("WORLD", "World", "The surface as it lies in the world", "", 1),
+            ("OBJECT", "Object", "Local space of the object, without its scale", "", 0),
+            ("WORLD", "World", "World space, in which the object's scale counts", "", 1),
         ),
         default="OBJECT",
     )
     target: EnumProperty(
         name="Normals For",
-        description="The mesh that will be shown with the tangent-space normals",
+        description="Mesh on which the tangent-space normals will be used",
         items=(
-            ("CAGE", "Control Mesh", "The mesh without its subdivision, for games", "", 0),
-            ("VIEWPORT", "Viewport", "The mesh at the level that the viewport shows", "", 1),
-            ("RENDER", "Render", "The mesh at the level that a render shows", "", 2),
+            ("CAGE", "Control Mesh", "The mesh before its subdivision, for games", "", 0),
+            ("VIEWPORT", "Viewport", "The mesh at the viewport's subdivision level", "", 1),
+            ("RENDER", "Render", "The mesh at the render's subdivision level", "", 2),
         ),
         default="CAGE",
     )
     format: EnumProperty(
         name="Format",
-        description="Of the images and their files",
+        description="Format of the images and of their files",
         items=(
-            ("EXR_32", "Float", "32-bit numbers as they are; OpenEXR files", "", 0),
-            ("EXR_16", "Half Float", "The same, with files of 16 bits", "", 1),
-            ("PNG_16", "16 Bits", "Colors from 0 to 1; PNG files", "", 2),
-            ("PNG_8", "8 Bits", "Colors from 0 to 1 in 256 steps; PNG files", "", 3),
+            (
+                "EXR_32",
+                "Float",
+                "Store the values themselves in 32-bit images and 32-bit OpenEXR files",
+                "",
+                0,
+            ),
+            (
+                "EXR_16",
+                "Half Float",
+                "Store the values themselves in 32-bit images and 16-bit OpenEXR files",
+                "",
+                1,
+            ),
+            (
+                "PNG_16",
+                "16 Bits",
+                "Map the values to 0 to 1, in float images and 16-bit PNG files",
+                "",
+                2,
+            ),
+            (
+                "PNG_8",
+                "8 Bits",
+                "Map the values to 0 to 1, in 8-bit images and 8-bit PNG files",
+                "",
+                3,
+            ),
         ),
         default="EXR_32",
     )
     curvature_range: FloatProperty(
         name="Curvature Range",
-        description="In 8 and 16 bits: curvature of so much is 1, of as much below zero 0, and "
-        "zero is 0.5. Gaussian curvature: of its square. At 0 it is such that 95% fit",
+        description="Curvature that 8-bit and 16-bit images show as 1. Its negative is shown as "
+        "0, and zero curvature as 0.5. For Gaussian curvature the square of this number is used. "
+        "0 chooses a range that contains 95% of the values",
         default=0.0,
         min=0.0,
         soft_max=100.0,
@@ -75,8 +113,8 @@ class BakeProperties(TextureProperties):
     )
     cavity_radius: FloatProperty(
         name="Cavity Radius",
-        description="A hollow of this radius is black. At 0 it is a twentieth of the surface's "
-        "size",
+        description="Radius of a hollow that is shown as black. 0 chooses a twentieth of the "
+        "surface's size",
         default=0.0,
         min=0.0,
         soft_max=10.0,
@@ -84,8 +122,8 @@ class BakeProperties(TextureProperties):
     )
     distortion_range: FloatProperty(
         name="Distortion Range",
-        description="In 8 and 16 bits: so many doublings of area or length are 1, as many halvings "
-        "0, and none is 0.5",
+        description="Number of doublings of area or length that 8-bit and 16-bit images show as "
+        "1. The same number of halvings is shown as 0, and no distortion as 0.5",
         default=2.0,
         min=0.01,
         soft_max=8.0,
@@ -93,24 +131,24 @@ class BakeProperties(TextureProperties):
     )
     name: StringProperty(
         name="Name",
-        description="What the images' names begin with. The object's name if it is empty",
+        description="Beginning of the images' names. If empty, the object's name is used",
     )
     reuse: BoolProperty(
         name="Reuse Images",
-        description="Write into images of these names where there are ones, instead of new ones",
+        description="Write into existing images with the same names, instead of making new ones",
         default=True,
     )
     folder: StringProperty(
         name="Folder",
-        description="Where the images are saved, each by its name. Files of these names are "
-        "replaced. Without a folder nothing is saved",
+        description="Folder in which each image is saved under its name. Existing files with "
+        "these names are replaced. If empty, no files are saved",
         subtype="DIR_PATH",
         options=PATH_OPTIONS,
     )
 
 
 def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
-    layout.use_property_split = False  # side by side the maps' names cannot be read
+    layout.use_property_split = False  # the maps' names are too long to stand side by side
     names = layout.grid_flow(columns=2, even_columns=True, align=True)
     names.prop(properties, "maps")
     layout.use_property_split = True

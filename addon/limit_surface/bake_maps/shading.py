@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What renderers interpolate on the polygons that a tangent-space normal map is for: the normals,
-MikkTSpace's tangents and the signs at their corners.
+MikkTSpace's tangents and their signs at the polygons' corners.
 
-The polygons are triangles on the UV map, laid out over the image as the limit surface is: a mesh of
-triangles without any smoothing has a limit surface, too.
+The polygons become triangles on the UV map, and the image's texels are found on them as they are on
+the limit surface: a mesh of triangles that is not smoothed has a limit surface, too.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Kind = displayed_mesh.Kind | Literal["CAGE"]
 
 @dataclass(frozen=True)
 class Corners:
-    """Three a triangle."""
+    """The corners of the triangles, three for each."""
 
     uv: np.ndarray  # (3 t, 2)
     normal: np.ndarray  # (3 t, 3)
@@ -40,13 +40,13 @@ class Corners:
 
 @dataclass(frozen=True)
 class Shading:
-    """On the texels of one tile of the image."""
+    """Normals and tangents at the texels of one tile of the image."""
 
     texels: limitsurf.Texels
     columns: np.ndarray  # (n, 7) normal, tangent, sign
 
     def tangent_space(self, rows: np.ndarray, normals: np.ndarray) -> np.ndarray:
-        """The normals as the map has to hold them."""
+        """Returns the normals as the map has to hold them."""
         c = self.columns[rows]
         return native.limitsurf.into_shading_frames(normals, c[:, :3], c[:, 3:6], c[:, 6])
 
@@ -66,7 +66,7 @@ class Polygons:
         self._columns = surface.face_varying(columns, own, rules.LINEAR)
 
     def over(self, size: tuple[int, int], tile: int, margin: float, progress: Progress) -> Shading:
-        """Where polygons overlap, one of them."""
+        """Returns the shading under texels. Where polygons overlap, one of them is taken."""
         found = texel_places.texels(
             self._uv, size, tile, margin=margin, allow_overlap=True, progress=progress
         )
@@ -74,8 +74,9 @@ class Polygons:
 
 
 def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: Kind, uv_name: str) -> Corners:
-    """`kind`: CAGE for the mesh that stands before the subdivision, VIEWPORT or RENDER for that
-    behind it. RefusalError where its tangents cannot be had."""
+    """Reads the polygons. `kind` is CAGE for the mesh before the subdivision, and VIEWPORT or
+    RENDER for the mesh after it. Raises RefusalError where the mesh has no tangents.
+    """
     with _opened(ob, depsgraph, kind) as (mesh, whose):
         if uv_name not in mesh.uv_layers:
             raise RefusalError(f"{whose} has no UV map {uv_name!r}")
@@ -97,8 +98,10 @@ def _opened(
 
 
 def _corners(mesh: bpy.types.Mesh, uv_name: str) -> Corners:
-    """Tangents are those of the triangles that are drawn: so Cycles has them, and whoever
-    triangulates a mesh first. (Blender itself, and Eevee, take quads as a whole for them.)"""
+    """Returns the corners with the tangents of the triangles that are drawn. Cycles calculates them
+    so, as do programs that triangulate a mesh first. (Blender itself, and Eevee, calculate the
+    tangents of whole quads.)
+    """
     mesh.calc_loop_triangles()
     corners = _of(mesh.loop_triangles, "loops", 3, np.int32).ravel()
     flat = attributes.read(mesh, "sharp_face") if "sharp_face" in mesh.attributes else False
@@ -112,13 +115,13 @@ def _corners(mesh: bpy.types.Mesh, uv_name: str) -> Corners:
         twin.from_pydata(attributes.read(mesh, ids.POSITION), [], vertex.reshape(-1, 3))
         twin.polygons.foreach_set("use_smooth", ~flat)
         twin.update()
-        # What is flat is so triangle by triangle.
+        # A polygon with flat shading is flat on each of its triangles.
         normal = np.where(
             np.repeat(flat, 3)[:, None],
             _of(twin.corner_normals, "vector", 3),
             _of(mesh.corner_normals, "vector", 3)[corners],
         )
-        # Setting normals moves layers in memory: none is held meanwhile.
+        # Setting normals moves layers in memory, so no reference to one is kept.
         twin.uv_layers.new(name=uv_name).uv.foreach_set("vector", uv.ravel())
         twin.normals_split_custom_set(normal)
         twin.calc_tangents(uvmap=uv_name)

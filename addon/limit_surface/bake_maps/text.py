@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a bake is reported with."""
+"""The texts that report a bake."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .maps import KINDS, NORMAL_TANGENT, Range
 
 
 def ranges(baked: Baked) -> list[str]:
-    """A line for each map whose values have become colors."""
+    """Returns a line for each map whose values have become colors."""
     return [f"{KINDS[name].name}: {_said(found)}" for name, found in baked.ranges.items()]
 
 
@@ -20,7 +20,7 @@ def warnings(baked: Baked, flat_faces: int) -> list[str]:
     if baked.overlapping:
         found.append(overlap.told(baked.overlapping))
     if baked.without_values:
-        found.append(f"{baked.without_values:,} values have no limit and are 0")
+        found.append(f"{baked.without_values:,} values have no limit and were set to 0")
     if baked.without_polygons:
         found.append(
             f"{KINDS[NORMAL_TANGENT].name}: {baked.without_polygons:,} texels have no polygon on "

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curvature as colours: blue where it is negative, white for none, red where it is positive, and
-grey where there is none.
+"""Curvature as colours: blue where it is negative, white where it is zero, red where it is
+positive, and grey where there is none.
 
 The steps are those of ColorBrewer's map RdBu (Cynthia Brewer), which prints well and the
 colour-blind can read too, in the linear values that Blender's colour attributes hold.
@@ -10,7 +10,7 @@ import numpy as np
 
 from ..reading import srgb
 
-AUTOMATIC = 95  # per cent of the values are paler than the fullest colour
+AUTOMATIC = 95  # percentage of the values that are paler than the fullest colour
 
 _STEPS = np.linspace(-1, 1, 11)
 _SRGB = (
@@ -21,13 +21,17 @@ _MISSING = 0.1
 
 
 def full_of(values: np.ndarray) -> float:
-    """The size of value that gets the fullest colour, where nobody has said."""
+    """Returns the absolute value that gets the fullest colour, where the user has not chosen
+    one.
+    """
     sizes = np.abs(values[np.isfinite(values)])
     return float(np.percentile(sizes, AUTOMATIC)) if len(sizes) else 0.0
 
 
 def of_values(values: np.ndarray, full: float) -> np.ndarray:
-    """(n, 4) for values (n,), of which `full` and more, either way, are the fullest."""
+    """Returns colours (n, 4) for values (n,). Values of `full` and more, positive or negative, get
+    the fullest colour.
+    """
     linear = srgb.to_linear(np.array(_SRGB) / 255)
     missing = ~np.isfinite(values)
     part = np.where(missing, 0, values) / full if full > 0 else np.zeros(len(values))

@@ -33,25 +33,41 @@ class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
     bl_idname = ids.CURVATURE
     bl_label = "Curvature of Limit Surface"
     bl_options = {"REGISTER", "UNDO"}
-    too_large = "Not enough memory for so many places"
+    too_large = "There is not enough memory for so many places"
     cancelled = "Cancelled: no curvature was stored"
 
     on: EnumProperty(
         name="On",
-        description="Where curvature is stored",
+        description="Where the curvature is stored",
         items=(
-            ("CONTROL_MESH", "Control Mesh", "The active mesh's vertices, each at its place on the "
-             "limit surface", "", 0),
-            ("TESSELLATION", "New Mesh", "A new mesh whose vertices lie on the limit surface", "",
-             1),
-            ("ROOTS", "Hair and Points", "The selected hair and points that were made on a limit "
-             "surface, or all that stand on the active mesh", "", 2),
+            (
+                "CONTROL_MESH",
+                "Control Mesh",
+                "Store the curvature at the limit position of each vertex of the active mesh",
+                "",
+                0,
+            ),
+            (
+                "TESSELLATION",
+                "New Mesh",
+                "Store the curvature on a new mesh whose vertices lie on the limit surface",
+                "",
+                1,
+            ),
+            (
+                "ROOTS",
+                "Hair and Points",
+                "Store the curvature at the roots of the selected hair and points that are bound "
+                "to a limit surface, or of all that are bound to the active mesh",
+                "",
+                2,
+            ),
         ),
         default="CONTROL_MESH",
-    )  # fmt: skip
+    )
     levels: IntProperty(
         name="Levels",
-        description="Subdivisions of the new mesh",
+        description="Number of subdivisions of the new mesh",
         default=3,
         min=1,
         max=12,
@@ -59,17 +75,17 @@ class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
     )
     space: EnumProperty(
         name="Space",
-        description="Whose lengths count",
+        description="Space in which lengths are measured",
         items=(
-            ("WORLD", "World", "The surface as it lies in the world: 1 / world unit", "", 0),
-            ("LOCAL", "Local", "The surface in its object's space, without scale", "", 1),
+            ("WORLD", "World", "Measure in world space, in 1 / world unit", "", 0),
+            ("LOCAL", "Local", "Measure in the object's local space, without its scale", "", 1),
         ),
         default="WORLD",
     )
     radius: FloatProperty(
         name="Radius",
-        description="At irregular vertices, where curvature has no limit, it is averaged over the "
-        "faces around, so far from the vertex as a share of an edge",
+        description="Distance from an irregular vertex, as a share of an edge, at which curvature "
+        "is averaged over the faces around it. At the vertex itself curvature has no limit",
         default=1 / 64,
         min=2**-20,
         max=0.5,
@@ -77,19 +93,26 @@ class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
     )
     color: EnumProperty(
         name="Color",
-        description="What the colors show: blue where it is negative, red where it is positive",
+        description="Curvature that the colors show: blue where it is negative, red where it is "
+        "positive",
         items=(
-            ("MEAN", "Mean", "(k1 + k2) / 2: negative where the surface bulges", "", 0),
-            ("GAUSSIAN", "Gaussian", "k1 k2: negative on saddles", "", 1),
-            ("K1", "Largest", "The larger principal curvature", "", 2),
-            ("K2", "Smallest", "The smaller principal curvature", "", 3),
+            (
+                "MEAN",
+                "Mean",
+                "Mean curvature (k1 + k2) / 2, negative where the surface bulges outward",
+                "",
+                0,
+            ),
+            ("GAUSSIAN", "Gaussian", "Gaussian curvature k1 k2, negative on saddles", "", 1),
+            ("K1", "Largest", "Larger principal curvature k1", "", 2),
+            ("K2", "Smallest", "Smaller principal curvature k2", "", 3),
         ),
         default="MEAN",
     )
     full_color: FloatProperty(
         name="Full Color",
-        description="Curvature from which on, either way, the color is the fullest. At 0 it is "
-        "such that 95% of the values are paler",
+        description="Absolute curvature from which on the color is the fullest. 0 chooses a value "
+        "such that 95% of the colors are paler",
         default=0.0,
         min=0.0,
         soft_max=100.0,
@@ -97,13 +120,13 @@ class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
     )
     allow_large: BoolProperty(
         name="Allow Large Counts",
-        description="Make millions of polygons without asking",
+        description="Allow the operator to make millions of polygons without confirmation",
         default=False,
         options={"SKIP_SAVE"},
     )
     summary: StringProperty(
         name="Result",
-        description="What the operator found, line by line",
+        description="Summary of the curvature that was found",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curvature where hair and points stand that carry their locations, stored on them."""
+"""Curvature at the roots of hair and points that store their locations."""
 
 from __future__ import annotations
 
@@ -30,8 +30,9 @@ class _Part(NamedTuple):
 
 
 class StoredRoots:
-    """The selected objects that carry locations; where none does, all that stand on the active
-    one."""
+    """The roots of the selected objects that store locations. Where no selected object does, all
+    objects on the active mesh are taken.
+    """
 
     noun = "roots"
 
@@ -57,8 +58,8 @@ class StoredRoots:
         if not self._parts:
             raise RefusalError(
                 "; ".join(failures)
-                or f"Nothing that is selected, or stands on the active object, carries {ids.FACE} "
-                f"and {ids.UV}"
+                or f"No selected object, and none on the active object, has the attributes "
+                f"{ids.FACE} and {ids.UV}"
             )
         self.notes = tuple(f"{n:,} left out: {reason}" for reason, n in failures.items())
 
@@ -82,7 +83,7 @@ class StoredRoots:
         for ob, part in zip(stored, self._parts, strict=True):
             _check(ob)
             if len(attributes.read(ob.data, ids.FACE)) != len(part.face):
-                raise RefusalError(f"{ob.name} has changed meanwhile")
+                raise RefusalError(f"{ob.name} has changed while its curvature was calculated")
         for ob, of, color in zip(stored, values, colors, strict=True):
             storage.write(ob.data, _DOMAINS[ob.type], of, color)
             ob.data.update_tag()
@@ -113,7 +114,9 @@ def _check(ob: bpy.types.Object) -> None:
     for name, kind in ((ids.FACE, "INT"), (ids.UV, "FLOAT2")):
         there = ob.data.attributes[name]
         if (there.data_type, there.domain) != (kind, domain):
-            raise RefusalError(f"{ob.data.name}: the attribute {name} exists as another kind")
+            raise RefusalError(
+                f"{ob.data.name}: the attribute {name} exists with another type or domain"
+            )
     storage.check(ob, domain)
 
 

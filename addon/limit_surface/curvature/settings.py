@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the operator is asked for."""
+"""The settings of the operator, as plain data."""
 
 from typing import NamedTuple
 
@@ -7,5 +7,5 @@ from typing import NamedTuple
 class Settings(NamedTuple):
     in_world: bool
     radius: float  # around irregular vertices, as a share of an edge
-    levels: int  # of a tessellation
+    levels: int  # number of subdivisions of a tessellation
     allow_large: bool

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The attributes that hold curvature."""
+"""The attributes that store curvature."""
 
 import bpy
 import numpy as np
@@ -21,12 +21,14 @@ _KINDS = {
 
 
 def check(ob: bpy.types.Object, domain: str) -> None:
-    """RefusalError where something else has these names."""
+    """Raises RefusalError where these names belong to something else."""
     attributes.check_names(ob, _KINDS, domain)
 
 
 def write(data: bpy.types.ID, domain: str, values: Values, color: np.ndarray) -> None:
-    """Directions that do not exist are zero vectors; numbers that do not are NaN."""
+    """Writes the values. Directions that do not exist are zero vectors; numbers that do not exist
+    are NaN.
+    """
     stored = (
         values.mean,
         values.gaussian,
@@ -42,7 +44,7 @@ def write(data: bpy.types.ID, domain: str, values: Values, color: np.ndarray) ->
 
 
 def write_on_mesh(mesh: bpy.types.Mesh, values: Values, color: np.ndarray) -> None:
-    """Of its vertices; and shows the colours where attributes are shown."""
+    """Writes the values of a mesh's vertices, and shows the colours where attributes are shown."""
     write(mesh, "POINT", values, color)
     mesh.color_attributes.active_color = mesh.color_attributes[ids.CURVATURE_COLOR]
     mesh.update()

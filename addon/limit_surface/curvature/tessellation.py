@@ -22,7 +22,7 @@ from .values import CurvedSurface, Values
 if TYPE_CHECKING:
     import limitsurf
 
-_TESSELLATED = 0.3  # of the progress
+_TESSELLATED = 0.3  # the part of the progress that the tessellation takes
 
 
 class Tessellation:

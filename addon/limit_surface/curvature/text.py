@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The result in words."""
+"""The texts that report curvature."""
 
 import numpy as np
 
@@ -22,13 +22,13 @@ def lines(parts: list[Values], noun: str, radius: float, full: float, color: str
     averaged = np.count_nonzero(together(parts, "irregular") & found)
     return [
         f"Curvature at {np.count_nonzero(found):,} {noun}: {', '.join(said)}",
-        f"{averaged:,} at irregular vertices, averaged {radius:.4g} edges around",
+        f"{averaged:,} at irregular vertices, averaged at a distance of {radius:.4g} edges",
         f"Full color: {QUANTITIES[color]} {full:.4g}",
     ]
 
 
 def without(parts: list[Values], noun: str) -> str:
-    """What is to be warned of, if anything."""
+    """Returns a warning about places that have no curvature, or None."""
     found = together(parts, "exist")
     missing = np.count_nonzero(~found)
     if not missing:

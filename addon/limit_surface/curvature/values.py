@@ -12,13 +12,14 @@ from ..placing.rotations import WorldSpace, unit
 from ..reading import cage
 from ..tasks.job import Progress, slices
 
-PART = 1 << 16  # so many places are looked at at once: a progress bar moves, memory stays small
-NOWHERE = -1  # the face of what is on no surface
+# Places are evaluated in parts of this size, so that progress is shown and memory stays small.
+PART = 1 << 16
+NOWHERE = -1  # the face of places that are on no surface
 
 
 @dataclass(frozen=True)
 class Values:
-    """NaN where there is no curvature."""
+    """The curvature at some places. It is NaN where there is none."""
 
     mean: np.ndarray  # (n,)
     gaussian: np.ndarray
@@ -34,8 +35,10 @@ class Values:
 
 
 class CurvedSurface:
-    """`in_world`: as the surface lies in the world, else in its object's space. Subdivision does
-    not mind which positions it gets, curvature does: a stretched sphere has another one."""
+    """A surface whose curvature is asked for: as it lies in the world if `in_world`, else in its
+    object's space. The two differ: a stretched sphere has another curvature than a sphere, although
+    both come from the same subdivision.
+    """
 
     def __init__(self, found: cage.Cage, in_world: bool, radius: float) -> None:
         self.cage, self.in_world, self._radius = found, in_world, radius
@@ -46,15 +49,16 @@ class CurvedSurface:
         self._to_world = found.matrix
         self._is_inwards = False
         if in_world:
-            WorldSpace(found.matrix)  # refuses what is flattened to nothing
+            WorldSpace(found.matrix)  # refuses objects whose scale is 0 along an axis
             self._to_world = np.eye(4)
             self._is_inwards = found.is_mirrored
 
     def values(
         self, face: np.ndarray, uv: np.ndarray, matrix: np.ndarray, progress: Progress
     ) -> Values:
-        """At locations, of which those with face NOWHERE get none. Directions are told in the
-        space that `matrix` leads from to the world."""
+        """Returns the values at locations; those with face NOWHERE get none. Directions are given
+        in the space that `matrix` maps to the world.
+        """
         count = len(face)
         numbers = np.full((4, count), np.nan)
         directions = np.full((2, count, 3), np.nan)

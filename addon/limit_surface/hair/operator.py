@@ -38,7 +38,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
 
     length: FloatProperty(
         name="Length",
-        description="Length of the strands in world units, whatever the object's scale",
+        description="Length of the strands in world units, independent of the object's scale",
         default=0.1,
         min=0.0,
         soft_max=10.0,
@@ -46,7 +46,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
     )
     points: IntProperty(
         name="Points",
-        description="Control points per strand, root included",
+        description="Number of control points on each strand, including the root",
         default=5,
         min=2,
         max=1024,
@@ -54,8 +54,8 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
     )
     tilt: FloatVectorProperty(
         name="Tilt",
-        description="Angles by which strands lean from the surface's normal, towards growing u "
-        "and towards growing v of their face",
+        description="Angles by which strands are tilted away from the surface normal, in the "
+        "direction of growing u and of growing v of their face",
         size=2,
         default=(0.0, 0.0),
         min=-np.pi,
@@ -64,7 +64,8 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
     )
     random: FloatProperty(
         name="Random",
-        description="Largest angle by which a strand leans to a random side besides",
+        description="Largest random angle that is added to each strand's tilt, in a random "
+        "direction",
         default=0.0,
         min=0.0,
         max=np.pi,

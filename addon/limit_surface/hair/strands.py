@@ -11,9 +11,9 @@ from ..placing.rotations import WorldSpace
 @dataclass(frozen=True)
 class Shape:
     length: float  # world units
-    points: int  # per strand, the root included
+    points: int  # number of control points on each strand, including the root
     tilt: tuple[float, float]  # radians, towards u and v
-    random: float  # radians: the largest deviation
+    random: float  # the largest random angle, in radians
 
     def strands(
         self, root: np.ndarray, frame: np.ndarray, space: WorldSpace, rng: np.random.Generator
@@ -24,7 +24,7 @@ class Shape:
         return root[:, None, :] + steps * along[:, None, :]
 
     def _directions(self, frame: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-        """Unit vectors: normals, each turned towards its tilt by the tilt's size."""
+        """Returns unit vectors: the normals, each turned towards its tilt by the tilt's size."""
         tilt = self.tilt + _within_disc(len(frame), self.random, rng)
         angle = np.linalg.norm(tilt, axis=1, keepdims=True)
         sideways = np.einsum("nij,nj->ni", frame[:, :, :2], tilt)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Images as files, OpenEXR and PNG, through Blender's own image I/O.
 
-How deep a file is only a scene's settings can say, so a private one does. Its view is Standard:
-data and float images arrive in EXR files as they are, colors in PNG files as the screen has them.
+Only the settings of a scene can choose the bit depth of a file, so a private scene is used. Its
+view transform is Standard: data and float images are written to EXR files unchanged, and colors to
+PNG files as the screen shows them.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 from .. import ids
 from ..errors import RefusalError
 
-#: Color spaces whose float values are kept in files as they are in the buffer
+#: Color spaces whose float values are written to files unchanged
 UNCONVERTED = ("Non-Color", "Linear Rec.709", "Linear", "Raw", "Generic Data")
 
 
@@ -29,7 +30,7 @@ PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5) els
 @dataclass(frozen=True)
 class FileKind:
     file_format: str
-    depth: str  # bits a channel
+    depth: str  # bits for each channel
     suffix: str
 
     @property
@@ -45,7 +46,9 @@ KINDS = {"EXR_32": EXR_32, "EXR_16": EXR_16, "PNG_16": PNG_16, "PNG_8": PNG_8}
 
 
 def save_copy(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
-    """The image itself stays what it is. RefusalError where the file cannot be written."""
+    """Saves a copy of the image, which itself does not change. Raises RefusalError where the file
+    cannot be written.
+    """
     path = Path(path)
     check_folder(path.parent)
     try:
@@ -56,7 +59,7 @@ def save_copy(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
 
 
 def save_pixels(pixels: np.ndarray, path: str | Path, kind: FileKind) -> None:
-    """(height, width, 4): the numbers as they are; PNG files hold 0 to 1."""
+    """Saves pixels (height, width, 4) unchanged. PNG files hold values from 0 to 1."""
     height, width, _ = pixels.shape
     image = bpy.data.images.new(
         ids.TEMPORARY_IMAGE,
@@ -74,9 +77,13 @@ def save_pixels(pixels: np.ndarray, path: str | Path, kind: FileKind) -> None:
 
 
 def given_path(text: str) -> Path:
-    """RefusalError for paths that begin where a file lies that has not been saved."""
+    """Returns the absolute path. Raises RefusalError where a path is relative to the .blend file
+    and that has not been saved.
+    """
     if text.startswith("//") and not bpy.data.filepath:
-        raise RefusalError(f"{text} begins at the .blend file's folder: save that file first")
+        raise RefusalError(
+            f"{text} is relative to the .blend file, which has not been saved: save it first"
+        )
     return Path(bpy.path.abspath(text))
 
 
@@ -106,7 +113,9 @@ def _scene_that_saves(kind: FileKind, colorspace: str) -> Iterator[bpy.types.Sce
 
 
 def _first(settings: bpy.types.bpy_struct, name: str, wanted: str) -> str:
-    """What is wanted where Blender's color configuration has it, else what is set."""
+    """Returns the wanted choice where Blender's color configuration has it, else the current
+    one.
+    """
     with suppress(TypeError):
         setattr(settings, name, wanted)
     return getattr(settings, name)

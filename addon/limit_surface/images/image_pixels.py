@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Images as arrays of pixels: what can be read, and how to write it so that it can be undone.
+"""Images as arrays of pixels: reading them, and writing them so that it can be undone.
 
 Pixels are (height, width, 4) float32, the lowest row first, just as Blender's buffers hold them:
-- 8-bit images: in the image's own color space (sRGB mostly), 0 to 1, alpha straight;
-- float images, and 16-bit files: scene linear, colors multiplied by alpha; images of color space
-  Non-Color: the numbers themselves.
+- 8-bit images: in the image's own color space (mostly sRGB), 0 to 1, with straight alpha;
+- float images, and 16-bit files: scene linear, with colors multiplied by alpha; images of color
+  space Non-Color hold the numbers themselves.
 
-Blender's undo brings back everything about an image but its pixels, whatever the image's source.
-So operators change an image through `write` alone, from their `finish`: it keeps the pixels that
-were there, and `pixel_undo` puts them back. Files that have been saved stay.
+Blender's undo restores everything about an image but its pixels, whatever the image's source. So
+operators change an image only through `write`, and only in `finish`: it stores the pixels before
+the change, and `pixel_undo` restores them. Undo does not change files that have been saved.
 
-Tiles are told by their UDIM numbers, 1001 for the square from (0, 0) to (1, 1) on the map; images
-without tiles have the one.
+Tiles are identified by their UDIM numbers; 1001 is the square from (0, 0) to (1, 1) on the map. An
+image without tiles counts as one tile 1001.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ from .image_tiles import FIRST_TILE
 
 _WITHOUT_PIXELS = {
     "MOVIE": "is a movie",
-    "SEQUENCE": "is a sequence of images",
-    "VIEWER": "shows what is rendered",
+    "SEQUENCE": "is an image sequence",
+    "VIEWER": "is a render result or a viewer image",
 }
 
 
 @dataclass(frozen=True)
 class Description:
     name: str
-    width: int  # of the first tile
+    width: int  # the size of the first tile
     height: int
     channels: int
-    is_float: bool  # so scene linear, and multiplied by alpha
+    is_float: bool  # if true, pixels are scene linear and multiplied by alpha
     colorspace: str
     tiles: Mapping[int, tuple[int, int]]  # UDIM number -> width, height
 
@@ -51,9 +51,11 @@ class Description:
 
 
 def checked(image: bpy.types.Image | None, *, to_write: bool = False) -> Description:
-    """RefusalError where there are no pixels, or they cannot be changed. Reads the file."""
+    """Describes an image, whose file is read for this. Raises RefusalError where there are no
+    pixels, or they cannot be changed.
+    """
     if image is None:
-        raise RefusalError("No image has been chosen")
+        raise RefusalError("No image is chosen")
     whose = f"The image {image.name}"
     if image.source in _WITHOUT_PIXELS:
         raise RefusalError(f"{whose} {_WITHOUT_PIXELS[image.source]}, which is not supported")
@@ -62,7 +64,7 @@ def checked(image: bpy.types.Image | None, *, to_write: bool = False) -> Descrip
     if to_write and not image.is_editable:
         raise RefusalError(f"{whose} is linked from another file and cannot be changed")
     if not len(image.pixels):
-        raise RefusalError(f"{whose} has no pixels: is its file missing?")
+        raise RefusalError(f"{whose} has no pixels: check that its file exists")
     tiles = {FIRST_TILE: tuple(image.size)}
     if image.source == "TILED":
         tiles = image_tiles.sizes(image)
@@ -79,7 +81,9 @@ def checked(image: bpy.types.Image | None, *, to_write: bool = False) -> Descrip
 
 
 def read(image: bpy.types.Image, tile: int = FIRST_TILE) -> np.ndarray:
-    """(height, width, 4) float32. Missing channels: grey in all three, alpha 1."""
+    """Returns pixels (height, width, 4) as float32. An image with one color channel gives grey;
+    without an alpha channel alpha is 1.
+    """
     if tile not in checked(image).tiles:
         raise RefusalError(f"The image {image.name} has no tile {tile}")
     return image_tiles.read_all(image)[tile]
@@ -92,11 +96,14 @@ def write(
     *,
     is_new: bool = False,
 ) -> None:
-    """Of the whole tile, or of several: a mapping of their numbers to their pixels. `is_new`: the
-    image has been made by the same operator, so that undo removes it; it is packed, too.
+    """Writes the pixels of a whole tile, or of several tiles as a mapping from their numbers to
+    their pixels. `is_new` means that the same operator has made the image, so that undo removes it;
+    such an image is packed, too.
 
-    Takes part in undo and redo. Marks the image as changed, so that Blender asks to save it; tiled
-    images are packed instead, as their files must not change behind the user's back."""
+    The change takes part in undo and redo. The image is marked as changed, so that Blender asks to
+    save it; tiled images are packed instead, because their files must not change without the user's
+    knowledge.
+    """
     described = checked(image, to_write=True)
     given = pixels if isinstance(pixels, Mapping) else {tile: pixels}
     for number, values in given.items():
@@ -106,7 +113,7 @@ def write(
         if values.shape != (height, width, 4):
             raise ValueError(f"pixels have shape {values.shape}; expected ({height}, {width}, 4)")
     if is_new:
-        # Left as it is, a generated image would lose its pixels to any change of its settings.
+        # A generated image would lose its pixels at any change of its settings.
         image_tiles.write_some(image, given)
         image.pack()
     else:
@@ -117,8 +124,9 @@ def write(
 def new(
     name: str, width: int, height: int, *, is_float: bool, is_data: bool, alpha: bool = True
 ) -> bpy.types.Image:
-    """Black, and transparent if it has alpha. Saved with the .blend file, like all that is made
-    here, whether anything uses it or not."""
+    """Makes an image that is black, and transparent if it has alpha. It is saved with the .blend
+    file, even if nothing uses it, like everything that operators make here.
+    """
     image = bpy.data.images.new(
         name, width, height, alpha=alpha, float_buffer=is_float, is_data=is_data
     )
@@ -134,15 +142,17 @@ def new_tiled(
     is_float: bool,
     is_data: bool,
 ) -> bpy.types.Image:
-    """An image of the given tiles, packed."""
+    """Makes a packed image of the given tiles."""
     image = image_tiles.new(name, tiles, is_float=is_float, is_data=is_data)
     image.use_fake_user = True
     return image
 
 
 def save(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
-    """To a file, or of a tiled image to one for each tile: <UDIM> in the path stands for its
-    number. From then on that is the image's file. RefusalError where it cannot be written."""
+    """Saves the image to a file, or a tiled image to one file for each tile: <UDIM> in the path
+    stands for the tile's number. From then on that is the image's file. Raises RefusalError where
+    it cannot be written.
+    """
     if image.source == "TILED":
         for number, pixels in image_tiles.read_all(image).items():
             image_files.save_pixels(pixels, str(path).replace("<UDIM>", str(number)), kind)
@@ -165,7 +175,7 @@ def attach(image: bpy.types.Image, path: str | Path) -> None:
 
 
 def load(path: str | Path, tiles: list[int]) -> bpy.types.Image:
-    """An image of files that hold data; with <UDIM> in the path a tiled one."""
+    """Loads an image from files that hold data; with <UDIM> in the path it is a tiled image."""
     if "<UDIM>" in str(path):
         image = image_tiles.opened(str(path), tiles[0])
     else:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pixels of images with and without UDIM tiles.
 
-Of a tiled image Blender gives scripts the first tile alone. The others are had through their files,
-or what is packed of them: so a tiled image has to be saved or packed before its tiles can be read.
-To change one, all its tiles are saved in a temporary folder and packed from there; the image keeps
-its path, and what lies there stays.
+Blender gives scripts only the first tile of a tiled image. The others are read from their files, or
+from what the image has packed, so a tiled image has to be saved or packed before its tiles can be
+read. To change one, all its tiles are saved in a temporary folder and packed from there. The image
+keeps its path, and the files at that path do not change.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ FIRST_TILE = 1001
 
 
 def sizes(image: bpy.types.Image) -> dict[int, tuple[int, int]]:
-    """Of a tiled image's tiles, those that have pixels."""
+    """Returns the sizes of those tiles of a tiled image that have pixels."""
     return {tile.number: tuple(tile.size) for tile in image.tiles if all(tile.size)}
 
 
 def read_all(image: bpy.types.Image) -> dict[int, np.ndarray]:
-    """(height, width, 4) float32 each, by the tiles' numbers."""
+    """Returns the pixels (height, width, 4) of all tiles as float32, by the tiles' numbers."""
     if image.source != "TILED":
         return {FIRST_TILE: _pixels(image)}
     _check_readable(image)
@@ -43,8 +43,11 @@ def read_all(image: bpy.types.Image) -> dict[int, np.ndarray]:
 
 
 def write_some(image: bpy.types.Image, tiles: Mapping[int, np.ndarray]) -> None:
-    """The others stay. Nothing is kept for undo: that is what image_pixels.write does."""
-    image.update_tag()  # or a viewport that has nothing else to draw goes on showing the old ones
+    """Writes some tiles and leaves the others as they are. Nothing is stored for undo, which
+    image_pixels.write does.
+    """
+    # without this, a viewport that has nothing else to draw would go on showing the old pixels
+    image.update_tag()
     if image.source != "TILED":
         channels = _narrowed(tiles[FIRST_TILE], image.channels)
         image.pixels.foreach_set(np.ascontiguousarray(channels, np.float32).ravel())
@@ -66,7 +69,7 @@ def write_some(image: bpy.types.Image, tiles: Mapping[int, np.ndarray]) -> None:
 def new(
     name: str, tiles: Mapping[int, np.ndarray], *, is_float: bool, is_data: bool
 ) -> bpy.types.Image:
-    """A packed image of these tiles."""
+    """Makes a packed image of these tiles."""
     with _saved(tiles, is_float) as files:
         image = opened(files, min(tiles))
         if is_data:
@@ -80,7 +83,9 @@ def new(
 
 
 def opened(path: str, tile: int) -> bpy.types.Image:
-    """The tiled image of the files whose path has <UDIM> in place of a number; `tile` is one."""
+    """Opens the tiled image of the files whose path has <UDIM> in place of a number; `tile` is one
+    of its tiles.
+    """
     image = bpy.data.images.load(path.replace("<UDIM>", str(tile)))
     image.source = "TILED"
     image.filepath = path
@@ -91,7 +96,7 @@ def _pixels(image: bpy.types.Image) -> np.ndarray:
     width, height = image.size
     flat = np.empty(len(image.pixels), np.float32)
     if not flat.size:
-        raise RefusalError(f"The image {image.name} has no pixels: is its file missing?")
+        raise RefusalError(f"The image {image.name} has no pixels: check that its file exists")
     image.pixels.foreach_get(flat)
     channels = flat.reshape(height, width, -1)
     if channels.shape[2] == 4:
@@ -104,7 +109,9 @@ def _pixels(image: bpy.types.Image) -> np.ndarray:
 
 
 def _narrowed(pixels: np.ndarray, channels: int) -> np.ndarray:
-    """Grey and alpha are of the first and the last; the others begin with the first."""
+    """Returns the channels that the file keeps: an image with one or two channels takes grey from
+    the first, and alpha from the last one.
+    """
     return pixels[:, :, [0, 3]] if channels == 2 else pixels[:, :, :channels]
 
 
@@ -150,7 +157,7 @@ def _loaded(path: str) -> Iterator[bpy.types.Image]:
 
 @contextmanager
 def _saved(tiles: Mapping[int, np.ndarray], is_float: bool) -> Iterator[str]:
-    """Files of the numbers as they are; gives their common path, with <UDIM>."""
+    """Saves the tiles' numbers unchanged in files, and returns their common path, with <UDIM>."""
     kind = image_files.EXR_32 if is_float else image_files.PNG_8
     with TemporaryDirectory(dir=bpy.app.tempdir) as folder:
         for number, pixels in tiles.items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where operators put the materials that they make."""
+"""Material slots into which operators put the materials that they make."""
 
 import bpy
 
@@ -7,7 +7,9 @@ from ..errors import RefusalError
 
 
 def check(ob: bpy.types.Object) -> None:
-    """RefusalError where `put` would change a linked mesh: the file would not keep that."""
+    """Raises RefusalError where `put` would change a linked mesh, because the file would not store
+    that change.
+    """
     if not (ob.data.is_editable or _takes_its_own(ob)):
         raise RefusalError(
             f"{ob.name} cannot be given a material: its mesh {ob.data.name} is linked from another "
@@ -16,8 +18,9 @@ def check(ob: bpy.types.Object) -> None:
 
 
 def put(ob: bpy.types.Object, material: bpy.types.Material) -> None:
-    """Into the active slot where that is empty, else into a new one, which all faces take only if
-    there was none before."""
+    """Puts the material into the active slot where that is empty, else into a new slot. Faces take
+    the new slot only if there was none before.
+    """
     if ob.active_material is None and ob.material_slots:
         ob.active_material = material
         return

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """UV maps that overlap themselves: several places of the surface share texels.
 
-Subdivision folds many a good map a little, at concave corners of its islands. That is told of;
-a map whose islands lie upon each other is refused, unless it is asked for.
+Subdivision folds many good maps a little, at concave corners of their islands. Operators warn of
+such folds. They refuse a map whose islands lie on each other, unless the user allows it.
 """
 
 from __future__ import annotations
@@ -16,16 +16,17 @@ from ..errors import RefusalError
 if TYPE_CHECKING:
     import limitsurf
 
-MOST_FOLDED = 1 / 500  # of the texels that a tile's map covers
+# the share of a tile's covered texels up to which an overlap counts as a fold
+MOST_FOLDED = 1 / 500
 
 
 def check(texels: limitsurf.Texels, where: str) -> None:
-    """RefusalError where the map does more than fold."""
+    """Raises RefusalError where the map overlaps itself by more than folds."""
     count, covered = overlapping(texels), int(np.count_nonzero(texels.inside))
     if count > MOST_FOLDED * covered:
         raise RefusalError(
             f"The UV map overlaps itself at {count:,} of {covered:,} texels{where}: set Overlap to "
-            "Allow to take the first face there"
+            "Allow to use the face with the lowest number there"
         )
 
 
@@ -34,8 +35,8 @@ def overlapping(texels: limitsurf.Texels) -> int:
 
 
 def told(count: int) -> str:
-    """A warning."""
+    """Returns a warning about the folds."""
     return (
-        f"the UV map overlaps itself at {count:,} texels: they belong to the face with the lowest "
+        f"the UV map overlaps itself at {count:,} texels: they show the face with the lowest "
         "number there"
     )

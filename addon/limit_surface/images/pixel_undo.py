@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Undo and redo of pixels that operators have written.
 
-Blender's undo steps hold an image's properties, but not its pixels. So each write leaves a mark in
-a property of the image, and keeps the pixels before and after it in Blender's temporary folder:
-behind an undo or a redo the mark says which of them the image has to show. Where the mark is still
-the same Blender may have dropped pixels that were not saved: then it shows those again.
+Blender's undo steps hold an image's properties, but not its pixels. So each write stores a mark in
+a property of the image, and saves the pixels before and after it in Blender's temporary folder.
+After an undo or a redo the mark tells which of these pixels the image has to show. Where the mark
+has not changed, Blender may still have dropped pixels that were not saved; then the image gets them
+again.
 """
 
 from __future__ import annotations
@@ -21,14 +22,14 @@ import numpy as np
 from .. import ids
 from . import image_tiles
 
-MOST_KEPT = 8 << 30  # bytes: the oldest are dropped beyond
+MOST_KEPT = 8 << 30  # in bytes; the oldest pixels are dropped where more would be stored
 
-_GONE = "gone"  # no mark: the image is not there at this moment of the history
+_GONE = "gone"  # without a mark: the image does not exist at this point of the undo history
 
 
 @dataclass(frozen=True)
 class _Kept:
-    files: Mapping[int, Path]  # by tile
+    files: Mapping[int, Path]  # the pixels by tile
 
     @classmethod
     def of(cls, image: bpy.types.Image, mark: str) -> _Kept:
@@ -54,7 +55,7 @@ class _Kept:
 
 @dataclass(frozen=True)
 class _Write:
-    onto: str | None  # the mark that the image had
+    onto: str | None  # the mark that the image had before the write
     before: _Kept
     after: _Kept
 
@@ -65,20 +66,20 @@ class _Write:
 
 @dataclass(frozen=True)
 class _Shown:
-    """What an image holds."""
+    """The mark and the pixels that an image has now."""
 
     mark: str | None
     kept: _Kept | None
 
 
-_writes: dict[str, _Write] = {}  # by mark, the oldest first
-_shown: dict[int, _Shown] = {}  # by the image's session
+_writes: dict[str, _Write] = {}  # the writes by mark, the oldest first
+_shown: dict[int, _Shown] = {}  # what is shown, by the image's session_uid
 _unsaved: set[int] = set()  # images that held unsaved pixels before an undo or a redo
 
 
 @contextmanager
 def recorded(image: bpy.types.Image) -> Iterator[None]:
-    """Around a change of the image's pixels. If it fails the pixels are as they were."""
+    """Records a change of the image's pixels. If the change fails, the pixels are restored."""
     mark, onto = uuid4().hex, image.get(ids.PIXELS_MARK)
     before = _Kept.of(image, f"{mark}_before")
     try:
@@ -127,8 +128,9 @@ def _follow(*_scene: object) -> None:
 
 
 def _pixels_at(mark: str | None, shown: str | None) -> _Kept | None:
-    """From the state of one mark to that of another: back to before the first write between them,
-    or ahead to after the last."""
+    """Returns the pixels that lead from the state of one mark to that of another: those before the
+    first write between them to go back, those after the last one to go ahead.
+    """
     while shown in _writes:
         write = _writes[shown]
         if write.onto == mark:

@@ -28,15 +28,17 @@ from .image_pixels import FIRST_TILE
 if TYPE_CHECKING:
     import limitsurf
 
-PART = 1 << 18  # texels at once: a progress bar moves, memory stays small
+# Texels are evaluated in parts of this size, so that progress is shown and memory stays small.
+PART = 1 << 18
 
-BYTES_PER_TEXEL = 40  # of its place on the surface, measured at the peak
-BYTES_PER_PIXEL = 32  # of each image, what it is made of, and packed
+BYTES_PER_TEXEL = 40  # bytes that a texel's place on the surface takes, measured at the peak
+BYTES_PER_PIXEL = 32  # bytes that a texel of each image takes, with its source and its packed copy
 
 
 def read_cage(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, name: str = "") -> cage.Cage:
-    """The object's cage with the UV map of that name, or the active one. RefusalError where there
-    is none, or it has no area."""
+    """Reads the object's cage with the UV map of that name, or the active one. Raises RefusalError
+    where there is none, or it has no area.
+    """
     with cage.opened(ob, depsgraph) as (found, mesh):
         if name:
             found = replace(found, uv_map=_named(ob, mesh, name), without_uv_map="")
@@ -45,7 +47,7 @@ def read_cage(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, name: str = 
 
 
 def check_uv_map(found: cage.Cage, whose: str) -> None:
-    """RefusalError where the cage has no UV map, or none of its faces has an area there."""
+    """Raises RefusalError where the cage has no UV map, or none of its faces has an area on it."""
     if found.uv_map is None:
         raise RefusalError(f"{whose}: {found.without_uv_map or 'there is no UV map'}")
     if faces_without_area(found) == len(found.face_sizes):
@@ -53,7 +55,7 @@ def check_uv_map(found: cage.Cage, whose: str) -> None:
 
 
 def faces_without_area(found: cage.Cage) -> int:
-    """How many of the cage's faces are no more than a line on its UV map."""
+    """Counts the faces of the cage that are a line or a point on its UV map."""
     at = found.chosen_uv_map.values[found.chosen_uv_map.indices]
     starts = ragged_rows.starts(found.face_sizes)
     following = ragged_rows.following(found.face_sizes)
@@ -63,7 +65,7 @@ def faces_without_area(found: cage.Cage) -> int:
 
 
 def uv_data(surface: limitsurf.LimitSurface, found: cage.Cage, whose: str) -> limitsurf.SurfaceData:
-    """The cage's UV map on the limit surface, by the rules of its modifier."""
+    """Returns the cage's UV map on the limit surface, by the rules of its modifier."""
     check_uv_map(found, whose)
     return surface.face_varying(
         found.chosen_uv_map.values, found.chosen_uv_map.indices, found.rules.uv_interpolation
@@ -79,9 +81,10 @@ def texels(
     allow_overlap: bool = False,
     progress: Progress | None = None,
 ) -> limitsurf.Texels:
-    """Of an image of so many texels across and up, for a UDIM tile. There may be none: whether that
-    is wrong depends on what other tiles hold. RefusalError where the map overlaps itself by more
-    than folds, unless that is allowed."""
+    """Returns the texels of an image of so many texels across and up, for a UDIM tile. There may be
+    none: only the caller knows whether other tiles hold some. Raises RefusalError where the map
+    overlaps itself by more than folds, unless that is allowed.
+    """
     width, height = size
     found = uv_data.rasterize(
         width, height, tile=tile_corner(tile), margin=margin, progress=progress
@@ -92,12 +95,12 @@ def texels(
 
 
 def tile_corner(tile: int) -> tuple[int, int]:
-    """The lower left corner of a UDIM tile on the map."""
+    """Returns the lower left corner of a UDIM tile on the map."""
     return (tile - FIRST_TILE) % 10, (tile - FIRST_TILE) // 10
 
 
 def tiles_of(found: cage.Cage) -> list[int]:
-    """The UDIM tiles that the UV map's faces touch, as far as UDIM numbers go."""
+    """Returns the UDIM tiles that the UV map's faces touch and that have a UDIM number."""
     at = found.chosen_uv_map.values[found.chosen_uv_map.indices]
     starts = ragged_rows.starts(found.face_sizes)
     low = np.floor(np.minimum.reduceat(at, starts)).astype(int)
@@ -113,13 +116,12 @@ def tiles_of(found: cage.Cage) -> list[int]:
 
 
 def parts(count: int, progress: Progress) -> Iterator[slice]:
-    """Gives `count` texels piece by piece, and tells the progress after each piece."""
+    """Yields `count` texels in parts, and reports the progress after each part."""
     return slices(count, PART, progress)
 
 
 def check_size(width: int, height: int, tiles: int, images: int, allow_large: bool) -> None:
-    """TooLargeError where the images would take more memory than one expects, unless that is
-    allowed."""
+    """Raises TooLargeError where the images would take much memory, unless that is allowed."""
     pixels = width * height
     needed = pixels * BYTES_PER_TEXEL + pixels * tiles * images * BYTES_PER_PIXEL
     if needed > LARGE_MEMORY and not allow_large:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all operators that make textures share: properties, and the dialog that shows them."""
+"""The parts that all operators share which make textures: properties, and the dialog that shows
+them.
+"""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
@@ -10,7 +12,7 @@ LARGEST = 16384  # texels along a side
 
 
 class TextureProperties:
-    """Mixin for the operators' own properties."""
+    """Mixin with the properties that these operators share."""
 
     width: IntProperty(
         name="Width",
@@ -73,10 +75,10 @@ class TextureProperties:
 
 
 class TextureOperator(WatchedOperator):
-    """Mixin: users get a dialog of the operator's properties before it runs.
+    """Mixin that opens a dialog with the operator's properties before it runs.
 
-    Its place among the steps of an operator stands in `tasks/watched_operator.py`. A subclass has
-    TextureProperties, too, and lays its properties out in `draw_properties`.
+    `tasks/watched_operator.py` says where this stands among the steps of an operator. A subclass
+    also inherits from TextureProperties, and lays its properties out in `draw_properties`.
     """
 
     bl_options = {"REGISTER", "UNDO"}

@@ -12,13 +12,14 @@ from ..reading import attributes, ragged_rows, vertex_weights
 from . import cage_attributes
 from .tessellation import Made
 
-_SAME = 1e-4  # components of normals that differ by less
-# From there on normals can be stored as they are; before, as angles of 16 bits.
+_SAME = 1e-4  # components of normals that differ by less count as equal
+# From this version on normals can be stored as vectors; before, they are stored as angles of 16
+# bits.
 _FREE_NORMALS = bpy.app.version >= (4, 5)
 
 
 def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bpy.types.Mesh:
-    """Without locations; nothing stays behind if it fails."""
+    """Builds the mesh, without its locations. If that fails, no mesh is left in the file."""
     mesh = bpy.data.meshes.new(ids.LIMIT_MESH_OBJECT)
     try:
         of = made.tessellation
@@ -53,14 +54,14 @@ def store_locations(mesh: bpy.types.Mesh, made: Made) -> None:
 
 
 def copy_object_materials(source: bpy.types.Object, target: bpy.types.Object) -> None:
-    """Those that belong to the object rather than to its mesh."""
+    """Copies the materials that belong to the object rather than to its mesh."""
     for own, slot in zip(source.material_slots, target.material_slots, strict=True):
         if own.link == "OBJECT":
             slot.link, slot.material = "OBJECT", own.material
 
 
 def _activate_as(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
-    """The same UV maps and colours are active, and rendered."""
+    """Makes the same UV maps and colours active, and active for rendering."""
     for layer in source.uv_layers:
         made = mesh.uv_layers.get(layer.name)
         if made and layer.active_render:
@@ -79,10 +80,12 @@ def _activate_as(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
 
 
 def _set_normals(mesh: bpy.types.Mesh, normals: np.ndarray, face_sizes: np.ndarray) -> None:
-    """Edges are sharp where they part normals: Cycles keeps several at a vertex only there."""
+    """Sets the custom normals. Edges at which normals differ become sharp, because Cycles keeps
+    several normals at a vertex only there.
+    """
     edge = attributes.read(mesh, ids.CORNER_EDGE)
     part = _parting(edge, normals, normals[ragged_rows.following(face_sizes)], len(mesh.edges))
-    if ids.SHARP_EDGE in mesh.attributes:  # the cage's
+    if ids.SHARP_EDGE in mesh.attributes:  # sharp edges of the cage
         part |= attributes.read(mesh, ids.SHARP_EDGE)
     attributes.write(mesh, ids.SHARP_EDGE, "BOOLEAN", "EDGE", part)
     if _FREE_NORMALS:
@@ -95,8 +98,9 @@ def _set_normals(mesh: bpy.types.Mesh, normals: np.ndarray, face_sizes: np.ndarr
 def _parting(
     edge: np.ndarray, at_corner: np.ndarray, at_next: np.ndarray, count: int
 ) -> np.ndarray:
-    """Which edges have polygons on their two sides whose normals differ at an end. `edge` leads
-    from each corner to the next."""
+    """Returns which edges have polygons on their two sides whose normals differ at an end. `edge`
+    holds for each corner the edge that leads to the next one.
+    """
     order = np.argsort(edge, kind="stable")
     paired = edge[order[1:]] == edge[order[:-1]]
     one, other = order[:-1][paired], order[1:][paired]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Attributes of a cage, as its tessellation gets them.
+"""Attributes of a cage, carried over to its tessellation.
 
-As Blender's Subdivision Surface has it: numbers, vectors and colours are linear on each part of a
-face, UV maps follow the modifier's rule, faces hand theirs on, and edges to the edges on them. What
-cannot be mixed (whole numbers, truth values, rotations) is that of the nearest vertex or corner.
+They are interpolated as by Blender's Subdivision Surface: numbers, vectors and colours are linear
+on each part of a face, UV maps follow the modifier's rule, the parts of a face take the face's
+value, and the parts of an edge take the edge's. Types that cannot be mixed (integers, Booleans,
+rotations) take the value of the nearest vertex or corner.
 """
 
 from __future__ import annotations
@@ -25,9 +26,10 @@ if TYPE_CHECKING:
 
 LINEAR = ("FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR")
 SEAM_BEFORE_5 = ".uv_seam"
-#: Made anew with the mesh, or by its normals
+#: Attributes that are made with the new mesh, or by its normals
 _OWN = ("position", "custom_normal", "sharp_face")
-_PART = 1 << 18  # rows evaluated at once: a progress bar moves, memory stays small
+# Rows are evaluated in parts of this size, so that progress is shown and memory stays small.
+_PART = 1 << 18
 
 
 class Attribute(NamedTuple):
@@ -39,16 +41,16 @@ class Attribute(NamedTuple):
 
 @dataclass
 class CageAttributes:
-    """What a cage carries besides its shape, and what of it cannot be carried over."""
+    """The attributes of a cage, and the reasons why some of them cannot be carried over."""
 
     attributes: list[Attribute] = field(default_factory=list)
     uv_maps: list[uv_map.UvMap] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    corner_edge: np.ndarray | None = None  # of the cage
+    corner_edge: np.ndarray | None = None  # the edges of the cage
 
 
 def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
-    """From the mesh that a cage is read from."""
+    """Reads the attributes from the mesh that the cage is read from."""
     found = CageAttributes(corner_edge=attributes.read(mesh, ids.CORNER_EDGE))
     uv_names = set(mesh.uv_layers.keys())
     for attribute in mesh.attributes:
@@ -58,7 +60,9 @@ def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
         if name in _OWN and not (name == "sharp_face" and with_sharp_faces):
             continue
         if kind not in attributes.LAYOUTS:
-            found.notes.append(f"{name} is not carried over: {kind.lower()} attributes are not")
+            found.notes.append(
+                f"{name} is not carried over: attributes of type {kind.lower()} are not supported"
+            )
             continue
         values = _read(attribute)
         if kind in LINEAR and attribute.domain in ("POINT", "CORNER"):
@@ -73,7 +77,7 @@ def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
 
 
 def write(mesh: bpy.types.Mesh, attribute: Attribute) -> None:
-    """Onto a mesh that has no such attribute."""
+    """Writes the attributes to a mesh that does not have them yet."""
     made = mesh.attributes.get(attribute.name) or mesh.attributes.new(
         attribute.name, attribute.kind, attribute.domain
     )
@@ -95,7 +99,7 @@ class Carrier:
     def attributes(
         self, uv_interpolation: rules.Interpolation, progress: Progress
     ) -> Iterator[Attribute]:
-        """All but those of edges. UV maps come last, as FLOAT2 of CORNER."""
+        """Evaluates all attributes but those of edges. UV maps come last, as FLOAT2 of CORNER."""
         steps = 3 + len(self._cage.uv_maps)
         yield from self._linear("POINT")
         progress(1 / steps)
@@ -108,7 +112,9 @@ class Carrier:
             progress((3 + i) / steps)
 
     def on_edges(self, mesh: bpy.types.Mesh) -> Iterator[Attribute]:
-        """Of the tessellation's edges, numbered as the mesh has them."""
+        """Evaluates the attributes on the tessellation's edges, in the order in which the mesh
+        numbers them.
+        """
         some = [each for each in self._cage.attributes if each.domain == "EDGE"]
         if not some:
             return
@@ -125,7 +131,9 @@ class Carrier:
             yield each._replace(values=values)
 
     def weights(self, weights: np.ndarray) -> np.ndarray:
-        """(points, groups) for those of the cage's vertices, (vertices, groups)."""
+        """Returns the weights (points, groups) for those of the cage's vertices (vertices,
+        groups).
+        """
         return self._at_points(self._surface.varying(weights))
 
     def _linear(self, domain: str) -> Iterator[Attribute]:
@@ -182,5 +190,7 @@ def _read(attribute: bpy.types.Attribute) -> np.ndarray:
 
 
 def _key(kind: str) -> str:
-    """Colours of 8 bits are mixed as they are stored."""
+    """Returns the key of an attribute's type. Colours of 8 bits are interpolated in the form in
+    which they are stored.
+    """
     return "color_srgb" if kind == "BYTE_COLOR" else attributes.LAYOUTS[kind].key

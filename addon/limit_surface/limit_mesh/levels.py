@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How finely each face of a cage is divided."""
+"""The level to which each face of a cage is divided."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MOST = 8
 
-#: From the surface as it lies in the world to levels (f,), and what there is to say about them
+#: A function from the surface as it lies in the world to levels (f,) and warnings about them
 Choice = Callable[["limitsurf.LimitSurface", Progress], tuple[np.ndarray, str]]
 
 
@@ -34,7 +34,9 @@ def of_faces(values: np.ndarray) -> Choice:
 def within(tolerance: float, most: int) -> Choice:
     def choose(surface: limitsurf.LimitSurface, progress: Progress) -> tuple[np.ndarray, str]:
         found = surface.levels_within(tolerance, most, progress=progress)
-        return found.levels, _falling_short(found, tolerance, most, "deviate by more")
+        return found.levels, _falling_short(
+            found, tolerance, most, "deviate by more than the tolerance"
+        )
 
     return choose
 
@@ -42,21 +44,21 @@ def within(tolerance: float, most: int) -> Choice:
 def of_pixels(view: PixelView, pixels: float, most: int) -> Choice:
     def choose(surface: limitsurf.LimitSurface, progress: Progress) -> tuple[np.ndarray, str]:
         found = surface.levels_of_length(pixels, view.matrix, view.nearest, most, progress=progress)
-        return found.levels, _falling_short(found, pixels, most, "have longer edges")
+        return found.levels, _falling_short(found, pixels, most, "have edges that are too long")
 
     return choose
 
 
 @dataclass(frozen=True)
 class PixelView:
-    """From the world to pixels of the render, as homogeneous coordinates."""
+    """The matrix from the world to pixels of the render, in homogeneous coordinates."""
 
     matrix: np.ndarray  # (4, 4)
-    nearest: float  # w of what is just seen
+    nearest: float  # w of the nearest visible points
 
 
 def seen_by_camera(context: bpy.types.Context) -> PixelView:
-    """RefusalError where the scene has no camera that can be looked through so."""
+    """Raises RefusalError where the scene has no camera that can be used."""
     ob, render = camera.find(context, ""), context.scene.render
     part = render.resolution_percentage / 100
     size = (render.resolution_x * part, render.resolution_y * part)
@@ -76,8 +78,9 @@ def named(
     ob: bpy.types.Object,
     weights: Mapping[str, np.ndarray],
 ) -> Choice:
-    """What the mesh has of that name: an attribute of its faces, or a vertex group, whose weights
-    are parts of `levels` and of which each face takes the largest."""
+    """Returns the levels that an attribute of faces, or a vertex group, of that name gives. Weights
+    of a group are parts of `levels`, and each face takes the largest weight of its vertices.
+    """
     if name in mesh.attributes or name not in weights:
         return of_faces(_whole_levels(mesh, name, ob))
     if not weights[name].any():
@@ -91,7 +94,7 @@ def _whole_levels(mesh: bpy.types.Mesh, name: str, ob: bpy.types.Object) -> np.n
     attribute = mesh.attributes.get(name)
     if attribute is None:
         raise RefusalError(
-            f"{ob.name} has no attribute of faces, and no vertex group, named {name!r}"
+            f"{ob.name} has neither a face attribute nor a vertex group named {name!r}"
         )
     if attribute.domain != "FACE" or attribute.data_type not in element_numbers.TYPES:
         raise RefusalError(
@@ -109,7 +112,9 @@ def _whole_levels(mesh: bpy.types.Mesh, name: str, ob: bpy.types.Object) -> np.n
 
 
 def _allowed(surface: limitsurf.LimitSurface, levels: np.ndarray) -> np.ndarray:
-    """Faces other than quads are divided once at least."""
+    """Returns the levels with at least 1 on faces other than quads, which are divided once at
+    least.
+    """
     return np.maximum(levels, surface.mesh.face_sizes != 4)
 
 

@@ -31,26 +31,43 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
     bl_idname = ids.LIMIT_MESH
     bl_label = "Mesh on Limit Surface"
     bl_options = {"REGISTER", "UNDO"}
-    too_large = "Not enough memory for so many polygons"
+    too_large = "There is not enough memory for so many polygons"
     cancelled = "Cancelled: no mesh was made"
 
     level_source: EnumProperty(
         name="Levels From",
-        description="What decides how finely each face is divided",
+        description="Method that chooses how finely each face is divided",
         items=(
-            ("UNIFORM", "Uniform", "All faces alike", "", 0),
-            ("ATTRIBUTE", "Attribute", "A number on each face, or a vertex group", "", 1),
-            ("FLATNESS", "Flatness", "Each face as finely as its polygons have to be to stay close "
-             "to the surface", "", 2),
-            ("PIXELS", "Pixels", "Each face as finely as its edges have to be to look short from "
-             "the scene's camera", "", 3),
+            ("UNIFORM", "Uniform", "Divide all faces equally", "", 0),
+            (
+                "ATTRIBUTE",
+                "Attribute",
+                "Read each face's level from a face attribute or a vertex group",
+                "",
+                1,
+            ),
+            (
+                "FLATNESS",
+                "Flatness",
+                "Divide each face until its polygons are close to the surface",
+                "",
+                2,
+            ),
+            (
+                "PIXELS",
+                "Pixels",
+                "Divide each face until its edges are short in the image of the scene's camera",
+                "",
+                3,
+            ),
         ),
         default="UNIFORM",
-    )  # fmt: skip
+    )
     levels: IntProperty(
         name="Levels",
-        description="A quad becomes 2 to the power of so many polygons a side; faces other than "
-        "quads are divided once at least. With a vertex group: where the weight is 1",
+        description="Number of subdivisions. At level L a quad has 2^L polygons along each side; "
+        "other faces are divided at least once. With a vertex group this is the level where the "
+        "weight is 1",
         default=3,
         min=0,
         max=levels.MOST,
@@ -58,12 +75,12 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
     )
     level_attribute: StringProperty(
         name="Attribute",
-        description="Name of a numeric attribute of faces that holds their levels, or of a vertex "
-        "group: each face has the largest weight of its vertices, times Levels",
+        description="Name of a numeric face attribute that holds the levels, or of a vertex "
+        "group. With a group, a face's level is the largest weight of its vertices, times Levels",
     )
     tolerance: FloatProperty(
         name="Tolerance",
-        description="How far polygons may be from the surface, in world units",
+        description="Largest distance of the polygons from the surface, in world units",
         default=0.001,
         min=1e-7,
         soft_max=0.1,
@@ -72,7 +89,7 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
     )
     pixels: FloatProperty(
         name="Pixels",
-        description="How long edges may be in the render",
+        description="Largest length of edges in the render, in pixels",
         default=4.0,
         min=0.1,
         soft_max=64.0,
@@ -80,21 +97,22 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
     )
     most_levels: IntProperty(
         name="Most Levels",
-        description="No face is divided more often, whatever it would need",
+        description="Level at which faces are not divided further, even if they do not reach the "
+        "tolerance or the length",
         default=6,
         min=1,
         max=levels.MOST,
     )
     exact_normals: BoolProperty(
         name="Exact Normals",
-        description="Store the surface's own normals as custom normals, those of each side at "
-        "creases",
+        description="Store the exact normals of the surface as custom normals. At creases each "
+        "side keeps its own",
         default=True,
     )
     store_locations: BoolProperty(
         name="Store Locations",
-        description="Store each vertex's place on the surface, as attributes limit_face and "
-        "limit_uv",
+        description="Store the location of each vertex on the surface, as attributes limit_face "
+        "and limit_uv",
         default=False,
     )
     hide_original: BoolProperty(
@@ -104,13 +122,13 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
     )
     allow_large: BoolProperty(
         name="Allow Large Counts",
-        description="Make millions of polygons without asking",
+        description="Allow the operator to make millions of polygons without confirmation",
         default=False,
         options={"SKIP_SAVE"},
     )
     summary: StringProperty(
         name="Result",
-        description="What the operator made",
+        description="Summary of what the operator made",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
@@ -167,7 +185,7 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
             view = levels.seen_by_camera(context)
             choice = levels.of_pixels(view, self.pixels, self.most_levels)
         elif not self.level_attribute:
-            raise RefusalError("Name an attribute of faces, or a vertex group, that has the levels")
+            raise RefusalError("Choose a face attribute or a vertex group that holds the levels")
         name, most = self.level_attribute, self.levels
 
         def choose(

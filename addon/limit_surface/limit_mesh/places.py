@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which elements of the cage the elements of its tessellation lie on."""
+"""The elements of the cage on which the elements of its tessellation lie."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ..reading import ragged_rows
 if TYPE_CHECKING:
     import limitsurf
 
-#: A quad's corner by whether u and whether v is in the upper half
+#: The corner of a quad, by whether u is in the upper half and whether v is
 _QUAD_CORNER = np.array([[0, 3], [1, 2]])
 
 
 class CageElements:
-    """Corners of the cage's faces, counted over all of them."""
+    """Finds corners of the cage's faces, numbered over all faces."""
 
     def __init__(self, surface: limitsurf.LimitSurface) -> None:
         sizes = surface.mesh.face_sizes.astype(np.int64)
@@ -26,16 +26,18 @@ class CageElements:
         self._corner = surface.corner
 
     def nearest_corner(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """Of places on Ptex faces: of a quad's corners the one nearest in (u, v), of any other
-        face's the one whose part it is."""
+        """Returns the corners nearest to places on Ptex faces: for a quad the corner nearest in (u,
+        v), for other faces the corner of the sub-face.
+        """
         upper = (uv > 0.5).astype(np.int8)
         of_quad = _QUAD_CORNER[upper[:, 0], upper[:, 1]]
         is_quad = self._size[face] == 4
         return self._start[face] + np.where(is_quad, of_quad, self._corner[face])
 
     def corner_of_side(self, face: np.ndarray, uv: np.ndarray, to: np.ndarray) -> np.ndarray:
-        """Of straight lines on Ptex faces, from `uv` to `to`: the corner from which the cage's edge
-        leaves that they are part of; -1 for those within a face."""
+        """Returns, for straight lines on Ptex faces from `uv` to `to`, the corner at which the
+        cage's edge begins that the line is part of; -1 for lines within a face.
+        """
         low, high = ((uv == end) & (to == end) for end in (0, 1))
         is_quad = self._size[face] == 4
         corner = np.full(len(face), -1)

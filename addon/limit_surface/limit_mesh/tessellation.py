@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A tessellation of an object's limit surface with all that it carries, as arrays."""
+"""A tessellation of an object's limit surface with all its attributes, as arrays."""
 
 from __future__ import annotations
 
@@ -22,20 +22,22 @@ from .cage_attributes import Attribute, CageAttributes, Carrier
 if TYPE_CHECKING:
     import limitsurf
 
-# Of the progress, when levels are chosen, and when the polygons are there
+# The parts of the progress at which the levels are chosen, and at which the polygons are made
 _CHOSEN, _TESSELLATED = 0.3, 0.7
 
 
 @dataclass(frozen=True)
 class Groups:
-    """The cage's vertex groups, or the tessellation's."""
+    """The vertex groups of the cage or of the tessellation."""
 
     names: Sequence[str]
     weights: np.ndarray  # (vertices, groups)
 
     @classmethod
     def read(cls, mesh: bpy.types.Mesh, names: Sequence[str]) -> Groups:
-        """From a mesh that has kept them; 0 in groups that modifiers drop."""
+        """Reads the weights from a mesh that has kept them; they are 0 in groups that modifiers
+        drop.
+        """
         weights = np.zeros((len(mesh.vertices), len(names)), np.float32)
         for i, found in enumerate(vertex_weights.read(mesh, len(names))):
             if found is not None:
@@ -46,13 +48,14 @@ class Groups:
         return dict(zip(self.names, self.weights.T, strict=True))
 
 
-#: From the mesh that a cage is read from, the cage and its vertex groups to the choice of levels
+#: A function that returns the choice of levels for the mesh that a cage is read from, the cage and
+#: its vertex groups
 Chooser = Callable[[bpy.types.Mesh, cage.Cage, Groups], levels.Choice]
 
 
 @dataclass(frozen=True)
 class Source:
-    """An object, read from Blender: the rest needs arrays alone."""
+    """An object, read from Blender: all further work needs these arrays alone."""
 
     cage: cage.Cage
     attributes: CageAttributes
@@ -94,7 +97,7 @@ class Made:
     cage: cage.Cage
     tessellation: limitsurf.Tessellation
     attributes: list[Attribute]
-    carrier: Carrier  # of edges' attributes, whose numbers only the mesh knows
+    carrier: Carrier  # makes the edges' attributes, once the mesh has numbered its edges
     groups: Groups
     levels: tuple[int, int]  # the lowest and the highest
     refused: Mapping[int, str]
@@ -118,7 +121,9 @@ def read(
 
 
 def _expected(found: cage.Cage, chosen: np.ndarray, refused: Mapping[int, str]) -> int:
-    """Polygons, but for those that lead from one level to another."""
+    """Returns the expected number of polygons, without those that join faces of different
+    levels.
+    """
     counts = polygon_counts(found.face_sizes, chosen.astype(np.int64))
     counts[list(refused)] = 0
     return int(counts.sum())

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry Nodes trees, built by code."""
+"""Geometry Nodes trees that are built by code."""

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Instances on points, by a Geometry Nodes modifier that needs no add-on where the file goes."""
+"""Instances on points, by a Geometry Nodes modifier that works without this add-on."""
 
 import bpy
 
 from .. import ids
 
-VERSION = 1  # of the group: an older file's is left alone and a new one made
+# the version of the node group; a group of another version in a file is left alone, and a new one
+# is made
+VERSION = 1
 
 
 def put_instances(points: bpy.types.Object, instance: bpy.types.Object) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ties generated things to their places on the surface."""
+"""The attributes that bind generated things to their places on the surface."""
 
 import bpy
 import numpy as np
@@ -11,7 +11,7 @@ from .rotations import quaternions
 
 
 class Binding:
-    """What is stored with each location, so that it can be found again on any pose."""
+    """The data stored with each location, so that it can be evaluated again for any pose."""
 
     def __init__(self, locations: roots.Locations) -> None:
         self._locations = locations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One number from a colour."""
+"""The choice of one number from a colour."""
 
 import numpy as np
 
@@ -10,8 +10,9 @@ NAMES = ("RED", "GREEN", "BLUE", "ALPHA")
 
 
 def pick(colours: np.ndarray, channel: str, whose: str) -> np.ndarray:
-    """Of colours (..., channels). RefusalError if they have no such channel, or not all values are
-    finite."""
+    """Returns one channel of colours (..., channels). Raises RefusalError if they have no such
+    channel, or some values are not finite.
+    """
     count = colours.shape[-1]
     if channel == "LUMINANCE":
         values = colours[..., :3] @ LUMINANCE if count >= 3 else colours[..., 0]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Densities over a surface: of vertex groups, images and colour attributes.
+"""Densities over a surface, from vertex groups, images and colour attributes.
 
-They are read from the cage's mesh, as modifiers leave it, and kept as arrays.
+They are read from the cage's mesh after its modifiers, and stored as arrays.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from .image_map import read as read_image
 if TYPE_CHECKING:
     import limitsurf
 
-#: From Ptex faces (n,) and uv (n, 2) to densities (n,), none below 0
+#: A function from Ptex faces (n,) and uv (n, 2) to densities (n,), all at least 0
 Density = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
 class DensityMap:
-    """One value for each row that face corners refer to; those of a UV map if there is an image."""
+    """Values to which the face corners refer: densities, or UV coordinates if there is an image."""
 
     values: np.ndarray  # (m, 1), or (m, 2) UV coordinates
-    indices: np.ndarray  # one per face corner
+    indices: np.ndarray  # for each face corner the row of its value
     interpolation: rules.Interpolation
     image: ImageMap | None
     invert: bool
@@ -66,15 +66,17 @@ class DensityChoice:
             raise RefusalError(f"{ob.name} has no vertex group {self.vertex_group!r}")
         if self.vertex_group in ob.data.attributes:
             raise RefusalError(
-                f"{ob.name} has an attribute that is called {self.vertex_group} like the vertex "
-                "group, and would be taken for it: rename the group"
+                f"{ob.name} has an attribute with the name {self.vertex_group} of the vertex "
+                "group, which cannot be read then: rename the group"
             )
         return [self.vertex_group]
 
     def read(
         self, mesh: bpy.types.Mesh, found: cage.Cage, ob: bpy.types.Object
     ) -> DensityMap | None:
-        """From the cage's mesh. RefusalError where the source is not there, or 0 everywhere."""
+        """Reads the density from the cage's mesh. Raises RefusalError where the source does not
+        exist, or is 0 everywhere.
+        """
         if self.source == "NONE":
             return None
         if self.source == "IMAGE":
@@ -92,7 +94,7 @@ class DensityChoice:
         (values,) = vertex_weights.read(mesh, 1)
         if values is None:
             raise RefusalError(
-                f"{ob.name}: the vertex group {self.vertex_group} does not outlast the modifiers"
+                f"{ob.name}: the modifiers remove the vertex group {self.vertex_group}"
             )
         return values.astype(np.float64), found.mesh.face_vertices
 
@@ -103,9 +105,7 @@ class DensityChoice:
         layer = mesh.color_attributes.get(name)
         if layer is None:
             if name in ob.data.color_attributes:
-                raise RefusalError(
-                    f"{ob.name}: the color attribute {name} does not outlast the modifiers"
-                )
+                raise RefusalError(f"{ob.name}: the modifiers remove the color attribute {name}")
             raise RefusalError(f"{ob.name} has no color attribute {name!r}")
         colours = attributes.read(mesh, name)
         values = pick(colours, self.channel, f"color attribute {name}").astype(np.float64)
@@ -118,7 +118,7 @@ class DensityChoice:
             raise RefusalError(f"There is no image {self.image!r}")
         placed = self._find_uv_map(mesh, found, ob)
         pixels = read_image(image, self.channel, self.extension)
-        if self.extension != "CLIP":  # else there is something outside, too
+        if self.extension != "CLIP":  # otherwise places outside the image have a density, too
             self._check(pixels.values)
         return DensityMap(
             placed.values, placed.indices, found.rules.uv_interpolation, pixels, self.invert

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Locations over a region by one of the distributions, and how many there will be."""
+"""Locations over a region by one of the distributions, and the expected number of them."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from .roots import Locations
 if TYPE_CHECKING:
     import limitsurf
 
-#: Locations on the area of a square whose side is the distance between them, when no other fits
-#: anywhere.
+#: The number of locations on the area of a square whose side is the distance between them, when no
+#: further location fits anywhere
 PACKING = 0.7
 
 NOWHERE = "The density is 0 everywhere"
-TOO_LOW = "The density is too low: nothing is made"
+TOO_LOW = "The density is so low that no location was found"
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Expected:
 @dataclass(frozen=True)
 class Scattered:
     locations: Locations
-    distance: float | None  # in the world, that they keep from each other
+    distance: float | None  # the distance in the world that they keep from each other
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,8 @@ class Distribution:
     amount: str  # COUNT, DENSITY or DISTANCE
     per_side: int
     count: int
-    density: float  # of a square unit in the world
-    distance: float  # world units
+    density: float  # locations on each square unit in the world
+    distance: float  # in world units
     seed: int
 
     def expected(self, region: Region) -> Expected:
@@ -63,8 +63,9 @@ class Distribution:
         return Expected(max(round(fit), 1), False)
 
     def scatter(self, region: Region, progress: Progress) -> Scattered:
-        """Locations of single precision, as files hold them: what is evaluated there lies exactly
-        where its stored location says."""
+        """Returns locations in single precision, the precision of files, so that what is evaluated
+        there lies exactly where its stored location says.
+        """
         if self.kind == "JITTERED":
             return Scattered(self._jittered(region), None)
         count = None if self.amount == "DISTANCE" else self.expected(region).count
@@ -85,18 +86,20 @@ class Distribution:
                 radius = self.distance if count is None else None
                 apart = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
                 return Scattered(_rounded(apart), float(apart.radius))
-        except ValueError as error:  # nowhere to put them, or no room for so many
+        except ValueError as error:  # there is no place for them, or no space for so many
             reason = str(error) if region.sums.largest else NOWHERE
             raise RefusalError(f"{reason[0].upper()}{reason[1:]}") from error
 
     def _check_distance(self) -> None:
         if self.kind == "UNIFORM" and self.amount == "DISTANCE":
             raise RefusalError(
-                "Uniform keeps no distance: choose Blue Noise, or a count or a density"
+                "Uniform keeps no distance: choose Blue Noise, or give a count or a density"
             )
 
     def _jittered(self, region: Region) -> Locations:
-        """With a density, each stays as probably as that is."""
+        """Returns jittered locations. With a density, each is kept with the probability that the
+        density gives.
+        """
         at = _rounded(region.surface.scatter_jittered(self.per_side, self.seed))
         if region.density is None:
             return at

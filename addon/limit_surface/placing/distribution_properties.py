@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The properties by which operators are told how to spread things, and their layout."""
+"""The properties that choose how things are distributed, and their layout."""
 
 import bpy
 from bpy.props import (
@@ -15,8 +15,8 @@ from .density import DensityChoice
 from .distribution import Distribution
 from .mask import MaskChoice
 
-_MOST_SLOTS = 31  # choices that a property can hold at once
-_slot_items: list[tuple[str, str, str, int]] = []  # Blender does not keep the strings
+_MOST_SLOTS = 31  # the number of choices that one property can hold
+_slot_items: list[tuple[str, str, str, int]] = []  # Blender keeps no references to the strings
 
 
 def _material_slots(
@@ -32,30 +32,31 @@ def _material_slots(
 
 
 class DistributionProperties:
-    """Mixin for operators."""
+    """Mixin with the properties of operators that distribute things."""
 
     distribution: EnumProperty(
         name="Distribution",
-        description="How locations are spread over the surface",
+        description="Method that distributes locations over the surface",
         items=(
             (
                 "JITTERED",
                 "Jittered",
-                "The same number on each face: one at a random place in each cell of a grid",
+                "Make the same number on each face: one at a random place in each cell of a grid",
                 "",
                 0,
             ),
             (
                 "UNIFORM",
                 "Uniform",
-                "Independent of each other, as many on any two parts of the same area",
+                "Place each independently of the others, so that parts of equal area get equal "
+                "numbers on average",
                 "",
                 1,
             ),
             (
                 "BLUE_NOISE",
                 "Blue Noise",
-                "Random, but evenly apart: none is nearer to another than a minimum distance",
+                "Place them at random, but no two closer to each other than a minimum distance",
                 "",
                 2,
             ),
@@ -64,8 +65,8 @@ class DistributionProperties:
     )
     per_side: IntProperty(
         name="Per Side",
-        description="Cells along each side of a face, for Jittered: 20 makes 400 on every face "
-        "with four corners, and as many at each corner of any other",
+        description="Number of grid cells along each side of a face, for Jittered. 20 makes 400 "
+        "on each quad, and 400 for each corner of any other face",
         default=20,
         min=1,
         max=10_000,
@@ -73,26 +74,32 @@ class DistributionProperties:
     )
     amount: EnumProperty(
         name="Amount",
-        description="What says how many there are, for Uniform and Blue Noise. A script may leave "
-        "it out and give one of count, density and distance",
+        description="Setting that determines the number, for Uniform and Blue Noise. Scripts can "
+        "leave it out and set one of count, density and distance",
         items=(
-            ("COUNT", "Count", "So many", "", 0),
-            ("DENSITY", "Density", "So many for a square unit of area", "", 1),
-            ("DISTANCE", "Distance", "As many as fit, so far apart: for Blue Noise", "", 2),
+            ("COUNT", "Count", "Make the given number", "", 0),
+            ("DENSITY", "Density", "Make the given number for each square unit of area", "", 1),
+            (
+                "DISTANCE",
+                "Distance",
+                "Make as many as fit at the given distance from each other, for Blue Noise",
+                "",
+                2,
+            ),
         ),
         default="COUNT",
     )
     count: IntProperty(
         name="Count",
-        description="How many are made, all in all",
+        description="Total number to make",
         default=1000,
         min=1,
         soft_max=1_000_000,
     )
     density: FloatProperty(
         name="Density",
-        description="How many are made on each square unit in the world, whatever the object's "
-        "scale; where a density source says less than 1, so much less",
+        description="Number to make on each square unit of area in world space. A density source "
+        "multiplies it by values from 0 to 1",
         default=1000.0,
         min=1e-6,
         max=1e12,
@@ -101,9 +108,9 @@ class DistributionProperties:
     )
     distance: FloatProperty(
         name="Distance",
-        description="Least distance from one to another in the world, whatever the object's "
-        "scale; where a density source says less than its largest value, so much more that the "
-        "density is in proportion",
+        description="Minimum distance between any two in world space. Where a density source is "
+        "below its maximum, the distance is larger, so that the number is proportional to the "
+        "density",
         default=0.05,
         min=1e-6,
         soft_min=1e-3,
@@ -113,21 +120,27 @@ class DistributionProperties:
     )
     seed: IntProperty(
         name="Seed",
-        description="Another seed gives another random arrangement",
+        description="Seed of the random numbers. Each seed gives another random arrangement",
         default=0,
         min=0,
     )
     density_source: EnumProperty(
         name="Density From",
-        description="What makes some parts denser than others",
+        description="Source of a density that makes some parts denser than others",
         items=(
-            ("NONE", "None", "The same density everywhere", "", 0),
-            ("VERTEX_GROUP", "Vertex Group", "A vertex group's weights", "GROUP_VERTEX", 1),
-            ("IMAGE", "Image", "An image, placed by a UV map", "IMAGE_DATA", 2),
+            ("NONE", "None", "Use the same density everywhere", "", 0),
+            (
+                "VERTEX_GROUP",
+                "Vertex Group",
+                "Use the weights of a vertex group",
+                "GROUP_VERTEX",
+                1,
+            ),
+            ("IMAGE", "Image", "Use an image that is placed by a UV map", "IMAGE_DATA", 2),
             (
                 "COLOR_ATTRIBUTE",
                 "Color Attribute",
-                "Colors of vertices or face corners",
+                "Use the colors of vertices or face corners",
                 "GROUP_VCOL",
                 3,
             ),
@@ -144,7 +157,7 @@ class DistributionProperties:
     )
     uv_map: StringProperty(
         name="UV Map",
-        description="Name of the UV map that places the image; empty: the active one",
+        description="Name of the UV map that places the image. If empty, the active UV map is used",
     )
     color_attribute: StringProperty(
         name="Color Attribute",
@@ -152,8 +165,8 @@ class DistributionProperties:
     )
     channel: EnumProperty(
         name="Channel",
-        description="What of a color is the density. Images count as their pixels' numbers are, "
-        "whatever their color space; color attributes are linear",
+        description="Channel of the colors that is used as the density. The numbers in images are "
+        "used without color conversion; color attributes are linear",
         items=(
             ("LUMINANCE", "Luminance", "0.2126 red + 0.7152 green + 0.0722 blue", "", 0),
             ("RED", "Red", "", "", 1),
@@ -165,55 +178,64 @@ class DistributionProperties:
     )
     extension: EnumProperty(
         name="Extension",
-        description="What is outside the image",
+        description="Density outside the borders of the image",
         items=(
-            ("REPEAT", "Repeat", "The image again", "", 0),
-            ("EXTEND", "Extend", "Its border's pixels", "", 1),
-            ("CLIP", "Clip", "Nothing: density 0", "", 2),
+            ("REPEAT", "Repeat", "Repeat the image", "", 0),
+            ("EXTEND", "Extend", "Extend the pixels at the image's border", "", 1),
+            ("CLIP", "Clip", "Use the density 0", "", 2),
         ),
         default="REPEAT",
     )
     invert: BoolProperty(
         name="Invert",
-        description="1 minus the density that the source has",
+        description="Use 1 minus the density of the source",
         default=False,
     )
     material_slots: EnumProperty(
         name="Material Slots",
-        description="Only faces of these material slots are covered; none chosen: of all",
+        description="Material slots whose faces are covered. If none is chosen, the faces of all "
+        "slots are covered",
         items=_material_slots,
         options={"ENUM_FLAG", "SKIP_SAVE"},
     )
     faces: EnumProperty(
         name="Faces",
-        description="Which faces are covered",
+        description="Faces that are covered",
         items=(
-            ("ALL", "All", "All of them", "", 0),
-            ("SELECTED", "Selected", "Those that were selected in Edit Mode", "", 1),
-            ("ATTRIBUTE", "Attribute", "Those where an attribute is true", "", 2),
+            ("ALL", "All", "Cover all faces", "", 0),
+            ("SELECTED", "Selected", "Cover the faces that were selected in Edit Mode", "", 1),
+            ("ATTRIBUTE", "Attribute", "Cover the faces where an attribute is true", "", 2),
         ),
         default="ALL",
     )
     face_attribute: StringProperty(
         name="Face Attribute",
-        description="Name of a Boolean attribute of faces: they are covered where it is true",
+        description="Name of a Boolean face attribute. Faces are covered where it is true",
     )
     target: EnumProperty(
         name="Target",
-        description="What roots lie on",
+        description="Surface on which the roots lie",
         items=(
-            ("LIMIT", "Limit Surface", "The surface itself, which all subdivision leads to", "", 0),
+            (
+                "LIMIT",
+                "Limit Surface",
+                "Put roots on the exact smooth surface to which subdivision converges",
+                "",
+                0,
+            ),
             (
                 "VIEWPORT",
                 "Viewport Mesh",
-                "At the same places of its faces, the polygons that the viewport shows",
+                "Put roots at the same places of the faces, but on the polygons that the viewport "
+                "shows",
                 "",
                 1,
             ),
             (
                 "RENDER",
                 "Render Mesh",
-                "At the same places of its faces, the polygons that a render shows",
+                "Put roots at the same places of the faces, but on the polygons that a render "
+                "shows",
                 "",
                 2,
             ),
@@ -222,13 +244,15 @@ class DistributionProperties:
     )
     surface: StringProperty(
         name="Surface",
-        description="The object that was covered",
+        description="Object that was covered",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
 
 def distribution(properties: bpy.types.OperatorProperties) -> Distribution:
-    """RefusalError where nobody could know what is meant."""
+    """Returns the chosen distribution. Raises RefusalError where the properties contradict each
+    other.
+    """
     numbers = ("per_side", "count", "density", "distance", "seed")
     return Distribution(
         kind=properties.distribution,
@@ -242,7 +266,9 @@ def _amount(properties: bpy.types.OperatorProperties) -> str:
         return properties.amount
     given = [n for n in ("count", "density", "distance") if properties.is_property_set(n)]
     if len(given) > 1:
-        raise RefusalError(f"{' and '.join(given)} are given: say by amount which one counts")
+        raise RefusalError(
+            f"{' and '.join(given)} are given: choose one of them by the property amount"
+        )
     return given[0].upper() if given else properties.amount
 
 
@@ -260,7 +286,9 @@ def mask_choice(properties: bpy.types.OperatorProperties) -> MaskChoice:
 def surface_object(
     properties: bpy.types.OperatorProperties, context: bpy.types.Context
 ) -> bpy.types.Object | None:
-    """The mesh that is covered: right after that, what covers it is active."""
+    """Returns the mesh that is covered. After the operator has run, the new object that covers it
+    is active.
+    """
     ob = bpy.data.objects.get(properties.surface) or context.active_object
     return ob if ob and ob.type == "MESH" else None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An image's pixels as numbers that can be looked up."""
+"""The pixels of an image as a function of (u, v)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ class ImageMap:
     extension: str  # REPEAT, EXTEND or CLIP
 
     def at(self, uv: np.ndarray) -> np.ndarray:
-        """Between the four nearest pixels' centres, linearly."""
+        """Returns values that are interpolated linearly between the four nearest pixels'
+        centres.
+        """
         height, width = self.values.shape
         inside = uv - np.floor(uv) if self.extension == "REPEAT" else uv.clip(0, 1)
         (x, along_x), (y, along_y) = (
@@ -35,7 +37,7 @@ class ImageMap:
     def _pixels(
         self, coordinate: np.ndarray, size: int
     ) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-        """The two that a coordinate lies between, and where between them."""
+        """Returns the two pixels between which a coordinate lies, and its place between them."""
         place = coordinate * size - 0.5
         first = np.floor(place).astype(np.int64)
         both = first, first + 1
@@ -45,13 +47,15 @@ class ImageMap:
 
 
 def read(image: bpy.types.Image, channel: str, extension: str) -> ImageMap:
-    """RefusalError where there are no pixels to read, or they are not numbers."""
+    """Reads the image. Raises RefusalError where there are no pixels to read, or some are not
+    finite.
+    """
     if image.source == "TILED":
         raise RefusalError(f"The image {image.name} is tiled (UDIM), which is not supported")
     pixels = np.empty(len(image.pixels), np.float32)  # reads the file
     width, height = image.size
     if not pixels.size:
-        raise RefusalError(f"The image {image.name} has no pixels: is its file missing?")
+        raise RefusalError(f"The image {image.name} has no pixels: check that its file exists")
     image.pixels.foreach_get(pixels)
     values = pick(pixels.reshape(height, width, -1), channel, f"image {image.name}")
     return ImageMap(values, extension)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many an operator would make on the active mesh, for panels to show.
+"""The number of things that an operator would make on the active mesh, for panels to show.
 
-Drawing may change nothing in the file, but reading a cage does for a moment: so the count is only
-asked for while drawing, found a little later, and drawn then. Adding up over the surface runs in a
-thread.
+Drawing must not change the file, but reading a cage changes it for a moment. So drawing only asks
+for the number; a timer finds it a little later, and it is drawn then. Sums over the surface are
+calculated in a thread.
 """
 
 from __future__ import annotations
@@ -22,12 +22,13 @@ from .density import DensityChoice
 from .distribution import Distribution
 from .mask import MaskChoice
 
-PAUSE = 0.2  # seconds until something is looked at that was asked for, or waited for
+# seconds until the timer looks at a new question, or again at an answer that is not ready
+PAUSE = 0.2
 
 
 @dataclass(frozen=True)
 class Question:
-    """What has to be read from Blender to know how many there will be."""
+    """What has to be read from Blender in order to calculate the number."""
 
     surface: ObjectKey
     density: DensityChoice
@@ -39,7 +40,7 @@ class Question:
 
 
 class LiveCount:
-    """The answer to the question that was asked last, and again when things have changed."""
+    """Answers the latest question, and answers it again when the file has changed."""
 
     _question: Question | None
     _region: region.Region | None
@@ -48,11 +49,12 @@ class LiveCount:
     _is_stale: bool
 
     def __init__(self) -> None:
-        self._look_later = self._look  # one object, by which Blender knows it again
+        # always the same bound method, by which Blender identifies the timer
+        self._look_later = self._look
         self.forget()
 
     def text(self, question: Question, distribution: Distribution, noun: str) -> str:
-        """How many, or why there is no telling."""
+        """The number as text, or the reason why it is not known."""
         if question != self._question:
             self.forget()
             self._question = question
@@ -67,7 +69,7 @@ class LiveCount:
         return f"{about}{expected.count:,} {noun}"
 
     def notice(self, changed: set[str]) -> None:
-        """Things of these names have changed."""
+        """Is called when data-blocks of these names have changed."""
         question = self._question
         if question and {question.surface.name, question.density.image} & changed:
             self._is_stale = True
@@ -80,7 +82,7 @@ class LiveCount:
         self._is_stale = True
 
     def _look(self) -> float | None:
-        """What a timer calls: gives the seconds until the next call, or None."""
+        """Is called by a timer, and returns the seconds until the next call, or None."""
         if self._question is None:
             return None
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces that are covered, chosen by material slots and by selection."""
+"""The choice of the faces that are covered, by material slots and by selection."""
 
 from __future__ import annotations
 
@@ -14,12 +14,14 @@ from ..reading import attributes
 
 @dataclass(frozen=True)
 class MaskChoice:
-    material_slots: frozenset[int]  # of all, if empty
+    material_slots: frozenset[int]  # covers faces of all slots if empty
     faces: str  # ALL, SELECTED or ATTRIBUTE
     attribute: str
 
     def uncovered(self, mesh: bpy.types.Mesh, whose: str) -> np.ndarray:
-        """The faces of a cage's mesh that stay bare. RefusalError if all of them do."""
+        """Returns the faces of a cage's mesh that are not covered. Raises RefusalError if this is
+        all of them.
+        """
         bare = np.zeros(len(mesh.polygons), bool)
         if self.material_slots:
             bare |= ~np.isin(_material_slots(mesh), list(self.material_slots))
@@ -29,7 +31,7 @@ class MaskChoice:
         if self.faces != "ALL":
             bare |= ~(_selected(mesh) if self.faces == "SELECTED" else self._attribute(mesh, whose))
             if bare.all():
-                raise RefusalError(f"{whose}: no face that could be covered is {self._called()}")
+                raise RefusalError(f"{whose}: none of the faces is {self._called()}")
         return np.flatnonzero(bare)
 
     def _attribute(self, mesh: bpy.types.Mesh, whose: str) -> np.ndarray:
@@ -54,7 +56,9 @@ def _selected(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def _material_slots(mesh: bpy.types.Mesh) -> np.ndarray:
-    """Of each face; a slot beyond the last one means that one, as in renders."""
+    """Returns the slot of each face. A number beyond the last slot means the last one, as in
+    renders.
+    """
     values = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("material_index", values)
     return values.clip(0, max(len(mesh.materials) - 1, 0))

@@ -11,7 +11,7 @@ from ..reading import attributes, ragged_rows
 def add_on_surface(
     context: bpy.types.Context, name: str, data: bpy.types.ID, surface: bpy.types.Object
 ) -> bpy.types.Object:
-    """An object that shares the surface's transform, active and alone selected."""
+    """Adds an object that shares the surface's transform, makes it active and selects it alone."""
     ob = bpy.data.objects.new(name, data)
     ob.parent = surface
     _collection(context).objects.link(ob)
@@ -42,7 +42,9 @@ def add_polygons(
 
 
 def _collection(context: bpy.types.Context) -> bpy.types.Collection:
-    """The active collection, or the scene's own where that one takes or shows no objects."""
+    """Returns the active collection, or the scene's own where the active one is linked or
+    hidden.
+    """
     active = context.view_layer.active_layer_collection
     if active.is_visible and active.collection.is_editable:
         return active.collection

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part of a surface that is covered, and how densely."""
+"""The part of a surface that is covered, and its density."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from ..tasks.refused_faces import reasons
 from .density import Density, DensityChoice, DensityMap
 from .mask import MaskChoice
 
-SAMPLES = 1 << 20  # about so many at most are taken where something is added up over the surface
-MOST_PER_SIDE = 16  # of a face
+SAMPLES = 1 << 20  # the largest number of samples, roughly, for sums over the surface
+MOST_PER_SIDE = 16  # samples on each face
 
 
 @dataclass(frozen=True)
 class Sums:
-    """Over what is covered; areas as they are in the world."""
+    """Sums over the faces that are covered; areas are measured in the world."""
 
     weight: float  # the mean of the density over the faces' (u, v)
     weighted_area: float
@@ -32,7 +32,9 @@ class Sums:
 
 
 class Region:
-    """Holds arrays alone: whatever is read from Blender is read when it is made."""
+    """The covered part of a surface, as arrays alone: all that is needed of Blender is read when
+    the region is made.
+    """
 
     def __init__(self, found: cage.Cage, bare: np.ndarray, density_map: DensityMap | None) -> None:
         self.cage = found
@@ -43,13 +45,13 @@ class Region:
 
     @cached_property
     def refused(self) -> dict[int, str]:
-        """Faces that should be covered, but have no surface, with the reason."""
+        """The faces that should be covered but have no surface, with the reasons."""
         refused = self.surface.refused
         return {face: reason for face, reason in refused.items() if face not in self.bare}
 
     @property
     def face_count(self) -> int:
-        """Faces of the mesh that are covered."""
+        """The number of the mesh's faces that are covered."""
         return len(self.cage.face_sizes) - len(self.surface.refused)
 
     @cached_property
@@ -59,7 +61,7 @@ class Region:
 
     @contextmanager
     def in_world(self) -> Iterator[None]:
-        """The surface is as it lies in the world, as long as the context lasts."""
+        """Moves the surface to world space for as long as the context lasts."""
         self.surface.set_positions(self.cage.world_positions())
         try:
             yield
@@ -73,7 +75,9 @@ class Region:
 
     @cached_property
     def sums(self) -> Sums:
-        """Where there is a density, by samples: as many on each face, at places of no pattern."""
+        """Returns the sums. Where there is a density they come from samples: the same number on
+        each face, at random places.
+        """
         if self.density is None:
             return Sums(1.0, self.area, 1.0)
         per_side = int(np.sqrt(SAMPLES / max(self.ptex_face_count, 1)))
@@ -95,7 +99,9 @@ def read(
     density: DensityChoice,
     mask: MaskChoice,
 ) -> Region:
-    """RefusalError where there is nothing to cover, or a choice that means nothing here."""
+    """Reads the region. Raises RefusalError where there is nothing to cover, or a choice has no
+    meaning here.
+    """
     with (
         vertex_weights.kept(density.wanted_vertex_groups(ob)) as keep,
         cage.opened(ob, depsgraph, keep) as (found, mesh),

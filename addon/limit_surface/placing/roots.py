@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where strands and points stand: locations on the limit surface, evaluated part by part."""
+"""The roots of strands and points: locations on the limit surface, evaluated part by part."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ import numpy as np
 
 from ..tasks.job import Progress, slices
 
-PART = 1 << 16  # so many are evaluated at once: a progress bar moves, memory stays small
+# Locations are evaluated in parts of this size, so that progress is shown and memory stays small.
+PART = 1 << 16
 
-#: From Ptex faces (n,) and uv (n, 2) to positions (n, 3) and frames (n, 3, 3)
+#: A function from Ptex faces (n,) and uv (n, 2) to positions (n, 3) and frames (n, 3, 3)
 Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -27,7 +28,7 @@ class Locations:
 
 @dataclass(frozen=True)
 class Roots:
-    """Rows `rows` of all locations, evaluated, in the surface's own space."""
+    """The roots of the locations `rows`, evaluated in the surface's own space."""
 
     rows: slice
     position: np.ndarray  # (n, 3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames as Blender wants them: quaternions, and directions in world space."""
+"""Frames in Blender's form: quaternions, and directions in world space."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from ..errors import RefusalError
 
 
 def quaternions(rotation: np.ndarray) -> np.ndarray:
-    """Rotation matrices (n, 3, 3) as unit quaternions (n, 4), w x y z, w >= 0.
+    """Returns rotation matrices (n, 3, 3) as unit quaternions (n, 4), w x y z, w >= 0.
 
-    Each row of `candidates` is the quaternion times four times one of its own components; the one
-    with the largest is taken, so nothing cancels.
+    Each row of `candidates` is the quaternion times four times one of its own components. The row
+    with the largest component is taken, so that no digits cancel.
     """
     r = rotation
     trace = np.einsum("nii->n", r)
@@ -28,26 +28,28 @@ def quaternions(rotation: np.ndarray) -> np.ndarray:
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:
-    """Along the last axis; NaN where there is no direction."""
+    """Returns unit vectors along the last axis; NaN for vectors without a direction."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
 class WorldSpace:
-    """Frames of an object's surface as they are seen in the world, whatever the object's scale."""
+    """Converts frames of an object's surface to world space, whatever the object's scale."""
 
     def __init__(self, matrix: np.ndarray) -> None:
         self._linear = matrix[:3, :3]
         self._handedness = np.sign(np.linalg.det(self._linear))
         singular_values = np.linalg.svd(self._linear, compute_uv=False)
         if singular_values[-1] <= 1e-12 * singular_values[0]:
-            raise RefusalError("The object is flattened to nothing: its scale is 0 along an axis")
+            raise RefusalError("The object has no volume: its scale is 0 along an axis")
         self._inverse = np.linalg.inv(self._linear)
         self.mean_scale = float(np.cbrt(singular_values.prod()))
 
     def frames(self, frame: np.ndarray) -> np.ndarray:
-        """Columns tangent, across, normal: orthonormal, the normal outward, `across` to the side
-        of growing v (of a mirrored object, these are left-handed)."""
+        """Returns frames with the columns tangent, across and normal. They are orthonormal, the
+        normal points outward, and `across` points to the side of growing v (on a mirrored object
+        such a frame is left-handed).
+        """
         tangent = unit(frame[:, :, 0] @ self._linear.T)
         normal = unit(frame[:, :, 2] @ self._inverse)
         across = self._handedness * np.cross(normal, tangent)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the operators that scatter things over a limit surface have in common."""
+"""The parts that the operators share which scatter things over a limit surface."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -19,32 +19,35 @@ from ..tasks.watched_operator import WatchedOperator, draw_summary
 from . import distribution_properties, region, roots
 from .distribution import TOO_LOW, Distribution, Scattered
 
-SCATTERED = 0.5  # of the progress, when the locations are there
+SCATTERED = 0.5  # the part of the progress at which the locations are made
 
 
 @dataclass(frozen=True)
 class Ground:
-    """What things are scattered over, as plain arrays, with their places."""
+    """The surface on which things are scattered, as plain arrays, and their locations."""
 
     cage: cage.Cage
     region: region.Region
     scattered: Scattered
-    shown: displayed_mesh.DisplayedMesh | None  # None: things stand on the surface itself
+    shown: displayed_mesh.DisplayedMesh | None  # None: things stand on the limit surface
 
     @property
     def locations(self) -> roots.Locations:
         return self.scattered.locations
 
     def evaluate(self, face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and frames. On the polygons that are shown frames are the surface's all the
-        same: there are no kinks in them."""
+        """Returns positions and frames. On displayed polygons the frames are still those of the
+        limit surface, which has no kinks between polygons.
+        """
         surface = self.region.surface
         on = self.shown.positions(face, uv) if self.shown else surface.evaluate(face, uv).position
         return on, surface.frames(face, uv)
 
     def surface_uv(self) -> np.ndarray | None:
-        """The locations on the UV map of the mesh that the viewport shows, smoothed where that is
-        subdivided: where Blender's nodes look for them, on the evaluated mesh."""
+        """Returns the locations on the UV map of the mesh that the viewport shows. Where that mesh
+        is subdivided the map is smoothed, because Blender's nodes look locations up on the
+        evaluated mesh.
+        """
         found = self.cage.uv_map
         if found is None:
             return None
@@ -56,7 +59,7 @@ class Ground:
 
 @dataclass(frozen=True)
 class Order:
-    """All that is asked for, read from Blender: the rest needs arrays alone."""
+    """All that is asked for, read from Blender: the rest of the work needs arrays alone."""
 
     surface: ObjectKey
     region: region.Region
@@ -75,7 +78,7 @@ class Order:
 class Made:
     surface: ObjectKey
     ground: Ground
-    things: Any  # what the operator's maker makes
+    things: Any  # what the function from the operator's `maker` returns
 
 
 class ScatterOperator(WatchedOperator, distribution_properties.DistributionProperties):
@@ -99,20 +102,20 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
 
     allow_large: BoolProperty(
         name="Allow Large Counts",
-        description="Make millions of elements without asking. Scripts need it, as nobody can "
-        "answer there",
+        description="Allow the operator to make millions of elements without confirmation. "
+        "Scripts have to set it, because they cannot confirm",
         default=False,
         options={"SKIP_SAVE"},
     )
     summary: StringProperty(
         name="Result",
-        description="What the operator made",
+        description="Summary of what the operator made",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
     @property
     def too_large(self) -> str:
-        return f"Not enough memory for so many {self.noun}"
+        return f"There is not enough memory for so many {self.noun}"
 
     @property
     def cancelled(self) -> str:
@@ -134,19 +137,20 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
         return {"FINISHED"}
 
     def maker(self, found: cage.Cage) -> Any:
-        """A function of the ground and of progress, that makes what `add` gets. It is called
-        where nothing of Blender may be touched."""
+        """Returns a function of the ground and of progress. It returns what `add` is called with,
+        and runs where Blender's data must not be touched.
+        """
         raise NotImplementedError
 
     def add(self, context: bpy.types.Context, surface: bpy.types.Object, made: Any) -> None:
         raise NotImplementedError
 
     def elements_per_location(self) -> int:
-        """Vertices or curve points that one location becomes."""
+        """Returns the number of vertices or curve points that are made for one location."""
         return 1
 
     def check_properties(self) -> None:
-        """Refuses properties that make no sense together."""
+        """Raises RefusalError for properties that contradict each other."""
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -157,14 +161,17 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
         draw_summary(layout, self.summary)
 
     def draw_own(self, layout: bpy.types.UILayout) -> None:
-        """The subclass's own properties."""
+        """Draws the properties of the subclass."""
 
     def _ask(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Whether so much is meant, where that is not settled."""
+        """Opens a dialog in which the user confirms a very large number, unless that is allowed
+        already.
+        """
         order = self._order(context)
         self._someone_waits = True
         if order.size.is_large and not self.allow_large:
-            self.allow_large = True  # what the dialog asks for; declining it runs nothing
+            # the dialog asks for this consent; if the user declines it, nothing is run
+            self.allow_large = True
             return context.window_manager.invoke_confirm(
                 self, event, title=self.bl_label, message=f"Make {order.size}?", confirm_text="Make"
             )
@@ -173,7 +180,7 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
     def _begin(self, context: bpy.types.Context, order: Order) -> set[str]:
         order.size.check(self.allow_large)
         self.summary, self.surface = "", order.surface.name
-        self.amount = order.distribution.amount  # the redo panel shows it
+        self.amount = order.distribution.amount  # so that the redo panel shows it
         make = self.maker(order.region.cage)
 
         def work(progress: Progress) -> Made:
@@ -212,13 +219,15 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
             self.report({"WARNING"}, warning)
         notes = [f"{self.summary} of {self.surface}", *found.notes]
         if found.without_uv_map:
-            notes.append(f"no UVs stored: {found.without_uv_map}")
+            notes.append(f"UVs were not stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))
 
 
 def _surface_object(context: bpy.types.Context) -> bpy.types.Object | None:
-    """The active mesh, or the one that the active hair is on: new hair is active, and Blender asks
-    `poll` before it undoes what is to be made anew with other settings."""
+    """Returns the active mesh, or the mesh of the active hair. After the operator has run, the new
+    hair is active, and Blender calls `poll` before it undoes the operator and runs it with other
+    settings.
+    """
     ob = context.active_object
     if ob is not None and ob.type == "CURVES":
         ob = ob.data.surface

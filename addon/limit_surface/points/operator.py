@@ -36,8 +36,8 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
 
     instance: StringProperty(
         name="Instance",
-        description="Name of an object to put on each point, its Z along the surface's normal and "
-        "its X along growing u",
+        description="Name of an object to put on each point, with its Z axis along the surface "
+        "normal and its X axis along growing u",
     )
 
     def check_properties(self) -> None:

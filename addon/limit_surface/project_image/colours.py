@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An image's values as shaders read them: linear light, alpha apart; and back.
+"""An image's values in the form that shaders read: linear light with separate alpha; and back.
 
-Byte images hold what is in their file, float images what shaders read, with the color multiplied
-by alpha unless they are data or their alpha is a channel of its own. Measured in Blender, by
-rendering images that scripts have filled.
+Byte images hold what is in their file. Float images hold what shaders read, with the color
+multiplied by alpha unless they are data or their alpha is a channel of its own. This was measured
+in Blender, by rendering images that scripts have filled.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ from ..errors import RefusalError
 from ..reading import srgb
 
 SRGB = "sRGB"
-LINEAR = "Linear Rec.709"  # the same primaries, without the curve
+LINEAR = "Linear Rec.709"  # the primaries of sRGB, without its curve
 
-SMALLEST_ALPHA = 1e-6  # below, a multiplied color is taken as it is
-UNCHANGED = 1e-5  # of primaries: what Blender's own single precision leaves
+SMALLEST_ALPHA = 1e-6  # below this alpha a multiplied color is not divided
+UNCHANGED = 1e-5  # of primaries: Blender's single precision leaves this error
 
 
 @dataclass(frozen=True)
 class Encoding:
-    is_curved: bool  # by sRGB's curve
+    is_curved: bool  # whether sRGB's curve is applied
     primaries: np.ndarray | None  # (3, 3) from Rec. 709 to the scene's; None where they are equal
-    is_multiplied: bool  # colors by alpha
+    is_multiplied: bool  # whether colors are multiplied by alpha
     has_alpha: bool
 
     def decoded(self, values: np.ndarray) -> np.ndarray:
-        """From the image's own values (..., 4), float32, to what shaders read."""
+        """Converts the image's own values (..., 4), float32, to what shaders read."""
         out = np.array(values, np.float32)
         if self.is_curved:
             out[..., :3] = srgb.to_linear(out[..., :3])
@@ -45,7 +45,7 @@ class Encoding:
         return out
 
     def encoded(self, values: np.ndarray) -> np.ndarray:
-        """The other way."""
+        """Converts what shaders read to the image's own values."""
         out = np.array(values, np.float32)
         if self.is_multiplied:
             out[..., :3] *= _divisor(out[..., 3:])
@@ -57,7 +57,9 @@ class Encoding:
 
 
 def of(image: bpy.types.Image) -> Encoding:
-    """RefusalError where a byte image's space is one that only Blender itself can convert."""
+    """Returns the encoding of an image. Raises RefusalError where a byte image has a color space
+    that only Blender itself can convert.
+    """
     space = image.colorspace_settings
     has_alpha = image.alpha_mode != "NONE"
     if image.is_float:
@@ -68,20 +70,20 @@ def of(image: bpy.types.Image) -> Encoding:
     if space.name not in {SRGB, LINEAR}:
         raise RefusalError(
             f"The image {image.name} is in the color space {space.name}: among images of 8 bits, "
-            f"only {SRGB}, {LINEAR} and data can be projected or painted on"
+            f"only those with {SRGB}, {LINEAR} and data can be projected or painted on"
         )
     return Encoding(space.name == SRGB, _primaries(), False, has_alpha)
 
 
 def of_new(is_float: bool) -> Encoding:
-    """Of an image that Blender makes, for colors."""
+    """Returns the encoding of an image for colors that Blender makes."""
     if is_float:
         return Encoding(False, None, True, True)
     return Encoding(True, _primaries(), False, True)
 
 
 def _primaries() -> np.ndarray | None:
-    """Of the scene, as Blender is set up."""
+    """Returns the primaries of the scene's linear space, as Blender is configured."""
     columns = [Color(c).from_srgb_to_scene_linear() for c in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
     found = np.array(columns, np.float32).T
     return None if np.abs(found - np.eye(3)).max() < UNCHANGED else found

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygons on the limit surface under an image: where a grid of rays through it arrives, cut off
-exactly where the surface ends, turns away or hides itself."""
+"""Polygons on the limit surface under an image: the points at which a grid of rays through the
+image arrives, cut off exactly where the surface ends, turns away or hides itself.
+"""
 
 from __future__ import annotations
 
@@ -12,32 +13,34 @@ from ..reading import ragged_rows
 from ..tasks.job import Progress
 from .rays import Hits, Rays, joined
 
-CAST, HALVED = 0.2, 0.35  # parts of the progress: the grid; each end of the cells' sides
+# parts of the progress: for the grid, and for each end of the cells' sides
+CAST, HALVED = 0.2, 0.35
 
-# A cell's corners, counter-clockwise from the lower left: columns and rows on.
+# The corners of a cell, counter-clockwise from the lower left: their columns and rows relative to
+# it
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
 @dataclass(frozen=True)
 class Decal:
-    hits: Hits  # a vertex each
-    sizes: np.ndarray  # corners of each polygon
-    vertices: np.ndarray  # of all corners; counter-clockwise in the image
+    hits: Hits  # each hit is a vertex
+    sizes: np.ndarray  # number of corners of each polygon
+    vertices: np.ndarray  # the vertices of all corners, counter-clockwise in the image
 
 
 @dataclass(frozen=True)
 class Cells:
-    """Side i leads from corner i to the next."""
+    """The cells of the grid. Side i leads from corner i to the next."""
 
     corner: np.ndarray  # (n, 4) vertices
-    valid: np.ndarray  # (n, 4) whether the surface is there
-    goes_on: np.ndarray  # (n, 4) whether it does along the side
-    here: np.ndarray  # (n, 4) vertices where it breaks off from the side's first corner,
-    there: np.ndarray  # and from its second; -1 where it does not
+    valid: np.ndarray  # (n, 4) whether the corner lies on the surface
+    goes_on: np.ndarray  # (n, 4) whether the surface goes on along the side
+    here: np.ndarray  # (n, 4) vertices at which it ends, seen from the side's first corner,
+    there: np.ndarray  # and from its second; -1 where it does not end
 
 
 def make(rays: Rays, cells: tuple[int, int], progress: Progress) -> Decal:
-    """On a grid of so many columns and rows of cells."""
+    """Makes the decal on a grid of so many columns and rows of cells."""
     columns, rows = cells
     y, x = np.mgrid[: rows + 1, : columns + 1].reshape(2, -1)
     grid = rays.cast(np.stack([x / columns, y / rows], axis=1))
@@ -62,14 +65,14 @@ def make(rays: Rays, cells: tuple[int, int], progress: Progress) -> Decal:
     left = len(along_rows) + np.arange(len(along_columns)).reshape(rows, columns + 1)
     side = np.stack([below[:-1], left[:, 1:], below[1:], left[:, :-1]]).reshape(4, -1).T
     here, there = ends[side, 0], ends[side, 1]
-    # The upper and the left side are stored against the direction around the cell.
+    # The upper and the left side are stored in the direction opposite to that around the cell.
     here[:, 2:], there[:, 2:] = ends[side[:, 2:], 1], ends[side[:, 2:], 0]
     found = Cells(corner, grid.valid[corner], goes_on[side], here, there)
     return _polygons(rays, joined(parts), found)
 
 
 def sag(rays: Rays, decal: Decal) -> float:
-    """How far the middle of a polygon with four corners lies below the surface, at most."""
+    """Returns how far the middle of a polygon with four corners lies below the surface, at most."""
     first = ragged_rows.starts(decal.sizes)[decal.sizes == 4]
     quads = decal.vertices[first[:, None] + np.arange(4)]
     middle = rays.cast(decal.hits.st[quads].mean(axis=1))
@@ -88,8 +91,9 @@ def _polygons(rays: Rays, hits: Hits, cells: Cells) -> Decal:
 
 
 def _runs(cells: Cells) -> list[np.ndarray]:
-    """Of each run of corners between which the surface goes on, with the places where it breaks
-    off before and after."""
+    """Yields the polygon of each run of corners between which the surface goes on, with the points
+    at which it ends before and after.
+    """
     found = []
     for first in range(4):
         begins = cells.valid[:, first] & ~cells.goes_on[:, first - 1]
@@ -102,8 +106,9 @@ def _runs(cells: Cells) -> list[np.ndarray]:
 
 
 def _around_slits(rays: Rays, hits: Hits, cells: Cells) -> tuple[np.ndarray, Hits]:
-    """Triangles of the cells into which the surface breaks from one side only: between the middle
-    and the cell's outline, as far as the surface goes on from the middle."""
+    """Returns triangles of the cells in which the surface ends on one side only. They join the
+    middle and the cell's outline, as far as the surface goes on from the middle.
+    """
     cell, side = np.nonzero(~cells.goes_on & (cells.goes_on.sum(axis=1) == 3)[:, None])
     corner = np.take_along_axis(cells.corner[cell], (side[:, None] + np.arange(4)) % 4, axis=1)
     middle = rays.cast(hits.st[corner].mean(axis=1))

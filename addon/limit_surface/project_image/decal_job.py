@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Making a decal: what is asked for, the work on arrays, and the object that comes of it."""
+"""The making of a decal: what is asked for, the work on arrays, and the resulting object."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..tasks.request_size import RequestSize
 from . import decal, decal_object, inputs, material
 from .world import WorldSurface
 
-CAST = 0.9  # of the progress, when the polygons are known
+CAST = 0.9  # the part of the progress at which the polygons are known
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,8 @@ class Order:
         found = decal.make(rays, self.cells, part_of(progress, 0, CAST))
         if not len(found.sizes):
             raise RefusalError(
-                f"Nothing to see from there: no part of the image {self.image} falls on the surface"
+                f"The image cannot be seen on the surface: no part of the image {self.image} falls "
+                "on the surface"
             )
         sag = decal.sag(rays, found)
         placing = part_of(progress, CAST, 1)
@@ -50,7 +51,7 @@ class Order:
 class Made:
     order: Order
     placed: decal_object.PlacedDecal
-    sag: float  # of polygons below the surface, without the offset
+    sag: float  # the distance of polygons below the surface, without the offset
 
     @property
     def warning(self) -> str:
@@ -64,7 +65,7 @@ class Made:
     def put(self, context: bpy.types.Context, surface: bpy.types.Object) -> str:
         image = bpy.data.images.get(self.order.image)
         if image is None:
-            raise RefusalError(f"{self.order.image} is not there any more")
+            raise RefusalError(f"{self.order.image} does not exist any more")
         made = decal_object.add(context, ids.DECAL_OBJECT, self.placed, surface)
         if self.order.create_material:
             material.for_decal(made, image, ids.DECAL_UV)
@@ -79,7 +80,7 @@ def order(
 ) -> Order:
     image = inputs.image(properties.image)
     size = tuple(image.size)
-    # Cells are as square as whole numbers of them can be.
+    # Cells are as square as possible with whole numbers of columns and rows.
     columns, rows = np.rint(properties.decal_resolution * fitted(size)).clip(1).astype(int).tolist()
     RequestSize("polygons", columns * rows, 1).check(properties.allow_large)
     return Order(

@@ -19,7 +19,7 @@ class PlacedDecal:
     def __init__(
         self, world: WorldSurface, decal: Decal, offset: float, progress: Progress
     ) -> None:
-        """`offset` along the normals, in world units."""
+        """Places the vertices. `offset` is a distance along the normals, in world units."""
         hits = decal.hits
         self.st, self.sizes, self.vertices = hits.st, decal.sizes, decal.vertices
         # Counter-clockwise in the image is clockwise from outside, seen from a mirrored object.

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Empties as projectors: a flat image thrown along -Z, or one on each
-side of a box."""
+"""Empties as projectors: a flat image that is projected along -Z, or one on each side of a box."""
 
 import bpy
 import numpy as np
@@ -8,7 +7,8 @@ import numpy as np
 from ..errors import RefusalError
 from ..reading.projector import Projector, fitted, inverse
 
-ROOM = 0.01  # of the surface's extent, before and behind it, where no depths are given
+# the share of the surface's extent that is added before and behind it, where no depths are given
+ROOM = 0.01
 
 
 def find(name: str) -> bpy.types.Object:
@@ -24,9 +24,11 @@ def planar(
     bounds: np.ndarray,
     depth: tuple[float, float] | None = None,
 ) -> Projector:
-    """The rectangle in which the empty shows its image; for others, the square that holds all
-    of the empty, or as much of it as an image of that size takes. `depth`: two distances behind
-    it in the world; without them all of the surface, whose bounds (2, 3) are the world's."""
+    """Returns the projector of the rectangle in which an image empty shows its image. For another
+    empty it is the square of the empty's size, or the largest part of it with the image's
+    proportions. `depth` gives two distances behind the empty in the world; without it the projector
+    reaches all of the surface, whose bounds (2, 3) are given in the world.
+    """
     called, matrix = f"The empty {ob.name}", world_matrix(ob)
     middle, half = _rectangle(ob, size)
     placed = matrix @ _frame(np.diag([*half, 1]), np.array([*middle, 0]))
@@ -34,7 +36,9 @@ def planar(
 
 
 def to_box(ob: bpy.types.Object) -> np.ndarray:
-    """From the world to the coordinates in which the empty's cube reaches from -1 to 1."""
+    """Returns the matrix from the world to the coordinates in which the empty's cube reaches from
+    -1 to 1.
+    """
     placed = world_matrix(ob) @ _frame(np.diag([ob.empty_display_size] * 3), np.zeros(3))
     return inverse(placed, f"The empty {ob.name}")
 
@@ -44,7 +48,7 @@ def world_matrix(ob: bpy.types.Object) -> np.ndarray:
 
 
 def _rectangle(ob: bpy.types.Object, size: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Middle and half sides in the empty's x-y plane."""
+    """Returns the middle and the half sides in the empty's x-y plane."""
     if ob.empty_display_type != "IMAGE":
         return np.zeros(2), ob.empty_display_size * fitted(size)
     sides = ob.empty_display_size * fitted(_shown_size(ob.data) if ob.data else (1, 1))
@@ -65,7 +69,9 @@ def _frame(axes: np.ndarray, origin: np.ndarray) -> np.ndarray:
 def _flat(
     placed: np.ndarray, called: str, bounds: np.ndarray, depth: tuple[float, float] | None
 ) -> np.ndarray:
-    """From the world to the square [-1, 1]^2 of a frame's x-y plane, seen from its +Z."""
+    """Returns the matrix from the world to the square [-1, 1]^2 of a frame's x-y plane, seen from
+    its +Z.
+    """
     matrix = inverse(placed, called)
     if depth is None:
         corners = np.stack(np.meshgrid(*bounds.T, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -75,6 +81,8 @@ def _flat(
     else:
         near, far = np.array(depth) / np.linalg.norm(placed[:3, 2])
         if not near < far:
-            raise RefusalError(f"The depths {depth[0]:g} and {depth[1]:g} hold nothing between")
+            raise RefusalError(
+                f"There is no space between the depths {depth[0]:g} and {depth[1]:g}"
+            )
     z = np.array([0, 0, -2 / (far - near), -(far + near) / (far - near)])
     return np.array([*(np.eye(4)[:2]), z, np.eye(4)[3]]) @ matrix

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the operator's properties name in the file, read into what the work needs."""
+"""The inputs of the operator: the data that its properties name, read into arrays."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ SAMPLES: dict[str, Literal[1, 4, 16]] = {"1": 1, "4": 4, "16": 16}
 
 
 def image(name: str) -> bpy.types.Image:
-    """The one that is projected."""
+    """Returns the image that is projected."""
     if not name:
-        raise RefusalError("No image is chosen to be projected")
+        raise RefusalError("Choose an image to project")
     found = bpy.data.images.get(name)
     if found is None:
         raise RefusalError(f"There is no image {name!r}")
@@ -43,7 +43,9 @@ def projector(
     world: WorldSurface,
     size: tuple[int, int],
 ) -> Projector:
-    """For the sources that throw an image of that size from somewhere."""
+    """Returns the projector for the sources that project an image of that size from one place or
+    direction.
+    """
     if properties.source == "CAMERA":
         ob = camera.find(context, properties.camera)
         return camera.projector(ob, context.evaluated_depsgraph_get(), size)
@@ -75,7 +77,7 @@ def source(
         soft_edge=properties.soft_edge,
         is_framed=is_framed,
     )
-    # Where the frame ends the image, its pixels must not fade before.
+    # Where the frame cuts the image off, its pixels must not fade before the frame.
     extension = "EXTEND" if is_framed else properties.extension
     return FromProjector(world, thrown, _filtered(shown, extension), seen)
 

@@ -12,14 +12,15 @@ COLOR = "Base Color"
 
 
 def check(ob: bpy.types.Object) -> None:
-    """RefusalError where the object can show no image."""
+    """Raises RefusalError where the object cannot be given a material."""
     if _own(ob) is None:
         material_slots.check(ob)
 
 
 def show(ob: bpy.types.Object, image: bpy.types.Image, uv_map: str) -> bpy.types.Material:
-    """Over the base color of the object's active material, or of a new one where it has none that
-    has a shader for it."""
+    """Lays the image over the base color of the object's active material, or of a new one where it
+    has none with a suitable shader.
+    """
     material = _own(ob)
     if material is None:
         material = bpy.data.materials.new(image.name)
@@ -31,7 +32,7 @@ def show(ob: bpy.types.Object, image: bpy.types.Image, uv_map: str) -> bpy.types
 
 
 def for_decal(ob: bpy.types.Object, image: bpy.types.Image, uv_map: str) -> bpy.types.Material:
-    """Transparent where the image is."""
+    """Makes a material that is transparent where the image is."""
     material = bpy.data.materials.new(ob.name)
     material.use_nodes = True
     ob.data.materials.append(material)
@@ -55,7 +56,7 @@ def _shader(material: bpy.types.Material) -> Any:
 
 
 def _shows(socket: bpy.types.NodeSocket, image: bpy.types.Image) -> bool:
-    """Whether it comes, by way of any nodes, from a texture of that image."""
+    """Tells whether the socket's value comes, through any nodes, from a texture with that image."""
     waiting, seen = [socket], set()
     while waiting:
         for node in (link.from_node for link in waiting.pop().links):
@@ -68,7 +69,7 @@ def _shows(socket: bpy.types.NodeSocket, image: bpy.types.Image) -> bool:
 
 
 def _link(material: bpy.types.Material, image: bpy.types.Image, uv_map: str) -> None:
-    """Where the image is transparent, the color stays that was there."""
+    """Links the image to the shader. Where the image is transparent, the previous color stays."""
     tree, shader = material.node_tree, _shader(material)
     base, x = shader.inputs[COLOR], shader.location.x
     mix = tree.nodes.new("ShaderNodeMix")

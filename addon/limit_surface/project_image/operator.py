@@ -25,7 +25,7 @@ class OBJECT_OT_limit_project_image(
 
     bl_idname = ids.PROJECT_IMAGE
     bl_label = "Project Image on Limit Surface"
-    too_large = "Not enough memory for so many texels or polygons"
+    too_large = "There is not enough memory for so many texels or polygons"
     cancelled = "Cancelled: nothing was projected"
 
     def draw_properties(self) -> None:
@@ -35,7 +35,7 @@ class OBJECT_OT_limit_project_image(
         self.summary = ""
         ob = context.active_object
         if self.mode == "DECAL" and self.source not in properties.THROWN:
-            raise RefusalError("Decals are made from a camera, a view or an empty's plane only")
+            raise RefusalError("A decal can be made only from a camera, a view or a planar empty")
         depsgraph = context.evaluated_depsgraph_get()
         if self.mode == "DECAL":
             found = cage.read(ob, depsgraph)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Laying what a source shows over the pixels of a texture, part by part."""
+"""Painting of a source's colors over the pixels of a texture, part by part."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Canvas:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height."""
+        """The width and the height."""
         return self.pixels.shape[1], self.pixels.shape[0]
 
     @property
@@ -43,12 +43,12 @@ def paint(
     opacity: float,
     progress: Progress,
 ) -> int:
-    """How many texels have taken something. All others keep their values to the last bit."""
+    """Returns how many texels were painted. All others keep their values to the last bit."""
     count = 0
     whole = Places(uv_map, texels.face, texels.uv, canvas.texel)
     for rows in texel_places.parts(len(texels.face), progress):
         above, weight = source.look(whole.take(rows))
-        weight = (opacity * weight).clip(0, 1)  # rounding may have left more than 1
+        weight = (opacity * weight).clip(0, 1)  # rounding may have given slightly more than 1
         taken = weight * above[:, 3] > 0
         at = texels.y[rows][taken], texels.x[rows][taken]
         below = canvas.encoding.decoded(canvas.pixels[at])

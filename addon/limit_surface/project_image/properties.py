@@ -14,67 +14,104 @@ from bpy.props import (
 
 from ..images.texture_operator import TextureProperties
 
-# Sources that throw the image from somewhere: rays can be followed through its pixels.
+# Sources that project the image along rays through its pixels.
 THROWN = {"CAMERA", "VIEW", "PLANAR"}
 
 
 class ProjectionProperties(TextureProperties):
-    """Mixin for the operator."""
+    """Mixin with the properties of the operator."""
 
     source: EnumProperty(
         name="From",
-        description="Where the image is projected from",
+        description="Source from which the image is projected",
         items=(
-            ("CAMERA", "Camera", "A camera with its lens and shift, as it would render", "", 0),
-            ("VIEW", "View", "The 3D view, the image as large as fits into it", "", 1),
-            ("PLANAR", "Empty, Planar", "An empty's x-y plane, along its -Z", "", 2),
-            ("BOX", "Empty, Box", "All six sides of an empty's box, mixed by the normal", "", 3),
-            ("NORMALS", "Other Surface", "Along normals, from another mesh's texture", "", 4),
+            (
+                "CAMERA",
+                "Camera",
+                "Project from a camera, with its lens and shift as in a render",
+                "",
+                0,
+            ),
+            (
+                "VIEW",
+                "View",
+                "Project from the 3D view, with the image as large as fits into it",
+                "",
+                1,
+            ),
+            (
+                "PLANAR",
+                "Empty, Planar",
+                "Project from an empty's x-y plane, along its -Z axis",
+                "",
+                2,
+            ),
+            (
+                "BOX",
+                "Empty, Box",
+                "Project from all six sides of an empty's box, blended by the surface normal",
+                "",
+                3,
+            ),
+            (
+                "NORMALS",
+                "Other Surface",
+                "Project the texture of another mesh, along the normals",
+                "",
+                4,
+            ),
         ),
         default="CAMERA",
     )
     image: StringProperty(name="Image", description="Name of the image that is projected")
     camera: StringProperty(
-        name="Camera", description="Name of the camera. Without one the scene's is taken"
+        name="Camera", description="Name of the camera. If empty, the camera of the scene is used"
     )
     empty: StringProperty(
         name="Empty",
-        description="Name of the empty. An image empty projects from the rectangle that it shows, "
-        "others from the square, or the cube, of their size",
+        description="Name of the empty. An image empty projects from the rectangle of its image, "
+        "other empties from a square or a cube of their size",
     )
     from_object: StringProperty(
         name="Object",
-        description="Name of the mesh whose limit surface carries the image, by its active UV map",
+        description="Name of the mesh object whose limit surface shows the image by its active UV "
+        "map",
     )
     mode: EnumProperty(
         name="Result",
-        description="What becomes of the projected image",
+        description="What the projected image is used for",
         items=(
-            ("TEXTURE", "Texture", "It is painted into an image, by a UV map", "", 0),
-            ("DECAL", "Decal", "A new mesh that lies on the surface, with a UV map", "", 1),
+            ("TEXTURE", "Texture", "Paint it into an image, by a UV map", "", 0),
+            ("DECAL", "Decal", "Make a new mesh that lies on the surface and has a UV map", "", 1),
         ),
         default="TEXTURE",
     )
     output: EnumProperty(
         name="Paint Into",
-        description="Which image takes the texture",
+        description="Image into which the texture is painted",
         items=(
-            ("NEW", "New Image", "A new one, transparent where nothing is projected", "", 0),
-            ("EXISTING", "Existing Image", "One that is there, over its pixels", "", 1),
+            (
+                "NEW",
+                "New Image",
+                "Make a new image, which is transparent where nothing is projected",
+                "",
+                0,
+            ),
+            ("EXISTING", "Existing Image", "Paint over the pixels of an existing image", "", 1),
         ),
         default="NEW",
     )
     target: StringProperty(
-        name="Texture", description="Name of the image to paint into, or of the new one"
+        name="Texture", description="Name of the image to paint into, or of the new image"
     )
     use_float: BoolProperty(
         name="32-bit Float",
-        description="A new image has floating point numbers instead of 8 bits",
+        description="Make the new image with 32-bit float pixels instead of 8-bit ones",
         default=False,
     )
     opacity: FloatProperty(
         name="Opacity",
-        description="How much of the texture the projected image hides",
+        description="Opacity of the projected image over the texture",
         default=1.0,
         min=0.0,
         max=1.0,
@@ -82,19 +119,20 @@ class ProjectionProperties(TextureProperties):
     )
     extension: EnumProperty(
         name="Outside",
-        description="What is projected outside the image",
+        description="What is projected beyond the borders of the image",
         items=(
-            ("CLIP", "Clip", "Nothing", "", 0),
-            ("EXTEND", "Extend", "The pixels along its border", "", 1),
-            ("REPEAT", "Repeat", "The image again and again", "", 2),
-            ("MIRROR", "Mirror", "The image again and again, every other time mirrored", "", 3),
+            ("CLIP", "Clip", "Project nothing", "", 0),
+            ("EXTEND", "Extend", "Extend the pixels along its border", "", 1),
+            ("REPEAT", "Repeat", "Repeat the image", "", 2),
+            ("MIRROR", "Mirror", "Repeat the image and mirror every second copy", "", 3),
         ),
         default="CLIP",
     )
     facing: FloatVectorProperty(
         name="Facing",
-        description="Angles between the surface's normal and the direction it is seen from: up to "
-        "the first the image is projected fully, from the second on not at all",
+        description="Two angles between the surface normal and the direction to the viewer. Below "
+        "the first angle the image is projected fully, beyond the second not at all, and between "
+        "them it fades",
         size=2,
         default=(np.radians(75), np.radians(88)),
         min=0.0,
@@ -104,23 +142,25 @@ class ProjectionProperties(TextureProperties):
     )
     two_sided: BoolProperty(
         name="Two-Sided",
-        description="Project onto the surface's inner side, too",
+        description="Project onto the inner side of the surface, too",
         default=False,
     )
     occlusion: BoolProperty(
         name="Occlusion",
-        description="Not onto what the surface hides behind itself",
+        description="Do not project onto parts that the surface itself hides",
         default=True,
     )
     occlusion_samples: EnumProperty(
         name="Samples",
-        description="Rays for each texel, for smooth borders of what is hidden",
+        description="Number of rays for each texel. More rays make the borders of hidden parts "
+        "smoother",
         items=(("1", "1", "", 1), ("4", "4", "", 4), ("16", "16", "", 16)),
         default="4",
     )
     soft_edge: FloatProperty(
         name="Soft Edge",
-        description="Part of the image's width and height over which it fades in from its borders",
+        description="Share of the image's width and height over which it fades out towards its "
+        "borders",
         default=0.0,
         min=0.0,
         max=0.5,
@@ -133,15 +173,15 @@ class ProjectionProperties(TextureProperties):
     )
     depth: FloatVectorProperty(
         name="Depth",
-        description="These distances, in world units along the empty's -Z",
+        description="The two distances, in world units along the empty's -Z axis",
         size=2,
         default=(0.0, 1.0),
         subtype="XYZ_LENGTH",
     )
     blend: FloatProperty(
         name="Blend",
-        description="How softly the box's sides are mixed: at 0 every place takes the side that it "
-        "faces most",
+        description="Softness of the blend between the box's sides. At 0 each place shows only "
+        "the side that it faces most directly",
         default=0.2,
         min=0.0,
         max=1.0,
@@ -149,24 +189,30 @@ class ProjectionProperties(TextureProperties):
     )
     max_distance: FloatProperty(
         name="Distance",
-        description="How far away the other surface may be, in world units. 0 is any distance",
+        description="Largest distance to the other surface, in world units. 0 means any distance",
         default=0.0,
         min=0.0,
         subtype="DISTANCE",
     )
     direction: EnumProperty(
         name="Direction",
-        description="Which way the other surface is looked for",
+        description="Direction in which the other surface is searched for",
         items=(
-            ("BOTH", "Both", "The nearer of both ways", "", 0),
-            ("OUTWARD", "Outward", "Along the normal", "", 1),
-            ("INWARD", "Inward", "Against the normal", "", 2),
+            (
+                "BOTH",
+                "Both",
+                "Search along the normal and against it, and take the nearer point",
+                "",
+                0,
+            ),
+            ("OUTWARD", "Outward", "Search along the normal", "", 1),
+            ("INWARD", "Inward", "Search against the normal", "", 2),
         ),
         default="BOTH",
     )
     decal_resolution: IntProperty(
         name="Resolution",
-        description="Polygons of the decal along the image's longer side",
+        description="Number of the decal's polygons along the longer side of the image",
         default=64,
         min=1,
         max=2048,
@@ -174,7 +220,7 @@ class ProjectionProperties(TextureProperties):
     )
     decal_offset: FloatProperty(
         name="Offset",
-        description="How far above the surface the decal lies, in world units",
+        description="Distance of the decal above the surface, in world units",
         default=0.001,
         soft_min=-0.1,
         soft_max=0.1,
@@ -183,14 +229,13 @@ class ProjectionProperties(TextureProperties):
     )
     create_material: BoolProperty(
         name="Create Material",
-        description="Show the result: lay it over the base color of the active material, or of "
-        "a new one",
+        description="Show the result over the base color of the active material, or of a new one",
         default=False,
     )
 
 
 def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
-    """What counts, and no more."""
+    """Draws the properties that have an effect with the current choices."""
     column = layout.column()
     column.prop(properties, "source")
     column.prop_search(properties, "image", bpy.data, "images")

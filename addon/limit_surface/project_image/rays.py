@@ -10,15 +10,19 @@ import numpy as np
 from ..reading.projector import Projector
 from .world import WorldSurface
 
-HALVINGS = 16  # a border is found to so many halves of a cell's side
-BEND = 0.02  # a middle ray's hit lies closer to the chord's middle, in chords: no jump is there
+HALVINGS = 16  # number of times a cell's side is halved to find a border
+# The surface goes on where the hit of the middle ray is closer to the middle of the chord between
+# its two hits than this share of the chord.
+BEND = 0.02
 MOST_BREAKS = 8  # along one side of a cell
-JUMP = 2.0**-6  # of the first gap: hits that stay so far apart, however close the rays, do not join
+# As a share of the first gap: if hits stay farther apart than this when their rays come close, the
+# surface does not go on between them.
+JUMP = 2.0**-6
 
 
 @dataclass(frozen=True)
 class Hits:
-    """Rays that have arrived; what has not has face -1."""
+    """The hits of rays on the surface. A ray that has missed has the face -1."""
 
     st: np.ndarray  # (n, 2) in the image
     face: np.ndarray
@@ -38,7 +42,7 @@ class Hits:
         return Hits(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
     def where(self, chosen: np.ndarray, other: Hits) -> Hits:
-        """These rows where chosen, those of `other` elsewhere."""
+        """Returns these rows where chosen, and those of `other` elsewhere."""
         pairs = ((getattr(self, n), getattr(other, n)) for n in self.__dataclass_fields__)
         return Hits(*(np.where(chosen.reshape(-1, *[1] * (a.ndim - 1)), a, b) for a, b in pairs))
 
@@ -52,7 +56,7 @@ class Rays:
     def __init__(
         self, world: WorldSurface, projector: Projector, steepest: float, two_sided: bool
     ) -> None:
-        """`steepest`: the largest angle between a ray and the normal, in radians."""
+        """`steepest` is the largest angle between a ray and the normal, in radians."""
         self._world, self._projector = world, projector
         self._least, self._two_sided = np.cos(steepest), two_sided
 
@@ -63,7 +67,7 @@ class Rays:
         found = self._world.surface.ray_cast(near, along, length.max(initial=0))
         against = -np.einsum("ij,ij->i", found.normal, along) / length
         seen = np.abs(against) if self._two_sided else against
-        # Where there is no normal no side is turned away.
+        # A place without a normal does not count as turned away.
         dropped = (found.face < 0) | (found.distance > length) | (seen < self._least)
         face = np.where(dropped, -1, found.face)
         return Hits(
@@ -71,14 +75,15 @@ class Rays:
         )
 
     def furthest(self, start: Hits, stop: Hits) -> tuple[np.ndarray, Hits]:
-        """Along the image's straight line from each hit to another place: whether the surface
-        goes on all the way, and the last hit up to which it does."""
-        # A surface that reaches to where rays begin to miss may still break on its way there.
+        """Follows the image's straight line from each hit to another place. Returns whether the
+        surface goes on all the way, and the last hit up to which it does.
+        """
+        # Even if the surface reaches the place where rays begin to miss, it may have a jump before.
         goes_on, last = self._unbroken(start, self._border(start, stop))
         return goes_on & stop.valid, last
 
     def _border(self, start: Hits, stop: Hits) -> Hits:
-        """`stop`, or the last valid hit before it where it is none itself."""
+        """Returns `stop`, or the last valid hit before it where `stop` is not valid."""
         rows = np.flatnonzero(~stop.valid)
         low, high = start.take(rows), stop.take(rows)
         for _ in range(HALVINGS):
@@ -87,7 +92,9 @@ class Rays:
         return _put(stop, rows, low)
 
     def _unbroken(self, start: Hits, stop: Hits) -> tuple[np.ndarray, Hits]:
-        """For valid ends. One break after the other is looked for, each before the last one."""
+        """Takes valid ends. Jumps are searched for one after the other, each before the last
+        one.
+        """
         last, rows = stop, np.arange(len(start))
         for _ in range(MOST_BREAKS):
             held, before = self._up_to_break(start.take(rows), last.take(rows))
@@ -99,8 +106,9 @@ class Rays:
         return (last.st == stop.st).all(axis=1), last
 
     def _up_to_break(self, start: Hits, stop: Hits) -> tuple[np.ndarray, Hits]:
-        """Whether there is none, and the last hit before one. Rays are halved towards the larger
-        gap, or towards those that miss."""
+        """Returns whether there is no jump, and the last hit before one. Rays are halved towards
+        the larger gap, or towards rays that miss.
+        """
         gap = _distance(start, stop)
         middle = self.cast((start.st + stop.st) / 2)
         off = np.linalg.norm(middle.position - (start.position + stop.position) / 2, axis=1)

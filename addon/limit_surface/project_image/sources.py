@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an image shows on places of the surface, for each way of projecting it.
+"""The colors that an image gives to places of the surface, for each way of projecting it.
 
-All arrays: nothing of Blender is touched here.
+The work is on arrays alone; Blender's data is not touched here.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Places:
-    """Texels, by the locations under their centres."""
+    """Texels, given by the locations under their centres."""
 
     uv_map: limitsurf.SurfaceData
     face: np.ndarray  # (n,)
     uv: np.ndarray  # (n, 2)
-    texel: tuple[float, float]  # its size on the map
+    texel: tuple[float, float]  # the size of a texel on the UV map
 
     def take(self, rows: slice) -> Places:
         return Places(self.uv_map, self.face[rows], self.uv[rows], self.texel)
@@ -34,22 +34,22 @@ class Places:
 
 class Source(Protocol):
     def check(self) -> None:
-        """RefusalError where nothing sensible can come of it."""
+        """Raises RefusalError where the inputs make a projection impossible."""
 
     def look(self, places: Places) -> tuple[np.ndarray, np.ndarray]:
-        """Colors (n, 4), straight alpha, and weights (n,)."""
+        """Returns colors (n, 4) with straight alpha, and weights (n,)."""
 
 
 @dataclass(frozen=True)
 class Seen:
-    """Which places an image falls on, and how firmly."""
+    """The settings that decide on which places an image falls, and with which weight."""
 
     facing: tuple[float, float]  # angles
     two_sided: bool
     occlusion: bool
     samples: Literal[1, 4, 16]
     soft_edge: float
-    is_framed: bool  # nothing lies outside the image
+    is_framed: bool  # true if nothing lies outside the image
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,11 @@ class FromProjector:
 
 @dataclass(frozen=True)
 class FromBox:
-    """All six sides at once, mixed by the normal: no side hides another."""
+    """Projects from all six sides at once, blended by the normal. No side hides another."""
 
     world: WorldSurface
-    to_box: np.ndarray  # from the world
-    proportions: np.ndarray  # (2,) of a side that the image takes
+    to_box: np.ndarray  # the matrix from the world
+    proportions: np.ndarray  # (2,) shares of a side that the image fills
     image: limitsurf.FilteredImage
     blend: float
     is_framed: bool
@@ -130,7 +130,9 @@ class FromBox:
 
 @dataclass(frozen=True)
 class AlongNormals:
-    """From another surface's image, where rays along the normals meet that surface."""
+    """Projects the image of another surface, from the points where rays along the normals meet that
+    surface.
+    """
 
     world: WorldSurface
     carrier: WorldSurface

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Painting into a texture: what is asked for, the work on arrays, and the image that takes it."""
+"""Painting into a texture: what is asked for, the work on arrays, and the image that is changed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .world import WorldSurface
 if TYPE_CHECKING:
     import limitsurf
 
-MAPPED = 0.4  # of a tile's progress, when its texels are known
+MAPPED = 0.4  # the part of a tile's progress at which its texels are known
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Order:
     source: Source
     image: str
     target: str | NewImage
-    canvases: dict[int, Canvas]  # by tile
+    canvases: dict[int, Canvas]  # pixels by tile
     margin: int
     allow_overlap: bool
     opacity: float
@@ -87,10 +87,10 @@ class Made:
         else:
             image = bpy.data.images.get(target)
             if image is None:
-                raise RefusalError(f"{target} is not there any more")
+                raise RefusalError(f"{target} does not exist any more")
             sizes = image_pixels.checked(image, to_write=True).tiles
             if any(sizes.get(tile) != canvas.size for tile, canvas in canvases.items()):
-                raise RefusalError(f"{target} has another size meanwhile")
+                raise RefusalError(f"The size of {target} has changed since the work began")
         pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
         image_pixels.write(image, pixels, is_new=isinstance(target, NewImage))
         if self.order.create_material:
@@ -105,7 +105,7 @@ def order(
     surface: ObjectKey,
 ) -> Order:
     if not properties.opacity:
-        raise RefusalError("Opacity is 0: nothing would be seen of the image")
+        raise RefusalError("Opacity is 0, so the image would be invisible")
     if properties.create_material:
         material.check(surface.find())
     shown = inputs.image(properties.image)
@@ -130,7 +130,7 @@ def _target(properties: bpy.types.OperatorProperties) -> str | NewImage:
         name = properties.target or f"{properties.image} Projected"
         return NewImage(name, properties.width, properties.height, properties.use_float)
     if not properties.target:
-        raise RefusalError("No image is chosen to paint into")
+        raise RefusalError("Choose an image to paint into")
     if properties.target not in bpy.data.images:
         raise RefusalError(f"There is no image {properties.target!r} to paint into")
     if properties.target == properties.image:

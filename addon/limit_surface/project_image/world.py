@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The limit surface as it stands in the world, where distances and angles are what is seen."""
+"""The limit surface in world space, in which distances and angles are measured."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ MIRROR = np.diag([-1.0, 1, 1, 1])
 
 
 class WorldSurface:
-    """`surface` has the positions of the world, or of its mirror image for an object that is
-    mirrored itself: du x dv points outward. `local` has the object's own."""
+    """`surface` has the positions in the world. For a mirrored object it has those of the world's
+    mirror image, so that du x dv points outward. `local` has the positions in the object's space.
+    """
 
     def __init__(self, found: cage.Cage, called: str) -> None:
         self.cage = found
-        self.axes = WorldSpace(found.matrix)  # refuses what is flattened to nothing
+        self.axes = WorldSpace(found.matrix)  # refuses objects whose scale is 0 along an axis
         self.is_mirrored = found.is_mirrored
         self.from_world = MIRROR if self.is_mirrored else np.eye(4)
         self.surface, self.local = found.surface(), found.surface()
@@ -28,11 +29,11 @@ class WorldSurface:
         self.surface.set_positions(self.to_surface(found.world_positions()))
 
     def to_surface(self, points: np.ndarray) -> np.ndarray:
-        """Points (n, 3) of the world, in the surface's space."""
+        """Converts points (n, 3) of the world to the surface's space."""
         return points @ self.from_world[:3, :3].T
 
     def clip_matrix(self, projector: Projector) -> np.ndarray:
-        """From the surface's space to the projector's clip space."""
+        """Returns the matrix from the surface's space to the projector's clip space."""
         return projector.matrix @ np.linalg.inv(self.from_world)
 
     def check_eye(self, projector: Projector) -> None:
@@ -40,5 +41,5 @@ class WorldSurface:
             raise RefusalError(f"{projector.called} is inside the surface")
 
     def bounds(self) -> np.ndarray:
-        """(2, 3), in the world."""
+        """The bounds (2, 3) in the world."""
         return np.sort(self.to_surface(self.surface.bounds()), axis=0)

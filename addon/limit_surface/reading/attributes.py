@@ -11,7 +11,7 @@ from ..errors import RefusalError
 
 
 class Layout(NamedTuple):
-    key: str  # the property that holds an element's value
+    key: str  # the name of the property that holds an element's value
     width: int
     dtype: type
 
@@ -31,12 +31,14 @@ LAYOUTS = {
 
 
 def write(data: bpy.types.ID, name: str, kind: str, domain: str, values: np.ndarray) -> None:
-    """Creates the attribute, or overwrites it: one row of `values` per element of the domain."""
+    """Creates the attribute, or overwrites it, with one row of `values` for each element of the
+    domain.
+    """
     attribute = data.attributes.get(name)
     if attribute is None:
         attribute = data.attributes.new(name, kind, domain)
     if (attribute.name, attribute.data_type, attribute.domain) != (name, kind, domain):
-        raise RuntimeError(f"{data.name}: attribute {name!r} exists as another kind")
+        raise RuntimeError(f"{data.name}: attribute {name!r} exists with another type or domain")
     layout = LAYOUTS[kind]
     values = np.ascontiguousarray(values, layout.dtype)
     if values.size != len(attribute.data) * layout.width:
@@ -45,7 +47,9 @@ def write(data: bpy.types.ID, name: str, kind: str, domain: str, values: np.ndar
 
 
 def read(data: bpy.types.ID, name: str) -> np.ndarray:
-    """The attribute's values, (n,) or (n, width). KeyError where there is none of that name."""
+    """Returns the attribute's values, (n,) or (n, width). Raises KeyError where there is none of
+    that name.
+    """
     attribute = data.attributes[name]
     layout = LAYOUTS[attribute.data_type]
     values: np.ndarray = np.empty(len(attribute.data) * layout.width, layout.dtype)
@@ -54,17 +58,18 @@ def read(data: bpy.types.ID, name: str) -> np.ndarray:
 
 
 def check_names(ob: bpy.types.Object, kinds: Mapping[str, str], domain: str) -> None:
-    """RefusalError where one of these names, under which attributes of these kinds are to be
-    written, belongs to a vertex group or to an attribute of another kind."""
+    """Raises RefusalError where one of these names, under which attributes of these types are to be
+    written, belongs to a vertex group or to an attribute of another type or domain.
+    """
     data = ob.data
     for name, kind in kinds.items():
         there = data.attributes.get(name)
         if there and (there.data_type, there.domain) != (kind, domain):
             raise RefusalError(
-                f"{data.name} has an attribute {name} of another kind "
+                f"{data.name} has an attribute {name} of another type or domain "
                 f"({there.data_type} on {there.domain}): rename or remove it"
             )
-        if name in ob.vertex_groups:  # they share names with attributes
+        if name in ob.vertex_groups:  # vertex groups and attributes must not have the same name
             raise RefusalError(f"{ob.name} has a vertex group {name}: rename or remove it")
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From an object to the control mesh of its limit surface.
+"""The control mesh of an object's limit surface.
 
 The cage is the mesh after all modifiers that stand before the first enabled Subdivision Surface
-modifier; that modifier states the rules. No state of Blender's own evaluation shows the cage, so a
-private scene evaluates a copy of the object whose modifiers end there. Both are removed before
-anybody else sees them, and no frame-change handlers are called.
+modifier; the settings of that modifier give the rules. Blender's own evaluation never yields the
+cage itself, so a copy of the object, whose modifiers end there, is evaluated in a private scene.
+Both are removed before other code can see them, and no frame-change handlers are called.
 """
 
 from __future__ import annotations
@@ -26,14 +26,16 @@ from .uv_map import UvMap
 if TYPE_CHECKING:
     import limitsurf
 
-# These carry a state from frame to frame, which a copy does not have.
+# These modifiers depend on a state from earlier frames, which a copy does not have.
 SIMULATIONS = {"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "EXPLODE"}
 
 _busy = False
 
 
 def is_busy() -> bool:
-    """Whether handlers are being called for the private scene: they have nothing to do there."""
+    """Tells whether handlers are being called for the private scene, where they have nothing to
+    do.
+    """
     return _busy
 
 
@@ -42,18 +44,18 @@ class Cage:
     mesh: limitsurf.ControlMesh
     rules: rules.Rules
     face_sizes: np.ndarray
-    matrix: np.ndarray  # object to world, 4x4
-    uv_map: UvMap | None  # the active one, as it is on the cage
-    without_uv_map: str  # why, if there is an active one
-    shown_uv_interpolation: Interpolation  # of the mesh that the viewport shows
-    ignored: tuple[str, ...]  # enabled modifiers behind the subdivision
+    matrix: np.ndarray  # the matrix from the object to the world, 4x4
+    uv_map: UvMap | None  # the active UV map, as it is on the cage
+    without_uv_map: str  # the reason why it is missing, if there is an active one
+    shown_uv_interpolation: Interpolation  # that of the mesh that the viewport shows
+    ignored: tuple[str, ...]  # the enabled modifiers after the subdivision
 
     @property
     def notes(self) -> list[str]:
-        """What reports say of it."""
+        """Remarks for reports."""
         if not self.ignored:
             return [str(self.rules)]
-        return [str(self.rules), f"ignored behind {self.rules.subsurf}: {', '.join(self.ignored)}"]
+        return [str(self.rules), f"ignored after {self.rules.subsurf}: {', '.join(self.ignored)}"]
 
     @property
     def chosen_uv_map(self) -> UvMap:
@@ -66,7 +68,9 @@ class Cage:
         return int(subdivided_mesh.ptex_face_counts(self.face_sizes).sum())
 
     def world_positions(self) -> np.ndarray:
-        """Of the vertices. They make the surface as it lies in the world, to the last digit."""
+        """Returns the vertices' positions in the world, from which the surface in world space is
+        made without further rounding.
+        """
         return self.to_world(self.mesh.positions)
 
     def to_world(self, points: np.ndarray) -> np.ndarray:
@@ -74,19 +78,22 @@ class Cage:
 
     @property
     def is_mirrored(self) -> bool:
-        """Whether the object is mirrored in the world: du x dv points inwards there."""
+        """Tells whether the object is mirrored in the world, so that du x dv points inwards
+        there.
+        """
         return bool(np.linalg.det(self.matrix[:3, :3]) < 0)
 
     def surface(self, *, in_world: bool = False) -> limitsurf.LimitSurface:
-        """A new limit surface of the cage, in the object's space or as it lies in the world.
-        Subdivision gives the same surface in both; distances, angles and curvature differ."""
+        """Returns a new limit surface of the cage, in the object's space or as it lies in the
+        world. Subdivision gives the same surface in both; distances, angles and curvature differ.
+        """
         surface = native.limitsurf.LimitSurface(self.mesh)
         if in_world:
             surface.set_positions(self.world_positions())
         return surface
 
     def with_holes(self, faces: np.ndarray) -> limitsurf.ControlMesh:
-        """The control mesh, some of whose faces have no surface."""
+        """Returns the control mesh with some faces made holes, which have no surface."""
         mesh = self.mesh
         return native.limitsurf.ControlMesh(
             mesh.positions,
@@ -103,20 +110,20 @@ class Cage:
 
 
 def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
-    """The object's cage at the depsgraph's frame. CageError where it has none."""
+    """Reads the object's cage at the depsgraph's frame. Raises CageError where it has none."""
     with opened(ob, depsgraph) as (found, _):
         return found
 
 
 def why_not_on_mesh(ob: bpy.types.Object, found: Cage) -> str:
-    """Why the mesh cannot hold what the cage's vertices have, if so."""
+    """Returns the reason why the mesh cannot store values of the cage's vertices, or None."""
     mesh = ob.data
     if not mesh.is_editable:
         return f"the mesh {mesh.name} is linked from another file"
     if len(mesh.vertices) != len(found.mesh.positions) or not np.array_equal(
         attributes.read(mesh, ids.CORNER_VERTEX), found.mesh.face_vertices
     ):
-        return "modifiers before the subdivision make other vertices than the mesh has"
+        return "modifiers before the subdivision change the number of vertices"
     return ""
 
 
@@ -126,7 +133,7 @@ def opened(
     depsgraph: bpy.types.Depsgraph,
     adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
 ) -> Iterator[tuple[Cage, bpy.types.Mesh]]:
-    """The cage, and the mesh that it is read from: that lasts as long as the context."""
+    """Yields the cage, and the mesh that it is read from, which lasts as long as the context."""
     subsurf = rules.find_subsurf(ob)
     cut = ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
     check_modifiers(ob, cut)
@@ -151,7 +158,7 @@ def opened(
 
 def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules, whose: str) -> limitsurf.ControlMesh:
     if found.scheme == "bilinear":
-        sharp = sharpness.NOTHING  # all of it is as sharp as can be
+        sharp = sharpness.NOTHING  # all of its edges are infinitely sharp
     else:
         sharp = sharpness.read(mesh, found.use_creases, whose)
     return native.limitsurf.ControlMesh(
@@ -172,8 +179,9 @@ def evaluated_copy(
     depsgraph: bpy.types.Depsgraph,
     adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
 ) -> Iterator[bpy.types.Object]:
-    """The object as it evaluates with its first `cut` modifiers; `adjust` may change the copy and
-    its private scene before that."""
+    """Yields the object evaluated with its first `cut` modifiers; `adjust` may change the copy and
+    its private scene before that.
+    """
     global _busy
     was_busy, _busy = _busy, True
     try:
@@ -187,7 +195,8 @@ def evaluated_copy(
             layer = private_scene.layer(scene, depsgraph.view_layer)
             layer.update()
             evaluated = copy.evaluated_get(layer.depsgraph)
-            if evaluated.hide_viewport:  # animated or driven: such an object is not evaluated
+            # where this is animated or driven, the object is not evaluated
+            if evaluated.hide_viewport:
                 raise CageError(f"{ob.name} is hidden in the viewport at this frame")
             yield evaluated
     finally:
@@ -204,14 +213,16 @@ def _copied(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
 
 
 def check_modifiers(ob: bpy.types.Object, cut: int, shown: str = "show_viewport") -> None:
-    """CageError if one of the first `cut` that are shown cannot be evaluated on a copy."""
+    """Raises CageError if one of the first `cut` modifiers that are enabled cannot be evaluated on
+    a copy.
+    """
     for modifier in ob.modifiers[:cut]:
         if not getattr(modifier, shown):
             continue
         if modifier.type == "MULTIRES":
             raise CageError(
-                f"{ob.name}: Multiresolution ({modifier.name}) is not supported: apply it, or "
-                "switch it off"
+                f"{ob.name}: Multiresolution ({modifier.name}) is not supported: apply it or "
+                "disable it"
             )
         if modifier.type in SIMULATIONS or (
             modifier.type == "NODES" and _has_simulation(modifier.node_group)
@@ -232,7 +243,7 @@ def _has_simulation(group: bpy.types.NodeTree | None) -> bool:
 
 
 def _read_uv_map(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[uv_map.UvMap | None, str]:
-    """The active one, or why there is none."""
+    """Returns the active UV map, or the reason why there is none."""
     active = ob.data.uv_layers.active
     if active is None:
         return None, ""

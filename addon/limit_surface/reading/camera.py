@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A camera as a projector: what it shows when its render has the image's resolution."""
+"""A camera as a projector: it shows what a render at the image's resolution would show."""
 
 import bpy
 import numpy as np
@@ -11,10 +11,10 @@ PROJECTIONS = {"PERSP", "ORTHO"}
 
 
 def find(context: bpy.types.Context, name: str) -> bpy.types.Object:
-    """The scene's camera where no name is given."""
+    """Returns the camera of that name, or the scene's camera where no name is given."""
     if not name:
         if context.scene.camera is None:
-            raise RefusalError("There is no camera: the scene has none, and none is named")
+            raise RefusalError("There is no camera: the scene has none, and no name is given")
         return context.scene.camera
     ob = bpy.data.objects.get(name)
     if ob is None or ob.type != "CAMERA":
@@ -25,14 +25,16 @@ def find(context: bpy.types.Context, name: str) -> bpy.types.Object:
 def projector(
     ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, size: tuple[int, int]
 ) -> Projector:
-    """With lens, sensor, shift and clipping as they are evaluated, and the scene's pixel aspect."""
+    """Returns the projector with the evaluated lens, sensor, shift and clipping, and the scene's
+    pixel aspect.
+    """
     if ob.type != "CAMERA":
-        raise RefusalError(f"{ob.name} is no camera")
+        raise RefusalError(f"{ob.name} is not a camera")
     called, evaluated = f"The camera {ob.name}", ob.evaluated_get(depsgraph)
     if evaluated.data.type not in PROJECTIONS:
         kind = evaluated.data.bl_rna.properties["type"].enum_items[evaluated.data.type].name
         raise RefusalError(
-            f"{called} is {kind.lower()}: only perspective and orthographic ones can project"
+            f"{called} is {kind.lower()}: only perspective and orthographic cameras can project"
         )
     render = depsgraph.scene.render
     window = ob.calc_matrix_camera(
@@ -42,7 +44,7 @@ def projector(
         scale_x=render.pixel_aspect_x,
         scale_y=render.pixel_aspect_y,
     )
-    # Blender renders without the camera's scale.
+    # Blender ignores the camera's scale when it renders.
     placed = np.array(evaluated.matrix_world.normalized(), np.float64)
     matrix = np.array(window, np.float64) @ inverse(placed, called)
     return Projector(called, matrix, has_eye=evaluated.data.type == "PERSP")

@@ -30,7 +30,9 @@ _CALLED = {"VIEWPORT": "the mesh that the viewport shows", "RENDER": "the mesh t
 
 
 class DisplayedMesh:
-    """Locations are those of the limit surface: Ptex faces (n,), and uv (n, 2) in [0, 1]."""
+    """A mesh that Blender shows. Locations are those of the limit surface: Ptex faces (n,), and uv
+    (n, 2) in [0, 1].
+    """
 
     def __init__(self, level: int, face_sizes: np.ndarray, quads: TriangulatedQuads) -> None:
         self.level = level  # 0: the cage itself
@@ -38,20 +40,23 @@ class DisplayedMesh:
         self._finder = subdivided_mesh.PolygonFinder(face_sizes, level) if level else None
 
     def positions(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """(n, 3), where renderers draw them."""
+        """Returns positions (n, 3) on the triangles that renderers draw."""
         return self.quads.positions(*self._find(face, uv))
 
     def frames(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """(n, 3, 3) rotations of the triangles: columns tangent (along u), normal x tangent, flat
-        normal. Always finite."""
+        """Returns rotations (n, 3, 3) of the triangles with the columns tangent (along u), normal x
+        tangent and flat normal. They are always finite.
+        """
         return self.quads.frames(*self._find(face, uv))
 
     def vertices(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """(n,) the vertices at locations where there is one."""
+        """Returns the vertices (n,) at locations where there is one."""
         return self.quads.vertices_at(*self._find(face, uv))
 
     def are_flipped(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """(n,) whether the polygons there are cut from their second corner to the last."""
+        """Tells for each location (n,) whether the polygons there are cut from their second corner
+        to the last.
+        """
         return self.quads.flipped[self._find(face, uv)[0]]
 
     def _find(self, face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -62,8 +67,9 @@ class DisplayedMesh:
 def read(
     ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, found: cage.Cage, kind: Kind
 ) -> DisplayedMesh:
-    """The mesh at the depsgraph's frame, for a cage that was read there. RefusalError where its
-    polygons are not those of the subdivided cage."""
+    """Reads the mesh at the depsgraph's frame, for a cage that was read there. Raises RefusalError
+    where its polygons are not those of the subdivided cage.
+    """
     with opened(ob, depsgraph, kind) as (mesh, level, whose):
         return _read_mesh(whose, mesh, found, level)
 
@@ -72,8 +78,9 @@ def read(
 def opened(
     ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: Kind
 ) -> Iterator[tuple[bpy.types.Mesh, int, str]]:
-    """Blender's own mesh, which lasts as long as the context, its level, and what to call it in
-    messages."""
+    """Yields Blender's own mesh, which lasts as long as the context, its level, and its name for
+    messages.
+    """
     subsurf = _subsurf(ob, kind)
     cut = ob.modifiers.find(subsurf.name) + 1 if subsurf else len(ob.modifiers)
     if kind == "RENDER":
@@ -92,20 +99,25 @@ def opened(
 
 
 def _subsurf(ob: bpy.types.Object, kind: Kind) -> bpy.types.SubsurfModifier | None:
-    """The one whose rules the limit surface follows. What the viewport has switched off may still
-    be rendered."""
+    """Returns the modifier whose rules the limit surface follows. It may be disabled in the
+    viewport and enabled in renders.
+    """
     subsurf = rules.find_subsurf(ob)
     if subsurf is None and kind == "RENDER":
         return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_render), None)
     if subsurf is None and not isinstance(kind, str):
-        raise DisplayedError(f"{ob.name} has no Subdivision Surface modifier to give a level to")
+        raise DisplayedError(
+            f"{ob.name} has no Subdivision Surface modifier whose level could be set"
+        )
     return subsurf
 
 
 def _check_dicing(
     ob: bpy.types.Object, subsurf: bpy.types.SubsurfModifier | None, scene: bpy.types.Scene
 ) -> None:
-    """Cycles can leave the modifier out and subdivide by itself, as finely as the camera sees."""
+    """Raises RefusalError where Cycles would ignore the modifier and subdivide by itself, depending
+    on the camera.
+    """
     if subsurf is None or scene.render.engine != "CYCLES" or ob.modifiers[-1] != subsurf:
         return
     if hasattr(subsurf, "use_adaptive_subdivision"):  # from Blender 5.0 on
@@ -117,7 +129,8 @@ def _check_dicing(
         )
     if dices and subsurf.show_render:
         raise DisplayedError(
-            f"{ob.name} is rendered with adaptive subdivision: Cycles makes its polygons"
+            f"{ob.name} is rendered with adaptive subdivision, for which Cycles makes the polygons "
+            "itself"
         )
 
 
@@ -133,7 +146,7 @@ def _simplify(scene: bpy.types.Scene, kind: Kind) -> int:
 
 
 def _show(copy: bpy.types.Object, subsurf: str, kind: Kind) -> None:
-    """In the viewport what is asked for."""
+    """Sets the modifier up so that the viewport shows what is asked for."""
     if kind == "RENDER":
         for modifier in copy.modifiers:
             modifier.show_viewport = modifier.show_render
@@ -149,7 +162,7 @@ def _check_settings(
     subsurf: bpy.types.SubsurfModifier | None,
     kind: Kind,
 ) -> None:
-    """Animation and drivers have the last word."""
+    """Raises RefusalError where animation or drivers have overridden these settings."""
     animated = [
         m.name for m in evaluated.modifiers if kind == "RENDER" and m.show_viewport != m.show_render
     ]
@@ -157,7 +170,7 @@ def _check_settings(
         animated.append(subsurf.name)
     if animated:
         raise DisplayedError(
-            f"{whose} cannot be had: display settings of {', '.join(animated)} are animated"
+            f"{whose} is not available: display settings of {', '.join(animated)} are animated"
         )
 
 
@@ -199,7 +212,7 @@ def _read_mesh(whose: str, mesh: bpy.types.Mesh, found: cage.Cage, level: int) -
 
 
 def _triangles(mesh: bpy.types.Mesh) -> np.ndarray:
-    """(n, 3) corners, polygon by polygon."""
+    """Returns corners (n, 3) of the triangles, polygon by polygon."""
     mesh.calc_loop_triangles()
     corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("loops", corners)
@@ -207,11 +220,14 @@ def _triangles(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def _check_corners(whose: str, shown: DisplayedMesh, found: cage.Cage) -> None:
-    """Blender keeps the cage's vertices, in order and before all others: at the faces' corners
-    stand theirs."""
+    """Checks that the faces' corners have the cage's vertices. Blender keeps these in order, and
+    before all other vertices.
+    """
     at = subdivided_mesh.cage_corners(found.face_sizes)
     if not np.array_equal(shown.vertices(*at), found.mesh.face_vertices):
-        raise DisplayedError(f"{whose} does not have the cage's vertices at the faces' corners")
+        raise DisplayedError(
+            f"{whose} does not have the cage's vertices at the corners of its faces"
+        )
 
 
 def _called(kind: Kind) -> str:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Attributes as numbers on the edges or vertices of a mesh, whatever their type and domain.
 
-As Blender adapts them wherever it asks for an attribute by name: first to the domain, in the
-attribute's own type, then to single precision.
+They are converted as Blender converts them wherever it reads an attribute by name: first to the
+domain, in the attribute's own type, and then to single precision.
 """
 
 import bpy
@@ -12,14 +12,16 @@ from .. import ids
 from . import attributes, ragged_rows
 
 TYPES = ("FLOAT", "INT", "INT8", "BOOLEAN")
-#: no way leads from these to a number: to Blender there is no such attribute
+#: Types that Blender cannot convert to a number. It treats such an attribute as if it did not
+#: exist.
 WITHOUT_NUMBERS = ("STRING", "QUATERNION", "FLOAT4X4")
-#: true is here what lies at any true element, and elsewhere what lies at true elements only
+#: An element of these domains becomes true if any of its neighbours is true; in other domains, only
+#: if all of them are.
 _ANY = (("FACE", "EDGE"), ("FACE", "POINT"), ("EDGE", "POINT"))
 
 
 def numbers(mesh: bpy.types.Mesh, name: str, domain: str) -> np.ndarray:
-    """An attribute of one of the TYPES on EDGE or POINT."""
+    """Returns the numbers of an attribute of one of the TYPES on EDGE or POINT."""
     attribute = mesh.attributes[name]
     values = attributes.read(mesh, name)
     if attribute.domain != domain:
@@ -35,7 +37,9 @@ def numbers(mesh: bpy.types.Mesh, name: str, domain: str) -> np.ndarray:
 
 
 def _neighbours(mesh: bpy.types.Mesh, source: str, target: str) -> tuple[np.ndarray, np.ndarray]:
-    """Elements of the target's domain, and for each of them one of the source's that it is at."""
+    """Returns elements of the target's domain, and for each of them an adjacent element of the
+    source's domain.
+    """
     if {source, target} == {"EDGE", "POINT"}:
         vertex = attributes.read(mesh, ids.EDGE_VERTICES).ravel()
         edge = np.repeat(np.arange(len(mesh.edges)), 2)
@@ -52,7 +56,7 @@ def _neighbours(mesh: bpy.types.Mesh, source: str, target: str) -> tuple[np.ndar
 
 
 def _mean(values: np.ndarray, element: np.ndarray, count: int) -> np.ndarray:
-    """Over all the values that an element has; 0 where it has none."""
+    """Returns the mean of all the values that an element has; 0 where it has none."""
     total = np.zeros(count, values.dtype)
     np.add.at(total, element, values)
     weight = np.bincount(element, minlength=count).astype(values.dtype)
@@ -60,7 +64,7 @@ def _mean(values: np.ndarray, element: np.ndarray, count: int) -> np.ndarray:
 
 
 def _rounded(values: np.ndarray) -> np.ndarray:
-    """Halves away from 0."""
+    """Returns integers; halves are rounded away from 0."""
     return np.copysign(np.floor(np.abs(values) + 0.5), values)
 
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scene without objects in which modifiers and drivers find what they find in the user's."""
+"""A scene without objects in which modifiers and drivers find the same settings as in the user's
+scene.
+"""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +10,7 @@ import bpy
 
 from .. import ids
 
-# Before, a copy of a scene counts itself twice as a user of the objects that it links.
+# In earlier versions a copy of a scene counts itself twice as a user of the objects that it links.
 _CAN_COPY = bpy.app.version >= (4, 5)
 
 _CARRIED = {
@@ -20,7 +22,7 @@ _CARRIED = {
 
 @contextmanager
 def like(scene: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
-    """There is one as long as the context lasts."""
+    """Yields a private scene that exists as long as the context lasts."""
     private = scene.copy() if _CAN_COPY else bpy.data.scenes.new(ids.CAGE_SCENE)
     try:
         private.name = ids.CAGE_SCENE
@@ -28,7 +30,8 @@ def like(scene: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
             _empty(private)
         else:
             _carry_over(scene, private)
-        # Assigned, animation is evaluated; frame_set would call everybody's frame-change handlers.
+        # Assigning the frame also evaluates animation; frame_set would call all frame-change
+        # handlers.
         private.frame_float = scene.frame_float
         yield private
     finally:
@@ -36,7 +39,7 @@ def like(scene: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
 
 
 def layer(scene: bpy.types.Scene, shown: bpy.types.ViewLayer) -> bpy.types.ViewLayer:
-    """The private scene's counterpart of a view layer."""
+    """Returns the private scene's counterpart of a view layer."""
     if _CAN_COPY:
         return scene.view_layers[shown.name]
     _carry_properties(shown, scene.view_layers[0])
@@ -44,7 +47,9 @@ def layer(scene: bpy.types.Scene, shown: bpy.types.ViewLayer) -> bpy.types.ViewL
 
 
 def _empty(scene: bpy.types.Scene) -> None:
-    """Leaves what can be asked of a scene, and nothing that would be evaluated with it."""
+    """Removes what would be evaluated with the scene, and keeps the settings that can be read from
+    it.
+    """
     scene.background_set = None
     scene.sequence_editor_clear()
     if scene.rigidbody_world:

@@ -9,17 +9,17 @@ import numpy as np
 
 
 def starts(sizes: np.ndarray) -> np.ndarray:
-    """Where each row begins."""
+    """Returns the first element of each row."""
     return np.cumsum(sizes) - sizes
 
 
 def places(sizes: np.ndarray) -> np.ndarray:
-    """For each element its place in its row, counted from 0."""
+    """Returns for each element its place in its row, counted from 0."""
     return np.arange(np.sum(sizes)) - np.repeat(starts(sizes), sizes)
 
 
 def following(sizes: np.ndarray) -> np.ndarray:
-    """For each element the next one of its row; for the last one the row's first."""
+    """Returns for each element the next one of its row; for the last one, the row's first."""
     first = starts(sizes)
     result = np.arange(np.sum(sizes)) + 1
     result[first + sizes - 1] = first
@@ -27,7 +27,7 @@ def following(sizes: np.ndarray) -> np.ndarray:
 
 
 def preceding(sizes: np.ndarray) -> np.ndarray:
-    """For each element the one before it in its row; for the first one the row's last."""
+    """Returns for each element the one before it in its row; for the first one, the row's last."""
     first = starts(sizes)
     result = np.arange(np.sum(sizes)) - 1
     result[first] = first + sizes - 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a Subdivision Surface modifier says about the limit surface, in limitsurf's words."""
+"""The settings of a Subdivision Surface modifier, as the rules and names of limitsurf."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ BOUNDARIES: dict[str, Boundary] = {"ALL": "smooth", "PRESERVE_CORNERS": "corners
 
 SCHEMES: dict[str, Scheme] = {"CATMULL_CLARK": "catmark", "SIMPLE": "bilinear"}
 
-# Blender's names say what is preserved, OpenSubdiv's what is interpolated linearly: the same.
+# Blender names these rules by what is preserved, OpenSubdiv by what is interpolated linearly. Both
+# mean the same.
 UV_INTERPOLATIONS: dict[str, Interpolation] = {
     "NONE": "all",
     "PRESERVE_CORNERS": "corners_only",
@@ -33,13 +34,15 @@ LINEAR: Interpolation = UV_INTERPOLATIONS["NONE"]
 
 @dataclass(frozen=True)
 class Rules:
-    """The defaults are those of a new modifier: they hold for objects that have none."""
+    """The rules of subdivision. The defaults are those of a new modifier and are used for objects
+    that have none.
+    """
 
-    subsurf: str = ""  # the modifier's name
+    subsurf: str = ""  # the name of the modifier
     scheme: Scheme = "catmark"
     boundary: Boundary = "smooth"
     uv_interpolation: Interpolation = (
-        "boundaries"  # on the limit surface, whatever the viewport shows
+        "boundaries"  # the rule on the limit surface, whatever the viewport shows
     )
     use_creases: bool = True
 
@@ -52,12 +55,16 @@ class Rules:
 
 
 def find_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
-    """The modifier whose rules the limit surface follows: the first enabled in the viewport."""
+    """Returns the modifier whose rules the limit surface follows: the first one that is enabled in
+    the viewport.
+    """
     return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_viewport), None)
 
 
 def shown_uv_interpolation(ob: bpy.types.Object, scene: bpy.types.Scene) -> Interpolation:
-    """That of the mesh which the viewport shows: only what is subdivided has smooth UVs."""
+    """Returns the UV interpolation of the mesh that the viewport shows: UV maps are smooth only
+    where it is subdivided.
+    """
     simplify = scene.render.simplify_subdivision if scene.render.use_simplify else np.inf
     shown = (
         m
@@ -76,7 +83,7 @@ def read(subsurf: bpy.types.SubsurfModifier | None) -> Rules:
         subsurf=subsurf.name,
         scheme=scheme,
         boundary=BOUNDARIES[subsurf.boundary_smooth],
-        # Simple subdivision leaves UVs where they are, whatever the setting.
+        # Simple subdivision does not smooth UV maps, whatever the setting.
         uv_interpolation=LINEAR if scheme == "bilinear" else UV_INTERPOLATIONS[subsurf.uv_smooth],
         use_creases=subsurf.use_creases,
     )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How sharp a mesh's edges and vertices are where Blender subdivides it.
+"""The sharpness of a mesh's edges and vertices where Blender subdivides it.
 
-In Blender's own single precision: a difference in the last bit of a fractional sharpness would
-show in the surface.
+It is calculated in single precision, as Blender does: a difference in the last bit of a fractional
+sharpness would change the surface.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from .. import ids
 from ..errors import CageError
 from . import attributes, element_numbers
 
-INFINITE = np.float32(10)  # and all that is above
-OF_CREASE_1 = np.float32(10)  # and otherwise its square's part of that
-LEAST = np.float32(1e-6)  # what is below counts as no sharpness, on edges
+INFINITE = np.float32(10)  # this crease, and every larger one, is infinitely sharp
+OF_CREASE_1 = np.float32(10)  # other creases have the square of their value times this sharpness
+LEAST = np.float32(1e-6)  # smaller values on edges count as no crease
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,9 @@ NOTHING = Sharpness(np.empty((0, 2), np.int32), np.empty(0), np.empty(0, np.int3
 
 
 def read(mesh: bpy.types.Mesh, use_creases: bool, whose: str) -> Sharpness:
-    """The edges of faces and the vertices in faces whose sharpness is not 0. CageError, which
-    says whose the mesh is, where creases are no numbers."""
+    """Returns the edges of faces and the vertices of faces whose sharpness is not 0. Raises
+    CageError, which names `whose` mesh it is, where creases are not numbers.
+    """
     ends = attributes.read(mesh, ids.EDGE_VERTICES)
     in_face, vertex_in_face = (np.zeros(len(c), bool) for c in (mesh.edges, mesh.vertices))
     in_face[attributes.read(mesh, ids.CORNER_EDGE)] = True
@@ -46,7 +47,8 @@ def read(mesh: bpy.types.Mesh, use_creases: bool, whose: str) -> Sharpness:
         vertex = _from_creases(mesh, whose, ids.VERTEX_CREASE, "POINT", vertex)
     edge[edge < LEAST] = 0
     vertex = _with_edges_of_two(vertex, ends[in_face], edge[in_face])
-    vertex[ends[~in_face]] = INFINITE  # loose edges are no part of the surface, but hold it
+    # loose edges are not part of the surface, but they count where two edges meet
+    vertex[ends[~in_face]] = INFINITE
 
     edges = np.flatnonzero(in_face & (edge != 0))
     vertices = np.flatnonzero(vertex_in_face & (vertex != 0))
@@ -72,12 +74,14 @@ def _from_creases(
             f"{whose}: the crease of {element} {missing[0]} is not a number (attribute {name}; "
             f"{missing.size} in all)"
         )
-    crease = crease.clip(-1, 1)  # beyond, squares are as good as infinite too
+    crease = crease.clip(-1, 1)  # the square of a larger crease is infinitely sharp, too
     return crease * crease * OF_CREASE_1
 
 
 def _with_edges_of_two(vertex: np.ndarray, ends: np.ndarray, edge: np.ndarray) -> np.ndarray:
-    """A vertex at which exactly two edges meet is as sharp as both, besides what it is itself."""
+    """A vertex at which exactly two edges meet gets the sum of their sharpness, in addition to its
+    own.
+    """
     least = np.full(len(vertex), np.inf, np.float32)
     np.minimum.at(least, ends, edge[:, None])
     of_two = np.bincount(ends.ravel(), minlength=len(vertex)) == 2

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the vertices and face corners that Blender's Subdivision Surface makes lie on the cage, and
-on which of its polygons a place of the cage lies.
+"""The places on the cage of the vertices and face corners that Blender's Subdivision Surface makes,
+and the polygon on which a place of the cage lies.
 
-The modifier makes 2^levels x 2^levels polygons of a quad, and of any other face half as many along
-each side of each corner's part. Vertices come as the cage's own, then those inside its edges, then
-those inside its faces; polygons come cage face by cage face, in the order of `_quad_cells` and
-`_split_cells`. Behind a modifier that makes, drops or sorts elements none of this holds.
+The modifier makes 2^levels x 2^levels polygons of a quad. Of any other face it makes half as many
+along each side of each corner's part. The vertices of the cage come first, then those inside its
+edges, then those inside its faces. Polygons come cage face by cage face, in the order of
+`_quad_cells` and `_split_cells`. After a modifier that makes, removes or sorts elements none of
+this holds.
 """
 
 from typing import NamedTuple
@@ -14,7 +15,7 @@ import numpy as np
 
 from .ragged_rows import places, starts
 
-#: (u, v) of a polygon's corners, in Blender's order: from the one nearest to (0, 0)
+#: The (u, v) of a polygon's corners, in Blender's order, from the corner nearest to (0, 0)
 _AROUND = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
 
 
@@ -26,12 +27,14 @@ class SurfaceLocations(NamedTuple):
 class _Cells(NamedTuple):
     """The polygons of one cage face, in Blender's order."""
 
-    part: np.ndarray  # (n,) Ptex face, counted from the cage face's first
-    cell: np.ndarray  # (n, 2) column along u, row along v
+    part: np.ndarray  # (n,) Ptex faces, counted from the first one of the cage face
+    cell: np.ndarray  # (n, 2) columns along u, rows along v
 
 
 def corner_locations(face_sizes: np.ndarray, levels: int) -> SurfaceLocations:
-    """Of every corner of every polygon, for a cage whose faces have so many corners."""
+    """Returns the location of every corner of every polygon, for a cage whose faces have so many
+    corners.
+    """
     if levels < 1:
         raise ValueError("Blender subdivides from level 1 on")
     first_ptex_face = starts(ptex_face_counts(face_sizes))
@@ -52,7 +55,7 @@ def corner_locations(face_sizes: np.ndarray, levels: int) -> SurfaceLocations:
 def vertex_locations(
     corners: SurfaceLocations, corner_vertex: np.ndarray, vertex_count: int
 ) -> SurfaceLocations:
-    """Of every vertex, from those of the corners that stand at it: its first corner's."""
+    """Returns the location of every vertex, taken from the first corner at it."""
     face = np.full(vertex_count, -1, np.int32)
     uv = np.zeros((vertex_count, 2))
     vertex, corner = np.unique(corner_vertex, return_index=True)
@@ -61,7 +64,7 @@ def vertex_locations(
 
 
 def cage_corners(face_sizes: np.ndarray) -> SurfaceLocations:
-    """Of every corner of every face of the cage."""
+    """Returns the location of every corner of every face of the cage."""
     size_at = np.repeat(face_sizes, face_sizes)
     corner = places(face_sizes)
     parts = ptex_face_counts(face_sizes)
@@ -76,13 +79,14 @@ def ptex_face_counts(face_sizes: np.ndarray) -> np.ndarray:
 
 
 def polygon_counts(face_sizes: np.ndarray, levels: int | np.ndarray) -> np.ndarray:
-    """Of each cage face, from level 1 on; quads stay what they are at level 0. `levels` may be an
-    array with one level for each face."""
+    """Returns the number of polygons of each cage face, from level 1 on; at level 0 a quad is one
+    polygon. `levels` may be an array with one level for each face.
+    """
     return np.where(face_sizes == 4, 4, face_sizes).astype(np.int64) * 4**levels // 4
 
 
 class PolygonFinder:
-    """The polygon at a place of the cage, for a cage whose faces have so many corners."""
+    """Finds the polygon at a place of the cage, for a cage whose faces have so many corners."""
 
     def __init__(self, face_sizes: np.ndarray, levels: int) -> None:
         parts = ptex_face_counts(face_sizes)
@@ -92,8 +96,10 @@ class PolygonFinder:
         self._first_polygon = starts(polygon_counts(face_sizes, levels))
 
     def find(self, face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Polygons (n,), and how far along them (n, 2): (0, 0) at their first corner, (1, 0) at
-        the second, (0, 1) at the last. Of polygons that meet there, the one towards (1, 1)."""
+        """Returns polygons (n,), and the places on them (n, 2): (0, 0) at their first corner, (1,
+        0) at the second, (0, 1) at the last. Where several polygons meet, the one towards (1, 1) is
+        taken.
+        """
         base, part = self._base[face], self._part[face]
         size_at = self._sizes[base]
         polygon, within = np.empty(len(face), np.int64), np.empty((len(face), 2))
@@ -111,7 +117,7 @@ class PolygonFinder:
 
 
 def polygons_per_side(face_size: int, levels: int) -> int:
-    """Of a Ptex face; 1 at level 0."""
+    """Returns the number of polygons along a side of a Ptex face; 1 at level 0."""
     return 2**levels if face_size == 4 else 2 ** max(levels - 1, 0)
 
 
@@ -120,7 +126,9 @@ def _cells(face_size: int, per_side: int) -> _Cells:
 
 
 def _quad_cells(side: int) -> _Cells:
-    """The inner cells row by row, then those along each side in turn."""
+    """Returns the polygons of a quad: the inner cells row by row, then those along each side in
+    turn.
+    """
     inner, along, end = np.arange(1, side - 1), np.arange(side - 1), side - 1
     return _joined(
         _rows(0, inner, inner),
@@ -132,8 +140,10 @@ def _quad_cells(side: int) -> _Cells:
 
 
 def _split_cells(size: int, side: int) -> _Cells:
-    """Of a face that is split into a part for each corner: the inner cells of all parts, those
-    beside the lines between parts, those at the centre, then the cage face's boundary."""
+    """Returns the polygons of a face that is split into a part for each corner: the inner cells of
+    all parts, those beside the lines between parts, those at the centre, then those at the cage
+    face's boundary.
+    """
     parts = range(size)
     inner, along, upwards, end = (
         np.arange(1, side - 1),

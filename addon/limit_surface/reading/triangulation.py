@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Quads as renderers draw them: two flat triangles each, cut along the diagonal that Blender takes.
+"""Quads as renderers draw them: two flat triangles each, cut along the diagonal that Blender
+chooses.
 
-A place on a quad is told by how far it lies along its sides: (0, 0) at the first corner, (1, 0) at
-the second, (1, 1) and (0, 1) at the others. It is linear on each triangle.
+A place on a quad is given by two numbers: (0, 0) at the first corner, (1, 0) at the second, (1, 1)
+and (0, 1) at the others. Positions are linear in them on each triangle.
 """
 
 from __future__ import annotations
@@ -18,13 +19,17 @@ from . import ragged_rows
 class TriangulatedQuads:
     vertices: np.ndarray  # (v, 3)
     corners: np.ndarray  # (n, 4) vertices of each quad
-    flipped: np.ndarray  # (n,) cut from the second to the last corner, not from the first
+    # (n,) true for quads that are cut from the second to the last corner, not from the first to the
+    # third
+    flipped: np.ndarray
 
     @classmethod
     def from_triangles(
         cls, vertices: np.ndarray, corners: np.ndarray, triangles: np.ndarray
     ) -> TriangulatedQuads:
-        """From Blender's triangles (2 n, 3) of quads alone, which are told by their corners."""
+        """Makes quads from Blender's triangles (2 n, 3), where all polygons are quads. The
+        triangles refer to corners.
+        """
         return cls(vertices, corners, _is_flipped(triangles[::2], 4 * np.arange(len(corners))))
 
     @classmethod
@@ -35,11 +40,13 @@ class TriangulatedQuads:
         sizes: np.ndarray,
         triangles: np.ndarray,
     ) -> TriangulatedQuads:
-        """Of polygons of any size: the quads themselves, and the others' parts between a corner,
-        the middles of its two sides and the mean of all corners."""
+        """Makes quads from polygons of any size: from a quad itself, and from any other polygon one
+        quad for each corner, with the middles of the corner's two sides and the mean of all
+        corners.
+        """
         first = ragged_rows.starts(sizes)
         is_quad = sizes == 4
-        split = ~np.repeat(is_quad, sizes)  # corners that have a part of their own
+        split = ~np.repeat(is_quad, sizes)  # corners that get a quad of their own
         polygon = np.repeat(np.arange(len(sizes)), sizes)
         corner = np.arange(len(corner_vertex))
         following, before = ragged_rows.following(sizes), ragged_rows.preceding(sizes)
@@ -59,13 +66,14 @@ class TriangulatedQuads:
         return cls(np.concatenate([vertices, middles, centres]), corners, flipped[polygon[kept]])
 
     def positions(self, quad: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """(n, 3)"""
+        """Returns positions (n, 3)."""
         return np.einsum("ni,nij->nj", self._weights(quad, at), self.vertices[self.corners[quad]])
 
     def frames(self, quad: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """(n, 3, 3) rotations: columns tangent along the first and third side, normal x tangent,
-        normal of the triangle. Where it has no such tangent or no area they are completed from the
-        other sides, then from the axes."""
+        """Returns rotations (n, 3, 3) with the columns tangent along the first and third side,
+        normal x tangent, and normal of the triangle. Where a triangle has no such tangent or no
+        area, the columns are completed from the other sides, then from the axes.
+        """
         lower = self._is_lower(quad, at)[:, None]
         first, second, third, last = self.vertices[self.corners[quad]].transpose(1, 0, 2)
         along = np.where(lower, second - first, third - last)
@@ -73,17 +81,17 @@ class TriangulatedQuads:
         return _completed(along, ahead)
 
     def vertices_at(self, quad: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """(n,) for places at corners."""
+        """Returns the vertices (n,) for places at corners."""
         x, y = at.astype(np.int64).T
         return self.corners[quad, np.where(y == 0, x, 3 - x)]
 
     def _is_lower(self, quad: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """On the triangle of the quad's first side."""
+        """Tells whether a place is on the triangle with the quad's first side."""
         x, y = at.T
         return np.where(self.flipped[quad], x + y <= 1, x >= y)
 
     def _weights(self, quad: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """(n, 4) of the corners."""
+        """Returns the weights (n, 4) of the corners."""
         x, y = at.T
         none = np.zeros_like(x)
         lower, flipped = self._is_lower(quad, at), self.flipped[quad]
@@ -99,13 +107,16 @@ class TriangulatedQuads:
 
 
 def _is_flipped(first_triangles: np.ndarray, first_corners: np.ndarray) -> np.ndarray:
-    """Blender's first triangle of a quad has the corners 0, 1, 2, or 0, 1, 3."""
+    """Tells how quads are cut. Blender's first triangle of a quad has the corners 0, 1, 2, or 0, 1,
+    3.
+    """
     return (first_triangles - first_corners[:, None] == 3).any(axis=1)
 
 
 def _completed(along: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-    """Rotations whose first axis goes along the first vectors, and the third at right angles to
-    both."""
+    """Returns rotations whose first axis has the direction of the first vectors; the third axis is
+    at right angles to both.
+    """
     tangent = _unit(along)
     tangent = np.where(_is_zero(tangent), _unit(ahead), tangent)
     tangent = np.where(_is_zero(tangent), [1.0, 0.0, 0.0], tangent)
@@ -116,7 +127,7 @@ def _completed(along: np.ndarray, ahead: np.ndarray) -> np.ndarray:
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    """Zero where they are zero."""
+    """Returns unit vectors; zero for zero vectors."""
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cage's UV map: one value for the corners that Blender subdivides as one.
+"""A cage's UV map, in which corners that Blender subdivides together share one value.
 
 Where the corners around a vertex share a value the map is smooth there; where they do not, a seam
-runs through it. Marks of seams on edges have no say.
+runs through the vertex. Edges that are marked as seams make no difference.
 """
 
 from __future__ import annotations
@@ -15,20 +15,23 @@ import numpy as np
 from .. import ids
 from . import attributes, ragged_rows
 
-LIMIT = np.float32(1e-4)  # corners of a vertex that differ by less along each axis share a value
+# corners of a vertex share a value if they differ by less than this along each axis
+LIMIT = np.float32(1e-4)
 
 
 @dataclass(frozen=True)
 class UvMap:
     name: str
     values: np.ndarray  # (m, 2)
-    indices: np.ndarray  # one per face corner of the cage
+    indices: np.ndarray  # the row of the value for each face corner of the cage
 
 
 def obstacle(mesh: bpy.types.Mesh, name: str) -> str:
-    """Why the map of that name cannot be read from a mesh as modifiers leave it, if so."""
+    """Returns the reason why the map of that name cannot be read from a mesh after its modifiers,
+    or None.
+    """
     if name not in mesh.uv_layers:
-        return f"the UV map {name} does not outlast the modifiers"
+        return f"the modifiers remove the UV map {name}"
     if not np.isfinite(attributes.read(mesh, name)).all():
         return f"the UV map {name} has coordinates that are not finite numbers"
     return ""
@@ -44,17 +47,18 @@ def read(mesh: bpy.types.Mesh, name: str) -> UvMap:
 
 
 def _leaders(uv: np.ndarray, corner_vertex: np.ndarray, mirrored: np.ndarray) -> np.ndarray:
-    """For each corner the one whose value it takes, chosen as Blender does.
+    """Returns for each corner the one whose value it takes, chosen as Blender does.
 
-    The last corner of a vertex takes along all that are close to it and turned the same way; of
-    the rest the last one does, and so on. So who is close to whom depends on that order.
+    The last corner of a vertex is a leader. All corners that are close to it, and whose faces have
+    the same orientation on the map, take its value; the last of the remaining corners is the next
+    leader, and so on. So the result depends on that order.
     """
     leader = np.arange(len(uv))
     last = np.empty(corner_vertex.max(initial=-1) + 1, int)
     rest = leader
     while rest.size:
         vertex = corner_vertex[rest]
-        last[vertex] = rest  # ascending: the last stays
+        last[vertex] = rest  # rows are ascending, so the last one stays
         to = last[vertex]
         close = (np.abs(uv[rest] - uv[to]) < LIMIT).all(axis=1) & (mirrored[rest] == mirrored[to])
         leader[rest[close]] = to[close]
@@ -63,7 +67,9 @@ def _leaders(uv: np.ndarray, corner_vertex: np.ndarray, mirrored: np.ndarray) ->
 
 
 def _is_mirrored(uv: np.ndarray, face_sizes: np.ndarray) -> np.ndarray:
-    """Whether a face's corners run clockwise on the map; faces of no area there do not."""
+    """Tells whether a face's corners run clockwise on the map; this is false for faces without area
+    there.
+    """
     before = ragged_rows.preceding(face_sizes)
     strips = (uv[before, 0] - uv[:, 0]) * (uv[:, 1] + uv[before, 1])
     return np.add.reduceat(strips, ragged_rows.starts(face_sizes)) < 0

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The weights of vertex groups as whole arrays, read from a mesh and put on one.
+"""The weights of vertex groups as whole arrays, read from a mesh and written to one.
 
-Python sees them vertex by vertex only. Geometry nodes, run for the evaluation of a mesh, copy them
-to attributes and back.
+Python can access them only vertex by vertex. Geometry Nodes, run in the evaluation of a mesh, copy
+them to attributes and back.
 """
 
 from __future__ import annotations
@@ -18,21 +18,23 @@ from . import attributes, cage
 
 Adjust = Callable[[bpy.types.Object, bpy.types.Scene], None]
 
-_MISSING = -1.0  # weights are 0 to 1
+_MISSING = -1.0  # weights are from 0 to 1
 
 
 @contextmanager
 def kept(groups: Sequence[str]) -> Iterator[Adjust | None]:
-    """Gives what is to be done to a copied object before it is evaluated, so that its mesh can be
-    `read`; None for no groups."""
+    """Returns a function that changes a copied object before it is evaluated, so that its mesh can
+    be `read`; None where there are no groups.
+    """
     pairs = [(name, _attribute(i)) for i, name in enumerate(groups)]
     with _copying(pairs, _MISSING) as add_nodes:
         yield add_nodes
 
 
 def read(mesh: bpy.types.Mesh, count: int) -> list[np.ndarray | None]:
-    """Of so many groups that the mesh has kept, one weight for each vertex; None for groups that
-    modifiers drop."""
+    """Returns the groups that the mesh has kept, with one weight for each vertex; None for groups
+    that modifiers remove.
+    """
     found = [attributes.read(mesh, _attribute(i)) for i in range(count)]
     return [None if (weights == _MISSING).all() else weights for weights in found]
 
@@ -43,7 +45,7 @@ def with_groups(
     weights: np.ndarray,
     depsgraph: bpy.types.Depsgraph,
 ) -> bpy.types.Mesh:
-    """Another mesh, alike but for its weights (vertices, groups)."""
+    """Returns a copy of a mesh with other weights (vertices, groups)."""
     for i, weight in enumerate(weights.T):
         attributes.write(mesh, _attribute(i), "FLOAT", "POINT", weight)
     ob = bpy.data.objects.new(ids.TEMPORARY_MESH, mesh)
@@ -71,7 +73,9 @@ def _attribute(group: int) -> str:
 def _copying(
     pairs: Sequence[tuple[str, str]], missing: float | None = None
 ) -> Iterator[Adjust | None]:
-    """Of attributes or groups to others, by name. What has no source becomes `missing`, or 0."""
+    """Makes a node tree that copies attributes or groups to others, by name. A target whose source
+    does not exist becomes `missing`, or 0.
+    """
     if not pairs:
         yield None
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distances as colours: dark violet for none, then blue, green, and yellow for the largest.
+"""Distances as colours: dark violet for zero, then blue, green, and yellow for the largest.
 
 The steps are those of the map viridis, which the colour-blind can read too, in the linear values
 that Blender's colour attributes hold.
@@ -18,7 +18,7 @@ _SRGB = (
 
 
 def of_distances(distance: np.ndarray, full: float) -> np.ndarray:
-    """(n, 4) for distances (n,), of which `full` and more are yellow."""
+    """Returns colours (n, 4) for distances (n,); those of `full` and more are yellow."""
     linear = srgb.to_linear(np.array(_SRGB))
     part = np.clip(distance / full, 0, 1) if full > 0 else np.zeros(len(distance))
     rgb = np.stack([np.interp(part, _STEPS, channel) for channel in linear.T], axis=1)

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass
 class Spread:
-    """Of one distance over the displayed mesh."""
+    """The largest and the mean of one distance over the displayed mesh."""
 
-    largest: float = 0.0  # of all places
-    sum: float = 0.0  # over the area
+    largest: float = 0.0  # the largest at all places
+    sum: float = 0.0  # the mean over the area
     area: float = 0.0
 
     @property
@@ -39,16 +39,17 @@ class Spread:
 @dataclass
 class Distances:
     level: int
-    apart: Spread  # from the nearest point of the limit surface
-    slide: Spread  # from the same place of the limit surface: the same face, u and v
+    apart: Spread  # distances from the nearest point of the limit surface
+    slide: Spread  # distances from the same place of the limit surface, with the same face, u and v
     at_vertices: np.ndarray  # (v,) the largest `apart` around each vertex of the cage
 
 
 def measure_all(
     found: cage.Cage, meshes: Mapping[str, displayed_mesh.DisplayedMesh], progress: Progress
 ) -> tuple[dict[str, Distances], int]:
-    """Of each mesh; and how many faces of the cage have no limit surface. Nothing of Blender is
-    touched."""
+    """Returns the distances of each mesh, and the number of the cage's faces that have no limit
+    surface. Blender's data is not touched.
+    """
     surface = found.surface(in_world=True)
     refused = len(surface.refused)
     if refused == len(found.face_sizes):
@@ -66,7 +67,7 @@ def measure(
     shown: displayed_mesh.DisplayedMesh,
     progress: Progress,
 ) -> Distances:
-    """Of all faces that have a limit surface; `surface` is that of the cage in the world."""
+    """Measures all faces that have a limit surface; `surface` is that of the cage in the world."""
     groups = patches(found, shown, surface.refused)
     total = sum(group.count for group in groups)
     done = 0

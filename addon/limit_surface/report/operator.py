@@ -32,30 +32,36 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
     bl_idname = ids.REPORT_OPERATOR
     bl_label = "Report Distance to Limit Surface"
     bl_options = {"REGISTER", "UNDO"}
-    too_large = "Not enough memory for so many polygons"
+    too_large = "There is not enough memory for so many polygons"
     cancelled = "Cancelled: nothing was measured"
 
     levels: EnumProperty(
         name="Levels",
-        description="Which of the meshes that Blender can show is measured",
+        description="Level of the displayed mesh that is measured",
         items=(
-            ("BOTH", "Viewport and Render", "Both; colors and attribute are the viewport's", "", 0),
-            ("VIEWPORT", "Viewport", "The mesh at the levels that the viewport shows", "", 1),
-            ("RENDER", "Render", "The mesh at the levels that a render shows", "", 2),
-            ("LEVEL", "Other", "The mesh as it would be at another level", "", 3),
+            (
+                "BOTH",
+                "Viewport and Render",
+                "Measure both meshes. The colors and the attribute show the viewport's distances",
+                "",
+                0,
+            ),
+            ("VIEWPORT", "Viewport", "Measure the mesh at the viewport's subdivision level", "", 1),
+            ("RENDER", "Render", "Measure the mesh at the render's subdivision level", "", 2),
+            ("LEVEL", "Other", "Measure the mesh at another subdivision level", "", 3),
         ),
         default="BOTH",
     )
     level: IntProperty(
         name="Level",
-        description="Subdivisions of the mesh, with the modifier's own quality",
+        description="Number of subdivisions of the mesh, with the quality that the modifier has",
         default=3,
         min=1,
         max=6,
     )
     full_color: FloatProperty(
         name="Full Color",
-        description="Distance from which on the color is yellow, in world units. At 0 it is the "
+        description="Distance from which on the color is yellow, in world units. 0 chooses the "
         "largest distance that is found",
         default=0.0,
         min=0.0,
@@ -65,7 +71,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
     )
     summary: StringProperty(
         name="Result",
-        description="What the operator found, a line for each mesh",
+        description="Summary of the distances, with a line for each mesh",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
@@ -99,7 +105,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         ob = made.surface.find()
         not_stored = cage.why_not_on_mesh(ob, made.cage)
         if not_stored:
-            self.report({"WARNING"}, f"Attributes are not stored: {not_stored}")
+            self.report({"WARNING"}, f"The attributes were not stored: {not_stored}")
         else:
             check_attributes(ob)
             at_vertices = next(iter(made.results.values())).at_vertices

@@ -23,7 +23,7 @@ class VIEW3D_PT_limit_report(bpy.types.Panel):
         ob = context.active_object
         if ob is None or ids.REPORT not in ob:
             return
-        layout.label(text="When last reported, in world units:")
+        layout.label(text="At the last report, in world units:")
         for name, kept in ob[ids.REPORT].items():
             box = layout.box().column(align=True)
             box.label(text=f"{text.MESHES[name]}, level {kept['level']}")

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Places all over a displayed mesh, and means over the area of its triangles.
 
-Every polygon is looked at as one or more cells, each of which is cut in two triangles as the
-polygon is. The places are the cells' corners, the middles of their sides and diagonals, and the
-centres of the triangles. Weighed as below they give the mean over a triangle of whatever is of the
-third degree at most; distances from a smooth surface are close to that.
+Every polygon consists of one or more cells, each of which is cut into two triangles as the polygon
+is. The places are the cells' corners, the middles of their sides and diagonals, and the centres of
+the triangles. With the weights below they give the exact mean over a triangle of polynomials up to
+the third degree; distances from a smooth surface are close to such polynomials.
 """
 
 from __future__ import annotations
@@ -16,26 +16,29 @@ import numpy as np
 
 from ..reading import cage, displayed_mesh, subdivided_mesh
 
-PART = 1 << 17  # so many places are looked at at once: a progress bar moves, memory stays small
-ENOUGH = 100_000  # polygons are looked at as one cell each where that makes so many places
-MOST_CELLS = 8  # along each side of a polygon
+# Places are measured in parts of this size, so that progress is shown and memory stays small.
+PART = 1 << 17
+ENOUGH = 100_000  # A polygon is only one cell where this already gives so many places.
+MOST_CELLS = 8  # cells along each side of a polygon
 
 CORNER_WEIGHT, MIDDLE_WEIGHT, CENTRE_WEIGHT = 1 / 20, 2 / 15, 9 / 20
-_CENTRES = np.array([[(2, 1), (1, 2)], [(1, 1), (2, 2)]]) / 3  # of a cell's triangles; if flipped
+# the corners of a cell's triangles, for cells that are not flipped and for those that are
+_CENTRES = np.array([[(2, 1), (1, 2)], [(1, 1), (2, 2)]]) / 3
 
 
 @dataclass(frozen=True)
 class Patches:
-    """Ptex faces that are looked at alike."""
+    """Ptex faces that are measured in the same way."""
 
     faces: np.ndarray  # (n,)
     vertices: np.ndarray  # (n, 4) vertices of the cage at a quad's corners; (n, 1) at a part's
-    cells: int  # along a side
-    flipped: np.ndarray  # (n, cells, cells) cut from the second corner to the last
+    cells: int  # number of cells along a side
+    # (n, cells, cells) true for cells that are cut from the second corner to the last
+    flipped: np.ndarray
 
     @property
     def count(self) -> int:
-        """Of places."""
+        """The number of places."""
         return len(self.faces) * _places(self.cells)
 
     def parts(self) -> Iterator[Patches]:
@@ -56,8 +59,9 @@ class Patches:
         return np.repeat(self.faces, uv.shape[1]), uv.reshape(-1, 2)
 
     def split(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values at the locations, as grids (n, along u, along v, ...) of corners and middles, and
-        those (n, along u, along v, 2, ...) of the triangles' centres."""
+        """Splits values at the locations into grids (n, along u, along v, ...) of corners and
+        middles, and those (n, along u, along v, 2, ...) of the triangles' centres.
+        """
         count, side = len(self.faces), 2 * self.cells + 1
         values = values.reshape(count, -1, *values.shape[1:])
         grid, centres = np.split(values, [side * side], axis=1)
@@ -68,7 +72,9 @@ class Patches:
         )
 
     def areas(self, positions: np.ndarray) -> np.ndarray:
-        """(2, n, cells, cells) of the triangles of each cell, for positions at the locations."""
+        """Returns the areas (2, n, cells, cells) of the triangles of each cell, for positions at
+        the locations.
+        """
         first, second, third, last = _corners(self.split(positions)[0])
         flipped = self.flipped[..., None]
         one = np.cross(second - first, np.where(flipped, last, third) - first)
@@ -76,7 +82,7 @@ class Patches:
         return np.linalg.norm([one, other], axis=-1) / 2
 
     def sum(self, values: np.ndarray, areas: np.ndarray) -> float:
-        """Over the area."""
+        """Integrates values over the area."""
         grid, centres = self.split(values)
         first, second, third, last = _corners(grid)
         sides, diagonal = _sides(grid), grid[:, 1::2, 1::2]
@@ -96,7 +102,9 @@ class Patches:
         return float(np.sum(areas * means))
 
     def keep_largest(self, at_vertices: np.ndarray, values: np.ndarray) -> None:
-        """At each vertex of a quad the largest in its quarter, at a part's in all of it."""
+        """Stores at each vertex of a quad the largest value in its quarter, and at the vertex of a
+        sub-face the largest in all of the sub-face.
+        """
         grid, _ = self.split(values)
         low, high = slice(0, self.cells + 1), slice(self.cells, None)
         quarters = [(low, low), (high, low), (high, high), (low, high)]
@@ -109,7 +117,7 @@ class Patches:
 def patches(
     found: cage.Cage, shown: displayed_mesh.DisplayedMesh, refused: Mapping[int, str]
 ) -> list[Patches]:
-    """Of all faces but the refused ones: those of quads, and those of other faces' corners."""
+    """Yields all faces but the refused ones: the quads, and the sub-faces of other faces."""
     sizes = found.face_sizes
     refuses = np.zeros(len(sizes), bool)
     refuses[list(refused)] = True
@@ -128,7 +136,7 @@ def patches(
 
 
 def _cells_per_polygon(polygons: int) -> int:
-    """Along a side."""
+    """Returns the number of cells along a polygon's side."""
     return int(np.clip(np.sqrt(ENOUGH / (6 * polygons)), 1, MOST_CELLS))
 
 
@@ -140,17 +148,17 @@ def _flipped(shown: displayed_mesh.DisplayedMesh, faces: np.ndarray, cells: int)
 
 
 def _places(cells: int) -> int:
-    """Of a face."""
+    """Returns the places of one face."""
     return (2 * cells + 1) ** 2 + 2 * cells**2
 
 
 def _corners(grid: np.ndarray) -> list[np.ndarray]:
-    """Values at each cell's corners, in order around it."""
+    """Returns the values at each cell's corners, in order around it."""
     low, high = slice(None, -2, 2), slice(2, None, 2)
     return [grid[:, i, j] for i, j in ((low, low), (high, low), (high, high), (low, high))]
 
 
 def _sides(grid: np.ndarray) -> list[np.ndarray]:
-    """Values at the middles of each cell's sides, from the first side to the last."""
+    """Returns the values at the middles of each cell's sides, from the first side to the last."""
     odd, low, high = slice(1, None, 2), slice(None, -2, 2), slice(2, None, 2)
     return [grid[:, i, j] for i, j in ((odd, low), (high, odd), (odd, high), (low, odd))]

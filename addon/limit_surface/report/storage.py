@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the report's results stay: numbers on the object, distances on its mesh."""
+"""Storage of the report's results: numbers on the object, distances on its mesh."""
 
 import bpy
 import numpy as np
@@ -12,12 +12,14 @@ _KINDS = {ids.DISTANCE: "FLOAT", ids.DISTANCE_COLOR: "FLOAT_COLOR"}
 
 
 def store_numbers(ob: bpy.types.Object, results: dict[str, dict[str, float]]) -> None:
-    """A custom property: for each displayed mesh its level and its distances in world units."""
+    """Stores a custom property with the level and the distances in world units of each displayed
+    mesh.
+    """
     ob[ids.REPORT] = results
 
 
 def check_attributes(ob: bpy.types.Object) -> None:
-    """RefusalError where something else has these names."""
+    """Raises RefusalError where these names belong to something else."""
     attributes.check_names(ob, _KINDS, "POINT")
 
 

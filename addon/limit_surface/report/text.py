@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The report in words."""
+"""The texts of the report."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,7 @@ MESHES = {"VIEWPORT": "Viewport", "RENDER": "Render", "LEVEL": "Mesh"}
 
 
 def numbers(found: Distances) -> dict[str, float]:
-    """What is kept of it: world units."""
+    """Returns the numbers that are stored, in world units."""
     return {
         "level": found.level,
         "max": found.apart.largest,
@@ -27,4 +27,4 @@ def sentence(mesh: str, kept: Mapping[str, float]) -> str:
 
 
 def spread(kept: Mapping[str, float], of: str) -> str:
-    return f"at most {kept[f'{of}max']:.4g}, {kept[f'{of}mean']:.4g} in the mean"
+    return f"at most {kept[f'{of}max']:.4g}, {kept[f'{of}mean']:.4g} on average"

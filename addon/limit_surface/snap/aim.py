@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where on the target's surface elements go: the closest point, or the first along a line."""
+"""The points of the target's surface where elements are put: the closest one, or the first along a
+line.
+"""
 
 from __future__ import annotations
 
@@ -16,32 +18,34 @@ from .surface import TargetSurface
 
 WAYS = {"BOTH": (1.0, -1.0), "POSITIVE": (1.0,), "NEGATIVE": (-1.0,)}
 
-# Of the largest coordinate: what is as close to the surface is on it as exactly as Blender's single
-# precision allows. Its line might miss the surface, at a border, or meet another part of it.
+# As a share of the largest coordinate: an element closer to the surface than this counts as lying
+# on it, because Blender's single precision allows no more. At a border, its line might miss the
+# surface or meet another part of it.
 ON_SURFACE = 1e-6
 
 
 @dataclass(frozen=True)
 class Elements:
-    """What is to be snapped, in world space."""
+    """The elements that are to be snapped, in world space."""
 
     points: np.ndarray  # (n, 3)
     normals: np.ndarray  # (n, 3) unit vectors, NaN where an element has none
     axes: np.ndarray  # (3, 3), or (n, 3, 3): columns are the local X, Y and Z as unit vectors
-    left_out: Counter[str] = field(default_factory=Counter)  # reason -> number of others
+    # reason -> number of elements that cannot be snapped
+    left_out: Counter[str] = field(default_factory=Counter)
 
 
 @dataclass(frozen=True)
 class View:
-    """Of the 3D viewport."""
+    """The view of the 3D viewport."""
 
     axes: np.ndarray  # (3, 3) columns X, Y, Z, the last one towards the viewer
-    eye: np.ndarray | None  # of a perspective view
+    eye: np.ndarray | None  # the eye of a perspective view
 
 
 @dataclass(frozen=True)
 class Placement:
-    rows: np.ndarray  # (k,) which elements have a place
+    rows: np.ndarray  # (k,) the elements that have a place
     face: np.ndarray  # (k,)
     uv: np.ndarray  # (k, 2)
     position: np.ndarray  # (k, 3) world, offset included
@@ -55,8 +59,8 @@ class Aim:
     axis: int
     orientation: str  # GLOBAL, LOCAL, VIEW
     direction: str  # BOTH, POSITIVE, NEGATIVE
-    max_distance: float  # world units
-    max_angle: float | None  # between an element's own normal and the surface's
+    max_distance: float  # in world units
+    max_angle: float | None  # the largest angle between an element's own normal and the surface's
     offset: float
     view: View | None
 
@@ -67,7 +71,9 @@ class Aim:
         single_precision: bool,
         progress: Callable[[float], None],
     ) -> Placement:
-        """`single_precision`: (u, v) will be stored so, and is rounded before it is evaluated."""
+        """Finds the places. With `single_precision`, (u, v) will be stored so, and is rounded
+        before it is evaluated.
+        """
         finite = np.isfinite(elements.points).all(axis=1)
         directions = self._directions(elements)
         directed = np.isfinite(directions).all(axis=1)
@@ -96,7 +102,7 @@ class Aim:
         )
 
     def _directions(self, elements: Elements) -> np.ndarray:
-        """(n, 3) unit vectors that the search goes by; NaN where an element has none."""
+        """Returns the unit vectors (n, 3) of the search; NaN where an element has none."""
         if self.mode == "NORMAL" or (self.mode == "NEAREST" and self.max_angle is not None):
             return elements.normals
         axes = np.eye(3)

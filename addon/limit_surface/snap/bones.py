@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bones in an armature's Edit Mode: their heads are put on the surface.
 
-The tail of a selected bone keeps its offset from the head; where only the head is selected the tail
+The tail of a selected bone keeps its offset from the head. Where only the head is selected the tail
 stays, and the length changes. A joint of connected bones is the head of the child: it is snapped if
-the child is selected, or the joint by itself, and otherwise comes along with the parent.
+the child is selected, or the joint itself; otherwise it moves with the parent.
 """
 
 from collections import Counter
@@ -18,7 +18,7 @@ from .choices import Choices, Outcome
 from .surface import transformed
 from .turns import shortest
 
-SHORTEST = 2e-6  # Blender removes bones of at most half of it
+SHORTEST = 2e-6  # Blender removes bones whose length is at most half of this
 
 
 class SnappedBones:
@@ -63,21 +63,21 @@ class SnappedBones:
                 if align:
                     bone.align_roll(up[i])
         outcome = Outcome(self.noun, [np.linalg.norm(moves[placed], axis=1)])
-        outcome.failures["that would leave a bone without length"] = np.count_nonzero(~placed)
+        outcome.failures["that would give a bone no length"] = np.count_nonzero(~placed)
         return outcome
 
 
 def _put_head(bone: bpy.types.EditBone, head: np.ndarray) -> bool:
-    """Not where a bone would be left so short that Blender removes it."""
+    """Puts the head there, unless the bone would become so short that Blender removes it."""
     if bone.use_connect:
-        holder, end = bone.parent, "tail"  # takes along the heads of all that are connected
+        holder, end = bone.parent, "tail"  # this moves the heads of all connected bones, too
         affected = [holder, *(child for child in holder.children if child.use_connect)]
     else:
         holder, end, affected = bone, "head", [bone]
     before = getattr(holder, end).copy()
     setattr(holder, end, head)
     if bone.select:
-        affected.remove(bone)  # its tail comes along
+        affected.remove(bone)  # its tail moves with it
     if all(each.length > SHORTEST for each in affected):
         return True
     setattr(holder, end, before)
@@ -85,7 +85,7 @@ def _put_head(bone: bpy.types.EditBone, head: np.ndarray) -> bool:
 
 
 def _aligned(axes: np.ndarray, frame: np.ndarray, align: str) -> tuple[np.ndarray, np.ndarray]:
-    """The bones' Y along the normal, and their Z."""
+    """Returns the bones' Y along the normal, and their Z."""
     if align == "NORMAL_DU":
         return frame[:, :, 2], -frame[:, :, 1]
     turn = shortest(axes[:, :, 1], frame[:, :, 2])

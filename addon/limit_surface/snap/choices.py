@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What becomes of elements at their places, and what became of them."""
+"""The choices of what is done with elements, and the outcome for them."""
 
 from collections import Counter
 from dataclasses import dataclass, field
@@ -17,8 +17,9 @@ class Choices:
 
 @dataclass
 class Outcome:
-    noun: str  # plural
-    distances: list[np.ndarray] = field(default_factory=list)  # world units, of all that were put
+    noun: str  # in the plural
+    # distances in world units of all elements that were moved
+    distances: list[np.ndarray] = field(default_factory=list)
     failures: Counter[str] = field(default_factory=Counter)  # reason -> number of elements
     notes: list[str] = field(default_factory=list)
 
@@ -34,7 +35,7 @@ class Outcome:
         return ", ".join(f"{count:,} {reason}" for reason, count in self.failures.most_common())
 
     def lines(self) -> tuple[str, str]:
-        """Where something was placed."""
+        """Returns lines for the report, where some elements were snapped."""
         moved = np.concatenate(self.distances)
         return (
             f"{len(moved):,} of {len(moved) + self.failed:,} {self.noun} snapped",
@@ -43,7 +44,7 @@ class Outcome:
 
 
 def merged(outcomes: list[Outcome]) -> list[Outcome]:
-    """One for each kind of elements."""
+    """Merges the outcomes into one for each kind of elements."""
     found: dict[str, Outcome] = {}
     for outcome in outcomes:
         whole = found.setdefault(outcome.noun, Outcome(outcome.noun))

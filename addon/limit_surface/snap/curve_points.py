@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control points of curves and surfaces in Edit Mode; the handles of Bezier points come along."""
+"""Control points of curves and surfaces in Edit Mode; the handles of Bézier points move with
+them.
+"""
 
 import bpy
 import numpy as np
@@ -59,12 +61,13 @@ def _move(spline: bpy.types.Spline, rows: np.ndarray, moves: np.ndarray) -> None
         values = _values(points, name)
         values[rows, :3] = values[rows, :3].astype(np.float64) + moves
         points.foreach_set(name, values.ravel())
-    # Assigning one by one has Blender calculate the automatic handles of the whole spline.
+    # If points are assigned one by one, Blender calculates the automatic handles of the whole
+    # spline each time.
     points[0].co = points[0].co
 
 
 def _values(points: bpy.types.bpy_prop_collection, name: str) -> np.ndarray:
-    """(n, 3), or (n, 4) with weights."""
+    """Returns the coordinates (n, 3), or (n, 4) with weights."""
     values = np.empty((len(points), len(getattr(points[0], name))), np.float32)
     points.foreach_get(name, values.ravel())
     return values

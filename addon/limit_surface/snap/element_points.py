@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Selected points of objects in Edit Mode, whatever holds them."""
+"""Selected points of objects in Edit Mode, whatever the objects' type."""
 
 from abc import ABC, abstractmethod
 
@@ -13,7 +13,9 @@ from .surface import transformed
 
 
 class SnappedPoints(ABC):
-    """A subclass reads all points of an object in its own space, and moves some of them."""
+    """Snaps the selected points of an object. A subclass reads all points in the object's own
+    space, and moves some of them.
+    """
 
     noun = ""
     stores_location = False
@@ -28,14 +30,16 @@ class SnappedPoints(ABC):
 
     @abstractmethod
     def read(self) -> tuple[np.ndarray, np.ndarray]:
-        """All points (n, 3), and whether each is selected (n,)."""
+        """Returns all points (n, 3), and whether each is selected (n,)."""
 
     @abstractmethod
     def move(self, rows: np.ndarray, moves: np.ndarray) -> None:
-        """Adds (k, 3) to some of the points."""
+        """Adds offsets (k, 3) to some of the points."""
 
     def normals(self, rows: np.ndarray) -> np.ndarray:
-        """(k, 3) in world space: the object's Z, for points that have none of their own."""
+        """Returns normals (k, 3) in world space: the object's Z, for points that have none of their
+        own.
+        """
         return np.broadcast_to(self._axes()[:, 2], (len(rows), 3))
 
     def elements(self) -> Elements:
@@ -50,7 +54,7 @@ class SnappedPoints(ABC):
         return outcome
 
     def normals_in_world(self, normals: np.ndarray) -> np.ndarray:
-        """Of normals in the object's space."""
+        """Returns in world space the normals that are given in the object's space."""
         return unit(np.linalg.solve(self._matrix[:3, :3].T, normals.T).T)
 
     def _axes(self) -> np.ndarray:

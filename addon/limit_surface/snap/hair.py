@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hair curves: their roots are put on the surface, and bound to it as new hair is."""
+"""Hair curves: their roots are put on the surface, and bound to it as those of new hair are."""
 
 import bpy
 import numpy as np
@@ -14,12 +14,14 @@ from .strands import Strands
 from .surface import TargetSurface, transformed
 from .turns import shortest
 
-_SELECTION = ".selection"  # Blender's own; where it is missing all is selected
-_HANDLES = ("handle_left", "handle_right")  # of Bezier hair
+_SELECTION = ".selection"  # defined by Blender; where it is missing, all is selected
+_HANDLES = ("handle_left", "handle_right")  # the handles of Bézier hair
 
 
 class SnappedHair:
-    """The strands of a Curves object: all, or in its own modes those that are selected."""
+    """Snaps the strands of a Curves object: all of them, or in its own modes those that are
+    selected.
+    """
 
     noun = "strands"
     stores_location = True
@@ -47,7 +49,7 @@ class SnappedHair:
         outcome.distances.append(
             np.linalg.norm(placement.position - strands.points[strands.root], axis=1)
         )
-        self._read_transform()  # objects that it hangs from may have been snapped just now
+        self._read_transform()  # its parents may have been snapped just now
         strands, rows = self._strands(curves)
         turn = self._turns(curves, strands, placement, choices.align, outcome)
         self._move(strands, rows, placement, turn, choices)
@@ -60,7 +62,7 @@ class SnappedHair:
         self._space = WorldSpace(self._matrix)
 
     def _strands(self, curves: np.ndarray) -> tuple[Strands, np.ndarray]:
-        """In world space, and the rows of their points."""
+        """Returns the strands in world space, and the rows of their points."""
         taken = np.zeros(len(self._sizes), bool)
         taken[curves] = True
         rows = np.flatnonzero(np.repeat(taken, self._sizes))
@@ -75,7 +77,7 @@ class SnappedHair:
         align: str,
         outcome: Outcome,
     ) -> np.ndarray:
-        """(m, 3, 3) in world space."""
+        """Returns rotations (m, 3, 3) in world space."""
         if align == "NONE":
             return np.broadcast_to(np.eye(3), (len(curves), 3, 3))
         turn = shortest(strands.directions(), placement.frame[:, :, 2])
@@ -115,7 +117,7 @@ class SnappedHair:
 
         points = attributes.read(self._ob.data, ids.POSITION).astype(np.float64)
         points[rows] += self._space.to_local(moves + regained)
-        # Exactly where the stored locations say, to the bit.
+        # The roots are put exactly where the stored locations say, to the last bit.
         bound = self._binding.places(placement.face, placement.uv, self._matrix).position
         off = placement.position - transformed(self._matrix, bound)
         points[rows[strands.root]] = bound + self._space.to_local(off)
@@ -123,7 +125,7 @@ class SnappedHair:
 
 
 def _selected(data: bpy.types.Curves, sizes: np.ndarray) -> np.ndarray:
-    """(m,) whether anything of each curve is."""
+    """Tells for each curve (m,) whether any part of it is selected."""
     if _SELECTION not in data.attributes:
         return np.ones(len(sizes), bool)
     selected = attributes.read(data, _SELECTION) > 0

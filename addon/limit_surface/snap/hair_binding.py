@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What snapped hair stores of its places: the same as new hair does."""
+"""The binding that snapped hair stores: the same as that of new hair."""
 
 import bpy
 import numpy as np
@@ -18,21 +18,25 @@ _KINDS = {
     ids.REST_ROTATION: "QUATERNION",
     ids.SURFACE_UV: "FLOAT2",
 }
-NOWHERE = -1  # the face of strands that were never on a surface
+NOWHERE = -1  # the face of strands that are not bound to a surface
 
 
 class HairBinding:
-    """`is_whole`: all strands of the hair are snapped, so that it can change to another surface."""
+    """The binding of some strands. `is_whole` means that all strands of the hair are snapped, so
+    that the hair can change to another surface.
+    """
 
     def __init__(self, data: bpy.types.Curves, surface: TargetSurface, is_whole: bool) -> None:
         self._data, self._surface, self._is_whole = data, surface, is_whole
         for name, kind in _KINDS.items():
             attribute = data.attributes.get(name)
             if attribute and (attribute.data_type, attribute.domain) != (kind, "CURVE"):
-                raise RefusalError(f"{data.name}: the attribute {name} exists as another kind")
+                raise RefusalError(
+                    f"{data.name}: the attribute {name} exists with another type or domain"
+                )
         if not is_whole and data.surface not in (None, surface.ob):
             raise RefusalError(
-                f"{data.name} is hair of {data.surface.name}: select all its strands to have it on "
+                f"{data.name} is hair of {data.surface.name}: select all its strands to move it to "
                 f"{surface.ob.name}"
             )
 
@@ -40,7 +44,9 @@ class HairBinding:
         return self._surface.places(face, uv, space)
 
     def rest_frames(self, curves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Which of the curves are on a surface already, and the frames (m, 3, 3) there."""
+        """Returns which of the curves are bound to a surface already, and their frames (m, 3, 3)
+        there.
+        """
         if not {ids.FACE, ids.REST_ROTATION} <= set(self._data.attributes.keys()):
             return np.zeros(len(curves), bool), np.tile(np.eye(3), (len(curves), 1, 1))
         rotation = attributes.read(self._data, ids.REST_ROTATION)[curves].astype(np.float64)
@@ -50,7 +56,7 @@ class HairBinding:
     def write(
         self, curves: np.ndarray, face: np.ndarray, uv: np.ndarray, space: np.ndarray
     ) -> list[str]:
-        """What is worth knowing about it."""
+        """Writes the binding, and returns remarks for the report."""
         places = self.places(face, uv, space)
         self._store(ids.FACE, NOWHERE, curves, face)
         self._store(ids.UV, 0, curves, uv)
@@ -59,7 +65,7 @@ class HairBinding:
         self._data.surface = self._surface.ob
         without = self._why_no_uvs()
         if without:
-            return [f"no UVs stored: {without}"]
+            return [f"UVs were not stored: {without}"]
         self._data.surface_uv_map = self._surface.cage.chosen_uv_map.name
         surface_uv = self._surface.surface_uv(face, uv)
         assert surface_uv is not None
@@ -72,7 +78,7 @@ class HairBinding:
             return self._surface.cage.without_uv_map or f"{self._surface.ob.name} has no UV map"
         used = self._data.surface_uv_map
         if not self._is_whole and used not in ("", found.name):
-            return f"the other strands are on the UV map {used}, and {found.name} is active"
+            return f"the other strands use the UV map {used}, but {found.name} is active"
         return ""
 
     def _store(

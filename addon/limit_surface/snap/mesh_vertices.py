@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Vertices of meshes in Edit Mode.
 
-Arrays reach a mesh only outside Edit Mode, so it is left for a moment; what its vertices' moves
-mean for shape keys is done as Blender does it when it leaves that mode.
+Arrays can be written to a mesh only outside Edit Mode, so that mode is left for a moment. The shape
+keys change as they do when Blender itself leaves that mode.
 """
 
 from collections.abc import Iterator
@@ -56,7 +56,9 @@ def _add(points: bpy.types.bpy_prop_collection, rows: np.ndarray, moves: np.ndar
 def _dependent(
     key: bpy.types.ShapeKey, blocks: bpy.types.bpy_prop_collection
 ) -> list[bpy.types.ShapeKey]:
-    """Keys that are relative to this one, or to one that is: they move along with it."""
+    """Returns the keys that are relative to this one, directly or by way of others: they move with
+    it.
+    """
     found: list[bpy.types.ShapeKey] = []
     pending = [key]
     while pending:
@@ -73,7 +75,7 @@ def _dependent(
 
 @contextmanager
 def as_edited(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Mesh]:
-    """A mesh as it is in Edit Mode, in a copy whose arrays can be read."""
+    """Yields a copy of a mesh in its Edit Mode state, whose arrays can be read."""
     copy = bpy.data.meshes.new("Edited")
     try:
         bmesh.from_edit_mesh(mesh).to_mesh(copy)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One object moved to a place in the world through its own location and rotation.
+"""The move of one object to a place in the world through its own location and rotation.
 
-Scale, delta transforms and parents stay what they are. What else has a say (locks, constraints,
-drivers) shows when Blender has evaluated the object again: `finish` looks where it stands then, and
-puts everything back if that is somewhere else.
+Scale, delta transforms and parents do not change. Locks, constraints and drivers may keep the
+object elsewhere, which shows only when Blender has evaluated the object again. So `finish` checks
+where it is then, and restores it if it is somewhere else.
 """
 
 import bpy
@@ -13,7 +13,8 @@ from mathutils import Matrix
 from ..placing.rotations import unit
 from .turns import shortest
 
-# Blender's matrices are in single precision: of the largest coordinate, and an angle
+# Tolerances for Blender's matrices in single precision: a share of the largest coordinate, and an
+# angle
 ELSEWHERE = 1e-5
 ASKEW = 1e-3
 
@@ -49,7 +50,9 @@ class ObjectMove:
             self._rotate(rotation.T @ wanted)
 
     def finish(self) -> str:
-        """Once Blender has evaluated the object: why it is not where it should be, if so."""
+        """Returns, once Blender has evaluated the object, the reason why it is not where it should
+        be, or None.
+        """
         reason = self._obstacle()
         if reason:
             for name, value in self._kept.items():
@@ -57,7 +60,9 @@ class ObjectMove:
         return reason
 
     def _turned(self, rotation: np.ndarray, frame: np.ndarray, sign: np.ndarray) -> np.ndarray:
-        """The rotation that has the object's Z along the normal, all in its parent's space."""
+        """Returns the rotation that puts the object's Z along the normal, all in its parent's
+        space.
+        """
         normal = unit(frame[:, 2])
         if self._align == "NORMAL":
             return shortest((sign[2] * rotation[:, 2])[None], normal[None])[0] @ rotation
@@ -66,7 +71,9 @@ class ObjectMove:
         return np.stack([x, np.cross(z, x), z], axis=1)
 
     def _rotate(self, turn: np.ndarray) -> None:
-        """In the space of the object's rotation, which delta rotations come after."""
+        """Rotates in the space of the object's rotation, to which delta rotations are applied
+        afterwards.
+        """
         ob = self._ob
         was = getattr(ob, self._rotation)
         if self._rotation == "rotation_euler":

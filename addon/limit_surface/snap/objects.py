@@ -10,7 +10,8 @@ from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .object_move import ELSEWHERE, ObjectMove
 
-_NOTHING_BETWEEN = ("OBJECT", "ARMATURE", "LATTICE")  # the parent's own matrix is what counts
+# in this case the child follows the parent's own matrix
+_NOTHING_BETWEEN = ("OBJECT", "ARMATURE", "LATTICE")
 
 
 class SnappedObjects:
@@ -26,7 +27,9 @@ class SnappedObjects:
         return Elements(matrix[:, :3, 3], axes[:, :, 2], axes)
 
     def place(self, placement: Placement, choices: Choices) -> Outcome:
-        """Parents before their children, which can then be seen from where those have gone."""
+        """Places parents before their children, whose transforms depend on the parents' new
+        places.
+        """
         objects = [self._objects[row] for row in placement.rows]
         children = _children() if choices.keep_children else {}
         depths = np.array([_depth(ob) for ob in objects], int)
@@ -58,7 +61,9 @@ class SnappedObjects:
 
 
 class _KeptChild:
-    """Kept in place by its parent inverse: its own transform may be locked or animated."""
+    """A child that is kept in place by its parent inverse, because its own transform may be locked
+    or animated.
+    """
 
     def __init__(self, ob: bpy.types.Object) -> None:
         self._ob = ob
@@ -66,7 +71,7 @@ class _KeptChild:
         self._parent = _array(ob.parent.matrix_world)
 
     def hold(self) -> None:
-        """Once Blender has moved the child with its parent."""
+        """Restores the child's place, once Blender has moved the child with its parent."""
         ob = self._ob
         inverse = _array(ob.matrix_parent_inverse)
         if ob.parent_type in _NOTHING_BETWEEN:

@@ -19,7 +19,7 @@ from .surface import TargetSurface
 
 class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
     """Snap to the exact limit surface: selected objects and hair to that of the active mesh, or
-    outside Object Mode what is selected to that of the target chosen in the tab Limit"""
+    outside Object Mode the selected elements to that of the target in the sidebar tab Limit"""
 
     bl_idname = ids.SNAP
     bl_label = "Snap to Limit Surface"
@@ -27,59 +27,66 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
 
     mode: EnumProperty(
         name="Mode",
-        description="Where on the surface things go",
+        description="How the point on the surface is found",
         items=(
-            ("NEAREST", "Nearest", "To the closest point in world space", 0),
-            ("AXIS", "Axis", "Along an axis", 1),
+            ("NEAREST", "Nearest", "Move to the closest point in world space", 0),
+            ("AXIS", "Axis", "Move along an axis", 1),
             (
                 "NORMAL",
                 "Own Normal",
-                "Along each element's own direction: an object's Z, a vertex's normal, a strand's "
-                "direction at its root, a bone's direction; the object's Z for other points",
+                "Move along each element's own direction: an object's Z axis, a vertex's normal, "
+                "a strand's direction at its root, a bone's direction, or the object's Z axis "
+                "for other points",
                 2,
             ),
         ),
     )
     axis: EnumProperty(
         name="Axis",
-        description="The axis to move along",
+        description="Axis to move along",
         items=tuple((name, name, "", i) for i, name in enumerate("XYZ")),
         default="Z",
     )
     orientation: EnumProperty(
         name="Orientation",
-        description="Whose axis it is",
+        description="Coordinate system of the axis",
         items=(
-            ("GLOBAL", "Global", "The world's", 0),
-            ("LOCAL", "Local", "The object's own, or that of each bone", 1),
-            ("VIEW", "View", "The 3D viewport's; Z is the line of sight through each element", 2),
+            ("GLOBAL", "Global", "Use the axis of the world", 0),
+            ("LOCAL", "Local", "Use the axis of each object or bone", 1),
+            (
+                "VIEW",
+                "View",
+                "Use the axis of the 3D viewport. Z is the line of sight through each element",
+                2,
+            ),
         ),
     )
     direction: EnumProperty(
         name="Direction",
-        description="Which way along the axis or normal to look for the surface",
+        description="Direction along the axis or normal in which the surface is searched for",
         items=(
-            ("BOTH", "Both", "To whichever point is closer", 0),
-            ("POSITIVE", "Positive", "Along it", 1),
-            ("NEGATIVE", "Negative", "Against it", 2),
+            ("BOTH", "Both", "Search both ways and take the closer point", 0),
+            ("POSITIVE", "Positive", "Search along the axis or normal", 1),
+            ("NEGATIVE", "Negative", "Search against the axis or normal", 2),
         ),
     )
     max_distance: FloatProperty(
         name="Maximum Distance",
-        description="What is further from the surface stays where it is; 0 sets no limit",
+        description="Largest distance to the surface. Elements that are further away do not move. "
+        "0 sets no limit",
         default=0.0,
         min=0.0,
         subtype="DISTANCE",
     )
     use_facing: BoolProperty(
         name="Facing",
-        description="Only to places where the surface's normal is close to the element's own: not "
-        "through thin sheets to the other side",
+        description="Snap only to places where the surface normal is close to the element's own "
+        "normal, so that nothing moves through a thin sheet to its other side",
         default=False,
     )
     max_angle: FloatProperty(
         name="Maximum Angle",
-        description="Between the surface's normal and the element's own",
+        description="Largest angle between the surface normal and the element's own normal",
         default=np.pi / 2,
         min=0.0,
         max=np.pi,
@@ -87,32 +94,33 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
     )
     children: EnumProperty(
         name="Children",
-        description="Those of the objects that move",
+        description="What happens to the children of the objects that move",
         items=(
-            ("MOVE", "Move", "They come along", 0),
-            ("KEEP", "Keep", "They stay where they are", 1),
+            ("MOVE", "Move", "Move the children with their parents", 0),
+            ("KEEP", "Keep", "Keep the children where they are", 1),
         ),
     )
     keep_length: BoolProperty(
         name="Keep Length",
-        description="Strands keep their length, and that of each of their segments",
+        description="Keep the length of each strand and of each of its segments",
         default=False,
     )
     view_matrix: FloatVectorProperty(
         name="View Matrix",
-        description="From world to view, for the view's axes; the 3D viewport's if it is not set",
+        description="Matrix from world to view, for the view's axes. If it is not set, the matrix "
+        "of the 3D viewport is used",
         size=(4, 4),
         subtype="MATRIX",
         options={"HIDDEN", "SKIP_SAVE"},
     )
     view_is_perspective: BoolProperty(
         name="View Is Perspective",
-        description="Lines of sight meet in the eye, for the view's Z",
+        description="Whether the lines of sight of the view meet at the eye, for the view's Z axis",
         options={"HIDDEN", "SKIP_SAVE"},
     )
     summary: StringProperty(
         name="Result",
-        description="What the operator did",
+        description="Summary of what the operator did",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
@@ -130,7 +138,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
         except native.refusals as error:
             self.report({"ERROR"}, str(error))
         except MemoryError:
-            self.report({"ERROR"}, "Not enough memory for so much")
+            self.report({"ERROR"}, "There is not enough memory for so many elements")
         return {"CANCELLED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -205,7 +213,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
             self.view_matrix = region.view_matrix
             self.view_is_perspective = region.is_perspective
         if not np.any(self.view_matrix):
-            raise RefusalError("There is no 3D viewport whose axes could be meant")
+            raise RefusalError("There is no 3D viewport whose axes could be used")
         matrix = np.linalg.inv(np.array(self.view_matrix, np.float64))
         return View(matrix[:3, :3], matrix[:3, 3] if self.view_is_perspective else None)
 
@@ -216,21 +224,21 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
         outcomes: list[Outcome],
     ) -> set[str]:
         failed = [
-            f"{outcome.failed:,} {outcome.noun} not snapped: {outcome.reasons()}"
+            f"{outcome.failed:,} {outcome.noun} could not be snapped:  {outcome.reasons()}"
             for outcome in outcomes
             if outcome.failed
         ]
         done = [outcome for outcome in outcomes if outcome.placed]
         if not done:
-            raise RefusalError("; ".join(failed) or "Nothing is selected that could be snapped")
+            raise RefusalError("; ".join(failed) or "Nothing that can be snapped is selected")
         self.summary = "\n".join(line for outcome in done for line in outcome.lines())
         if failed:
             self.report({"WARNING"}, "; ".join(failed))
         if surface.has_changed(depsgraph):
             self.report(
                 {"WARNING"},
-                f"{surface.ob.name} has changed with what was snapped, which is not on it now: "
-                "constraints, drivers or modifiers tie it to that",
+                f"{surface.ob.name} moved with the snapped elements, which are not on it now: its "
+                "constraints, drivers or modifiers depend on them",
             )
         found = surface.cage
         notes = [f"{', '.join(outcome.lines())} (to {surface.ob.name})" for outcome in done]
@@ -241,19 +249,20 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
 
 
 def _obstacle(context: bpy.types.Context) -> str:
-    """Why there is nothing to do, if so."""
+    """Returns the reason why there is nothing to do, or None."""
     if not native.available():
         return native.obstacle()
     if context.mode not in MODES:
-        return "Only in Object Mode, and Edit Mode of meshes, curves, hair, lattices and armatures"
+        return "Only available in Object Mode, and in Edit Mode of meshes, curves, hair, lattices "
+        "and armatures"
     target = find_target(context)
     if context.mode == "OBJECT":
         if target is None or target.type != "MESH":
-            return "Make the mesh to snap to active, and select what is to be snapped besides"
+            return "Make the mesh to snap to active, and select the objects to snap as well"
         if all(ob == target for ob in context.selected_objects):
-            return "Select what is to be snapped besides the active mesh"
+            return "Select the objects to snap in addition to the active mesh"
     elif target is None:
-        return "Choose a target in the tab Limit"
+        return "Choose a target in the sidebar tab Limit"
     elif target.type != "MESH":
-        return "The target in the tab Limit is not a mesh"
+        return "The target in the sidebar tab Limit is not a mesh"
     return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part of the sidebar tab that snaps, and chooses the target for it."""
+"""The part of the sidebar tab with which users snap things and choose the target."""
 
 import bpy
 
@@ -13,7 +13,7 @@ class VIEW3D_PT_limit_snap(bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = ids.TAB
-    bl_order = 1  # below the panel that says whose surface it is
+    bl_order = 1  # below the panel that shows the active mesh
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -23,7 +23,7 @@ class VIEW3D_PT_limit_snap(bpy.types.Panel):
             target = find_target(context)
             name = target.name if target is not None and target.type == "MESH" else ""
             layout.label(
-                text=f"Now to the active mesh: {name}" if name else "No active mesh",
+                text=f"Target now: active mesh {name}" if name else "No active mesh",
                 icon="INFO",
             )
         column = layout.column()

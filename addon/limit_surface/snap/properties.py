@@ -1,28 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What becomes of things at their places: properties that snapping and dragging share."""
+"""The properties that snapping and dragging share: what is done with things at their new places."""
 
 from bpy.props import EnumProperty, FloatProperty
 
 ALIGNMENTS = (
-    ("NONE", "None", "As it is", 0),
-    ("NORMAL", "Normal", "Turned to the surface's normal by the smallest angle", 1),
+    ("NONE", "None", "Keep the rotation", 0),
+    ("NORMAL", "Normal", "Turn to the surface normal by the smallest angle", 1),
     (
         "NORMAL_DU",
         "Normal and U",
-        "To the normal, and X along growing u of the face. Strands that are on a surface already "
-        "turn as much as its frame does",
+        "Turn to the surface normal, with X along growing u of the face. Strands that are bound "
+        "to a surface turn as its frame does",
         2,
     ),
 )
 HAIR = (
-    ("ROOT", "Root", "The root alone", 0),
-    ("STRAND", "Strand", "All of it", 1),
-    ("BLEND", "Blend", "The root fully, the tip not at all", 2),
+    ("ROOT", "Root", "Move only the root", 0),
+    ("STRAND", "Strand", "Move the whole strand", 1),
+    (
+        "BLEND",
+        "Blend",
+        "Move the root fully, the points along the strand less and less, and the tip not at all",
+        2,
+    ),
 )
 
 
 class PlacingProperties:
-    """Mixin for operators."""
+    """Mixin with properties for operators."""
 
     offset: FloatProperty(
         name="Offset",
@@ -32,22 +37,22 @@ class PlacingProperties:
     )
     align: EnumProperty(
         name="Align",
-        description="Rotation of objects, strands and bones",
+        description="How objects, strands and bones are rotated",
         items=ALIGNMENTS,
     )
     hair: EnumProperty(
         name="Hair",
-        description="What of a strand moves",
+        description="Which part of a strand moves",
         items=HAIR,
         default="STRAND",
     )
     target: EnumProperty(
         name="Put On",
-        description="The surface is searched in any case; things can be put at the same place of "
-        "the polygons that are shown instead",
+        description="Where things are put: on the limit surface itself, or at the same place of "
+        "the displayed polygons",
         items=(
-            ("LIMIT", "Limit Surface", "The exact surface", 0),
-            ("VIEWPORT", "Viewport Mesh", "The polygons that the viewport shows", 1),
-            ("RENDER", "Render Mesh", "The polygons that are rendered", 2),
+            ("LIMIT", "Limit Surface", "Put things on the exact surface", 0),
+            ("VIEWPORT", "Viewport Mesh", "Put things on the polygons that the viewport shows", 1),
+            ("RENDER", "Render Mesh", "Put things on the polygons that a render shows", 2),
         ),
     )

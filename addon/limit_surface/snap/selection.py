@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is to be snapped in the mode that the user is in, and what cannot be."""
+"""The things that are to be snapped in the current mode, and those that cannot be."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Snapped(Protocol):
 
 class Selection(NamedTuple):
     parts: list[Snapped]
-    failures: Counter[str]  # of whole objects
+    failures: Counter[str]  # reasons why whole objects cannot be snapped
 
 
 def find_target(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -79,7 +79,7 @@ def _objects(
         if ob == target:
             continue
         if ob in carriers:
-            failures[f"that would take {target.name} along"] += 1
+            failures[f"that would move {target.name} with them"] += 1
         elif not (ob.data if ob.type == "CURVES" else ob).is_editable:
             failures["linked from another file"] += 1
         elif ob.type != "CURVES":
@@ -89,7 +89,7 @@ def _objects(
         else:
             curves.add(ob.data)
             hair.append(ob)
-    if movable:  # first: hair may hang from them
+    if movable:  # objects come first, because hair may be parented to them
         yield partial(SnappedObjects, movable)
     for ob in hair:
         yield partial(SnappedHair, ob, surface, selected_only=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Strands as arrays: how their points follow when their roots move."""
+"""Strands as arrays, and the motion of their points when their roots move."""
 
 import numpy as np
 
@@ -17,12 +17,12 @@ class Strands:
         self._last = self.root + sizes - 1
 
     def directions(self) -> np.ndarray:
-        """(m, 3) unit vectors from the roots to the second points; NaN where there is none."""
+        """Unit vectors (m, 3) from the roots to the second points; NaN where there is none."""
         second = np.minimum(self.root + 1, self._last)
         return unit(self.points[second] - self.points[self.root])
 
     def weights(self, mode: str) -> np.ndarray:
-        """(n,) how much of its root's move each point shares."""
+        """Returns for each point (n,) its share of the root's move."""
         if mode == "STRAND":
             return np.ones(len(self.points))
         if mode == "ROOT":
@@ -37,26 +37,28 @@ class Strands:
     def moves(
         self, points: np.ndarray, root: np.ndarray, turn: np.ndarray, weights: np.ndarray
     ) -> np.ndarray:
-        """(n, 3) of `points` that go with the strands' own, when the roots go to `root` and the
-        strands turn about them."""
+        """Returns the moves (n, 3) of `points` that go with the strands, when the roots go to
+        `root` and the strands turn about them.
+        """
         arm = points - self.points[self.root][self.curve]
         turned = np.einsum("nij,nj->ni", turn[self.curve], arm) + root[self.curve]
         return weights[:, None] * (turned - points)
 
     def restored_lengths(self, moved: np.ndarray) -> np.ndarray:
-        """(n, 3) of `moved` points, whose segments keep their directions and get the lengths that
-        they had before."""
+        """Returns `moved` points (n, 3) in which the segments keep their directions and get the
+        lengths that they had before.
+        """
         lengths = np.linalg.norm(self._segments(self.points), axis=1, keepdims=True)
         segments = lengths * np.nan_to_num(unit(self._segments(moved)))
         return moved[self.root][self.curve] + self._along(segments)
 
     def _segments(self, points: np.ndarray) -> np.ndarray:
-        """(n, 3) to each point from the one before; 0 for roots."""
+        """Returns the vectors (n, 3) to each point from the one before; 0 for roots."""
         segments = np.diff(points, axis=0, prepend=points[:1])
         segments[self.root] = 0
         return segments
 
     def _along(self, steps: np.ndarray) -> np.ndarray:
-        """Sums from the root to each point."""
+        """Returns the sums from the root to each point."""
         total = np.cumsum(steps, axis=0)
         return total - total[self.root][self.curve]

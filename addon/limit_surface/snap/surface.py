@@ -10,7 +10,7 @@ from ..placing.rotations import WorldSpace
 from ..reading import cage, displayed_mesh, rules
 from ..tasks.refused_faces import check_some_left
 
-SAME = 1e-6  # of the largest coordinate: as exactly as Blender's single precision allows
+SAME = 1e-6  # as a share of the largest coordinate: Blender's single precision allows no more
 
 
 class Places(NamedTuple):
@@ -19,8 +19,10 @@ class Places(NamedTuple):
 
 
 class TargetSurface:
-    """Queries are made on the surface of the cage's world-space positions: closest and at right
-    angles mean something else in the space of a stretched object, and subdivision does not mind."""
+    """The surface made from the cage's positions in world space, because the closest point and
+    right angles are different in the space of a stretched object. Subdivision gives the same
+    surface in both spaces.
+    """
 
     def __init__(
         self,
@@ -31,7 +33,7 @@ class TargetSurface:
         self.ob = ob
         self._stood = ob.matrix_world.copy()
         self.cage = cage.read(ob, depsgraph)
-        WorldSpace(self.cage.matrix)  # refuses what is flattened to nothing
+        WorldSpace(self.cage.matrix)  # refuses objects whose scale is 0 along an axis
         self.in_world = self.cage.surface(in_world=True)
         check_some_left(self.in_world, ob.name)
         self._in_object = self.cage.surface()
@@ -41,7 +43,9 @@ class TargetSurface:
         self.outward = -1.0 if self.cage.is_mirrored else 1.0
 
     def has_changed(self, depsgraph: bpy.types.Depsgraph) -> bool:
-        """Since it was read: what was put on it has a part in it."""
+        """Tells whether the surface has changed since it was read, because it depends on what was
+        put on it.
+        """
         if self.ob.matrix_world != self._stood:
             return True
         if not self.ob.modifiers or self.ob.modifiers[0] == rules.find_subsurf(self.ob):
@@ -50,13 +54,13 @@ class TargetSurface:
         return now.shape != before.shape or np.abs(now - before).max() > SAME * np.abs(before).max()
 
     def size(self) -> float:
-        """Of the largest coordinate that positions in the world are calculated with."""
+        """The largest coordinate that occurs in the calculation of positions in the world."""
         return float(np.abs(self.in_world.positions).max())
 
     def places(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> Places:
-        """Where things are put, in the space that the matrix `space` leads from to the world.
+        """Returns where things are put, in the space that the matrix `space` maps to the world.
 
-        Frames are the limit surface's even on polygons, which would have kinks between them.
+        Frames are those of the limit surface even on polygons, which would have kinks between them.
         """
         surface = self._in_object
         position = self._positions(face, uv)
@@ -69,7 +73,9 @@ class TargetSurface:
         return Places(transformed(relation, position), seen)
 
     def surface_uv(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray | None:
-        """On the UV map of the mesh that the viewport shows, as new hair stores it."""
+        """Returns coordinates on the UV map of the mesh that the viewport shows, as new hair stores
+        them.
+        """
         found = self.cage.uv_map
         if found is None:
             return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Turns and directions of many elements at once."""
+"""Rotations and directions of many elements at once."""
 
 import numpy as np
 
@@ -7,9 +7,10 @@ from ..placing.rotations import unit
 
 
 def shortest(source: np.ndarray, target: np.ndarray) -> np.ndarray:
-    """Rotations (n, 3, 3) that turn unit vectors into others by the smallest angle: a reflection
-    that turns the source back, then one that swaps that for the target. The identity where there
-    is no source."""
+    """Returns rotations (n, 3, 3) that turn unit vectors into others by the smallest angle, each
+    made of two reflections: one reverses the source, the other exchanges that for the target. It is
+    the identity where there is no source.
+    """
     known = np.isfinite(source).all(axis=1)
     source = np.where(known[:, None], source, target)
     between = source + target
@@ -28,7 +29,7 @@ def _least_aligned_axis(vectors: np.ndarray) -> np.ndarray:
 
 
 def matrices(quaternions: np.ndarray) -> np.ndarray:
-    """Rotations (n, 3, 3) of unit quaternions (n, 4), w x y z."""
+    """Returns rotations (n, 3, 3) for unit quaternions (n, 4), w x y z."""
     w, axis = quaternions[:, None, :1], quaternions[:, None, 1:]
     across = np.cross(axis, np.eye(3))
     return np.swapaxes(np.eye(3) + 2 * (w * across + np.cross(axis, across)), 1, 2)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sides of faces that are edges of the cage, and the points on them that are seen under the mouse.
+"""Sides of faces that are edges of the cage, and the points on them that are closest to the mouse.
 
-A side is a straight line in a Ptex face's (u, v): what is found lies exactly on the border.
+A side is a straight line in a Ptex face's (u, v), so the points that are found lie exactly on the
+border.
 """
 
 import numpy as np
@@ -11,7 +12,7 @@ from ..snap.surface import TargetSurface
 from .ray import Ray
 
 STEPS = np.linspace(0, 1, 17)
-PASSES = 4  # each makes the interval an eighth: far less than a pixel in the end
+PASSES = 4  # each step divides the interval by 8, until it is far smaller than a pixel
 
 
 class Borders:
@@ -49,7 +50,9 @@ class Borders:
         return len(self._boundary) > 0
 
     def nearest_of_face(self, face: int, ray: Ray) -> tuple[int, np.ndarray]:
-        """Face and (u, v) of the point on the face's border that is closest on screen."""
+        """Returns the face and (u, v) of the point on the face's border that is closest on
+        screen.
+        """
         rows = np.flatnonzero((self._face == face) & self._evaluable)
         return self._nearest(rows, self._points(rows, self._uv(rows, STEPS)), ray)
 
@@ -68,19 +71,20 @@ class Borders:
         return int(self._face[rows[0]]), uv
 
     def _uv(self, rows: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """(sides, steps, 2)"""
+        """Returns the (u, v) of points on the sides, (sides, steps, 2)."""
         begin, end = self._begin[rows, None, :], self._end[rows, None, :]
         return (1 - at)[None, :, None] * begin + at[None, :, None] * end
 
     def _points(self, rows: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """(sides, steps, 3)"""
+        """Returns the positions of points on the sides, (sides, steps, 3)."""
         face = np.repeat(self._face[rows], uv.shape[1])
         return self._surface.evaluate(face, uv.reshape(-1, 2)).position.reshape(*uv.shape[:2], 3)
 
 
 def _edges(sizes: np.ndarray, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For each face corner the edge that leads on from it, and for each edge whether it has but one
-    face."""
+    """Returns for each face corner the edge that leads to the next corner, and for each edge
+    whether it has only one face.
+    """
     following = vertices[ragged_rows.following(sizes)]
     low, high = np.sort(np.stack([vertices, following]).astype(np.int64), axis=0)
     pair = low * (high.max() + 1) + high

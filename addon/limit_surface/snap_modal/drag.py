@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One thing on its way over the surface: the state between two moves of the mouse."""
+"""The dragging of one thing over the surface: the state between two moves of the mouse."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,13 +14,17 @@ from .handles import Handle, Place
 from .ray import Ray
 
 LOCKS = ("FREE", "BORDER", "BOUNDARY")
-PICKED_AMONG = 32  # elements nearest on screen, of which the nearest that is not hidden counts
-IN_FRONT = 1e-3  # of the distance: by so much nearer the surface hides what is behind
+# number of elements nearest on screen that are tested; the nearest one that is not hidden is taken
+PICKED_AMONG = 32
+# as a share of the distance: the surface hides a point if it is nearer by more than this
+IN_FRONT = 1e-3
 
 
 @dataclass(frozen=True)
 class Bending:
-    """Principal directions and curvatures at a place; no directions where there are none."""
+    """The principal directions and curvatures at a place; directions are missing where there are
+    none.
+    """
 
     directions: tuple[np.ndarray, ...]  # (3,) world
     curvatures: tuple[float, float]
@@ -39,7 +43,7 @@ class Glide:
         return Borders(self.surface)
 
     def prepare(self) -> None:
-        """Has the search structure built now, not at the first move of the mouse."""
+        """Builds the search structure now, not at the first move of the mouse."""
         self.surface.in_world.ray_cast(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))
 
     @property
@@ -47,11 +51,15 @@ class Glide:
         return self.face >= 0
 
     def go_to(self, face: int, uv: np.ndarray) -> None:
-        """(u, v) is rounded, as files and properties hold it, before anything is evaluated."""
+        """Goes to a location. (u, v) is rounded to the precision of files and properties before
+        anything is evaluated.
+        """
         self.face, self.uv = int(face), np.asarray(uv, np.float32).astype(np.float64)
 
     def follow(self, ray: Ray) -> bool:
-        """Whether there is something under the mouse; else the location stays."""
+        """Follows the mouse, and returns whether the surface is under it; if not, the location
+        stays.
+        """
         if self.lock == "BOUNDARY":
             self.go_to(*self.borders.nearest_of_boundary(ray))
             return True
@@ -89,12 +97,12 @@ class Drag:
             self.handle.put(self.place, align, hair)
 
     def confirm(self) -> None:
-        """All is as it was where this raises a RefusalError."""
+        """Confirms the place. If this raises a RefusalError, everything is restored."""
         try:
             if self.glide.surface.has_changed(bpy.context.evaluated_depsgraph_get()):
                 raise RefusalError(
-                    f"{self.handle.name} cannot be put there: {self.glide.surface.ob.name} changes "
-                    "along with it"
+                    f"{self.handle.name} cannot be put there, because {self.glide.surface.ob.name} "
+                    "depends on it"
                 )
             assert self.place is not None
             self.handle.confirm(self.place)
@@ -104,13 +112,15 @@ class Drag:
 
 
 def offset_step(surface: TargetSurface) -> float:
-    """A power of ten that is at most a hundredth of the surface's extent."""
+    """Returns a power of ten that is at most a hundredth of the surface's extent."""
     low, high = surface.in_world.bounds()
     return float(10 ** np.floor(np.log10(np.linalg.norm(high - low) / 100)))
 
 
 def nearest_in_sight(points: np.ndarray, ray: Ray, surface: TargetSurface) -> int | None:
-    """Row of the point that is nearest to the mouse on screen, and not behind the surface."""
+    """Returns the row of the point that is nearest to the mouse on screen and is not behind the
+    surface.
+    """
     apart = np.nan_to_num(ray.apart(points), nan=np.inf, posinf=np.inf)
     nearest = np.argsort(apart)[:PICKED_AMONG] if len(apart) <= PICKED_AMONG else _least(apart)
     nearest = nearest[np.isfinite(apart[nearest])]

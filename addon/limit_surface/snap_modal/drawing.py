@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is drawn into the viewport: the place, its normal, principal directions and border."""
+"""Drawing in the viewport: the place, its normal, principal directions and border."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ _TURN = np.linspace(0, 2 * np.pi, 33)
 
 @dataclass(frozen=True)
 class Mark:
-    """World positions and unit vectors."""
+    """The positions and unit vectors to draw, in the world."""
 
     position: np.ndarray
     frame: np.ndarray  # (3, 3): columns across, across, normal
@@ -27,7 +27,7 @@ class Mark:
 
 
 class Drawing:
-    """Draws into the 3D viewports of the window it was made for, until it is removed."""
+    """Draws into the 3D viewports of the window for which it was made, until it is removed."""
 
     def __init__(self) -> None:
         self.mark: Mark | None = None
@@ -60,7 +60,7 @@ class Drawing:
 
 
 def _pixel_size(region: bpy.types.Region, matrix: np.ndarray, position: np.ndarray) -> float:
-    """World length of a pixel at a position."""
+    """Returns the world length of a pixel at a position."""
     w = matrix[3, :3] @ position + matrix[3, 3]
     return 2 * abs(w) / (region.width * np.linalg.norm(matrix[0, :3]))
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one thing that is dragged: put somewhere again and again, then put back or confirmed."""
+"""Handles move the one thing that is dragged: again and again, until it is restored or
+confirmed.
+"""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -37,7 +39,7 @@ class Handle(Protocol):
     def put(self, place: Place, align: str, hair: str) -> None: ...
     def restore(self) -> None: ...
     def confirm(self, place: Place) -> None:
-        """RefusalError if it cannot stay there."""
+        """Raises RefusalError if the thing cannot stay there."""
 
 
 class DraggedObject:
@@ -50,7 +52,9 @@ class DraggedObject:
         self._move: ObjectMove | None = None
 
     def put(self, place: Place, align: str, hair: str) -> None:
-        """From where it was in the beginning: the way there leaves no trace."""
+        """Moves the thing from where it was at the beginning, so that intermediate places have no
+        effect.
+        """
         self.restore()
         bpy.context.view_layer.update()
         self._move = ObjectMove(self._ob, place.position, place.frame, align)
@@ -133,7 +137,7 @@ class DraggedStrand:
         self._data.update_tag()
 
     def _turn(self, place: Place, align: str) -> np.ndarray:
-        """(1, 3, 3) in world space."""
+        """Returns the rotation (1, 3, 3) in world space."""
         if align == "NONE":
             return np.eye(3)[None]
         if align == "NORMAL_DU":
@@ -144,7 +148,7 @@ class DraggedStrand:
         return shortest(self._strand.directions(), place.frame[None, :, 2])
 
     def _root(self, place: Place) -> np.ndarray:
-        """Where the stored location says to the bit, plus the offset."""
+        """Returns the point where the stored location says, to the last bit, plus the offset."""
         bound = self._bound_place(place).position
         return (bound + self._space.to_local(place.position - transformed(self._matrix, bound)))[0]
 

@@ -20,8 +20,8 @@ LOCK_NAMES = {"FREE": "Free", "BORDER": "Along the face's border", "BOUNDARY": "
 NAVIGATION = {"MIDDLEMOUSE", "NDOF_MOTION", "TRACKPADPAN", "TRACKPADZOOM"}
 MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 WHEEL = {"WHEELUPMOUSE": 1, "WHEELDOWNMOUSE": -1}
-CLICK = 3  # pixels: a mouse that moves less while it is pressed does not drag
-FINE = 0.1  # of a step of the wheel, with Shift
+CLICK = 3  # in pixels: a smaller move with the button pressed is a click, not a drag
+FINE = 0.1  # the share of a wheel step that is used with Shift
 
 
 class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
@@ -34,20 +34,20 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
 
     element: IntProperty(
         name="Element",
-        description="Vertex or strand that is dragged",
+        description="Index of the vertex or strand that is dragged",
         default=-1,
         options={"HIDDEN", "SKIP_SAVE"},
     )
     face: IntProperty(
         name="Face",
-        description="Ptex face that it is put on: with `uv` a location for scripts, and for what "
-        "is adjusted afterwards",
+        description="Ptex face on which the element is put. With `uv` it is the location that "
+        "scripts and the redo panel set",
         default=-1,
         options={"HIDDEN", "SKIP_SAVE"},
     )
     uv: FloatVectorProperty(
         name="UV",
-        description="Where on the face",
+        description="Place on the face",
         size=2,
         min=0.0,
         max=1.0,
@@ -77,11 +77,10 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         layout.prop(self, "target")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """At a stored location; without one there is nothing to do."""
+        """Puts the element at a stored location; without one there is nothing to do."""
         if self.face < 0:
             return self._refuse(
-                "The mouse is needed, and with it a window: set `face` and `uv`, or use "
-                "object.limit_snap"
+                "Dragging needs a window and a mouse: set `face` and `uv`, or use object.limit_snap"
             )
         try:
             subject = find_subject(context)
@@ -98,7 +97,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if context.area is None or context.area.type != "VIEW_3D":
-            return self._refuse("Only in a 3D viewport")
+            return self._refuse("Only available in a 3D viewport")
         try:
             self._subject = find_subject(context)
             depsgraph = context.evaluated_depsgraph_get()
@@ -139,7 +138,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         return result
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Blender ends it: another file is being opened, say."""
+        """Is called when Blender ends the operator, for example because another file is opened."""
         self._restore()
         self._clean_up(context)
 
@@ -177,7 +176,9 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _click(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """The mouse picks an element and drags it, or drags after a click; a click confirms."""
+        """Picks an element with the mouse. It is dragged while the button is held, or after a click
+        until the next click confirms.
+        """
         at = (event.mouse_x, event.mouse_y)
         if event.value == "PRESS":
             if self._drag is not None:
@@ -237,7 +238,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         self._area.tag_redraw()
 
     def _lock(self, lock: str) -> None:
-        """The same key again sets it free."""
+        """Locks the drag to a border. The same key releases it again."""
         glide = self._glide
         if lock == "BOUNDARY" and not glide.borders.has_boundary:
             self.report({"WARNING"}, f"{glide.surface.ob.name} has no boundary")
@@ -259,7 +260,9 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         drag = self._drag
         assert drag is not None
         if drag.place is None:
-            self.report({"WARNING"}, "Nothing moved: the mouse was never over the surface")
+            self.report(
+                {"WARNING"}, "Nothing was moved, because the mouse was never over the surface"
+            )
             return {"CANCELLED"}
         drag.confirm()
         self.face, self.uv = self._glide.face, self._glide.uv
@@ -286,7 +289,9 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
     def _show_state(self, context: bpy.types.Context) -> None:
         if self._drag is None:
             noun = "vertex" if self._subject.kind == "VERTEX" else "strand"
-            self._area.header_text_set(f"Press on a {noun} and drag it, or click it")
+            self._area.header_text_set(
+                f"Press the mouse button on a {noun} and drag it, or click it"
+            )
             return
         offset = self._typed.text or f"{self.offset:.6g}"
         parts = [f"Offset: {offset}", LOCK_NAMES[self._glide.lock]]

@@ -17,8 +17,9 @@ class Ray:
     is_perspective: bool
 
     def apart(self, points: np.ndarray) -> np.ndarray:
-        """How far points (..., 3) are from the ray as seen on screen, up to a common factor;
-        infinite behind the viewer."""
+        """Returns how far points (..., 3) are from the ray as seen on screen, up to a common
+        factor; infinite behind the viewer.
+        """
         arm = points - self.origin
         along = arm @ self.direction
         across = np.linalg.norm(arm - along[..., None] * self.direction, axis=-1)
@@ -28,7 +29,7 @@ class Ray:
             return np.where(along > 0, across / along, np.inf)
 
     def towards(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Origins, unit directions and lengths of the lines of sight to points (n, 3)."""
+        """Returns origins, unit directions and lengths of the lines of sight to points (n, 3)."""
         if self.is_perspective:
             origins = np.broadcast_to(self.origin, points.shape)
         else:
@@ -39,7 +40,7 @@ class Ray:
 
 
 def through(region: bpy.types.Region, view: bpy.types.RegionView3D, x: int, y: int) -> Ray:
-    """Of the pixel (x, y), in the window's coordinates."""
+    """Returns the ray through the pixel (x, y), in the window's coordinates."""
     at = (x - region.x, y - region.y)
     return Ray(
         np.array(region_2d_to_origin_3d(region, view, at), np.float64),

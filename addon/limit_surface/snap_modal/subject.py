@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can be dragged in the mode that the user is in, and over whose surface."""
+"""The thing that is dragged in the current mode, and the surface over which it is dragged."""
 
 from dataclasses import dataclass
 
@@ -25,11 +25,13 @@ class Subject:
 
     @property
     def is_picked(self) -> bool:
-        """Whether the mouse has to choose among elements first."""
+        """Tells whether the user first picks one of several elements with the mouse."""
         return self.kind != "OBJECT"
 
     def candidates(self) -> np.ndarray:
-        """World positions (n, 3) of the elements; NaN for those that cannot be chosen."""
+        """Returns the world positions (n, 3) of the elements; NaN for those that cannot be
+        picked.
+        """
         matrix = np.array(self.ob.matrix_world, np.float64)
         if self.kind == "VERTEX":
             return transformed(matrix, _vertices(self.ob.data))
@@ -47,7 +49,7 @@ class Subject:
 
 
 def find_subject(context: bpy.types.Context) -> Subject:
-    """RefusalError where there is none."""
+    """Raises RefusalError where there is nothing to drag."""
     active, mode = context.active_object, context.mode
     if mode == "OBJECT" and active is not None and active.type == "MESH":
         return _object(context, active)
@@ -60,9 +62,9 @@ def find_subject(context: bpy.types.Context) -> Subject:
     elif mode == "OBJECT":
         raise RefusalError("Select the object to drag, then the mesh; or make hair curves active")
     else:
-        raise RefusalError("Not in this mode")
+        raise RefusalError("Not available in this mode")
     if target is None:
-        raise RefusalError("Choose a target in the tab Limit")
+        raise RefusalError("Choose a target in the sidebar tab Limit")
     if target.type != "MESH":
         raise RefusalError(f"The target {target.name} is not a mesh")
     if target.data == active.data:
@@ -80,7 +82,7 @@ def _object(context: bpy.types.Context, target: bpy.types.Object) -> Subject:
     if not ob.is_editable:
         raise RefusalError(f"{ob.name} is linked from another file")
     if ob in ancestors(target):
-        raise RefusalError(f"{ob.name} would take {target.name} along")
+        raise RefusalError(f"{ob.name} would move {target.name} with it")
     return Subject("OBJECT", ob, target)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A number typed while something is being dragged."""
+"""A number that the user types while dragging."""
 
 
 class TypedNumber:
@@ -11,11 +11,13 @@ class TypedNumber:
 
     @property
     def value(self) -> float:
-        """0 until there is a digit."""
+        """The number; 0 until there is a digit."""
         return float(self.text) if any(c.isdigit() for c in self.text) else 0.0
 
     def take(self, character: str) -> bool:
-        """Whether the character belongs to a number; a minus sign changes the sign at any time."""
+        """Returns whether the character belongs to a number. A minus sign changes the sign at any
+        time.
+        """
         if character == "-":
             self.text = (
                 self.text.removeprefix("-") if self.text.startswith("-") else f"-{self.text}"

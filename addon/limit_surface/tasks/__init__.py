@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Work that may take long: the operators that do it, how much it is, and how far it has got."""
+"""Work that may take long: its operators, its size and its progress."""

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Work on plain arrays that can be watched and cancelled, here or in a thread of its own."""
+"""Work on plain arrays with progress that can be cancelled, in the calling thread or in a thread of
+its own.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +15,14 @@ Progress = Callable[[float], None]
 
 
 def part_of(progress: Progress, begin: float, end: float) -> Progress:
-    """For a piece of the work: what to call with the part of the piece that is done."""
+    """Returns the function with which a piece of the work reports its own progress, from 0 to 1."""
     return lambda part: progress(begin + (end - begin) * part)
 
 
 def slices(count: int, size: int, progress: Progress) -> Iterator[slice]:
-    """Gives `count` rows piece by piece, `size` of them at most, and tells the progress after each
-    piece."""
+    """Yields `count` rows in slices of at most `size`, and reports the progress after each
+    slice.
+    """
     for begin in range(0, count, size):
         rows = slice(begin, min(begin + size, count))
         yield rows
@@ -27,9 +30,10 @@ def slices(count: int, size: int, progress: Progress) -> Iterator[slice]:
 
 
 class Job:
-    """`work` gets a function to call with the part that is done, 0 to 1. That function is where a
-    cancelled job ends: it raises CancelledError. Work that is started must leave Blender's data
-    alone."""
+    """Runs `work`, which gets a function to call with the part that is done, from 0 to 1. In a
+    cancelled job that function raises CancelledError, which ends the work. Work that runs in a
+    thread must not touch Blender's data.
+    """
 
     def __init__(self, work: Callable[[Progress], Any]) -> None:
         self._work = work
@@ -40,16 +44,18 @@ class Job:
         self.part = 0.0
 
     def run(self, show: Progress) -> Any:
-        """Here and now."""
+        """Runs the work in the calling thread."""
         self._run(show)
         return self.result()
 
     def start(self) -> None:
-        """In a thread of its own. A program that ends waits for it: cancel what is not wanted."""
+        """Runs the work in a thread of its own. The program waits for it at its exit, so a job that
+        is not needed any more should be cancelled.
+        """
         Thread(target=self._run, args=(lambda _part: None,)).start()
 
     def wait(self, seconds: float) -> bool:
-        """Whether it is done by then."""
+        """Returns whether the work is done by then."""
         return self._done.wait(seconds)
 
     @property
@@ -57,11 +63,11 @@ class Job:
         return self._done.is_set()
 
     def cancel(self) -> None:
-        """It ends when it next tells its progress, and has no result."""
+        """Asks the work to stop. It ends when it next reports its progress, and has no result."""
         self._cancelled.set()
 
     def result(self) -> Any:
-        """What was made, or the error that ended the work."""
+        """Returns the result, or raises the error that ended the work."""
         if self._error is not None:
             raise self._error
         return self._made

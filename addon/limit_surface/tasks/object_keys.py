@@ -14,18 +14,20 @@ from ..errors import RefusalError
 
 
 class ObjectKey(NamedTuple):
-    """The library tells an object from those of the same name in other files."""
+    """The name and the library of an object. The library distinguishes it from objects with the
+    same name in other files.
+    """
 
     name: str
-    library: str | None  # the path of its file; None for the open file
+    library: str | None  # the path of the library's file; None for the open file
 
     @classmethod
     def of(cls, ob: bpy.types.Object) -> ObjectKey:
         return cls(ob.name, ob.library.filepath if ob.library else None)
 
     def find(self) -> bpy.types.Object:
-        """RefusalError if the object has been removed."""
+        """Raises RefusalError if the object has been removed."""
         ob = bpy.data.objects.get((self.name, self.library))
         if ob is None:
-            raise RefusalError(f"{self.name} is not there any more")
+            raise RefusalError(f"{self.name} does not exist any more")
         return ob

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Showing how far work has got."""
+"""Progress of work, as users see it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ TICK = 0.1  # seconds
 
 @contextmanager
 def progress_bar(window_manager: bpy.types.WindowManager) -> Iterator[Callable[[float], None]]:
-    """At the mouse, while nothing else happens. Gives a function to call with the part that is
-    done, 0 to 1."""
+    """Shows progress at the mouse while Blender is blocked. Yields a function to call with the part
+    that is done, from 0 to 1.
+    """
     window_manager.progress_begin(0, 100)
     try:
         yield lambda part: window_manager.progress_update(int(100 * part))
@@ -23,8 +24,9 @@ def progress_bar(window_manager: bpy.types.WindowManager) -> Iterator[Callable[[
 
 
 class Waiting:
-    """At the mouse and in the status bar, while Blender goes on: timer events tell the operator
-    when to look."""
+    """Shows progress at the mouse and in the status bar while Blender stays usable. Timer events
+    tell the operator when to check the job.
+    """
 
     def __init__(self, context: bpy.types.Context, text: str) -> None:
         self._text = text

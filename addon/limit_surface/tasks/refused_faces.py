@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces that have no limit surface, in words."""
+"""Texts about faces that have no limit surface."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
 
 
 def check_some_left(surface: limitsurf.LimitSurface, whose: str) -> None:
-    """RefusalError where no face has a limit surface."""
+    """Raises RefusalError where no face has a limit surface."""
     if len(surface.refused) == len(surface.mesh.face_sizes):
         raise RefusalError(f"No face of {whose} has a limit surface")
 
 
 def left_out(count: int, faces: int, reasons: str = "") -> str:
-    """The warning that so many of a mesh's faces have no part in what was made."""
+    """Returns the warning that so many of a mesh's faces were left out."""
     warning = f"{count:,} of {faces:,} faces have no limit surface and were left out"
     return f"{warning}: {reasons}" if reasons else warning
 
 
 def reasons(refused: Mapping[int, str]) -> str:
-    """The commonest reasons, each with a face for example."""
+    """Returns the most frequent reasons, each with the number of a face as an example."""
     example = {reason: face for face, reason in reversed(tuple(refused.items()))}
     counted = Counter(refused.values()).most_common()
     parts = [f"{reason} (face {example[reason]}; {n} in all)" for reason, n in counted[:3]]

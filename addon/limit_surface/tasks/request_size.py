@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How much an operator is asked to make, and whether somebody has to agree to it."""
+"""The size of an operator's result, and the limits beyond which the user has to confirm it."""
 
 from dataclasses import dataclass
 
 from ..errors import TooLargeError
 
-LARGE_COUNT = 3_000_000  # more than so many are made only if the user insists
-LARGE_MEMORY = 4 << 30  # bytes
-MOST_ELEMENTS = 2**31 - 1  # what Blender counts to
+LARGE_COUNT = 3_000_000  # more elements than this are made only if the user confirms
+LARGE_MEMORY = 4 << 30  # in bytes
+MOST_ELEMENTS = 2**31 - 1  # the largest number that Blender's element counts can hold
 
-# Measured at the peak: attributes and the arrays they are filled from; positions, and the finer
-# curve that Blender evaluates between them.
+# Both are measured at the peak. The first counts attributes and the arrays from which they are
+# filled, the second positions and the finer curve that Blender evaluates between them.
 BYTES_PER_LOCATION = 130
 BYTES_PER_ELEMENT = 200
 
 
 def memory_text(size: int) -> str:
-    """How messages state an amount of memory, which is given in bytes."""
+    """Returns the text for an amount of memory, which is given in bytes."""
     return f"about {size / 2**30:.1f} GiB of memory"
 
 
@@ -33,7 +33,7 @@ class RequestSize:
 
     @property
     def memory(self) -> int:
-        """Bytes."""
+        """The expected memory in bytes."""
         return self.count * BYTES_PER_LOCATION + self.elements * BYTES_PER_ELEMENT
 
     @property

@@ -31,15 +31,16 @@ from .job import Job
 from .polling import mesh_in_object_mode
 from .progress import Waiting, progress_bar
 
-#: Work lets the user wait, and watch it, from here on
+#: Work of more elements than this runs in a thread and shows its progress
 PATIENCE = 0.3  # seconds
 
 VIEW_NAVIGATION = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION"}
 
 
 class WatchedOperator:
-    """Mixin: where somebody waits, long work goes on beside Blender until it is done or ESC ends
-    it; scripts get it done at once. Refusals are reported as errors.
+    """Mixin for operators with long work. Where a user waits, the work runs in a thread while
+    Blender stays usable, until it is done or ESC ends it. In scripts it runs at once. Refusals are
+    reported as errors.
 
     A subclass provides `start` and `finish`.
     """
@@ -56,7 +57,7 @@ class WatchedOperator:
 
     @property
     def too_large(self) -> str:
-        return "Not enough memory"
+        return "There is not enough memory"
 
     @property
     def cancelled(self) -> str:
@@ -97,8 +98,9 @@ class WatchedOperator:
         return self._guarded(self._finish, context, self._taken_job())
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """By ESC; or another file is loaded, or Blender quits, while somebody waits. Or by ESC in
-        a dialog, before there is a job."""
+        """Is called at ESC, or when another file is loaded or Blender quits while the work runs.
+        ESC in a dialog calls it before there is a job.
+        """
         job = self._taken_job()
         if job is not None:
             job.cancel()
@@ -118,7 +120,9 @@ class WatchedOperator:
         return {"RUNNING_MODAL"}
 
     def _taken_job(self) -> Job | None:
-        """Blender keeps operators, for the redo panel: not what they have made."""
+        """Returns the job and forgets it: Blender keeps operators for the redo panel, so they must
+        not keep results.
+        """
         job, self._job = self._job, None
         return job
 
@@ -137,6 +141,6 @@ class WatchedOperator:
 
 
 def draw_summary(layout: bpy.types.UILayout, summary: str) -> None:
-    """In redo panels and dialogs: what an operator has done, line by line."""
+    """Draws what an operator has done, line by line, in redo panels and dialogs."""
     for line in summary.splitlines():
         layout.label(text=line, icon="INFO")

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""In the sidebar tab: how the next strands or points will be spread, and how many there will be."""
+"""The part of the sidebar tab with the settings for the next strands or points, and their expected
+number.
+"""
 
 from typing import ClassVar
 
@@ -10,7 +12,7 @@ from ..placing import distribution_properties, live_count
 
 
 class _DistributionPanel:
-    """Mixin: the settings that an operator is called with next, from a menu or a button."""
+    """Mixin for panels with the settings that a menu or button will pass to an operator."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"

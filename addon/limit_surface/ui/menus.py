@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries in Blender's own menus: Add > Curve, Object > Limit Surface, and where things snap."""
+"""Entries in Blender's own menus: Add > Curve, Object > Limit Surface, and the Snap menus."""
 
 import bpy
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar tab Limit: whose surface it is, and what can be made on it."""
+"""The main panel of the sidebar tab Limit: the active mesh, and the operators for it."""
 
 import bpy
 

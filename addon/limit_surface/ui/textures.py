@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""In the sidebar tab: textures and meshes that are made from the surface."""
+"""The part of the sidebar tab for textures and meshes that are made from the surface."""
 
 import bpy
 
 from .. import ids, native
 
-#: In the order of the panel and of the menu
+#: The operators in the order of the panel and of the menu
 ENTRIES = (
     (ids.PROJECT_IMAGE, "MOD_UVPROJECT"),
     (ids.BAKE_MAPS, "IMAGE_DATA"),
