@@ -262,7 +262,7 @@ def test_polygons_that_no_viewport_shows(sculpt, base):
     refused(base, "Sculpt is disabled", target="Sculpt", target_shape="POLYGONS")
     sculpt.hide_viewport = False
     bpy.context.collection.objects.unlink(sculpt)
-    refused(base, "or not in this view layer", target="Sculpt", target_shape="POLYGONS")
+    refused(base, "or is not in this view layer", target="Sculpt", target_shape="POLYGONS")
 
 
 def test_paths_that_would_not_do(sculpt, base, tmp_path):
@@ -270,7 +270,7 @@ def test_paths_that_would_not_do(sculpt, base, tmp_path):
     for match, path, properties in (
         ("There is no folder", tmp_path / "no" / "a.exr", {}),
         ("a.png does not end in .exr", tmp_path / "a.png", {}),
-        ("save that file first", "//a.exr", {}),
+        ("which has not been saved: save it first", "//a.exr", {}),
         (
             "a.exr would be the file of 2 tiles",
             tmp_path / "a.exr",

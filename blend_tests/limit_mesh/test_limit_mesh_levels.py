@@ -96,7 +96,7 @@ def test_a_vertex_group(sheet):
 def test_no_such_levels(sheet):
     properties = {"level_source": "ATTRIBUTE", "levels": 3}
     refused("Choose a face attribute or a vertex group", **properties)
-    refused("no attribute of faces, and no vertex group, named 'fine'",
+    refused("neither a face attribute nor a vertex group named 'fine'",
             level_attribute="fine", **properties)  # fmt: skip
     sheet.vertex_groups.new(name="empty")
     refused("vertex group empty of Holes has no weights", level_attribute="empty", **properties)

@@ -305,7 +305,7 @@ def test_density_0_everywhere(distribution):
 def test_a_vertex_group_that_would_be_taken_for_an_attribute():
     weigh(scenes.cross(), "position")
     check_refused(
-        "Cross has an attribute that is called position",
+        "Cross has an attribute with the name position",
         density_source="VERTEX_GROUP",
         vertex_group="position",
     )
@@ -329,7 +329,9 @@ def test_an_image_that_is_black_where_the_surface_is(distribution, amount):
     values[7, 7] = 1
     image(values)
     check_refused(
-        "density is too low" if distribution == "JITTERED" else "The density is 0 everywhere",
+        "density is so low that no location was found"
+        if distribution == "JITTERED"
+        else "The density is 0 everywhere",
         distribution=distribution,
         amount=amount,
         density_source="IMAGE",

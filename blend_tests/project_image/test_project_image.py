@@ -438,7 +438,7 @@ def test_refusals_about_images():
     filled("Endless", endless, is_float=True)
     refused(ob, "The image Endless has values that are not finite", image="Endless")
     bpy.data.images["Shown"].source = "SEQUENCE"
-    refused(ob, "The image Shown is a sequence")
+    refused(ob, "The image Shown is an image sequence")
 
 
 def test_refusals_about_uv_maps():

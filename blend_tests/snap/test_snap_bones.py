@@ -151,7 +151,7 @@ def test_locked_and_hidden_bones_stay(armature, capfd):
 def test_tails_alone_are_nothing_to_snap(armature):
     select(armature, set())
     armature.data.edit_bones["tip"].select_tail = True
-    with pytest.raises(RuntimeError, match="Nothing is selected"):
+    with pytest.raises(RuntimeError, match="Nothing that can be snapped is selected"):
         bpy.ops.object.limit_snap()
 
 

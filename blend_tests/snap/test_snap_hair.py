@@ -268,7 +268,7 @@ def test_hair_without_strands():
     bpy.context.collection.objects.link(ob)
     ob.select_set(True)
     scenes.activate(target)
-    with pytest.raises(RuntimeError, match="Nothing is selected"):
+    with pytest.raises(RuntimeError, match="Nothing that can be snapped is selected"):
         bpy.ops.object.limit_snap()
 
 

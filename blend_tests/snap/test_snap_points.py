@@ -267,7 +267,7 @@ def test_nothing_selected():
     cloud = add_cloud(target)
     with edit_mode(cloud):
         select_vertices(cloud, [])
-        with pytest.raises(RuntimeError, match="Nothing is selected"):
+        with pytest.raises(RuntimeError, match="Nothing that can be snapped is selected"):
             bpy.ops.object.limit_snap()
 
 

@@ -224,7 +224,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
         outcomes: list[Outcome],
     ) -> set[str]:
         failed = [
-            f"{outcome.failed:,} {outcome.noun} could not be snapped:  {outcome.reasons()}"
+            f"{outcome.failed:,} {outcome.noun} could not be snapped: {outcome.reasons()}"
             for outcome in outcomes
             if outcome.failed
         ]
