@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "limitsurf/eigen/eigenbasis.h"
-#include "limitsurf/eigen/ring_cells.h"
+#include "limitsurf/eigen/ring_slots.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"
@@ -119,8 +119,8 @@ double factorisationError(const Eigenbasis& basis, int face) {
 
   a.topLeftCorner(n, n) = ringMatrix(ring).cast<double>();
   a.bottomRightCorner(outer.count(), outer.count()) = outer.s12();
-  forEachRingCell(ring, face, [&](int cell, int point) {
-    a.block(n, point, outer.count(), 1) += outer.s11().col(cell);
+  forEachRingSlot(ring, face, [&](int slot, int point) {
+    a.block(n, point, outer.count(), 1) += outer.s11().col(slot);
   });
   return (a - t * j * t_inverse).cwiseAbs().maxCoeff();
 }

@@ -5,13 +5,13 @@ namespace limitsurf {
 
 /// Weights of four uniform cubic B-spline control points at t in [0, 1].
 ///
-/// Derivatives are taken of the points' first and second differences, so that equal points give
-/// exactly 0 and equally spaced ones a second derivative of exactly 0: near an extraordinary vertex
-/// derivatives are multiplied by 2^n and 4^n, and rounding with them.
+/// Derivatives are formed from the points' first and second differences, so that equal points give
+/// a derivative of exactly 0 and equally spaced ones a second derivative of exactly 0. Near an
+/// extraordinary vertex derivatives are multiplied by 2^n and 4^n, and their rounding is as well.
 ///
 /// At a boundary the missing first (low) or last (high) point is the linear continuation of the two
-/// next to it (paper, figure 2: p0 = 2 p1 - p2): the missing difference equals its neighbour. All
-/// is folded into the weights, the missing point itself weighs nothing.
+/// next to it (Lacewell & Burley 2007, figure 2: p0 = 2 p1 - p2), so that the missing difference
+/// equals its neighbour. The weights contain this; the missing point itself has weight 0.
 struct CubicWeights {
   double value[4];
   double first[3];   ///< on the differences p1 - p0, p2 - p1, p3 - p2
@@ -25,7 +25,7 @@ struct CubicWeights {
     second[0] = low ? 0 : s;
     second[1] = high ? 0 : t;
     const double s3 = low ? 0 : s * s * s * sixth, t3 = high ? 0 : t * t * t * sixth;
-    // The line through p1 and p2, bent by the second differences on either side.
+    // The line through p1 and p2 plus a multiple of the second difference on either side of it.
     value[0] = s3;
     value[1] = s - 2 * s3 + t3;
     value[2] = t - 2 * t3 + s3;
@@ -48,7 +48,7 @@ struct PatchValues {
 };
 
 /// The bicubic patch of a 4 x 4 window of control points; derivatives up to Order. `points(x, y)`,
-/// 0 <= x, y <= 3, yields them.
+/// 0 <= x, y <= 3, returns one of them.
 template <int Order, typename Point, typename Points>
 inline void evaluatePatch(const Points& points, const CubicWeights& u, const CubicWeights& v,
                           PatchValues<Point>& out) {
@@ -58,8 +58,8 @@ inline void evaluatePatch(const Points& points, const CubicWeights& u, const Cub
   };
   Point row[4], row_du[4], row_duu[4];
   if (Order >= 2) {
-    // From the points themselves: rows that were summed up first are equally spaced but for
-    // rounding.
+    // dvv is formed from the points themselves: the sums over rows, which have been rounded, are
+    // no longer equally spaced exactly where the points are.
     Point column[4];
     for (int x = 0; x < 4; ++x) {
       const Point p = points(x, 0), q = points(x, 1), r = points(x, 2), s = points(x, 3);
@@ -91,7 +91,7 @@ inline void evaluatePatch(const Points& points, const CubicWeights& u, const Cub
   }
 }
 
-/// The same with the window's rows `stride` points apart.
+/// The same for a window whose rows are `stride` points apart.
 template <int Order, typename Point>
 void evaluateWindow(const Point* window, int stride, const CubicWeights& u, const CubicWeights& v,
                     PatchValues<Point>& out) {

@@ -8,8 +8,8 @@
 
 namespace limitsurf {
 
-/// cos and sin at multiples of 2 pi / period, exact where they are 0, 1/2 or 1 in size, and with
-/// bits that respect the symmetries of the circle.
+/// cos and sin at multiples of 2 pi / period. The values are exact where their size is 0, 1/2 or 1,
+/// and angles that are symmetric on the circle give the same bits up to the sign.
 template <typename Real>
 class Circle {
  public:

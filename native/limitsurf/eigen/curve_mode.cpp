@@ -29,10 +29,10 @@ Real sinFace(int j) {
 /// Eigenvalue 1/2 with v = 0, e_0 = 1, e_k = end (1 or -1): a combination of the two spoke modes of
 /// phi = pi/2, whose eigenvector is (x_e, x_f) = (1, sqrt 2).
 ///
-/// With k even sin(pi k / 2) = 0 leaves e_k = cos(pi k / 2). Where that is not `end`, the
-/// derivative of the sine mode with respect to phi, x' = (i cos(phi i), rho' sin + rho (j + 1/2)
-/// cos), steps in: (S - mu) x' = mu' (sine mode), with mu' = -1/6, rho = sqrt 2, rho' = sqrt 2 / 6
-/// at pi/2.
+/// For even k, sin(pi k / 2) = 0, so that e_k = cos(pi k / 2). Where that is not `end`, a multiple
+/// of the derivative of the sine mode with respect to phi is added,
+/// x' = (i cos(phi i), rho' sin + rho (j + 1/2) cos). It is a generalised eigenvector:
+/// (S - mu) x' = mu' (sine mode), with mu' = -1/6, rho = sqrt 2, rho' = sqrt 2 / 6 at pi/2.
 template <typename Real>
 CurveMode<Real> halfMode(const Ring& ring, int end) {
   const int k = ring.faces;
@@ -58,8 +58,9 @@ CurveMode<Real> halfMode(const Ring& ring, int end) {
   return mode;
 }
 
-/// Eigenvalue 1/4 with v = -1, e_0 = e_k = 2: f = 2 and e_i alternates between 2 and -1 for even k;
-/// for odd k it drifts by `drift` a spoke and feeds the mode f_j = (-1)^j.
+/// Eigenvalue 1/4 with v = -1, e_0 = e_k = 2. All f are 2. For even k, e_i alternates between 2 and
+/// -1; for odd k the alternating part falls by `drift` from spoke to spoke, and the vector feeds
+/// the mode f_j = (-1)^j.
 template <typename Real>
 CurveMode<Real> quarterMode(const Ring& ring) {
   const int k = ring.faces;

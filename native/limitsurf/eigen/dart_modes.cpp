@@ -48,7 +48,7 @@ ModeTable DartModes::table(int mode, int face) const {
   for (int i = 0; i < tile_grid::kOuter; ++i) {
     result.outer[i] += turn.cos * w.cosine.outer[i] - turn.sin * w.sine.outer[i];
   }
-  for (int c = 0; c < tile_grid::kCells; ++c) {
+  for (int c = 0; c < tile_grid::kSlots; ++c) {
     result.grid[c] += turn.cos * w.cosine.grid[c] - turn.sin * w.sine.grid[c];
   }
   return result;
@@ -114,7 +114,7 @@ void DartModes::projectTransposed(const Eigen::MatrixXd& mode_weights, int first
     });
     places.row(faces_) += w.left.sharp * weight;
   }
-  // The points were relative to the vertex, and the constant's coefficient too.
+  // project() takes points, and gives the constant's coefficient, relative to the vertex.
   ring.row(0) += mode_weights.row(0);
   forEachPoint(faces_, [&](int point, int n) {
     ring.row(point) += places.row(n);

@@ -3,13 +3,14 @@
 #include <cmath>
 
 #include "limitsurf/eigen/dart_modes.h"
-#include "limitsurf/eigen/ring_cells.h"
+#include "limitsurf/eigen/dart_places.h"
+#include "limitsurf/eigen/ring_slots.h"
 
 namespace limitsurf {
 
-using tile_grid::cell;
+using tile_grid::slot;
 
-/// Fills DartModes, in long double.
+/// Computes DartModes, in long double.
 class DartModes::Builder {
  public:
   Builder(DartModes& modes, ModeContinuation& continuation)
@@ -40,7 +41,7 @@ class DartModes::Builder {
   }
 
  private:
-  using Cells = ModeContinuation::Cells;
+  using SlotValues = ModeContinuation::SlotValues;
   static constexpr Real kMet = Real(1) / 8;  // an eigenvalue of S12
 
   static std::vector<CircleWave<Real>>::iterator closest(std::vector<CircleWave<Real>>& waves,
@@ -50,66 +51,29 @@ class DartModes::Builder {
     });
   }
 
-  /// A vector point by point: by place n, the vertex last.
   using Places = std::vector<Real>;
 
-  template <typename Scalar, typename Wave>
-  std::vector<Scalar> places(const DartVector<Scalar>& vector, const Wave& wave) const {
-    std::vector<Scalar> result;
-    for (int n = 0; n <= faces_; ++n) {
-      result.push_back(vector.at(n, faces_, wave.value(n)));
-    }
-    result.push_back(vector.vertex);
-    return result;
-  }
-
-  /// How often the ring has a place: two points, but for those on the axis.
-  Real multiplicity(int n) const { return n == 0 || n >= faces_ ? 1 : 2; }
-
-  template <typename Scalar>
-  Scalar product(const std::vector<Scalar>& left, const std::vector<Scalar>& right) const {
-    Scalar sum = 0;
-    for (int n = 0; n <= faces_ + 1; ++n) {
-      sum += multiplicity(n) * left[n] * right[n];
-    }
-    return sum;
-  }
-
-  static Real largest(const Places& places) {
-    Real result = 0;
-    for (const Real value : places) {
-      result = std::max(result, std::abs(value));
-    }
-    return result;
-  }
-
-  template <typename Scalar, typename Factor>
-  static void scale(std::vector<Scalar>& values, const Factor& factor) {
-    for (Scalar& value : values) {
-      value *= factor;
-    }
-  }
-
-  std::vector<double> rounded(const Places& places) const {
+  /// Without the vertex.
+  static std::vector<double> rounded(const Places& places) {
     return {places.begin(), places.end() - 1};
   }
 
-  Cells ringCells(const Places& places, int face) const {
-    Cells cells{};
-    forEachRingCell(ring_, face, [&](int cell, int point) {
-      cells[cell] =
+  SlotValues ringValues(const Places& places, int face) const {
+    SlotValues values{};
+    forEachRingSlot(ring_, face, [&](int slot, int point) {
+      values[slot] =
           places[point == 0              ? faces_ + 1
                  : point < ring_.face(0) ? std::abs(2 * (point - ring_.edge(0)) - faces_)
                                          : std::abs(2 * (point - ring_.face(0)) + 1 - faces_)];
     });
-    return cells;
+    return values;
   }
 
-  /// The constant mode's left eigenvector: its mask of limit positions.
+  /// The constant mode's left eigenvector, which is the mask of limit positions.
   void addConstant() {
     const DecayingWave<Real> wave(faces_, 1);
-    Places left = places(DartVectors(faces_, wave).left, wave);
-    scale(left, 1 / product(left, Places(left.size(), 1)));
+    Places left = placesOf(DartVectors(faces_, wave).left, wave, faces_);
+    scalePlaces(left, 1 / productOfPlaces(left, Places(left.size(), 1)));
     modes_.constant_left_ = rounded(left);
   }
 
@@ -120,9 +84,10 @@ class DartModes::Builder {
   template <typename Wave>
   Eigenvectors eigenvectors(const Wave& wave) const {
     const DartVectors<Wave> vectors(faces_, wave);
-    Eigenvectors result{places(vectors.right, wave), places(vectors.left, wave)};
-    scale(result.right, 1 / largest(result.right));
-    scale(result.left, 1 / product(result.left, result.right));
+    Eigenvectors result{placesOf(vectors.right, wave, faces_),
+                        placesOf(vectors.left, wave, faces_)};
+    scalePlaces(result.right, 1 / largestOfPlaces(result.right));
+    scalePlaces(result.left, 1 / productOfPlaces(result.left, result.right));
     return result;
   }
 
@@ -140,32 +105,34 @@ class DartModes::Builder {
     addGiven(wave.lambda(), vectors);
     for (int face = 0; face < faces_; ++face) {
       modes_.given_.back().tables.push_back(ModeContinuation::rounded(continuation_.continued(
-          ring_.sides(face), wave.lambda(), ringCells(vectors.right, face))));
+          ring_.sides(face), wave.lambda(), ringValues(vectors.right, face))));
     }
   }
 
-  /// Valence 4, lambda = 1/2: linear on every face, cos(pi/2 (i - 2)) at e_i. No derivative grows
-  /// faster than this mode's first ones, so that its second ones have to be exactly 0.
+  /// Valence 4, lambda = 1/2: a mode that is linear on every face, cos(pi/2 (i - 2)) at e_i. Second
+  /// derivatives of other modes are bounded, while these would be multiplied by 2^n: they have to
+  /// be exactly 0.
   void addLinear(const CircleWave<Real>& wave) {
     Eigenvectors vectors = eigenvectors(wave);
     for (Real& value : vectors.right) {
       value = std::round(value);
     }
-    scale(vectors.left, 1 / product(vectors.left, vectors.right));
+    scalePlaces(vectors.left, 1 / productOfPlaces(vectors.left, vectors.right));
     addGiven(Real(1) / 2, vectors);
     for (int face = 0; face < faces_; ++face) {
-      const Cells cells = ringCells(vectors.right, face);
+      const SlotValues values = ringValues(vectors.right, face);
       modes_.given_.back().tables.push_back(ModeContinuation::rounded(
-          continuation_.linear(ring_.sides(face), cells[cell(1, 0)], cells[cell(0, 1)])));
+          continuation_.linear(ring_.sides(face), values[slot(1, 0)], values[slot(0, 1)])));
     }
   }
 
+  /// A mode whose eigenvalue is too close to one of S12 to be told from it.
   void addMeeting(const CircleWave<Real>& wave) {
     const Eigenvectors vectors = eigenvectors(wave);
     addGiven(wave.lambda(), vectors);
     for (int face = 0; face < faces_; ++face) {
       const auto wide = continuation_.continuedBeside(ring_.sides(face), wave.lambda(), kMet,
-                                                      ringCells(vectors.right, face));
+                                                      ringValues(vectors.right, face));
       modes_.given_.back().tables.push_back(ModeContinuation::rounded(wide));
       modes_.rest_.push_back({});
       for (Eigen::Index q = 0; q < wide.rest.size(); ++q) {
@@ -174,8 +141,8 @@ class DartModes::Builder {
     }
   }
 
-  /// With eigenvectors w1 and w2 to mean +- d: a = (w1 + w2) / 2 and b = (w1 - w2) / (2 d), which
-  /// have a limit at d = 0; their coefficients c1 + c2 and (c1 - c2) d likewise.
+  /// For eigenvectors w1 and w2 to mean +- d the pair is a = (w1 + w2) / 2 and b = (w1 - w2) / (2
+  /// d), which both have a limit at d = 0. So have their coefficients c1 + c2 and (c1 - c2) d.
   void addPair(const std::vector<CircleWave<DartSpectrum::Complex>>& waves) {
     using Complex = DartSpectrum::Complex;
     const Complex lambda[2] = {waves[0].lambda(), waves[1].lambda()};
@@ -183,9 +150,9 @@ class DartModes::Builder {
     std::vector<Complex> right[2], left[2];
     for (int i = 0; i < 2; ++i) {
       const DartVectors<CircleWave<Complex>> vectors(faces_, waves[i]);
-      right[i] = places(vectors.right, waves[i]);
-      left[i] = places(vectors.left, waves[i]);
-      scale(left[i], Real(1) / product(left[i], right[i]));
+      right[i] = placesOf(vectors.right, waves[i], faces_);
+      left[i] = placesOf(vectors.left, waves[i], faces_);
+      scalePlaces(left[i], Real(1) / productOfPlaces(left[i], right[i]));
     }
     Eigenvectors vectors[2];
     for (std::size_t n = 0; n < right[0].size(); ++n) {
@@ -196,9 +163,9 @@ class DartModes::Builder {
     }
     Real size[2];
     for (int i = 0; i < 2; ++i) {
-      size[i] = largest(vectors[i].right);
-      scale(vectors[i].right, 1 / size[i]);
-      scale(vectors[i].left, size[i]);
+      size[i] = largestOfPlaces(vectors[i].right);
+      scalePlaces(vectors[i].right, 1 / size[i]);
+      scalePlaces(vectors[i].left, size[i]);
     }
     const Real mean = (lambda[0] + lambda[1]).real() / 2, back = size[0] / size[1];
     const Real forth = (half * half).real() / back;
@@ -209,7 +176,7 @@ class DartModes::Builder {
     for (int face = 0; face < faces_; ++face) {
       const auto wide = continuation_.continuedPair(
           ring_.sides(face), mean, forth, back,
-          {ringCells(vectors[0].right, face), ringCells(vectors[1].right, face)});
+          {ringValues(vectors[0].right, face), ringValues(vectors[1].right, face)});
       for (int i = 0; i < 2; ++i) {
         modes_.given_[kPair + i].tables.push_back(ModeContinuation::rounded(wide[i]));
       }
@@ -222,22 +189,42 @@ class DartModes::Builder {
             static_cast<double>(v.face_constant), static_cast<double>(v.face_wave)};
   }
 
-  /// Calls visit(cell, n) for the ring cells of a face at place 0, the vertex apart.
+  /// Calls visit(slot, n) for the ring's slots, without the vertex's, of a face at place 0.
   template <typename Visit>
   static void forEachPlace(const Visit& visit) {
-    visit(cell(0, -1), -3);
-    visit(cell(1, -1), -2);
-    visit(cell(1, 0), -1);
-    visit(cell(1, 1), 0);
-    visit(cell(0, 1), 1);
-    visit(cell(-1, 1), 2);
-    visit(cell(-1, 0), 3);
+    visit(slot(0, -1), -3);
+    visit(slot(1, -1), -2);
+    visit(slot(1, 0), -1);
+    visit(slot(1, 1), 0);
+    visit(slot(0, 1), 1);
+    visit(slot(-1, 1), 2);
+    visit(slot(-1, 0), 3);
   }
 
   void addWave(const CircleWave<Real>& wave) {
     const WavePowers<Real> powers(wave, faces_);
     DartVectors<CircleWave<Real>> vectors(faces_, wave);
-    // From here on the wave is a cosine at faces as well.
+    normalize(wave, powers, vectors);
+    Wave result{static_cast<double>(wave.lambda()),
+                rounded(vectors.right),
+                rounded(vectors.left),
+                WavePowers<double>(powers),
+                {},
+                {},
+                {},
+                {},
+                {}};
+    if (faces_ > 2) {
+      continueOnInnerFaces(wave.lambda(), powers, vectors.right, result);
+    }
+    continueBesideSharpSpoke(wave.lambda(), powers, vectors.right, result);
+    modes_.waves_.push_back(std::move(result));
+  }
+
+  /// Scales both vectors so that the right one's largest value is 1 and their product is 1. From
+  /// here on the wave is a cosine at faces as well.
+  void normalize(const CircleWave<Real>& wave, const WavePowers<Real>& powers,
+                 DartVectors<CircleWave<Real>>& vectors) const {
     for (DartVector<Real>* vector : {&vectors.right, &vectors.left}) {
       vector->face_wave /= wave.root();
     }
@@ -246,47 +233,46 @@ class DartModes::Builder {
     for (int n = 0; n <= faces_; ++n) {
       const Real w = powers.at(n).cos, value = right.at(n, faces_, w);
       size = std::max(size, std::abs(value));
-      norm += multiplicity(n) * value * left.at(n, faces_, w);
+      norm += static_cast<Real>(placeMultiplicity(n, faces_)) * value * left.at(n, faces_, w);
     }
     right.scale(1 / size);
     left.scale(size / norm);
+  }
 
-    const auto continued = [&](Sides sides, const Cells& cells) {
-      return ModeContinuation::rounded(continuation_.continued(sides, wave.lambda(), cells));
-    };
-    Wave result{static_cast<double>(wave.lambda()),
-                rounded(right),
-                rounded(left),
-                WavePowers<double>(powers),
-                {},
-                {},
-                {},
-                {},
-                {}};
-    if (faces_ > 2) {
-      Cells constant{}, cosine{}, sine{};
-      constant[cell(0, 0)] = right.vertex;
-      forEachPlace([&](int cell, int n) {
-        const bool on_spoke = n % 2 != 0;
-        const auto power = powers.at(n);
-        constant[cell] = on_spoke ? right.edge_constant : right.face_constant;
-        cosine[cell] = (on_spoke ? right.edge_wave : right.face_wave) * power.cos;
-        sine[cell] = (on_spoke ? right.edge_wave : right.face_wave) * power.sin;
-      });
-      result.constant = continued(Sides::inner, constant);
-      result.cosine = continued(Sides::inner, cosine);
-      result.sine = continued(Sides::inner, sine);
-    }
+  ModeTable continued(Sides sides, Real lambda, const SlotValues& values) {
+    return ModeContinuation::rounded(continuation_.continued(sides, lambda, values));
+  }
+
+  /// The tables from which the mode is put together on each inner face.
+  void continueOnInnerFaces(Real lambda, const WavePowers<Real>& powers,
+                            const DartVector<Real>& right, Wave& result) {
+    SlotValues constant{}, cosine{}, sine{};
+    constant[slot(0, 0)] = right.vertex;
+    forEachPlace([&](int slot, int n) {
+      const bool on_spoke = n % 2 != 0;
+      const auto power = powers.at(n);
+      constant[slot] = on_spoke ? right.edge_constant : right.face_constant;
+      cosine[slot] = (on_spoke ? right.edge_wave : right.face_wave) * power.cos;
+      sine[slot] = (on_spoke ? right.edge_wave : right.face_wave) * power.sin;
+    });
+    result.constant = continued(Sides::inner, lambda, constant);
+    result.cosine = continued(Sides::inner, lambda, cosine);
+    result.sine = continued(Sides::inner, lambda, sine);
+  }
+
+  /// The tables of the first and the last face. Their slots reach kFarthest places from e_0.
+  void continueBesideSharpSpoke(Real lambda, const WavePowers<Real>& powers,
+                                const DartVector<Real>& right, Wave& result) {
+    constexpr int kFarthest = 6;
     for (const int face : {0, faces_ - 1}) {
       Places places;
       for (int n = 0; n <= faces_; ++n) {
-        places.push_back(n + 6 < faces_ ? 0 : right.at(n, faces_, powers.at(n).cos));
+        places.push_back(n + kFarthest < faces_ ? 0 : right.at(n, faces_, powers.at(n).cos));
       }
       places.push_back(right.vertex);
       (face == 0 ? result.first : result.last) =
-          continued(ring_.sides(face), ringCells(places, face));
+          continued(ring_.sides(face), lambda, ringValues(places, face));
     }
-    modes_.waves_.push_back(std::move(result));
   }
 
   DartModes& modes_;

@@ -14,6 +14,16 @@ namespace {
 using Real = DartSpectrum::Real;
 using Complex = DartSpectrum::Complex;
 
+/// The traces give a first guess with at least about half of its digits (the eigenvalues'
+/// difference is a square root), and each step of Newton's method about doubles them. Eight steps
+/// are more than this takes, also where two close eigenvalues slow the method down.
+constexpr int kNewtonSteps = 8;
+/// By how much the sum of the last two eigenvalues, or of their squares, may differ from what the
+/// traces leave for them. The traces are sums of O(N) terms of size 1 at most, each rounded to
+/// 1e-19 of its size; an eigenvalue that is missing or found twice changes them by orders more than
+/// this.
+constexpr Real kTraceError = 1e-13L;
+
 /// The parts of the secular equation that are polynomials in s.
 template <typename Scalar>
 struct Polynomials {
@@ -33,7 +43,7 @@ struct Polynomials {
   }
 };
 
-/// The difference of both sides, over the sign of sin(N psi) at the pole.
+/// The difference of both sides of the secular equation, over the sign of sin(N psi) at the pole.
 template <typename Scalar>
 struct Secular {
   Scalar value, slope;  ///< and its derivative by delta
@@ -52,12 +62,13 @@ struct Secular {
   }
 };
 
-/// Where `value` changes its sign between a and b, to the last bit.
+/// Where `value` changes its sign between a and b, to the last bit (bisection).
 template <typename Value>
 Real signChange(Real a, Real b, const Value& value) {
   const bool rising = value(a) < 0;
   if (rising == (value(b) < 0)) {
-    throw std::logic_error("dart: an eigenvalue is not where it should be");
+    throw std::logic_error(
+        "dart: the secular equation has no sign change where an eigenvalue is expected");
   }
   for (;;) {
     const Real middle = (a + b) / 2;
@@ -68,7 +79,7 @@ Real signChange(Real a, Real b, const Value& value) {
   }
 }
 
-/// The eigenvalue between poles k and k + 1, seen from the closer one.
+/// The eigenvalue between poles k and k + 1, as a distance from the closer one.
 CircleWave<Real> between(int faces, int k) {
   const Real half = kPi<Real> / (2 * static_cast<Real>(faces));
   const auto from = [&](int pole) {
@@ -90,8 +101,8 @@ Real lowestEigenvalue(int faces) {
   });
 }
 
-/// The sums of all N + 2 eigenvalues and of their squares: those of the smooth ring's symmetric
-/// part and what the change u w^T of e_0's row adds: w u and 2 w S u + (w u)^2.
+/// The sums of all N + 2 eigenvalues and of their squares: those of the symmetric part of the
+/// smooth ring, plus what the change u w^T of e_0's row adds: w u and 2 w S u + (w u)^2.
 struct Traces {
   Real first, second;
 
@@ -111,7 +122,7 @@ struct Traces {
       second += Real(1) / 16;
     }
     const Real w_u = Real(1) / 8;
-    // At valence 2 both neighbours of e_0 are one.
+    // At valence 2 the two neighbours of e_0 are the same point.
     const Real w_s_u = 3 / (16 * n * n) + Real(1) / 128 - (faces == 2 ? Real(1) / 128 : 0);
     first += w_u;
     second += 2 * w_s_u + w_u * w_u;
@@ -124,7 +135,7 @@ CircleWave<Complex> refined(int faces, const Complex& lambda) {
   const Real spacing = kPi<Real> / static_cast<Real>(faces);
   const int pole = std::clamp(static_cast<int>(std::floor(psi.real() / spacing)), 0, faces - 1);
   Complex delta = psi - (static_cast<Real>(pole) + Real(1) / 2) * spacing;
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kNewtonSteps; ++i) {
     const Secular<Complex> at(faces, {faces, pole, delta});
     delta -= at.value / at.slope;
   }
@@ -158,15 +169,15 @@ DartSpectrum::DartSpectrum(int faces) : lowest(lowestEigenvalue(faces)) {
 
   const Complex sum = pair[0].lambda() + pair[1].lambda();
   const Complex squares = pair[0].lambda() * pair[0].lambda() + pair[1].lambda() * pair[1].lambda();
-  if (static_cast<int>(waves.size()) != faces - 2 || !(std::abs(sum - left.first) < 1e-13L) ||
-      !(std::abs(squares - left.second) < 1e-13L)) {
-    throw std::logic_error("dart: eigenvalues are missing");
+  if (static_cast<int>(waves.size()) != faces - 2 || !(std::abs(sum - left.first) < kTraceError) ||
+      !(std::abs(squares - left.second) < kTraceError)) {
+    throw std::logic_error("dart: the eigenvalues do not add up to the traces of the ring matrix");
   }
 
   if (half.imag() != 0) {
     return;
   }
-  // All real: of the last two and the waves next to them the closest ones are the pair.
+  // All are real: the pair becomes the two closest of the last two and the waves next to them.
   Real distance = std::abs(pair[0].lambda() - pair[1].lambda());
   int exchanged = -1, wave = -1;
   for (int i = 0; i < 2; ++i) {

@@ -5,8 +5,8 @@
 
 namespace limitsurf {
 
-/// A vector on a dart's ring, even about the sharp spoke, that follows a wave of dart_wave.h
-/// everywhere but at the vertex and at e_0.
+/// A vector on a dart's ring that is symmetric about the sharp spoke and follows a wave of
+/// dart_wave.h everywhere but at the vertex and at e_0.
 template <typename Scalar>
 struct DartVector {
   Scalar vertex, sharp;  ///< at v, at e_0
@@ -19,7 +19,7 @@ struct DartVector {
     }
   }
 
-  /// At the place n of N (dart_wave.h), where the wave has the value `wave`.
+  /// The vector at the place n of N (dart_wave.h), where the wave has the value `wave`.
   Scalar at(int n, int faces, const Scalar& wave) const {
     return n == faces             ? sharp
            : (faces - n) % 2 == 0 ? edge_constant + edge_wave * wave
@@ -27,18 +27,18 @@ struct DartVector {
   }
 };
 
-/// The right and the left eigenvector to the wave's eigenvalue, of any length.
+/// The right and the left eigenvector to the wave's eigenvalue; their lengths are arbitrary.
 ///
 /// Away from v and e_0 the ring of a dart is that of a smooth vertex, where v's motion drives e and
 /// f by constants and the wave turns freely. To the right, e_0 continues the wave of the other
 /// spokes, whose values are W:
 ///     (lambda - B(0)) (alpha, beta) = v (3/8, 1/4),    e_0 = alpha + lambda W_N = v / (2 lambda -
 ///     1).
-/// To the left, where nothing but e_0 itself and v sees e_0's row, the wave goes on to 0 there:
+/// To the left, where only e_0 itself and v depend on e_0's row, the wave goes on to 0 there:
 ///     (lambda - B(0)^T) (alpha, beta) = v (3/2, 1/4) / N^2,    alpha + (3/2 lambda - 1/4) W_N = 0.
 /// Common denominators are multiplied out. The remaining equation, for v, is the secular one
-/// (dart_spectrum.h); with it the left vector's e_0 takes two forms that are singular at different
-/// places.
+/// (dart_spectrum.h). With its help the left vector's e_0 can be written in two forms, which are
+/// singular at different eigenvalues.
 template <typename Wave>
 struct DartVectors {
   using Scalar = decltype(Wave(std::declval<Wave>()).lambda());

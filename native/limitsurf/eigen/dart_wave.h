@@ -9,15 +9,16 @@
 
 namespace limitsurf {
 
-// A dart's modes that are symmetric about its sharp spoke e_0 follow waves around the vertex, even
-// about the point opposite e_0. Places are counted in half spokes from there: n = |2 i - N| at e_i,
-// |2 j + 1 - N| at f_j, so that e_0 is at n = N. With mu(2 psi) = lambda as in spoke_mode.h,
+// A dart's modes that are symmetric about its sharp spoke e_0 follow waves around the vertex, which
+// are symmetric about the point opposite e_0. Places are counted in half spokes from there: n = |2
+// i - N| at e_i, |2 j + 1 - N| at f_j, so that e_0 is at n = N. With mu(2 psi) = lambda as in
+// spoke_mode.h,
 //     cos(psi) = 2 s - 1 / (2 s),    lambda = s^2,
 // and the wave is cos(psi n) at spokes, cos(psi n) / s at faces.
 
-/// A wave that neither grows nor decays, but for what the imaginary part of delta makes of it:
-/// psi = (2 pole + 1) pi / (2 N) + delta. At delta = 0 the wave vanishes at e_0; eigenvalues lie so
-/// close to these poles that what counts is delta.
+/// A wave that neither grows nor decays, unless delta has an imaginary part:
+/// psi = (2 pole + 1) pi / (2 N) + delta. At delta = 0 the wave vanishes at e_0. Eigenvalues lie so
+/// close to these poles that delta is stored instead of psi, to keep its digits.
 template <typename Scalar>
 class CircleWave {
  public:
@@ -59,8 +60,8 @@ class CircleWave {
   Scalar s_;
 };
 
-/// A wave that decays away from e_0, alternating or not: lambda outside of the spectrum of B(phi),
-/// psi or psi - pi/2 imaginary. Scaled so that it is about 1/2 at e_0:
+/// A wave that decays away from e_0, with or without alternating signs: lambda lies outside the
+/// spectrum of B(phi), psi or psi - pi/2 is imaginary. It is scaled so that it is about 1/2 at e_0:
 /// (z^((N - n) / 2) + z^((N + n) / 2)) / 2 with z = e^(2 i psi) real, -1 < z < 1.
 template <typename Real>
 class DecayingWave {
@@ -80,7 +81,7 @@ class DecayingWave {
     return (on_spoke ? 1 : face_) * (power(near) + power(far)) / 2;
   }
   Real faceSum() const { return face_ * (1 - power(faces_)) / (1 - z_); }
-  /// tan(N psi) / (i sign), the sign being that of psi's imaginary part.
+  /// tan(N psi) / (i s), where s is the sign of psi's imaginary part.
   Real tangent() const { return (1 - power(faces_)) / (1 + power(faces_)); }
 
  private:
@@ -90,8 +91,8 @@ class DecayingWave {
   Real lambda_, z_, face_;
 };
 
-/// cos(psi n) and sin(psi n) for |n| <= N in O(sqrt N) memory and constant time: powers of e^(i
-/// psi) by the two digits of n.
+/// cos(psi n) and sin(psi n) for |n| <= N in O(sqrt N) memory and constant time, as a product of
+/// two powers of e^(i psi): one for each digit of n in base sqrt N.
 template <typename Real>
 class WavePowers {
  public:

@@ -38,7 +38,7 @@ int Eigenbasis::parts(int m, bool plus, int face, Part out[2]) const {
     return 2;
   }
   if (alternates(m) && plus) {
-    return 0;  // its spokes all vanish
+    return 0;  // all its spokes are 0
   }
   const int mode = alternates(m) || plus ? first : first + 1;
   switch (sides(face)) {
@@ -99,7 +99,7 @@ std::vector<double> Eigenbasis::ringVector(int mode) const {
 Eigenbasis::Table Eigenbasis::table(int mode, int face) const {
   Table result;
   if (mode == 0) {
-    for (int c = 0; c < tile_grid::kCells; ++c) {
+    for (int c = 0; c < tile_grid::kSlots; ++c) {
       result.grid[c] = tile_grid::exists(sides(face), c) ? 1 : 0;
     }
     std::fill_n(result.outer, outerModes(face).count(), 1.);
@@ -128,7 +128,7 @@ Eigenbasis::Table Eigenbasis::table(int mode, int face) const {
         for (int i = 0; i < tile_grid::kOuter; ++i) {
           result.outer[i] += factor * source.outer[i];
         }
-        for (int c = 0; c < tile_grid::kCells; ++c) {
+        for (int c = 0; c < tile_grid::kSlots; ++c) {
           result.grid[c] += factor * source.grid[c];
         }
       };

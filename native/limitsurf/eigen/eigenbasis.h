@@ -14,54 +14,73 @@
 
 namespace limitsurf {
 
-/// Where to evaluate a face's control grid after some subdivision steps, and which derivatives.
+/// Where a face's control grid is evaluated after some subdivision steps, and which derivatives.
 struct GridWindow {
-  int a, b;  ///< the quarter: window from cell (a - 1, b - 1)
+  int a, b;  ///< the quarter: its window begins at slot (a - 1, b - 1)
   CubicWeights u, v;
   int order;  ///< 0: value; 1: du and dv as well; 2: duu, duv, dvv as well
 
   static constexpr int kMaxCount = 6;
-  /// How many functionals that makes: 1, 3 or 6.
+  /// The number of functionals: 1, 3 or 6.
   int count() const { return order == 0 ? 1 : order == 1 ? 3 : 6; }
 };
 
-/// The eigenbasis of one kind of ring: everything that evaluation near an extraordinary vertex
-/// needs to know about the vertex, and nothing about a mesh.
+/// The eigenbasis of one kind of ring: everything that evaluation near an extraordinary vertex has
+/// to know about the vertex, and nothing about a mesh.
 ///
-/// A ring's points are sums of modes, each of which subdivision multiplies by its eigenvalue; a
-/// defective mode feeds another one as well (Jordan normal form; paper, section 2). Modes:
-///   0          the constant, eigenvalue 1: its coefficient is the limit position;
-///   1, 2       interior, cone: the two other rotation-symmetric ones; sector: the curve modes;
-///   then       spoke modes, each a sine or cosine around the vertex (spoke_mode.h), of a dart
-///   sines
-///              about the sharp spoke alone;
-///   the rest   of a dart: those symmetric about the sharp spoke (dart_modes.h).
+/// The method is that of
+///     J. Stam, "Exact evaluation of Catmull-Clark subdivision surfaces at arbitrary parameter
+///     values", SIGGRAPH 1998,
+/// extended to boundaries by
+///     D. Lacewell and B. Burley, "Exact evaluation of Catmull-Clark subdivision surfaces near
+///     B-spline boundaries", journal of graphics tools 12 (3), 2007.
+/// Comments in this library name them "Stam" and "Lacewell & Burley". The eigenvectors are closed
+/// forms here, while Lacewell & Burley (section 3.1) compute them numerically. Pinned corners,
+/// cones and darts, which neither paper treats, are additions.
+///
+/// The points of a ring are sums of modes. A subdivision step multiplies each mode by its
+/// eigenvalue; a defective mode also feeds another one (the Jordan normal form of Lacewell &
+/// Burley, section 2). The modes are, in this order:
+///   0          the constant one, eigenvalue 1: its coefficient is the limit position;
+///   1, 2       interior, cone: the two other rotation-symmetric ones; sector: the curve modes
+///              (curve_mode.h);
+///   then       spoke modes, each a sine or cosine around the vertex (spoke_mode.h); a dart has
+///              only the sines about its sharp spoke;
+///   the rest   of a dart: the modes that are symmetric about the sharp spoke (dart_modes.h).
 /// Coefficients belong to the vertex and serve all its faces. Because a spoke mode turns with the
 /// face, one pair of tables (for the sine and the cosine) serves all faces of the same Sides, so
 /// that a basis takes O(faces) memory. Tables are computed in long double and rounded once.
 class Eigenbasis {
  public:
-  /// Bases are shared: all surfaces in a process use one per kind and number of faces.
+  // Construction. Every surface asks get() once for each kind of ring that it has.
+
+  /// The basis of a ring, which all surfaces of a process share. Thread-safe.
   static std::shared_ptr<const Eigenbasis> get(const Ring& ring);
 
   explicit Eigenbasis(const Ring& ring);
 
+  // The ring and its subdivision.
+
   const Ring& ring() const { return ring_; }
   const RingStep<double>& step() const { return step_; }
+
+  // The Jordan normal form of the ring matrix S: what a step does to the coefficients. Limits at
+  // the vertex itself are read from it.
+
   int modeCount() const { return ring_.size(); }
-  /// Of the modes of a pair: the mean of their eigenvalues.
+  /// The eigenvalue of a mode; for the modes of a pair, the mean of their two eigenvalues.
   double eigenvalue(int mode) const { return lambda_[mode]; }
 
-  /// Jordan chains: A (mode `from`) = lambda (mode `from`) + rate (mode `to`).
+  /// A Jordan chain: A (mode `from`) = lambda (mode `from`) + rate (mode `to`).
   struct Chain {
     int from = -1, to = -1;
     double rate = 0;
   };
   const std::vector<Chain>& chains() const { return chains_; }
-  /// Modes that a step mixes: two of a dart's.
+  /// Pairs of modes that a step mixes. Only darts have one.
   const std::vector<ModePair>& pairs() const { return pairs_; }
-  /// What each mode feeds into outer mode `q` of a face: nothing but at interior valence 2 and in
-  /// some darts.
+  /// What each mode feeds into outer mode `q` of a face. Only interior rings of valence 2 and some
+  /// darts have a mode that feeds outer modes.
   Eigen::VectorXd chainsToOuter(int face, int q) const {
     Eigen::VectorXd rates = Eigen::VectorXd::Zero(modeCount());
     if (rest_mode_ >= 0) {
@@ -70,15 +89,19 @@ class Eigenbasis {
     return rates;
   }
 
+  // From the ring's points to coefficients of the modes: once for each vertex and pose.
+
   /// Coefficients (one row per mode) of the ring's points. O(faces^2).
   void project(const Points& ring_points, Points& coefficients) const;
 
   /// The transpose of project(): weights on modes (rows) become weights on the ring's points.
   Eigen::MatrixXd projectTransposed(const Eigen::MatrixXd& mode_weights) const;
 
-  /// A mode on the ring: one value per point. The modes are the columns of U0 in the paper, up to
-  /// their order and length. O(faces).
+  /// A mode on the ring: one value per point. The modes are the columns of U0 (Lacewell & Burley,
+  /// section 3.1), up to their order and length. O(faces).
   std::vector<double> ringVector(int mode) const;
+
+  // The faces of the ring, and the modes' values on them.
 
   Sides sides(int face) const { return ring_.sides(face); }
   const OuterModes<double>& outerModes(int face) const { return tables(sides(face)).outer_modes; }
@@ -86,27 +109,31 @@ class Eigenbasis {
   using Table = ModeTable;
   Table table(int mode, int face) const;
 
+  // Evaluation after any number of steps: controlGrid() gives control points from which positions
+  // and first derivatives keep their digits; weights() serves second derivatives and stencils.
+
   /// The face's control points after `steps` >= 1 steps less the constant mode, times 2^(steps - 1)
-  /// lest they underflow.
+  /// so that they do not underflow.
   ///
-  /// `coefficients` and `outer_points` (in the order of the outer cells) are relative to the limit
-  /// position. Serves positions and first derivatives: second ones, where modes of very different
-  /// size meet, keep their digits in weights() alone. Cost: O(faces).
+  /// `coefficients` and `outer_points` (in the order of the outer slots) are relative to the limit
+  /// position. Second derivatives, where modes of very different size meet, lose digits in the
+  /// sum: take weights() for them. Cost: O(faces).
   void controlGrid(int face, int steps, int ring_steps, const Points& coefficients,
                    const Eigen::Array4d outer_points[], Eigen::Array4d grid[]) const;
 
   /// Weights of the functionals after `steps` >= 1 steps, on the ring's modes and the outer points.
   ///
-  /// Derivatives count in the face's own (u, v), so that first derivatives carry 2^steps and second
-  /// ones 4^steps, of which 2^(steps - 1) is left to the caller (it may overflow).
-  /// `ring_steps`: how many steps the ring's coefficients are older than the outer points.
+  /// Derivatives are with respect to the face's own (u, v), so that first derivatives carry 2^steps
+  /// and second ones 4^steps; of the latter, 2^(steps - 1) is left to the caller, because it may
+  /// overflow.
+  /// `ring_steps`: by how many steps the ring's coefficients are older than the outer points.
   /// `mode_weights` gets one row per functional and one column per mode.
   /// Cost: O(faces).
   void weights(int face, int steps, int ring_steps, const GridWindow& window,
                Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& outer_weights) const;
 
  private:
-  struct FaceTables {  // of the faces with the same Sides
+  struct FaceTables {  // of all faces with the same Sides
     explicit FaceTables(const OuterModes<long double>& modes) : outer_modes(modes) {}
     OuterModes<double> outer_modes;
     std::vector<Table> outer;   // one per outer mode
@@ -122,27 +149,29 @@ class Eigenbasis {
   };
 
   class Builder;
-  friend class Builder;
+  class GridSum;        // controlGrid()
+  class WindowWeights;  // weights()
 
   const FaceTables& tables(Sides sides) const { return *face_tables_[static_cast<int>(sides)]; }
-  /// Spoke mode m (>= 1), lambda+ or lambda-: index into tables, and its first mode's number.
+  /// The index of spoke mode m (>= 1), to lambda+ or lambda-, among the tables of a face.
   int pairIndex(int m, bool plus) const { return 2 * (m - 1) + (plus ? 0 : 1); }
   int spokeCount() const { return ring_.closed() ? ring_.faces / 2 : ring_.faces; }
-  /// Whether every turn by a face leaves the ring as it is, so that cosines are modes as well.
+  /// Whether a turn by one face maps the ring onto itself, so that cosines are modes as well.
   bool rotates() const { return ring_.closed() && ring_.kind != RingKind::dart; }
-  /// Spokes alternate in mode m, or faces do.
+  /// Whether the values of mode m change their sign from one spoke or face to the next.
   bool alternates(int m) const { return ring_.closed() ? 2 * m == ring_.faces : m == ring_.faces; }
-  /// The modes 1, 2 that are no spoke modes.
+  /// How many of the modes 1 and 2 are neither spoke modes nor symmetric ones of a dart.
   int fixedCount() const { return ring_.kind == RingKind::dart ? 0 : 2; }
-  /// The mode from which on a dart's are symmetric.
+  /// The first of a dart's symmetric modes.
   int firstSymmetric() const { return ring_.faces; }
   double cosAt(long i) const { return cos_[static_cast<std::size_t>(i % period_)]; }
   double sinAt(long i) const { return sin_[static_cast<std::size_t>(i % period_)]; }
   const Fixed& fixed(int face) const { return fixed_[ring_.closed() ? 0 : face]; }
   double rest(int face, int q) const { return dart_ ? dart_->rest(face, q) : rest_[q]; }
 
-  /// How the tables of pair (m, plus) combine into its modes on a face: each mode's number, and the
-  /// factors of the cosine and the sine table.
+  /// How the tables of pair (m, plus) combine into the modes of that pair on a face: the number of
+  /// a mode, and its factors of the cosine and of the sine table. parts() returns how many there
+  /// are.
   struct Part {
     int mode;
     double cosine, sine;
@@ -150,19 +179,16 @@ class Eigenbasis {
   int parts(int m, bool plus, int face, Part out[2]) const;
   int firstMode(int m) const { return 1 + fixedCount() + (rotates() ? 4 : 2) * (m - 1); }
   int spokeOf(int mode) const { return 1 + (mode - 1 - fixedCount()) / (rotates() ? 4 : 2); }
-  /// Calls body(table, lambda, coefficient) for all modes but the constant and pairs on one face.
-  template <typename Body>
-  void forEachTable(int face, const Points& coefficients, const Body& body) const;
 
   Ring ring_;
   RingStep<double> step_;
-  long period_;  // of the trigonometric tables
+  long period_;  // of the tables cos_ and sin_
   std::vector<double> cos_, sin_;
   std::vector<double> lambda_;
   std::vector<Spoke> spokes_;  // by pairIndex
   std::vector<Chain> chains_;
   std::vector<ModePair> pairs_;
-  std::vector<double> rest_;  // interior valence 2: what mode 1 or 2 feeds into outer modes
+  std::vector<double> rest_;  // interior valence 2: what mode rest_mode_ feeds into outer modes
   int rest_mode_ = -1;
   std::vector<Fixed> fixed_;                 // one for a closed ring, one per face of a sector
   std::vector<double> curve_ring_[2];        // sectors: modes 1 and 2 on the ring

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "limitsurf/eigen/ring_cells.h"
+#include "limitsurf/eigen/ring_slots.h"
 
 namespace limitsurf {
 
-using tile_grid::cell;
-using tile_grid::kCells;
+using tile_grid::kSlots;
+using tile_grid::slot;
 
 void Eigenbasis::Builder::build() {
   buildCircle();
@@ -35,8 +35,9 @@ void Eigenbasis::Builder::build() {
   }
 }
 
-/// Closed: spoke i of mode m stands at the angle 2 pi m i / N = (2 pi / 2N) 2 m i, face j at
-/// (2 pi / 2N) m (2 j + 1); sector: pi m i / k = (2 pi / 4k) 2 m i likewise.
+/// On a closed ring spoke i of mode m stands at the angle 2 pi m i / N = (2 pi / 2N) 2 m i and face
+/// j at (2 pi / 2N) m (2 j + 1). In a sector spoke i stands at pi m i / k = (2 pi / 4k) 2 m i, and
+/// face j likewise.
 void Eigenbasis::Builder::buildCircle() {
   basis_.period_ = ring_.closed() ? 2L * ring_.faces : 4L * ring_.faces;
   const Circle<Real> circle(basis_.period_);
@@ -50,37 +51,37 @@ void Eigenbasis::Builder::buildOuterTables(Sides sides) {
   const ModeContinuation::Outer& o = continuation_.outer(sides);
   auto tables = std::make_unique<FaceTables>(o);
   for (int q = 0; q < o.count(); ++q) {
-    Cells cells{};
+    SlotValues values{};
     for (int i = 0; i < o.count(); ++i) {
-      cells[o.cells()[i]] = o.vectors()(i, q);
+      values[o.slots()[i]] = o.vectors()(i, q);
     }
     Wide wide;
     wide.outer = o.vectors().col(q);
     wide.grid.fill(0);
-    o.step().apply(cells, wide.grid);
+    o.step().apply(values, wide.grid);
     tables->outer.push_back(ModeContinuation::rounded(wide));
   }
   basis_.face_tables_[static_cast<int>(sides)] = std::move(tables);
 }
 
-/// The ring cells of a spoke mode turned so that e_j of this face stands at angle 0.
-Eigenbasis::Builder::Cells Eigenbasis::Builder::spokeCells(int m,
-                                                           const SpokeMode<Real>::Vector& vector,
-                                                           bool sine) const {
+/// The values of a spoke mode at the ring's slots, turned so that e_j of this face stands at angle
+/// 0.
+Eigenbasis::Builder::SlotValues Eigenbasis::Builder::spokeValues(
+    int m, const SpokeMode<Real>::Vector& vector, bool sine) const {
   const Circle<Real> circle(basis_.period_);
   const auto wave = [&](int twice_position) {
     const long i = 1L * m * twice_position;
     return sine ? circle.sin(i) : circle.cos(i);
   };
-  Cells cells{};
-  cells[cell(0, -1)] = vector.edge * wave(-2);
-  cells[cell(1, -1)] = vector.face * wave(-1);
-  cells[cell(1, 0)] = vector.edge * wave(0);
-  cells[cell(1, 1)] = vector.face * wave(1);
-  cells[cell(0, 1)] = vector.edge * wave(2);
-  cells[cell(-1, 1)] = vector.face * wave(3);
-  cells[cell(-1, 0)] = vector.edge * wave(4);
-  return cells;
+  SlotValues values{};
+  values[slot(0, -1)] = vector.edge * wave(-2);
+  values[slot(1, -1)] = vector.face * wave(-1);
+  values[slot(1, 0)] = vector.edge * wave(0);
+  values[slot(1, 1)] = vector.face * wave(1);
+  values[slot(0, 1)] = vector.edge * wave(2);
+  values[slot(-1, 1)] = vector.face * wave(3);
+  values[slot(-1, 0)] = vector.edge * wave(4);
+  return values;
 }
 
 Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bool plus,
@@ -92,22 +93,22 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bo
     const bool along_v = sine != mirror;
     return continuation_.linear(sides, along_v ? 0 : 1, along_v ? 1 : 0);
   }
-  Cells cells = spokeCells(m, mode.vector(plus), sine);
+  SlotValues values = spokeValues(m, mode.vector(plus), sine);
   if (mirror) {
-    // Counted from the last spoke, which lies on the boundary, the sine mode is itself again (up to
-    // its sign), seen in a mirror that exchanges u and v.
-    Cells mirrored{};
-    for (int c = 0; c < kCells; ++c) {
-      mirrored[cell(tile_grid::yOf(c), tile_grid::xOf(c))] = cells[c];
+    // Counted from the last spoke, which lies on the boundary, the sine mode is the same up to its
+    // sign, with u and v exchanged.
+    SlotValues mirrored{};
+    for (int c = 0; c < kSlots; ++c) {
+      mirrored[slot(tile_grid::yOf(c), tile_grid::xOf(c))] = values[c];
     }
-    cells = mirrored;
+    values = mirrored;
   }
-  for (int c = 0; c < kCells; ++c) {
+  for (int c = 0; c < kSlots; ++c) {
     if (!tile_grid::exists(sides, c)) {
-      cells[c] = 0;
+      values[c] = 0;
     }
   }
-  return continuation_.continued(sides, mode.lambda(plus), cells);
+  return continuation_.continued(sides, mode.lambda(plus), values);
 }
 
 void Eigenbasis::Builder::buildSpokes() {
@@ -157,16 +158,16 @@ void Eigenbasis::Builder::buildRadial() {
     x.normalize();
     vectors.col(i) = x;
     const Real v = (p * x[0] + q * x[1]) / (lambda - 1);
-    Cells cells{};
-    for (const int c : tile_grid::kRingCells) {
+    SlotValues values{};
+    for (const int c : tile_grid::kRingSlots) {
       const bool on_spoke = tile_grid::xOf(c) == 0 || tile_grid::yOf(c) == 0;
-      cells[c] = c == cell(0, 0) ? v : v + (on_spoke ? x[0] : x[1]);
+      values[c] = c == slot(0, 0) ? v : v + (on_spoke ? x[0] : x[1]);
     }
-    const Wide wide = continuation_.continued(Sides::inner, lambda, cells);
+    const Wide wide = continuation_.continued(Sides::inner, lambda, values);
     basis_.lambda_[1 + i] = static_cast<double>(lambda);
     basis_.radial_vertex_[i] = static_cast<double>(v);
     basis_.fixed_[0].tables[i] = ModeContinuation::rounded(wide);
-    if (moves && ring_.faces == 2 && i == 0) {  // eigenvalue 1/8, defective with S12's
+    if (moves && ring_.faces == 2 && i == 0) {  // 1/8 is also an eigenvalue of S12: a Jordan pair
       basis_.rest_mode_ = 1;
       for (Eigen::Index j = 0; j < wide.rest.size(); ++j) {
         basis_.rest_.push_back(static_cast<double>(wide.rest[j]));
@@ -196,14 +197,14 @@ void Eigenbasis::Builder::buildDart() {
   basis_.dart_ = std::move(modes);
 }
 
-Eigenbasis::Builder::Cells Eigenbasis::Builder::ringCells(const std::vector<Real>& ring,
-                                                          int face) const {
-  Cells cells{};
-  forEachRingCell(ring_, face, [&](int cell, int point) { cells[cell] = ring[point]; });
-  return cells;
+Eigenbasis::Builder::SlotValues Eigenbasis::Builder::ringValues(const std::vector<Real>& ring,
+                                                                int face) const {
+  SlotValues values{};
+  forEachRingSlot(ring_, face, [&](int slot, int point) { values[slot] = ring[point]; });
+  return values;
 }
 
-/// A sector's spoke mode on one of its faces, assembled from the tables' construction.
+/// A sector's spoke mode on one of its faces.
 Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeOnFace(int m, bool plus, int face) {
   const auto mode = SpokeMode<Real>::at(m, ring_.faces);
   const Circle<Real> circle(basis_.period_);
@@ -214,7 +215,7 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeOnFace(int m, bool plus, int
   for (int j = 0; j < ring_.faces; ++j) {
     ring[ring_.face(j)] = mode.vector(plus).face * circle.sin(1L * m * (2 * j + 1));
   }
-  return continuation_.continued(basis_.sides(face), mode.lambda(plus), ringCells(ring, face));
+  return continuation_.continued(basis_.sides(face), mode.lambda(plus), ringValues(ring, face));
 }
 
 void Eigenbasis::Builder::buildCurves() {
@@ -225,16 +226,16 @@ void Eigenbasis::Builder::buildCurves() {
     basis_.lambda_[1 + i] = static_cast<double>(mode.lambda);
     basis_.curve_ring_[i].assign(mode.ring.begin(), mode.ring.end());
     for (int j = 0; j < ring_.faces; ++j) {
-      const Cells cells = ringCells(mode.ring, j);
+      const SlotValues values = ringValues(mode.ring, j);
       const Sides sides = basis_.sides(j);
       Wide wide;
       if (mode.fed_mode) {
         const Wide fed = spokeOnFace(mode.fed_mode, mode.feeds_plus, j);
-        wide = continuation_.continued(sides, mode.lambda, cells, mode.feeds, &fed);
-      } else if (mode.lambda == Real(1) / 2) {  // made of spoke modes to phi = pi/2
-        wide = continuation_.linear(sides, cells[cell(1, 0)], cells[cell(0, 1)]);
+        wide = continuation_.continued(sides, mode.lambda, values, mode.feeds, &fed);
+      } else if (mode.lambda == Real(1) / 2) {  // a sum of spoke modes to phi = pi/2
+        wide = continuation_.linear(sides, values[slot(1, 0)], values[slot(0, 1)]);
       } else {
-        wide = continuation_.continued(sides, mode.lambda, cells);
+        wide = continuation_.continued(sides, mode.lambda, values);
       }
       basis_.fixed_[j].tables[i] = ModeContinuation::rounded(wide);
     }

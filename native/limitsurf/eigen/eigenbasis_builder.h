@@ -9,7 +9,7 @@
 
 namespace limitsurf {
 
-/// Fills an Eigenbasis, in long double.
+/// Computes an Eigenbasis, in long double.
 class Eigenbasis::Builder {
  public:
   explicit Builder(Eigenbasis& basis) : basis_(basis), ring_(basis.ring_) {}
@@ -17,7 +17,7 @@ class Eigenbasis::Builder {
 
  private:
   using Real = long double;
-  using Cells = ModeContinuation::Cells;
+  using SlotValues = ModeContinuation::SlotValues;
   using Wide = ModeContinuation::Wide;
 
   void buildCircle();
@@ -27,10 +27,10 @@ class Eigenbasis::Builder {
   void buildDart();
   void buildOuterTables(Sides sides);
 
-  Cells spokeCells(int m, const SpokeMode<Real>::Vector& vector, bool sine) const;
+  SlotValues spokeValues(int m, const SpokeMode<Real>::Vector& vector, bool sine) const;
   Wide spokeTable(Sides sides, int m, bool plus, bool sine);
   Wide spokeOnFace(int m, bool plus, int face);
-  Cells ringCells(const std::vector<Real>& ring, int face) const;
+  SlotValues ringValues(const std::vector<Real>& ring, int face) const;
 
   Eigenbasis& basis_;
   const Ring ring_;

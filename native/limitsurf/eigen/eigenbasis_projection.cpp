@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// From a ring's points to its modes' coefficients, and the transpose of that.
+// From a ring's points to the coefficients of its modes (U0^-1 of Lacewell & Burley 2007, section
+// 3.2), and the transpose of that.
 #include "limitsurf/eigen/curve_mode.h"
 #include "limitsurf/eigen/eigenbasis.h"
 
@@ -76,7 +77,7 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
       const double scale = norm * spoke.scale;
       const double e = scale * spoke.edge, f = scale * spoke.face / 4;
       const Vector3 cosine = e * edge_cos + f * face_cos, sine = e * edge_sin + f * face_sin;
-      // On face 0 of a ring the parts are the cosine and the sine mode themselves.
+      // On face 0 the parts of the pair are the cosine mode and the sine mode themselves.
       Part part[2];
       const int count = parts(m, plus, 0, part);
       for (int i = 0; i < count; ++i) {
@@ -113,7 +114,7 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
     return ring;
   }
   if (ring_.closed()) {
-    // The spoke modes saw e - v and f - v, but the sum of v over each wave is 0.
+    // project() gives e - v and f - v to the spoke modes, but the sum of v over each wave is 0.
     const auto constant = mode_weights.row(0);
     Eigen::MatrixXd means(2, mode_weights.cols());
     for (int i = 0; i < 2; ++i) {
@@ -131,7 +132,7 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
     return ring;
   }
 
-  // The spoke modes saw what the curve modes left over.
+  // project() gives the spoke modes what the curve modes have left over.
   Eigen::MatrixXd curve = mode_weights.topRows(3);
   for (int i = 0; i < ring_.size(); ++i) {
     curve.row(0) -= ring.row(i);

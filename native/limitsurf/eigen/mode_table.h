@@ -5,10 +5,11 @@
 
 namespace limitsurf {
 
-/// One mode on one face: its values at the outer cells before, on the whole grid after a step.
+/// One mode on one face: its values at the outer slots before a step, and on the whole grid after
+/// that step.
 struct ModeTable {
   double outer[tile_grid::kOuter] = {};
-  double grid[tile_grid::kCells] = {};
+  double grid[tile_grid::kSlots] = {};
 };
 
 }  // namespace limitsurf

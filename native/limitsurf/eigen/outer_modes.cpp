@@ -7,7 +7,12 @@
 namespace limitsurf {
 namespace {
 
-/// The distinct eigenvalues of S12 and how often each occurs.
+/// Pivots below this fraction of the largest one count as 0 when the rank of S12 - lambda is
+/// determined. The entries are multiples of 1/64 of size 1 at most in matrices of at most 7 rows,
+/// so that a pivot is 0 up to rounding (1e-16) or larger than this by orders.
+constexpr double kRankThreshold = 1e-9;
+
+/// The denominators of the distinct eigenvalues of S12, and how often each occurs.
 std::vector<std::pair<int, int>> spectrum(Sides sides) {
   const int inner_sides = sides == Sides::inner ? 2 : sides == Sides::both ? 0 : 1;
   std::vector<std::pair<int, int>> result = {{8, 2}, {16, 2}, {64, 1}};
@@ -21,26 +26,26 @@ std::vector<std::pair<int, int>> spectrum(Sides sides) {
 
 template <typename Real>
 OuterModes<Real>::OuterModes(Sides sides) : sides_(sides), step_(sides) {
-  for (const int c : tile_grid::kOuterCells) {
+  for (const int c : tile_grid::kOuterSlots) {
     if (tile_grid::exists(sides, c)) {
-      cells_.push_back(c);
+      slots_.push_back(c);
     }
   }
-  const int n = static_cast<int>(cells_.size());
-  s11_ = Matrix::Zero(n, tile_grid::kCells);
+  const int n = static_cast<int>(slots_.size());
+  s11_ = Matrix::Zero(n, tile_grid::kSlots);
   s12_ = Matrix::Zero(n, n);
   for (const auto& row : step_.rows()) {
-    const auto target = std::find(cells_.begin(), cells_.end(), row.cell);
-    if (target == cells_.end()) {
+    const auto target = std::find(slots_.begin(), slots_.end(), row.slot);
+    if (target == slots_.end()) {
       continue;
     }
     for (std::size_t i = row.first; i < row.end; ++i) {
       const auto& term = step_.term(i);
-      const auto source = std::find(cells_.begin(), cells_.end(), term.cell);
-      if (source == cells_.end()) {
-        s11_(target - cells_.begin(), term.cell) = term.weight;
+      const auto source = std::find(slots_.begin(), slots_.end(), term.slot);
+      if (source == slots_.end()) {
+        s11_(target - slots_.begin(), term.slot) = term.weight;
       } else {
-        s12_(target - cells_.begin(), source - cells_.begin()) = term.weight;
+        s12_(target - slots_.begin(), source - slots_.begin()) = term.weight;
       }
     }
   }
@@ -49,7 +54,7 @@ OuterModes<Real>::OuterModes(Sides sides) : sides_(sides), step_(sides) {
   for (const auto& [denominator, multiplicity] : spectrum(sides)) {
     const Real lambda = Real(1) / denominator;
     Eigen::FullPivLU<Matrix> lu(s12_ - lambda * Matrix::Identity(n, n));
-    lu.setThreshold(Real(1e-9));  // entries are dyadic rationals above 1/64 in size
+    lu.setThreshold(kRankThreshold);
     const Matrix kernel = lu.kernel();
     eigen_assert(kernel.cols() == multiplicity);
     for (int i = 0; i < multiplicity; ++i) {
@@ -62,10 +67,10 @@ OuterModes<Real>::OuterModes(Sides sides) : sides_(sides), step_(sides) {
 
 template <typename Real>
 typename OuterModes<Real>::Vector OuterModes<Real>::continuation(Real lambda, Real met,
-                                                                 const Cells& ring_cells,
+                                                                 const SlotValues& ring_values,
                                                                  const Vector& rhs,
                                                                  Vector& rest) const {
-  const Vector right = inverse_ * (rhs - fromRing(ring_cells));
+  const Vector right = inverse_ * (rhs - fromRing(ring_values));
   Vector z = Vector::Zero(count());
   rest = Vector::Zero(count());
   for (int q = 0; q < count(); ++q) {
@@ -79,8 +84,8 @@ typename OuterModes<Real>::Vector OuterModes<Real>::continuation(Real lambda, Re
 }
 
 template <typename Real>
-typename OuterModes<Real>::Vector OuterModes<Real>::fromRing(const Cells& ring_cells) const {
-  return s11_ * Eigen::Map<const Vector>(ring_cells.data(), tile_grid::kCells);
+typename OuterModes<Real>::Vector OuterModes<Real>::fromRing(const SlotValues& ring_values) const {
+  return s11_ * Eigen::Map<const Vector>(ring_values.data(), tile_grid::kSlots);
 }
 
 template class OuterModes<double>;

@@ -9,16 +9,17 @@
 
 namespace limitsurf {
 
-/// The eigenvectors that vanish on the ring: those of S12 (paper: W1), continued to the whole grid.
+/// The eigenvectors that vanish on the ring, continued to the whole grid: those of S12, the columns
+/// of W1 in Lacewell & Burley 2007, section 3.1.
 ///
-/// S12 does not depend on the valence and has no defect. Its eigenvalues are 1/8 and 1/16 twice,
-/// 1/32 once for each side of the face that lies inside the sector, and 1/64.
+/// S12 does not depend on the valence and is diagonalisable. Its eigenvalues are 1/8 and 1/16, each
+/// twice, 1/32 once for each side of the face that lies inside the sector, and 1/64.
 template <typename Real>
 class OuterModes {
  public:
   using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
-  using Cells = std::array<Real, tile_grid::kCells>;
+  using SlotValues = std::array<Real, tile_grid::kSlots>;
 
   explicit OuterModes(Sides sides);
 
@@ -27,7 +28,7 @@ class OuterModes {
   explicit OuterModes(const OuterModes<Wider>& other)
       : sides_(other.sides()),
         step_(sides_),
-        cells_(other.cells()),
+        slots_(other.slots()),
         s11_(other.s11().template cast<Real>()),
         s12_(other.s12().template cast<Real>()),
         vectors_(other.vectors().template cast<Real>()),
@@ -39,31 +40,31 @@ class OuterModes {
 
   Sides sides() const { return sides_; }
   int count() const { return static_cast<int>(lambda_.size()); }
-  /// The grid cells of the outer points, count() of them.
-  const std::vector<int>& cells() const { return cells_; }
+  /// The grid slots of the count() outer points.
+  const std::vector<int>& slots() const { return slots_; }
   Real lambda(int q) const { return lambda_[q]; }
-  const Matrix& vectors() const { return vectors_; }  ///< W: one column per mode
-  const Matrix& inverse() const { return inverse_; }  ///< W^-1
-  const Matrix& s11() const { return s11_; }          ///< outer from ring cells (columns by cell)
+  const Matrix& vectors() const { return vectors_; }  ///< W1: one column per mode
+  const Matrix& inverse() const { return inverse_; }  ///< W1^-1
+  const Matrix& s11() const { return s11_; }          ///< outer from ring slots (columns by slot)
   const Matrix& s12() const { return s12_; }
   const TileStep<Real>& step() const { return step_; }
 
-  /// The outer part y of a vector whose ring part is x: (S12 - lambda) y = -S11 x + rhs (paper,
-  /// section 3.1).
+  /// The outer part y of a vector whose ring part is x: (S12 - lambda) y = -S11 x + rhs (Lacewell &
+  /// Burley 2007, section 3.1).
   ///
-  /// The right-hand side's share of the modes with eigenvalue `met` is not solved for but goes to
-  /// `rest`, in the basis W: a step takes (x, y) to lambda (x, y) + rhs + W rest. Where lambda
-  /// equals an eigenvalue of S12, `met` has to: y is the minimal solution then, and the rest is 0
-  /// but for interior valence 2.
-  Vector continuation(Real lambda, Real met, const Cells& ring_cells, const Vector& rhs,
+  /// The components of the right-hand side along the outer modes with eigenvalue `met` are not
+  /// solved for but returned in `rest`: a step takes (x, y) to lambda (x, y) + rhs + W1 rest. Where
+  /// lambda equals an eigenvalue of S12, `met` has to be that eigenvalue; y has no component along
+  /// its modes then, and `rest` is 0 except at interior valence 2.
+  Vector continuation(Real lambda, Real met, const SlotValues& ring_values, const Vector& rhs,
                       Vector& rest) const;
   /// S11 x.
-  Vector fromRing(const Cells& ring_cells) const;
+  Vector fromRing(const SlotValues& ring_values) const;
 
  private:
   Sides sides_;
   TileStep<Real> step_;
-  std::vector<int> cells_;
+  std::vector<int> slots_;
   std::vector<Real> lambda_;
   Matrix s11_, s12_, vectors_, inverse_;
 };

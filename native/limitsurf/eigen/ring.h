@@ -9,13 +9,14 @@
 
 namespace limitsurf {
 
-/// The kinds of vertices whose neighbourhood reproduces itself under subdivision.
+/// The kinds of vertices whose neighbourhood has the same form after every subdivision.
 enum class RingKind {
   interior,  ///< faces all around
   boundary,  ///< a sector of faces; the boundary is a smooth curve through the vertex
   pinned,    ///< a sector of faces; the vertex stays where it is
   cone,      ///< faces all around; the vertex stays where it is
-  dart,      ///< faces all around; the sharp edge e_0 ends at the vertex, which moves smoothly
+  dart,      ///< faces all around; the sharp edge e_0 ends at the vertex, which follows the smooth
+             ///< rule
 };
 
 /// A vertex and its quads: vertex v, spoke points e_i (the far ends of its edges,
@@ -59,8 +60,8 @@ struct Ring {
   }
 };
 
-/// One subdivision of a ring's points: S in the paper, as an operator that costs O(faces). Holds
-/// the masks of one kind of ring.
+/// One subdivision of a ring's points: the matrix S of Lacewell & Burley 2007 (section 5), applied
+/// in O(faces). It holds the masks of one kind of ring.
 template <typename Real>
 class RingStep {
  public:
@@ -71,7 +72,8 @@ class RingStep {
         sharp_edge_(SubdivisionRules<Real>().edgeMask(true)),
         vertex_(SubdivisionRules<Real>().vertexMask(ring.rule(), ring.edges())) {}
 
-  /// `at(i)` reads point i, `next(i)` is assigned to; both are numbers or vectors.
+  /// `at(i)` returns point i; `next(i)` returns a reference to the new point i. Points are numbers
+  /// or vectors.
   template <typename At, typename Next>
   void apply(const At& at, const Next& next) const {
     for (int j = 0; j < ring_.faces; ++j) {
@@ -90,7 +92,7 @@ class RingStep {
     }
     next(0) = vertex_.vertex * at(0);
     for (std::size_t i = 0; i < vertex_.edges.size(); ++i) {
-      if (vertex_.edges[i] != 0) {  // a boundary's inner spokes
+      if (vertex_.edges[i] != 0) {  // 0 at the inner spokes of a boundary
         next(0) += vertex_.edges[i] * at(ring_.edge(static_cast<int>(i)));
       }
     }
@@ -106,7 +108,7 @@ class RingStep {
   typename SubdivisionRules<Real>::VertexMask vertex_;
 };
 
-/// The same on a matrix with one row per point.
+/// The same for a matrix with one row per point.
 template <typename Values>
 Values subdivideRing(const Ring& ring, const Values& points) {
   Values next(points.rows(), points.cols());

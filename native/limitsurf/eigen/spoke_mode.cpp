@@ -17,7 +17,7 @@ SpokeMode<Real> SpokeMode<Real>::at(long numerator, long denominator) {
   mode.plus = {cos_alpha, 2 * sin_alpha, 1};
   mode.minus = {-sin_alpha, 2 * cos_alpha, 1};
   mode.linear = 2 * numerator == denominator;
-  if (mode.linear) {  // phi = pi/2: 1/8 meets an eigenvalue of S12
+  if (mode.linear) {  // phi = pi/2: lambda- = 1/8 is an eigenvalue of S12 as well
     mode.lambda_plus = Real(1) / 2;
     mode.lambda_minus = Real(1) / 8;
     mode.plus = {1, std::sqrt(Real(2)), Real(3) / 2};
@@ -25,7 +25,7 @@ SpokeMode<Real> SpokeMode<Real>::at(long numerator, long denominator) {
     mode.lambda_plus = Real(1) / 4 + c * (c + s) / 8;
     mode.lambda_minus = 1 / (16 * mode.lambda_plus);
   }
-  if (numerator == denominator) {  // phi = pi: edges and faces do not see each other
+  if (numerator == denominator) {  // phi = pi: edges and faces are decoupled
     mode.plus = {1, 0, 1};
     mode.minus = {0, 2, 1};
   }

@@ -21,28 +21,31 @@ constexpr bool onRight(Sides sides) { return sides == Sides::right || sides == S
 
 /// The control points around one quad of an extraordinary vertex, laid out as a 5 x 5 grid.
 ///
-/// Cell (x, y), -1 <= x, y <= 3, holds the control point at (x, y) when the extraordinary vertex is
-/// at (0, 0) and the face is [0, 1]^2. Cell (-1, -1) has no point. Before a subdivision the 15
-/// cells with x, y <= 2 determine the face; after it all 24 carry the three regular quarters: the 4
-/// x 4 window from (a - 1, b - 1) to (a + 2, b + 2) belongs to quarter (a, b).
+/// Slot (x, y), -1 <= x, y <= 3, holds the control point at (x, y) when the extraordinary vertex is
+/// at (0, 0) and the face is [0, 1]^2. Slot (-1, -1) has no point. Before a subdivision the 15
+/// slots with x, y <= 2 determine the face. After it all 24 slots determine the three quarters that
+/// are regular: the 4 x 4 window from (a - 1, b - 1) to (a + 2, b + 2) belongs to quarter (a, b),
+/// as the picking matrices P_k of Lacewell & Burley 2007, section 2, select it.
 namespace tile_grid {
 
 constexpr int kSize = 5;
-constexpr int kCells = kSize * kSize;
-constexpr int cell(int x, int y) { return (y + 1) * kSize + (x + 1); }
+constexpr int kSlots = kSize * kSize;
+constexpr int slot(int x, int y) { return (y + 1) * kSize + (x + 1); }
 constexpr int xOf(int c) { return c % kSize - 1; }
 constexpr int yOf(int c) { return c / kSize - 1; }
 
-/// Ring points next to the face: v, e_j, f_j, e_j+1, f_j+1, e_j+2, e_j-1, f_j-1.
-constexpr std::array<int, 8> kRingCells = {cell(0, 0),  cell(1, 0),  cell(1, 1),  cell(0, 1),
-                                           cell(-1, 1), cell(-1, 0), cell(0, -1), cell(1, -1)};
+/// The slots of ring points: v, e_j, f_j, e_j+1, f_j+1, e_j+2, e_j-1, f_j-1.
+constexpr std::array<int, 8> kRingSlots = {slot(0, 0),  slot(1, 0),  slot(1, 1),  slot(0, 1),
+                                           slot(-1, 1), slot(-1, 0), slot(0, -1), slot(1, -1)};
 
-/// The control points beyond the ring: Stam's points 2N+1 to 2N+7.
+/// The slots of the control points beyond the ring: the last 7 of the K = 2N + 8 control points of
+/// Stam 1998, or as many of them as the sides of the face leave (Lacewell & Burley 2007, section
+/// 2).
 constexpr int kOuter = 7;
-constexpr std::array<int, kOuter> kOuterCells = {cell(2, -1), cell(2, 0), cell(2, 1), cell(2, 2),
-                                                 cell(1, 2),  cell(0, 2), cell(-1, 2)};
+constexpr std::array<int, kOuter> kOuterSlots = {slot(2, -1), slot(2, 0), slot(2, 1), slot(2, 2),
+                                                 slot(1, 2),  slot(0, 2), slot(-1, 2)};
 
-/// Whether the cell exists: cells beyond a boundary side do not.
+/// Whether the slot has a point. Slots beyond a boundary side have none.
 constexpr bool exists(Sides sides, int c) {
   const bool below = yOf(c) < 0, before = xOf(c) < 0;
   if (below && before) {
@@ -51,19 +54,20 @@ constexpr bool exists(Sides sides, int c) {
   return !(below && onLeft(sides)) && !(before && onRight(sides));
 }
 
-constexpr bool isRingCell(int c) { return xOf(c) <= 1 && yOf(c) <= 1; }
+constexpr bool isRingSlot(int c) { return xOf(c) <= 1 && yOf(c) <= 1; }
 
 }  // namespace tile_grid
 
-/// The part of one subdivision step that no extraordinary rule touches: the 16 cells with x or y
-/// above 1 after the step from the 15 cells before it (S11, S12, S21, S22 of the paper).
+/// The part of one subdivision step to which no extraordinary rule applies: the 16 slots with x or
+/// y above 1 after the step, from the 15 slots before it. These are the blocks S11 and S12 of A and
+/// the additional rows of Abar (Lacewell & Burley 2007, section 2).
 template <typename Real>
 class TileStep {
  public:
   explicit TileStep(Sides sides) : sides_(sides) {
     using namespace tile_grid;
-    for (int c = 0; c < kCells; ++c) {
-      if (!isRingCell(c) && exists(sides, c)) {
+    for (int c = 0; c < kSlots; ++c) {
+      if (!isRingSlot(c) && exists(sides, c)) {
         const std::vector<Term> terms = row(xOf(c), yOf(c));
         rows_.push_back({c, terms_.size(), terms_.size() + terms.size()});
         terms_.insert(terms_.end(), terms.begin(), terms.end());
@@ -72,25 +76,25 @@ class TileStep {
   }
 
   struct Term {
-    int cell;
+    int slot;
     Real weight;
   };
-  /// A cell after the step, and its range of terms.
+  /// A slot after the step, and the range of its terms.
   struct Row {
-    int cell;
+    int slot;
     std::size_t first, end;
   };
   const std::vector<Row>& rows() const { return rows_; }
   const Term& term(std::size_t i) const { return terms_[i]; }
 
-  /// Fills the non-ring cells of `next` from `cells`. Both are indexable by cell; their elements
-  /// are scalars or vectors.
-  template <typename Cells, typename NextCells>
-  void apply(const Cells& cells, NextCells& next) const {
+  /// Fills the slots of `next` that are none of the ring's from `values`. Both are indexed by slot;
+  /// their elements are scalars or vectors.
+  template <typename SlotValues, typename NextValues>
+  void apply(const SlotValues& values, NextValues& next) const {
     for (const Row& r : rows_) {
-      next[r.cell] = terms_[r.first].weight * cells[terms_[r.first].cell];
+      next[r.slot] = terms_[r.first].weight * values[terms_[r.first].slot];
       for (std::size_t i = r.first + 1; i < r.end; ++i) {
-        next[r.cell] += terms_[i].weight * cells[terms_[i].cell];
+        next[r.slot] += terms_[i].weight * values[terms_[i].slot];
       }
     }
   }
@@ -108,9 +112,9 @@ class TileStep {
   }
 
   void add(std::vector<Term>& terms, int x, int y, Real weight) const {
-    const int c = tile_grid::cell(x, y);
+    const int c = tile_grid::slot(x, y);
     for (Term& term : terms) {
-      if (term.cell == c) {
+      if (term.slot == c) {
         term.weight += weight;
         return;
       }
@@ -118,7 +122,8 @@ class TileStep {
     terms.push_back({c, weight});
   }
 
-  /// The new point at (x, y) of the finer grid, that is (x/2, y/2) of the coarser one.
+  /// The terms of the new point at (x, y) of the finer grid, which is (x/2, y/2) of the coarser
+  /// one.
   std::vector<Term> row(int x, int y) const {
     std::vector<Term> terms;
     const int x0 = (x - (x & 1)) / 2, y0 = (y - (y & 1)) / 2;

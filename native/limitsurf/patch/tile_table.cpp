@@ -247,13 +247,13 @@ class Builder {
     tile.face = here.sectors.positionOf(at);
     tile.sides = table_.rings[tile.ring].basis->sides(tile.face);
     const Window<FaceMesh> window(here.mesh, at.face, at.corner, corners.diagonal);
-    const std::vector<int>& cells = table_.rings[tile.ring].basis->outerModes(tile.face).cells();
+    const std::vector<int>& slots = table_.rings[tile.ring].basis->outerModes(tile.face).slots();
     tile.u_high = window.at(2, 0) < 0 && window.at(2, 1) < 0;
     tile.v_high = window.at(0, 2) < 0 && window.at(1, 2) < 0;
     tile.outer.fill(0);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t i = 0; i < slots.size(); ++i) {
       tile.outer[i] =
-          outerPoint(here.mesh, window, tile_grid::xOf(cells[i]), tile_grid::yOf(cells[i]));
+          outerPoint(here.mesh, window, tile_grid::xOf(slots[i]), tile_grid::yOf(slots[i]));
     }
     return tile;
   }

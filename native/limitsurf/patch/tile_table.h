@@ -41,7 +41,7 @@ struct RingTile {
   /// Whether the sides across from the vertex, seen from it at u = 1 and v = 1, have no points
   /// beyond them; their entries in `outer` continue the surface linearly.
   bool u_high, v_high;
-  std::array<int, tile_grid::kOuter> outer;  ///< points, in the order of the basis's outer cells
+  std::array<int, tile_grid::kOuter> outer;  ///< points, in the order of the basis's outer slots
 };
 
 /// An extraordinary vertex: its eigenbasis and its points, shared by all tiles around it.

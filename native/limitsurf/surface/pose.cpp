@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "limitsurf/eigen/ring_cells.h"
+#include "limitsurf/eigen/ring_slots.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -24,8 +24,8 @@ const TileStep<double>& tileStep(Sides sides) {
   return steps[static_cast<int>(sides)];
 }
 
-void setRingCells(const Ring& ring, int face, const Padded points[], Padded cells[]) {
-  forEachRingCell(ring, face, [&](int cell, int point) { cells[cell] = points[point]; });
+void setRingValues(const Ring& ring, int face, const Padded points[], Padded grid[]) {
+  forEachRingSlot(ring, face, [&](int slot, int point) { grid[slot] = points[point]; });
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ void setRingCells(const Ring& ring, int face, const Padded points[], Padded cell
 void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
               Padded after[]) {
   tileStep(ring.sides(face)).apply(before, after);
-  setRingCells(ring, face, ring_points, after);
+  setRingValues(ring, face, ring_points, after);
 }
 
 Pose::Pose(const TileTable& table)
@@ -57,8 +57,8 @@ Pose::Pose(const TileTable& table)
     }
   }
   grids_.resize(grids);
-  for (Grid& grid : grids_) {  // cells that do not exist stay 0
-    std::fill_n(grid.points, tile_grid::kCells, Padded::Zero());
+  for (Grid& grid : grids_) {  // slots that do not exist stay 0
+    std::fill_n(grid.points, tile_grid::kSlots, Padded::Zero());
   }
   std::size_t next = 0;
   for (std::size_t t = 0; t < ring_tiles_.size(); ++t) {
@@ -172,18 +172,18 @@ void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
   for (Padded& point : start.points) {
     point.setZero();
   }
-  setRingCells(basis.ring(), tile.face, ring, start.points);
-  const std::vector<int>& cells = basis.outerModes(tile.face).cells();
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  setRingValues(basis.ring(), tile.face, ring, start.points);
+  const std::vector<int>& slots = basis.outerModes(tile.face).slots();
+  for (std::size_t i = 0; i < slots.size(); ++i) {
     pose.outer[i] = (points_[tile.outer[i]] - limit) + residual(tile.outer[i]);
-    start.points[cells[i]] = pose.outer[i] - constant;
+    start.points[slots[i]] = pose.outer[i] - constant;
   }
   const Padded* before = start.points;
   for (int n = 1; n <= gridSteps(tile); ++n) {
     Padded* after = grids_[pose.first_grid + n - 1].points;
     ring += ring_size;
     stepGrid(basis.ring(), tile.face, ring, before, after);
-    after[tile_grid::cell(-1, -1)] = limit;
+    after[tile_grid::slot(-1, -1)] = limit;
     before = after;
   }
 }

@@ -21,11 +21,11 @@ class Pose {
   static constexpr int kMostGridSteps = 4;
   static constexpr std::size_t kGridBytes = std::size_t{256} << 20;
 
-  /// Control points relative to the ring's limit, which takes the place of cell (-1, -1).
+  /// Control points relative to the ring's limit, which takes the place of slot (-1, -1).
   struct Grid {
-    Padded points[tile_grid::kCells];
+    Padded points[tile_grid::kSlots];
 
-    const Padded& limit() const { return points[tile_grid::cell(-1, -1)]; }
+    const Padded& limit() const { return points[tile_grid::slot(-1, -1)]; }
   };
 
   struct RingPose {
@@ -82,7 +82,7 @@ class Pose {
 };
 
 /// One subdivision of the control grid of a ring's face: `ring_points` are the ring's after it.
-/// Cells that do not exist are left as they are.
+/// SlotValues that do not exist are left as they are.
 void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
               Padded after[]);
 

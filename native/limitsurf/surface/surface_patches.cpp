@@ -176,19 +176,19 @@ struct SurfacePatches::Data {
   }
 
   /// A ring tile's control grid after `steps` >= 1 steps, relative to the anchor that is returned.
-  Padded ringGrid(const SurfacePiece& piece, int steps, Padded grid[tile_grid::kCells]) const {
+  Padded ringGrid(const SurfacePiece& piece, int steps, Padded grid[tile_grid::kSlots]) const {
     const int index = static_cast<int>(tiles[piece.tile].ref.index);
     const RingTile& tile = table.ring_tiles[index];
     if (steps <= pose.gridSteps(tile)) {
       const Pose::Grid& kept = pose.grid(index, steps);
-      std::copy(kept.points, kept.points + tile_grid::kCells, grid);
+      std::copy(kept.points, kept.points + tile_grid::kSlots, grid);
       return kept.limit();
     }
     const Pose::RingPose& ring = pose.ring(tile.ring);
     table.rings[tile.ring].basis->controlGrid(tile.face, steps, tile.ring_steps, ring.coefficients,
                                               pose.ringTile(index).outer, grid);
     const double scale = powerOfTwo(1 - steps);
-    for (int c = 0; c < tile_grid::kCells; ++c) {
+    for (int c = 0; c < tile_grid::kSlots; ++c) {
       grid[c] = scale * grid[c] + ring.constant();
     }
     return ring.limit;
@@ -196,7 +196,7 @@ struct SurfacePatches::Data {
 
   /// The same, for a core that is split step by step: `grid` holds that before the core's last step
   /// if `chained`.
-  Padded nextGrid(const SurfacePiece& core, bool chained, Padded grid[tile_grid::kCells]) const {
+  Padded nextGrid(const SurfacePiece& core, bool chained, Padded grid[tile_grid::kSlots]) const {
     const RingTile& tile = ringTile(core);
     const int steps = core.steps + 1;
     const std::size_t first = first_level[tile.ring];
@@ -210,13 +210,13 @@ struct SurfacePatches::Data {
       done = pose.gridSteps(tile);
       ringGrid(core, done, grid);
     }
-    Padded after[tile_grid::kCells];
-    std::fill_n(after, tile_grid::kCells, Padded::Zero());
+    Padded after[tile_grid::kSlots];
+    std::fill_n(after, tile_grid::kSlots, Padded::Zero());
     for (; done < steps; ++done) {
       const std::size_t level = std::min(done + 1 + tile.ring_steps, kMostSteps);
       stepGrid(ring.basis->ring(), tile.face, &levels[first + ring.points.size() * level], grid,
                after);
-      std::copy(after, after + tile_grid::kCells, grid);
+      std::copy(after, after + tile_grid::kSlots, grid);
     }
     return pose.ring(tile.ring).limit;
   }
@@ -286,7 +286,7 @@ FaceRectangle SurfacePatches::rectangle(const SurfacePiece& piece) const {
 BezierPatch SurfacePatches::patch(const SurfacePiece& piece) const {
   BezierPatch out;
   if (piece.steps > 0) {
-    Padded grid[tile_grid::kCells];
+    Padded grid[tile_grid::kSlots];
     out.anchor = data_->ringGrid(piece, piece.steps, grid);
     data_->quarterPatch(data_->ringTile(piece), grid, piece.steps, piece.part, out);
   } else {
@@ -299,7 +299,7 @@ BezierPatch SurfacePatches::patch(const SurfacePiece& piece) const {
 void SurfacePatches::split(const SurfacePiece& core, SplitCore& out) const {
   const int steps = core.steps + 1;
   const RingTile& tile = data_->ringTile(core);
-  static_assert(sizeof out.grid_ == sizeof(Padded) * tile_grid::kCells);
+  static_assert(sizeof out.grid_ == sizeof(Padded) * tile_grid::kSlots);
   const bool chained = core.steps > 0 && out.core.tile == core.tile && out.core.steps == core.steps;
   Padded* grid = out.grid_;
   const Padded anchor = data_->nextGrid(core, chained, grid);
@@ -312,10 +312,10 @@ void SurfacePatches::split(const SurfacePiece& core, SplitCore& out) const {
     patch.on = data_->rectangle(out.pieces[quarter]);
   }
   out.core = {core.tile, static_cast<std::int16_t>(steps), SurfacePiece::kCore};
-  // The points that decide about the rest: the ring's, and the cells around its own square.
+  // The points that decide about the rest: the ring's, and the slots around its own square.
   const Vector3 vertex = coreVertex(core), reach = Vector3::Constant(data_->radius(out.core));
   out.core_box = {vertex - reach, vertex + reach};
-  for (const int c : tile_grid::kOuterCells) {
+  for (const int c : tile_grid::kOuterSlots) {
     if (tile_grid::exists(tile.sides, c)) {
       out.core_box.include((anchor + grid[c]).head<3>().matrix());
     }
@@ -331,7 +331,7 @@ Box SurfacePatches::coreBox(const SurfacePiece& core) const {
   }
   const Pose::RingTilePose& outer = pose.ringTile(data_->tiles[core.tile].ref.index);
   const std::size_t count =
-      data_->table.rings[tile.ring].basis->outerModes(tile.face).cells().size();
+      data_->table.rings[tile.ring].basis->outerModes(tile.face).slots().size();
   for (std::size_t i = 0; i < count; ++i) {
     box.include((pose.ring(tile.ring).limit + outer.outer[i]).head<3>().matrix());
   }

@@ -190,7 +190,7 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
     // of the derivative before it is added to the others'.
     const bool by_modes = Order == 2 || (Order == 1 && basis.ring().kind == RingKind::cone);
     if (!by_modes) {
-      Padded grid[tile_grid::kCells];
+      Padded grid[tile_grid::kSlots];
       basis.controlGrid(tile.face, quarter.steps, tile.ring_steps,
                         pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer, grid);
       evaluateWindow<Order>(grid + window.b * tile_grid::kSize + window.a, tile_grid::kSize,

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "limitsurf/eigen/ring_cells.h"
+#include "limitsurf/eigen/ring_slots.h"
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"
 #include "support/random.h"
@@ -191,7 +191,7 @@ Tile randomTile(const Eigenbasis& basis, int face, int ring_steps, Random& rando
   return tile;
 }
 
-using BigGrid = std::array<Big, tile_grid::kCells>;
+using BigGrid = std::array<Big, tile_grid::kSlots>;
 
 class SubdividedTile {
  public:
@@ -203,7 +203,7 @@ class SubdividedTile {
     for (int i = 0; i < tile.ring_steps; ++i) stepRing();
     grid_.fill(0);
     std::size_t next = 0;
-    for (const int c : tile_grid::kOuterCells) {
+    for (const int c : tile_grid::kOuterSlots) {
       if (tile_grid::exists(tile.ring.sides(tile.face), c)) grid_[c] = tile.outer_points[next++];
     }
     takeRing();
@@ -242,8 +242,8 @@ class SubdividedTile {
     ring_ = next;
   }
   void takeRing() {
-    forEachRingCell(tile_.ring, tile_.face,
-                    [&](int cell, int point) { grid_[cell] = ring_[point]; });
+    forEachRingSlot(tile_.ring, tile_.face,
+                    [&](int slot, int point) { grid_[slot] = ring_[point]; });
   }
 
   Tile tile_;
@@ -347,9 +347,9 @@ void compareTile(const Eigenbasis& basis, int face, int ring_steps, Random& rand
       }
     }
 
-    Eigen::Array4d grid[tile_grid::kCells];
+    Eigen::Array4d grid[tile_grid::kSlots];
     basis.controlGrid(face, steps, ring_steps, relative, outer, grid);
-    for (int c = 0; c < tile_grid::kCells; ++c) {
+    for (int c = 0; c < tile_grid::kSlots; ++c) {
       if (!tile_grid::exists(sides, c)) continue;
       const double exact =
           asDouble(boost::multiprecision::ldexp(truth.grid()[c] - limit, steps - 1));
