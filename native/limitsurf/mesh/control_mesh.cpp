@@ -99,8 +99,8 @@ void checkHoles(const ControlMesh& mesh, const std::vector<std::int64_t>& holes)
   }
 }
 
-/// Counts edges only where there are enough faces to make it worth while: a vertex has at most
-/// twice as many edges as faces.
+/// A vertex has at most twice as many edges as faces, so that edges are counted only at vertices
+/// with more faces than half of kMaxValence.
 void checkValences(const ControlMesh& mesh) {
   std::vector<int> faces_at(mesh.vertexCount(), 0);
   for (const int vertex : mesh.faceVertices()) {

@@ -11,21 +11,22 @@
 
 namespace limitsurf {
 
+/// The subdivision scheme.
 enum class Scheme {
-  catmark,
-  bilinear,  ///< vertices and edges stay: each Ptex face is a bilinear patch, sharpness means
-             ///< nothing
+  catmark,   ///< Catmull-Clark
+  bilinear,  ///< vertices and edges stay where they are, so that each Ptex face is a bilinear
+             ///< patch; sharpness has no effect
 };
 
-/// Sharpness of edges, each given by its two vertices: 0 is smooth, 10 and more (infinity included)
-/// infinitely sharp. Rounded to float, as OpenSubdiv has it. Of an edge that is given twice the
-/// last value counts.
+/// Sharpness of edges, each given by its two vertices. 0 is smooth; 10 and more (infinity included)
+/// is infinitely sharp. Values are rounded to float, as in OpenSubdiv. Where an edge is given
+/// twice, the last value counts.
 struct EdgeSharpness {
   std::vector<std::pair<std::int64_t, std::int64_t>> edges;
   std::vector<double> values;
 };
 
-/// The same of vertices.
+/// Sharpness of vertices, with the same meaning.
 struct VertexSharpness {
   std::vector<std::int64_t> vertices;
   std::vector<double> values;
@@ -36,27 +37,27 @@ struct MeshOptions : SubdivisionOptions {
   EdgeSharpness edge_sharpness;
   VertexSharpness vertex_sharpness;
   std::vector<std::int64_t>
-      holes;  ///< faces that have no surface, though their neighbours see them
+      holes;  ///< faces that have no surface, but shape that of their neighbours
 };
 
 /// The control mesh (cage): positions, faces of any size, and the rules of their subdivision.
 ///
-/// A ControlMesh is checked when it is made and immutable afterwards. What makes the mesh
-/// meaningless throws MeshError, naming the face or vertex and the value:
+/// A ControlMesh is checked when it is made and immutable afterwards. The constructor throws
+/// MeshError, which names the face or vertex and the value, for:
 ///   - no faces at all;
 ///   - face_sizes that do not add up to the number of face_vertices, or a size below 3 or above
 ///     OpenSubdiv's limit of 65,535;
 ///   - a vertex index below 0 or past the last position;
 ///   - a position that is NaN or infinite;
 ///   - more than 65,535 edges at one vertex;
-///   - sharpness that is negative or NaN, or on an edge or vertex that the mesh has not;
+///   - sharpness that is negative or NaN, or on an edge or vertex that the mesh does not have;
 ///   - a hole that is no face of the mesh.
 ///
-/// What spoils some faces alone is accepted here and told by LimitSurface::refused(): a face that
-/// uses a vertex twice, or that touches a crease between other faces. Edges of three and more
-/// faces, or of two of opposite winding, are infinitely sharp, and so are vertices at which they
-/// end or sheets meet, as OpenSubdiv has it. Isolated vertices belong to no face and change
-/// nothing.
+/// Errors that concern some faces only are accepted here and reported by LimitSurface::refused(): a
+/// face that uses a vertex twice, or that touches a crease between other faces. As in OpenSubdiv,
+/// edges of three and more faces, or of two faces of opposite winding, are infinitely sharp, and so
+/// are vertices at which such edges end or at which sheets of faces meet. Isolated vertices belong
+/// to no face and have no effect.
 class ControlMesh {
  public:
   ControlMesh(Points positions, const std::vector<std::int64_t>& face_sizes,
@@ -68,12 +69,12 @@ class ControlMesh {
   int vertexCount() const { return static_cast<int>(positions_.rows()); }
   int faceCount() const { return static_cast<int>(face_offsets_.size()) - 1; }
   int faceSize(int face) const { return face_offsets_[face + 1] - face_offsets_[face]; }
-  /// Where the face's vertices begin among faceVertices().
+  /// The index of the face's first vertex in faceVertices().
   int firstCorner(int face) const { return face_offsets_[face]; }
   Span<int> faceVertices(int face) const {
     return Span<int>(face_vertices_).subspan(face_offsets_[face], faceSize(face));
   }
-  /// All faces' vertices, one face after the other.
+  /// The vertices of all faces, one face after the other.
   const std::vector<int>& faceVertices() const { return face_vertices_; }
   std::vector<int> faceSizes() const;
 
@@ -84,7 +85,8 @@ class ControlMesh {
   MeshOptions options_;
 };
 
-/// Throws MeshError naming the first row that is not finite, or a shape other than (vertices, 3).
+/// Throws MeshError for another number of rows than vertices, and for the first row that is not
+/// finite, which it names.
 void checkPositions(const Points& positions, int vertex_count);
 
 }  // namespace limitsurf

@@ -61,18 +61,19 @@ class Builder {
   }
 
  private:
-  /// What a value at a vertex has around it.
+  /// The faces and edges around one value at a vertex.
   struct Surroundings {
     int faces = 0;
     int inner_edges = 0;     ///< between two of its faces
-    int infinite_edges = 0;  ///< of these
+    int infinite_edges = 0;  ///< how many of these are infinitely sharp
     int semi_sharp_edges = 0;
 
-    /// It lies in several fans of faces (all open: a closed one holds the vertex alone).
+    /// Whether the value lies in several fans of faces. All of them are open: a closed fan would be
+    /// the only one at the vertex.
     bool disjoint() const { return faces - inner_edges > 1; }
   };
 
-  /// One vertex for each value at a vertex of the mesh.
+  /// Makes one vertex for each value at a vertex of the mesh.
   void numberVertices(const std::vector<std::int64_t>& indices) {
     vertex_at_.resize(indices.size());
     std::map<int, std::vector<int>> non_manifold_corners;
@@ -100,8 +101,9 @@ class Builder {
     first_.push_back(static_cast<int>(values_.size()));
   }
 
-  /// `in_order`: the corners follow each other around the vertex. OpenSubdiv (3.0 to 3.6) then
-  /// counts the second value that it meets once more where it comes back and there was no third.
+  /// `in_order`: whether successive corners are neighbours around the vertex. OpenSubdiv (3.0
+  /// to 3.6) then counts the second value that it meets again, as a third one, where that value
+  /// returns before any third one.
   void numberValues(const std::vector<std::int64_t>& indices, const std::vector<int>& corners,
                     bool in_order) {
     const int first = first_.back();
@@ -124,7 +126,7 @@ class Builder {
     }
   }
 
-  /// The ends of an edge, as one of its faces has them, in the order of Far's edge.
+  /// The new vertices at the ends of an edge in one of its faces, in the order of Far's edge.
   std::pair<int, int> endsIn(int edge, int i) const {
     const int face = level_.GetEdgeFaces(edge)[i];
     const int side = level_.GetEdgeFaceLocalIndices(edge)[i];
@@ -173,7 +175,7 @@ class Builder {
     const auto vertices = level_.GetEdgeVertices(edge);
     at_seam_[vertices[0]] = at_seam_[vertices[1]] = true;
     if (level_.IsEdgeNonManifold(edge)) {
-      // Of three faces, two may have the same values and yet must not join.
+      // Two of three faces may have the same values, but must not be joined.
       for (int i = 0; i < level_.GetEdgeFaces(edge).size(); ++i) {
         addEdge(endsIn(edge, i), kInfinitelySharp);
       }
@@ -214,7 +216,7 @@ class Builder {
     }
   }
 
-  /// Whether the values divide what the mesh has around the vertex.
+  /// Whether several values or a seam divide the faces around the vertex.
   bool isDivided(int vertex) const {
     return at_seam_[vertex] || first_[vertex + 1] - first_[vertex] > 1;
   }
@@ -248,7 +250,8 @@ class Builder {
            interpolation_ == Interpolation::corners_plus2;
   }
 
-  /// One of two values at a vertex, smooth itself, which stays a corner as long as the other.
+  /// Whether a value is one of two at a vertex and, though smooth itself, remains a corner for as
+  /// long as the other one does.
   bool dependsOnOther(int vertex, int derived) const {
     const int begin = first_[vertex], end = first_[vertex + 1];
     return sharpensAcross() && at_seam_[vertex] && end - begin == 2 &&
@@ -256,7 +259,8 @@ class Builder {
            around_[begin + end - 1 - derived].semi_sharp_edges > 0;
   }
 
-  /// Sharpness of the vertex's edges, those between faces with the value first. `count`: of these.
+  /// The sharpness of the vertex's edges. The first `count` of them lie between faces with the
+  /// value.
   std::vector<float> sharpnessAround(int vertex, int derived, int& count) const {
     std::vector<float> inner, others;
     for (const int edge : level_.GetVertexEdges(vertex)) {
@@ -270,7 +274,8 @@ class Builder {
     return inner;
   }
 
-  /// The vertex sharpness that keeps a value pinned for as long as the sharp edges of another do.
+  /// The vertex sharpness that keeps a value pinned for as long as the edges of the other one are
+  /// sharp.
   double sharpnessAcross(int vertex, int other) {
     int count;
     DecayingSharpness around(mesh_.options(), sharpnessAround(vertex, other, count));
@@ -281,7 +286,7 @@ class Builder {
     for (; sharp(around.nextEdges()); ++steps) {
       around.advance();
     }
-    // While the seam itself is still sharp OpenSubdiv does not blend the two rules.
+    // OpenSubdiv does not blend the two rules while the seam itself is still sharp.
     const float left = around.nextSemiSharp() ? 1 : around.weight(count);
     float sharpness = static_cast<float>(steps - 1) + left;
     const double result = sharpness;
@@ -291,13 +296,13 @@ class Builder {
     if (sharpness != left) {
       refuseAround(vertex,
                    "the sharpness of the edges on one side of a seam of values decays to a "
-                   "fraction that no sharpness of the other side decays to");
+                   "fraction to which no sharpness of the other side decays");
     }
     return result;
   }
 
-  /// Chaikin's rule averages sharpness over all edges at a vertex, seams included; a part of the
-  /// vertex on its own must come to the same.
+  /// Chaikin's rule averages sharpness over all edges at a vertex, including seams. The faces of
+  /// one value have to come to the same average on their own.
   void checkDecay(int vertex) {
     if (mesh_.options().creasing == Creasing::uniform) {
       return;
@@ -324,7 +329,8 @@ class Builder {
     }
   }
 
-  /// Refuses the faces that see the vertex: those that share a vertex with one of its own.
+  /// Refuses all faces whose surface depends on the vertex: those that share a vertex with one of
+  /// its faces.
   void refuseAround(int vertex, const char* reason) {
     const std::string why = text("at vertex ", vertex, ", ", reason);
     for (const int own : level_.GetVertexFaces(vertex)) {
@@ -342,12 +348,12 @@ class Builder {
   const Far::TopologyLevel& level_;
   const Interpolation interpolation_;
   MeshOptions options_;
-  std::vector<int> first_;      // vertex of the mesh -> its first value's vertex; one more
+  std::vector<int> first_;  // vertex of the mesh -> the first of its new vertices; one more entry
   std::vector<int> vertex_at_;  // corner -> vertex of the new mesh
   std::vector<int> values_;     // per vertex of the new mesh
   std::vector<Surroundings> around_;
   std::map<int, std::string> refused_;
-  std::vector<bool> at_seam_;  // per vertex of the mesh: a seam runs to it or through it
+  std::vector<bool> at_seam_;  // per vertex of the mesh: whether it is on a seam
 };
 
 }  // namespace

@@ -15,31 +15,33 @@ namespace limitsurf {
 /// channel's values for positions, is the channel's limit.
 ///
 /// It has the faces of the surface's mesh, corner by corner, and one vertex for each value that a
-/// vertex of that mesh takes. An edge at either of whose ends the values differ between its two
-/// faces is a seam, and falls apart into two boundaries; all other edges keep their sharpness.
-/// Where a value lies in several fans of faces around its vertex, these meet in a bow-tie, which is
-/// pinned, unless OpenSubdiv takes them for different values (numberValues() says when). What the
-/// rules of `Interpolation` and of the surface's boundary pin besides gets infinite vertex
-/// sharpness, so the mesh's own boundary rule is always Boundary::smooth.
+/// vertex of that mesh takes. An edge is a seam if the values of its two faces differ at one of its
+/// ends. A seam becomes two boundaries; all other edges keep their sharpness. Where a value lies in
+/// several fans of faces around its vertex, these fans share a vertex, which is pinned, unless
+/// OpenSubdiv takes them for different values (numberValues() says when). Other vertices that the
+/// rules of `Interpolation` and of the surface's boundary pin get infinite sharpness, so that the
+/// mesh's own boundary rule is always Boundary::smooth.
 struct FaceVaryingMesh {
   ControlMesh mesh;         ///< all positions are 0
   std::vector<int> values;  ///< per vertex of `mesh`: the row of its value
-  /// Faces whose values cannot be had in a mesh of their own, with the reason; holes of `mesh`.
+  /// Faces whose values no mesh of this kind can represent, with the reason. They are holes of
+  /// `mesh`.
   std::map<int, std::string> refused;
 };
 
 /// `indices` holds the value of each corner of the faces of `mesh`, one face after the other.
 /// Faces that `topology`, that of `mesh`, refuses become holes.
 ///
-/// Throws MeshError naming corner and index where `indices` has another size than the mesh has
-/// corners, or an index is not below `value_count`.
+/// Throws MeshError where `indices` has another size than the mesh has corners, and for an index
+/// that is not below `value_count`, naming it and its corner.
 ///
-/// Refuses the faces around a seam's vertex where the decay of semi-sharp edges cannot be had in a
-/// mesh of its own:
+/// Refuses the faces around a seam's vertex where no mesh of this kind can represent the decay of
+/// semi-sharp edges:
 ///   - with Creasing::chaikin, if the average of sharpness around a vertex is not the same in each
 ///     of the parts into which seams divide it;
-///   - with corners_plus1 and corners_plus2, if a value is to be as sharp as another across the
-///     seam, whose several edges decay to an average that no one float decays to.
+///   - with corners_plus1 and corners_plus2, if a value has to be as sharp as another one across
+///   the
+///     seam, whose edges decay to an average to which no single float decays.
 FaceVaryingMesh faceVaryingMesh(const ControlMesh& mesh, const Topology& topology,
                                 const std::vector<std::int64_t>& indices, std::int64_t value_count,
                                 Interpolation interpolation);

@@ -8,7 +8,7 @@
 
 namespace limitsurf {
 
-/// The parts one after the other, numbers with all their digits.
+/// The parts one after the other, with all digits of numbers.
 template <typename... Parts>
 std::string text(const Parts&... parts) {
   std::ostringstream stream;
@@ -17,6 +17,7 @@ std::string text(const Parts&... parts) {
   return stream.str();
 }
 
+/// Throws a MeshError whose message consists of the parts.
 template <typename... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
   throw MeshError(text(parts...));

@@ -7,7 +7,7 @@
 
 namespace limitsurf {
 
-/// Numbers the Ptex faces of a mesh.
+/// The numbers of a mesh's Ptex faces.
 struct PtexFaces {
   explicit PtexFaces(const ControlMesh& mesh);
   std::vector<int> base_face, corner;  ///< per Ptex face

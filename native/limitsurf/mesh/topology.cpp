@@ -13,9 +13,12 @@ namespace {
 
 namespace Far = OpenSubdiv::Far;
 
+/// Faces of up to this size are searched for repeated vertices without sorting, which takes longer.
+constexpr std::size_t kFewVertices = 8;
+
 /// A vertex that the face names twice, or -1.
 int repeatedVertex(Span<int> vertices) {
-  if (vertices.size() <= 8) {
+  if (vertices.size() <= kFewVertices) {
     for (std::size_t i = 1; i < vertices.size(); ++i) {
       if (std::find(vertices.begin(), vertices.begin() + i, vertices[i]) != vertices.begin() + i) {
         return vertices[i];
@@ -38,7 +41,7 @@ struct Sharpness {
     const EdgeSharpness& edge = mesh.options().edge_sharpness;
     const VertexSharpness& vertex = mesh.options().vertex_sharpness;
     if (!edge.edges.empty()) {
-      // Far looks an edge up among those of its first vertex, of which a pole has many.
+      // Far searches an edge among those of its first vertex: take the end that has fewer.
       std::vector<int> faces_at(mesh.vertexCount(), 0);
       for (const int v : mesh.faceVertices()) {
         ++faces_at[v];
@@ -87,7 +90,7 @@ Topology::Topology(const ControlMesh& mesh) {
   refiner_.reset(Factory::Create(
       descriptor, Factory::Options(OpenSubdiv::Sdc::SCHEME_CATMARK, sdcOptions(mesh.options()))));
   if (!refiner_) {
-    throw MeshError("OpenSubdiv cannot represent the mesh's topology");
+    throw MeshError("OpenSubdiv cannot represent the topology of the mesh");
   }
   has_sharpness_ = sharpness.any();
   refuseFaces(mesh);
@@ -107,7 +110,7 @@ void Topology::refuseFaces(const ControlMesh& mesh) {
 }
 
 void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
-  std::map<int, std::vector<std::pair<int, int>>> corners;  // (face, corner) at each
+  std::map<int, std::vector<std::pair<int, int>>> corners;  // vertex -> (face, corner) of each face
   for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
     if (level().IsVertexNonManifold(vertex)) {
       corners[vertex];
@@ -131,7 +134,7 @@ void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
 
 void Topology::splitIntoFans(const ControlMesh& mesh, int vertex,
                              const std::vector<std::pair<int, int>>& corners) {
-  // Manifold edge -> which corner it leads out of, and which it leads back to.
+  // Manifold edge -> the corner from which it leaves, and the corner at which it arrives.
   std::map<int, int> leaving, arriving;
   std::vector<std::pair<int, int>> edges;  // of each corner: leaving, arriving
   for (const auto& [face, corner] : corners) {
@@ -159,7 +162,7 @@ void Topology::splitIntoFans(const ControlMesh& mesh, int vertex,
       i = next->second;
     }
     if (mesh.options().scheme == Scheme::catmark) {
-      refuseStrangersToCrease(fan);
+      refuseBesideCrease(fan);
     }
     split_fans_.push_back(std::move(fan));
   };
@@ -175,7 +178,8 @@ void Topology::splitIntoFans(const ControlMesh& mesh, int vertex,
   }
 }
 
-void Topology::refuseStrangersToCrease(const SplitFan& fan) {
+/// Refuses the faces of a fan at a vertex on a crease unless the fan is a sector of that crease.
+void Topology::refuseBesideCrease(const SplitFan& fan) {
   if (isInfinitelySharp(level().GetVertexSharpness(fan.vertex))) {
     return;
   }

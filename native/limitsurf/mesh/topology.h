@@ -13,28 +13,29 @@
 
 namespace limitsurf {
 
-/// A control mesh's adjacency and sharpness, from OpenSubdiv's Far, and the verdict on which faces
-/// have a limit surface.
+/// The adjacency and sharpness of a control mesh, from OpenSubdiv's Far, and the decision which of
+/// its faces have a limit surface.
 class Topology {
  public:
   /// Throws MeshError where OpenSubdiv cannot represent the mesh.
   explicit Topology(const ControlMesh& mesh);
 
-  /// Sharpness is the mesh's, but that boundary edges, non-manifold edges and vertices, and corners
-  /// that are to be pinned are infinitely sharp.
+  /// The mesh in Far's form. Sharpness is the mesh's, except that boundary edges, non-manifold
+  /// edges and vertices, and pinned corners are infinitely sharp.
   const OpenSubdiv::Far::TopologyLevel& level() const { return refiner_->GetLevel(0); }
 
-  /// Whether any edge between two faces, or any vertex but a boundary's corner, is sharp.
+  /// Whether any edge between two faces is sharp, or any vertex other than the corners of
+  /// boundaries.
   bool hasSharpness() const { return has_sharpness_; }
 
-  /// Faces without a limit surface, with the reason: holes; faces that use a vertex twice. And
-  /// some that have one, but not yet here: closed fans of faces, and fans that begin and end at one
-  /// edge, at a vertex that follows a crease between other faces.
+  /// Faces without a limit surface, with the reason: holes, and faces that use a vertex twice. Some
+  /// others have a limit surface, but this library does not support them: closed fans of faces, and
+  /// fans that begin and end at the same edge, at a vertex on a crease between other faces.
   const std::map<int, std::string>& refused() const { return refused_; }
 
-  /// Faces around a non-manifold vertex that are linked by manifold edges. As OpenSubdiv has it,
-  /// non-manifold edges are infinitely sharp, and non-manifold vertices too unless exactly two such
-  /// edges run through them as a crease; so each fan is a sector, or a cone, of its own.
+  /// Faces around a non-manifold vertex that manifold edges link. As in OpenSubdiv, non-manifold
+  /// edges are infinitely sharp, and so are non-manifold vertices, except those through which
+  /// exactly two such edges run as a crease. So each fan is a sector or a cone of its own.
   struct SplitFan {
     int vertex;
     bool closed;                             ///< faces all around
@@ -47,7 +48,7 @@ class Topology {
   void splitNonManifoldVertices(const ControlMesh& mesh);
   void splitIntoFans(const ControlMesh& mesh, int vertex,
                      const std::vector<std::pair<int, int>>& corners);
-  void refuseStrangersToCrease(const SplitFan& fan);
+  void refuseBesideCrease(const SplitFan& fan);
 
   std::unique_ptr<const OpenSubdiv::Far::TopologyRefiner> refiner_;
   bool has_sharpness_ = false;

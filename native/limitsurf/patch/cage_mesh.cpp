@@ -6,6 +6,12 @@
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
+namespace {
+
+/// A vertex takes a small part of the time of an evaluation.
+constexpr std::size_t kVerticesPerTask = 16384;
+
+}  // namespace
 
 CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology)
     : mesh_(mesh),
@@ -19,7 +25,7 @@ CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology)
       fan_of_[cornerNumber({face, corner})] = static_cast<int>(fan);
     }
   }
-  parallelFor(marks_.size(), 16384, 0, [&](std::size_t begin, std::size_t end) {
+  parallelFor(marks_.size(), kVerticesPerTask, 0, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       mark(static_cast<int>(v));
     }
@@ -28,7 +34,7 @@ CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology)
 
 void CageMesh::mark(int vertex) {
   if (!isSplit(vertex) && any_non_manifold_ && level_.IsVertexNonManifold(vertex)) {
-    return;  // its fans stand for it
+    return;  // it is represented by its fans
   }
   const VertexFan around = fan(vertex);
   std::uint8_t marks = kQuads;
@@ -63,7 +69,7 @@ bool CageMesh::isRegular(int vertex, const VertexFan& around) const {
   if (edges != 2 && isSharp(around.sharpness)) {
     return false;
   }
-  // The first and last edge of a boundary are infinitely sharp by themselves.
+  // The first and the last edge of a boundary are infinitely sharp anyway.
   const auto of_vertex = level_.GetVertexEdges(vertex);
   const int skipped = around.closed ? 0 : 1;
   for (int i = skipped; i < of_vertex.size() - skipped; ++i) {
@@ -91,7 +97,7 @@ VertexFan CageMesh::fan(int vertex) const {
   return result;
 }
 
-std::vector<float> CageMesh::strangeEdges(int vertex) const {
+std::vector<float> CageMesh::edgesOfOtherFans(int vertex) const {
   std::vector<float> result;
   if (!isSplit(vertex)) {
     return result;

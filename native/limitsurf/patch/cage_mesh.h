@@ -52,14 +52,14 @@ class CageMesh final : public FaceMesh {
 
   VertexFan fan(int vertex) const override;
   bool onlyQuadsAround(int vertex) const override { return (marks_[vertex] & kQuads) != 0; }
-  std::vector<float> strangeEdges(int vertex) const override;
+  std::vector<float> edgesOfOtherFans(int vertex) const override;
   int point(int vertex) override { return isSplit(vertex) ? splitFan(vertex).vertex : vertex; }
 
-  /// Whether the surface around the vertex, if all its faces are quads, is a B-spline's.
+  /// Whether the surface around the vertex is a B-spline, provided that all its faces are quads.
   bool regularVertex(int vertex) const { return (marks_[vertex] & kRegular) != 0; }
   /// Whether the face's surface is one B-spline patch, smooth inside.
   bool regularFace(int face) const;
-  /// At which corners of a regular face there are faces all around.
+  /// The corners of a regular face that have faces all around.
   std::array<bool, 4> diagonals(int face) const;
 
  private:

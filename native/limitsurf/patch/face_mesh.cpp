@@ -15,8 +15,8 @@ SharpnessAround FaceMesh::sharpnessAround(int vertex) const {
   if (!around.closed) {
     result.edges.push_back(sharpness(before(last)));
   }
-  const std::vector<float> strange = strangeEdges(vertex);
-  result.edges.insert(result.edges.end(), strange.begin(), strange.end());
+  const std::vector<float> others = edgesOfOtherFans(vertex);
+  result.edges.insert(result.edges.end(), others.begin(), others.end());
   return result;
 }
 

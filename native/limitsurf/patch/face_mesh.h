@@ -5,7 +5,7 @@
 
 namespace limitsurf {
 
-/// A corner of a face. As a side of the face it stands for the edge from this corner to the next.
+/// A corner of a face. Used as a side of the face, it means the edge from this corner to the next.
 struct FaceCorner {
   int face = -1;
   int corner = 0;
@@ -18,7 +18,7 @@ struct FaceCorner {
 
 /// The faces around a vertex, as far as manifold edges link them.
 struct VertexFan {
-  FaceCorner first;  ///< the others follow by FaceMesh::turned(); on a boundary the first of all
+  FaceCorner first;  ///< FaceMesh::turned() leads to the others; on a boundary it is the first one
   int faces;
   bool closed;  ///< faces all around
   float sharpness;
@@ -37,16 +37,16 @@ class FaceMesh {
   virtual int cornerNumber(FaceCorner at) const = 0;
   virtual int cornerCount() const = 0;
   virtual int vertexCount() const = 0;
-  /// The same edge as a side of the face beyond it; does not exist on a boundary, nor at an edge
-  /// that is not manifold.
+  /// The same edge as a side of the face beyond it. There is none on a boundary and at an edge that
+  /// is not manifold.
   virtual FaceCorner twin(FaceCorner side) const = 0;
-  /// Of the edge; infinite where it has no twin.
+  /// The sharpness of the edge; infinite where the side has no twin.
   virtual float sharpness(FaceCorner side) const = 0;
 
   virtual VertexFan fan(int vertex) const = 0;
   virtual bool onlyQuadsAround(int vertex) const = 0;
-  /// Sharpness of edges at the vertex that belong to none of its fan's faces.
-  virtual std::vector<float> strangeEdges(int vertex) const = 0;
+  /// The sharpness of those edges at the vertex that belong to none of its fan's faces.
+  virtual std::vector<float> edgesOfOtherFans(int vertex) const = 0;
 
   /// The number of the vertex's control point.
   virtual int point(int vertex) = 0;
@@ -62,8 +62,8 @@ class FaceMesh {
   /// The same vertex's corner in the next face around it, counter-clockwise.
   FaceCorner turned(FaceCorner at) const { return twin(before(at)); }
 
-  /// The edge as a side of the face beyond it, unless it cuts the surface: a boundary or an
-  /// infinitely sharp edge.
+  /// The edge as a side of the face beyond it, if the surface is smooth across it: there is none at
+  /// a boundary and at an infinitely sharp edge.
   FaceCorner across(FaceCorner side) const {
     return isInfinitelySharp(sharpness(side)) ? FaceCorner{} : twin(side);
   }
@@ -80,7 +80,8 @@ class FaceMesh {
     }
   }
 
-  /// The sharpness around a vertex: its edges counter-clockwise, then strange ones.
+  /// The sharpness around a vertex: that of its fan's edges, counter-clockwise, then that of the
+  /// other edges at the vertex.
   SharpnessAround sharpnessAround(int vertex) const;
 };
 

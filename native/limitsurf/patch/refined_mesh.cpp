@@ -2,7 +2,6 @@
 #include "limitsurf/patch/refined_mesh.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace limitsurf {
 
@@ -14,7 +13,7 @@ RefinedMesh::RefinedMesh(FaceMesh& parent, const std::vector<int>& faces,
       crease_(sdcOptions(options)),
       points_(points),
       child_of_corner_(static_cast<std::size_t>(parent.cornerCount()), -1) {
-  // What Chaikin's rule makes of an edge hangs on the edges at both its ends.
+  // Under Chaikin's rule the sharpness of a child edge depends on the edges at both its ends.
   markVertices(faces, has_sharpness && !crease_.IsUniform());
   makeChildren();
   makeVertices();
@@ -67,7 +66,7 @@ int RefinedMesh::newVertex(Origin origin, FaceCorner at) {
 void RefinedMesh::makeVertices() {
   corner_vertex_.assign(4 * origin_.size(), -1);
   const auto corner = [&](int child, int i) -> int& { return corner_vertex_[4 * child + i]; };
-  // The midpoint of a side, and in which corners of the children beside it it stands.
+  // Makes the midpoint of a side, and sets it at the corners of the children beside that side.
   const auto setMidpoint = [&](FaceCorner side) {
     const int vertex = newVertex(kEdge, side);
     const auto set = [&](FaceCorner half) {
@@ -145,8 +144,8 @@ void RefinedMesh::subdivideSharpness() {
       sides[3] = around.child_edges[fan.closed && i + 1 == fan.faces ? 0 : i + 1];
     }
     if (static_cast<int>(around.edges.size()) > fan.edges()) {
-      strange_edges_[static_cast<int>(v)].assign(around.child_edges.begin() + fan.edges(),
-                                                 around.child_edges.end());
+      other_fans_edges_[static_cast<int>(v)].assign(around.child_edges.begin() + fan.edges(),
+                                                    around.child_edges.end());
     }
   }
 }
@@ -171,115 +170,9 @@ VertexFan RefinedMesh::fan(int vertex) const {
   return {{child(parent_.after(made.at, 1)), 3}, closed ? 4 : 2, closed, 0};
 }
 
-std::vector<float> RefinedMesh::strangeEdges(int vertex) const {
-  const auto known = strange_edges_.find(vertex);
-  return known == strange_edges_.end() ? std::vector<float>() : known->second;
-}
-
-int RefinedMesh::point(int vertex) {
-  if (point_[vertex] < 0) {
-    const int refined = static_cast<int>(refined_vertices_.size());
-    if (vertex < refined) {
-      point_[vertex] = vertexPoint(refined_vertices_[vertex]);
-    } else {
-      const NewVertex& made = new_vertices_[vertex - refined];
-      point_[vertex] = made.origin == kFace ? facePoint(made.at.face) : edgePoint(made.at);
-    }
-  }
-  return point_[vertex];
-}
-
-int RefinedMesh::facePoint(int face) {
-  std::vector<int> sources;
-  for (int corner = 0; corner < parent_.faceSize(face); ++corner) {
-    sources.push_back(parent_.point(parent_.vertex({face, corner})));
-  }
-  return points_.addFacePoint(sources);
-}
-
-float RefinedMesh::childSharpness(FaceCorner side) const {
-  if (crease_.IsUniform()) {
-    return crease_.SubdivideUniformSharpness(parent_.sharpness(side));
-  }
-  const int vertex = parent_.vertex(side);
-  int index = 0, i = 0;
-  parent_.forEachAround(parent_.fan(vertex), [&](FaceCorner at) {
-    if (at == side) {
-      index = i;
-    }
-    ++i;
-  });
-  return subdivided(vertex).child_edges[index];
-}
-
-int RefinedMesh::edgePoint(FaceCorner side) {
-  std::vector<int> sources = {parent_.point(parent_.vertex(side)),
-                              parent_.point(parent_.vertexAfter(side, 1))};
-  const FaceCorner beyond = parent_.twin(side);
-  const float sharpness = parent_.sharpness(side);
-  if (!beyond.exists() || sharpness >= 1) {
-    return points_.addMidpoint(sources[0], sources[1]);
-  }
-  sources.push_back(point(face_vertex_.at(side.face)));
-  sources.push_back(point(face_vertex_.at(beyond.face)));
-  const int sizes[] = {parent_.faceSize(side.face), parent_.faceSize(beyond.face)};
-  if (!isSharp(sharpness)) {
-    return points_.addEdgePoint(sources, sizes[0], sizes[1]);
-  }
-  const float child_sharpness[] = {childSharpness(side), childSharpness(beyond)};
-  return points_.addEdgePoint(sources, sharpness, child_sharpness, sizes[0], sizes[1]);
-}
-
-int RefinedMesh::vertexPoint(int vertex) {
-  const VertexFan fan = parent_.fan(vertex);
-  std::vector<int> sources = {parent_.point(vertex)};
-  if (isInfinitelySharp(fan.sharpness)) {
-    return points_.addVertexPoint(sources, VertexRule::corner, 0);
-  }
-  const SharpnessAround around = has_sharpness_ ? subdivided(vertex) : SharpnessAround{};
-  const bool sharp_inside =
-      isSharp(around.vertex) ||
-      std::any_of(around.edges.begin() + (fan.closed || around.edges.empty() ? 0 : 1),
-                  around.edges.end() - (fan.closed || around.edges.empty() ? 0 : 1), isSharp);
-  std::vector<FaceCorner> corners;
-  parent_.forEachAround(fan, [&](FaceCorner at) { corners.push_back(at); });
-  const auto farEnd = [&](int edge) {
-    return edge < fan.faces ? parent_.point(parent_.vertexAfter(corners[edge], 1))
-                            : parent_.point(parent_.vertex(parent_.before(corners.back())));
-  };
-  if (!sharp_inside) {
-    if (!fan.closed) {
-      sources.push_back(farEnd(0));
-      sources.push_back(farEnd(fan.faces));
-      return points_.addVertexPoint(sources, VertexRule::crease, fan.edges());
-    }
-    for (int i = 0; i < fan.faces; ++i) {
-      sources.push_back(farEnd(i));
-    }
-    for (const FaceCorner at : corners) {
-      sources.push_back(point(face_vertex_.at(at.face)));
-    }
-    return points_.addVertexPoint(sources, VertexRule::smooth, fan.faces);
-  }
-
-  const auto mask = points_.rules().vertexMask(around, fan.faces);
-  std::vector<double> weights = {mask.vertex};
-  for (std::size_t i = 0; i < mask.edges.size(); ++i) {
-    if (mask.edges[i] != 0) {
-      if (static_cast<int>(i) >= fan.edges()) {
-        throw std::logic_error("a vertex moves along edges that are not its own");
-      }
-      sources.push_back(farEnd(static_cast<int>(i)));
-      weights.push_back(mask.edges[i]);
-    }
-  }
-  for (std::size_t i = 0; i < mask.faces.size(); ++i) {
-    if (mask.faces[i] != 0) {
-      sources.push_back(point(face_vertex_.at(corners[i].face)));
-      weights.push_back(mask.faces[i]);
-    }
-  }
-  return points_.addPoint(sources, weights);
+std::vector<float> RefinedMesh::edgesOfOtherFans(int vertex) const {
+  const auto known = other_fans_edges_.find(vertex);
+  return known == other_fans_edges_.end() ? std::vector<float>() : known->second;
 }
 
 }  // namespace limitsurf

@@ -10,13 +10,14 @@
 
 namespace limitsurf {
 
-/// One Catmull-Clark refinement of some faces of another level, with as much of the faces around
-/// them as their children's neighbourhoods take: the corner children at every vertex of the faces.
+/// One Catmull-Clark refinement of some faces of another level, and of those parts of the faces
+/// around them that the neighbourhoods of their children need: the child at that corner of each
+/// face at which it meets one of the refined faces.
 ///
 /// The child of face f at its corner c has at its corners 0 to 3 the points of f's vertex c, of the
-/// edge c, of f itself and of the edge c - 1: the orientation of Ptex sub-faces. Only children of
-/// the refined faces, and vertices of these, may be asked about their surroundings. Points come to
-/// be when they are asked for.
+/// edge c, of f itself and of the edge c - 1: the orientation of Ptex sub-faces. The
+/// surroundings are known for the children of the refined faces, and for the vertices of these,
+/// alone. A point is made when it is first asked for.
 class RefinedMesh final : public FaceMesh {
  public:
   RefinedMesh(FaceMesh& parent, const std::vector<int>& faces, const SubdivisionOptions& options,
@@ -41,7 +42,7 @@ class RefinedMesh final : public FaceMesh {
   float sharpness(FaceCorner side) const override;
   VertexFan fan(int vertex) const override;
   bool onlyQuadsAround(int) const override { return true; }
-  std::vector<float> strangeEdges(int vertex) const override;
+  std::vector<float> edgesOfOtherFans(int vertex) const override;
   int point(int vertex) override;
 
  private:
@@ -58,29 +59,41 @@ class RefinedMesh final : public FaceMesh {
   void subdivideSharpness();
   int newVertex(Origin origin, FaceCorner at);
 
-  /// The sharpness around one of the parent's vertices and what a step makes of it.
+  /// The sharpness around one of the parent's vertices, before and after a step.
   SharpnessAround subdivided(int parent_vertex) const;
-  /// Of the half of the parent's edge that begins at the side's first vertex.
+  /// The sharpness of that half of the parent's edge that begins at the side's first vertex.
   float childSharpness(FaceCorner side) const;
+
+  /// A vertex of the parent, and its corners in the faces around it.
+  struct VertexNeighbours {
+    int vertex;
+    VertexFan fan;
+    std::vector<FaceCorner> corners;
+  };
+  VertexNeighbours neighbours(int parent_vertex, const VertexFan& fan) const;
+  /// The parent's point at the far end of an edge of the vertex.
+  int farEnd(const VertexNeighbours& around, int edge);
 
   int facePoint(int face);
   int edgePoint(FaceCorner side);
   int vertexPoint(int parent_vertex);
+  int smoothVertexPoint(const VertexNeighbours& around);
+  int sharpVertexPoint(const VertexNeighbours& around, const SharpnessAround& sharpness);
 
   FaceMesh& parent_;
   const bool has_sharpness_;
   const OpenSubdiv::Sdc::Crease crease_;
   RefinedPoints& points_;
 
-  std::vector<int> refined_vertices_;      // of the parent; their new points come first
-  std::vector<VertexFan> fans_;            // of each of those; their children follow each other
-  std::vector<FaceCorner> origin_;         // per child
-  std::vector<int> child_of_corner_;       // by the parent's corner; -1: none
+  std::vector<int> refined_vertices_;  // of the parent; they are the first vertices here
+  std::vector<VertexFan> fans_;        // of these; the children around one have successive numbers
+  std::vector<FaceCorner> origin_;     // per child: the parent's corner
+  std::vector<int> child_of_corner_;   // by the parent's corner; -1: none
   std::vector<int> corner_vertex_, twin_;  // per corner
   std::vector<float> side_sharpness_;      // per corner; none if nothing is sharp
   std::vector<NewVertex> new_vertices_;
   std::unordered_map<int, int> face_vertex_;  // parent's face -> vertex
-  std::map<int, std::vector<float>> strange_edges_;
+  std::map<int, std::vector<float>> other_fans_edges_;
   std::vector<int> point_;  // per vertex; -1: not made yet
 };
 

@@ -18,7 +18,7 @@ int RefinedPoints::addMidpoint(int end_0, int end_1) {
 }
 
 int RefinedPoints::addEdgePoint(const std::vector<int>& sources, int face_size_0, int face_size_1) {
-  // Only triangles have weights of their own.
+  // The rules tell triangles from all other faces, and nothing else.
   return add(sources, MaskKey{kEdge, face_size_0 == 3 ? 3 : 4, face_size_1 == 3 ? 3 : 4});
 }
 

@@ -10,11 +10,12 @@
 
 namespace limitsurf {
 
-/// Control points of refined levels, each a combination of earlier points. The cage's points come
-/// first and are numbered as its vertices; refined points follow in the order of their making.
+/// Control points of refined levels, each a linear combination of earlier points. The cage's points
+/// come first and have the numbers of its vertices; refined points follow in the order in which
+/// they are made.
 ///
-/// A point stores the numbers of its sources; the weights (the mask) depend on its neighbourhood's
-/// topology and sharpness alone and are shared by all points that have the same.
+/// A point stores the numbers of its sources. Its weights (the mask) depend only on the topology
+/// and the sharpness around it, and all points with equal weights share them.
 class RefinedPoints {
  public:
   RefinedPoints(int cage_points, const SubdivisionOptions& options)
@@ -23,23 +24,25 @@ class RefinedPoints {
   int cagePoints() const { return cage_points_; }
   int size() const { return cage_points_ + static_cast<int>(mask_of_.size()); }
 
-  /// The new point of a face. Sources: its vertices.
+  /// The new point of a face. The sources are its vertices.
   int addFacePoint(const std::vector<int>& sources);
-  /// The midpoint: the new point of a boundary or infinitely sharp edge. Sources: its ends.
+  /// The midpoint, which is the new point of a boundary or of an infinitely sharp edge.
   int addMidpoint(int end_0, int end_1);
-  /// The new point of a smooth edge. Sources: its ends and the new points of its two faces (of the
-  /// sizes given).
+  /// The new point of a smooth edge. The sources are its ends and the new points of its two faces,
+  /// which have the sizes given.
   int addEdgePoint(const std::vector<int>& sources, int face_size_0, int face_size_1);
-  /// The same of a semi-sharp edge.
+  /// The new point of a semi-sharp edge, from the same sources.
   int addEdgePoint(const std::vector<int>& sources, float sharpness, const float child_sharpness[2],
                    int face_size_0, int face_size_1);
-  /// Sources: the vertex, the far ends of its edges and the points of its faces, as far as the rule
-  /// needs them: crease its first and last edge, corner none.
+  /// The new point of a vertex. The sources are the vertex, the far ends of its edges and the new
+  /// points of its faces, as far as the rule needs them: a crease takes the first and the last
+  /// edge, a corner takes none.
   int addVertexPoint(const std::vector<int>& sources, VertexRule rule, int edge_count);
-  /// Any mask; weights of 0 are left out.
+  /// A point with any mask. Sources whose weight is 0 are left out.
   int addPoint(const std::vector<int>& sources, const std::vector<double>& weights);
 
-  /// 2 inner - next: the surface's linear continuation past a boundary (paper, figure 2).
+  /// 2 inner - next: the surface's linear continuation past a boundary (Lacewell &
+  /// Burley 2007, figure 2).
   int addReflection(int inner, int next);
 
   Span<int> sources(int point) const {

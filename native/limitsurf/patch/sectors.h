@@ -9,13 +9,14 @@
 
 namespace limitsurf {
 
-/// Faces around a vertex between two infinitely sharp edges or boundaries, or all of them: what
-/// subdivides on its own once all that was semi-sharp at the vertex has decayed.
+/// The faces around a vertex between two boundaries or infinitely sharp edges, or all its faces if
+/// there are no such edges. Once no edge at the vertex is semi-sharp any more, and neither is the
+/// vertex, a sector is subdivided independently of the others.
 struct Sector {
   Ring ring;
   FaceCorner first;  ///< the others follow by FaceMesh::turned()
 
-  /// Whether the surface in the sector, if all its faces are quads, is a B-spline's.
+  /// Whether the surface in the sector is a B-spline, provided that all its faces are quads.
   bool regular() const {
     switch (ring.kind) {
       case RingKind::interior:
@@ -30,20 +31,21 @@ struct Sector {
   }
 };
 
-/// What a level's vertices are to the faces around them. Found when first asked for.
+/// The sectors around the vertices of a level. They are found when they are first asked for.
 class Sectors {
  public:
   Sectors(const FaceMesh& mesh, bool has_sharpness);
 
   enum class State : std::uint8_t {
     unknown,
-    settled,    ///< nothing at the vertex is semi-sharp: it consists of sectors
-    crease,     ///< two opposite edges of four are semi-sharp, equally, and nothing else is sharp
+    settled,    ///< nothing at the vertex is semi-sharp, so that it consists of sectors
+    crease,     ///< of four edges two opposite ones are equally semi-sharp; nothing else is sharp
     unsettled,  ///< anything else
   };
   State state(int vertex);
 
-  /// The sector a face's corner belongs to, and which of its faces it is; at settled vertices.
+  /// The sector to which a face's corner at a settled vertex belongs, and the position of the face
+  /// within that sector.
   int sectorOf(FaceCorner at) const { return corners_[mesh_.cornerNumber(at)].sector; }
   int positionOf(FaceCorner at) const { return corners_[mesh_.cornerNumber(at)].position; }
   const Sector& sector(int i) const { return sectors_[i]; }

@@ -4,7 +4,7 @@
 namespace limitsurf {
 namespace {
 
-/// Weights on the points after a blended step become weights on the points q before it:
+/// Replaces weights on the points r after a blended step by weights on the points q before it:
 ///   r-1 = (q-1 + q0) / 2, r0 = q0 + g (q-1 - 2 q0 + q1), r1 = (q0 + q1) / 2,
 ///   r2 = (q0 + 6 q1 + q2) / 8, r3 = (q1 + q2) / 2
 /// with g = (1 - remainder) / 8. The window begins at r-1, or at r0 if `far`.
@@ -31,7 +31,7 @@ void undoBlendedStep(CubicWeights& w, double g, bool far) {
   w.second[1] = second[1] / 8 + second[2] / 4;
 }
 
-/// The same for n = -log2(size) steps in which the point on the crease stays:
+/// The same for n = -log2(size) steps in which the point on the crease stays where it is:
 ///   q-1 - p0 = size (p-1 - p0), q0 = p0, q1 - p0 = size (p1 - p0),
 ///   q0 - 2 q1 + q2 = size^3 (p0 - 2 p1 + p2).
 void undoPinnedSteps(CubicWeights& w, double size) {
@@ -47,7 +47,7 @@ void undoPinnedSteps(CubicWeights& w, double size) {
   w.second[1] *= size;
 }
 
-/// Lets the last point be the linear continuation of its neighbours.
+/// Makes the last point the linear continuation of its neighbours.
 void foldLast(CubicWeights& w) {
   w.value[2] += 2 * w.value[3];
   w.value[1] -= w.value[3];

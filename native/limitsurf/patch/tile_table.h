@@ -16,7 +16,8 @@ namespace limitsurf {
 
 class Topology;
 
-/// A quad whose surface is one bicubic B-spline patch, or a few strips of one along a crease.
+/// A quad on which the surface is one bicubic B-spline patch, or a few bicubic strips along a
+/// crease.
 struct BSplineTile {
   std::array<int, 16> points;  ///< row-major in (y, x), from (-1, -1) to (2, 2)
   /// Sides with no points beyond them: boundaries of the surface and infinitely sharp edges. Their
@@ -26,7 +27,7 @@ struct BSplineTile {
   /// corner `crease_side` to the next.
   float crease = 0;
   std::int8_t crease_side = 0;
-  /// Whether the quad is so small that its points' own rounding matters (see TileTable::fine).
+  /// Whether the quad is so small that the rounding of its points matters (see TileTable::fine).
   bool fine = false;
 };
 
@@ -34,7 +35,7 @@ struct BSplineTile {
 struct RingTile {
   int ring;        ///< index into TileTable::rings
   int face;        ///< which of the ring's faces
-  int ring_steps;  ///< how many subdivisions the ring's points are older than the outer points
+  int ring_steps;  ///< by how many subdivisions the ring's points are older than the outer points
   int corner;      ///< the quad's corner with the extraordinary vertex
   int depth;       ///< how many splits of the Ptex face led to the quad
   Sides sides;     ///< of the ring's face
@@ -50,19 +51,19 @@ struct RingPoints {
   std::vector<int> points;  ///< in the order of Ring
 };
 
-/// What a Ptex face, or one of the four children of a split quad, consists of.
+/// The tile of a Ptex face or of one of the four children of a split quad, or its split.
 struct TileRef {
   enum Kind : std::uint32_t { kNone = 0, kBSpline = 1, kRing = 2, kSplit = 3 };
   std::uint32_t kind : 2;
   std::uint32_t index : 30;
 };
 
-/// The surface as tiles: topology only, no positions.
+/// The surface as a list of tiles. It depends on the topology alone and knows no positions.
 ///
 /// A Ptex face is one tile, or splits into four children, child c standing at its corner c with the
-/// orientation of RefinedMesh; children are tiles or split again. Splits happen where a tile could
-/// not serve: beside faces other than quads, where a quad has several extraordinary vertices, and
-/// where sharpness has yet to decay.
+/// orientation of RefinedMesh; children are tiles or split again. Quads
+/// are split where one tile does not suffice: beside faces other than quads, where a quad has
+/// several extraordinary vertices, and where sharpness has not decayed yet.
 struct TileTable {
   RefinedPoints points;
   std::vector<TileRef> faces;  ///< per Ptex face
@@ -71,16 +72,18 @@ struct TileTable {
   std::vector<RingTile> ring_tiles;  ///< grouped by ring
   std::vector<RingPoints> rings;
 
-  /// Splits after which a point, rounded to double, is no longer a good one for second derivatives:
-  /// they count 4^depth. Tables with such tiles ask for points of twice the precision.
+  /// From this depth on a point that is rounded to double is too inexact for second derivatives,
+  /// which multiply its rounding by 4^depth: tables with such tiles need points of twice the
+  /// precision. At smaller depths that factor is 16 at most.
   static constexpr int kFineDepth = 3;
   bool fine = false;
 
-  /// The deepest split: sharpness decays in 10 steps, and one or two more part the vertices.
+  /// The deepest split. Sharpness decays within 10 steps, and one or two more separate the
+  /// extraordinary vertices of a quad; the rest is room to spare.
   static constexpr int kMostDepth = 14;
 };
 
-/// Throws nothing: faces that `topology` refuses get tiles of kind kNone.
+/// Faces that `topology` refuses get tiles of kind kNone.
 TileTable buildTileTable(const ControlMesh& mesh, const Topology& topology, const PtexFaces& ptex);
 
 }  // namespace limitsurf

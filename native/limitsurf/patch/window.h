@@ -9,8 +9,9 @@
 
 namespace limitsurf {
 
-/// The vertices around a quad on the grid -1 <= x, y <= 2, as far as edges that do not cut the
-/// surface lead to them; -1 where there is none. Needs quads all around. `Mesh` is a FaceMesh.
+/// The vertices around a quad on the grid -1 <= x, y <= 2. A place is -1 if a boundary or an
+/// infinitely sharp edge stands between it and the quad. All faces around the quad have to be
+/// quads. `Mesh` is a FaceMesh.
 template <typename Mesh>
 class Window {
  public:
@@ -41,7 +42,7 @@ class Window {
  private:
   static FaceCorner turned(FaceCorner at, int steps) { return {at.face, (at.corner + steps) % 4}; }
 
-  /// (x, y) as seen from corner i, with its next corner at (1, 0).
+  /// Here (x, y) is counted from corner i, with the next corner at (1, 0).
   void set(int i, int x, int y, int vertex) {
     for (; i > 0; --i) {
       std::tie(x, y) = std::pair(1 - y, x);

@@ -9,7 +9,7 @@
 
 namespace limitsurf {
 
-/// The sharpness of edges around a vertex as it decays, step by step.
+/// The sharpness of the edges around a vertex, while it decays step by step.
 class DecayingSharpness {
  public:
   DecayingSharpness(const SubdivisionOptions& options, std::vector<float> edges)
@@ -26,7 +26,7 @@ class DecayingSharpness {
     step();
   }
 
-  /// How much of the sharp rule is left in a step that makes the first `count` edges smooth.
+  /// The weight of the sharp rule in a step after which the first `count` edges are smooth.
   float weight(int count) const {
     return std::min(
         1.f, crease_.ComputeFractionalWeightAtVertex(0, 0, count, edges_.data(), next_.data()));

@@ -10,14 +10,14 @@
 
 namespace limitsurf {
 
-/// Which rule moves a vertex.
+/// The rule for the new point of a vertex.
 enum class VertexRule {
   smooth,  ///< interior
-  crease,  ///< a boundary curve runs through it
+  crease,  ///< a boundary or a crease runs through it
   corner,  ///< pinned
 };
 
-/// Sdc's view of a mesh's rules.
+/// The options in the form that OpenSubdiv's Sdc takes.
 inline OpenSubdiv::Sdc::Options sdcOptions(const SubdivisionOptions& options) {
   using OpenSubdiv::Sdc::Options;
   Options sdc;
@@ -36,16 +36,18 @@ inline bool isSemiSharp(float sharpness) { return OpenSubdiv::Sdc::Crease::IsSem
 inline bool isInfinitelySharp(float sharpness) {
   return OpenSubdiv::Sdc::Crease::IsInfinite(sharpness);
 }
-constexpr float kInfinitelySharp = 10;  // Sdc's SHARPNESS_INFINITE, which has no address here
+/// The value of SHARPNESS_INFINITE of OpenSubdiv's Sdc, which its header does not give at compile
+/// time.
+constexpr float kInfinitelySharp = 10;
 
-/// A vertex's sharpness and that of its edges, before and after a step.
+/// The sharpness of a vertex and of its edges, before and after a step.
 struct SharpnessAround {
   float vertex = 0, child_vertex = 0;
   std::vector<float> edges, child_edges;
 };
 
-/// Weights of one Catmull-Clark step, taken from OpenSubdiv's Sdc, in any precision.
-/// Face weights apply to the new face points (Sdc's "face centers").
+/// The weights of one Catmull-Clark step, taken from OpenSubdiv's Sdc, in any precision.
+/// Face weights belong to the new points of the faces (Sdc calls them "face centers").
 template <typename Real>
 class SubdivisionRules {
  public:
@@ -55,8 +57,8 @@ class SubdivisionRules {
 
   struct VertexMask {
     Real vertex = 0;
-    std::vector<Real> edges;  ///< of the far ends of the vertex's edges; empty: all 0
-    std::vector<Real> faces;  ///< of the new points of the vertex's faces; empty: all 0
+    std::vector<Real> edges;  ///< for the far ends of the vertex's edges; empty if all are 0
+    std::vector<Real> faces;  ///< for the new points of the vertex's faces; empty if all are 0
   };
 
   struct EdgeMask {
@@ -71,7 +73,8 @@ class SubdivisionRules {
     return mask.VertexWeight(0);
   }
 
-  /// `face_sizes`: the two faces' sizes, which only Triangles::smooth looks at.
+  /// A smooth edge, or one on a boundary. The sizes of its faces matter for Triangles::smooth
+  /// alone.
   EdgeMask edgeMask(bool boundary, int face_size_0 = 4, int face_size_1 = 4) const {
     using OpenSubdiv::Sdc::Crease;
     Mask mask(2, 0, 2);
@@ -81,7 +84,7 @@ class SubdivisionRules {
     return edgeMaskOf(mask);
   }
 
-  /// An edge between two faces whose sharpness decays to that of its children.
+  /// An edge between two faces. Its sharpness decays to that of its two children.
   EdgeMask edgeMask(float sharpness, const float child_sharpness[2], int face_size_0,
                     int face_size_1) const {
     const Edge edge{
@@ -91,7 +94,7 @@ class SubdivisionRules {
     return edgeMaskOf(mask);
   }
 
-  /// A vertex with `face_count` faces and sharp edges, or sharp itself.
+  /// A vertex with `face_count` faces that is sharp or has sharp edges.
   VertexMask vertexMask(const SharpnessAround& around, int face_count) const {
     const Vertex vertex{static_cast<int>(around.edges.size()), face_count, &around};
     Mask mask(1, vertex.edge_count, vertex.edge_count);
@@ -99,13 +102,13 @@ class SubdivisionRules {
     return vertexMaskOf(mask);
   }
 
-  /// Edges and faces are counted counter-clockwise; on a boundary the first and last edge lie on
-  /// it.
+  /// A vertex without semi-sharp edges. Its edges and faces are numbered counter-clockwise; the
+  /// first and the last edge of a boundary vertex lie on the boundary.
   VertexMask vertexMask(VertexRule rule, int edge_count) const {
     using OpenSubdiv::Sdc::Crease;
     VertexMask result;
     if (rule == VertexRule::smooth && edge_count > kLargestSquarableValence) {
-      // Sdc squares the valence in an int.
+      // Sdc squares the valence in an int, which would overflow.
       const Real n = static_cast<Real>(edge_count);
       result.vertex = (n - 2) / n;
       result.edges.assign(edge_count, 1 / (n * n));
@@ -130,9 +133,10 @@ class SubdivisionRules {
   }
 
  private:
+  /// The largest integer whose square fits into 32 bits.
   static constexpr int kLargestSquarableValence = 46340;
 
-  // The neighbourhoods and the mask that Sdc's templates ask for.
+  // The classes that Sdc's templates take for neighbourhoods and masks.
   struct Face {
     int size;
     int GetNumVertices() const { return size; }
