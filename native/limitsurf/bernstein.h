@@ -7,7 +7,8 @@
 
 namespace limitsurf {
 
-/// The numbers 0 to 3 in the order of their values.
+/// The indices 0 to 3 in the order of their values; equal values stay in the order of their
+/// indices.
 inline std::array<int, 4> ascending(const double values[4]) {
   std::array<int, 4> order = {0, 1, 2, 3};
   std::sort(order.begin(), order.end(),
@@ -15,20 +16,21 @@ inline std::array<int, 4> ascending(const double values[4]) {
   return order;
 }
 
-/// A polynomial of degree N in s and in t on the unit square, by its Bernstein coefficients, i
-/// along s and j along t: they bound it, and those at the corners are its values there.
+/// A polynomial of degree N in s and in t on the unit square, by its Bernstein coefficients (i
+/// counts along s, j along t). The coefficients bound the polynomial, and those at the corners are
+/// its values there.
 template <int N>
 class Bernstein {
  public:
   static constexpr int kSize = N + 1;
-  /// Rows are as long as whole registers; what is left over repeats the last coefficient.
+  /// Rows are padded to whole registers; the padding repeats the last coefficient.
   static constexpr int kStride = kSize + (kSize & 1);
 
   double& at(int i, int j) { return c_[kStride * j + i]; }
   double at(int i, int j) const { return c_[kStride * j + i]; }
   /// The coefficients along s, for one j.
   const double* row(int j) const { return c_ + kStride * j; }
-  /// To be called when coefficients have been set one by one.
+  /// Sets the padding. Must be called after coefficients have been set one by one.
   void pad() {
     for (int j = 0; j < kSize; ++j) {
       c_[kStride * j + kStride - 1] = c_[kStride * j + N];
@@ -38,8 +40,8 @@ class Bernstein {
   double least() const { return all().minCoeff(); }
   double largest() const { return all().maxCoeff(); }
 
-  /// The polynomial on the square's quarters: out[0] at (0, 0), out[1] at (1/2, 0), out[2] at (0,
-  /// 1/2), out[3] at (1/2, 1/2). De Casteljau.
+  /// The polynomial on the square's quarters, by de Casteljau's algorithm: out[0] at (0, 0), out[1]
+  /// at (1/2, 0), out[2] at (0, 1/2), out[3] at (1/2, 1/2).
   void quarter(Bernstein out[4]) const {
     for (int j = 0; j < kSize; ++j) {
       double p[kSize];

@@ -16,20 +16,23 @@
 
 namespace limitsurf {
 
-/// What the calling thread wants to be asked every now and then while it works for long: may throw,
-/// which ends the work. Set for a scope, by those who know of keyboards and progress bars.
+/// A function that is called on the calling thread from time to time during long work. If it
+/// throws, the work ends. It is in effect for the lifetime of the object. Code that knows of
+/// keyboards and progress bars makes one, and the library, which knows of neither, calls pass().
 class InterruptionPoint {
  public:
-  explicit InterruptionPoint(std::function<void()> ask) : ask_(std::move(ask)), outer_(current()) {
+  explicit InterruptionPoint(std::function<void()> call)
+      : call_(std::move(call)), outer_(current()) {
     current() = this;
   }
   ~InterruptionPoint() { current() = outer_; }
   InterruptionPoint(const InterruptionPoint&) = delete;
   InterruptionPoint& operator=(const InterruptionPoint&) = delete;
 
+  /// Calls the innermost function of this thread, if there is one.
   static void pass() {
     if (current()) {
-      current()->ask_();
+      current()->call_();
     }
   }
 
@@ -39,7 +42,7 @@ class InterruptionPoint {
     return point;
   }
 
-  std::function<void()> ask_;
+  std::function<void()> call_;
   InterruptionPoint* outer_;
 };
 
@@ -51,12 +54,14 @@ inline void checkThreads(int threads) {
   }
 }
 
-/// The rows of a batch that make one task, where a row costs about as much as an evaluation.
+/// The number of rows of a batch that make one task, where a row takes about as long as an
+/// evaluation: long enough (some 50 microseconds) that starting a task costs little.
 constexpr std::size_t kRowsPerTask = 512;
 
-/// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or at most
-/// `threads` of them, with an InterruptionPoint after every so many. Bodies must not depend on how
-/// the range is cut.
+/// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or on at
+/// most `threads` of them. A range has about `grain` elements; InterruptionPoint::pass() is called
+/// after every kGrainsPerSlab of them. What a body does must not depend on how the range is
+/// divided.
 template <typename Body>
 void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& body) {
   constexpr std::size_t kGrainsPerSlab = 32;
@@ -76,7 +81,7 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
     if (threads == 0) {
       run();
     } else {
-      // An arena wider than the machine only draws a warning from TBB.
+      // TBB warns of an arena with more threads than the machine has cores.
       tbb::task_arena arena(std::min(threads, tbb::this_task_arena::max_concurrency()));
       arena.execute(run);
     }

@@ -5,8 +5,8 @@
 
 namespace limitsurf {
 
-/// Told now and then, on the calling thread, which part of the work is done, 0 to 1. What it throws
-/// ends the work.
+/// A function that is called from time to time, on the calling thread, with the part of the work
+/// that is done, 0 to 1. If it throws, the work ends.
 using Progress = std::function<void(double part)>;
 
 }  // namespace limitsurf

@@ -12,7 +12,7 @@ using Vector3 = Eigen::Vector3d;
 /// One point or vector per row.
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// A read-only view of contiguous elements that somebody else owns.
+/// A read-only view of contiguous elements. It does not own them.
 template <typename T>
 class Span {
  public:
@@ -33,11 +33,11 @@ class Span {
   std::size_t size_ = 0;
 };
 
-/// An address on the limit surface. `face` is a Ptex face id: a quad has one, an n-gon (n != 4) has
-/// n, one per corner, numbered in the order of the control mesh's faces. (u, v) lie in [0, 1]^2:
-/// a quad's (0,0), (1,0), (1,1), (0,1) are its vertices 0 to 3; a sub-face's are its corner, the
-/// midpoint of the edge that leaves the corner, the n-gon's centre, the midpoint of the edge
-/// before.
+/// An address on the limit surface. `face` is a Ptex face id. Ptex faces are numbered in the order
+/// of the control mesh's faces: a quad has one, an n-gon (n != 4) has n sub-faces, one for each
+/// corner. (u, v) lie in [0, 1]^2. On a quad (0,0), (1,0), (1,1), (0,1) are its vertices 0 to 3; on
+/// a sub-face they are its corner, the midpoint of the edge that leaves the corner, the n-gon's
+/// centre, and the midpoint of the edge that arrives at the corner.
 struct Location {
   int face = -1;
   double u = 0;

@@ -5,7 +5,8 @@
 
 namespace limitsurf {
 
-/// Uniform B-spline control points p0..p3, `stride` apart, to Bezier points of the middle span.
+/// Replaces the uniform B-spline control points p0..p3, which are `stride` apart, by the Bezier
+/// points of the middle span.
 inline void toBezier(Padded* p, int stride) {
   const Padded p0 = p[0], p1 = p[stride], p2 = p[2 * stride], p3 = p[3 * stride];
   p[0] = p1 + ((p0 - p1) + (p2 - p1)) / 6;
@@ -14,14 +15,14 @@ inline void toBezier(Padded* p, int stride) {
   p[3 * stride] = p2 + ((p1 - p2) + (p3 - p2)) / 6;
 }
 
-/// Bezier coefficients of a cubic from its values at 0, 1/3, 2/3 and 1, `stride` apart.
+/// Replaces the values of a cubic at 0, 1/3, 2/3 and 1 by its Bezier coefficients.
 inline void interpolateBezier(Padded* p, int stride) {
   const Padded p0 = p[0], p1 = p[stride], p2 = p[2 * stride], p3 = p[3 * stride];
   p[stride] = (-5 * p0 + 18 * p1 - 9 * p2 + 2 * p3) / 6;
   p[2 * stride] = (2 * p0 - 9 * p1 + 18 * p2 - 5 * p3) / 6;
 }
 
-/// `convert` applied to the rows and then to the columns of 4 x 4 points.
+/// Applies `convert` to the rows and then to the columns of 4 x 4 points.
 template <typename Convert>
 void convertBothWays(Padded points[16], const Convert& convert) {
   for (int i = 0; i < 4; ++i) {
@@ -32,14 +33,14 @@ void convertBothWays(Padded points[16], const Convert& convert) {
   }
 }
 
-/// Fills a side's missing points by linear continuation.
+/// Fills the missing points of a side by linear continuation (Lacewell & Burley 2007, figure 2).
 inline void continueLow(Padded* p, int along, int across) {
   for (int i = 0; i < 4; ++i) {
     p[i * along] = 2 * p[i * along + across] - p[i * along + 2 * across];
   }
 }
 
-/// The same for all sides without points beyond them.
+/// Fills the missing points of all sides that have none.
 inline void continueSides(Padded window[16], bool x_low, bool x_high, bool y_low, bool y_high) {
   if (x_low) {
     continueLow(window, 4, 1);

@@ -8,33 +8,33 @@
 
 namespace limitsurf {
 
-/// Where a rectangle, (s, t) in [0, 1]^2, lies on a Ptex face: u = u0 + us s + ut t, v = v0 + vs s
-/// + vt t. It keeps the face's orientation or is turned by right angles: either us and vt or ut and
-/// vs are 0.
+/// A rectangle on a Ptex face, with parameters (s, t) in [0, 1]^2 of its own: u = u0 + us s + ut t,
+/// v = v0 + vs s + vt t. It is turned by a multiple of 90 degrees: either us and vt or ut and vs
+/// are 0.
 struct FaceRectangle {
   int face = -1;
   double u0 = 0, us = 1, ut = 0;
   double v0 = 0, vs = 0, vt = 1;
 
   Location at(double s, double t) const {
-    // Where s and t run backwards, rounding may lead out of the face.
+    // Where s or t decreases u or v, rounding may lead out of the face.
     return {face, std::clamp(u0 + us * s + ut * t, 0., 1.),
             std::clamp(v0 + vs * s + vt * t, 0., 1.)};
   }
 
-  /// The part of it that begins at (s, t), with its own (s, t) in [0, 1]^2.
+  /// The part of the rectangle that begins at (s, t).
   FaceRectangle part(double s, double t, double width, double height) const {
     return {face,       u0 + us * s + ut * t, us * width, ut * height, v0 + vs * s + vt * t,
             vs * width, vt * height};
   }
 };
 
-/// Sides of a rectangle, as bits.
+/// The sides of a rectangle, as bits.
 constexpr unsigned kSideS0 = 1, kSideS1 = 2, kSideT0 = 4, kSideT1 = 8;
 
 /// A rectangle of a Ptex face on which the limit surface is one bicubic polynomial, in Bezier form.
 struct BezierPatch {
-  /// Three coordinates, padded so that compilers use whole registers; the fourth is 0.
+  /// Three coordinates, padded so that they fill whole registers; the fourth is 0.
   using Point = Eigen::Array4d;
 
   /// Value and derivatives with respect to (s, t); the value is relative to the anchor.
@@ -74,10 +74,11 @@ inline void cubic(const Point& a, const Point& b, const Point& c, const Point& d
   value = pq + t * (qr - pq);
 }
 
-/// The Bezier points of a cubic, `stride` apart, become those of its part between t0 and t1.
+/// Replaces the Bezier points of a cubic, which are `stride` apart, by those of its part between t0
+/// and t1.
 template <typename Point>
 inline void cut(Point* p, int stride, double t0, double t1) {
-  // The blossom: interpolated to t0 or t1 in each of three rounds.
+  // The blossom of the cubic: each of its three arguments is t0 or t1.
   const auto blossom = [&](double a, double b, double c) -> Point {
     const auto mix = [](const Point& x, const Point& y, double t) -> Point {
       return x + t * (y - x);

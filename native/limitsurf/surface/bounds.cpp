@@ -10,7 +10,7 @@
 namespace limitsurf {
 namespace {
 
-/// The maximum of each coordinate and of its negative, by branch and bound.
+/// The largest value of each coordinate and of its negative that has been found.
 struct Extremes {
   std::array<double, 6> most;
 
@@ -23,7 +23,8 @@ struct Extremes {
     }
   }
 
-  bool exceedBy(const Box& box, double tolerance) const {
+  /// Whether nothing in the box is larger by more than `tolerance`.
+  bool cover(const Box& box, double tolerance) const {
     for (int i = 0; i < 3; ++i) {
       if (box.high[i] > most[i] + tolerance || -box.low[i] > most[3 + i] + tolerance) {
         return false;
@@ -33,9 +34,16 @@ struct Extremes {
   }
 };
 
+/// A square is halved so often at most: its sides are then at the limit of double precision. (The
+/// tolerance ends the search earlier, unless all coefficients are equal but for rounding.)
 constexpr int kMostHalvings = 60;
 
-/// Raises `most` to the polynomial's maximum where that exceeds it by more than `tolerance`.
+/// Tiles that are searched one after the other. The result depends on it in its last bits, so that
+/// it must not depend on the number of threads.
+constexpr std::size_t kTilesPerBlock = 1024;
+
+/// Raises `most` to the polynomial's maximum if that is larger by more than `tolerance` (branch and
+/// bound).
 void raise(const Bernstein<3>& f, double tolerance, int halvings, double& most) {
   most = std::max({most, f.at(0, 0), f.at(3, 0), f.at(0, 3), f.at(3, 3)});
   if (f.largest() <= most + tolerance || halvings == 0) {
@@ -60,11 +68,12 @@ void include(const BezierPatch& patch, double tolerance, Extremes& extremes) {
   }
 }
 
-/// Patch after patch towards a core's vertex, until what is left can no longer matter.
+/// Includes patch after patch towards a core's vertex, until the rest of the core cannot change the
+/// result any more.
 void includeCore(const SurfacePatches& patches, SurfacePiece core, double tolerance,
                  Extremes& extremes) {
   extremes.include(patches.coreVertex(core));
-  if (extremes.exceedBy(patches.coreBox(core), tolerance)) {
+  if (extremes.cover(patches.coreBox(core), tolerance)) {
     return;
   }
   SurfacePatches::SplitCore split;
@@ -73,7 +82,7 @@ void includeCore(const SurfacePatches& patches, SurfacePiece core, double tolera
     for (const BezierPatch& patch : split.patches) {
       include(patch, tolerance, extremes);
     }
-    if (extremes.exceedBy(split.core_box, tolerance)) {
+    if (extremes.cover(split.core_box, tolerance)) {
       return;
     }
     core = split.core;
@@ -83,12 +92,12 @@ void includeCore(const SurfacePatches& patches, SurfacePiece core, double tolera
 }  // namespace
 
 Eigen::Matrix<double, 2, 3, Eigen::RowMajor> LimitSurface::bounds(int threads) const {
-  data_->check({}, threads);
+  checkThreads(threads);
   const SurfacePatches patches(*this, threads);
   const double tolerance = kPositionError / 4 * patches.diagonal();
 
-  // A first guess prunes most tiles; each block then goes on from it alone, so that the result does
-  // not depend on which block was first.
+  // A first guess excludes most tiles. Each block continues from this guess alone, so that the
+  // result does not depend on the order in which blocks are searched.
   Extremes guess;
   for (const Location& at : vertexLocations()) {
     if (at.face >= 0) {
@@ -98,13 +107,13 @@ Eigen::Matrix<double, 2, 3, Eigen::RowMajor> LimitSurface::bounds(int threads) c
       guess.include((jet.anchor + jet.patch.value).head<3>().matrix());
     }
   }
-  constexpr std::size_t kBlock = 1024;
   const std::size_t tiles = static_cast<std::size_t>(patches.tileCount());
-  std::vector<Extremes> blocks((tiles + kBlock - 1) / kBlock, guess);
+  std::vector<Extremes> blocks((tiles + kTilesPerBlock - 1) / kTilesPerBlock, guess);
   parallelFor(blocks.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       std::vector<SurfacePiece> pieces;
-      for (std::size_t i = block * kBlock; i < std::min(tiles, (block + 1) * kBlock); ++i) {
+      for (std::size_t i = block * kTilesPerBlock;
+           i < std::min(tiles, (block + 1) * kTilesPerBlock); ++i) {
         patches.appendPieces(static_cast<int>(i), pieces);
       }
       for (const SurfacePiece& piece : pieces) {

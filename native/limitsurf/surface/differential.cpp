@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// v over its length, or zero where it has none.
+/// v over its length; zero where the length is 0 or not finite.
 Vector3 direction(const Vector3& v) {
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0) || !std::isfinite(largest)) {

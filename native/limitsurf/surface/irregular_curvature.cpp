@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/vertex_approach.h"
 #include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
@@ -14,14 +15,18 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Planes whose normals are opposite, up to this, are turned into each other by no shortest
-/// rotation.
+/// Between planes whose normals are opposite there is no unique shortest rotation. Normals count as
+/// opposite where 1 plus their product is below this, which is well above rounding.
 constexpr double kOpposite = 1e-12;
 
-/// Places that are evaluated before their means are formed: memory stays small.
+/// How many places are evaluated before their means are formed, so that they take little memory.
 constexpr std::size_t kPlacesAtOnce = std::size_t{1} << 16;
 
-/// Whether a place is where the surface is singular.
+/// A place takes as long as several evaluations, and a mean takes as long as an evaluation for each
+/// of its places.
+constexpr std::size_t kPlacesPerTask = 64, kMeansPerTask = 64;
+
+/// Whether the surface is singular at a place.
 bool isSingular(const PrincipalCurvatures& curvature) {
   return !(curvature.direction1.allFinite() && curvature.direction2.allFinite());
 }
@@ -72,8 +77,8 @@ void IrregularCurvature::findCorners() {
 std::vector<PrincipalCurvatures> IrregularCurvature::around(const std::vector<int>& rings,
                                                             int threads) const {
   std::vector<PrincipalCurvatures> result(rings.size());
-  std::vector<int> tiles;           // of some rings in a row
-  std::vector<std::size_t> starts;  // of each of these rings
+  std::vector<int> tiles;           // of as many rings as are evaluated at once
+  std::vector<std::size_t> starts;  // per such ring: its first place
   std::vector<Place> places;
   for (std::size_t begin = 0, end = 0; begin < rings.size(); begin = end) {
     tiles.clear();
@@ -85,13 +90,13 @@ std::vector<PrincipalCurvatures> IrregularCurvature::around(const std::vector<in
       }
     }
     places.resize(tiles.size() * kPlacesPerFace);
-    parallelFor(places.size(), 64, threads, [&](std::size_t from, std::size_t to) {
+    parallelFor(places.size(), kPlacesPerTask, threads, [&](std::size_t from, std::size_t to) {
       TileEvaluator evaluator(table_, pose_);
       for (std::size_t i = from; i < to; ++i) {
         places[i] = place(evaluator, tiles[i / kPlacesPerFace], i % kPlacesPerFace);
       }
     });
-    parallelFor(end - begin, 64, threads, [&](std::size_t from, std::size_t to) {
+    parallelFor(end - begin, kMeansPerTask, threads, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) {
         result[begin + i] = mean(rings[begin + i], &places[starts[i]]);
       }
@@ -104,7 +109,7 @@ IrregularCurvature::Place IrregularCurvature::place(TileEvaluator& evaluator, in
                                                     int number) const {
   const int base = ptex_.base_face[corners_[ring_tile].face];
   const bool is_quad = ptex_.first[base + 1] - ptex_.first[base] == 1;
-  const double edge = is_quad ? 1 : 2;  // in u and v: a sub-face's sides are half edges
+  const double edge = is_quad ? 1 : 2;  // its length in u and v: a sub-face's sides are half edges
   Jet jet;
   evaluator.evaluate<2>(locate(evaluator, ring_tile, edge * radius_, number), jet);
   const Vector3 du = jet.patch.du.head<3>(), dv = jet.patch.dv.head<3>();
@@ -118,7 +123,7 @@ IrregularCurvature::Place IrregularCurvature::place(TileEvaluator& evaluator, in
 
 TileLocation IrregularCurvature::locate(const TileEvaluator& evaluator, int ring_tile, double side,
                                         int number) const {
-  // Counter-clockwise: up the one side, back along the other.
+  // Counter-clockwise: along the side u = side, then back along the side v = side.
   double u = number < 2 ? side : side * (number == 2 ? 0.75 : 0.25);
   double v = number < 2 ? side * (number == 0 ? 0.25 : 0.75) : side;
   const PtexCorner at = corners_[ring_tile];
@@ -128,7 +133,8 @@ TileLocation IrregularCurvature::locate(const TileEvaluator& evaluator, int ring
     turnParameters((4 - at.corner) & 3, u, v);
     return evaluator.locate({at.face, u, v});
   }
-  // In the vertex' own tile, which is seen from the vertex: no radius is too small.
+  // The place lies in the vertex's own tile, whose parameters begin at the vertex: no radius is too
+  // small for them.
   const TileRef tile = {TileRef::kRing, static_cast<std::uint32_t>(ring_tile)};
   return {tile, u * zoom, v * zoom, at.corner, depth};
 }
@@ -159,7 +165,7 @@ PrincipalCurvatures IrregularCurvature::mean(int ring, const Place* places) cons
     const PrincipalCurvatures& k = places[i].curvature;
     const Vector3 there = normalAt(k), both = normal + there;
     const double towards = 1 + normal.dot(there);
-    if (!(towards > kOpposite)) {  // or the vertex has no normal
+    if (!(towards > kOpposite)) {  // this includes NaN, where the vertex has no normal
       continue;
     }
     const auto add = [&](double bend, const Vector3& direction) {

@@ -10,19 +10,20 @@
 
 namespace limitsurf {
 
-/// Means of the curvature around irregular vertices, where it has no limit itself: what
-/// LimitSurface::curvature() promises of them.
+/// Means of the curvature around irregular vertices, where curvature itself has no limit.
+/// LimitSurface::curvature() defines them.
 class IrregularCurvature {
  public:
-  /// Places on each face that a mean is taken of: the middles of so many equal pieces of the two
-  /// sides of a square with the vertex at one corner that do not touch the vertex.
+  /// The number of places on each face. A square with the vertex at one corner has two sides that
+  /// do not touch the vertex; the places are the middles of the equal pieces of these sides.
   static constexpr int kPlacesPerFace = 4;
 
   /// `radius` is the side of that square, as a share of an edge. Cost: O(Ptex faces).
   IrregularCurvature(const TileTable& table, const Pose& pose, const PtexFaces& ptex,
                      double radius);
 
-  /// One for each of these rings of the table. Cost: O(valence) for each of a ring's faces.
+  /// The means around the vertices of these rings of the table. Cost: O(valence) for each of a
+  /// ring's faces.
   std::vector<PrincipalCurvatures> around(const std::vector<int>& rings, int threads) const;
 
  private:
@@ -31,11 +32,11 @@ class IrregularCurvature {
     int face = -1, corner = 0;
   };
 
-  /// What a place adds to the mean.
+  /// What a place contributes to the mean.
   struct Place {
     PrincipalCurvatures curvature;
-    double area;   ///< of the place's share of the surface, over the square of `scale`
-    double scale;  ///< the larger of the lengths that `area` is the product of
+    double area;   ///< |du x dv|, over the square of `scale`
+    double scale;  ///< the largest component of du and dv, counted in edges
   };
 
   int tileCount(int ring) const { return first_tile_[ring + 1] - first_tile_[ring]; }
@@ -49,8 +50,8 @@ class IrregularCurvature {
   const Pose& pose_;
   const PtexFaces& ptex_;
   const double radius_;
-  std::vector<PtexCorner> corners_;  // of the ring tiles
-  std::vector<int> first_tile_;      // of each ring, and one more
+  std::vector<PtexCorner> corners_;  // per ring tile
+  std::vector<int> first_tile_;      // per ring, and one more entry
 };
 
 }  // namespace limitsurf

@@ -11,10 +11,10 @@
 
 namespace limitsurf {
 
-/// A point or vector padded to four doubles, so that compilers use whole registers.
+/// A point or vector, padded to four doubles so that it fills whole registers.
 using Padded = Eigen::Array4d;
 
-/// 2^exponent, -1022 <= exponent <= 1023. (std::ldexp takes as long as half an evaluation.)
+/// 2^exponent for -1022 <= exponent <= 1023. (std::ldexp takes half as long as an evaluation.)
 inline double powerOfTwo(int exponent) {
   const std::uint64_t bits = static_cast<std::uint64_t>(exponent + 1023) << 52;
   double result;
@@ -24,15 +24,19 @@ inline double powerOfTwo(int exponent) {
 
 /// Position and derivatives at one location.
 ///
-/// The position is anchor + patch.value, where the anchor is near, so that derivatives are
-/// differences of small numbers. Second derivatives are to be multiplied by 2^exponent: close to an
-/// extraordinary vertex they alone leave the range of double.
+/// The position is anchor + patch.value. The anchor is near, so that derivatives are differences of
+/// small numbers. Second derivatives have to be multiplied by 2^exponent: close to an extraordinary
+/// vertex they, and only they, leave the range of double.
 struct Jet {
   Padded anchor;
-  PatchValues<Padded> patch;  ///< its value is the offset
+  PatchValues<Padded> patch;  ///< its value is the offset from the anchor
   int exponent = 0;
 
-  /// From the frame of a quad turned so that its corner c comes first to the quad's own.
+  /// Up to here 2^exponent is finite.
+  static constexpr int kEasyExponent = 1000;
+
+  /// Changes from the frame of a quad that is turned so that its corner c comes first to the quad's
+  /// own frame.
   void turn(int c) {
     if (c == 1 || c == 3) {
       std::swap(patch.du, patch.dv);
@@ -47,15 +51,15 @@ struct Jet {
     }
   }
 
-  /// One of patch's second derivatives, multiplied out.
+  /// One of the patch's second derivatives, times 2^exponent.
   Padded second(const Padded& derivative) const {
-    if (exponent <= 1000) {
+    if (exponent <= kEasyExponent) {
       return derivative * powerOfTwo(exponent);
     }
     return derivative.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
   }
 
-  /// From the parameters of a child to those of its parent, so many levels up.
+  /// Changes from the parameters of a quad to those of its parent so many levels up.
   void zoomOut(int levels) {
     if (levels > 0) {
       const double scale = powerOfTwo(levels);

@@ -9,6 +9,7 @@
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/irregular_curvature.h"
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
 
@@ -40,15 +41,17 @@ const std::vector<int>& LimitSurface::corner() const { return data_->ptex.corner
 const std::map<int, std::string>& LimitSurface::refused() const { return data_->refused; }
 
 void LimitSurface::setPositions(const Points& positions, int threads) {
-  data_->check({}, threads);
+  checkThreads(threads);
   checkPositions(positions, data_->mesh.vertexCount());
   data_->positions = positions;
   data_->pose.set(positions, threads);
 }
 
-void LimitSurface::checkLocations(Span<Location> at) const { data_->check(at, 0); }
+LocationBatch LimitSurface::checkLocations(Span<Location> at) const {
+  return data_->tiles->checked(at);
+}
 
-Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bool normals,
+Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives, bool normals,
                                   int threads) const {
   data_->check(at, threads);
   const auto rows = static_cast<Eigen::Index>(at.size());
@@ -107,8 +110,8 @@ Evaluation LimitSurface::evaluate(Span<Location> at, Derivatives derivatives, bo
   return out;
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> LimitSurface::frames(Span<Location> at,
-                                                                               int threads) const {
+Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> LimitSurface::frames(
+    const LocationBatch& at, int threads) const {
   data_->check(at, threads);
   Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> out(at.size(), 9);
   data_->forEach(at, threads,
@@ -137,7 +140,7 @@ void checkCurvatureRadius(double radius) {
   }
 }
 
-Curvature LimitSurface::curvature(Span<Location> at, IrregularRule rule, double radius,
+Curvature LimitSurface::curvature(const LocationBatch& at, IrregularRule rule, double radius,
                                   int threads) const {
   data_->check(at, threads);
   checkCurvatureRadius(radius);
@@ -157,7 +160,7 @@ Curvature LimitSurface::curvature(Span<Location> at, IrregularRule rule, double 
     out.direction1.row(row) = k.direction1;
     out.direction2.row(row) = k.direction2;
   };
-  std::vector<int> rings(at.size());  // of the irregular rows
+  std::vector<int> rings(at.size());  // at irregular rows: the vertex's ring
   data_->forEach(at, threads,
                  [&](Eigen::Index row, const TileLocation& place, TileEvaluator& evaluator) {
                    Jet jet;

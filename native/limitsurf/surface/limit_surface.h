@@ -9,24 +9,26 @@
 
 #include "limitsurf/mesh/control_mesh.h"
 #include "limitsurf/mesh/interpolation.h"
+#include "limitsurf/surface/location_batch.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
 
-/// Bounds on the error of every evaluation, each held by a test against values of independent
-/// high-precision subdivision, for valences to 100 and (u, v) down to 2^-40 from an extraordinary
-/// vertex and at it.
-///
-/// Position: relative to the diagonal of the control mesh's bounding box.
+// Bounds on the error of every evaluation. Each is held by tests against independent subdivision in
+// high precision, for valences to 100 and (u, v) down to 2^-40 from an extraordinary vertex and at
+// it. docs/accuracy.md says how the errors arise.
+
+/// Positions: relative to the diagonal of the control mesh's bounding box.
 constexpr double kPositionError = 1e-13;
 /// First and second derivatives: relative to the larger of the value itself and the face's largest
 /// derivative at least 1/16 away from its corners.
 constexpr double kFirstDerivativeError = 1e-12;
 constexpr double kSecondDerivativeError = 1e-11;
-/// Normals: radians; at a smooth corner of one face only outside 2^-20 of the vertex, where du and
-/// dv are antiparallel.
+/// Normals: in radians. At a smooth corner of one face, where du and dv are antiparallel at the
+/// vertex, it holds only outside 2^-20 of the vertex.
 constexpr double kNormalError = 1e-11;
 
+/// How many derivatives an evaluation gives.
 enum class Derivatives { none = 0, first = 1, second = 2 };
 
 /// Positions and derivatives, one row per location in the caller's order. Members that were not
@@ -41,28 +43,32 @@ struct Evaluation {
 struct Curvature {
   Eigen::VectorXd gaussian, mean, k1, k2;
   Points direction1, direction2;
-  /// Exactly at an irregular vertex: the other members are no curvature of the surface there.
+  /// Whether the location is exactly at an irregular vertex. There the other members are no
+  /// curvature of the surface, but what IrregularRule says.
   Eigen::Array<bool, Eigen::Dynamic, 1> irregular;
 };
 
-/// What stands for curvature exactly at irregular vertices, where it has no limit.
+/// What curvature() gives exactly at irregular vertices, where curvature has no limit.
 enum class IrregularRule {
   none,     ///< NaN
   average,  ///< a mean over the faces around the vertex
 };
 
-/// How far around an irregular vertex curvature is averaged, as a share of an edge.
+/// The default radius, as a share of an edge, within which curvature is averaged around an
+/// irregular vertex: small beside any detail of the surface, and far above the radii at which
+/// kAverageCurvatureError hides the curvature.
 constexpr double kCurvatureRadius = 1. / 64;
 
 /// Throws std::invalid_argument unless 0 < radius <= 1/2.
 void checkCurvatureRadius(double radius);
 
-/// Averages: relative to what curvature would be if second derivatives all pointed along the
-/// normal, (|duu| + |duv| + |dvv|) / min(|du|, |dv|)^2, where that is largest among the places. At
-/// tiny radii this leaves little: below 2^-40 or so no digit of the curvature itself is left.
+/// Averaged curvature: relative to what curvature would be if second derivatives all pointed along
+/// the normal, (|duu| + |duv| + |dvv|) / min(|du|, |dv|)^2, where that is largest among the
+/// averaged places. For tiny radii this is much more than the curvature itself: at 2^-40 no digit
+/// of it is left.
 constexpr double kAverageCurvatureError = 1e-9;
 
-/// Sparse linear weights of the control mesh's vertices, one row per location (CSR).
+/// Sparse linear weights on the control mesh's vertices, one row per location (CSR).
 struct Stencils {
   std::vector<std::int64_t> offsets;
   std::vector<int> indices;
@@ -77,18 +83,30 @@ class SurfacePatches;  // surface_patches.h
 
 /// The Catmull-Clark limit surface of a control mesh, evaluated exactly at any location.
 ///
-/// Topology is analysed once, in the constructor; setPositions() re-poses the surface at the cost
-/// of the irregular faces alone. All const members may be called from many threads at once.
+/// The topology is analysed once, in the constructor; from then on positions and derivatives
+/// anywhere are linear combinations of the control points. Locations are Ptex face ids with (u, v);
+/// see Location in types.h.
 ///
-/// Every batch call takes `threads`: 0 means all cores, n at most n. The result for a location does
-/// not depend on it, nor on what else is in the batch, to the last bit.
+/// Every batch call takes `threads`: 0 means all cores, n means at most n of them. The result for a
+/// location does not depend on it, nor on what else is in the batch, to the last bit. All const
+/// members may be called from many threads at once.
 ///
-/// Memory: the cage, 76 bytes a regular face, O(neighbourhood) an irregular one, O(valence) an
-/// extraordinary vertex, and some 4 KiB for each step in which a semi-sharp vertex or edge decays;
-/// an edge that is one of a run of equal sharpness through regular vertices costs no more than a
-/// smooth one.
+/// A location that cannot be evaluated makes a batch call throw before any work is done:
+/// LocationError names the first row whose face or (u, v) is out of range, MeshError the first row
+/// whose face is refused.
+///
+/// Memory: the control mesh, 76 bytes for each regular face, O(neighbourhood) for an irregular one,
+/// O(valence) for an extraordinary vertex, and about 4 KiB for each step in which a semi-sharp
+/// vertex or edge decays. An edge that belongs to a run of equal sharpness through regular vertices
+/// costs no more than a smooth one.
 class LimitSurface {
  public:
+  // Construction and posing.
+  //
+  // Construct a surface once for each topology. A deforming mesh keeps its surface: setPositions()
+  // gives the surface the control points of another frame, at the cost of the irregular faces
+  // alone.
+
   /// Throws MeshError where OpenSubdiv cannot represent the topology.
   explicit LimitSurface(ControlMesh mesh);
   ~LimitSurface();
@@ -96,24 +114,36 @@ class LimitSurface {
   LimitSurface& operator=(LimitSurface&&) noexcept;
 
   const ControlMesh& mesh() const;
-  /// The cage's current positions: the mesh's, until setPositions() gave others.
+  /// The current positions of the control points: the mesh's, until setPositions() gives others.
   const Points& positions() const;
 
-  /// The same topology under a new pose. Throws MeshError as ControlMesh does for positions, and
-  /// then leaves the surface as it was. Not to be called while another thread evaluates.
+  /// Gives the same topology another pose. Throws MeshError as ControlMesh does for positions, and
+  /// then leaves the surface as it was. Must not be called while another thread evaluates.
   void setPositions(const Points& positions, int threads = 0);
 
-  /// Number of Ptex faces.
+  // Faces and locations.
+  //
+  // These translate between the control mesh and Ptex faces, and say which faces have no limit
+  // surface. Look at refused() where a mesh comes from outside.
+
+  /// The number of Ptex faces.
   int faceCount() const;
-  /// Ptex face -> face of the control mesh, and the n-gon's corner it belongs to (0 for quads).
+  /// For each Ptex face, the face of the control mesh to which it belongs, and the corner of that
+  /// n-gon at which it lies (0 for quads).
   const std::vector<int>& baseFace() const;
   const std::vector<int>& corner() const;
-  /// Faces of the control mesh that have no limit surface (holes included), with the reason.
+  /// The faces of the control mesh that have no limit surface (including holes), with the reason.
   const std::map<int, std::string>& refused() const;
+  /// One location for each vertex of the control mesh; its face is -1 for vertices that no face
+  /// with a limit surface uses.
+  std::vector<Location> vertexLocations() const;
 
-  /// Throws what evaluate() throws for the first row that cannot be evaluated, and does nothing
-  /// else.
-  void checkLocations(Span<Location> at) const;
+  /// Checks a batch, and throws as evaluate() does. Pass the result instead of the locations to
+  /// members that are called for several parts of one batch, or one after the other: they do not
+  /// check it again.
+  LocationBatch checkLocations(Span<Location> at) const;
+
+  // Evaluation.
 
   /// Limit positions and derivatives with respect to the face's own (u, v).
   ///
@@ -123,80 +153,97 @@ class LimitSurface {
   ///   (2) on a shared edge both faces give the same position to kPositionError;
   ///   (3) any number of threads gives the same bits.
   ///
-  /// Exactly at an irregular vertex: position always; du, dv and second derivatives along a
-  /// boundary that bounds the face are the limit curve's; du = dv = 0 at interior valence 2 and 3;
-  /// all others have no limit and are NaN. The normal is NaN where approaches to the vertex within
-  /// the face's sector do not agree on one (interior valence 2, boundaries with four and more
-  /// faces). Use frames() where a direction is needed.
+  /// Exactly at an irregular vertex there is always a position. Along a boundary or an infinitely
+  /// sharp edge that bounds the face, du, dv and second derivatives are those of the limit curve.
+  /// At interior valence 2 and 3, du = dv = 0. All other derivatives have no limit and are NaN. The
+  /// normal is NaN where approaches to the vertex within the face's sector do not agree on one
+  /// (interior valence 2, boundaries with four and more faces). Use frames() where a direction is
+  /// needed.
   ///
-  /// `normals` asks for unit normals (needs derivatives >= first).
+  /// `normals` asks for unit normals (and needs derivatives >= first).
   ///
-  /// Throws LocationError naming the first row whose face or (u, v) is out of range, MeshError
-  /// naming the first whose face is refused. Cost: O(1) a location, but O(valence) within 2^-4 of
-  /// an extraordinary vertex.
-  Evaluation evaluate(Span<Location> at, Derivatives derivatives = Derivatives::none,
+  /// Cost: O(1) for each location, but O(valence) within 2^-4 of an extraordinary vertex.
+  Evaluation evaluate(const LocationBatch& at, Derivatives derivatives = Derivatives::none,
                       bool normals = false, int threads = 0) const;
 
-  /// Row-major 3x3 rotations, nine numbers a row: columns tangent (along du), normal x tangent,
-  /// normal. Always finite: at an irregular vertex the limit over u = v = 2^-n as seen from the
-  /// vertex; where du or the normal vanishes, completed from dv, then from the least aligned world
-  /// axis.
-  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> frames(Span<Location> at,
+  // Frames and curvature.
+  //
+  // frames() is for whatever has to stand on the surface (hair, instances): unlike du, dv and the
+  // normal it is defined at every location. curvature() is for analysis and for maps.
+
+  /// Row-major 3 x 3 rotations, nine numbers in a row, with the columns tangent (along du), normal
+  /// x tangent, normal. They are always finite: at an irregular vertex they are the limit over u =
+  /// v = 2^-n as seen from the vertex; where du or the normal vanishes, they are completed from dv,
+  /// then from the least aligned world axis.
+  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> frames(const LocationBatch& at,
                                                                    int threads = 0) const;
 
-  /// Curvature. Exactly at irregular vertices, where it has no limit, what `rule` says.
+  /// Curvature. Exactly at irregular vertices, where it has no limit, `rule` says what is given.
   ///
-  /// The average there is over the faces of the location's own sector: all that boundaries and
-  /// infinitely sharp edges do not part from its face. On each of them four places stand on the
-  /// square with the vertex at one corner and sides of `radius` edges, at (1, 1/4), (1, 3/4),
-  /// (3/4, 1) and (1/4, 1) times the side as seen from the vertex; the side is `radius` in u and v
-  /// on a quad and twice that on a sub-face of an n-gon, whose sides are half edges. Their shape
-  /// operators, each turned by the shortest rotation into the vertex' tangent plane, are averaged,
-  /// weighted by area (|du x dv|, counted in edges): the midpoint rule for the mean over a thin
-  /// band around the vertex. Principal curvatures and directions are those of the mean; `gaussian`
-  /// is the product of its k1 and k2, not a mean of products.
+  /// The average at a vertex is taken over the faces of the location's own sector: those that no
+  /// boundary and no infinitely sharp edge separates from its face. On each of them there are four
+  /// places on the square with the vertex at one corner and sides of `radius` edges: at (1, 1/4),
+  /// (1, 3/4), (3/4, 1) and (1/4, 1) times the side as seen from the vertex. The side is `radius`
+  /// in u and v on a quad, and twice that on a sub-face of an n-gon, whose sides are half edges.
+  /// The shape operators at the places, each turned by the shortest rotation into the vertex's
+  /// tangent plane, are averaged, weighted by area (|du x dv|, counted in edges): this is the
+  /// midpoint rule for the mean over a thin band around the vertex. Principal curvatures and
+  /// directions are those of the mean; `gaussian` is the product of its k1 and k2, not a mean of
+  /// products.
   ///
-  /// Where the vertex has no normal the plane is perpendicular to the mean of the places' normals
-  /// weighted by area, or to one of them should these cancel out. Places where the surface is
-  /// singular, or turned the opposite way, are left out; where none remains all is NaN.
+  /// Where the vertex has no normal, the plane is perpendicular to the mean of the places' normals
+  /// weighted by area, or to one of them if these cancel out. Places where the surface is singular
+  /// or turned the opposite way are left out. If none remains, everything is NaN.
   ///
   /// Properties:
   ///   (1) all locations that name the same vertex in the same sector get the same bits;
-  ///   (2) a mesh subdivided once gives the same at twice the radius.
+  ///   (2) a mesh that is subdivided once gives the same at twice the radius.
   ///
   /// Error: kAverageCurvatureError. Throws std::invalid_argument for a radius outside (0, 1/2].
-  /// Cost: O(Ptex faces), where any row needs an average, and O(valence^2) for each vertex.
-  Curvature curvature(Span<Location> at, IrregularRule rule = IrregularRule::none,
+  /// Cost: O(Ptex faces) if any row needs an average, and O(valence^2) for each vertex.
+  Curvature curvature(const LocationBatch& at, IrregularRule rule = IrregularRule::none,
                       double radius = kCurvatureRadius, int threads = 0) const;
 
-  /// The exact linear weights of position (and du, dv) on the cage's vertices.
-  Stencils stencils(Span<Location> at, bool first_derivatives = false, int threads = 0) const;
+  // Weights.
+  //
+  // The surface is linear in the control points. Take stencils() where the same locations are
+  // evaluated for many poses outside of this library, or where a solver needs the linear map.
 
-  /// Data that each corner of the mesh's faces picks for itself: `indices` holds a row of `values`
-  /// for every corner, one face after the other. Where the corners around a vertex pick the same
-  /// row the data are as smooth as the surface; edges between different ones are seams.
+  /// The exact linear weights of the position (and of du and dv) on the control mesh's vertices.
+  Stencils stencils(const LocationBatch& at, bool first_derivatives = false, int threads = 0) const;
+
+  // Data on the surface.
+  //
+  // UV maps, colours, rest positions, weights: values at vertices or face corners that are
+  // interpolated by the surface's own rules. They do not depend on the surface's pose.
+
+  /// Face-varying data: `indices` holds a row of `values` for every corner of the mesh's faces, one
+  /// face after the other. Where all corners around a vertex have the same row, the data are as
+  /// smooth as the surface; edges between different rows are seams.
   ///
   /// The rules are OpenSubdiv's, for seams, their ends and junctions, boundaries and corners,
   /// smooth and sharp. Faces that have no limit surface have no data either.
   ///
-  /// Throws MeshError naming the first index that is no row of `values`, the first row that is not
-  /// finite, and vertices where a seam meets semi-sharp edges whose decay cannot be had
-  /// (face_varying_mesh.h tells which). Cost: as making a surface.
+  /// Throws MeshError, which names the first index that is no row of `values`, the first row that
+  /// is not finite, and vertices where a seam meets semi-sharp edges whose decay cannot be
+  /// represented (face_varying_mesh.h says which). Cost: as for the construction of a surface.
   SurfaceData faceVarying(const DataRows& values, const std::vector<std::int64_t>& indices,
                           Interpolation interpolation, int threads = 0) const;
 
-  /// Data at the vertices, one row each, interpolated as positions are. Throws MeshError for
-  /// another number of rows and for the first that is not finite. Cost: as setPositions(), for
-  /// every three columns.
+  /// Data at the vertices, one row for each, interpolated as positions are. Throws MeshError for
+  /// another number of rows and for the first row that is not finite. Cost: that of setPositions()
+  /// for every three columns.
   SurfaceData vertexData(const DataRows& values, int threads = 0) const;
 
-  /// The same, but linear along edges and bilinear on each Ptex face: a sub-face of an n-gon has
-  /// the values of its corner, of its edges' midpoints and the mean of all corners.
+  /// Data at the vertices that are linear along edges and bilinear on each Ptex face: a sub-face of
+  /// an n-gon has the values of its corner, of the midpoints of its edges, and the mean of all
+  /// corners.
   SurfaceData varying(const DataRows& values, int threads = 0) const;
 
-  /// One location per vertex of the control mesh; face = -1 for vertices that no face with a limit
-  /// surface uses.
-  std::vector<Location> vertexLocations() const;
+  // Bounds.
+  //
+  // The control points bound the surface as well, but not tightly. (Searches and integrals over the
+  // surface are other classes: search/surface_search.h, sample/.)
 
   /// The tightest axis-aligned box around the limit surface (rows: minimum, maximum), to
   /// kPositionError.

@@ -10,10 +10,11 @@
 #include "limitsurf/surface/pose.h"
 #include "limitsurf/surface/tile_evaluator.h"
 #include "limitsurf/surface/tiled_surface.h"
-#include "limitsurf/surface/vertex_limit.h"
+#include "limitsurf/surface/vertex_approach.h"
 
 namespace limitsurf {
 
+/// Evaluates a jet with as many derivatives as are asked for.
 inline void evaluateJet(TileEvaluator& evaluator, const TileLocation& at, Derivatives derivatives,
                         Jet& jet) {
   if (derivatives == Derivatives::none) {
@@ -28,11 +29,11 @@ inline void evaluateJet(TileEvaluator& evaluator, const TileLocation& at, Deriva
 struct LimitSurface::Data {
   explicit Data(ControlMesh control_mesh);
 
-  void check(Span<Location> at, int threads) const { tiles->check(at, threads); }
+  void check(const LocationBatch& at, int threads) const { tiles->check(at, threads); }
 
-  /// Calls body(row, place among the tiles, evaluator) for each row, in parallel.
+  /// Calls body(row, tile location, evaluator) for each row, in parallel.
   template <typename Body>
-  void forEach(Span<Location> at, int threads, const Body& body) const {
+  void forEach(const LocationBatch& at, int threads, const Body& body) const {
     parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
       TileEvaluator evaluator(table, pose);
       for (std::size_t row = begin; row < end; ++row) {

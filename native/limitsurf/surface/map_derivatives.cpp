@@ -14,7 +14,7 @@ namespace {
 
 bool isCorner(const Location& at) { return (at.u == 0 || at.u == 1) && (at.v == 0 || at.v == 1); }
 
-/// Whether directions cannot be told from the derivatives there.
+/// Whether the derivatives there define no directions.
 bool isFlat(const MapDerivatives& d, Eigen::Index row) {
   const Evaluation& e = d.on_surface;
   const Vector3 across = e.du.row(row).cross(e.dv.row(row)).transpose();

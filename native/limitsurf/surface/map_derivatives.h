@@ -17,31 +17,32 @@ struct MapDerivatives {
   Evaluation on_surface;  ///< with unit normals
   DataEvaluation on_map;  ///< two columns
 
-  /// Columns: the derivatives of (U, V) with respect to u and v.
+  /// The derivatives of (U, V) with respect to u and v, as columns.
   Eigen::Matrix2d jacobian(Eigen::Index row) const {
     Eigen::Matrix2d result;
     result << on_map.du.row(row).transpose(), on_map.dv.row(row).transpose();
     return result;
   }
-  /// The Jacobian's: dU/du dV/dv - dU/dv dV/du.
+  /// The determinant of the Jacobian: dU/du dV/dv - dU/dv dV/du.
   double determinant(Eigen::Index row) const {
     return on_map.du(row, 0) * on_map.dv(row, 1) - on_map.dv(row, 0) * on_map.du(row, 1);
   }
 };
 
 /// First derivatives of the map, and those of the surface up to `order`, as
-/// LimitSurface::evaluate() and SurfaceData::evaluate() give them. Throws as those do.
+/// LimitSurface::evaluate() and SurfaceData::evaluate() give them. Throws what these throw.
 MapDerivatives evaluateWithMap(const LimitSurface& surface, const SurfaceData& map,
                                Span<Location> at, Derivatives order, int threads);
 
-/// At a vertex where the surface or the map is irregular, or one of them is flat to first order,
-/// derivatives are those seen from so far inside the face, along its diagonal: directions and
-/// ratios converge on the way to the vertex, while the derivatives themselves vanish or diverge.
+/// At a vertex where the surface or the map is irregular, or where the first derivatives of one of
+/// them vanish, derivatives are taken at this distance inside the face, along its diagonal. On the
+/// way to the vertex the derivatives themselves vanish or diverge, while their directions and
+/// ratios converge.
 constexpr double kSeenFrom = 0x1p-20;
 
-/// First derivatives from which directions and ratios can be told at every location (kSeenFrom says
-/// what stands at irregular vertices), with normals that are complete (complete_normals.h) and
-/// belong to the location itself. Throws as checkMap() and LimitSurface::evaluate().
+/// First derivatives whose directions and ratios are defined at every location (kSeenFrom says what
+/// they are at irregular vertices), with unit normals at the location itself (complete_normals.h).
+/// Throws what checkMap() and LimitSurface::evaluate() throw.
 MapDerivatives directionalDerivatives(const LimitSurface& surface, const SurfaceData& uv_map,
                                       Span<Location> at, int threads);
 

@@ -9,9 +9,14 @@
 namespace limitsurf {
 namespace {
 
+/// A point takes a small part of the time of an evaluation, a ring much more than one.
+constexpr std::size_t kPointsPerTask = 16384, kRingsPerTask = 16;
+/// How many points are refined between two chances to interrupt the work.
+constexpr int kPointsPerInterruption = 1 << 18;
+
 Padded padded(const Vector3& v) { return {v[0], v[1], v[2], 0}; }
 
-/// What was lost in rounding a + b to `sum`, whichever is the larger (Knuth's two-sum).
+/// The error of rounding a + b to `sum`, whichever of a and b is the larger (Knuth's two-sum).
 Padded rounding(const Padded& a, const Padded& b, const Padded& sum) {
   const Padded added = sum - a;
   return (a - (sum - added)) + (b - added);
@@ -57,7 +62,7 @@ Pose::Pose(const TileTable& table)
     }
   }
   grids_.resize(grids);
-  for (Grid& grid : grids_) {  // slots that do not exist stay 0
+  for (Grid& grid : grids_) {  // slots without a point stay 0
     std::fill_n(grid.points, tile_grid::kSlots, Padded::Zero());
   }
   std::size_t next = 0;
@@ -72,14 +77,14 @@ Pose::Pose(const TileTable& table)
 void Pose::set(const Points& cage, int threads) {
   const RefinedPoints& refined = table_->points;
   points_.resize(static_cast<std::size_t>(refined.size()));
-  parallelFor(static_cast<std::size_t>(cage.rows()), 16384, threads,
+  parallelFor(static_cast<std::size_t>(cage.rows()), kPointsPerTask, threads,
               [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
                   points_[i] = padded(cage.row(static_cast<Eigen::Index>(i)).transpose());
                 }
               });
   refinePoints();
-  parallelFor(rings_.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
+  parallelFor(rings_.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
       setRing(static_cast<int>(ring));
     }
@@ -90,17 +95,16 @@ void Pose::refinePoints() {
   const RefinedPoints& refined = table_->points;
   const int cage = refined.cagePoints();
   residuals_.resize(table_->fine ? static_cast<std::size_t>(refined.size() - cage) : 0);
-  constexpr int kPointsBetween = 1 << 18;
-  for (int i = cage; i < refined.size(); ++i) {  // sources come first
-    if ((i - cage) % kPointsBetween == 0) {
+  for (int i = cage; i < refined.size(); ++i) {  // a point's sources have smaller numbers
+    if ((i - cage) % kPointsPerInterruption == 0) {
       InterruptionPoint::pass();
     }
     const Span<int> sources = refined.sources(i);
     const std::vector<double>& weights = refined.weights(i);
     Padded base, sum;
     if (sources.size() == 2 && weights[0] == weights[1]) {
-      // A midpoint, the same to the last bit from either end: faces on different sides of a sharp
-      // edge may have made it twice.
+      // A midpoint, with the same bits from either end: faces on different sides of a sharp edge
+      // may each have made one.
       base = points_[sources[0]] / 2;
       sum = points_[sources[1]] / 2;
       if (table_->fine) {
@@ -110,7 +114,8 @@ void Pose::refinePoints() {
         continue;
       }
     } else {
-      // Relative to one of the sources, to keep the digits of small faces far from the origin.
+      // The sum is taken relative to one of the sources, to keep the digits of small faces far from
+      // the origin.
       base = points_[sources[0]];
       sum = residual(sources[0]);
       for (std::size_t s = 1; s < sources.size(); ++s) {
@@ -135,7 +140,7 @@ void Pose::setRing(int ring_index) {
   ring.basis->project(points, pose.coefficients);
   const Vector3 to_limit = pose.coefficients.row(0);
   pose.limit = vertex + padded(to_limit);
-  // What rounding left between the limit as stored and the constant mode.
+  // The coefficient of the constant mode relative to the limit as it is stored: its rounding error.
   pose.coefficients.row(0) =
       ((vertex - pose.limit) + (padded(to_limit) + residual(ring.points[0]))).head<3>().transpose();
 

@@ -9,19 +9,20 @@
 
 namespace limitsurf {
 
-/// Everything about a surface that depends on its control points' positions.
+/// Everything in a surface that depends on the positions of its control points.
 ///
 /// Regular tiles read the points themselves. A ring keeps the coefficients of its modes, and a ring
-/// tile the control grids of its first subdivision steps: a random location lies deeper than n
-/// steps with probability 4^-n only.
+/// tile keeps the control grids of its first subdivision steps, because a random location lies
+/// deeper than n steps with a probability of only 4^-n.
 class Pose {
  public:
-  /// Steps whose grids are kept in a whole Ptex face, one less for each split, as long as all grids
-  /// together stay below kGridBytes; else fewer, but at least one.
+  /// The number of steps whose grids are kept in a tile that is a whole Ptex face: 1 location in
+  /// 256 lies deeper. Each split of the face takes one away. Fewer are kept, but at least one, if
+  /// all grids together would take more memory than kGridBytes.
   static constexpr int kMostGridSteps = 4;
   static constexpr std::size_t kGridBytes = std::size_t{256} << 20;
 
-  /// Control points relative to the ring's limit, which takes the place of slot (-1, -1).
+  /// Control points relative to the ring's limit, which is stored in slot (-1, -1).
   struct Grid {
     Padded points[tile_grid::kSlots];
 
@@ -32,7 +33,7 @@ class Pose {
     Padded limit;         ///< the limit position of the extraordinary vertex
     Points coefficients;  ///< of the modes, relative to the limit
 
-    /// What rounding left of the constant mode.
+    /// The rounding error of `limit`.
     Padded constant() const {
       return {coefficients(0, 0), coefficients(0, 1), coefficients(0, 2), 0};
     }
@@ -48,13 +49,13 @@ class Pose {
   void set(const Points& cage, int threads);
 
   const Padded& point(int i) const { return points_[i]; }
-  /// What rounding left of a point: point(i) + residual(i) has twice the digits. 0 unless the table
-  /// is fine.
+  /// The rounding error of a point: point(i) + residual(i) has twice the digits. It is 0 unless the
+  /// table is fine.
   Padded residual(int i) const {
     const int refined = i - table_->points.cagePoints();
     return refined < 0 || residuals_.empty() ? Padded(Padded::Zero()) : residuals_[refined];
   }
-  /// The vector between two points, to its own precision.
+  /// The vector between two points, rounded relative to its own size.
   Padded difference(int to, int from) const {
     return (points_[to] - points_[from]) + (residual(to) - residual(from));
   }
@@ -74,15 +75,15 @@ class Pose {
   const TileTable* table_;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
-  std::vector<Padded> residuals_;  // of the refined ones
+  std::vector<Padded> residuals_;  // of the refined points
   std::vector<RingPose> rings_;
   std::vector<RingTilePose> ring_tiles_;
-  std::vector<int> first_tile_;  // per ring, and one more
+  std::vector<int> first_tile_;  // per ring, and one more entry
   std::vector<Grid> grids_;
 };
 
-/// One subdivision of the control grid of a ring's face: `ring_points` are the ring's after it.
-/// SlotValues that do not exist are left as they are.
+/// One subdivision of the control grid of a ring's face. `ring_points` are the ring's points after
+/// it. SlotValues that do not exist are left as they are.
 void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
               Padded after[]);
 

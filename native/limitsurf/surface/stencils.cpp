@@ -6,15 +6,19 @@
 #include <vector>
 
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/tile_weights.h"
 #include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
 namespace {
 
-/// Weights of position, du, dv on one point.
+/// A row takes much longer than an evaluation, so that a task has fewer of them than kRowsPerTask.
+constexpr std::size_t kStencilsPerTask = 8;
+
+/// The weights of position, du and dv on one point.
 using Weights = Eigen::Array3d;
 
-/// The weights of one location on all points that carry it, refined points first.
+/// The weights of one location on all points that it depends on, refined points first.
 class Row {
  public:
   explicit Row(const TileTable& table) : table_(table) {}
@@ -104,7 +108,7 @@ class Row {
     }
   }
 
-  /// As vertexJet(), on modes.
+  /// The weights of vertexJet() on modes.
   Eigen::MatrixXd vertexWeights(const Eigenbasis& basis, const RingTile& tile) {
     Eigen::MatrixXd w = Eigen::MatrixXd::Zero(3, basis.modeCount());
     w(0, 0) = 1;
@@ -142,14 +146,15 @@ class Row {
 
 }  // namespace
 
-Stencils LimitSurface::stencils(Span<Location> at, bool first_derivatives, int threads) const {
+Stencils LimitSurface::stencils(const LocationBatch& at, bool first_derivatives,
+                                int threads) const {
   data_->check(at, threads);
   struct Entry {
     int index;
     Weights weights;
   };
   std::vector<std::vector<Entry>> rows(at.size());
-  parallelFor(at.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
+  parallelFor(at.size(), kStencilsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     const TileEvaluator evaluator(data_->table, data_->pose);
     Row row(data_->table);
     for (std::size_t i = begin; i < end; ++i) {

@@ -42,7 +42,7 @@ void checkVertexValues(const DataRows& values, const ControlMesh& mesh) {
   checkValues(values);
 }
 
-/// The mesh with its faces, flat between its edges.
+/// The same faces under the bilinear scheme.
 ControlMesh bilinearMesh(const ControlMesh& mesh, const std::map<int, std::string>& refused) {
   const std::vector<int> sizes = mesh.faceSizes();
   const std::vector<int>& vertices = mesh.faceVertices();
@@ -55,7 +55,8 @@ ControlMesh bilinearMesh(const ControlMesh& mesh, const std::map<int, std::strin
                      {vertices.begin(), vertices.end()}, std::move(options));
 }
 
-/// The tiles of a mesh with the same faces, of which it refuses the same for the same reasons.
+/// The tiles of a mesh that has the same faces as the surface's and refuses those in `refused` as
+/// well.
 std::shared_ptr<const TiledSurface> tilesOf(const ControlMesh& mesh,
                                             std::map<int, std::string> refused) {
   auto tiles = std::make_shared<TiledSurface>(mesh);
@@ -105,7 +106,7 @@ Eigen::Index SurfaceData::rows() const { return data_->rows; }
 Eigen::Index SurfaceData::columns() const { return data_->columns; }
 
 void SurfaceData::setValues(const DataRows& values, int threads) {
-  data_->tiles->check({}, threads);
+  checkThreads(threads);
   if (values.rows() != rows() || values.cols() != columns()) {
     std::ostringstream message;
     message << "values has shape (" << values.rows() << ", " << values.cols() << "); expected ("
@@ -116,9 +117,11 @@ void SurfaceData::setValues(const DataRows& values, int threads) {
   data_->set(values, threads);
 }
 
-void SurfaceData::checkLocations(Span<Location> at) const { data_->tiles->check(at, 0); }
+LocationBatch SurfaceData::checkLocations(Span<Location> at) const {
+  return data_->tiles->checked(at);
+}
 
-DataEvaluation SurfaceData::evaluate(Span<Location> at, Derivatives derivatives,
+DataEvaluation SurfaceData::evaluate(const LocationBatch& at, Derivatives derivatives,
                                      int threads) const {
   data_->tiles->check(at, threads);
   const auto rows = static_cast<Eigen::Index>(at.size());
@@ -167,7 +170,7 @@ DataEvaluation SurfaceData::evaluate(Span<Location> at, Derivatives derivatives,
 SurfaceData LimitSurface::faceVarying(const DataRows& values,
                                       const std::vector<std::int64_t>& indices,
                                       Interpolation interpolation, int threads) const {
-  data_->check({}, threads);
+  checkThreads(threads);
   checkValues(values);
   FaceVaryingMesh channel =
       faceVaryingMesh(data_->mesh, Topology(data_->mesh), indices, values.rows(), interpolation);
@@ -178,14 +181,14 @@ SurfaceData LimitSurface::faceVarying(const DataRows& values,
 }
 
 SurfaceData LimitSurface::vertexData(const DataRows& values, int threads) const {
-  data_->check({}, threads);
+  checkThreads(threads);
   checkVertexValues(values, data_->mesh);
   return SurfaceData(
       std::make_unique<SurfaceData::Data>(data_->tiles, std::vector<int>{}, values, threads));
 }
 
 SurfaceData LimitSurface::varying(const DataRows& values, int threads) const {
-  data_->check({}, threads);
+  checkThreads(threads);
   checkVertexValues(values, data_->mesh);
   return SurfaceData(std::make_unique<SurfaceData::Data>(
       tilesOf(bilinearMesh(data_->mesh, data_->refused), data_->refused), std::vector<int>{},

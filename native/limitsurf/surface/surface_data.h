@@ -15,35 +15,34 @@ struct DataEvaluation {
   DataRows value, du, dv, duu, duv, dvv;
 };
 
-/// Data on a limit surface, of any number of columns, evaluated exactly at any location: made by
-/// LimitSurface::faceVarying(), vertexData() and varying(). It does not depend on the surface's
-/// positions, and may outlive the surface.
+/// Data of any number of columns on a limit surface, evaluated exactly at any location.
+/// LimitSurface::faceVarying(), vertexData() and varying() make it. It does not depend on the
+/// surface's positions, and may outlive the surface.
 ///
 /// All const members may be called from many threads at once.
 ///
-/// Memory: as a surface's pose, for every three columns; face-varying and varying data have tiles
-/// of their own besides.
+/// Memory: that of a surface's pose for every three columns; face-varying and varying data also
+/// have tiles of their own.
 class SurfaceData {
  public:
   ~SurfaceData();
   SurfaceData(SurfaceData&&) noexcept;
   SurfaceData& operator=(SurfaceData&&) noexcept;
 
-  /// Number of Ptex faces, the surface's.
+  /// The number of Ptex faces, which is the surface's.
   int faceCount() const;
-  /// Rows and columns of the values that it was made of.
+  /// The numbers of rows and columns of the values.
   Eigen::Index rows() const;
   Eigen::Index columns() const;
 
-  /// Other values in the same places. Throws MeshError for another number of rows or columns and
-  /// naming the first row that is not finite, and then leaves the data as they were. Not to be
-  /// called while another thread evaluates. Cost: as LimitSurface::setPositions(), for every three
-  /// columns.
+  /// Replaces the values. Throws MeshError for another number of rows or columns, and for the first
+  /// row that is not finite, which it names, and then leaves the data as they were. Must not be
+  /// called while another thread evaluates. Cost: that of LimitSurface::setPositions() for every
+  /// three columns.
   void setValues(const DataRows& values, int threads = 0);
 
-  /// Throws what evaluate() throws for the first row that cannot be evaluated, and does nothing
-  /// else.
-  void checkLocations(Span<Location> at) const;
+  /// Checks a batch, as LimitSurface::checkLocations() does.
+  LocationBatch checkLocations(Span<Location> at) const;
 
   /// Data and derivatives with respect to the face's own (u, v), with the error bounds of
   /// LimitSurface::evaluate(), relative to the diagonal of the values' bounding box.
@@ -51,8 +50,9 @@ class SurfaceData {
   /// Exactly at a vertex where the data's own neighbourhood is irregular, derivatives are those
   /// that LimitSurface::evaluate() would give there: NaN where there is no limit.
   ///
-  /// Throws as LimitSurface::evaluate(). Cost: as that, for every three columns.
-  DataEvaluation evaluate(Span<Location> at, Derivatives derivatives = Derivatives::none,
+  /// Throws what LimitSurface::evaluate() throws. Cost: that of LimitSurface::evaluate() for every
+  /// three columns.
+  DataEvaluation evaluate(const LocationBatch& at, Derivatives derivatives = Derivatives::none,
                           int threads = 0) const;
 
  private:

@@ -13,8 +13,8 @@ namespace limitsurf {
 struct SurfaceData::Data {
   static constexpr Eigen::Index kColumnsPerPose = 3;
 
-  /// `vertex_rows`: per vertex of the tiles' mesh the row of its value; empty where they are the
-  /// same.
+  /// `vertex_rows`: for each vertex of the tiles' mesh, the row of its value; empty if vertices and
+  /// rows have the same numbers.
   Data(std::shared_ptr<const TiledSurface> surface, std::vector<int> vertex_rows,
        const DataRows& values, int threads);
 

@@ -26,72 +26,74 @@ struct Box {
   }
 };
 
-/// A piece of the surface: a rectangle on which it is one bicubic patch, or a core, a square with
-/// an extraordinary vertex at (0, 0) on which it is infinitely many.
+/// A piece of the surface: a rectangle on which it is one bicubic patch, or a core. A core is a
+/// square with an extraordinary vertex at (0, 0), on which the surface is a sequence of infinitely
+/// many patches.
 struct SurfacePiece {
   int tile = -1;
-  std::int16_t steps = 0;  ///< subdivisions around the extraordinary vertex, if there is one
-  std::int16_t part = 0;   ///< which of the tile's patches after so many, or kCore
+  std::int16_t steps = 0;  ///< the number of subdivisions around the extraordinary vertex, if any
+  std::int16_t part = 0;   ///< which of the tile's patches after these, or kCore
 
   static constexpr std::int16_t kCore = -1;
   bool isCore() const { return part == kCore; }
 };
 
-/// The limit surface in its present pose as bicubic patches: everything that a search needs to know
-/// about it.
+/// The limit surface in its present pose as bicubic patches, for searches and integrals.
 ///
-/// A face without extraordinary vertices is one patch, or a few strips along a semi-sharp edge. One
-/// with them is split into tiles with one such vertex at most, and a core at each, which is three
-/// patches and a core of half its size, as often as the search asks; nothing is kept of those.
+/// A face without extraordinary vertices is one patch, or a few strips along a semi-sharp edge. A
+/// face with extraordinary vertices is split into tiles with at most one of them, which are cores.
+/// A core consists of three patches and a core of half its size. Searches split cores as often as
+/// they need to; the patches are computed anew each time.
 ///
-/// Refers to the surface or data, which must live on and keep their pose. All members may be called
-/// from many threads at once. Memory: 60 bytes a tile; around an extraordinary vertex 800 bytes a
-/// face, with more than kFewFaces of them 4,600.
+/// Refers to the surface or the data, which must live on and keep their pose. All members may be
+/// called from many threads at once. Memory: 60 bytes for each tile; 800 bytes for each face around
+/// an extraordinary vertex, or 4,600 if there are more than kFewFaces of them.
 class SurfacePatches {
  public:
-  /// After so many steps, and with so small a core that positions in it are kPositionError from
-  /// the vertex, it need not be split any more.
+  /// The most steps of a core. A step shrinks a core's points by the largest eigenvalue below 1,
+  /// which is at most (3 + sqrt 5) / 8 = 0.6545 for all rings with closed forms; 0.6545^72 = 6e-14,
+  /// so that the rest of the core is within kPositionError of its vertex.
   static constexpr int kMostSteps = 72;
+  /// Around vertices with more faces than this, the ring's points are kept for all steps.
   static constexpr int kFewFaces = 16;
 
   explicit SurfacePatches(const LimitSurface& surface, int threads = 0);
-  /// Of data's first three columns, as if they were positions; what columns are missing is 0.
+  /// The first three columns of data, as if they were positions. Missing columns are 0.
   explicit SurfacePatches(const SurfaceData& data, int threads = 0);
   ~SurfacePatches();
   SurfacePatches(SurfacePatches&&) noexcept;
   SurfacePatches& operator=(SurfacePatches&&) noexcept;
 
-  /// Tiles, in the order of their Ptex faces.
+  /// The number of tiles. They are in the order of their Ptex faces.
   int tileCount() const;
-  /// What a tile consists of: patches, or the core of all of it.
+  /// Appends the pieces of a tile: its patches, or the one core that it is.
   void appendPieces(int tile, std::vector<SurfacePiece>& pieces) const;
-  /// How many.
+  /// The number of these pieces.
   int pieceCount(int tile) const;
 
   FaceRectangle rectangle(const SurfacePiece& piece) const;
 
-  /// The patch of a piece that is no core. Its points are the surface's to kPositionError / 10.
+  /// The patch of a piece that is no core. Its points are exact to kPositionError / 10.
   BezierPatch patch(const SurfacePiece& piece) const;
 
-  /// A core one step later.
+  /// The parts of a core.
   struct SplitCore {
     BezierPatch patches[3];  ///< at (1/2, 0), (1/2, 1/2) and (0, 1/2) of the core
-    SurfacePiece pieces[3];  ///< the same
-    SurfacePiece core;       ///< the rest
-    Box core_box;            ///< around the rest
+    SurfacePiece pieces[3];  ///< of these patches
+    SurfacePiece core;       ///< the rest: the core of half the size
+    Box core_box;            ///< a box around the rest
 
    private:
     friend class SurfacePatches;
-    BezierPatch::Point grid_[25];  ///< the control points that the rest is split from
+    BezierPatch::Point grid_[25];  ///< the control points from which the rest can be split
   };
-  /// Cost: O(1) for the first few steps, then O(valence) for valences to kFewFaces; with more faces
-  /// O(1) where `out` holds the split that `core` came from.
+  /// Cost: O(1) for the first few steps, then O(valence) for valences to kFewFaces; for larger ones
+  /// O(1) if `out` holds the split of which `core` is the rest.
   void split(const SurfacePiece& core, SplitCore& out) const;
 
   /// A box around the surface on a tile's whole core (steps = 0).
   Box coreBox(const SurfacePiece& core) const;
-  /// The largest distance between the core's vertex and the points around it that decide about the
-  /// surface there, up to the core's own corner points: what is left of the core beyond `steps`.
+  /// The largest distance of the ring's points from the core's vertex after the core's steps.
   double coreRadius(const SurfacePiece& core) const;
   /// The limit position of the core's vertex.
   Vector3 coreVertex(const SurfacePiece& core) const;

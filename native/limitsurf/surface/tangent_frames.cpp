@@ -9,14 +9,14 @@
 namespace limitsurf {
 namespace {
 
-/// v over its largest component, or zero; overflows nowhere.
+/// v over its largest component, or zero; lengths of the result do not overflow.
 template <typename Vector>
 Vector scaled(const Vector& v) {
   const double largest = v.cwiseAbs().maxCoeff();
   return largest > 0 ? Vector(v / largest) : Vector(Vector::Zero());
 }
 
-/// Any length; zero where there is none.
+/// The direction of dP/dU, of any length; zero where there is none.
 Vector3 alongU(const MapDerivatives& d, Eigen::Index row, double sign) {
   Eigen::Matrix<double, 3, 2> position;
   position.col(0) = d.on_surface.du.row(row).transpose();

@@ -6,14 +6,15 @@
 
 namespace limitsurf {
 
-/// Bound on the error of a tangent's direction, in radians, times how ill-conditioned it is:
-/// (|du| |dV/dv| + |dv| |dV/du|) / |du dV/dv - dv dV/du|, each derivative being at least as large
-/// as the face's largest 1/16 away from its corners. Within 1/16 of an irregular vertex, where
-/// derivatives vanish or diverge, the same of their ratios.
+/// Bound on the error of a tangent's direction, in radians, relative to its condition
+/// (|du| |dV/dv| + |dv| |dV/du|) / |du dV/dv - dv dV/du|. Here each derivative counts as at least
+/// as large as the face's largest one 1/16 away from its corners. Within 1/16 of an irregular
+/// vertex, where derivatives vanish or diverge, the same holds for their ratios. Derivation:
+/// docs/accuracy.md.
 constexpr double kTangentError = 1e-11;
 
-/// The frames in which tangent-space normals and displacements are told, for a map (U, V) on the
-/// surface: row-major 3x3 matrices, nine numbers a row, with columns
+/// The frames in which tangent-space normals and displacements are expressed, for a map (U, V) on
+/// the surface: row-major 3x3 matrices, nine numbers a row, with columns
 ///   tangent    dP/dU made perpendicular to the normal, unit;
 ///   bitangent  sign * normal x tangent, where the sign is -1 if the map is mirrored (its Jacobian
 ///              is negative), else 1;
@@ -22,14 +23,14 @@ constexpr double kTangentError = 1e-11;
 /// polygons, converge to as a mesh on the limit is tessellated ever more finely.
 ///
 /// Orthonormal and finite everywhere:
-///   - at a vertex where the surface or the map is irregular the tangent is that seen from
-///     kSeenFrom inside the face, the normal that of LimitSurface::frames() at the vertex;
-///   - where the map or the surface is singular (no dP/dU, or it is along the normal) the frame is
-///     LimitSurface::frames()'s, with sign 1.
+///   - at a vertex where the surface or the map is irregular, the tangent is that at the distance
+///     kSeenFrom inside the face, and the normal is that of LimitSurface::frames() at the vertex;
+///   - where the map or the surface is singular (dP/dU vanishes or has the normal's direction), the
+///     frame is that of LimitSurface::frames(), with sign 1.
 ///
-/// Throws as LimitSurface::evaluate(), and std::invalid_argument for a map that has not two columns
-/// or belongs to a surface with another number of faces. Cost: two evaluations a location. The same
-/// bits for any number of threads.
+/// Throws what LimitSurface::evaluate() throws, and std::invalid_argument for a map that does not
+/// have two columns or belongs to a surface with another number of faces. Cost: two evaluations for
+/// each location. Any number of threads gives the same bits.
 Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> tangentFrames(const LimitSurface& surface,
                                                                         const SurfaceData& uv_map,
                                                                         Span<Location> at,

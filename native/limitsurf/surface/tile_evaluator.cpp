@@ -6,95 +6,11 @@
 #include <cmath>
 #include <vector>
 
-#include "limitsurf/patch/single_crease.h"
 #include "limitsurf/surface/differential.h"
+#include "limitsurf/surface/tile_weights.h"
 #include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
-
-Quarter::Quarter(double u_, double v_) {
-  const double larger = std::max(u_, v_);
-  if (larger >= 0x1p-1000) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &larger, sizeof bits);
-    steps =
-        std::max(1, 1023 - static_cast<int>(bits >> 52));  // larger in [2^-steps, 2^(1 - steps))
-    const double scale = powerOfTwo(steps);
-    u = u_ * scale;
-    v = v_ * scale;
-  } else {
-    int exponent;
-    std::frexp(larger, &exponent);  // larger in [2^(exponent - 1), 2^exponent)
-    steps = 1 - exponent;
-    u = std::ldexp(u_, steps);
-    v = std::ldexp(v_, steps);
-  }
-  a = u >= 1 ? 1 : 0;
-  b = v >= 1 ? 1 : 0;
-  u -= a;
-  v -= b;
-}
-
-GridWindow gridWindow(const Quarter& quarter, Sides sides, int order) {
-  return {quarter.a, quarter.b, CubicWeights(quarter.u, onRight(sides) && quarter.a == 0, false),
-          CubicWeights(quarter.v, onLeft(sides) && quarter.b == 0, false), order};
-}
-
-namespace {
-
-/// Across a crease along the low side, or along the high one, at t from the low side.
-CubicWeights acrossCrease(float sharpness, double t, bool high_side, bool cut) {
-  CubicWeights w = SingleCrease(sharpness).weights(high_side ? 1 - t : t, cut);
-  if (high_side) {
-    std::reverse(w.value, w.value + 4);
-    std::reverse(w.first, w.first + 3);
-    std::reverse(w.second, w.second + 2);
-  }
-  return w;
-}
-
-}  // namespace
-
-TileWeights::TileWeights(const BSplineTile& tile, double u_, double v_)
-    : u(u_, tile.x_low, tile.x_high), v(v_, tile.y_low, tile.y_high) {
-  if (tile.crease > 0) {
-    switch (tile.crease_side) {
-      case 0:
-        v = acrossCrease(tile.crease, v_, false, tile.y_high);
-        break;
-      case 1:
-        u = acrossCrease(tile.crease, u_, true, tile.x_low);
-        break;
-      case 2:
-        v = acrossCrease(tile.crease, v_, true, tile.y_low);
-        break;
-      default:
-        u = acrossCrease(tile.crease, u_, false, tile.x_high);
-    }
-  }
-}
-
-TileStrips::TileStrips(const BSplineTile& tile)
-    : count(1), side_(tile.crease_side), borders_{0, 1, 1, 1} {
-  static_assert(sizeof borders_ == (SingleCrease::kMostStrips + 1) * sizeof(double));
-  if (tile.crease > 0) {
-    count = SingleCrease(tile.crease).strips(borders_);
-  }
-}
-
-TileStrips::Strip TileStrips::at(int i) const {
-  const double near = borders_[i], far = borders_[i + 1];
-  switch (side_) {
-    case 0:
-      return {0, 1, near, far};
-    case 1:
-      return {1 - far, 1 - near, 0, 1};
-    case 2:
-      return {0, 1, 1 - far, 1 - near};
-    default:
-      return {near, far, 0, 1};
-  }
-}
 
 TileLocation TileEvaluator::locate(const Location& at) const {
   TileLocation result;
@@ -137,7 +53,8 @@ void TileEvaluator::evaluate(const TileLocation& at, Jet& jet) {
   }
 }
 
-// Always inline: a call would put the weights into memory, which costs a fifth of a position.
+// Always inline: a call would store the weights in memory, which takes a fifth of the time of a
+// position.
 template <int Order>
 [[gnu::always_inline]] inline void TileEvaluator::evaluateBSpline(const TileLocation& at,
                                                                   const CubicWeights& u,
@@ -149,7 +66,7 @@ template <int Order>
   const auto point = [&](int x, int y) -> Padded {
     return pose_.point(tile.points[4 * y + x]) - anchor;
   };
-  if (index != loaded_ && (index == last_ || tile.fine)) {  // asked for again: worth keeping
+  if (index != loaded_ && (index == last_ || tile.fine)) {  // a second location on the same tile
     loaded_ = index;
     for (int i = 0; i < 16; ++i) {
       window_[i] =
@@ -186,8 +103,8 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   if (quarter.steps > pose_.gridSteps(tile)) {
     const Eigenbasis& basis = *table_.rings[tile.ring].basis;
     jet.anchor = pose_.ring(tile.ring).limit;
-    // Around a cone the fastest mode vanishes across the spokes, by symmetry, and so must its share
-    // of the derivative before it is added to the others'.
+    // Around a cone the mode with the largest eigenvalue has, by symmetry, no derivative across the
+    // spokes. Its rounding would hide that of the others if control points were added up first.
     const bool by_modes = Order == 2 || (Order == 1 && basis.ring().kind == RingKind::cone);
     if (!by_modes) {
       Padded grid[tile_grid::kSlots];

@@ -10,8 +10,15 @@ namespace limitsurf {
 TiledSurface::TiledSurface(const ControlMesh& mesh, const Topology& topology)
     : ptex(mesh), refused(topology.refused()), table(buildTileTable(mesh, topology, ptex)) {}
 
-void TiledSurface::check(Span<Location> at, int threads) const {
+void TiledSurface::check(const LocationBatch& at, int threads) const {
   checkThreads(threads);
+  checked(at);
+}
+
+LocationBatch TiledSurface::checked(const LocationBatch& at) const {
+  if (at.checked_on_ == this) {
+    return at;
+  }
   std::ostringstream message;
   message.precision(17);
   for (std::size_t row = 0; row < at.size(); ++row) {
@@ -34,6 +41,7 @@ void TiledSurface::check(Span<Location> at, int threads) const {
       throw MeshError(message.str());
     }
   }
+  return LocationBatch(at.locations(), this);
 }
 
 }  // namespace limitsurf

@@ -10,15 +10,17 @@
 
 namespace limitsurf {
 
-/// What the topology of a control mesh alone decides: which faces have a surface, and of which
-/// tiles. A surface and the data on it share it.
+/// What depends on the topology of a control mesh alone: which faces have a surface, and the tiles
+/// of these. A surface and the data on it share it.
 struct TiledSurface {
   TiledSurface(const ControlMesh& mesh, const Topology& topology);
   explicit TiledSurface(const ControlMesh& mesh) : TiledSurface(mesh, Topology(mesh)) {}
 
-  /// Throws LocationError or MeshError for the first row that cannot be evaluated,
-  /// std::invalid_argument for a number of threads that has no meaning.
-  void check(Span<Location> at, int threads) const;
+  /// Throws LocationError or MeshError for the first row that cannot be evaluated, unless the batch
+  /// has been checked here before.
+  LocationBatch checked(const LocationBatch& at) const;
+  /// The same, and throws std::invalid_argument for a negative number of threads.
+  void check(const LocationBatch& at, int threads) const;
 
   PtexFaces ptex;
   std::map<int, std::string> refused;  ///< faces of the control mesh without a surface -> reason

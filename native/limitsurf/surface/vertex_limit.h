@@ -8,29 +8,21 @@
 namespace limitsurf {
 
 /// Position and derivatives exactly at a ring tile's extraordinary vertex, in the tile's turned
-/// frame: those of the limit curve along a bounding boundary; du = dv = 0 at interior valence 2
-/// and 3; NaN for all that has no limit.
+/// frame. Along a boundary that bounds the tile they are those of the limit curve; at interior
+/// valence 2 and 3, du = dv = 0; all others have no limit and are NaN.
 void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet);
 
-/// Whether du = dv = 0 at the vertex: at smooth valence 2 and 3, all of whose eigenvalues are below
-/// 1/2. (So are those of darts of these valences, but a dart's derivatives count as undefined.)
+/// Whether du = dv = 0 at the vertex. This is so at interior valence 2 and 3, whose eigenvalues
+/// other than 1 are all below 1/2. (Those of darts of these valences are as well, but the
+/// derivatives of darts count as undefined.)
 bool vertexIsStationary(const Ring& ring);
 
-/// Whether all approaches to the vertex within its sector agree on a normal: everywhere inside, at
-/// darts as well, but at valence 2, and in boundary sectors of up to three faces (paper's valence
-/// 4); nowhere at cones.
+/// Whether all approaches to the vertex within its sector agree on a normal. They do at interior
+/// vertices and darts of valence 3 and more, in boundary sectors of at most three faces (valence
+/// 4), and in pinned corners of one face; never at cones.
 ///
-/// At a dart the two largest eigenvalues belong to an antisymmetric and a symmetric mode, and the
-/// map that those make turns over nowhere.
+/// At a dart the two largest eigenvalues below 1 belong to an antisymmetric and a symmetric mode,
+/// and the map that these two modes make preserves the orientation everywhere.
 bool vertexHasNormal(const Ring& ring);
-
-/// What the surface looks like on the way u = v = 2^-n, n to infinity, to a ring tile's vertex: the
-/// directions (any length, or zero) of du, dv and of their cross product in the tile's frame turned
-/// by `turns` corners back. Conjugate and negative eigenvalues, which never lead unless a mesh is
-/// degenerate, are seen where n steps have turned them by whole circles.
-struct VertexApproach {
-  Vector3 du, dv, normal;
-};
-VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring_tile, int turns);
 
 }  // namespace limitsurf

@@ -14,7 +14,7 @@
 
 namespace limitsurf {
 
-/// Numbers the points of a tessellation and lists its polygons; positions are no concern of it.
+/// Numbers the points of a tessellation and lists its polygons. It knows no positions.
 ///
 /// A point on an edge or at a vertex is numbered by the first face that has it. Faces are worked on
 /// at the same time, so others that meet such a point first write down its slot, as ~slot, and the

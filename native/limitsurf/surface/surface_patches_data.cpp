@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The tiles of a surface, their rings' points after every step, and patches made from both.
+#include "limitsurf/surface/surface_patches_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/surface/bezier_conversion.h"
+#include "limitsurf/surface/tile_weights.h"
+
+namespace limitsurf {
+namespace {
+
+/// The quad's own square, turned so that its corner `corner` comes first.
+FaceRectangle turned(const FaceRectangle& on, int corner) {
+  switch (corner & 3) {
+    case 0:
+      return on;
+    case 1:  // s runs along the old t, t against the old s
+      return {on.face, on.u0 + on.us, on.ut, -on.us, on.v0 + on.vs, on.vt, -on.vs};
+    case 2:
+      return {on.face, on.u0 + on.us + on.ut, -on.us, -on.ut, on.v0 + on.vs + on.vt, -on.vs,
+              -on.vt};
+    default:
+      return {on.face, on.u0 + on.ut, -on.ut, on.us, on.v0 + on.vt, -on.vt, on.vs};
+  }
+}
+
+/// The quarters of a core in the order of SplitCore.
+constexpr int kQuarters[3][2] = {{1, 0}, {1, 1}, {0, 1}};
+
+}  // namespace
+
+SurfacePatches::Data::Data(const TileTable& tile_table, const Pose& control_points)
+    : table(tile_table), pose(control_points) {
+  for (int i = 0; i < table.points.cagePoints(); ++i) {
+    cage_box.include(pose.point(i).head<3>().matrix());
+  }
+  tiles.reserve(table.faces.size());
+  for (std::size_t face = 0; face < table.faces.size(); ++face) {
+    FaceRectangle whole;
+    whole.face = static_cast<int>(face);
+    addTiles(table.faces[face], whole);
+  }
+}
+
+void SurfacePatches::Data::addTiles(const TileRef& ref, const FaceRectangle& on) {
+  switch (ref.kind) {
+    case TileRef::kNone:
+      return;
+    case TileRef::kSplit:
+      for (int c = 0; c < 4; ++c) {
+        addTiles(table.splits[ref.index][c], turned(on, c).part(0, 0, 0.5, 0.5));
+      }
+      return;
+    case TileRef::kBSpline:
+      tiles.push_back({ref, on});
+      return;
+    default:
+      tiles.push_back({ref, turned(on, table.ring_tiles[ref.index].corner)});
+  }
+}
+
+int SurfacePatches::Data::keptSteps(int ring) const {
+  return table.rings[ring].basis->ring().faces > kFewFaces ? kMostSteps : kFewSteps;
+}
+
+void SurfacePatches::Data::setLevels(int threads) {
+  radii.resize(table.rings.size() * (kMostSteps + 1));
+  first_level.resize(table.rings.size());
+  std::size_t size = 0;
+  for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
+    first_level[ring] = size;
+    size += table.rings[ring].points.size() * (keptSteps(static_cast<int>(ring)) + 1);
+  }
+  levels.resize(size);
+  parallelFor(table.rings.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t ring = begin; ring < end; ++ring) {
+      setRingLevels(static_cast<int>(ring));
+    }
+  });
+}
+
+void SurfacePatches::Data::setRingLevels(int ring_index) {
+  const RingPoints& ring = table.rings[ring_index];
+  const Padded limit = pose.ring(ring_index).limit;
+  std::vector<Padded> points(ring.points.size()), next(ring.points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = (pose.point(ring.points[i]) - limit) + pose.residual(ring.points[i]);
+  }
+  const int kept_steps = keptSteps(ring_index);
+  float* out = &radii[static_cast<std::size_t>(ring_index) * (kMostSteps + 1)];
+  for (int step = 0; step <= kMostSteps; ++step) {
+    double squared = 0;
+    for (const Padded& point : points) {
+      squared = std::max(squared, point.square().sum());
+    }
+    out[step] = static_cast<float>(std::sqrt(squared) * (1 + kFloatMargin));
+    if (step <= kept_steps) {
+      std::copy(points.begin(), points.end(),
+                &levels[first_level[ring_index] + points.size() * step]);
+    }
+    ring.basis->step().apply([&](int i) -> const Padded& { return points[i]; },
+                             [&](int i) -> Padded& { return next[i]; });
+    points.swap(next);
+  }
+}
+
+double SurfacePatches::Data::radius(const SurfacePiece& core) const {
+  const RingTile& tile = ringTile(core);
+  return radii[static_cast<std::size_t>(tile.ring) * (kMostSteps + 1) +
+               std::min(core.steps + tile.ring_steps, kMostSteps)];
+}
+
+FaceRectangle SurfacePatches::Data::rectangle(const SurfacePiece& piece) const {
+  const Tile& tile = tiles[piece.tile];
+  if (tile.ref.kind == TileRef::kRing) {
+    const double size = powerOfTwo(-piece.steps);
+    if (piece.isCore()) {
+      return tile.on.part(0, 0, size, size);
+    }
+    const int* quarter = kQuarters[piece.part];
+    return tile.on.part(quarter[0] * size, quarter[1] * size, size, size);
+  }
+  const TileStrips::Strip s = TileStrips(table.bsplines[tile.ref.index]).at(piece.part);
+  return tile.on.part(s.u0, s.v0, s.u1 - s.u0, s.v1 - s.v0);
+}
+
+void SurfacePatches::Data::regularPatch(const SurfacePiece& piece, BezierPatch& out) const {
+  const BSplineTile& tile = table.bsplines[tiles[piece.tile].ref.index];
+  out.anchor = pose.point(tile.points[5]);
+  if (tile.crease > 0) {
+    stripPatch(tile, piece.part, out);
+    return;
+  }
+  for (int i = 0; i < 16; ++i) {
+    out.points[i] = pose.difference(tile.points[i], tile.points[5]);
+  }
+  continueSides(out.points, tile.x_low, tile.x_high, tile.y_low, tile.y_high);
+  convertBothWays(out.points, toBezier);
+  out.borders = (tile.x_low ? kSideS0 : 0u) | (tile.x_high ? kSideS1 : 0u) |
+                (tile.y_low ? kSideT0 : 0u) | (tile.y_high ? kSideT1 : 0u);
+}
+
+/// A strip along a semi-sharp edge, interpolated from its values: its Bezier points have no direct
+/// formula, but its weights have.
+void SurfacePatches::Data::stripPatch(const BSplineTile& tile, int strip, BezierPatch& out) const {
+  Padded window[16];
+  for (int i = 0; i < 16; ++i) {
+    window[i] = pose.difference(tile.points[i], tile.points[5]);
+  }
+  const TileStrips::Strip s = TileStrips(tile).at(strip);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      const TileWeights w(tile, s.u0 + (s.u1 - s.u0) * x / 3, s.v0 + (s.v1 - s.v0) * y / 3);
+      PatchValues<Padded> patch;
+      evaluateWindow<0>(window, 4, w.u, w.v, patch);
+      out.points[4 * y + x] = patch.value;
+    }
+  }
+  convertBothWays(out.points, interpolateBezier);
+  out.borders =
+      (tile.x_low && s.u0 == 0 ? kSideS0 : 0u) | (tile.x_high && s.u1 == 1 ? kSideS1 : 0u) |
+      (tile.y_low && s.v0 == 0 ? kSideT0 : 0u) | (tile.y_high && s.v1 == 1 ? kSideT1 : 0u);
+}
+
+Padded SurfacePatches::Data::ringGrid(const SurfacePiece& piece, int steps,
+                                      Padded grid[tile_grid::kSlots]) const {
+  const int index = static_cast<int>(tiles[piece.tile].ref.index);
+  const RingTile& tile = table.ring_tiles[index];
+  if (steps <= pose.gridSteps(tile)) {
+    const Pose::Grid& kept = pose.grid(index, steps);
+    std::copy(kept.points, kept.points + tile_grid::kSlots, grid);
+    return kept.limit();
+  }
+  const Pose::RingPose& ring = pose.ring(tile.ring);
+  table.rings[tile.ring].basis->controlGrid(tile.face, steps, tile.ring_steps, ring.coefficients,
+                                            pose.ringTile(index).outer, grid);
+  const double scale = powerOfTwo(1 - steps);
+  for (int c = 0; c < tile_grid::kSlots; ++c) {
+    grid[c] = scale * grid[c] + ring.constant();
+  }
+  return ring.limit;
+}
+
+Padded SurfacePatches::Data::nextGrid(const SurfacePiece& core, bool chained,
+                                      Padded grid[tile_grid::kSlots]) const {
+  const RingTile& tile = ringTile(core);
+  const int steps = core.steps + 1;
+  const std::size_t first = first_level[tile.ring];
+  const int kept = keptSteps(tile.ring);
+  if (steps <= pose.gridSteps(tile) || (kept < kMostSteps && steps + tile.ring_steps > kept)) {
+    return ringGrid(core, steps, grid);
+  }
+  const RingPoints& ring = table.rings[tile.ring];
+  int done = core.steps;
+  if (!chained) {
+    done = pose.gridSteps(tile);
+    ringGrid(core, done, grid);
+  }
+  Padded after[tile_grid::kSlots];
+  std::fill_n(after, tile_grid::kSlots, Padded::Zero());
+  for (; done < steps; ++done) {
+    const std::size_t level = std::min(done + 1 + tile.ring_steps, kMostSteps);
+    stepGrid(ring.basis->ring(), tile.face, &levels[first + ring.points.size() * level], grid,
+             after);
+    std::copy(after, after + tile_grid::kSlots, grid);
+  }
+  return pose.ring(tile.ring).limit;
+}
+
+void SurfacePatches::Data::quarterPatch(const RingTile& tile, const Padded* grid, int steps,
+                                        int quarter, BezierPatch& out) const {
+  const int a = kQuarters[quarter][0], b = kQuarters[quarter][1];
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      out.points[4 * y + x] = grid[(b + y) * tile_grid::kSize + a + x];
+    }
+  }
+  const bool x_low = onRight(tile.sides) && a == 0, y_low = onLeft(tile.sides) && b == 0;
+  continueSides(out.points, x_low, false, y_low, false);
+  convertBothWays(out.points, toBezier);
+  out.borders = (x_low ? kSideS0 : 0u) | (y_low ? kSideT0 : 0u) |
+                (tile.u_high && steps == 1 && a == 1 ? kSideS1 : 0u) |
+                (tile.v_high && steps == 1 && b == 1 ? kSideT1 : 0u);
+}
+
+}  // namespace limitsurf

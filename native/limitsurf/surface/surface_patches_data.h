@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limitsurf/patch/tile_table.h"
+#include "limitsurf/surface/pose.h"
+#include "limitsurf/surface/surface_patches.h"
+
+namespace limitsurf {
+
+struct SurfacePatches::Data {
+  struct Tile {
+    TileRef ref;
+    FaceRectangle on;  ///< of a ring tile turned so that its vertex is (0, 0)
+  };
+
+  Data(const TileTable& tile_table, const Pose& control_points);
+
+  /// Fills `radii` and `levels`.
+  void setLevels(int threads);
+
+  const RingTile& ringTile(const SurfacePiece& piece) const {
+    return table.ring_tiles[tiles[piece.tile].ref.index];
+  }
+  /// The distance of the ring's points from its limit after the core's steps.
+  double radius(const SurfacePiece& core) const;
+  FaceRectangle rectangle(const SurfacePiece& piece) const;
+
+  /// A piece of a regular tile.
+  void regularPatch(const SurfacePiece& piece, BezierPatch& out) const;
+  /// A ring tile's control grid after `steps` >= 1 steps, relative to the anchor that is returned.
+  Padded ringGrid(const SurfacePiece& piece, int steps, Padded grid[tile_grid::kSlots]) const;
+  /// The grid after one step more than the core's. If `chained`, `grid` holds the one after the
+  /// core's steps.
+  Padded nextGrid(const SurfacePiece& core, bool chained, Padded grid[tile_grid::kSlots]) const;
+  /// One of the three patches beside the core that is left after `steps` steps.
+  void quarterPatch(const RingTile& tile, const Padded* grid, int steps, int quarter,
+                    BezierPatch& out) const;
+
+  const TileTable& table;
+  const Pose& pose;
+  std::vector<Tile> tiles;
+  std::vector<float> radii;              // kMostSteps + 1 for each ring
+  std::vector<std::size_t> first_level;  // for each ring
+  std::vector<Padded> levels;            // relative to the rings' limits
+  Box cage_box;
+
+ private:
+  /// Radii are rounded to float: this makes them upper bounds again.
+  static constexpr double kFloatMargin = 1e-6;
+  /// Rings with few faces keep their points for so many steps; later ones are rarely asked for, and
+  /// cost little at their valence.
+  static constexpr int kFewSteps = 12;
+  /// A ring takes much longer than an evaluation, so that a task has fewer of them than
+  /// kRowsPerTask.
+  static constexpr std::size_t kRingsPerTask = 16;
+
+  void addTiles(const TileRef& ref, const FaceRectangle& on);
+  /// The last step for which a ring's points are kept.
+  int keptSteps(int ring) const;
+  void setRingLevels(int ring);
+  void stripPatch(const BSplineTile& tile, int strip, BezierPatch& out) const;
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The derivatives at u = v = 2^-n are sums of terms n^power growth^n: one for each mode, by the
+// eigenvalues and Jordan chains of the ring. The largest term that does not vanish is the limit.
+#include "limitsurf/surface/vertex_approach.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "limitsurf/surface/tile_weights.h"
+
+namespace limitsurf {
+namespace {
+
+/// Vectors below this fraction of the largest coefficient count as zero: it is several orders of
+/// magnitude above rounding, and far below any detail of a mesh.
+constexpr double kVanishing = 1e-10;
+
+/// Eigenvalues that differ by less than this count as equal. Equal ones that come from different
+/// closed forms differ by rounding, which is three orders of magnitude less.
+constexpr double kEqualGrowth = 1e-13;
+
+/// Only the modes with the largest eigenvalues can lead, and of a large ring all others are left
+/// out.
+constexpr std::size_t kLeadingModes = 24;
+
+/// A term n^power growth^n of du and dv.
+struct Term {
+  double growth;
+  int power;
+  Vector3 du, dv;
+};
+
+/// A term n^power growth^n of du x dv.
+struct CrossTerm {
+  double growth;
+  int power;
+  Vector3 normal;
+};
+
+/// Whether a term outgrows another one as n grows. Of terms whose growth differs only in its sign
+/// the positive one comes first.
+template <typename A, typename B>
+bool dominates(const A& a, const B& b) {
+  const double size_a = std::abs(a.growth), size_b = std::abs(b.growth);
+  if (std::abs(size_a - size_b) > kEqualGrowth) {
+    return size_a > size_b;
+  }
+  if ((a.growth < 0) != (b.growth < 0)) {
+    return b.growth < 0;
+  }
+  return a.power > b.power;
+}
+
+/// The size of the larger eigenvalue of a pair.
+double largerSize(const ModePair& pair) {
+  const double square = pair.forth * pair.back;
+  return square < 0 ? std::sqrt(pair.mean * pair.mean - square)
+                    : std::abs(pair.mean) + std::sqrt(square);
+}
+
+bool isIn(const ModePair& pair, int mode) { return mode == pair.a || mode == pair.b; }
+
+/// The size of a mode's eigenvalue; of a pair's modes the larger one.
+double sizeOf(const Eigenbasis& basis, int mode) {
+  for (const ModePair& pair : basis.pairs()) {
+    if (isIn(pair, mode)) {
+      return largerSize(pair);
+    }
+  }
+  return std::abs(basis.eigenvalue(mode));
+}
+
+/// The terms of the derivatives on the way to the vertex of one face.
+class ApproachTerms {
+ public:
+  ApproachTerms(const Eigenbasis& basis, int face, const Points& coefficients)
+      : basis_(basis), face_(face), coefficients_(coefficients), window_(outermost(basis, face)) {}
+
+  /// All terms, dominant ones first; terms that grow alike are added up.
+  std::vector<Term> sorted() {
+    for (const ModePair& pair : basis_.pairs()) {
+      addPair(pair);
+    }
+    for (const int mode : leadingModes()) {
+      if (!inPair(mode)) {
+        addMode(mode);
+      }
+    }
+    std::stable_sort(terms_.begin(), terms_.end(), dominates<Term, Term>);
+    return merged();
+  }
+
+ private:
+  /// The window at the outermost point of the way, where it enters quarter (1, 1).
+  static GridWindow outermost(const Eigenbasis& basis, int face) {
+    Quarter corner(1, 1);
+    corner.u = corner.v = 0;
+    return gridWindow(corner, basis.sides(face), 1);
+  }
+
+  /// The modes with the largest eigenvalues but the constant one. (The factor 2^n that both
+  /// derivatives have in common does not change the order.)
+  std::vector<int> leadingModes() const {
+    std::vector<int> modes(basis_.modeCount() - 1);
+    for (int mode = 1; mode < basis_.modeCount(); ++mode) {
+      modes[mode - 1] = mode;
+    }
+    const std::size_t kept = std::min(kLeadingModes, modes.size());
+    std::partial_sort(modes.begin(), modes.begin() + static_cast<std::ptrdiff_t>(kept), modes.end(),
+                      [&](int a, int b) { return sizeOf(basis_, a) > sizeOf(basis_, b); });
+    modes.resize(kept);
+    return modes;
+  }
+
+  bool inPair(int mode) const {
+    return std::any_of(basis_.pairs().begin(), basis_.pairs().end(),
+                       [&](const ModePair& pair) { return isIn(pair, mode); });
+  }
+
+  /// The derivatives of mode `shape` times a coefficient.
+  void add(int shape, double growth, int power, const Vector3& coefficient) {
+    const Eigenbasis::Table table = basis_.table(shape, face_);
+    PatchValues<double> patch;
+    evaluateWindow<1>(table.grid + window_.b * tile_grid::kSize + window_.a, tile_grid::kSize,
+                      window_.u, window_.v, patch);
+    terms_.push_back({growth, power, patch.du * coefficient, patch.dv * coefficient});
+  }
+
+  void addMode(int mode) {
+    const Vector3 coefficient = coefficients_.row(mode);
+    add(mode, basis_.eigenvalue(mode), 0, coefficient);
+    for (const Eigenbasis::Chain& chain : basis_.chains()) {
+      if (chain.from == mode) {
+        add(chain.to, basis_.eigenvalue(mode), 1,
+            chain.rate / basis_.eigenvalue(mode) * coefficient);
+      }
+    }
+  }
+
+  void addPair(const ModePair& pair) {
+    const Vector3 a = coefficients_.row(pair.a), b = coefficients_.row(pair.b);
+    const double square = pair.forth * pair.back;
+    if (square < 0) {  // a complex pair, turned by whole circles: both modes as they are
+      add(pair.a, largerSize(pair), 0, a);
+      add(pair.b, largerSize(pair), 0, b);
+      return;
+    }
+    for (const double root : {std::sqrt(square), -std::sqrt(square)}) {
+      // The eigenvector to mean + root is a + (root / back) b.
+      const Vector3 share = (a + (pair.back / root) * b) / 2;
+      add(pair.a, pair.mean + root, 0, share);
+      add(pair.b, pair.mean + root, 0, (root / pair.back) * share);
+    }
+  }
+
+  std::vector<Term> merged() const {
+    std::vector<Term> result;
+    for (const Term& term : terms_) {
+      if (!result.empty() && !dominates(result.back(), term)) {
+        result.back().du += term.du;
+        result.back().dv += term.dv;
+      } else {
+        result.push_back(term);
+      }
+    }
+    return result;
+  }
+
+  const Eigenbasis& basis_;
+  const int face_;
+  const Points& coefficients_;
+  const GridWindow window_;
+  std::vector<Term> terms_;
+};
+
+/// To the frame that is turned back by so many corners.
+void turnBack(std::vector<Term>& terms, int turns) {
+  for (Term& term : terms) {
+    for (int i = 0; i < turns; ++i) {
+      const Vector3 du = term.du;
+      term.du = -term.dv;
+      term.dv = du;
+    }
+  }
+}
+
+/// The first of the terms that is larger than `least`, or zero.
+Vector3 firstPresent(const std::vector<Term>& terms, Vector3 Term::* member, double least) {
+  for (const Term& term : terms) {
+    if ((term.*member).norm() > least) {
+      return term.*member;
+    }
+  }
+  return Vector3::Zero();
+}
+
+/// The leading term of the cross product: n^(p + q) (lambda mu)^n du_lambda x dv_mu, terms that
+/// grow alike added up.
+Vector3 leadingNormal(const std::vector<Term>& terms, double least) {
+  std::vector<CrossTerm> crosses;
+  for (const Term& a : terms) {
+    for (const Term& b : terms) {
+      crosses.push_back({a.growth * b.growth, a.power + b.power, a.du.cross(b.dv)});
+    }
+  }
+  std::stable_sort(crosses.begin(), crosses.end(), dominates<CrossTerm, CrossTerm>);
+  for (std::size_t i = 0; i < crosses.size();) {
+    Vector3 sum = Vector3::Zero();
+    const CrossTerm& leading = crosses[i];
+    for (; i < crosses.size() && !dominates(leading, crosses[i]); ++i) {
+      sum += crosses[i].normal;
+    }
+    if (sum.norm() > least) {
+      return sum;
+    }
+  }
+  return Vector3::Zero();
+}
+
+}  // namespace
+
+VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring_tile, int turns) {
+  const RingTile& tile = table.ring_tiles[ring_tile];
+  const Points& coefficients = pose.ring(tile.ring).coefficients;
+  std::vector<Term> terms =
+      ApproachTerms(*table.rings[tile.ring].basis, tile.face, coefficients).sorted();
+  turnBack(terms, turns);
+  const double size = coefficients.bottomRows(coefficients.rows() - 1).cwiseAbs().maxCoeff();
+  return {firstPresent(terms, &Term::du, kVanishing * size),
+          firstPresent(terms, &Term::dv, kVanishing * size),
+          leadingNormal(terms, kVanishing * size * size)};
+}
+
+}  // namespace limitsurf
