@@ -5,7 +5,12 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs/accuracy.md"
 ROW = re.compile(r"^\| [^|]*\| `(k\w+Error)` \| ([0-9e./-]+)", re.MULTILINE)
+LINKED_ROW = re.compile(
+    r"^\| \[[^]]+\]\(#([\w-]+)\) \| `(k\w+Error)` \|.*\| ([^|]+) \|$", re.MULTILINE
+)
+HEADING = re.compile(r"^### (.+)$", re.MULTILINE)
 CONSTANT = re.compile(r"^constexpr double (k\w+Error) = ([^;]+);", re.MULTILINE)
 
 
@@ -15,7 +20,7 @@ def number(text: str) -> float:
 
 
 def test_bounds_are_those_of_the_headers():
-    page = dict(ROW.findall((ROOT / "docs/accuracy.md").read_text()))
+    page = dict(ROW.findall(PAGE.read_text()))
     headers: dict[str, str] = {}
     for header in (ROOT / "native/limitsurf").rglob("*.h"):
         headers |= CONSTANT.findall(header.read_text())
@@ -23,3 +28,13 @@ def test_bounds_are_those_of_the_headers():
         name: number(bound) for name, bound in headers.items()
     }
     assert len(page) > 10
+
+
+def test_every_bound_has_a_section_that_says_how_it_is_known():
+    text = PAGE.read_text()
+    headings = {heading.lower().replace(" ", "-") for heading in HEADING.findall(text)}
+    rows = LINKED_ROW.findall(text)
+    assert {name for _, name, _ in rows} == {name for name, _ in ROW.findall(text)}
+    for anchor, name, how in rows:
+        assert anchor in headings, name
+        assert re.search("derived|estimated|measured", how), name

@@ -184,7 +184,7 @@ TEST(Area, IsExactOnPlanes) {
   // Boundary curves of a straight-sided grid with pinned corners are its sides.
   Cage cage = grid(3, 2);
   cage.options.boundary = Boundary::corners;
-  EXPECT_NEAR(surfaceArea(limitSurface(cage)), 6, 6e-9);
+  EXPECT_NEAR(surfaceArea(limitSurface(cage)), 6, 6 * kAreaError);
 }
 
 TEST(Bounds, AreTight) {
