@@ -38,7 +38,7 @@ std::string describe(const Ring& ring) {
 
 bool exists(const Ring& ring) { return ring.faces >= (ring.closed() ? 2 : 1); }
 
-/// What a step does to the coefficients of the modes.
+/// The matrix of a step on the coefficients of the modes.
 LongMatrix jordanForm(const Eigenbasis& basis) {
   LongMatrix j = LongMatrix::Zero(basis.modeCount(), basis.modeCount());
   for (int mode = 0; mode < basis.modeCount(); ++mode) j(mode, mode) = basis.eigenvalue(mode);
@@ -63,7 +63,7 @@ void compareWithRingMatrix(const Ring& ring) {
   const Eigen::MatrixXd left = basis.projectTransposed(Eigen::MatrixXd::Identity(n, n)).transpose();
   const LongMatrix wide_left = left.cast<long double>();
   EXPECT_LE((s * right - right * j).cwiseAbs().maxCoeff(), 2e-15L) << describe(ring);
-  // The rest adds up rounding of all modes.
+  // The other errors are sums of the rounding of all modes.
   const long double allowed = 1e-14L * std::max(1.L, ring.faces / 100.L);
   EXPECT_LE((wide_left * right - identity).cwiseAbs().maxCoeff(), 2 * allowed) << describe(ring);
   EXPECT_LE((s - right * j * wide_left).cwiseAbs().maxCoeff(), allowed) << describe(ring);
@@ -92,7 +92,7 @@ TEST(SlowEigenbasis, FactorisesTheRingMatrix) {
   }
 }
 
-/// The eigenvalues that the basis knows of.
+/// The eigenvalues of the basis.
 std::vector<LongComplex> knownSpectrum(const Eigenbasis& basis) {
   std::vector<LongComplex> result;
   for (int mode = 0; mode < basis.modeCount(); ++mode) result.push_back(basis.eigenvalue(mode));
@@ -105,12 +105,13 @@ std::vector<LongComplex> knownSpectrum(const Eigenbasis& basis) {
   return result;
 }
 
-/// Eigenvalues of S on the vectors that a dart's mirror leaves as they are, or negates.
+/// The eigenvalues of S on the vectors that are symmetric, or antisymmetric, about a dart's sharp
+/// spoke.
 std::vector<LongComplex> numericSpectrum(const Ring& dart) {
   const int n = dart.faces;
   std::vector<LongComplex> result;
   for (const int sign : {1, -1}) {
-    std::vector<std::pair<int, int>> points;  // with their images
+    std::vector<std::pair<int, int>> points;  // with their mirror images
     if (sign > 0) points.emplace_back(0, 0);
     for (int i = 0; 2 * i <= n; ++i) {
       const int image = (n - i) % n;
@@ -220,14 +221,14 @@ class SubdividedTile {
 
   const BigGrid& grid() const { return grid_; }
 
-  /// Where the vertex ends.
+  /// The limit position of the vertex.
   Big limit() const {
     SubdividedTile copy(*this);
     for (int i = 0; i < 600; ++i) copy.stepRing();
     return copy.ring_[0];
   }
 
-  /// The ring's largest distance from there.
+  /// The largest distance of the ring's points from that limit.
   Big size(const Big& limit) const {
     Big result = 0;
     for (const Big& point : ring_) result = std::max<Big>(result, abs(point - limit));
@@ -293,10 +294,10 @@ double asDouble(const Big& value) { return static_cast<double>(value); }
 /// The worst errors of values, first and second derivatives.
 using Errors = std::array<double, 3>;
 
-/// weights() and controlGrid() of a random tile after some steps. Derivatives count in the face's
-/// own parameters; errors are relative to the largest after as many steps, or after the first;
-/// those of first derivatives also to what the ring's size after as many steps makes of them
-/// elsewhere.
+/// Compares weights() and controlGrid() of a random tile after some steps. Derivatives are with
+/// respect to the face's own parameters. Errors are relative to the largest value after the same
+/// number of steps, or after the first step; those of first derivatives also to the size of the
+/// ring after these steps.
 void compareTile(const Eigenbasis& basis, int face, int ring_steps, Random& random,
                  Errors& errors) {
   const Tile tile = randomTile(basis, face, ring_steps, random);
@@ -334,7 +335,7 @@ void compareTile(const Eigenbasis& basis, int face, int ring_steps, Random& rand
       for (std::size_t functional = 0; functional < kDerivatives.size(); ++functional) {
         const auto [du, dv] = kDerivatives[functional];
         const int order = du + dv;
-        // Second derivatives leave 2^(steps - 1) to the caller.
+        // For second derivatives the caller has to multiply by 2^(steps - 1).
         const double exact = asDouble(boost::multiprecision::ldexp(
             patch(truth.grid(), sides, at, du, dv), order == 2 ? steps + 1 : order * steps));
         const Eigen::Index row = static_cast<Eigen::Index>(functional);
@@ -381,7 +382,7 @@ void compareTiles(RingKind kind, const std::vector<int>& face_counts) {
     }
     std::printf("%-18s position %.1e  first derivatives %.1e  second %.1e\n",
                 describe(ring).c_str(), errors[0], errors[1], errors[2]);
-    // Darts of valence 16 are next to having a triple eigenvalue.
+    // The largest errors are those of darts of valence 16, which almost have a triple eigenvalue.
     EXPECT_LE(errors[0], 4e-15) << describe(ring);
     EXPECT_LE(errors[1], 1e-13) << describe(ring);
     EXPECT_LE(errors[2], 1e-12) << describe(ring);
@@ -421,7 +422,7 @@ TEST(Eigenbasis, OfLargeDartsReachesAStep) {
   }
 }
 
-// Darts and cones on a surface, at the vertex and as close to it as doubles go.
+// Darts and cones on a surface, at the vertex and as close to it as doubles can be.
 
 Cage dartFan(int faces) {
   Cage cage = fan(faces, true, 31 * faces);

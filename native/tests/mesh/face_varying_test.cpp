@@ -24,7 +24,7 @@ namespace {
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 
-constexpr int kLevels = 4;           // sharpness up to 3 is gone by then
+constexpr int kLevels = 4;           // sharpness up to 3 has decayed by then
 constexpr double kRounding = 1e-15;  // of values in [-1, 1]
 
 struct Value {
@@ -40,7 +40,7 @@ std::vector<float> sharpness(const std::vector<double>& values) {
   return result;
 }
 
-/// OpenSubdiv's uniform refinement of the mesh, with a channel if there is one.
+/// OpenSubdiv's uniform refinement of the mesh, with the channel if there is one.
 std::unique_ptr<Far::TopologyRefiner> refined(const ControlMesh& mesh, const Channel& channel = {},
                                               Interpolation interpolation = Interpolation::all) {
   const MeshOptions& o = mesh.options();
@@ -100,12 +100,11 @@ std::unique_ptr<Far::TopologyRefiner> refined(const ControlMesh& mesh, const Cha
 
 struct Difference {
   double worst = 0;
-  bool refused = false;  ///< some faces, by the channel
+  bool refused = false;  ///< whether the channel refuses some faces
 };
 
-/// Largest difference over all levels and corners of faces that are not refused, of random values
-/// in
-/// [-1, 1].
+/// The largest difference, over all levels and all corners of faces that are not refused, for
+/// random values in [-1, 1].
 Difference difference(const ControlMesh& mesh, const Channel& channel, Interpolation interpolation,
                       std::uint64_t seed) {
   const Topology topology(mesh);
@@ -178,7 +177,7 @@ struct Tally {
   int compared = 0, refused = 0;
 };
 
-/// One channel in each round, in all interpolations under both boundary rules.
+/// Compares one channel in each round, with all interpolations under both boundary rules.
 Tally compareAll(Creasing creasing, int edges_per_sharp, int rounds) {
   const std::vector<double> all_sharpness = {0.4, 0.75, 1, 1.25, 1.3, 2, 2.5, 3, 10, 12};
   Tally tally;
@@ -247,8 +246,8 @@ TEST(FaceVarying, FollowsTheBilinearScheme) {
   }
 }
 
-/// For a 2x2 grid, a seam between its lower and its upper half: the values of the middle row are
-/// 3, 4, 5 below and 9, 10, 11 above.
+/// The indices of a 2x2 grid with a seam between its lower and its upper half: the values of the
+/// middle row are 3, 4, 5 below and 9, 10, 11 above.
 Channel halvedGrid() { return {{0, 1, 4, 3, 1, 2, 5, 4, 9, 10, 7, 6, 10, 11, 8, 7}, 12}; }
 
 FaceVaryingMesh halved(const Cage& cage, Interpolation interpolation) {
@@ -256,7 +255,7 @@ FaceVaryingMesh halved(const Cage& cage, Interpolation interpolation) {
   return faceVaryingMesh(mesh, Topology(mesh), halvedGrid().indices, 12, interpolation);
 }
 
-/// Of the derived vertex that stands for the value.
+/// The sharpness of the derived vertex that has the value.
 double sharpnessAt(const FaceVaryingMesh& derived, int value) {
   const VertexSharpness& sharpness = derived.mesh.options().vertex_sharpness;
   double result = 0;
@@ -285,7 +284,8 @@ TEST(FaceVarying, ASideWithoutSharpEdgesStaysSharpAsLongAsTheOther) {
     EXPECT_EQ(sharpnessAt(halved(cage, rule), 4), 0);
   }
   EXPECT_EQ(sharpnessAt(halved(cage, Interpolation::corners_only), 10), 0);
-  sharpenEdge(cage, 2, 3, 3);  // the seam itself: the other side is held until the next step
+  sharpenEdge(cage, 2, 3,
+              3);  // the seam itself, so that the other side stays pinned for one more step
   EXPECT_EQ(sharpnessAt(halved(cage, Interpolation::corners_plus1), 10), 2);
 }
 
@@ -312,7 +312,7 @@ TEST(FaceVarying, RefusesFacesWhoseDecayNoMeshOfItsOwnHas) {
     while (cage.positions(vertex, 0) != x || cage.positions(vertex, 1) != y) ++vertex;
     return vertex;
   };
-  // Across and along the seam, which runs between the rows of faces.
+  // Edges across and along the seam, which runs between the rows of faces.
   sharpenEdge(cage, at(1, 0), at(1, 1), 3);
   sharpenEdge(cage, at(0, 1), at(1, 1), 1.5);
   const ControlMesh sharp = controlMesh(cage);
@@ -336,7 +336,7 @@ TEST(FaceVarying, RefusesFacesWhoseDecayNoMeshOfItsOwnHas) {
     }
   }
 
-  // Three edges on one side that after the first step have an average of more bits than sharpness.
+  // Three edges on one side whose average after the first step has more bits than a sharpness has.
   Cage fan_cage = fan(9, true, 1);
   Channel channel;
   int face = 0;

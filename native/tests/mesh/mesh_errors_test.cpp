@@ -66,7 +66,7 @@ TEST(MeshErrors, SizesAreAtLeastThree) {
 }
 
 TEST(MeshErrors, SizesDoNotOverflow) {
-  // Sums that wrap around 32 or 64 bits to the right number.
+  // These sums overflow 32 or 64 bits and give the right number again.
   const std::int64_t huge = std::int64_t(1) << 62;
   expectRefused(somePoints(6), {huge, huge, huge, huge, 4, 4}, kVertices, {"face 0"});
   expectRefused(somePoints(6), {(std::int64_t(1) << 32) + 4, 4}, kVertices,

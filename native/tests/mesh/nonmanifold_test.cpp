@@ -18,8 +18,9 @@
 namespace limitsurf::test {
 namespace {
 
-/// Positions of all faces that are not refused; refused ones raise an error that names them. Not at
-/// interior valence 2, where OpenSubdiv's limit mask is wrong.
+/// Compares positions on all faces that are not refused; refused ones throw an error that names
+/// them. Interior vertices of valence 2 are left out, because OpenSubdiv's limit mask is wrong
+/// there.
 void expectAsOpenSubdivHasIt(const std::string& name, const Cage& cage,
                              const CornerPoints* corners) {
   const LimitSurface surface = limitSurface(cage);
@@ -149,7 +150,7 @@ TEST(NonManifold, LeftHandedMeshesAreLikeOthers) {
 }
 
 TEST(NonManifold, FacesOfManyIrregularVertices) {
-  // 24 sides, all of whose corners are irregular, some sharp, some on fins.
+  // A face of 24 sides whose corners are all irregular; some are sharp, some are on fins.
   Random random(4);
   Accuracy all("24-gon", 1);
   Cage cage = ngon(24, 1);
@@ -163,7 +164,7 @@ TEST(NonManifold, FacesOfManyIrregularVertices) {
 }
 
 TEST(NonManifold, HolesKeepTheirPlaceInTheTopology) {
-  // A hole is a face for its neighbours, so that an edge of three faces stays one.
+  // A hole still is a face for its neighbours, so that an edge keeps its three faces.
   for (const auto& [name, plain] : nonManifoldCages()) {
     if (plain.faces.size() < 3) continue;
     Cage cage = plain;

@@ -15,8 +15,8 @@
 namespace limitsurf::test {
 namespace {
 
-/// A sound 4x4 grid, and beside it, with no vertex in common, another 3x3 grid that `spoil` may
-/// change: its faces come after the first grid's 16, its vertices after the first grid's 25.
+/// A valid 4x4 grid, and beside it a 3x3 grid, with no vertex in common, that `spoil` may change.
+/// The faces of the second grid follow the first grid's 16, its vertices the first grid's 25.
 template <typename Spoil>
 Cage besideAGrid(const Spoil& spoil) {
   Cage cage = perturbed(grid(4, 4), 0.1, 1);
@@ -33,7 +33,7 @@ Cage besideAGrid(const Spoil& spoil) {
   return cage;
 }
 
-/// Evaluating a refused face throws its id; all others are as they would be alone.
+/// An error names each refused face that is evaluated; all others are as they would be alone.
 void expectRefusedBesideAGrid(const Cage& cage, int refused_face,
                               const std::vector<std::string>& reason) {
   const LimitSurface surface = limitSurface(cage);
@@ -104,7 +104,7 @@ TEST(RefusedFaces, WhereAQuadIsDegenerate) {
   expectRefusedBesideAGrid(cage, static_cast<int>(cage.faces.size()) - 1, {});
 }
 
-/// Nothing is refused, and the sound grid is as it would be alone.
+/// Nothing is refused, and the valid grid is as it would be alone.
 void expectAcceptedBesideAGrid(const Cage& cage) {
   const LimitSurface surface = limitSurface(cage);
   EXPECT_TRUE(surface.refused().empty());
@@ -176,13 +176,14 @@ TEST(RefusedFaces, KeepTheirPtexIds) {
 }
 
 TEST(RefusedFaces, NotAtBowTies) {
-  // Two fans that meet in one vertex: OpenSubdiv makes it infinitely sharp, each fan has a surface.
+  // Two fans meet in one vertex. OpenSubdiv makes it infinitely sharp, so that each fan has a
+  // surface.
   Cage cage = perturbed(gridWithHoles(4, 4, {6, 9}), 0.1, 1);
   for (Boundary boundary : {Boundary::smooth, Boundary::corners}) {
     cage.options.boundary = boundary;
     const LimitSurface surface = limitSurface(cage);
     EXPECT_TRUE(surface.refused().empty());
-    const Eigen::RowVector3d between(2, 2, 0);  // of the holes
+    const Eigen::RowVector3d between(2, 2, 0);  // between the holes
     int vertex;
     (cage.positions.rowwise() - between).rowwise().norm().minCoeff(&vertex);
     for (int face = 0; face < static_cast<int>(cage.faces.size()); ++face) {

@@ -52,7 +52,7 @@ Truth patchAt(const std::array<Vector3, 4>& p, double u, double v) {
   return {{position, du, dv, zero, duv, zero, du.cross(dv).normalized()}};
 }
 
-/// Zero second derivatives are measured by the size of the patch.
+/// Errors of second derivatives that are 0 are relative to the size of the patch.
 void expectPatches(const std::string& name, const Cage& cage, const std::vector<Location>& at) {
   const LimitSurface surface = limitSurface(cage);
   const std::vector<std::array<Vector3, 4>> patch = patches(cage);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What must hold of sharpness with no truth to compare with.
+// Properties of sharpness that need no truth to compare with.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ void expectSame(const std::string& name, const Cage& a, const Cage& b) {
 
 Cage someCage() { return mixture(31); }
 
-/// The cage with values by the number of the edge and of the vertex.
+/// The cage with sharpness given by the number of the edge and of the vertex.
 template <typename EdgeValue, typename VertexValue>
 Cage sharpened(Cage cage, const EdgeValue& edge_value, const VertexValue& vertex_value) {
   int number = 0;
@@ -45,7 +45,7 @@ Cage sharpened(Cage cage, const EdgeValue& edge_value, const VertexValue& vertex
   return cage;
 }
 
-/// Every third edge and fifth vertex sharp.
+/// Every third edge and every fifth vertex is sharp.
 Cage sharpened(const Cage& cage, double value) {
   return sharpened(
       cage, [&](int edge) { return edge % 3 == 0 ? value : 0; },
@@ -71,7 +71,7 @@ TEST(Sharpness, OfTenAndMoreIsInfinite) {
     for (double value : {10.0, 10.5, 12.0, 1e6, 1e300, std::numeric_limits<double>::max()}) {
       expectSame(std::to_string(value), infinite, sharpened(cage, value));
     }
-    // Rounds to 10 in float32.
+    // This value rounds to 10 in float32.
     expectSame("just below 10", infinite, sharpened(cage, 9.9999999));
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A location's result does not depend on threads, nor on what else is in the batch, to the bit.
+// The result for a location has the same bits for any number of threads, and whatever else is in
+// the batch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ bool sameBits(const Evaluation& a, const Evaluation& b) {
          sameBits(a.normal, b.normal);
 }
 
-/// Locations of all kinds in random order, several times as many as one task would take.
+/// Locations of all kinds in random order, several times as many as a task has.
 std::vector<Location> manyLocations(const Cage& cage, int count) {
   Random random(11);
   const int faces = static_cast<int>(ptexFaces(cage).size());
@@ -117,7 +118,7 @@ TEST_P(Batch, GivesWhatWasAskedFor) {
   EXPECT_EQ(none.du.rows(), 0);
   EXPECT_EQ(first.duu.rows(), 0);
   EXPECT_EQ(first.normal.rows(), 0);
-  // Not the same bits: each order may take the way that is the fastest for it.
+  // The bits may differ, because each order of derivatives may be computed in its own way.
   const double allowed = kPositionError * diagonal(cage().positions);
   EXPECT_LE((all.position - none.position).cwiseAbs().maxCoeff(), allowed);
   EXPECT_LE((all.position - first.position).cwiseAbs().maxCoeff(), allowed);

@@ -15,7 +15,7 @@
 namespace limitsurf::test {
 namespace {
 
-/// Gaussian and mean curvature by the textbook.
+/// Gaussian and mean curvature by the textbook formulas.
 struct Expected {
   double gaussian, mean;
 };
@@ -46,7 +46,7 @@ void compare(const std::string& name, const Cage& cage, double& worst) {
     const std::string where = name + ", " + describe(at[i]);
     const Expected expected = fromDerivatives(truth);
     const double k1 = curvature.k1[i], k2 = curvature.k2[i];
-    // The size that curvatures have here: what the second derivatives would give all together.
+    // The size of curvatures here: what they would be if all second derivatives were normal.
     const double size = (truth[kDuu].norm() + truth[kDuv].norm() + truth[kDvv].norm()) /
                         std::min(truth[kDu].squaredNorm(), truth[kDv].squaredNorm());
     const double mean_error = std::abs(curvature.mean[i] - expected.mean) / size;
@@ -127,8 +127,8 @@ TEST(Curvature, IsMissingAtIrregularVerticesAlone) {
   }
 }
 
-/// Of the faces 0, 4, 8, ... of a fan around their vertex (0, 0), from subdivision: the mean that
-/// LimitSurface::curvature() promises; and the size of what is averaged.
+/// The mean that LimitSurface::curvature() promises around the vertex (0, 0) of the faces 0, 4, 8,
+/// ... of a fan, from subdivision, and the size of the averaged curvatures.
 Eigen::Matrix3d meanAround(const Cage& cage, const Vector3& vertex_normal, double radius,
                            double& size) {
   DeepSubdivision deep(cage);
@@ -204,8 +204,8 @@ TEST(Curvature, AveragesAroundIrregularVerticesAreThoseOfSubdivision) {
 }
 
 TEST(Curvature, OverflowsOnlyWhereItIsThatLarge) {
-  // It grows by 2.26 a level around three faces, by 1.4 and less around five and more, though the
-  // derivatives that it is made of go far beyond the range of doubles.
+  // Curvature grows by a factor of 2.26 with each level around three faces, and by 1.4 and less
+  // around five and more, while second derivatives leave the range of doubles.
   for (int faces : {3, 5, 6, 9}) {
     const LimitSurface surface = limitSurface(fan(faces, true, faces));
     for (double t : {1e-100, 1e-200, 0x1p-1000, 0x1p-1074}) {

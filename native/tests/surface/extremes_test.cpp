@@ -56,7 +56,7 @@ TEST(Extremes, TinyUvApproachTheVertex) {
           if (order == Derivatives::first) continue;
           for (int second : {kDuu, kDuv, kDvv}) {
             EXPECT_FALSE(got[second].hasNaN()) << where;
-            // They grow by up to 2.62 a level: the truth itself overflows before 2^-1000.
+            // They grow by up to 2.62 with each level, so that the truth overflows before 2^-1000.
             EXPECT_TRUE(got[second].allFinite() || at[i].u + at[i].v < 1e-200) << where;
           }
         }
@@ -67,7 +67,7 @@ TEST(Extremes, TinyUvApproachTheVertex) {
 }
 
 TEST(Extremes, TinyUvHaveNormals) {
-  // The surface is smooth everywhere but at the vertex itself, however near.
+  // The surface is smooth everywhere but at the vertex itself.
   for (const auto& [name, cage] : someFans()) {
     std::vector<Location> at;
     for (int face : {0, static_cast<int>(cage.faces.size()) - 4}) {
@@ -85,7 +85,8 @@ TEST(Extremes, TinyUvHaveNormals) {
 }
 
 TEST(Extremes, DeepDerivativesAgreeWithSubdivision) {
-  // Far below what is promised: the powers of the eigenvalues must not lose their digits.
+  // At depths far below those for which bounds are promised, the powers of the eigenvalues must not
+  // lose their digits.
   for (const auto& [faces, closed] :
        {std::pair(3, true), {5, true}, {7, true}, {1, false}, {3, false}, {4, false}}) {
     const Cage cage = fan(faces, closed, faces);
@@ -98,7 +99,7 @@ TEST(Extremes, DeepDerivativesAgreeWithSubdivision) {
       for (int i = 0; i < static_cast<int>(at.size()); ++i) {
         const Truth got = rowOf(e, i), truth = deep.evaluate(at[i]);
         for (int quantity : {kDu, kDv}) {
-          // Relative to the value itself, however large or small.
+          // The error is relative to the value itself, however large or small that is.
           EXPECT_LE((got[quantity] - truth[quantity]).norm(), 1e-10 * truth[quantity].norm())
               << faces << (closed ? " faces, " : " faces at a boundary, ") << describe(at[i])
               << ", " << kQuantityNames[quantity] << ", order " << static_cast<int>(order)
@@ -122,7 +123,7 @@ TEST(Extremes, ScalesOfTheCageDoNotMatter) {
   for (int exponent : {-300, -60, 60, 300}) {
     Cage scaled = cage;
     scaled.positions *=
-        std::ldexp(1.0, exponent);  // no rounding, so the same bits but the exponent
+        std::ldexp(1.0, exponent);  // nothing is rounded, so that only exponents change
     const Evaluation e = limitSurface(scaled).evaluate(at, Derivatives::second, true);
     const double back = std::ldexp(1.0, -exponent);
     EXPECT_EQ(e.position * back, plain.position) << "2^" << exponent;
@@ -132,7 +133,7 @@ TEST(Extremes, ScalesOfTheCageDoNotMatter) {
   }
 }
 
-/// Opens the surface, prints the time, and compares positions with subdivision.
+/// Makes the surface, prints how long that takes, and compares positions with subdivision.
 void openAndCompare(const std::string& name, const Cage& cage, const std::vector<Location>& at,
                     double error) {
   const auto start = std::chrono::steady_clock::now();

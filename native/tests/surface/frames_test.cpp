@@ -71,22 +71,23 @@ TEST(Frames, FollowDuAndTheNormal) {
   }
 }
 
-/// The frame on the diagonal towards (0, 0), so deep that it changes no more; none where that takes
-/// too long, that is where leading eigenvalues lie close together or have a Jordan block.
+/// The frame on the diagonal towards (0, 0), at a depth at which it does not change any more. There
+/// is none where this would take too long: where leading eigenvalues are close to each other or
+/// have a Jordan block.
 std::optional<Frame> diagonalLimit(DeepSubdivision& deep, int face) {
   const auto at = [&](int n) {
     const double t = std::ldexp(1.0, -n);
     const Truth truth = deep.evaluate({face, t, t});
     return frameFrom(truth[kDu], truth[kNormal]);
   };
-  // What is left shrinks geometrically: at twice the depth it is squared.
+  // The error shrinks geometrically: at twice the depth it is squared.
   const Frame halfway = at(225), limit = at(450);
   if ((halfway - limit).norm() > 1e-6) return std::nullopt;
   return limit;
 }
 
-/// Compares the frame at the vertex with the limit along the diagonal, as far as that settles (it
-/// does not where two leading eigenvalues lie close together).
+/// Compares the frame at the vertex with the limit along the diagonal, where subdivision reaches
+/// that limit (it does not where two leading eigenvalues are close to each other).
 void compareAtVertices(const std::vector<Cage>& fans, int least_compared) {
   int compared = 0;
   double worst = 0;
@@ -161,8 +162,8 @@ TEST(Frames, AtSharpCornersAreTheLimitAlongTheDiagonal) {
 }
 
 TEST(Frames, AtOtherCornersAreTheSameAsSeenFromTheVertex) {
-  // Turning the face's vertices, so that the vertex lies at another corner, turns du into dv and so
-  // on: the normal stays.
+  // If the face's vertices are turned, so that the vertex lies at another corner, du becomes dv and
+  // so on, while the normal stays the same.
   const Cage cage = fan(5, true, 3);
   const Frame frame = frameOf(limitSurface(cage), {0, 0, 0});
   for (int turn = 1; turn < 4; ++turn) {

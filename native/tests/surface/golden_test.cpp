@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The promised accuracy, held on values of the true limit surface.
+// Evaluation keeps its bounds on golden values of the true limit surface.
 #include "support/truth/golden.h"
 
 #include <gtest/gtest.h>

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Every batch call refuses `bad` in row `row` of many, and names both.
+/// Every batch call refuses the location `bad` in row `row` of many, and names both.
 void expectRefused(const LimitSurface& surface, const Location& bad, int row,
                    const std::vector<std::string>& parts) {
   std::vector<Location> at(5000, Location{1, 0.25, 0.75});
   at[row] = bad;
-  at[4999] = {99, 7, 7};  // a later one, which is not the first
+  at[4999] = {99, 7, 7};  // a later invalid row, which must not be named
   std::vector<std::string> all = parts;
   all.push_back("row " + std::to_string(row));
   expectThrow<LocationError>([&] { surface.evaluate(at); }, all);

@@ -18,7 +18,7 @@ namespace limitsurf::test {
 namespace {
 
 constexpr int kLevel = 4;
-// What OpenSubdiv's own refinement in double loses over four levels.
+// The rounding of OpenSubdiv's own refinement in double over four levels.
 constexpr double kFarError = 2e-15;
 constexpr double kFarNormalError = 1e-11;
 
@@ -95,7 +95,7 @@ TEST(OpenSubdiv, AgreesOnRandomMixtures) {
 }
 
 TEST(OpenSubdiv, AgreesOnSharpMixtures) {
-  // With sharpness that has decayed when OpenSubdiv's limit masks are applied.
+  // The sharpness has decayed when OpenSubdiv's limit masks are applied.
   Random random(1);
   double worst = 0;
   for (int seed = 1; seed <= 20; ++seed) {

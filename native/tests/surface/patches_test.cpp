@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The surface as bicubic patches: the same points as evaluation and subdivision give, each place
-// once, and boxes that hold what they say.
+// The surface as bicubic patches: they have the points of evaluation and subdivision, they cover
+// each place once, and boxes contain the parts that they should.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace limitsurf::test {
 namespace {
 
-/// All patches of a surface with its cores split `steps` times, and what is left of the cores.
+/// All patches of a surface whose cores have been split `steps` times, and the rest of the cores.
 struct Pieces {
   Pieces(const SurfacePatches& surface_patches, int steps) {
     std::vector<SurfacePiece> pieces;

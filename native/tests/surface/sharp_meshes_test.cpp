@@ -108,8 +108,9 @@ TEST(SharpMeshes, WithAllEdgesSharpAgreeWithSubdivision) {
 }
 
 TEST(SharpMeshes, SingleCreasesAgreeWithSubdivision) {
-  // The middle of a grid, so that the faces beside the crease have no other irregularity; straight
-  // through, ending inside, turning, and two next to each other.
+  // The creases are in the middle of a grid, so that the faces beside them have no other
+  // irregularity: one runs straight through, one ends inside, one turns, and two are next to each
+  // other.
   const Cage plain = perturbed(grid(6, 5), 0.2, 12);
   const auto vertex = [&](int i, int j) {
     int found;

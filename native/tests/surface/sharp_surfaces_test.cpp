@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a surface offers besides evaluation, on sharp and non-manifold cages.
+// Everything that a surface offers besides evaluation, on sharp and non-manifold cages.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -93,7 +93,7 @@ TEST(SharpSurfaces, BoundsAreTight) {
   }
 }
 
-/// Sum of the quads' areas, each as two triangles.
+/// The sum of the quads' areas, each divided into two triangles.
 double polygonArea(const Tessellation& mesh) {
   double sum = 0;
   for (std::size_t q = 0; q < mesh.face_vertices.size(); q += 4) {
@@ -108,7 +108,7 @@ TEST(SharpSurfaces, AreaIsThatOfFineTessellations) {
     const LimitSurface surface = limitSurface(cage);
     const double a4 = polygonArea(tessellate(surface, 4)), a5 = polygonArea(tessellate(surface, 5)),
                  a6 = polygonArea(tessellate(surface, 6));
-    // Their error falls by a factor of 4 a level.
+    // The error of the polygons falls by a factor of 4 with each level.
     const double b5 = a5 + (a5 - a4) / 3, b6 = a6 + (a6 - a5) / 3;
     EXPECT_NEAR(surfaceArea(surface), b6, 10 * std::abs(b6 - b5) + 1e-8 * b6) << name;
     EXPECT_LE(std::abs(b6 - b5), 1e-3 * b6) << name;

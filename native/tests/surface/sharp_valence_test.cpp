@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Vertices of every valence to 100 with sharp edges, or sharp themselves, against recursive
+// Vertices of every valence to 100 that are sharp or have sharp edges, against recursive
 // subdivision.
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace limitsurf::test {
 namespace {
 
-/// Where sharp edges leave a vertex with `faces` faces, by the number of the spoke.
+/// The spokes that are sharp edges around a vertex with `faces` faces.
 using Spokes = std::vector<int> (*)(int faces);
 
 struct Kind {
@@ -60,7 +60,7 @@ Cage sharpFan(const Kind& kind, int faces, double sharpness) {
   Cage cage = fan(faces, kind.closed, 1000 + faces);
   const int vertex = cage.faces[0][0];
   for (int spoke : kind.spokes(faces)) {
-    // Two edges each, so that the first one's end is no dart.
+    // Each crease has two edges, so that the end of the first one is no dart.
     const int middle = cage.faces[4 * spoke][1], end = cage.faces[4 * spoke + 1][1];
     sharpenEdge(cage, vertex, middle, sharpness);
     sharpenEdge(cage, middle, end, sharpness);

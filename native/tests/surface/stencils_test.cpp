@@ -11,7 +11,7 @@
 namespace limitsurf::test {
 namespace {
 
-/// Every kind of place: anywhere, near and at the corners of every face.
+/// Locations of every kind: anywhere on every face, near its corners and at them.
 std::vector<Location> places(const Cage& cage) {
   Random random(3);
   std::vector<Location> at;
@@ -39,7 +39,7 @@ std::vector<Cage> someCages() {
   return cages;
 }
 
-/// Weights of row `row` summed against the positions.
+/// The sum of the positions with the weights of row `row`.
 Vector3 combined(const Stencils& stencils, const std::vector<double>& weights, int row,
                  const Points& positions) {
   Vector3 sum = Vector3::Zero();
@@ -145,7 +145,7 @@ TEST(Stencils, WithoutDerivativesHaveTheSameWeights) {
   const Stencils with = surface.stencils(at, true), without = surface.stencils(at);
   ASSERT_EQ(with.indices, without.indices);
   for (std::size_t k = 0; k < with.weights.size(); ++k) {
-    EXPECT_NEAR(with.weights[k], without.weights[k], 1e-15);  // no promise of equal bits here
+    EXPECT_NEAR(with.weights[k], without.weights[k], 1e-15);  // equal bits are not promised here
   }
   EXPECT_TRUE(without.du_weights.empty());
   EXPECT_TRUE(without.dv_weights.empty());

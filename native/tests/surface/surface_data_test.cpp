@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Data on the surface: evaluated as the limit surfaces of derived control meshes are, and linear
-// where it should be.
+// Data on the surface are those of the limit surfaces of derived control meshes, and linear where
+// they should be.
 #include "limitsurf/surface/surface_data.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ NamedCages someCages() {
           {"mixture 2", mixture(2)}};
 }
 
-/// Where every face and a few places on it are hit, corners and edges among them.
+/// A few locations on every face, including corners and edges.
 std::vector<Location> everywhere(const LimitSurface& surface, std::uint64_t seed) {
   Random random(seed);
   std::vector<Location> at;
@@ -66,7 +66,7 @@ Cage channelCage(const Cage& cage, const Channel& channel, const DataRows& value
 
 Points valuesOf(const DataRows& rows) { return rows; }
 
-/// Bilinear in the values at (0,0), (1,0), (1,1), (0,1), with its derivatives.
+/// The bilinear function of the values at (0,0), (1,0), (1,1), (0,1), with its derivatives.
 DataEvaluation bilinear(const std::array<Eigen::RowVectorXd, 4>& corners, const Location& at) {
   const double u = at.u, v = at.v;
   DataEvaluation result;
@@ -166,7 +166,8 @@ TEST(SurfaceData, FaceVaryingBesideSharpEdgesAgreesWithSubdivision) {
     const DataRows values = randomRows(channel.value_count, 3, random.bits());
     const LimitSurface surface = limitSurface(cage);
     for (const auto& [rule, interpolation] : kInterpolations) {
-      if (interpolation == Interpolation::all) continue;  // bilinear: not the witness's business
+      if (interpolation == Interpolation::all)
+        continue;  // bilinear, which the witness does not support
       const Cage derived = channelCage(cage, channel, values, interpolation);
       std::vector<Location> at;
       for (int i = 0; i < 4; ++i) at += anywhere(random.below(surface.faceCount()), 3, random);
@@ -247,7 +248,7 @@ TEST(SurfaceData, LinearFaceVaryingIsBilinear) {
   for (auto& [name, cage] : cages) {
     Random random(name.size());
     sharpenAtRandom(cage, random, 4, 10, {0.7, 12});
-    cage.options.creasing = Creasing::chaikin;  // whose decay does not matter here
+    cage.options.creasing = Creasing::chaikin;  // no edge is semi-sharp here
     const Channel channel = randomChannel(cage, random);
     const DataRows values = randomRows(channel.value_count, 2, 1);
     expectBilinear(name, cage,

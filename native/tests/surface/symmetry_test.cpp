@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What must hold on any surface, with no truth to compare with.
+// Properties that every surface must have, which need no truth to compare with.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -27,12 +27,12 @@ std::vector<std::pair<std::string, Cage>> someCages() {
           {"torus", perturbed(torus(6, 5), 0.2, 8)}};
 }
 
-/// The same place seen from the faces on both sides of an inner edge.
+/// The same place in the parameters of the two faces of an inner edge.
 struct SharedPlace {
   Location left, right;
 };
 
-/// A point at `t` along side `side` of a Ptex face, from its corner `side` on.
+/// The point at `t` on side `side` of a Ptex face, counted from its corner `side`.
 Location alongSide(int face, int side, double t) {
   switch (side) {
     case 0:
@@ -46,7 +46,7 @@ Location alongSide(int face, int side, double t) {
   }
 }
 
-/// Sides of quads that two faces share (n-gons are left out: their Ptex sides are half edges).
+/// The sides that two quads share. (N-gons are left out, because their Ptex sides are half edges.)
 std::vector<SharedPlace> sharedPlaces(const Cage& cage, const std::vector<double>& parameters) {
   std::map<std::pair<int, int>, std::pair<int, int>> side_of;  // directed edge -> ptex face, side
   const std::vector<PtexFace> ptex = ptexFaces(cage);
@@ -142,8 +142,8 @@ TEST(Symmetry, ReversingAllFacesMirrorsUvAndTurnsNormals) {
   Random random(2);
   for (const auto& [name, cage] : someCages()) {
     const LimitSurface surface = limitSurface(cage);
-    // A reversed quad begins with its old last vertex; so that (u, v) become (v, u), let it begin
-    // with the first.
+    // A reversed quad begins with its former last vertex. It has to begin with its former first
+    // one, so that (u, v) becomes (v, u).
     Cage mirrored = reversed(cage);
     for (std::vector<int>& face : mirrored.faces) {
       std::rotate(face.begin(), face.end() - 1, face.end());
@@ -257,8 +257,8 @@ TEST(Symmetry, BoundaryCurvesDependOnBoundaryVerticesAlone) {
 }
 
 TEST(Symmetry, NeighbouringTilesMeet) {
-  // The surface is piecewise polynomial with seams at 2^-n: on either side of one, values differ by
-  // no more than the step between neighbouring doubles explains.
+  // The surface is piecewise polynomial with borders at 2^-n. Across a border, values differ by no
+  // more than by the step between neighbouring doubles.
   for (const auto& [name, cage] : someCages()) {
     const LimitSurface surface = limitSurface(cage);
     const CornerPoints corners(cage);
@@ -289,7 +289,8 @@ TEST(Symmetry, NeighbouringTilesMeet) {
                 << where;
           }
           for (const Points* d : {&e.duu, &e.duv, &e.dvv}) {
-            // The step moves a second derivative by up to the third's size, 2^n times its own.
+            // The step changes a second derivative by up to the third one's size, which is 2^n
+            // times its own.
             EXPECT_LE((d->row(i + side) - d->row(i + 1)).norm(),
                       2 * kSecondDerivativeError * std::max(size, d->row(i + 1).norm()))
                 << where;

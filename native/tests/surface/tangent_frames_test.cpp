@@ -21,8 +21,8 @@ namespace {
 
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// A map without folds that is no projection of the positions: by vertex, so that subdivision knows
-/// its truth as well.
+/// A map without folds that is no projection of the positions. It is vertex data, so that
+/// subdivision gives its true values as well.
 Cage mapOf(const Cage& cage, std::uint64_t seed, bool mirrored) {
   Cage map = perturbed(cage, 0.05, seed);
   Points at = map.positions;
@@ -41,11 +41,11 @@ SurfaceData mapOn(const LimitSurface& surface, const Cage& map) {
 
 double largest(const Truth& t) { return std::max(t[kDu].norm(), t[kDv].norm()); }
 
-/// Direction of dP/dU on the witness's derivatives, any length, with the map's Jacobian.
+/// The direction of dP/dU from the witness's derivatives, of any length, with the map's Jacobian.
 struct Expected {
   Vector3 along;
   double jacobian;
-  double size;  ///< of what it is the difference of, on the face as well
+  double size;  ///< the sizes of the products whose difference it is, at least those on the face
 };
 
 Expected expected(DeepSubdivision& surface, DeepSubdivision& map, const Location& at) {

@@ -9,7 +9,7 @@
 
 namespace limitsurf::test {
 
-/// A control mesh as tests like to build and change it.
+/// A control mesh in a form that tests can build and change easily.
 struct Cage {
   Points positions;
   std::vector<std::vector<int>> faces;

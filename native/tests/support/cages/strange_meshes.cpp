@@ -194,7 +194,7 @@ NamedCages nonManifoldCages() {
   cage.faces.push_back(
       {12, add(cage, {2, 2.5, -1}), add(cage, {2, 2, -1.5}), add(cage, {2, 1.5, -1})});
   take("quad on a crease of fins", cage);
-  for (auto& [name, c] : cages) {  // positions of vertices that no face uses are nobody's concern
+  for (auto& [name, c] : cages) {  // vertices that no face uses may be anywhere
     std::vector<bool> used(c.vertexCount(), false);
     for (const std::vector<int>& face : c.faces) {
       for (int vertex : face) used[vertex] = true;

@@ -9,7 +9,7 @@
 
 namespace limitsurf::test {
 
-/// True values at one location; NaN where there is none to compare with.
+/// True values at one location; NaN where there is no value to compare with.
 struct Truth {
   std::array<Vector3, kQuantities> values;
 
@@ -22,10 +22,11 @@ Truth truthOf(const Golden& golden, int sample);
 /// Row `row` of a batch, as the seven quantities; NaN where the batch has none.
 Truth rowOf(const Evaluation& evaluation, int row);
 
-/// Without what an evaluation to that order does not give.
+/// The truth without the quantities that an evaluation to that order does not give.
 Truth upTo(Derivatives order, Truth truth);
 
-/// The evaluator may take another way for each order: what is compared, is compared in all three.
+/// The evaluator may compute each order of derivatives in its own way, so that tests compare all
+/// three.
 constexpr Derivatives kOrders[] = {Derivatives::none, Derivatives::first, Derivatives::second};
 
 /// The allowed error of each quantity (limit_surface.h).
@@ -34,7 +35,7 @@ double allowedError(int quantity);
 /// Angle between two unit vectors, precise where it is small.
 double angle(const Vector3& a, const Vector3& b);
 
-/// Holds evaluations of one surface to the promised accuracy, and keeps the worst figures.
+/// Compares evaluations of one surface with the truth, and keeps the worst errors.
 ///
 /// First and second derivatives are measured relative to the larger of the value itself and the
 /// face's scale, its largest derivative of that order at least 1/16 away from its corners: give
@@ -44,16 +45,17 @@ class Accuracy {
   Accuracy(std::string name, double diagonal) : name_(std::move(name)), diagonal_(diagonal) {}
 
   void addScale(const Location& at, const Truth& truth);
-  /// Fails the test, naming surface, location, quantity, both values and the error, where one is
-  /// too large. Quantities whose truth is NaN are passed over.
+  /// Fails the test where an error is too large, and names surface, location, quantity, both values
+  /// and the error. Quantities whose truth is NaN are left out.
   void check(const Location& at, const Truth& got, const Truth& truth);
 
   double worst(int quantity) const { return worst_[quantity].error; }
-  /// Takes over the worst figures of another surface.
+  /// Includes the worst errors of another surface.
   void merge(const Accuracy& other);
-  /// One line of the worst figures.
+  /// Prints one line with the worst errors.
   std::string summary() const;
-  /// One line per quantity: worst figure, where, how many locations were compared.
+  /// Prints one line per quantity: the worst error, where it is, and how many locations were
+  /// compared.
   std::string details() const;
 
  private:

@@ -14,14 +14,16 @@ struct LongRay {
   using Vector = Eigen::Matrix<long double, 3, 1>;
   LongRay(const Vector3& from, const Vector3& to);
 
-  /// How far along it its point nearest to `point` is, and how far `point` is from that.
+  /// The distance along the ray to its point nearest to `point`, and the distance of `point` from
+  /// that.
   std::pair<long double, long double> alongAndAside(const Vector3& point) const;
 
   Vector origin, direction;
 };
 
 /// Nearest points and hits of rays by dense samples of LimitSurface::evaluate() and refinement of
-/// the best of them, distances in long double. What it finds is there; it may miss some.
+/// the best of them, with distances in long double. Everything that it finds exists, but it may
+/// miss some.
 class BruteForce {
  public:
   /// per_side x per_side cells on each Ptex face that has a surface.
@@ -32,7 +34,7 @@ class BruteForce {
     Location at;
   };
   Foot closest(const Vector3& point) const { return nearest(point, 8, {}); }
-  /// The closest of all local minima on the faces that `accepts` does not turn down.
+  /// The closest of all local minima on the faces that `accepts` accepts.
   Foot closest(const Vector3& point, const std::function<bool(const Location&)>& accepts) const {
     return nearest(point, 1 << 20, accepts);
   }
@@ -48,7 +50,7 @@ class BruteForce {
   std::vector<Root> roots(const LongRay& ray) const;
 
   const LimitSurface& surface() const { return surface_; }
-  /// Of the control mesh's bounding box.
+  /// The diagonal of the control mesh's bounding box.
   double diagonal() const { return diagonal_; }
 
  private:

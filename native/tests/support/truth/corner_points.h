@@ -8,7 +8,7 @@
 
 namespace limitsurf::test {
 
-/// What lies at a corner of a Ptex face in the end, when all finite sharpness has decayed.
+/// What is at a corner of a Ptex face when all finite sharpness has decayed.
 struct CornerPoint {
   Rule rule = Rule::smooth;
   int faces = 4;       ///< quads after one subdivision: around it, or of its sector, which reaches
@@ -17,13 +17,13 @@ struct CornerPoint {
   int vertex = -1;     ///< of the cage; -1 at face centres and edge midpoints
   bool sharp_next = false, sharp_previous = false;  ///< the Ptex face's sides from and to it
 
-  /// The face is a B-spline patch there.
+  /// Whether the face is a B-spline patch there.
   bool regular() const;
   /// Position apart, the contract of what there is (limit_surface.h).
   bool hasNormal() const;
   /// Along the side to the next corner or from the previous one.
   bool hasCurve(bool next) const;
-  /// Both first derivatives vanish.
+  /// Whether both first derivatives vanish.
   bool isFlat() const { return rule == Rule::smooth && faces <= 3; }
 };
 
@@ -32,17 +32,17 @@ class CornerPoints {
  public:
   explicit CornerPoints(const Cage& cage);
   const CornerPoint& at(int face, int corner) const { return corners_[4 * face + corner]; }
-  /// The corner that the location is exactly at, or null.
+  /// The corner at which the location is exactly, or null.
   const CornerPoint* at(const Location& location) const;
-  /// Within 2^-20 of a smooth corner of one face: du and dv become antiparallel there, so that
-  /// kNormalError is not promised.
+  /// Whether the location is within 2^-20 of a smooth corner of one face, where du and dv become
+  /// antiparallel and kNormalError is not promised.
   bool insideSmoothCorner(const Location& location) const;
 
  private:
   std::vector<CornerPoint> corners_;
 };
 
-/// Which corner the location is exactly at, or -1.
+/// The number of the corner at which the location is exactly, or -1.
 int cornerAt(const Location& location);
 
 }  // namespace limitsurf::test

@@ -9,18 +9,18 @@
 
 namespace limitsurf::test {
 
-/// The limit surface by nothing but subdivision: an independent witness of LimitSurface.
+/// The limit surface by subdivision alone: an independent witness for LimitSurface.
 ///
 /// The faces around the location's face are refined by the rules of Catmull and Clark and of
 /// OpenSubdiv's sharpness, written out here from their definition, in floating point numbers of 50
 /// decimal digits (sharpness itself in float32, as OpenSubdiv has it), down to a face whose
-/// neighbourhood is a regular grid; there the surface is a bicubic B-spline. No eigenvalue, no
-/// limit mask, nothing of the library, of Sdc or Far. Refined neighbourhoods are kept, so that many
-/// locations near the same vertex cost little more than one.
+/// neighbourhood is a regular grid; there the surface is a bicubic B-spline. It uses no
+/// eigenvalues, no limit masks, and no code of the library, of Sdc or of Far. Refined
+/// neighbourhoods are kept, so that many locations near the same vertex cost little more than one.
 ///
-/// Knows: faces of any size, both boundary rules, both triangle rules, both kinds of creasing, any
-/// sharpness, edges of any number of faces and windings, vertices of several fans. Knows not: faces
-/// that use a vertex twice, the bilinear scheme.
+/// It supports faces of any size, both boundary rules, both triangle rules, both kinds of creasing,
+/// any sharpness, edges of any number of faces and windings, vertices of several fans. It supports
+/// neither faces that use a vertex twice nor the bilinear scheme.
 class DeepSubdivision {
  public:
   explicit DeepSubdivision(const Cage& cage);
@@ -30,10 +30,10 @@ class DeepSubdivision {
   /// at irregular vertices. The normal is NaN where du x dv vanishes.
   Truth evaluate(const Location& at);
 
-  /// What there is at a face's corner that is an irregular vertex. The position: the vertex after
-  /// so many levels that it moves no more. du, dv, duu and dvv along infinitely sharp edges that
-  /// bound a sector: the crease curve's, a B-spline; du = dv = 0 around two and three smooth faces.
-  /// All else is NaN.
+  /// The quantities at a face's corner that is an irregular vertex. The position is that of the
+  /// vertex after so many levels that it does not move any more. Along infinitely sharp edges that
+  /// bound a sector, du, dv, duu and dvv are those of the crease curve, which is a B-spline; around
+  /// two and three smooth faces du = dv = 0. All others are NaN.
   Truth corner(int face, int corner);
   Vector3 cornerPosition(int face, int corner);
 

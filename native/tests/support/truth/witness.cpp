@@ -13,14 +13,15 @@
 namespace limitsurf::test {
 namespace {
 
-/// Where the faces' scales are taken, as near to the corners as the promise allows and in between.
+/// The locations that determine the scales of the faces: as near to the corners as the bounds'
+/// definition allows, and in between.
 constexpr double kScaleUv[][2] = {
     {0x1p-4, 0x1p-4}, {0x1p-4, 0},  {0, 0x1p-4}, {15 * 0x1p-4, 15 * 0x1p-4},
     {0.5, 0.5},       {0.5, 0},     {0, 0.5},    {1, 0.5},
     {0.5, 1},         {0.25, 0.75},
 };
 
-/// Exactly at an irregular vertex, what has no limit is missing.
+/// Removes the quantities that have no limit, exactly at an irregular vertex.
 void expectMissing(const std::string& where, const CornerPoint& corner, const Truth& got,
                    const Truth& limit) {
   for (int quantity = kDu; quantity <= kDvv; ++quantity) {
@@ -33,8 +34,8 @@ void expectMissing(const std::string& where, const CornerPoint& corner, const Tr
       << where << ": the normal is " << got[kNormal].transpose();
 }
 
-/// du and dv too parallel, or of too different lengths (across a fold one vanishes), for the double
-/// nearest to each to fix their normal to kNormalError.
+/// Whether du and dv are too parallel, or of too different lengths (across a fold one of them
+/// vanishes), for their values, rounded to double, to determine the normal to kNormalError.
 bool almostParallel(const Vector3& du, const Vector3& dv) {
   const auto [shorter, longer] = std::minmax({du.stableNorm(), dv.stableNorm()});
   return shorter < 1e-3 * longer || du.normalized().cross(dv.normalized()).norm() < 1e-3;
