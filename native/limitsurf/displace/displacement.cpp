@@ -38,9 +38,9 @@ PointsAndNormals pointsAndNormals(const LimitSurface& base, Span<Location> at, i
 
 Points vectorDisplacement(const LimitSurface& base, const LimitSurface& target,
                           const SubdividedFaces& faces, Span<Location> at, int threads) {
-  base.checkLocations(at);
+  const LocationBatch on_base = base.checkLocations(at);
   return target.evaluate(faces.locate(at, threads), Derivatives::none, false, threads).position -
-         base.evaluate(at, Derivatives::none, false, threads).position;
+         base.evaluate(on_base, Derivatives::none, false, threads).position;
 }
 
 Points intoFrames(const Points& vectors, const FrameRows& frames) {

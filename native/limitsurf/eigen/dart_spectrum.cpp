@@ -14,6 +14,9 @@ namespace {
 using Real = DartSpectrum::Real;
 using Complex = DartSpectrum::Complex;
 
+/// 3/2 lambda - 1/4 changes its sign here, so that the secular equation's two sides do not cross
+/// between the poles on either side.
+constexpr Real kNoSignChange = Real(1) / 6;
 /// The traces give a first guess with at least about half of its digits (the eigenvalues'
 /// difference is a square root), and each step of Newton's method about doubles them. Eight steps
 /// are more than this takes, also where two close eigenvalues slow the method down.
@@ -90,6 +93,8 @@ CircleWave<Real> between(int faces, int k) {
   return {faces, pole, left ? signChange(0, half, from(pole)) : signChange(-half, 0, from(pole))};
 }
 
+/// The eigenvalue below those of the poles. -1/2 is below all eigenvalues; near the zero of D,
+/// which is a root of the equation as well, the search ends in time.
 Real lowestEigenvalue(int faces) {
   const Real end = (3 - std::sqrt(Real(5))) / 8;  // D = 0
   return signChange(-Real(1) / 2, end - Real(1) / 100 / static_cast<Real>(faces), [=](Real lambda) {
@@ -142,12 +147,35 @@ CircleWave<Complex> refined(int faces, const Complex& lambda) {
   return {faces, pole, delta};
 }
 
+/// All eigenvalues are real: the pair becomes the two closest ones of itself and the waves next to
+/// it.
+void pairClosest(int faces, std::vector<CircleWave<Real>>& waves,
+                 std::vector<CircleWave<Complex>>& pair) {
+  Real distance = std::abs(pair[0].lambda() - pair[1].lambda());
+  int exchanged = -1, wave = -1;
+  for (int i = 0; i < 2; ++i) {
+    for (int k = 0; k < static_cast<int>(waves.size()); ++k) {
+      const Real other = std::abs(pair[i].lambda() - waves[k].lambda());
+      if (other < distance) {
+        distance = other;
+        exchanged = 1 - i;
+        wave = k;
+      }
+    }
+  }
+  if (wave >= 0) {
+    const CircleWave<Real> joins = waves[wave];
+    waves[wave] = {faces, pair[exchanged].pole(), pair[exchanged].delta().real()};
+    pair[exchanged] = {faces, joins.pole(), joins.delta()};
+  }
+}
+
 }  // namespace
 
 DartSpectrum::DartSpectrum(int faces) : lowest(lowestEigenvalue(faces)) {
   const auto lambdaOfPole = [&](int k) { return CircleWave<Real>(faces, k, 0).lambda(); };
   for (int k = 0; k + 1 < faces; ++k) {
-    if (lambdaOfPole(k) > Real(1) / 6 && lambdaOfPole(k + 1) < Real(1) / 6) {
+    if (lambdaOfPole(k) > kNoSignChange && lambdaOfPole(k + 1) < kNoSignChange) {
       continue;
     }
     waves.push_back(between(faces, k));
@@ -174,26 +202,8 @@ DartSpectrum::DartSpectrum(int faces) : lowest(lowestEigenvalue(faces)) {
     throw std::logic_error("dart: the eigenvalues do not add up to the traces of the ring matrix");
   }
 
-  if (half.imag() != 0) {
-    return;
-  }
-  // All are real: the pair becomes the two closest of the last two and the waves next to them.
-  Real distance = std::abs(pair[0].lambda() - pair[1].lambda());
-  int exchanged = -1, wave = -1;
-  for (int i = 0; i < 2; ++i) {
-    for (int k = 0; k < static_cast<int>(waves.size()); ++k) {
-      const Real other = std::abs(pair[i].lambda() - waves[k].lambda());
-      if (other < distance) {
-        distance = other;
-        exchanged = 1 - i;
-        wave = k;
-      }
-    }
-  }
-  if (wave >= 0) {
-    const CircleWave<Real> joins = waves[wave];
-    waves[wave] = {faces, pair[exchanged].pole(), pair[exchanged].delta().real()};
-    pair[exchanged] = {faces, joins.pole(), joins.delta()};
+  if (half.imag() == 0) {
+    pairClosest(faces, waves, pair);
   }
 }
 

@@ -6,9 +6,60 @@
 #include "limitsurf/eigen/eigenbasis.h"
 
 namespace limitsurf {
+namespace {
+
+struct RingMeans {
+  Vector3 edge, face;
+};
+
+/// The means of the spoke points and of the face points of a closed ring, relative to v.
+RingMeans meansFrom(const Vector3& v, const Ring& ring, const Points& points) {
+  RingMeans means{Vector3::Zero(), Vector3::Zero()};
+  for (int i = 0; i < ring.faces; ++i) {
+    means.edge += (points.row(ring.edge(i)).transpose() - v) / ring.faces;
+    means.face += (points.row(ring.face(i)).transpose() - v) / ring.faces;
+  }
+  return means;
+}
+
+struct WaveSums {
+  Vector3 edge_cos = Vector3::Zero(), edge_sin = Vector3::Zero(), face_cos = Vector3::Zero(),
+          face_sin = Vector3::Zero();
+};
+
+/// The sums of a ring's points times the cosines and the sines of spoke mode m. The tables hold one
+/// period.
+WaveSums waveSums(const Ring& ring, const Points& points, int m, const std::vector<double>& cos,
+                  const std::vector<double>& sin) {
+  const long period = static_cast<long>(cos.size()), step = 2L * m;
+  const auto advance = [&](long& angle) {
+    angle += step;
+    while (angle >= period) {
+      angle -= period;
+    }
+  };
+  WaveSums sums;
+  long edge_angle = 0, face_angle = m;
+  while (face_angle >= period) {
+    face_angle -= period;
+  }
+  for (int i = 0; i < ring.edges(); ++i, advance(edge_angle)) {
+    const Vector3 e = points.row(ring.edge(i));
+    sums.edge_cos += cos[edge_angle] * e;
+    sums.edge_sin += sin[edge_angle] * e;
+  }
+  for (int j = 0; j < ring.faces; ++j, advance(face_angle)) {
+    const Vector3 f = points.row(ring.face(j));
+    sums.face_cos += cos[face_angle] * f;
+    sums.face_sin += sin[face_angle] * f;
+  }
+  return sums;
+}
+
+}  // namespace
 
 void Eigenbasis::project(const Points& ring_points, Points& coefficients) const {
-  const int faces = ring_.faces, edges = ring_.edges();
+  const int faces = ring_.faces;
   coefficients.setZero(modeCount(), 3);
   Points rest = ring_points;
   if (dart_) {
@@ -18,11 +69,7 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
     coefficients.row(0) += v.transpose();
   } else if (ring_.closed()) {
     const Vector3 v = ring_points.row(0);
-    Vector3 edge_mean = Vector3::Zero(), face_mean = Vector3::Zero();
-    for (int i = 0; i < faces; ++i) {
-      edge_mean += (ring_points.row(ring_.edge(i)).transpose() - v) / faces;
-      face_mean += (ring_points.row(ring_.face(i)).transpose() - v) / faces;
-    }
+    const auto [edge_mean, face_mean] = meansFrom(v, ring_, ring_points);
     Vector3 constant = v;
     for (int i = 0; i < 2; ++i) {
       const Vector3 coefficient =
@@ -47,36 +94,15 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
   }
 
   for (int m = 1; m <= spokeCount(); ++m) {
-    Vector3 edge_cos = Vector3::Zero(), edge_sin = edge_cos, face_cos = edge_cos,
-            face_sin = edge_cos;
-    long edge_angle = 0, face_angle = m;
-    const long step = 2L * m;
-    const auto advance = [&](long& angle) {
-      angle += step;
-      while (angle >= period_) {
-        angle -= period_;
-      }
-    };
-    while (face_angle >= period_) {
-      face_angle -= period_;
-    }
-    for (int i = 0; i < edges; ++i, advance(edge_angle)) {
-      const Vector3 e = rest.row(ring_.edge(i));
-      edge_cos += cos_[edge_angle] * e;
-      edge_sin += sin_[edge_angle] * e;
-    }
-    for (int j = 0; j < faces; ++j, advance(face_angle)) {
-      const Vector3 f = rest.row(ring_.face(j));
-      face_cos += cos_[face_angle] * f;
-      face_sin += sin_[face_angle] * f;
-    }
+    const WaveSums sums = waveSums(ring_, rest, m, cos_, sin_);
     // 2 / faces normalises sines and cosines, 1 / faces those that alternate.
     const double norm = (alternates(m) ? 1. : 2.) / faces;
     for (const bool plus : {true, false}) {
       const Spoke& spoke = spokes_[pairIndex(m, plus)];
       const double scale = norm * spoke.scale;
       const double e = scale * spoke.edge, f = scale * spoke.face / 4;
-      const Vector3 cosine = e * edge_cos + f * face_cos, sine = e * edge_sin + f * face_sin;
+      const Vector3 cosine = e * sums.edge_cos + f * sums.face_cos,
+                    sine = e * sums.edge_sin + f * sums.face_sin;
       // On face 0 the parts of the pair are the cosine mode and the sine mode themselves.
       Part part[2];
       const int count = parts(m, plus, 0, part);
