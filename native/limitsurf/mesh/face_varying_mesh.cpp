@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limitsurf/mesh/messages.h"
+#include "limitsurf/mesh/value_vertices.h"
 #include "limitsurf/rules/decaying_sharpness.h"
 #include "limitsurf/rules/subdivision_rules.h"
 
@@ -35,8 +36,14 @@ class Builder {
  public:
   Builder(const ControlMesh& mesh, const Topology& topology,
           const std::vector<std::int64_t>& indices, Interpolation interpolation)
-      : mesh_(mesh), level_(topology.level()), interpolation_(interpolation) {
-    numberVertices(indices);
+      : mesh_(mesh),
+        level_(topology.level()),
+        interpolation_(interpolation),
+        vertices_(mesh, topology, indices),
+        around_(vertices_.values.size()) {
+    for (std::size_t i = 0; i < around_.size(); ++i) {
+      around_[i].faces = vertices_.faces[i];
+    }
     options_.triangles = mesh.options().triangles;
     options_.creasing = mesh.options().creasing;
     options_.scheme =
@@ -54,10 +61,11 @@ class Builder {
 
   FaceVaryingMesh build() {
     const std::vector<int> sizes = mesh_.faceSizes();
-    return {ControlMesh(Points::Zero(static_cast<Eigen::Index>(values_.size()), 3),
-                        {sizes.begin(), sizes.end()}, {vertex_at_.begin(), vertex_at_.end()},
-                        std::move(options_)),
-            std::move(values_), std::move(refused_)};
+    return {
+        ControlMesh(Points::Zero(static_cast<Eigen::Index>(vertices_.values.size()), 3),
+                    {sizes.begin(), sizes.end()},
+                    {vertices_.at_corner.begin(), vertices_.at_corner.end()}, std::move(options_)),
+        std::move(vertices_.values), std::move(refused_)};
   }
 
  private:
@@ -73,59 +81,6 @@ class Builder {
     bool disjoint() const { return faces - inner_edges > 1; }
   };
 
-  /// Makes one vertex for each value at a vertex of the mesh.
-  void numberVertices(const std::vector<std::int64_t>& indices) {
-    vertex_at_.resize(indices.size());
-    std::map<int, std::vector<int>> non_manifold_corners;
-    for (std::size_t corner = 0; corner < indices.size(); ++corner) {
-      const int vertex = mesh_.faceVertices()[corner];
-      if (level_.IsVertexNonManifold(vertex)) {
-        non_manifold_corners[vertex].push_back(static_cast<int>(corner));
-      }
-    }
-    std::vector<int> corners;
-    for (int vertex = 0; vertex < mesh_.vertexCount(); ++vertex) {
-      first_.push_back(static_cast<int>(values_.size()));
-      if (level_.IsVertexNonManifold(vertex)) {
-        numberValues(indices, non_manifold_corners[vertex], false);
-        continue;
-      }
-      const auto faces = level_.GetVertexFaces(vertex);
-      const auto places = level_.GetVertexFaceLocalIndices(vertex);
-      corners.clear();
-      for (int i = 0; i < faces.size(); ++i) {
-        corners.push_back(mesh_.firstCorner(faces[i]) + places[i]);
-      }
-      numberValues(indices, corners, true);
-    }
-    first_.push_back(static_cast<int>(values_.size()));
-  }
-
-  /// `in_order`: whether successive corners are neighbours around the vertex. OpenSubdiv (3.0
-  /// to 3.6) then counts the second value that it meets again, as a third one, where that value
-  /// returns before any third one.
-  void numberValues(const std::vector<std::int64_t>& indices, const std::vector<int>& corners,
-                    bool in_order) {
-    const int first = first_.back();
-    std::map<std::int64_t, int> known;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const std::int64_t value = indices[corners[i]];
-      if (i > 0 && value == indices[corners[i - 1]]) {
-        vertex_at_[corners[i]] = vertex_at_[corners[i - 1]];
-      } else {
-        const int next = static_cast<int>(values_.size());
-        const auto [place, is_new] = known.try_emplace(value, next);
-        const bool again = in_order && next - first == 2 && place->second == first + 1;
-        vertex_at_[corners[i]] = again ? next : place->second;
-        if (is_new || again) {
-          values_.push_back(static_cast<int>(value));
-          around_.emplace_back();
-        }
-      }
-      ++around_[vertex_at_[corners[i]]].faces;
-    }
-  }
-
   /// The new vertices at the ends of an edge in one of its faces, in the order of Far's edge.
   std::pair<int, int> endsIn(int edge, int i) const {
     const int face = level_.GetEdgeFaces(edge)[i];
@@ -133,8 +88,8 @@ class Builder {
     const int a = mesh_.firstCorner(face) + side;
     const int b = mesh_.firstCorner(face) + (side + 1) % mesh_.faceSize(face);
     const bool along = mesh_.faceVertices()[a] == level_.GetEdgeVertices(edge)[0];
-    return along ? std::pair(vertex_at_[a], vertex_at_[b])
-                 : std::pair(vertex_at_[b], vertex_at_[a]);
+    return along ? std::pair(vertices_.at_corner[a], vertices_.at_corner[b])
+                 : std::pair(vertices_.at_corner[b], vertices_.at_corner[a]);
   }
 
   bool isSeam(int edge) const {
@@ -195,7 +150,7 @@ class Builder {
   }
 
   void addVertex(int vertex) {
-    const int begin = first_[vertex], end = first_[vertex + 1];
+    const int begin = vertices_.first[vertex], end = vertices_.first[vertex + 1];
     if (begin == end) {
       return;
     }
@@ -218,11 +173,11 @@ class Builder {
 
   /// Whether several values or a seam divide the faces around the vertex.
   bool isDivided(int vertex) const {
-    return at_seam_[vertex] || first_[vertex + 1] - first_[vertex] > 1;
+    return at_seam_[vertex] || vertices_.first[vertex + 1] - vertices_.first[vertex] > 1;
   }
 
   bool allPinned(int vertex) const {
-    const int begin = first_[vertex], end = first_[vertex + 1];
+    const int begin = vertices_.first[vertex], end = vertices_.first[vertex + 1];
     const bool on_boundary = level_.IsVertexBoundary(vertex);
     if (interpolation_ == Interpolation::boundaries) {
       return on_boundary || isDivided(vertex);
@@ -253,7 +208,7 @@ class Builder {
   /// Whether a value is one of two at a vertex and, though smooth itself, remains a corner for as
   /// long as the other one does.
   bool dependsOnOther(int vertex, int derived) const {
-    const int begin = first_[vertex], end = first_[vertex + 1];
+    const int begin = vertices_.first[vertex], end = vertices_.first[vertex + 1];
     return sharpensAcross() && at_seam_[vertex] && end - begin == 2 &&
            around_[derived].semi_sharp_edges == 0 &&
            around_[begin + end - 1 - derived].semi_sharp_edges > 0;
@@ -307,7 +262,7 @@ class Builder {
     if (mesh_.options().creasing == Creasing::uniform) {
       return;
     }
-    for (int derived = first_[vertex]; derived < first_[vertex + 1]; ++derived) {
+    for (int derived = vertices_.first[vertex]; derived < vertices_.first[vertex + 1]; ++derived) {
       if (around_[derived].semi_sharp_edges == 0) {
         continue;
       }
@@ -348,10 +303,8 @@ class Builder {
   const Far::TopologyLevel& level_;
   const Interpolation interpolation_;
   MeshOptions options_;
-  std::vector<int> first_;  // vertex of the mesh -> the first of its new vertices; one more entry
-  std::vector<int> vertex_at_;  // corner -> vertex of the new mesh
-  std::vector<int> values_;     // per vertex of the new mesh
-  std::vector<Surroundings> around_;
+  ValueVertices vertices_;
+  std::vector<Surroundings> around_;  // per new vertex
   std::map<int, std::string> refused_;
   std::vector<bool> at_seam_;  // per vertex of the mesh: whether it is on a seam
 };

@@ -18,9 +18,9 @@ namespace limitsurf {
 /// vertex of that mesh takes. An edge is a seam if the values of its two faces differ at one of its
 /// ends. A seam becomes two boundaries; all other edges keep their sharpness. Where a value lies in
 /// several fans of faces around its vertex, these fans share a vertex, which is pinned, unless
-/// OpenSubdiv takes them for different values (numberValues() says when). Other vertices that the
-/// rules of `Interpolation` and of the surface's boundary pin get infinite sharpness, so that the
-/// mesh's own boundary rule is always Boundary::smooth.
+/// OpenSubdiv takes them for different values (value_vertices.cpp says when). Other vertices that
+/// the rules of `Interpolation` and of the surface's boundary pin get infinite sharpness, so that
+/// the mesh's own boundary rule is always Boundary::smooth.
 struct FaceVaryingMesh {
   ControlMesh mesh;         ///< all positions are 0
   std::vector<int> values;  ///< per vertex of `mesh`: the row of its value
