@@ -21,7 +21,7 @@ class LocationBatch {
 
   std::size_t size() const { return locations_.size(); }
   const Location& operator[](std::size_t row) const { return locations_[row]; }
-  Span<Location> locations() const { return locations_; }
+  operator Span<Location>() const { return locations_; }
 
   /// Some rows of the batch. They are checked if the batch is.
   LocationBatch rows(std::size_t begin, std::size_t count) const {

@@ -41,7 +41,7 @@ LocationBatch TiledSurface::checked(const LocationBatch& at) const {
       throw MeshError(message.str());
     }
   }
-  return LocationBatch(at.locations(), this);
+  return LocationBatch(at, this);
 }
 
 }  // namespace limitsurf

@@ -40,10 +40,10 @@ py::object tangentFrames(const SharedSurface& shared, const SharedData& uv_map,
                          const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const SurfaceData& map = uv_map.data();
   Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
-  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const std::shared_lock<std::shared_mutex> lock(uv_map.mutex);
     const auto frames = limitsurf::tangentFrames(shared.surface(), map, chunk, threads);
     output.put(9 * begin, frames.data(), 9 * chunk.size());
@@ -56,13 +56,13 @@ py::object mapDistortion(const SharedSurface& shared, const SharedData& uv_map,
                          const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const SurfaceData& map = uv_map.data();
   Output outputs[3];  // area, stretch_high, stretch_low
   for (Output& output : outputs) {
     output = Output(type, {static_cast<py::ssize_t>(at.size())});
   }
-  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const std::shared_lock<std::shared_mutex> lock(uv_map.mutex);
     const MapDistortion d = limitsurf::mapDistortion(shared.surface(), map, chunk, threads);
     const Eigen::VectorXd* values[3] = {&d.area, &d.stretch_high, &d.stretch_low};

@@ -8,7 +8,8 @@
 
 namespace limitsurf::python {
 
-Locations locationsOf(int face_count, const py::object& face, const py::object& uv) {
+Locations locationsOf(int face_count, const py::object& face, const py::object& uv,
+                      FaceCheck check) {
   Doubles uvs = doubles(uv, "uv");
   if (uvs.ndim() == 1 && uvs.size() == 0) {
     uvs = Doubles(std::vector<py::ssize_t>{0, 2});  // []
@@ -23,11 +24,14 @@ Locations locationsOf(int face_count, const py::object& face, const py::object& 
   const std::int64_t* ids = faces.data();
   const double* parameters = uvs.data();
   const bool one = faces.ndim() == 0;
+  using Int = std::numeric_limits<int>;
+  const std::int64_t lowest = check == FaceCheck::range ? 0 : Int::min();
+  const std::int64_t highest = check == FaceCheck::range ? face_count - 1 : Int::max();
   Locations result(rows);
   const py::gil_scoped_release release;
   for (std::size_t row = 0; row < rows; ++row) {
     const std::int64_t id = ids[one ? 0 : row];
-    if (id < 0 || id >= face_count) {
+    if (id < lowest || id > highest) {
       std::ostringstream message;
       message << "row " << row << ": face " << id << " is not among the " << face_count
               << " Ptex faces";

@@ -4,28 +4,57 @@
 #include <algorithm>
 #include <cstddef>
 #include <shared_mutex>
+#include <utility>
 #include <vector>
 
 #include "arrays.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/location_batch.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf::python {
 
 using Locations = std::vector<Location>;
 
-/// The rows of a batch; LocationError for arrays of other shapes and the first face that is none of
-/// `face_count` Ptex faces.
-Locations locationsOf(int face_count, const py::object& face, const py::object& uv);
+/// Which face ids locationsOf() refuses.
+enum class FaceCheck {
+  range,  ///< those of none of the Ptex faces
+  size,   ///< those that do not fit into an int; the surface checks the others
+};
 
-/// The rows of a batch on a surface, or on its data, that can be evaluated; the error of the first
-/// that cannot.
+/// The rows of a batch. LocationError for arrays of other shapes, and for the first face id that is
+/// refused.
+Locations locationsOf(int face_count, const py::object& face, const py::object& uv,
+                      FaceCheck check = FaceCheck::range);
+
+/// The rows of a batch on a surface, or on its data. They are checked once, as a whole, so that
+/// errors name rows of the batch, and parts of it need not be checked again.
+class CheckedLocations {
+ public:
+  template <typename Surface>
+  CheckedLocations(const Surface& surface, Locations rows)
+      : rows_(std::move(rows)), batch_(surface.checkLocations(rows_)) {}
+
+  std::size_t size() const { return rows_.size(); }
+  LocationBatch part(std::size_t begin, std::size_t count) const {
+    return batch_.rows(begin, count);
+  }
+  operator const Locations&() const { return rows_; }
+  operator const LocationBatch&() const { return batch_; }
+  operator Span<Location>() const { return rows_; }
+
+ private:
+  Locations rows_;
+  LocationBatch batch_;  // refers to rows_, which keep their address when moved
+};
+
+/// The rows of a batch on a surface, or on its data. Throws the error of the first row that cannot
+/// be evaluated.
 template <typename Surface>
-Locations locationsOn(const Surface& surface, const py::object& face, const py::object& uv) {
-  Locations at = locationsOf(surface.faceCount(), face, uv);
+CheckedLocations locationsOn(const Surface& surface, const py::object& face, const py::object& uv) {
+  Locations at = locationsOf(surface.faceCount(), face, uv, FaceCheck::size);
   const py::gil_scoped_release release;
-  surface.checkLocations(at);
-  return at;
+  return CheckedLocations(surface, std::move(at));
 }
 
 /// ValueError for orders above `highest` and below 0.
@@ -40,12 +69,12 @@ constexpr std::size_t kRowsPerChunk = std::size_t{1} << 17;
 /// Calls body(first row, the chunk's locations) for chunk after chunk, without the GIL, with what
 /// the mutex guards held still, and so that Ctrl-C ends it.
 template <typename Body>
-void inChunks(std::shared_mutex& mutex, const Locations& at, const Body& body) {
+void inChunks(std::shared_mutex& mutex, const CheckedLocations& at, const Body& body) {
   const py::gil_scoped_release release;
   const std::shared_lock<std::shared_mutex> lock(mutex);
   const InterruptionPoint point = interruptible();
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerChunk) {
-    body(begin, Span<Location>(at).subspan(begin, std::min(kRowsPerChunk, at.size() - begin)));
+    body(begin, at.part(begin, std::min(kRowsPerChunk, at.size() - begin)));
   }
 }
 

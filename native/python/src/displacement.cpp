@@ -106,7 +106,7 @@ py::object vectorDisplacement(const SharedSurface& base, const SharedSurface& ta
   checkThreads(threads);
   const ProgressReport report(progress);
   target.surface();
-  const Locations at = locationsOn(base.surface(), face, uv);
+  const CheckedLocations at = locationsOn(base.surface(), face, uv);
   const FrameRows all_frames = framesOf(frames, at.size());
   Output output(py::dtype("float64"), {static_cast<py::ssize_t>(at.size()), 3});
   {
@@ -133,7 +133,7 @@ py::object scalarDisplacement(const SharedSurface& base, const SharedSurface& ta
   checkThreads(threads);
   const ProgressReport report(progress);
   target.surface();
-  const Locations at = locationsOn(base.surface(), face, uv);
+  const CheckedLocations at = locationsOn(base.surface(), face, uv);
   const ScalarDisplacementOptions options{max_distance,
                                           choice(direction, "direction", kDirections)};
   checkDistance(max_distance);
@@ -155,7 +155,7 @@ py::object scalarDisplacement(const SharedSurface& base, const SharedSurface& ta
 py::object displaced(const SharedSurface& shared, const py::object& face, const py::object& uv,
                      const py::object& values, const py::object& frames, int threads) {
   checkThreads(threads);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   const Doubles array = doubles(values, "values");
   const bool scalar = array.ndim() == 1;
@@ -169,7 +169,7 @@ py::object displaced(const SharedSurface& shared, const py::object& face, const 
   }
   const FrameRows all_frames = framesOf(frames, at.size());
   Output output(py::dtype("float64"), {rows, 3});
-  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const double* first = array.data() + begin * (scalar ? 1 : 3);
     const auto count = static_cast<Eigen::Index>(chunk.size());
     const Points moved =

@@ -30,7 +30,7 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
   checkDerivatives(derivatives, 2);
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   // position, du, dv, normal, duu, duv, dvv
   Output outputs[7];
@@ -38,7 +38,7 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
   for (int i = 0; i < wanted; ++i) {
     outputs[i] = Output(type, {rows, 3});
   }
-  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const Evaluation e = shared.surface().evaluate(chunk, static_cast<Derivatives>(derivatives),
                                                    derivatives > 0, threads);
     const Points* values[7] = {&e.position, &e.du, &e.dv, &e.normal, &e.duu, &e.duv, &e.dvv};
@@ -55,9 +55,9 @@ py::object frames(const SharedSurface& shared, const py::object& face, const py:
                   int threads, const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
-  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const auto rotations = shared.surface().frames(chunk, threads);
     output.put(9 * begin, rotations.data(), 9 * chunk.size());
   });
@@ -72,7 +72,7 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
   const IrregularRule rule = choice<IrregularRule>(
       irregular, "irregular", {{"none", IrregularRule::none}, {"average", IrregularRule::average}});
   checkCurvatureRadius(radius);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   Output scalars[4], directions[2];
   for (Output& output : scalars) {
@@ -83,7 +83,7 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
   }
   py::array_t<bool> is_irregular(rows);
   bool* flags = is_irregular.mutable_data();
-  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const Curvature c = shared.surface().curvature(chunk, rule, radius, threads);
     const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
     for (int i = 0; i < 4; ++i) {
@@ -102,10 +102,10 @@ py::object stencils(const SharedSurface& shared, const py::object& face, const p
                     int derivatives, int threads) {
   checkDerivatives(derivatives, 1);
   checkThreads(threads);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   Stencils all;
   all.offsets.push_back(0);
-  inChunks(shared.mutex, at, [&](std::size_t, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t, const LocationBatch& chunk) {
     const Stencils part = shared.surface().stencils(chunk, derivatives > 0, threads);
     const std::int64_t before = all.offsets.back();
     for (std::size_t i = 1; i < part.offsets.size(); ++i) {

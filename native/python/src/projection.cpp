@@ -86,7 +86,7 @@ py::object project(const SharedSurface& shared, const SharedData& uv_map, const 
   const Eigen::Vector2d size(texel.first, texel.second);
   const SurfaceData& map = uv_map.data();
   const ProgressReport report(progress);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   ProjectionArrays arrays(static_cast<py::ssize_t>(at.size()));
   {
     const py::gil_scoped_release release;
@@ -133,7 +133,7 @@ py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv
   const Eigen::Vector2d size(texel.first, texel.second);
   const SurfaceData &map = uv_map.data(), &other_map = source_map.data();
   const ProgressReport report(progress);
-  const Locations at = locationsOn(shared.surface(), face, uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   ProjectionArrays arrays(static_cast<py::ssize_t>(at.size()));
   {
     const py::gil_scoped_release release;

@@ -26,7 +26,7 @@ py::object evaluate(const SharedData& shared, const py::object& face, const py::
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
   const SurfaceData& data = shared.data();
-  const Locations at = locationsOn(data, face, uv);
+  const CheckedLocations at = locationsOn(data, face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   const auto columns = static_cast<py::ssize_t>(data.columns());
   Output outputs[6];  // value, du, dv, duu, duv, dvv
@@ -34,7 +34,7 @@ py::object evaluate(const SharedData& shared, const py::object& face, const py::
   for (int i = 0; i < wanted; ++i) {
     outputs[i] = Output(type, {rows, columns});
   }
-  inChunks(shared.mutex, at, [&](std::size_t begin, Span<Location> chunk) {
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const DataEvaluation e = data.evaluate(chunk, static_cast<Derivatives>(derivatives), threads);
     const DataRows* values[6] = {&e.value, &e.du, &e.dv, &e.duu, &e.duv, &e.dvv};
     for (int i = 0; i < wanted; ++i) {
