@@ -12,13 +12,14 @@ namespace limitsurf {
 
 /// A level of refinement, with what is known of its vertices.
 struct RefinementLevel {
-  /// `cage` or `refined` is `mesh` itself; the other one is null.
-  RefinementLevel(FaceMesh& mesh, const CageMesh* cage, RefinedMesh* refined, bool has_sharpness)
-      : mesh(mesh),
-        cage(cage),
-        refined(refined),
-        sectors(mesh, has_sharpness),
-        has_sharpness(has_sharpness) {}
+  /// One of the pointers is `face_mesh` itself; the other one is null.
+  RefinementLevel(FaceMesh& face_mesh, const CageMesh* cage_mesh, RefinedMesh* refined_mesh,
+                  bool is_sharp)
+      : mesh(face_mesh),
+        cage(cage_mesh),
+        refined(refined_mesh),
+        sectors(face_mesh, is_sharp),
+        has_sharpness(is_sharp) {}
 
   FaceMesh& mesh;
   const CageMesh* cage;
