@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
 #include <complex>
 #include <cstdio>
 #include <numeric>
@@ -419,6 +420,55 @@ TEST(Eigenbasis, OfLargeDartsReachesAStep) {
     expected.row(pair.b) += pair.forth * before.row(pair.a);
     EXPECT_LE((after - expected).cwiseAbs().maxCoeff(), 1e-14) << faces;
     EXPECT_LE((sum - points).cwiseAbs().maxCoeff(), 3e-14) << faces;
+  }
+}
+
+/// How much a control point of a face may move, relative to the ring's size, if the coefficient of
+/// each mode moves as far as rounding may move it (docs/accuracy.md): the sum over modes of
+/// lambda^(steps - 1), the size of the mode, and the size of its left eigenvector.
+double amplification(const Eigenbasis& basis, int face, int steps) {
+  const int n = basis.modeCount();
+  const Eigen::MatrixXd left = basis.projectTransposed(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::VectorXd left_size = left.bottomRows(n - 1).cwiseAbs().colwise().sum().transpose();
+  const std::vector<LongComplex> spectrum = knownSpectrum(basis);
+  const auto growth = [&](int mode) {
+    double size = static_cast<double>(std::abs(spectrum[mode]));
+    for (const ModePair& pair : basis.pairs()) {
+      if (mode == pair.b) size = std::max(size, static_cast<double>(std::abs(spectrum[pair.a])));
+    }
+    return size;
+  };
+  std::array<double, tile_grid::kSlots> moved = {};
+  const auto add = [&](const Eigenbasis::Table& table, double factor) {
+    for (int slot = 0; slot < tile_grid::kSlots; ++slot) {
+      moved[slot] += factor * std::abs(table.grid[slot]);
+    }
+  };
+  for (int mode = 1; mode < n; ++mode) {
+    const double power = std::pow(growth(mode), steps - 1) * left_size[mode];
+    add(basis.table(mode, face), power);
+    for (const Eigenbasis::Chain& chain : basis.chains()) {
+      if (chain.from == mode) {
+        add(basis.table(chain.to, face), (steps - 1) * power / growth(mode) * std::abs(chain.rate));
+      }
+    }
+  }
+  return *std::max_element(moved.begin(), moved.end());
+}
+
+TEST(Eigenbasis, AmplifiesRoundingLittle) {
+  for (RingKind kind : kKinds) {
+    for (int faces : {1, 2, 3, 4, 5, 6, 7, 8, 16, 20, 40, 100}) {
+      if (!exists({kind, faces})) continue;
+      const Eigenbasis basis({kind, faces});
+      const double most = faces <= 8 ? 1.3 : faces <= 40 ? 5.2 : 12.2;
+      for (int face : {0, faces / 2, faces - 1}) {
+        for (int steps : {5, 6, 8}) {
+          EXPECT_LE(amplification(basis, face, steps), most)
+              << describe(basis.ring()) << ", " << steps << " steps";
+        }
+      }
+    }
   }
 }
 
