@@ -91,7 +91,7 @@ VertexFan CageMesh::fan(int vertex) const {
   const auto faces = level_.GetVertexFaces(vertex);
   VertexFan result{
       {}, faces.size(), !level_.IsVertexBoundary(vertex), level_.GetVertexSharpness(vertex)};
-  if (faces.size() > 0) {
+  if (!faces.empty()) {
     result.first = {faces[0], level_.GetVertexFaceLocalIndices(vertex)[0]};
   }
   return result;

@@ -39,12 +39,12 @@ std::vector<Location> scatterJittered(const LimitSurface& surface, int per_side,
   const std::uint64_t key = mixed(seed);
   parallelFor(result.size(), 8192, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t cell = i % per_face;
+      const std::size_t cell = i % per_face, column = cell % side, row = cell / side;
       const int face = faces[i / per_face];
       const std::uint64_t number = static_cast<std::uint64_t>(face) * per_face + cell;
       const std::uint64_t bits = mixed(key ^ mixed(number));
-      const double u = (static_cast<double>(cell % side) + uniformIn01(bits)) / per_side;
-      const double v = (static_cast<double>(cell / side) + uniformIn01(mixed(bits))) / per_side;
+      const double u = (static_cast<double>(column) + uniformIn01(bits)) / per_side;
+      const double v = (static_cast<double>(row) + uniformIn01(mixed(bits))) / per_side;
       result[i] = {face, std::min(u, 1.), std::min(v, 1.)};
     }
   });
