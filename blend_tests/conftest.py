@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender as a module, the add-on registered from this checkout, an empty file for each test."""
+"""Blender as a module, with the add-on registered from this checkout and an empty file for each
+test.
+"""
 
 import os
 import sys
@@ -36,8 +38,9 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Ends the process at once: Blender's own exit handlers wait for each other now and then, and
-    all there is to report has been written."""
+    """Ends the process at once, when everything has been reported: Blender's own exit handlers
+    sometimes block each other.
+    """
     config.get_terminal_writer().flush()
     sys.stdout.flush()
     sys.stderr.flush()

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Images of displacement: their numbers, against places found another way."""
+"""Images of displacement: their numbers are compared with places that are found by another
+method.
+"""
 
 import json
 
@@ -14,11 +16,11 @@ from limit_surface.images import image_pixels
 from limit_surface.reading import attributes, subdivided_mesh
 from mathutils import Matrix
 
-SINGLE = 1e-6  # what Blender rounds coordinates up to 5 by
+SINGLE = 1e-6  # the rounding error of Blender's coordinates up to 5
 
 
 def flat_map(at):
-    """Inside the first tile, for the meshes of the tests."""
+    """Adds a UV map inside the first tile, for the meshes of the tests."""
     return at[:, :2] @ np.array([[0.15, 0.03], [-0.02, 0.17]]).T + [0.14, 0.12]
 
 
@@ -49,14 +51,16 @@ def surface(ob):
 
 
 def there(ob, target, levels, face, uv):
-    """The limit of the subdivided mesh, found polygon by polygon as Blender has them."""
+    """Returns points of the subdivided mesh's limit, found polygon by polygon in Blender's
+    order.
+    """
     finder = subdivided_mesh.PolygonFinder(attributes.face_sizes(ob.data), levels)
     polygon, within = finder.find(face, uv)
     return surface(target).evaluate(polygon, np.clip(within, 0, 1)).position
 
 
 def texels_of(ob, image, margin=16):
-    """Where they lie, those of the margin included."""
+    """Returns the places of the texels, including those of the margin."""
     base = surface(ob)
     corner_vertex = attributes.read(ob.data, ids.CORNER_VERTEX)
     values = flat_map(sculpts.positions(ob))
@@ -124,7 +128,7 @@ def test_a_tile_for_each_face_needs_no_map(sculpt, base):
     pixels = image_pixels.read(image)
     rng = np.random.default_rng(1)
     own = surface(base)
-    for _ in range(60):  # as the page says where a sample is
+    for _ in range(60):  # the place of a sample, as the page describes it
         face, i, j = rng.integers(0, 18), *rng.integers(0, 5, 2)
         value = pixels[face // 5 * 5 + j, face % 5 * 5 + i, :3]
         at = np.array([face]), np.array([[i, j]]) / 4
@@ -160,7 +164,7 @@ def test_where_the_sculpted_mesh_lies(base, sculpt):
 
 
 def test_distances(capfd):
-    """A flat sheet below a slope that does not cover all of it."""
+    """A flat sheet lies below a slope that does not cover all of it."""
     ob = scenes.flat_grid(4)
     scenes.add_subsurf(ob)
     scenes.add_uv_map(ob, lambda at: at[:, :2] / 5 + 0.1)
@@ -186,7 +190,9 @@ def test_distances(capfd):
 
 
 def test_polygons_of_multiresolution(base):
-    """As they are shown; vertices are where they are, whatever limit they would have."""
+    """The polygons are taken as they are shown: vertices stay where they are, whatever their limit
+    positions.
+    """
     copy = base.copy()
     copy.data = base.data.copy()
     bpy.context.collection.objects.link(copy)
@@ -210,7 +216,7 @@ def test_polygons_of_multiresolution(base):
 
 
 def test_creases_that_blender_leaves_on_a_subdivided_mesh(base):
-    """Infinitely sharp ones stay so, and the surface is the same."""
+    """Infinitely sharp creases stay so, and the surface is the same."""
     crease = base.data.edge_creases_ensure()
     values = np.zeros(len(base.data.edges), np.float32)
     values[::3] = 1
@@ -251,7 +257,9 @@ def test_the_file_holds_the_numbers(sculpt, base, tmp_path):
 
 
 def test_polygons_that_no_viewport_shows(sculpt, base):
-    """Hidden from view they are there; not so where the object is not evaluated at all."""
+    """The polygons of a hidden object are available; those of an object that is not evaluated are
+    not.
+    """
     sculpt.modifiers.clear()
     shown = image_pixels.read(bake(base, sculpt, target_shape="POLYGONS"))
     sculpt.hide_set(True)
@@ -291,7 +299,7 @@ def refused(ob, match, **properties):
 
 
 def test_tiles_in_tangent_space(base, sculpt):
-    """Frames are the map's, and each face's own along seams."""
+    """Frames are those of the map; along seams each face has its own."""
     image = bake(base, sculpt, layout_kind="PTEX", face_resolution="4")
     texels = limitsurf.PtexLayout(18, 4).texels()
     own, uv_map, _ = texels_of(base, image)
@@ -335,7 +343,7 @@ def test_the_selected_mesh_is_taken(base, sculpt):
 
 
 def test_a_face_order_that_nobody_makes(base, sculpt):
-    """Sorted faces, as Blender's own operator leaves them."""
+    """Blender's own operator has sorted the faces."""
     scenes.activate(sculpt)
     for ob in bpy.context.selected_objects:
         ob.select_set(ob == sculpt)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes rendered with the material that is made, against the sculpted mesh: Cycles tells where
-each of a picture's rays meets what it has displaced."""
+"""Meshes are rendered with the material that is made, and compared with the sculpted mesh: Cycles
+returns where each ray of a picture meets the displaced surface.
+"""
 
 from pathlib import Path
 
@@ -48,7 +49,7 @@ def _set_scene(path: Path) -> None:
 
 
 def seen(ob) -> np.ndarray:
-    """(height, width, 4): where rays meet it, and whether they do."""
+    """Returns (height, width, 4): the points where rays meet the mesh, and whether they do."""
     for other in bpy.context.scene.objects:
         other.hide_render = other.type == "MESH" and other != ob
     if not ob.data.materials:
@@ -70,7 +71,7 @@ def seen(ob) -> np.ndarray:
 
 
 def apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Where a ray meets both: how far from each other."""
+    """Returns the distance between the two points of each ray that meets both meshes."""
     met = (one[..., 3] > 0.99) & (other[..., 3] > 0.99)
     assert met.sum() > 3000
     return np.linalg.norm(one[met][:, :3] - other[met][:, :3], axis=1)

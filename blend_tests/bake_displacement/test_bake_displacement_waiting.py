@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Long baking, as a user has it who waits: cancelled, it has made nothing."""
+"""Long baking while a user waits: if it is cancelled, it has made nothing."""
 
 import threading
 from types import SimpleNamespace
@@ -18,8 +18,9 @@ from waiting import wait_for
 
 @pytest.fixture
 def waiting():
-    """A stand-in of plain Python, as Blender makes no operators without a window, and a context
-    whose window only takes notes."""
+    """Returns a stand-in in plain Python, because Blender makes no operators without a window, and
+    a context whose window only records calls.
+    """
     base = scenes.flat_grid(3)
     scenes.add_subsurf(base)
     scenes.add_uv_map(base, lambda at: at[:, :2] / 4 + 0.1)
@@ -40,7 +41,7 @@ def waiting():
 
 @pytest.fixture
 def let_go(monkeypatch):
-    """The work waits, half way, until it is let go on."""
+    """The work stops half way until the event is set."""
     event, measure = threading.Event(), baking_operator.measure
 
     def slowly(request, progress):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Maps of a paraboloid: subdivision leaves quadratic surfaces what they are, so that everything is
-known by formula. Its UV map is the plan."""
+"""Maps of a paraboloid. Subdivision does not change quadratic surfaces beyond a constant, so every
+map has a formula. The UV map is the projection to the x-y plane.
+"""
 
 import threading
 from types import SimpleNamespace
@@ -22,9 +23,9 @@ from mathutils import Matrix
 from waiting import wait_for
 
 SIDE = 8  # quads
-SIZE = 64  # texels along a side of the image: 8 a quad
-INNER = slice(16, 48)  # texels that no boundary has a part in
-A, B = 0.06, -0.1  # z = A x^2 + B y^2, and the third of A + B that subdivision adds
+SIZE = 64  # texels along a side of the image, 8 for each quad
+INNER = slice(16, 48)  # texels that do not depend on the boundary
+A, B = 0.06, -0.1  # z = A x^2 + B y^2 + (A + B) / 3, where subdivision adds the last term
 SINGLE = 2e-6
 
 ALL = set(KINDS)
@@ -54,7 +55,7 @@ def add_uv(ob, of_plan) -> None:
 
 
 def bake(**how) -> dict[str, np.ndarray]:
-    """By the map's key, the inner texels."""
+    """Bakes, and returns the inner texels by the map's key."""
     how = {"width": SIZE, "height": SIZE, **how}
     assert bpy.ops.object.limit_bake_maps(**how) == {"FINISHED"}
     name = how.get("name") or bpy.context.active_object.name
@@ -65,7 +66,7 @@ def bake(**how) -> dict[str, np.ndarray]:
 
 
 class Truth:
-    """At the inner texels, in the object's space."""
+    """The exact values at the inner texels, in the object's space."""
 
     def __init__(self, scale: float = 1.0) -> None:
         at = (np.arange(SIZE)[INNER] + 0.5) / SIZE * SIDE - SIDE / 2
@@ -75,14 +76,16 @@ class Truth:
         z = A * self.x**2 + B * self.y**2 + (A + B) / 3
         self.position = np.stack([self.x, self.y, z], axis=-1)
         self.normal = np.stack([-zx, -zy, np.ones_like(zx)], axis=-1) / length[..., None]
-        # The second fundamental form by the first: a 2 x 2 eigenvalue problem written out.
+        # The second fundamental form relative to the first gives a 2 x 2 eigenvalue problem, solved
+        # by formula.
         e, f, g = 1 + zx**2, zx * zy, 1 + zy**2
         xx, yy = 2 * A / length, 2 * B / length
         self.mean = (xx * g + yy * e) / (2 * length**2) / scale
         self.gaussian = xx * yy / length**2 / scale**2
         root = np.sqrt(self.mean**2 - self.gaussian)
         self.k1, self.k2 = self.mean + root, self.mean - root
-        # (second - k first) d = 0; along the map's U, which is x: its image is (1, 0, zx).
+        # The solution d of (second - k first) d = 0 points along the map's U, which is x; its image
+        # is (1, 0, zx).
         self.directions = [self._along(k * scale, xx, e, f, zx, zy) for k in (self.k1, self.k2)]
         self.area = length
         half, apart = (e + g) / 2, np.hypot((e - g) / 2, f)
@@ -117,7 +120,8 @@ def test_every_map_is_what_the_formulas_say():
         np.testing.assert_allclose(along, 1, atol=1e-6)
     sure = np.abs(truth.directions[0][..., 0]) > 0.1
     np.testing.assert_allclose(got["DIRECTION_1"][sure], truth.directions[0][sure], atol=1e-5)
-    # Against the whole map's ratio, which the texels of the boundary have a part in.
+    # Distortion is relative to the ratio of the whole map, to which the texels at the boundary
+    # contribute.
     octaves = np.log2(np.stack([truth.area, truth.high, truth.low], axis=-1))
     apart = got["AREA_DISTORTION"] - octaves
     np.testing.assert_allclose(apart, np.broadcast_to(apart[0, 0], apart.shape), atol=1e-5)
@@ -134,7 +138,7 @@ def test_distortion_is_against_the_whole_map():
 
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_in_world_space(mirrored):
-    """Scaled by 2, turned, moved; and mirrored: outwards stays outwards."""
+    """The object is scaled by 2, turned and moved, and also mirrored: outwards stays outwards."""
     ob = paraboloid()
     turn = np.array(Matrix.Rotation(0.7, 3, (1, 2, 3)))
     linear = turn @ np.diag([-2.0 if mirrored else 2.0, 2.0, 2.0])
@@ -155,7 +159,7 @@ def test_colors_of_8_and_16_bits():
     ob = paraboloid()
     truth = Truth()
     found = bake(maps=ALL, format="PNG_16", curvature_range=0.5, distortion_range=4)
-    # At the border the paraboloid bends: the exact box is asked of the module.
+    # At the border the surface is not the paraboloid, so the module itself gives the exact box.
     mesh = cage.read(ob, bpy.context.evaluated_depsgraph_get()).mesh
     low, high = limitsurf.LimitSurface(mesh).bounds()
     expected = {
@@ -247,7 +251,7 @@ def test_files(tmp_path):
         values = got["NORMAL_OBJECT"] if suffix == "exr" else 2 * got["NORMAL_OBJECT"] - 1
         step = {"EXR_32": SINGLE, "EXR_16": 5e-4, "PNG_16": 2e-5, "PNG_8": 4e-3}[form]
         np.testing.assert_allclose(values, Truth().normal, atol=step)
-    # Into the same image and file again
+    # Bake into the same image and file again.
     bake(maps={"NORMAL_OBJECT"}, format="EXR_32", name="EXR_32", folder=str(tmp_path))
     assert not bpy.data.images["EXR_32 Normal"].is_dirty
 
@@ -271,7 +275,7 @@ def test_tiles(tmp_path):
     bake(maps={"POSITION"}, name="First", **half)
     first = image_pixels.read(bpy.data.images["First Position"])
     np.testing.assert_allclose(first, image_pixels.read(image, 1001), atol=SINGLE)
-    # Into what is there: both tiles take it
+    # Bake into the existing image: both tiles change.
     ob.location.x = 5
     bpy.context.view_layer.update()
     bake(maps={"POSITION"}, tiles="ALL", space="WORLD", **half)
@@ -321,7 +325,7 @@ def test_refusals(tmp_path):
 
 
 def test_a_folder_that_cannot_be_written(tmp_path, monkeypatch):
-    """The second file fails: the first goes again, and no image is made."""
+    """Writing the second file fails, so the first file is removed again, and no image is made."""
     paraboloid()
     save, calls = image_files.save_pixels, []
 

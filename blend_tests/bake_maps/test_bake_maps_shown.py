@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tangent-space normal maps on the meshes that they are for, as Cycles shades these; and Blender's
-own tangents on ever finer meshes, which become the limit's frames."""
+"""Tangent-space normal maps on the meshes for which they are made, as Cycles shades them; and
+Blender's own tangents on ever finer meshes, which converge to the limit's frames.
+"""
 
 import bpy
 import limitsurf
@@ -22,7 +23,7 @@ def suzanne(smooth: bool) -> bpy.types.Object:
 
 
 def drum(smooth: bool) -> bpy.types.Object:
-    """With two polygons of seven corners."""
+    """Adds a mesh with two polygons of seven corners."""
     bpy.ops.mesh.primitive_cylinder_add(vertices=7)
     ob = bpy.context.active_object
     if smooth:
@@ -37,8 +38,9 @@ def with_subsurf(ob: bpy.types.Object) -> bpy.types.Object:
 
 
 def shaded(ob: bpy.types.Object, normal_map: bpy.types.Image) -> np.ndarray:
-    """The normals that Cycles shades the object with, in the object's space; 0 where it has no
-    polygon."""
+    """Returns the normals with which Cycles shades the object, in the object's space; 0 where it
+    has no polygon.
+    """
     scene = bpy.context.scene
     scene.render.engine, scene.cycles.samples = "CYCLES", 1
     scene.render.bake.margin, scene.render.bake.normal_space = 0, "OBJECT"
@@ -68,7 +70,7 @@ def shaded(ob: bpy.types.Object, normal_map: bpy.types.Image) -> np.ndarray:
 
 
 def angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Degrees."""
+    """Returns angles in degrees."""
     one = one / np.linalg.norm(one, axis=-1, keepdims=True)
     return np.degrees(2 * np.arcsin((np.linalg.norm(one - other, axis=-1) / 2).clip(0, 1)))
 
@@ -85,7 +87,7 @@ def test_polygons_are_shaded_as_the_limit_surface(make, target, smooth):
     if target == "CAGE":
         ob.modifiers.clear()
     elif target == "VIEWPORT":
-        ob.modifiers[0].render_levels = 1  # bakes are renders
+        ob.modifiers[0].render_levels = 1  # bakes use the render's levels
     exact = image_pixels.read(bpy.data.images[f"{ob.name} Normal"])[..., :3]
     found = shaded(ob, bpy.data.images[f"{ob.name} Tangent Normal"])
     there = found.any(axis=-1) & exact.any(axis=-1)
@@ -99,7 +101,7 @@ def test_polygons_are_shaded_as_the_limit_surface(make, target, smooth):
 
 
 def flat_map(ob: bpy.types.Object) -> float:
-    """How far off shading is without the map, in the median."""
+    """Returns the median error of shading without the map."""
     bpy.ops.object.limit_bake_maps(maps={"NORMAL_OBJECT"}, width=SIZE, height=SIZE, overlap="ALLOW")
     ob.modifiers.clear()
     plain = image_pixels.new("plain", 4, 4, is_float=True, is_data=True)
@@ -115,8 +117,9 @@ def test_without_the_map_shading_is_another():
 
 
 def replaced(size: int) -> np.ndarray:
-    """How far the corners of a subdivided mesh come to lie from the limit surface if each goes
-    where a position map of so many texels has its UV."""
+    """Moves the corners of a subdivided mesh to where a position map of so many texels places their
+    UVs, and returns their distance from the limit surface.
+    """
     ob = suzanne(smooth=True)
     ob.modifiers[0].levels = 2
     bpy.ops.object.limit_bake_maps(maps={"POSITION"}, width=size, height=size, overlap="ALLOW")
@@ -145,7 +148,7 @@ def test_a_position_map_gives_the_surface_back():
 
 
 def bent_sheet() -> tuple[limitsurf.LimitSurface, limitsurf.SurfaceData]:
-    """With a pole of five quads, and a map that is no projection."""
+    """Adds a sheet with a pole of five quads, and a map that is not a projection."""
     angle = 2 * np.pi * np.arange(5) / 5
     spokes = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     between = 1.3 * np.stack([np.cos(angle + 0.6), np.sin(angle + 0.6)], axis=1)
@@ -159,7 +162,9 @@ def bent_sheet() -> tuple[limitsurf.LimitSurface, limitsurf.SurfaceData]:
 
 
 def tangents(surface, uv_map, levels):
-    """Blender's of a mesh on the limit, and the limit's, corner by corner."""
+    """Returns Blender's tangents of a mesh on the limit surface and the tangents of the limit
+    surface, corner by corner.
+    """
     fine = surface.tessellate(levels)
     mesh = bpy.data.meshes.new("fine")
     mesh.from_pydata(fine.positions, [], fine.faces, shade_flat=False)
@@ -187,4 +192,4 @@ def test_tangents_of_fine_meshes_become_the_limits():
         errors.append(np.linalg.norm(tangent - frames[:, :, 0], axis=1).mean())
     ratios = np.array(errors[:-1]) / errors[1:]
     assert (ratios > 2).all()
-    assert errors[-1] < 3e-4  # Blender keeps normals of its own in 16 bits a component
+    assert errors[-1] < 3e-4  # Blender stores its own normals with 16 bits for each component

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curvature that is stored, against that of paraboloids: uniform B-splines of a quadratic
-function's values are that function, up to a constant."""
+"""Stored curvature is compared with that of paraboloids: a uniform B-spline whose control points
+lie on a quadratic function is that function, up to a constant.
+"""
 
 import bpy
 import limitsurf
@@ -40,7 +41,9 @@ def paraboloid(matrix=MATRICES["as it is"]):
 
 
 def expected(xy, matrix):
-    """Textbook: shape operators (n, 3, 3) and normals of the transformed graph over (x, y)."""
+    """Returns, by textbook formulas, shape operators (n, 3, 3) and normals of the transformed graph
+    over (x, y).
+    """
     linear = np.array(matrix)[:3, :3]
     x, y = xy.T
     zero, one = np.zeros(len(x)), np.ones(len(x))
@@ -58,7 +61,7 @@ def expected(xy, matrix):
 
 
 def check(data, rows, shapes, matrix, atol=1e-5):
-    """Of stored attributes; `matrix` leads from the data's space to that of the shape operators."""
+    """Checks stored attributes; `matrix` maps the data's space to that of the shape operators."""
     eigenvalues = np.linalg.eigvalsh(shapes)
     pick = np.argsort(-np.abs(eigenvalues), axis=1)[:, :2]  # the third is 0, along the normal
     curvatures = np.sort(np.take_along_axis(eigenvalues, pick, 1), axis=1)
@@ -84,8 +87,9 @@ def run(ob, **properties):
 
 
 def inner(ob):
-    """Rows, and (x, y) of these, of vertices that are not on the border: only there do points
-    beyond it count."""
+    """Returns the rows, and the (x, y), of vertices that are not on the border, where the surface
+    would depend on points beyond it.
+    """
     xy = attributes.read(ob.data, ids.POSITION)[:, :2].astype(float)
     rows = np.flatnonzero((np.abs(xy) < SIDE / 2 - 0.5).all(axis=1))
     return rows, xy[rows]
@@ -148,7 +152,7 @@ def test_at_roots(add, space):
     if space == "LOCAL":
         to_it = MATRICES["mirrored"].inverted() @ to_it
     shapes = expected(xy[rows], matrix)[0]
-    # Directions are unit vectors in the things' own space.
+    # Directions are unit vectors in the space of the objects themselves.
     stored = attributes.read(data, ids.CURVATURE_DIRECTION1)[rows].astype(float)
     assert np.abs(np.linalg.norm(stored, axis=1) - 1).max() < 1e-6
     check(data, rows, shapes, to_it, atol=1e-4)

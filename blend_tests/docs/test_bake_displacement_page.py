@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page about displacement: its examples run, its tables are right, and its picture is what the
-operator gives."""
+"""The page about displacement: its examples run, its tables are correct, and its picture shows what
+the operator makes.
+"""
 
 import json
 import re
@@ -43,7 +44,7 @@ def test_table_lists_the_properties_and_their_defaults():
 
 
 def test_table_of_errors():
-    """Its first two rows, at fewer places."""
+    """The first two rows are checked at fewer places."""
     rows = re.findall(r"^\| (\d+) \| (.*) \|$", PAGE, re.MULTILINE)
     assert [int(size) for size, _ in rows] == list(table.SIZES)
     said = np.array([[float(number) for number in cells.split(" | ")] for _, cells in rows])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page about maps: its examples run, its tables are the operator's, and its picture is what the
-operator gives."""
+"""The page about maps: its examples run, its tables match the operator, and its picture shows what
+the operator makes.
+"""
 
 import re
 
@@ -50,4 +51,5 @@ def test_picture_is_what_the_operator_gives(tmp_path):
     bake_maps.make(tmp_path, samples=4)
     mean, worst = comparison.of_renders(tmp_path / "bake_maps.png", PICTURE)
     assert mean < 0.7
-    assert worst < 40  # shadows' edges, seen by few samples; with a wrong map it is 125
+    # the edges of shadows differ with few samples; with a wrong map the difference is 125
+    assert worst < 40

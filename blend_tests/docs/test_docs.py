@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page about the extension: its examples run, its table is the operator's."""
+"""The page about the extension: its examples run, and its table matches the operator."""
 
 import numpy as np
 import pages

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the pictures of docs/accuracy.md show, without rendering them."""
+"""The numbers behind the pictures of docs/accuracy.md, without rendering them."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def test_default_quality_is_off_and_the_best_is_not(name):
     assert 1e-3 < default.whole.max() < 0.1
     assert best.whole.max() < 1e-5
     np.testing.assert_allclose(np.hypot(default.along, default.across), default.whole, atol=1e-12)
-    # The close-up looks at where Blender is off.
+    # The close-up shows a place where Blender's mesh differs.
     focus = compared.exact[zoo.nearest(compared.exact, feature.focus)]
     worst = compared.exact[default.whole > 0.5 * default.whole.max()]
     nearest = np.linalg.norm(worst - focus, axis=1).min()
@@ -52,7 +52,7 @@ def test_sheet_holds_panels_scale_and_notes(tmp_path):
     pixels = np.asarray(Image.open(output).convert("RGB")).astype(int)
     green = (np.abs(pixels - (0, 90, 0)) < 9).all(axis=2)
     assert 0.9 < np.count_nonzero(green) / (2 * 200 * 170) <= 1
-    assert (pixels[0] == 255).all()  # paper
+    assert (pixels[0] == 255).all()  # the white background
     assert (pixels[-sheet.BOTTOM :].min(axis=2) < 100).any()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The program that draws figure 1, at the size of a stamp."""
+"""The program that draws figure 1 runs, for a very small picture."""
 
 import subprocess
 import sys
@@ -20,8 +20,8 @@ def test_figure_and_scene_are_written(tmp_path):
     image = bpy.data.images.load(str(tmp_path / "figure1.png"))
     pixels = np.array(image.pixels).reshape(112, 300, 4)[:, :, :3]
     for panel in np.split(pixels, 3, axis=1):
-        assert (panel.min(axis=2) > 0.95).mean() > 0.2  # paper
-        assert (panel.max(axis=2) < 0.9).mean() > 0.1  # and something on it
+        assert (panel.min(axis=2) > 0.95).mean() > 0.2  # the white background
+        assert (panel.max(axis=2) < 0.9).mean() > 0.1  # the picture is not empty
 
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "figure1.blend"))
     counts = sorted(len(curves.curves) for curves in bpy.data.hair_curves)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page about object.limit_mesh: its examples run, its table is the operator's, and its picture
-is what the operator makes."""
+"""The page about object.limit_mesh: its examples run, its table matches the operator, and its
+picture shows what the operator makes.
+"""
 
 import bpy
 import pages

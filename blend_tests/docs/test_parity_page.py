@@ -15,7 +15,7 @@ LAGGING = "lagging"
 
 
 def table(page, name):
-    """Its entries by mesh and kind of creases: the first number of each."""
+    """Returns the entries by mesh and kind of creases: the first number of each."""
     (lines,) = re.findall(rf"<!-- {name} -->\n\n(.*?)\n\n<!-- end -->", page, re.DOTALL)
     head, _, *rows = ([c.strip() for c in line.split("|")[1:-1]] for line in lines.splitlines())
     return {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page about projecting images: its example runs, its table is the operator's, and its picture
-is what the operator gives."""
+"""The page about projecting images: its example runs, its table matches the operator, and its
+picture shows what the operator makes.
+"""
 
 import bpy
 import pages
@@ -31,5 +32,5 @@ def test_picture_is_what_the_operator_gives(tmp_path):
     project_image.make(tmp_path, samples=2)
     committed = ROOT / "docs/images/project_image.png"
     mean, worst = comparison.of_renders(tmp_path / "project_image.png", committed)
-    assert mean < 2  # Blender 5 shades all of it a little differently
+    assert mean < 2  # Blender 5 shades the whole picture slightly differently
     assert worst < 16

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page about snapping: its example runs, its table is the operator's."""
+"""The page about snapping: its example runs, and its table matches the operator."""
 
 import numpy as np
 import pages

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the window tests ask Blender to do and to tell."""
+"""Functions that the window tests call within Blender."""
 
 import sys
 import time
@@ -16,7 +16,7 @@ def new_file() -> None:
 
 
 def redraw() -> None:
-    """The main loop draws before it calls the tests' timer again."""
+    """Redraws: the main loop draws before it calls the tests' timer again."""
     for area in bpy.context.window.screen.areas:
         area.tag_redraw()
 
@@ -40,7 +40,7 @@ def version() -> str:
 
 
 def modules() -> dict[str, str]:
-    """Where the extension and its native module were loaded from."""
+    """Returns where the extension and its native module were loaded from."""
     import limitsurf
 
     addons = bpy.context.preferences.addons.keys()
@@ -54,7 +54,7 @@ def show_sidebar() -> None:
 
 
 def sidebar() -> dict[str, object]:
-    """Its edges, in the window's pixels, and the open tab."""
+    """Returns the sidebar's edges, in the window's pixels, and the open tab."""
     area, _ = view()
     ui = region(area, "UI")
     return {
@@ -83,8 +83,9 @@ def curve_count(name: str) -> int:
 
 
 def sheet() -> list[list[float]]:
-    """An open sheet of 6 x 5 squares over the integers, bent as a quadric, alone in the file and
-    seen from above; its matrix turns, stretches and moves it."""
+    """Adds an open sheet of 6 x 5 squares over the integers, bent as a quadric, alone in the file
+    and seen from above; its matrix turns, stretches and moves it.
+    """
     bpy.data.batch_remove(bpy.data.objects)
     rows, columns = 6, 7
     grid = [(x, y) for y in range(rows) for x in range(columns)]
@@ -114,7 +115,7 @@ def bend(x: float, y: float) -> float:
 
 
 def activate(*objects: bpy.types.Object) -> None:
-    """The last one active, all of them selected."""
+    """Selects all of the objects and makes the last one active."""
     bpy.context.view_layer.update()
     for ob in bpy.context.view_layer.objects:
         ob.select_set(ob in objects)
@@ -122,7 +123,7 @@ def activate(*objects: bpy.types.Object) -> None:
 
 
 def pin() -> None:
-    """A cone to be dragged over the sheet, which is active."""
+    """Adds a cone that can be dragged over the sheet, which is active."""
     mesh = bpy.data.meshes.new("Pin")
     ring = [
         (0.2, 0.1, 0),
@@ -145,7 +146,7 @@ def hair(per_side: int) -> None:
 
 
 def smooth_sheet() -> None:
-    """As users have theirs: subdivided and shaded smoothly."""
+    """Adds a sheet as users have it: subdivided and with smooth shading."""
     sheet = bpy.data.objects["Sheet"]
     sheet.modifiers.new("Subdivision", "SUBSURF").levels = 3
     sheet.data.shade_smooth()
@@ -156,7 +157,7 @@ def lock_location(name: str) -> None:
 
 
 def loose_vertices() -> None:
-    """A triangle in Edit Mode, above the sheet."""
+    """Adds a triangle above the sheet, in Edit Mode."""
     mesh = bpy.data.meshes.new("Triangle")
     mesh.from_pydata([(-1, 0, 1.5), (0.5, -0.5, 1.5), (0.3, 1, 1.5)], [], [(0, 1, 2)])
     ob = bpy.data.objects.new("Triangle", mesh)
@@ -167,7 +168,7 @@ def loose_vertices() -> None:
 
 
 def remember() -> None:
-    """As any step of the user is, for what was done by a script."""
+    """Pushes an undo step after a script's change, as users' steps do."""
     bpy.ops.ed.undo_push(message="Before")
 
 
@@ -183,7 +184,7 @@ def running() -> list[str]:
 
 
 def camera() -> dict[str, object]:
-    """Where in the window the view is, and its matrix from the world to [-1, 1]^3."""
+    """Returns where in the window the view is, and its matrix from the world to [-1, 1]^3."""
     _, window = view()
     return {
         "corner": (window.x, window.y),
@@ -249,7 +250,7 @@ def times() -> list[float]:
 
 
 def set_next(operator: str, **settings: object) -> None:
-    """What a button or menu entry will call the operator with."""
+    """Sets the properties with which a button or menu entry will call the operator."""
     last = bpy.context.window_manager.operator_properties_last(operator)
     for name, value in settings.items():
         setattr(last, name, value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The limit surface of the sheet in actions.py, known without subdividing anything.
+"""The limit surface of the sheet in actions.py, known without any subdivision.
 
 Control points on a quadric over the integers make a B-spline surface that is the same quadric,
 raised by a sixth of its second derivatives; away from the boundary that is the limit surface. The
@@ -16,7 +16,7 @@ def height(x: float, y: float) -> float:
 
 
 def boundary_height(x: float) -> float:
-    """Along y = 0."""
+    """Returns the height of the boundary along y = 0."""
     return A * x * x + A / 3
 
 
@@ -37,12 +37,12 @@ class Sheet:
         return self.matrix[:3, :3] @ point + self.matrix[:3, 3]
 
     def world_normal(self, point: np.ndarray) -> np.ndarray:
-        """At a local point."""
+        """Returns the normal in the world at a local point."""
         found = self._inverse[:3, :3].T @ normal(*point[:2])
         return found / np.linalg.norm(found)
 
     def above(self, point: np.ndarray) -> float:
-        """How far a world point is above the surface, along the sheet's own z."""
+        """Returns how far a world point is above the surface, along the sheet's own z."""
         x, y, z = self.local(point)
         return z - height(x, y)
 
@@ -53,6 +53,6 @@ class Camera:
         self._matrix = np.array(matrix)
 
     def pixel(self, point: np.ndarray) -> np.ndarray:
-        """In the window, where a world point is seen."""
+        """Returns the pixel of the window where a world point is seen."""
         x, y, _z, w = self._matrix @ [*point, 1]
         return self._corner + self._size * (np.array([x, y]) / w + 1) / 2

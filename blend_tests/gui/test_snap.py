@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""object.limit_snap by the button in the tab: taken back, and adjusted in the redo panel."""
+"""object.limit_snap by the button in the sidebar tab: it is undone, and adjusted in the redo
+panel.
+"""
 
 import numpy as np
 import pytest
@@ -21,14 +23,14 @@ def position(blender):
 
 
 def snap(blender):
-    """All that is there, selected by steps that can be undone."""
+    """Selects everything by steps that can be undone, and snaps it."""
     blender.key("alt+a", "ctrl+i")
     blender.open_tab()
     blender.click(*blender.find_button(SNAP))
 
 
 def corners(blender, sheet):
-    """Of the triangle in Edit Mode, in world space."""
+    """Returns the corners of the triangle in Edit Mode, in world space."""
     to_world = np.array(blender.call("matrix", "Triangle"))
     found = np.array(blender.call("vertices", "Triangle"))
     return found @ to_world[:3, :3].T + to_world[:3, 3]
@@ -49,7 +51,7 @@ def test_button_undo_and_redo(blender, sheet):
 
 
 def test_offset_in_the_redo_panel(blender, sheet):
-    """It starts from where the object was before it was snapped."""
+    """The redo panel starts from where the object was before it was snapped."""
     blender.call("pin")
     snap(blender)
     flush = position(blender)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""view3d.limit_snap_modal by real mouse, wheel and keys."""
+"""view3d.limit_snap_modal with real mouse, wheel and keys."""
 
 import numpy as np
 import pytest
 from quadric import Camera, Sheet, boundary_height, height
 
-ON_SURFACE = 1e-6  # Blender's single precision, of coordinates up to 4
-PIXEL = 0.1  # what single precision makes of the view's inverted matrix
+ON_SURFACE = 1e-6  # the error of Blender's single precision for coordinates up to 4
+PIXEL = 0.1  # the error of single precision in the view's inverted matrix
 
 DRAWN = ((0.25, 0.55, 1.0), (1.0, 0.45, 0.1), (0.2, 0.85, 0.35))  # normal, principal directions
 STORED = ("limit_face", "limit_uv", "rest_root")
@@ -21,7 +21,7 @@ def sheet(blender):
 
 @pytest.fixture
 def seen(blender, sheet):
-    """Pixel, in whole numbers, at which a local point of the sheet is seen."""
+    """Returns the pixel, in whole numbers, at which a local point of the sheet is seen."""
     camera = Camera(**blender.call("camera"))
     return lambda x, y: np.round(camera.pixel(sheet.world(np.array([x, y, height(x, y)]))))
 
@@ -85,7 +85,8 @@ def test_wheel_and_numbers_offset_along_the_normal(blender, sheet, seen):
     normal = sheet.world_normal(sheet.local(foot))
     blender.wheel(3)
     step = np.linalg.norm(position(blender, "Pin") - foot) / 3
-    assert step == pytest.approx(0.1, abs=ON_SURFACE)  # the sheet's diagonal is a bit over 10
+    # the sheet's diagonal is slightly more than 10
+    assert step == pytest.approx(0.1, abs=ON_SURFACE)
     np.testing.assert_allclose(position(blender, "Pin"), foot + 3 * step * normal, atol=ON_SURFACE)
     blender.wheel(-1)
     np.testing.assert_allclose(position(blender, "Pin"), foot + 2 * step * normal, atol=ON_SURFACE)
@@ -133,7 +134,9 @@ def test_along_a_face_border(blender, sheet, seen):
 
 
 def test_along_the_boundary(blender, sheet, seen):
-    """Also where the mouse is beside the surface: the nearest point of the curve on screen."""
+    """This also works where the mouse is beside the surface: it gives the nearest point of the
+    curve on screen.
+    """
     blender.call("pin")
     blender.call("start_drag")
     blender.move(*seen(2.8, 1.2))
@@ -266,7 +269,7 @@ def test_what_is_locked_stays(blender, sheet, seen):
 
 
 def test_what_is_drawn(blender, sheet, seen):
-    """And the picture of docs/snap_modal.md."""
+    """This test also makes the picture of docs/snap_modal.md."""
     blender.call("smooth_sheet")
     blender.call("pin")
     blender.call("start_drag", align="NORMAL")

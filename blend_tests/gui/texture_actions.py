@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the window tests of textures and meshes ask Blender to do and to tell."""
+"""Functions that the window tests of textures and meshes call within Blender."""
 
 import ctypes
 import hashlib
@@ -11,15 +11,16 @@ import numpy as np
 from actions import activate, view
 from mathutils import Euler, Vector
 
-FACES = 8  # of the sheet, along each side
-TEXELS = 512  # of its texture, along each side
+FACES = 8  # faces of the sheet along each side
+TEXELS = 512  # pixels of its texture along each side
 BLANK = (1.0, 0.0, 1.0, 1.0)
-DRAWN = {}  # panel -> how often
+DRAWN = {}  # panel -> how often it was drawn
 
 
 def textured_sheet(wave: float) -> None:
-    """A wavy sheet with a UV map, alone in the file, active, seen askew and shown as nothing but
-    its texture, which is one color all over."""
+    """Adds a wavy sheet with a UV map, alone in the file and active. It is seen at an angle, and
+    the view shows only its texture, which has one color.
+    """
     bpy.data.batch_remove(bpy.data.objects)
     mesh = _grid(wave)
     ob = bpy.data.objects.new("Sheet", mesh)
@@ -64,7 +65,7 @@ def _showing(image: bpy.types.Image) -> bpy.types.Material:
 
 
 def show_flat(color_type: str) -> None:
-    """In Solid shading, neither lit nor with anything drawn over it."""
+    """Uses Solid shading without lights and overlays."""
     area, _ = view()
     space = area.spaces.active
     space.shading.type, space.shading.light = "SOLID", "FLAT"
@@ -73,7 +74,7 @@ def show_flat(color_type: str) -> None:
 
 
 def new_image(name: str, pixels: np.ndarray) -> None:
-    """8 bits, of pixels (rows, columns, 4) from the lowest row on."""
+    """Makes an 8-bit image of pixels (rows, columns, 4), the lowest row first."""
     height, width = pixels.shape[:2]
     image = bpy.data.images.new(name, width, height, alpha=True)
     image.pixels.foreach_set(pixels.astype(np.float32).ravel())
@@ -81,7 +82,7 @@ def new_image(name: str, pixels: np.ndarray) -> None:
 
 
 def image_digest(name: str) -> str:
-    """Of the image's pixels, all bits."""
+    """Returns a digest of all bits of the image's pixels."""
     image = bpy.data.images[name]
     pixels = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(pixels)
@@ -89,13 +90,15 @@ def image_digest(name: str) -> str:
 
 
 def contents() -> dict[str, list[str]]:
-    """Names of what is in the file, by its kind."""
+    """Returns the names of what is in the file, by type."""
     kinds = ("images", "meshes", "objects", "materials", "node_groups", "textures", "scenes")
     return {kind: sorted(item.name for item in getattr(bpy.data, kind)) for kind in kinds}
 
 
 def start(operator: str, **properties: object) -> None:
-    """As a button does, in the viewport, with these properties; dialogs open at the mouse."""
+    """Starts the operator as a button does, in the viewport, with these properties; dialogs open at
+    the mouse.
+    """
     area, window = view()
     name = operator.removeprefix("object.")
     with bpy.context.temp_override(area=area, region=window):
@@ -109,7 +112,7 @@ def open_menu(name: str) -> None:
 
 
 def count_draws(panel: str) -> None:
-    """From now on `draws` tells how often the panel was drawn: closed ones are not."""
+    """From now on `draws` returns how often the panel was drawn; closed panels are not drawn."""
     cls = getattr(bpy.types, panel)
     draw = cls.draw
     DRAWN[panel] = 0
@@ -134,7 +137,7 @@ def view_distance() -> float:
 
 
 def mesh_size(name: str) -> tuple[int, int]:
-    """Vertices, faces."""
+    """Returns the numbers of vertices and faces."""
     mesh = bpy.data.objects[name].data
     return len(mesh.vertices), len(mesh.polygons)
 
@@ -145,6 +148,6 @@ def world_points(name: str, points: list[tuple[float, float, float]]) -> list[tu
 
 
 def flush() -> None:
-    """What Blender has to say, into its log."""
+    """Writes Blender's messages to its log."""
     sys.stdout.flush()
     ctypes.CDLL(None).fflush(None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hair as a good citizen of the file: attachment, selection, undo, counts that need consent."""
+"""Hair in a Blender file: attachment, selection, undo, and large counts that need confirmation."""
 
 import bpy
 import numpy as np
@@ -17,7 +17,9 @@ def flat(positions):
 
 @pytest.mark.parametrize("scene", ["grid with holes", "mixed polygons"])
 def test_surface_uv_is_the_place_on_the_base_mesh_where_uvs_are_not_smoothed(scene):
-    """On an affine map a place's UV is the map of its place: the bilinear one on the bare mesh."""
+    """On an affine map the UV of a place is the map of its position: on the bare mesh, of the
+    bilinear position.
+    """
     ob = scenes.SCENES[scene]()
     add_uv_map(ob, flat)
     add_subsurf(ob).uv_smooth = "NONE"
@@ -47,7 +49,7 @@ def test_blenders_own_snap_finds_the_attachment():
     before = strands(hair)
     assert bpy.ops.curves.snap_curves_to_surface(attach_mode="DEFORM") == {"FINISHED"}
     moved = np.abs(strands(hair)[:, 0] - before[:, 0]).max()
-    assert 0 < moved < 0.5  # to the base mesh
+    assert 0 < moved < 0.5  # the place on the base mesh
 
 
 def test_without_uv_map_no_uv_is_stored():
@@ -128,7 +130,7 @@ def test_undo_and_redo():
 
 
 def test_adjusting_as_the_redo_panel_does():
-    """It undoes the operator and runs it again, with other properties."""
+    """The redo panel undoes the operator and runs it again with other properties."""
     scenes.cross()
     bpy.ops.ed.undo_push(message="before")
     for per_side in (2, 5):
@@ -150,7 +152,7 @@ def test_report_has_the_counts(capfd):
 
 
 def test_faces_without_a_limit_surface_are_left_out_and_reported(capfd):
-    """A face that uses a vertex twice: it and all that touch it have none."""
+    """A face uses a vertex twice: this face and all that touch it have no limit surface."""
     ob = scenes.grid_with_holes()
     n = len(ob.data.vertices)
     positions = [vertex.co[:] for vertex in ob.data.vertices] + [(2.5, 2.5, 5)]
@@ -186,7 +188,7 @@ def test_consent_is_enough(monkeypatch):
         bpy.ops.object.limit_hair_add(per_side=4)
     assert len(add_hair(ob, allow_large=True).data.curves) == 80
     scenes.activate(ob)
-    with pytest.raises(RuntimeError, match="allow_large"):  # given for one call alone
+    with pytest.raises(RuntimeError, match="allow_large"):  # the setting holds for one call only
         bpy.ops.object.limit_hair_add(per_side=4)
 
 
@@ -210,7 +212,7 @@ def test_memory_that_runs_out(monkeypatch):
 
 
 def test_large_counts_in_parts(monkeypatch):
-    """The parts that are evaluated one after the other change no value."""
+    """Evaluation in parts, one after the other, changes no value."""
     ob = scenes.cross()
     whole = strands(add_hair(ob, random=0.3, tilt=(0.1, 0.2)))
     monkeypatch.setattr("limit_surface.placing.roots.PART", 7)

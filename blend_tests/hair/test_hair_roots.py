@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each root lies exactly where its stored location says, whatever stands before the subdivision."""
+"""Each root lies exactly where its stored location says, whatever modifiers stand before the
+subdivision.
+"""
 
 import bpy
 import limitsurf
@@ -48,7 +50,7 @@ BEFORE = (mirror, displace, twist, array, shape_keys, solidify_turned_off)
 
 
 def check_roots(hair, surface):
-    """To the last bit of single precision: the same doubles, rounded once."""
+    """Compares to the last bit of single precision: both are the same doubles, rounded once."""
     expected = surface.evaluate(*locations(hair.data)).position.astype(np.float32)
     np.testing.assert_array_equal(strands(hair)[:, 0], expected)
     np.testing.assert_array_equal(attributes.read(hair.data, ids.REST_ROOT), expected)
@@ -75,7 +77,7 @@ def test_modifiers_before_subdivision_are_applied(before):
 
 
 def creased_sheet():
-    """With an edge of sharpness 3.6, an infinitely sharp one, and a vertex of 0.9."""
+    """Adds a sheet with an edge of sharpness 3.6, an infinitely sharp one, and a vertex of 0.9."""
     ob = scenes.grid_with_holes()
     index = {frozenset(edge.vertices): edge.index for edge in ob.data.edges}
     edges = ob.data.edge_creases_ensure().data
@@ -170,7 +172,7 @@ def test_the_first_enabled_subdivision_counts(capfd):
 
 
 def test_single_precision_parameters_stay_inside():
-    """Rounding (u, v) must not carry it over 1."""
+    """Rounding must not make (u, v) larger than 1."""
     ob = scenes.cross()
     hair = add_hair(ob, per_side=100)
     uv = attributes.read(hair.data, ids.UV)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Direction and length of strands, as they are seen in the world."""
+"""Direction and length of strands in world space."""
 
 import bpy
 import numpy as np
@@ -25,13 +25,15 @@ def place(ob, transform):
 
 
 def world_vectors(hair):
-    """Root to tip of each strand in the world, by Blender's own matrix."""
+    """Returns the vector from root to tip of each strand in the world, by Blender's own matrix."""
     points = transformed(hair.matrix_world, strands(hair).astype(np.float64))
     return points[:, -1] - points[:, 0]
 
 
 def world_axes(ob, hair):
-    """Unit tangent along u, along v, and normal, in the world, from the surface's derivatives."""
+    """Returns the unit tangents along u and v and the normal, in the world, from the surface's
+    derivatives.
+    """
     linear = np.array(ob.matrix_world)[:3, :3]
     s = surface_without_addon(ob).evaluate(*locations(hair.data), derivatives=1)
     du, dv = s.du @ linear.T, s.dv @ linear.T
@@ -102,7 +104,8 @@ def test_random_stays_within_its_angle_and_keeps_the_length():
     angle = np.arccos(np.clip(np.sum(direction * world_axes(ob, hair)[2], axis=1), -1, 1))
     assert angle.max() <= 0.5 + 1e-4
     assert angle.max() > 0.48
-    assert 0.3 < angle.mean() < 0.37  # uniform in a disc: two thirds of its radius
+    # the mean distance from the centre, uniform in a disc, is two thirds of the radius
+    assert 0.3 < angle.mean() < 0.37
     np.testing.assert_allclose(np.linalg.norm(direction, axis=1), 1, atol=1e-5)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """surface_uv_coordinate leads Blender's nodes to the root: they look it up on the evaluated mesh,
-whose UV map the subdivision has smoothed if there is one."""
+whose UV map is smoothed if there is a subdivision.
+"""
 
 from pathlib import Path
 
@@ -12,13 +13,13 @@ from limit_surface import ids
 from limit_surface.reading import attributes, rules
 from scenes import add_hair, add_subsurf
 
-LEVELS = 6  # polygons of 1/64 of a face: within 1e-3 of the surface that they approximate
+LEVELS = 6  # polygons of 1/64 of a face are within 1e-3 of the surface that they approximate
 NEAR = 1e-3
 ASSETS = "datafiles/assets/**/procedural_hair_node_assets.blend"
 
 
 def bent(positions):
-    """One to one on the sheet, and far from affine."""
+    """Returns a map that is one to one on the sheet, and far from affine."""
     x, y = positions[:, 0], positions[:, 1]
     return np.stack([x + 0.2 * np.sin(3 * y + x), y + 0.2 * np.cos(2.5 * x)], axis=1) / 8 + 0.1
 
@@ -41,7 +42,9 @@ def new_group():
 
 
 def sampling_group(ob):
-    """Stores where the node Sample UV Surface finds each curve's UV on the object."""
+    """Makes a node group that stores where the node Sample UV Surface finds each curve's UV on the
+    object.
+    """
     group, start, end = new_group()
     nodes, link = group.nodes, group.links.new
 
@@ -76,7 +79,9 @@ def evaluated(ob):
 
 
 def sampled(ob):
-    """How far from their roots Sample UV Surface finds strands, and which of them it finds."""
+    """Returns how far from their roots Sample UV Surface finds strands, and which of them it
+    finds.
+    """
     hair = add_hair(ob)
     hair.modifiers.new("Nodes", "NODES").node_group = sampling_group(ob)
     found = evaluated(hair)
@@ -89,7 +94,7 @@ def sampled(ob):
 def test_sample_uv_surface_finds_the_root(sheet, uv_smooth):
     sheet.modifiers[0].uv_smooth = uv_smooth
     distance, valid = sampled(sheet)
-    assert valid.mean() > 0.99  # polygons cut the corners of round borders
+    assert valid.mean() > 0.99  # polygons do not reach all of a round border
     assert distance[valid].max() < NEAR
 
 
@@ -111,7 +116,9 @@ def take_away(subsurf):
 
 
 def only_the_second(subsurf):
-    """Its map is smoothed by another rule than that of the first, which is at level 0."""
+    """Adds a second modifier, which smooths the map by another rule than the first one; that is at
+    level 0.
+    """
     second = add_subsurf(subsurf.id_data, "PRESERVE_CORNERS")
     second.levels, second.quality, second.uv_smooth = LEVELS, 10, "PRESERVE_CORNERS"
     subsurf.levels, subsurf.uv_smooth = 0, "SMOOTH_ALL"
@@ -123,8 +130,10 @@ STATES = (switch_off, level_0, simplify, take_away, only_the_second)
 @pytest.mark.parametrize("uv_smooth", ["SMOOTH_ALL", "PRESERVE_BOUNDARIES", "NONE"])
 @pytest.mark.parametrize("change", STATES)
 def test_sample_uv_surface_finds_the_root_where_nothing_is_subdivided(change, uv_smooth):
-    """A flat sheet of 6 x 6 squares, itself the limit surface away from its border. On the map
-    they are rectangles of unlike width, so that a smoothed map is far from the linear one."""
+    """A flat sheet of 6 x 6 squares is itself the limit surface away from its border. On the map
+    the squares are rectangles of different width, so that a smoothed map is far from the linear
+    one.
+    """
     ob = scenes.flat_grid(6)
     subsurf = add_subsurf(ob, "PRESERVE_CORNERS")
     subsurf.levels, subsurf.quality, subsurf.uv_smooth = LEVELS, 10, uv_smooth
@@ -167,7 +176,7 @@ def test_blenders_attach_hair_stores_the_same(sheet):
 
 
 def looked_up(mesh, uv):
-    """The places on the mesh's triangles that have these UVs, and whether there are any."""
+    """Returns the places on the mesh's triangles that have these UVs, and whether there are any."""
     mesh.calc_loop_triangles()
     corners = np.array([triangle.loops for triangle in mesh.loop_triangles])
     corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)
@@ -191,7 +200,9 @@ def cross(p, q):
 
 
 def test_snapping_looks_on_the_bare_mesh(sheet):
-    """Blender's Snap to Deformed Surface knows no modifiers, nor that they smooth the UV map."""
+    """Blender's Snap to Deformed Surface ignores modifiers, and so ignores that they smooth the UV
+    map.
+    """
     sheet.modifiers[0].uv_smooth = "SMOOTH_ALL"
     hair = add_hair(sheet)
     stored = attributes.read(hair.data, ids.SURFACE_UV)

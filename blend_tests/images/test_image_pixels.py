@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Images as arrays of pixels: read, written, saved, undone."""
+"""Images as arrays of pixels: they are read, written, saved and undone."""
 
 import bpy
 import numpy as np
@@ -12,7 +12,7 @@ SIZE = (6, 4)  # width, height
 
 
 def some_pixels(seed: int, width: int = 6, height: int = 4) -> np.ndarray:
-    """Multiples of 1/255, opaque: what 8 bits hold."""
+    """Returns multiples of 1/255, opaque, which 8 bits represent exactly."""
     pixels = np.random.default_rng(seed).integers(0, 256, (height, width, 4)).astype(np.float32)
     pixels[:, :, 3] = 255
     return pixels / np.float32(255)
@@ -25,7 +25,7 @@ def raw(image: bpy.types.Image) -> np.ndarray:
 
 
 def new_image(kind: str, folder) -> bpy.types.Image:
-    """generated, packed or file; 8-bit or float."""
+    """Makes an image: generated, packed or from a file, with 8-bit or float pixels."""
     source, depth = kind.split()
     image = image_pixels.new(kind, *SIZE, is_float=depth == "float", is_data=False)
     image.pixels.foreach_set(some_pixels(0).ravel())
@@ -108,7 +108,7 @@ def test_writing_is_undone_and_redone(kind, tmp_path, write):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_pixels_outlast_the_undo_of_something_else(kind, tmp_path, write):
-    """Blender drops them from there on, once a write has been undone and redone."""
+    """Blender drops unsaved pixels at later undo steps, once a write has been undone and redone."""
     scenes.monkey()
     new_image(kind, tmp_path)
     bpy.ops.ed.undo_push(message="an image")
@@ -130,7 +130,7 @@ def test_several_writes_are_undone_at_once(tmp_path, write):
     bpy.ops.ed.undo_push(message="something else")
     bpy.ops.ed.undo_history(item=2)
     seed = next(s for s in range(4) if shows("generated 8", s))
-    assert seed < 2  # Blender counts its steps from one version to the next a little differently
+    assert seed < 2  # versions of Blender count their undo steps differently
     bpy.ops.ed.undo_history(item=4)
     assert shows("generated 8", seed + 2)
 
@@ -150,7 +150,7 @@ def test_new_images_are_kept_in_the_file(tmp_path):
         if is_float:
             pixels[0, 0, :3] = (-3, 1e-4, 7.5)
         image_pixels.write(image, pixels, is_new=True)
-        image.colorspace_settings.name = "Non-Color"  # Blender takes the pixels anew
+        image.colorspace_settings.name = "Non-Color"  # Blender reads the pixels again
         np.testing.assert_allclose(raw(image), pixels, rtol=1e-7, atol=1e-7)
         bpy.data.images.remove(image)
 

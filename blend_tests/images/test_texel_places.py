@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators that make textures share: UV maps and texels."""
+"""The UV maps and texels that operators use which make textures."""
 
 import bpy
 import numpy as np
@@ -11,7 +11,7 @@ from limit_surface.images import overlap, texel_places
 
 
 def grid(uv_scale=(1.0, 1.0), uv_offset=(0.0, 0.0), name="UVMap") -> bpy.types.Object:
-    """Two by two unit quads, and a map of all of them."""
+    """Returns two by two unit quads, and a map of all of them."""
     xy = np.stack(np.meshgrid([0, 1, 2], [0, 1, 2]), axis=-1).reshape(-1, 2)
     faces = grids.grid_faces(2, 2)
     mesh = bpy.data.meshes.new("grid")
@@ -102,7 +102,7 @@ def test_maps_that_overlap():
 
 
 def test_folds_are_no_refusal():
-    """One face is no more than a few texels, all of them on another one."""
+    """One face covers only a few texels, all of which another face covers, too."""
     ob = grid()
     layer = ob.data.uv_layers[0]
     for corner, place in enumerate([(0, 0), (0.03, 0), (0.03, 0.03), (0, 0.03)]):

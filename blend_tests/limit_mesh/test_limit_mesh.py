@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mesh that object.limit_mesh makes, against Blender's own subdivision and explicit limits."""
+"""The mesh that object.limit_mesh makes is compared with Blender's own subdivision and with
+explicit limits.
+"""
 
 import bpy
 import limit_mesh_truth as truth
@@ -26,7 +28,7 @@ def dressed(request):
 
 @pytest.fixture
 def both(dressed):
-    """The object made, Blender's mesh, and how they match."""
+    """Returns the new object, Blender's mesh, and the matching of the two."""
     made = make(dressed, levels=LEVELS)
     theirs = dressed.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     return made, theirs, match(made.data, theirs)
@@ -44,7 +46,7 @@ def test_attributes_are_those_of_blenders_subdivision(both, domain, kind):
     if attributes.LAYOUTS[kind].dtype is not np.float32 and domain in ("POINT", "CORNER"):
         check_nearest(made, ours, name)
         return
-    if kind == "BYTE_COLOR":  # of faces other than quads Blender rounds twice
+    if kind == "BYTE_COLOR":  # on faces other than quads Blender rounds twice
         ours, expected, tolerance = truth.bytes_of(made.data, name), truth.bytes_of(theirs, name), 2
     else:
         expected, tolerance = attributes.read(theirs, name).astype(float), 1e-5
@@ -53,7 +55,7 @@ def test_attributes_are_those_of_blenders_subdivision(both, domain, kind):
 
 
 def check_nearest(made, ours, name):
-    """Whole numbers are some of the cage's, and at its corners they are theirs."""
+    """Integers are values of the cage, and at its corners they are the value there."""
     cage = made.parent.data
     theirs = attributes.read(cage, name)
     assert set(np.unique(ours)) <= set(np.unique(theirs))
@@ -133,7 +135,7 @@ def test_vertices_and_normals_are_the_surfaces(dressed, matrix):
     np.testing.assert_allclose(np.linalg.norm(shown, axis=1), 1, atol=1e-4)
 
 
-#: Before 4.5 Blender keeps custom normals as two angles of 16 bits
+#: Before 4.5 Blender stores custom normals as two angles of 16 bits
 ENCODED = 1e-6 if bpy.app.version >= (4, 5) else 2e-4
 
 
@@ -148,7 +150,9 @@ def creased_cube():
 
 
 def test_normals_at_creases_are_those_of_either_side():
-    """The lid's rim has two normals; shown are both, each with the polygons of its own side."""
+    """The rim of the lid has two normals at each point; the mesh shows both, each on the polygons
+    of its own side.
+    """
     ob = creased_cube()
     made = make(ob, levels=3)
     mesh = made.data
@@ -166,7 +170,7 @@ def test_normals_at_creases_are_those_of_either_side():
 
 
 def test_edges_are_sharp_where_they_part_normals():
-    """And nowhere else: renderers split vertices there."""
+    """No other edges are sharp, because renderers split vertices at sharp edges."""
     ob = creased_cube()
     mesh = make(ob, levels=3).data
     crease = attributes.read(mesh, ids.EDGE_CREASE) == 1

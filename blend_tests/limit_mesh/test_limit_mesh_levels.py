@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How finely object.limit_mesh divides faces, and what it refuses."""
+"""The levels to which object.limit_mesh divides faces, and what it refuses."""
 
 import bpy
 import limit_mesh_truth as truth
@@ -32,7 +32,7 @@ def refused(match, **properties):
 
 
 def polygons_of_faces(made, attribute="number"):
-    """How many polygons each face of the cage became."""
+    """Returns how many polygons each face of the cage became."""
     return np.bincount(attributes.read(made.data, attribute))
 
 
@@ -54,7 +54,7 @@ def test_faces_other_than_quads_are_divided_once_at_least():
     number_faces(ob)
     counts = polygons_of_faces(make(ob, levels=0))
     assert (counts >= [5, 1, 3, 3, 1]).all()
-    # Beside them even a quad's edges are finer than itself.
+    # Next to them the edges of a quad have more parts than its own level gives.
     assert counts[1] > 1
 
 
@@ -70,7 +70,7 @@ def test_an_attribute_of_faces(sheet, kind):
 
 
 def check_watertight(mesh, levels=None):
-    """How many edges have one polygon; the rest have two."""
+    """Checks how many edges have one polygon; the rest have two."""
     edge = attributes.read(mesh, ids.CORNER_EDGE)
     count = np.bincount(edge, minlength=len(mesh.edges))
     assert set(count) <= {1, 2}
@@ -112,7 +112,7 @@ def test_no_such_levels(sheet):
 @pytest.mark.parametrize("tolerance", [0.02, 0.002])
 @pytest.mark.parametrize("name", ["cross", "mixed polygons"])
 def test_flatness_is_kept_in_the_world(name, tolerance):
-    """Measured from places all over the polygons, in the world."""
+    """The distance is measured from places all over the polygons, in the world."""
     ob = scenes.SCENES[name]()
     scenes.add_subsurf(ob)
     ob.matrix_world = STRETCHED

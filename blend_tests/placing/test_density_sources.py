@@ -24,13 +24,13 @@ def corner_vertices(ob):
 
 
 def linearly(ob, corner_values):
-    """A density that is bilinear on each face's Ptex parts."""
+    """Returns a density that is bilinear on each face's Ptex faces."""
     ptex = scenes.ptex_corners(ob, np.asarray(corner_values, np.float64)[:, None])
     return lambda face, uv: scenes.bilinear(ptex, face, uv)[:, 0]
 
 
 def weigh(ob, name="Where"):
-    """A vertex group; its weights."""
+    """Adds a vertex group, and returns its weights."""
     weights = np.random.default_rng(1).random(len(ob.data.vertices)).astype(np.float32)
     weights[::3] = 0
     group = ob.vertex_groups.new(name=name)
@@ -41,13 +41,13 @@ def weigh(ob, name="Where"):
 
 
 def colour(ob, kind, domain, name="Colours"):
-    """A colour attribute; its linear values."""
+    """Adds a colour attribute, and returns its linear values."""
     layer = ob.data.color_attributes.new(name, kind, domain)
     colours = np.random.default_rng(2).random((len(layer.data), 4)).astype(np.float32)
     layer.data.foreach_set("color", colours.ravel())
     if kind == "FLOAT_COLOR":
         return colours.astype(np.float64)
-    encoded = np.empty(colours.size, np.float32)  # 8 bits of it
+    encoded = np.empty(colours.size, np.float32)  # the rounding of 8 bits
     layer.data.foreach_get("color_srgb", encoded)
     encoded = encoded.reshape(-1, 4).astype(np.float64)
     linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
@@ -126,12 +126,12 @@ def flat(positions):
 
 
 def large(positions):
-    """Beyond the image on all sides."""
+    """Returns a map that reaches beyond the image on all sides."""
     return 3 * flat(positions) - 0.7
 
 
 def image(values, name="Spots", is_float=True):
-    """Of grey values (height, width)."""
+    """Makes an image of grey values (height, width)."""
     height, width = values.shape
     made = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
     pixels = np.ones((height, width, 4), np.float32)
@@ -141,7 +141,7 @@ def image(values, name="Spots", is_float=True):
 
 
 def looked_up(values, uv, extension):
-    """Pixel by pixel, in plain words."""
+    """Looks values up pixel by pixel, by plain loops."""
     height, width = values.shape
     found = np.empty(len(uv))
     for row, (u, v) in enumerate(uv):
@@ -166,7 +166,9 @@ def looked_up(values, uv, extension):
 @pytest.mark.parametrize("extension", ["REPEAT", "EXTEND", "CLIP"])
 @pytest.mark.parametrize("name", ["", "Flat"])
 def test_images(extension, name):
-    """On UVs that are not smoothed: those of a place are the map of its place on the bare mesh."""
+    """The UVs are not smoothed, so the UV of a place is the map of its position on the bare
+    mesh.
+    """
     ob = scenes.grid_with_holes()
     add_uv_map(ob, large)
     if name:
@@ -197,8 +199,9 @@ def test_images_of_bytes_count_as_their_numbers_are():
 
 
 def test_images_are_placed_by_smoothed_uvs():
-    """As renders place them: half white, half black, the border runs where the smoothed map has
-    it."""
+    """The image is placed as renders place it: it is half white and half black, and the border runs
+    where the smoothed map has it.
+    """
     ob = scenes.cross()
     add_uv_map(ob, lambda p: p[:, :2] * 0.2 + 0.5)
     add_subsurf(ob).uv_smooth = "SMOOTH_ALL"

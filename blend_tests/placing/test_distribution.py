@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Uniform and blue noise: how many, where, how far apart, in the world's units."""
+"""Uniform and blue noise: number, places and distances, in the world's units."""
 
 import areas
 import bpy
@@ -28,7 +28,9 @@ def world_positions(points):
 
 
 def nearest_distances(points):
-    """From each point to the nearest whose normal is less than 90 degrees from its own."""
+    """Returns the distance of each point to the nearest one whose normal is less than 90 degrees
+    from its own.
+    """
     p = world_positions(points)
     inverse = np.linalg.inv(np.array(points.matrix_world)[:3, :3])
     n = attributes.read(points.data, ids.NORMAL) @ inverse

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""In the tab: the next run's settings, and how many it will make."""
+"""The sidebar tab shows the next run's settings, and how many things it will make."""
 
 import re
 import time
@@ -48,7 +48,7 @@ def shown_count(panel):
 
 
 def answered(panel):
-    """What is shown when Blender's timers have run."""
+    """Returns what is shown when Blender's timers have run."""
     said = shown_count(panel)
     for count in live_count._counts.values():
         if not bpy.app.timers.is_registered(count._look_later):
@@ -159,7 +159,7 @@ def test_no_panel_without_a_mesh():
 
 
 def test_the_redo_panel_finds_the_surface_of_what_was_made():
-    """Right after, the hair is active; vertex groups are still the mesh's."""
+    """After the run the hair is active, but the vertex groups are still searched on the mesh."""
     ob = scenes.cross()
     ob.vertex_groups.new(name="Some").add([0, 1], 1.0, "REPLACE")
     hair = add_hair(ob, density_source="VERTEX_GROUP", vertex_group="Some")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces chosen by material slots and by selection: nothing is made on any other."""
+"""Faces chosen by material slots and by selection: nothing is made on any other face."""
 
 import areas
 import bpy
@@ -18,7 +18,7 @@ SPREADS = [
 
 
 def with_materials(ob, slots=3):
-    """The slot of each polygon."""
+    """Sets and returns the material slot of each polygon."""
     for i in range(slots):
         ob.data.materials.append(bpy.data.materials.new(f"M{i}"))
     chosen = np.arange(len(ob.data.polygons), dtype=np.int32) % slots
@@ -27,7 +27,7 @@ def with_materials(ob, slots=3):
 
 
 def ptex_polygons(ob):
-    """The polygon of each Ptex face."""
+    """Returns the polygon of each Ptex face."""
     sizes = attributes.face_sizes(ob.data)
     return np.repeat(np.arange(len(sizes)), np.where(sizes == 4, 1, sizes))
 
@@ -68,7 +68,7 @@ def test_a_face_attribute_and_material_slots_together(spread):
 
 
 def test_the_surface_is_the_same_with_a_mask():
-    """What is not covered shapes it all the same."""
+    """Faces that are not covered still shape the surface."""
     ob = scenes.cross()
     ob.data.polygons.foreach_set("select", [True] + 4 * [False])
     all_over, masked = add_points(ob, seed=4), add_points(ob, seed=4, faces="SELECTED")

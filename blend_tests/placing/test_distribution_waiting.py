@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Long work: asked about, shown, cancelled by ESC, and nothing is left then.
+"""Long work: it is confirmed, shown, and cancelled by ESC, after which nothing is left of it.
 
 Blender calls these methods of the operators where there is a window; here a stand-in of plain
-Python that has them is called in its place.
+Python that has them is called instead.
 """
 
 import threading
@@ -46,7 +46,9 @@ def stand_in(name, **chosen):
 
 
 def window_context():
-    """As a user's, with a window manager and a workspace that only take notes."""
+    """Returns a context as a user has it, with a window manager and a workspace that only record
+    calls.
+    """
     context = MagicMock(wraps=bpy.context)
     for name in ("active_object", "scene", "view_layer", "selected_objects", "space_data"):
         setattr(context, name, getattr(bpy.context, name))
@@ -61,7 +63,7 @@ def event(kind, value="PRESS"):
 
 @pytest.fixture
 def slowly(monkeypatch):
-    """Evaluation that waits until it is let go on."""
+    """Evaluation stops until the event is set."""
     go_on = threading.Event()
     evaluate = scatter_operator.Ground.evaluate
 
@@ -146,7 +148,7 @@ def test_the_surface_is_gone_meanwhile(slowly):
 
 
 def failed(monkeypatch, error):
-    """An operator that waits for work which ends in an error, and its context."""
+    """Returns an operator whose work ends in an error, and its context."""
     scenes.cross()
 
     def fail(*_arguments):
@@ -215,8 +217,8 @@ def test_large_counts_are_asked_about_first(slowly):
     assert confirm.call_args.kwargs["message"].startswith("Make 5,000,000 strands of 5 points")
     known = bpy.types.WindowManager.bl_rna.functions["invoke_confirm"].parameters.keys()
     assert set(confirm.call_args.kwargs) <= set(known)
-    assert operator.allow_large  # for the execution that follows consent
-    operator.per_side = 3  # the rest of the test is no faster for millions
+    assert operator.allow_large  # for the execution that follows the confirmation
+    operator.per_side = 3  # without this the rest of the test would make millions of points
     assert operator.execute(context) == {"RUNNING_MODAL"}
     operator.modal(context, event("ESC"))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rotations as quaternions, and frames as they are seen in the world."""
+"""Rotations as quaternions, and frames in world space."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points: the same locations as hair, with frames, and instances by stock nodes."""
+"""Points have the same locations as hair, with frames, and instances by stock nodes."""
 
 import bpy
 import numpy as np

@@ -30,7 +30,7 @@ def add_decal(ob, **properties):
 
 
 class Made:
-    """A decal's arrays, in the world."""
+    """The arrays of a decal, in the world."""
 
     def __init__(self, ob):
         mesh = ob.data
@@ -47,7 +47,7 @@ class Made:
         np.testing.assert_array_equal(self.st[self.vertices], corner_st)  # one for each vertex
 
     def areas(self):
-        """Of the polygons, in the image, counter-clockwise ones above 0."""
+        """Returns the areas of the polygons in the image, positive for counter-clockwise ones."""
         starts = np.cumsum(self.sizes) - self.sizes
         following = np.arange(len(self.vertices)) + 1
         following[starts + self.sizes - 1] = starts
@@ -95,7 +95,7 @@ def test_vertices_lie_on_the_surface_under_their_pixels(settings, mirrored):
 
 
 def test_first_hits_only():
-    """Nothing of the surface lies between a vertex and the camera."""
+    """No part of the surface lies between a vertex and the camera."""
     ob = scenes.monkey()
     camera = truth.add_camera((2, -5, 1), lens=70)
     image()
@@ -107,7 +107,7 @@ def test_first_hits_only():
 
 
 def test_the_outline_is_the_surfaces():
-    """A square that fills part of the image: the decal covers exactly that part."""
+    """A square fills a part of the image: the decal covers exactly that part."""
     ob = scenes.add_mesh("Square", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
     scenes.add_subsurf(ob).subdivision_type = "SIMPLE"
     ob.rotation_euler.z = 0.3
@@ -124,7 +124,9 @@ def test_the_outline_is_the_surfaces():
 
 
 def sphere():
-    """Rounder than a cube: the limit surface of one that is subdivided once and cast outwards."""
+    """Adds the limit surface of a cube that is subdivided once and cast to a sphere, which is
+    rounder than that of a cube.
+    """
     bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12)
     return bpy.context.active_object
 
@@ -137,7 +139,7 @@ def test_silhouettes_are_followed():
     for resolution in (16, 32, 64):
         made = Made(add_decal(ob, decal_resolution=resolution, facing=(1.5, np.pi / 2)))
         areas.append(made.areas().sum())
-    # The disc as the camera sees it, from the fine mesh's outline.
+    # The outline of the fine mesh gives the disc that the camera sees.
     truth.fine_subsurf(ob, 5)
     bpy.context.view_layer.update()
     st = np.stack(np.meshgrid(*[(np.arange(120) + 0.5) / 120] * 2), axis=-1).reshape(-1, 2)
@@ -148,7 +150,7 @@ def test_silhouettes_are_followed():
 
 
 def test_angles_bound_the_decal():
-    """On a sphere seen from afar, up to 45 degrees is a disc of half the area."""
+    """On a sphere seen from far away, angles up to 45 degrees give a disc of half the area."""
     ob = sphere()
     truth.add_camera((0, -60, 0), type="ORTHO", ortho_scale=2.4)
     image()
@@ -160,7 +162,7 @@ def test_angles_bound_the_decal():
 
 
 def stairs(gap):
-    """A small square above a large one, its edges between the grid's rays."""
+    """Adds a small square above a large one; its edges lie between the rays of the grid."""
     square = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], float)
     positions = np.concatenate([3 * square, 0.937 * square + (0.1, 0.05, gap)])
     ob = scenes.add_mesh("Stairs", positions, [(0, 1, 2, 3), (4, 5, 6, 7)])
@@ -178,14 +180,16 @@ def test_no_polygon_joins_two_sheets(gap):
     height = made.local[made.vertices, 2]
     spread = np.maximum.reduceat(height, starts) - np.minimum.reduceat(height, starts)
     assert spread.max() < 1e-6
-    # Both sheets reach up to the edge between them: but for its four corners nothing is left out.
+    # Both sheets reach up to the edge between them: only its four corners are missing.
     assert made.areas().sum() == pytest.approx(1, abs=4 * 0.5 / 40**2 + 1e-6)
     upper = made.areas()[np.maximum.reduceat(height, starts) > gap / 2].sum()
     assert upper == pytest.approx((2 * 0.937 / 5) ** 2, abs=4 * 0.5 / 40**2)
 
 
 def test_creases_do_not_cut():
-    """Two walls at a right angle go on into each other, wherever the rays fall."""
+    """Two walls meet at a right angle; the decal goes on from one to the other, wherever the rays
+    are.
+    """
     positions = [(-1, -1, 1), (0.013, -1, 0), (0.013, 1, 0), (-1, 1, 1), (1, -1, 1), (1, 1, 1)]
     ob = scenes.add_mesh("Roof", positions, [(0, 1, 2, 3), (1, 4, 5, 2)])
     scenes.add_subsurf(ob).subdivision_type = "SIMPLE"
@@ -229,7 +233,7 @@ def test_normals_are_the_surfaces(mirrored):
 
 
 def test_a_decal_can_be_evaluated_again():
-    """It keeps what hair and points keep."""
+    """The decal stores the same attributes as hair and points."""
     ob = scenes.grid_with_holes()
     seen_from_above(ob)
     image()

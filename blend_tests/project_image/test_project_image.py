@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Textures that images are projected into, against Blender's own fine mesh, rays and UVs."""
+"""Textures into which images are projected, compared with Blender's own fine mesh, rays and UVs."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,7 +17,7 @@ TEXTURE = (256, 256)
 
 
 def project(ob, **properties):
-    """The new or the painted image."""
+    """Projects, and returns the new or the painted image."""
     scenes.activate(ob)
     before = set(bpy.data.images.keys())
     size = (
@@ -31,7 +31,7 @@ def project(ob, **properties):
 
 
 def bent_sheet(level=5):
-    """An open mesh with extraordinary vertices and holes, its UVs within the image."""
+    """Adds an open mesh with extraordinary vertices and holes, whose UVs lie within the image."""
     ob = scenes.grid_with_holes()
     scenes.add_uv_map(ob, lambda p: 0.05 + 0.9 * p[:, :2] / (5, 4))
     truth.fine_subsurf(ob, level)
@@ -61,7 +61,9 @@ CAMERAS = {
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("name", CAMERAS)
 def test_every_place_shows_what_the_camera_shows_there(name, mirrored):
-    """The image tells its own coordinates: along the camera's rays they come back."""
+    """The pixels of the image hold their own coordinates: along the camera's rays the texture shows
+    these coordinates.
+    """
     ob = moved(bent_sheet(), mirrored)
     axis = np.array(ob.matrix_world)[:3, 2]
     away = 7 * axis / np.linalg.norm(axis) + [2, 0, 0]
@@ -76,7 +78,7 @@ def test_every_place_shows_what_the_camera_shows_there(name, mirrored):
     hit = np.isfinite(uv[:, 0])
     assert hit.sum() > 1000
     found = truth.sampled(truth.pixels(made), uv[hit])
-    sure = found[:, 3] > 0.999  # away from what is hidden or turned away
+    sure = found[:, 3] > 0.999  # away from parts that are hidden or turned away
     assert sure.mean() > 0.8
     off = np.abs(found[sure, :2] - st[hit][sure])
     assert np.median(off) < 2e-4
@@ -84,7 +86,9 @@ def test_every_place_shows_what_the_camera_shows_there(name, mirrored):
 
 
 def test_what_is_hidden_is_not_painted():
-    """Two sheets above each other, seen from above: the lower one's shadowed texels stay clear."""
+    """Two sheets lie one above the other and are seen from above: the hidden texels of the lower
+    one stay transparent.
+    """
     square = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], float)
     positions = np.concatenate([3 * square, square + (0, 0, 1)])
     ob = scenes.add_mesh("Sheets", positions, [(0, 1, 2, 3), (4, 5, 6, 7)])
@@ -105,14 +109,15 @@ def test_what_is_hidden_is_not_painted():
     assert (alpha[on_lower & shadowed] == 0).all()
     np.testing.assert_allclose(alpha[on_lower & lit], 1, atol=1e-6)
     np.testing.assert_allclose(alpha[~on_lower], 1, atol=1e-6)
-    # The shadow's border is as wide as a texel: 4 by 4 rays each tell how much of it is lit.
+    # The shadow's border is as wide as a texel: 4 x 4 rays for each texel show how much of it is
+    # visible.
     assert alpha[on_lower].mean() == pytest.approx(1 - 1 / 9, abs=2e-3)
     everywhere = project(ob, image=places.name, margin=0, use_float=True, occlusion=False)
     np.testing.assert_allclose(truth.pixels(everywhere)[:, :, 3], 1, atol=1e-6)
 
 
 def flat_square():
-    """From (0, 0) to (1, 1) at z = 0, its UVs the same."""
+    """Adds a square from (0, 0) to (1, 1) at z = 0 with the same UVs."""
     ob = scenes.add_mesh("Square", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
     ob.data.uv_layers.new(name="Map").data.foreach_set("uv", [0, 0, 1, 0, 1, 1, 0, 1])
     scenes.add_subsurf(ob).subdivision_type = "SIMPLE"
@@ -145,7 +150,7 @@ def noise(size, seed=3, alpha=True):
 
 
 def test_pixels_that_lie_on_texels_come_through_unchanged():
-    """A planar image as large as the square, 8 bits onto 8 bits in one color space."""
+    """A planar image is as large as the square, with 8 bits and the color space of the texture."""
     ob = flat_square()
     frame = empty(location=(0.5, 0.5, 1), empty_display_size=0.5)
     shown = filled("Shown", noise((64, 64), alpha=False))
@@ -199,8 +204,9 @@ def coded(values):
 @pytest.mark.parametrize("below_is_float", [False, True])
 @pytest.mark.parametrize("above_is_float", [False, True])
 def test_images_are_blended_in_linear_light(above_is_float, below_is_float, opacity):
-    """Alpha over (Porter and Duff), on colors as light adds them. Of float images Blender keeps
-    colors that are multiplied by alpha."""
+    """Colors are blended by alpha over (Porter and Duff) in linear light. Float images in Blender
+    hold colors that are multiplied by alpha.
+    """
     size = (16, 16)
     above, below = noise(size, 3), noise(size, 4)
     kept = [v.copy() for v in (above, below)]
@@ -247,7 +253,7 @@ def test_data_is_taken_as_it_is():
 
 
 def test_only_what_is_painted_changes():
-    """The rest keeps its values, margins of nothing included."""
+    """All other pixels keep their values, and margins around unpainted texels do, too."""
     ob = flat_square()
     before = noise((64, 64))
     target = filled("Below", before, is_float=True)
@@ -305,7 +311,7 @@ def test_outside_the_image(extension, expected):
 
 
 def test_boxes_project_from_six_sides():
-    """A cube around an empty: on each wall the image upright, and not mirrored."""
+    """An empty surrounds a cube: on each wall the image is upright, and not mirrored."""
     bpy.ops.mesh.primitive_cube_add(size=2)
     ob = bpy.context.active_object
     scenes.add_subsurf(ob).subdivision_type = "SIMPLE"
@@ -319,7 +325,7 @@ def test_boxes_project_from_six_sides():
         normal = np.array(polygon.normal)
         up = np.array((0, 0, 1.0) if abs(normal[2]) < 0.5 else (0, 1.0, 0))
         if normal[2] < -0.5:
-            up = None  # whichever way it is turned there, it is not mirrored
+            up = None  # the image may be turned there, but it is not mirrored
         corners = np.array([ob.data.vertices[v].co for v in polygon.vertices])
         uv = np.array([layer[i].uv for i in polygon.loop_indices])
         centre, uv_centre = corners.mean(axis=0), uv.mean(axis=0)
@@ -336,7 +342,7 @@ def test_boxes_project_from_six_sides():
 
 
 def test_along_normals_from_another_surface():
-    """A copy of the sheet carries the image: what lies above a place is found there."""
+    """A copy of the sheet has the image: each place shows what lies above it."""
     ob = flat_square()
     carrier = ob.copy()
     carrier.data = ob.data.copy()
@@ -379,7 +385,7 @@ def test_views_project_what_they_show():
 
 
 def test_tiles():
-    """Two tiles, both under one image; the third stays as it was."""
+    """One image covers two of the tiles; the third stays as it was."""
     ob = scenes.add_mesh("Long", [(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
     ob.data.uv_layers.new(name="Map").data.foreach_set("uv", [0, 0, 2, 0, 2, 1, 0, 1])
     scenes.add_subsurf(ob).subdivision_type = "SIMPLE"
@@ -399,7 +405,7 @@ def test_tiles():
 
 
 def state():
-    """All names, and all pixels."""
+    """Returns all names, and all pixels."""
     images = {image.name: truth.pixels(image).tobytes() for image in bpy.data.images}
     objects = {ob.name: [slot.name for slot in ob.material_slots] for ob in bpy.data.objects}
     return scenes.file_contents(), images, objects
@@ -499,7 +505,7 @@ def test_materials_are_made_if_asked_for():
 
 @pytest.mark.parametrize("use_float", [False, True])
 def test_materials_keep_their_color_where_nothing_is_projected(use_float):
-    """Rendered by Cycles: half of the square is seen through the image."""
+    """Cycles renders the square, of which the image covers half."""
     ob = flat_square()
     own = bpy.data.materials.new("Own")
     own.use_nodes = True
@@ -517,7 +523,7 @@ def test_materials_keep_their_color_where_nothing_is_projected(use_float):
 
 
 def rendered_colors(material):
-    """The base color, seen on the left and on the right."""
+    """Returns the base colors that are seen on the left and on the right."""
     nodes, links = material.node_tree.nodes, material.node_tree.links
     light = nodes.new("ShaderNodeEmission")
     links.new(nodes["Principled BSDF"].inputs["Base Color"].links[0].from_socket, light.inputs[0])
@@ -549,7 +555,7 @@ def test_linked_meshes_get_no_material(tmp_path):
 
 
 def linked_image(material):
-    """The topmost, mixed in by its alpha."""
+    """Returns the topmost image, which is mixed in by its alpha."""
     shader = next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
     mix = shader.inputs["Base Color"].links[0].from_node
     texture = _links(mix, "B_Color")[0].from_node

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cameras, views and empties as projectors, against Blender's own functions."""
+"""Cameras, views and empties as projectors, compared with Blender's own functions."""
 
 from types import SimpleNamespace
 
@@ -15,7 +15,7 @@ from limit_surface.reading import camera
 from mathutils import Matrix, Vector
 
 POINTS = np.random.default_rng(6).uniform(-1, 1, (20, 3))
-SINGLE = 2e-6  # of the image: cameras and views give their matrices in single precision
+SINGLE = 2e-6  # as a share of the image: cameras and views give their matrices in single precision
 
 CAMERAS = {
     "plain": {},
@@ -93,7 +93,9 @@ def test_cameras_without_extent_are_refused():
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
 @pytest.mark.parametrize("size", [(100, 100), (400, 100), (100, 400)])
 def test_views_show_the_image_as_large_as_fits(kind, size):
-    """Blender draws no views without a window: a camera's matrices stand in for one's."""
+    """Blender draws no views without a window, so a camera's matrices take the place of the
+    view's.
+    """
     region = SimpleNamespace(width=320, height=200)
     ob = truth.add_camera((3, -5, 4), type=kind)
     depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -132,7 +134,9 @@ BOUNDS = np.array([[-1, -1, -1], [1, 1, 1.0]])
 
 
 def places_of(found, local, ob):
-    """In the image, of points in the empty's space; and where between the depths."""
+    """Returns the places in the image of points in the empty's space, and where they lie between
+    the depths.
+    """
     points = np.array([ob.matrix_world @ Vector(p) for p in local])
     clip = points @ found.matrix[:, :3].T + found.matrix[:, 3]
     return found.places(points), clip[:, 2] / clip[:, 3]

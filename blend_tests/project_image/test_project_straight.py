@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A checker, seen from the camera it was projected from, is straight to a texel: where its colors
-change is measured along that camera's rays, on Blender's own mesh."""
+"""A checker, seen from the camera from which it was projected, is straight to within a texel. The
+borders of its colors are measured along that camera's rays, on Blender's own mesh.
+"""
 
 import re
 
@@ -29,7 +30,9 @@ def checker(size=512):
 
 
 def places_on_lines(axis, count):
-    """Of the squares' sides, those that run along the other axis: away from corners."""
+    """Returns places on those sides of the squares that run along the other axis, away from
+    corners.
+    """
     along = (np.arange(count) + 0.5) / count
     along = along[np.abs(along * SQUARES - np.rint(along * SQUARES)) > 0.25]
     lines = np.arange(1, SQUARES) / SQUARES
@@ -38,8 +41,9 @@ def places_on_lines(axis, count):
 
 
 def crossings(offset, values):
-    """Where each row of values passes the middle between both colors; NaN where it does not pass
-    it once."""
+    """Returns where each row of values crosses the middle between both colors; NaN where it does
+    not cross it exactly once.
+    """
     above = values > (LOW + HIGH) / 2
     changes = above[:, 1:] != above[:, :-1]
     first = changes.argmax(axis=1)
@@ -52,7 +56,7 @@ def crossings(offset, values):
 
 
 def measure(mesh, camera, made, axis, count):
-    """Distances of the changes of color from their lines, in texels."""
+    """Returns the distances of the borders of colors from their lines, in texels."""
     values = truth.pixels(made)[:, :, 0]
     st = places_on_lines(axis, count)
     across = np.eye(2)[axis]
@@ -95,7 +99,7 @@ def test_borders_are_straight_to_a_texel(projected):
     mesh, camera, made = projected
     off = np.concatenate([measure(mesh, camera, made, axis, 60) for axis in (0, 1)])
     assert len(off) > 200
-    assert np.isfinite(off).mean() > 0.97  # but for borders of what is hidden
+    assert np.isfinite(off).mean() > 0.97  # except at the borders of hidden parts
     off = np.abs(off[np.isfinite(off)])
     page = (ROOT / "docs/project_image.md").read_text()
     mean, worst = re.search(r"on average (\S+) texels .*? at most (\S+) texels", page).groups()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Long projecting, as a user has it who waits: cancelled, it has changed nothing."""
+"""Long projecting while a user waits: if it is cancelled, it has changed nothing."""
 
 import threading
 from types import SimpleNamespace
@@ -20,8 +20,9 @@ OPERATOR = "OBJECT_OT_limit_project_image"
 
 
 def waiting_operator(**chosen):
-    """A stand-in of plain Python, as Blender makes no operators without a window, and a context
-    whose window only takes notes."""
+    """Returns a stand-in in plain Python, because Blender makes no operators without a window, and
+    a context whose window only records calls.
+    """
     kind = getattr(bpy.types, OPERATOR)
     own = ("start", "finish", "invoke", "draw", "too_large", "cancelled")
     cls = type("StandIn", (WatchedOperator,), {name: getattr(kind, name) for name in own})
@@ -42,7 +43,7 @@ def waiting_operator(**chosen):
 
 @pytest.fixture
 def slowly(monkeypatch):
-    """Both kinds of work wait, half way, until they are let go on."""
+    """Both kinds of work stop half way until the event is set."""
     go_on = threading.Event()
 
     def delayed(work):

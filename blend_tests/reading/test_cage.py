@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The cage is read without a trace, and what has none is refused by name."""
+"""Reading a cage changes nothing in the file, and an object without a cage is refused with a
+reason.
+"""
 
 import bpy
 import numpy as np
@@ -15,7 +17,7 @@ def read(ob):
 
 
 def refusal(ob, pattern):
-    """The operator's error message, after which the file is as it was."""
+    """Checks the operator's error message, and that the file does not change."""
     scenes.activate(ob)
     before = scenes.file_contents()
     selected = bpy.context.selected_objects
@@ -86,13 +88,14 @@ def test_creases_that_are_no_numbers(kind):
 
 
 def test_hidden_by_animation():
-    """Blender does not evaluate such an object: its mesh would be an old one."""
+    """Blender does not evaluate such an object, so its mesh would be out of date."""
     ob = scenes.cross()
     for frame, hidden in ((1, False), (5, True)):
         ob.hide_viewport = hidden
         ob.keyframe_insert("hide_viewport", frame=frame)
     ob.hide_viewport = False
-    bpy.context.scene.frame_current = 7  # animation not evaluated yet: still there to be used
+    # the animation is not evaluated yet, so the mesh is still valid
+    bpy.context.scene.frame_current = 7
     with pytest.raises(CageError, match="hidden in the viewport at this frame"):
         cage.read(ob, bpy.context.evaluated_depsgraph_get())
     assert len(bpy.data.scenes) == 1
@@ -125,7 +128,7 @@ def test_object_is_left_alone():
 
 
 def test_handlers_of_the_private_scene_can_be_told():
-    """No frame-change handler is called, and is_busy() is true in those that are."""
+    """No frame-change handler is called, and is_busy() is true in the handlers that are called."""
     ob = scenes.cross()
     called = []
 
@@ -147,7 +150,7 @@ def test_handlers_of_the_private_scene_can_be_told():
 
 
 def test_linked_and_overridden_objects(tmp_path):
-    """A character from a library, as it is and as an override."""
+    """A character comes from a library, as it is and as an override."""
     ob = scenes.cross()
     ob.modifiers.new("Displace", "DISPLACE").strength = 0.2
     add_subsurf(ob, "PRESERVE_CORNERS")

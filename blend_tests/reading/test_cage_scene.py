@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Modifiers and drivers find in the private scene what they find in the user's."""
+"""Modifiers and drivers find the same settings in the private scene as in the user's scene."""
 
 import sys
 
@@ -17,7 +17,7 @@ def read(ob):
 
 
 def check_shift(ob, amount):
-    """The cage is where Blender shows the mesh, and that is shifted along z by so much."""
+    """The cage is where Blender shows the mesh, which is shifted along z by so much."""
     shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     expected = attributes.read(shown, ids.POSITION)
     found = np.array(read(ob).mesh.positions)
@@ -27,7 +27,7 @@ def check_shift(ob, amount):
 
 
 def moved_by_nodes(node_type, output):
-    """A sheet that Geometry Nodes move along z by what the node says."""
+    """Adds a sheet that Geometry Nodes move along z by the node's value."""
     ob = scenes.grid_with_holes()
     group = bpy.data.node_groups.new("Move", "GeometryNodeTree")
     group.is_modifier = True
@@ -101,7 +101,7 @@ def test_settings_of_the_scene():
 
 
 def test_properties_of_the_view_layer():
-    """Not those of the first one."""
+    """The properties are those of the current view layer, not of the first one."""
     second = bpy.context.scene.view_layers.new("Second")
     bpy.context.view_layer["amount"], second["amount"] = 0.25, 0.5
     ob = displaced_by_driver('["amount"]', context_property="ACTIVE_VIEW_LAYER")
@@ -112,7 +112,9 @@ def test_properties_of_the_view_layer():
 
 
 def rich_scene():
-    """With everything that a copy of a scene shares with it, or that would be evaluated with it."""
+    """Makes a scene with everything that a copy would share with it, or that would be evaluated
+    with it.
+    """
     scene = bpy.context.scene
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     scene.collection.objects.link(camera)
@@ -164,7 +166,7 @@ def test_nothing_else_is_evaluated():
 
 @pytest.mark.parametrize("where", ["scene", "collection"])
 def test_large_files_are_not_slow(where):
-    """tools/bench_blender.py tells how long it takes among so many objects."""
+    """The time with so many objects is measured by tools/bench_blender.py."""
     ob = scenes.cross()
     collection = bpy.context.scene.collection
     if where == "collection":
@@ -183,7 +185,7 @@ def test_large_files_are_not_slow(where):
 
 
 def steps_of(work):
-    """How many lines of Python run."""
+    """Returns how many lines of Python run."""
     count = 0
 
     def see(_frame, event, _argument):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Places on the mesh that Blender shows, against the triangles that Blender says it draws."""
+"""Places on the mesh that Blender shows, compared with the triangles that Blender draws."""
 
 import bpy
 import numpy as np
@@ -23,7 +23,7 @@ def shown_in_viewport(ob):
 
 
 def some_locations(ob, seed=0):
-    """On all Ptex faces: inside, on the borders of polygons, and at corners."""
+    """Returns locations on all Ptex faces: inside, on the borders of polygons, and at corners."""
     rng = np.random.default_rng(seed)
     faces = sum(1 if len(p.vertices) == 4 else len(p.vertices) for p in ob.data.polygons)
     face = np.repeat(np.arange(faces), PER_FACE)
@@ -40,8 +40,9 @@ def triangles(mesh):
 
 
 def on_drawn_triangles(mesh, corner_locations, face, uv):
-    """Positions by trying all of Blender's triangles in turn, and the triangles' normals (those
-    of all that meet there are tried)."""
+    """Finds positions by testing all of Blender's triangles in turn, and returns the triangles'
+    normals (those of all that meet there are tested).
+    """
     corners, normals = triangles(mesh)
     vertex = attributes.read(mesh, ids.CORNER_VERTEX)
     vertices = attributes.read(mesh, ids.POSITION).astype(np.float64)[vertex]
@@ -80,7 +81,8 @@ def test_positions_are_on_the_triangles_that_are_drawn(name, level):
     identity = np.broadcast_to(np.eye(3), frames.shape)
     np.testing.assert_allclose(frames.transpose(0, 2, 1) @ frames, identity, atol=1e-12)
     for frame, normals in zip(frames, facing, strict=True):
-        assert np.abs(normals - frame[:, 2]).max(axis=1).min() < 1e-4  # Blender's are rounded
+        # Blender's positions are rounded
+        assert np.abs(normals - frame[:, 2]).max(axis=1).min() < 1e-4
 
 
 @pytest.mark.parametrize("name", ["sheet", "polygons"])
@@ -94,7 +96,7 @@ def test_tangents_go_along_u(name):
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     assert np.median(np.abs(along - shown.frames(face, uv)[:, :, 0]).max(axis=1)) < 1e-6
     agree = np.abs(along - shown.frames(face, uv)[:, :, 0]).max(axis=1) < 1e-6
-    assert agree.mean() > 0.99  # but where a step leaves the triangle
+    assert agree.mean() > 0.99  # except where a step leaves the triangle
 
 
 def test_any_level_without_changing_the_modifier():
@@ -111,7 +113,9 @@ def test_any_level_without_changing_the_modifier():
 
 @pytest.mark.parametrize("name", ["polygons", "fans"])
 def test_level_0_is_the_mesh_itself(name):
-    """Quads are cut in two triangles; parts of other polygons meet in the mean of their corners."""
+    """Quads are cut into two triangles; the parts of other polygons meet at the mean of their
+    corners.
+    """
     ob = parity_zoo.add(name)
     ob.modifiers[0].levels = 0
     shown = read(ob, "VIEWPORT")
@@ -125,7 +129,7 @@ def test_level_0_is_the_mesh_itself(name):
     on_pentagon = np.repeat(sizes, np.where(sizes == 4, 1, sizes))[face] == 5
     for place in shown.positions(face[~on_pentagon], uv[~on_pentagon]):
         _, nearest, normal, _ = ob.closest_point_on_mesh(place)
-        off = np.array(nearest) - place  # Blender finds it in single precision
+        off = np.array(nearest) - place  # Blender calculates it in single precision
         assert np.linalg.norm(off) < 3e-5
         assert abs(off @ normal) < 3e-6
 
@@ -149,7 +153,7 @@ def test_loose_edges_and_isolated_vertices():
 
 
 class Snapshot(bpy.types.RenderEngine):
-    """Renders nothing, and keeps the meshes that it is given."""
+    """A render engine that renders nothing, and stores the meshes that it is given."""
 
     bl_idname = "SNAPSHOT"
     bl_label = "Snapshot"
@@ -166,7 +170,7 @@ class Snapshot(bpy.types.RenderEngine):
 
 @pytest.fixture
 def rendered():
-    """What a render sees of an object: its vertices, and the number of its polygons."""
+    """Returns what a render gets of an object: its vertices, and the number of its polygons."""
 
     def look(ob):
         scene = bpy.context.scene
@@ -185,7 +189,7 @@ def rendered():
 
 
 def check_render(ob, rendered, level):
-    """The vertices of a render are all found at their locations."""
+    """Checks that all vertices of a render are found at their locations."""
     positions, polygons = rendered(ob)
     shown = read(ob, "RENDER")
     assert shown.level == level
@@ -320,12 +324,13 @@ def test_adaptive_subdivision():
         scene.cycles.feature_set = "EXPERIMENTAL"
         ob.cycles.use_adaptive_subdivision = True
     refusal(ob, "RENDER", "sheet is rendered with adaptive subdivision")
-    ob.modifiers.new("Smooth", "SMOOTH")  # Cycles dices only what ends with the subdivision
+    # Cycles dices only meshes whose last modifier is the subdivision
+    ob.modifiers.new("Smooth", "SMOOTH")
     assert read(ob, "RENDER").level == 2
 
 
 def test_frames_where_polygons_have_no_area():
-    """Two corners, or all four, in one point: still rotations."""
+    """Two corners, or all four, coincide: the frames are still rotations."""
     positions = [(0, 0, 0), (0, 0, 0), (1, 1, 0), (0, 1, 0), (3, 3, 3), (3, 3, 3)]
     ob = scenes.add_mesh("Pinched", positions, [(0, 1, 2, 3), (2, 4, 5, 2 + 1)])
     subsurf = scenes.add_subsurf(ob)

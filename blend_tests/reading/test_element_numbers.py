@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Creases in attributes of other types and domains than Blender's own: followed as it does."""
+"""Creases in attributes of other types and domains than usual are converted as Blender converts
+them.
+"""
 
 import bpy
 import numpy as np
@@ -25,7 +27,7 @@ def random_values(kind, count, rng):
 
 
 def add(mesh_name, name, kind, domain, seed):
-    """A mesh with such an attribute, and an edge without faces."""
+    """Adds a mesh with such an attribute, and an edge without faces."""
     ob = parity_zoo.add(mesh_name)
     parity_zoo.crease(ob.data, "loose edges")
     attribute = ob.data.attributes.new(name, kind, domain)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's Subdivision Surface at its best quality shows the surface that we evaluate."""
+"""Blender's Subdivision Surface at its best quality shows the surface that limitsurf evaluates."""
 
 import bpy
 import numpy as np
@@ -10,7 +10,7 @@ from limit_surface import ids
 from limit_surface.reading import attributes, rules, uv_map
 
 BEST = 10
-BOUND = 1e-6  # of the diagonal, or on the UV map; Blender computes in single precision
+BOUND = 1e-6  # as a share of the diagonal, or on the UV map; Blender computes in single precision
 LEVELS = 3
 CREASED = [kind for kind in parity_zoo.CREASES if kind != "none"]
 
@@ -31,7 +31,7 @@ def test_smooth_meshes(name, boundary):
     distance = found.positions(BEST)
     assert np.count_nonzero(np.isnan(distance)) == (1 if name == "fans" else 0)  # isolated
     assert np.nanmax(distance) <= BOUND
-    # That is not because nothing could be seen:
+    # The test can fail, because the effect is large enough to be seen:
     assert np.nanmax(found.positions(1)) > 1e-3
 
 
@@ -44,7 +44,7 @@ def test_creases(name, kind, boundary):
     assert np.nanmax(found.positions(BEST)[~lagging]) <= BOUND
 
 
-# Meshes and creases with darts, or with smooth corners that are sharp for some steps
+# Meshes and creases with darts, or with smooth corners that are semi-sharp
 LAGGING = (
     *((name, "sharp edges", "PRESERVE_CORNERS") for name in ("sheet", "prism", "fin", "monkey")),
     *((name, "fractional edges", "ALL") for name in ("cross", "polygons", "fans")),
@@ -69,15 +69,15 @@ def test_nothing_else_is_left_out(kind):
 
 
 def check_shrinking(distances):
-    """From each quality to the next, until rounding is all that is left."""
+    """The distance shrinks from each quality to the next, until only rounding errors are left."""
     assert distances[0].size
-    assert distances[0].max() > BOUND  # or nothing would have to shrink
+    assert distances[0].max() > BOUND  # otherwise nothing would have to shrink
     for before, after in zip(distances[:-1], distances[1:], strict=True):
         assert np.all(after <= np.maximum(before / 2, BOUND))
 
 
 def test_creases_matter():
-    """Each kind makes another surface than no creases."""
+    """Each kind of crease gives another surface than no creases."""
     shown = {}
     for kind in parity_zoo.CREASES:
         ob = subdivided("sheet", kind)
@@ -95,7 +95,7 @@ def test_use_creases_off():
 @pytest.mark.parametrize("name", ["cross", "sheet", "polygons", "monkey"])
 def test_simple_subdivision(name):
     ob = subdivided(name, "edges and vertices", subdivision_type="SIMPLE")
-    # With its limit surface Blender rounds the inside of polygons that are no quads.
+    # With its limit surface option Blender smooths the UVs inside polygons that are not quads.
     quads_alone = all(polygon.loop_total == 4 for polygon in ob.data.polygons)
     found = Comparison(ob, LEVELS, use_limit_surface=quads_alone)
     assert np.nanmax(found.positions(BEST)) <= BOUND
@@ -129,7 +129,7 @@ def test_uvs_at_decaying_corners_are_approached(name, kind):
 
 
 def test_every_setting_of_uv_smooth_is_another_map():
-    """So that none can be mistaken for another."""
+    """So no setting can be mistaken for another."""
     shown = []
     for uv_smooth in rules.UV_INTERPOLATIONS:
         ob = subdivided("monkey", uv_smooth=uv_smooth)
@@ -146,9 +146,11 @@ def set_uvs(ob, uv):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_uvs_that_almost_meet(seed):
-    """Some of the corners at a vertex are one to Blender, some are not: steps of 0.6e-4. Which of
-    their values it takes for all is up to its threads, so this is about who belongs together:
-    were it told wrongly, a seam would be missing or too many, and the map off by per cents."""
+    """The corners at a vertex differ by steps of 0.6e-4, so that some of them are one corner to
+    Blender and some are not. Which of their values Blender takes for all depends on its threads, so
+    this tests only which corners belong together. If this were wrong, a seam would be missing or
+    added, and the map would be off by several per cent.
+    """
     ob = subdivided("monkey", uv_smooth="SMOOTH_ALL")
     corner_vertex = attributes.read(ob.data, ids.CORNER_VERTEX)
     rng = np.random.default_rng(seed)
@@ -160,7 +162,7 @@ def test_uvs_that_almost_meet(seed):
 
 
 def test_faces_mirrored_on_the_map():
-    """They share no value with faces that are not."""
+    """Mirrored faces share no value with faces that are not mirrored."""
     ob = subdivided("sheet", uv_smooth="SMOOTH_ALL")
     corner_vertex = attributes.read(ob.data, ids.CORNER_VERTEX)
     flat = attributes.read(ob.data, "position")[corner_vertex, :2] / 8

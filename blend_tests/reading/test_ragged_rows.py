@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows that follow each other end to end: where they begin, and who stands beside whom."""
+"""Rows that follow each other end to end: their first elements, and each element's neighbours."""
 
 import numpy as np
 from hypothesis import given
@@ -10,7 +10,7 @@ sizes_of_rows = st.lists(st.integers(1, 9), max_size=12).map(lambda s: np.array(
 
 
 def rows_of(sizes):
-    """The elements of each row, told one by one."""
+    """Returns the elements of each row, collected one by one."""
     rows, count = [], 0
     for size in sizes.tolist():
         rows.append(list(range(count, count + size)))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the add-on tells limitsurf about an object: sharpness, scheme and boundary as Blender's own
-subdivision has them. Looked at in the arguments of ControlMesh, whatever it makes of them."""
+"""The arguments that the add-on passes to ControlMesh for an object: sharpness, scheme and boundary
+as in Blender's own subdivision.
+"""
 
 from types import SimpleNamespace
 
@@ -16,7 +17,9 @@ from scenes import add_mesh, add_subsurf
 
 @pytest.fixture
 def told(monkeypatch):
-    """Call with an object: the keyword arguments of its ControlMesh, sharpness as dictionaries."""
+    """Returns a function that takes an object and returns the keyword arguments of its ControlMesh,
+    with sharpness as dictionaries.
+    """
     keywords = {}
 
     def note(positions, face_sizes, face_vertices, **given):
@@ -41,7 +44,7 @@ def told(monkeypatch):
 
 
 def crease_edges(ob, creases):
-    """creases: {(vertex, vertex): crease}; the edges must exist."""
+    """`creases` is {(vertex, vertex): crease}; the edges must exist."""
     index = {frozenset(edge.vertices): edge.index for edge in ob.data.edges}
     layer = ob.data.edge_creases_ensure()
     for ends, crease in creases.items():
@@ -59,7 +62,7 @@ def single(x):
 
 
 def block():
-    """3 x 3 quads: vertices 0, 3, 12, 15 have two edges, 5, 6, 9, 10 have four."""
+    """Adds 3 x 3 quads: vertices 0, 3, 12, 15 have two edges, 5, 6, 9, 10 have four."""
     positions = [(x, y, 0) for y in range(4) for x in range(4)]
     corners = [4 * y + x for y in range(3) for x in range(3)]
     ob = add_mesh("Block", positions, [(a, a + 1, a + 5, a + 4) for a in corners])
@@ -82,7 +85,8 @@ def test_crease_c_is_sharpness_10_c_squared_in_single_precision(told):
         frozenset(ends): float(np.float32(c) * np.float32(c) * ten) for ends, c in creases.items()
     }
     assert found.edges[frozenset((9, 10))] == 10
-    assert found.edges[frozenset((6, 10))] != 10 * single(0.3) ** 2  # what double gives
+    # the result in double precision
+    assert found.edges[frozenset((6, 10))] != 10 * single(0.3) ** 2
     assert found.vertices == {5: float(np.float32(0.3) * np.float32(0.3) * ten), 9: 10}
 
 
@@ -92,9 +96,9 @@ def test_a_vertex_of_two_edges_adds_the_lesser_of_their_sharpness(told):
     crease_vertices(ob, {0: 0.5, 15: 0.5, 12: 0.4})
     found = told(ob).vertices
     assert found == {
-        0: 2.5 + 2.5,  # its own and the lesser
+        0: 2.5 + 2.5,  # its own sharpness and the smaller one of its edges
         12: pytest.approx(1.6),  # its edges are not creased
-        15: 10,  # at most
+        15: 10,  # the largest sharpness
     }  # 3: one of its edges is not creased
     assert type(found[0]) is float
 
@@ -108,7 +112,7 @@ def test_edges_too_little_creased_for_blender_to_notice(told):
 
 
 def test_a_vertex_of_two_edges_inside_the_mesh(told):
-    """Two quads, back to back along two edges that meet in vertex 0."""
+    """Two quads lie back to back along two edges that meet at vertex 0."""
     positions = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0.5), (1, 1, -0.5)]
     ob = add_mesh("Fold", positions, [(0, 1, 3, 2), (0, 2, 4, 1)])
     crease_edges(ob, {(0, 1): 0.5, (0, 2): 0.3})
@@ -120,7 +124,7 @@ def test_loose_edges_hold_the_vertices_that_they_touch(told, use_creases):
     ob = block()
     ob.modifiers[0].use_creases = use_creases
     mesh = ob.data
-    mesh.vertices.add(2)  # 16, 17: on loose edges alone
+    mesh.vertices.add(2)  # vertices 16 and 17 are only on loose edges
     mesh.edges.add(3)
     for edge, ends in zip(mesh.edges[-3:], [(5, 16), (16, 17), (0, 10)], strict=True):
         edge.vertices = ends
@@ -128,7 +132,7 @@ def test_loose_edges_hold_the_vertices_that_they_touch(told, use_creases):
     crease_edges(ob, {(5, 16): 0.5, (0, 10): 0.5})
     crease_vertices(ob, {16: 0.5, 6: 0.5})
     found = told(ob)
-    assert found.edges == {}  # those creased are no part of the surface
+    assert found.edges == {}  # the creased edges are not part of the surface
     assert found.vertices == {5: 10, 0: 10, 10: 10} | ({6: 2.5} if use_creases else {})
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which place of the cage each vertex and corner of Blender's subdivided mesh is.
+"""The place on the cage of each vertex and corner of Blender's subdivided mesh.
 
-Blender says so itself: Simple subdivision leaves quads flat between their edges and UVs, not
-smoothed, bilinear on each Ptex face, so that positions and UVs name the place.
+Blender itself shows them: Simple subdivision leaves quads flat between their edges, and UVs that
+are not smoothed bilinear on each Ptex face, so that positions and UVs identify the place.
 """
 
 import bpy
@@ -20,7 +20,7 @@ def test_blender_agrees(name, levels):
     ob = parity_zoo.add(name)
     mesh, subsurf = ob.data, ob.modifiers[0]
     subsurf.subdivision_type, subsurf.uv_smooth, subsurf.levels = "SIMPLE", "NONE", levels
-    subsurf.use_limit_surface = False  # with it, polygons that are no quads are not flat
+    subsurf.use_limit_surface = False  # with this option, polygons that are not quads are not flat
     _spread_uvs(mesh)
     corner_vertex = attributes.read(mesh, ids.CORNER_VERTEX)
     at_corners = attributes.read(mesh, "position").astype(float)[corner_vertex]
@@ -41,12 +41,12 @@ def test_blender_agrees(name, levels):
     np.testing.assert_allclose(
         bilinear(positions, vertices.face[used], vertices.uv[used]), expected[used], atol=1e-5
     )
-    # What stands at one vertex is one place, whichever face it is seen from.
+    # All corners at one vertex are the same place, on whichever face they are.
     np.testing.assert_allclose(bilinear(positions, *corners), expected[shown_vertex], atol=1e-5)
 
 
 def _spread_uvs(mesh):
-    """Each polygon to a place of its own, so that no corner looks like another."""
+    """Moves each polygon to a place of its own, so that no two corners have the same UV."""
     uv = []
     for polygon in mesh.polygons:
         angle = 2 * np.pi * np.arange(polygon.loop_total) / polygon.loop_total

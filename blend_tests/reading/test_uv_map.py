@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which corners share one UV value."""
+"""Corners that share one UV value."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from limit_surface.reading import attributes, uv_map
 
 
 def leaders(vertex, uv, mirrored):
-    """For each corner the one whose value it takes, told vertex by vertex."""
+    """Returns for each corner the one whose value it takes, found vertex by vertex."""
     found = list(range(len(vertex)))
     for v in set(vertex):
         rest = [c for c in range(len(vertex)) if vertex[c] == v]
@@ -64,12 +64,12 @@ def test_corners_closer_than_blenders_limit_are_one(fan, shift, count, axis):
     uv[3, axis] += shift  # the second face's corner at vertex 0, which is at (0, 0)
     found = read(fan, uv)
     assert len(found.values) == count
-    if count == 9:  # the last corner's value is everybody's
+    if count == 9:  # all corners take the last corner's value
         np.testing.assert_array_equal(found.values[found.indices[3]], (0, 0))
 
 
 def test_faces_that_are_mirrored_on_the_map_share_nothing_with_others(fan):
-    """As behind a mirror modifier, whose halves lie on each other."""
+    """This is so after a Mirror modifier, whose halves lie on each other."""
     uv = from_vertices(fan)
     uv[3:7] = uv[3:7] * [-1, 1]  # the second face
     found = read(fan, uv)
@@ -88,7 +88,7 @@ def test_corners_of_different_vertices_share_nothing(fan):
     st.lists(st.booleans(), min_size=5, max_size=5),
 )
 def test_as_told_vertex_by_vertex(steps, mirrored):
-    """Shifts of about the limit, where who is close to whom depends on the order."""
+    """The shifts are close to the limit, where the result depends on the order of the corners."""
     vertex = np.concatenate(FAN)
     uv = (np.array(steps) * 0.6e-4 + 0.5).astype(np.float32)
     mirrored = np.repeat(mirrored, [len(face) for face in FAN])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The distances that are reported, against a crowd of points on the triangles that Blender draws
-and a fine tessellation of the limit surface."""
+"""The reported distances are compared with many points on the triangles that Blender draws and a
+fine tessellation of the limit surface.
+"""
 
 import threading
 from types import SimpleNamespace
@@ -24,16 +25,17 @@ from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
 from waiting import LIMIT, wait_for
 
-AMONG = 8  # parts along a side of each triangle
-SINGLE = 1e-6  # what Blender rounds coordinates up to 5 by
+AMONG = 8  # number of parts along a side of each triangle
+SINGLE = 1e-6  # the rounding error of Blender's coordinates up to 5
 
 
 class Crowd(NamedTuple):
-    """Points in the world, on every triangle: corners of equal parts of it, without weight, and
-    the parts' middles."""
+    """Points in the world on every triangle: the corners of its equal parts, which have no weight,
+    and the middles of the parts.
+    """
 
-    apart: np.ndarray  # from the nearest point of the tessellated limit surface
-    slide: np.ndarray  # from the same place on the limit surface
+    apart: np.ndarray  # distances from the nearest point of the tessellated limit surface
+    slide: np.ndarray  # distances from the same place on the limit surface
     weight: np.ndarray  # area
     face: np.ndarray
     uv: np.ndarray
@@ -130,7 +132,7 @@ def test_the_attribute_is_the_largest_distance_around_each_vertex():
 
 
 def test_flat_faces_are_on_the_surface():
-    """Simple subdivision has a limit that every level of it shows."""
+    """Simple subdivision has a limit surface that every level shows exactly."""
     ob = scenes.flat_grid(3)
     scenes.add_subsurf(ob).subdivision_type = "SIMPLE"
     found = report(ob)
@@ -141,8 +143,9 @@ def test_flat_faces_are_on_the_surface():
 
 
 def test_a_plane_with_rounded_corners_is_off_at_the_corners_only():
-    """Inside, a flat grid is its own limit surface; at its corners the mesh at level 0 sticks
-    out of a curve that passes the corner at a distance of (1/6, 1/6)."""
+    """Inside, a flat grid is its own limit surface. At its corners the mesh at level 0 reaches
+    beyond a curve that passes the corner at a distance of (1/6, 1/6).
+    """
     ob = scenes.flat_grid(5)
     scenes.add_subsurf(ob).levels = 0
     found = report(ob, levels="VIEWPORT")["VIEWPORT"]
@@ -181,7 +184,7 @@ def test_colours_tell_distances():
     assert yellow[:2].min() > 0.7 > 0.1 > yellow[2]
     assert violet[2] > 2 * max(violet[1], 0.02)
     assert ob.data.color_attributes.active_color.name == ids.DISTANCE_COLOR
-    # What is seen is the subdivided mesh, which has it too.
+    # The viewport shows the subdivided mesh, which has the attribute, too.
     shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     assert colours(shown).shape == (len(shown.vertices), 4)
     np.testing.assert_allclose(colours(shown)[:, :3].max(), colour[:, :3].max(), atol=0.3)
@@ -201,7 +204,7 @@ def test_full_colour():
 
 
 def test_vertices_that_modifiers_make():
-    """Numbers there are, but the mesh has no vertices to hold the attribute."""
+    """The numbers are reported, but the mesh has no vertices to store the attribute."""
     ob = parity_zoo.add("sheet")
     plain = report(ob)
     for name in (ids.DISTANCE, ids.DISTANCE_COLOR):
@@ -363,8 +366,9 @@ def test_page_has_an_example_that_runs(capsys):
 
 
 def watched(**chosen):
-    """The operator as a user has it who waits: a stand-in of plain Python, as Blender makes no
-    operators without a window, and a context whose window only takes notes."""
+    """Returns a stand-in for the operator in plain Python, because Blender makes no operators
+    without a window, and a context whose window only records calls.
+    """
     kind = bpy.types.OBJECT_OT_limit_report
     own = ("start", "finish", "_kinds", "_report", "too_large", "cancelled")
     cls = type("StandIn", (WatchedOperator,), {name: getattr(kind, name) for name in own})
@@ -379,7 +383,7 @@ def watched(**chosen):
 
 @pytest.fixture
 def slowly(monkeypatch):
-    """Measuring that waits, half way, until it is let go on."""
+    """Measuring stops half way until the event is set."""
     go_on = threading.Event()
     measure = distances.measure
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bones' heads on the target's limit surface, and what becomes of tails, joints and rolls."""
+"""Bones' heads on the target's limit surface, and the resulting tails, joints and rolls."""
 
 import bpy
 import numpy as np
@@ -38,7 +38,7 @@ def armature(target):
 
 
 def select(ob, chosen):
-    """Bones as a whole, and "joint" for the one joint that three bones share."""
+    """Selects whole bones, or with "joint" the one joint that three bones share."""
     bones = ob.data.edit_bones
     for bone in bones:
         bone.select = bone.select_head = bone.select_tail = bone.name in chosen
@@ -51,7 +51,7 @@ def select(ob, chosen):
 
 
 def ends(ob):
-    """Of all bones, in world space: heads and tails."""
+    """Returns the heads and tails of all bones, in world space."""
     bones = ob.data.edit_bones
     return (
         {b.name: np.array(ob.matrix_world @ b.head) for b in bones},
@@ -157,7 +157,7 @@ def test_tails_alone_are_nothing_to_snap(armature):
 
 @pytest.fixture
 def before_a_corner(armature):
-    """To which all of its bones' heads are closest."""
+    """Adds an armature whose heads are all closest to one corner."""
     corner = scenes.flat_grid(1)
     corner.select_set(False)
     scenes.activate(armature)
@@ -169,7 +169,7 @@ def before_a_corner(armature):
 
 
 def names_outside_edit_mode(armature):
-    """Blender removes bones without length when that mode is left."""
+    """Blender removes bones without length when Edit Mode is left."""
     bpy.ops.object.mode_set(mode="OBJECT")
     names = set(armature.data.bones.keys())
     bpy.ops.object.mode_set(mode="EDIT")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hair snapped by its roots: how strands follow, and what is stored of their new places."""
+"""Hair snapped by its roots: the motion of strands, and what is stored of their new places."""
 
 import bpy
 import numpy as np
@@ -14,7 +14,7 @@ EXACT = 1e-6
 
 
 def check_stored(hair, target, chosen=slice(None)):
-    """The locations lead to the roots and frames that are stored, as for new hair."""
+    """The locations lead to the stored roots and frames, as for new hair."""
     truth = Truth(target)
     face, uv = scenes.locations(hair.data)
     face, uv = face[chosen], uv[chosen]
@@ -116,7 +116,7 @@ def frames_in_world(truth, data):
 
 
 def test_strands_turn_with_the_frames_that_they_were_bound_to():
-    """Combed hair, its mesh bent afterwards: strands stand to the surface as they did before."""
+    """The mesh is bent after the hair was combed: strands keep their angles to the surface."""
     target = scenes.cross()
     hair = scenes.add_hair(target, per_side=2, tilt=(0.5, 0.3))
     before, old = world_strands(hair), frames_in_world(Truth(target), hair.data)
@@ -207,7 +207,7 @@ def test_selected_strands(mode, domain):
     hair, truth = add_hair(target), Truth(target)
     chosen = np.array([True, False, True, False, False, True])
     selection = chosen
-    if domain == "POINT":  # of each selected strand the last point
+    if domain == "POINT":  # the last point of each selected strand
         selection = np.zeros(sum(SIZES), bool)
         selection[np.cumsum(SIZES)[chosen] - 1] = True
     in_mode(hair, target, mode, selection, domain)
@@ -244,7 +244,7 @@ def test_part_of_another_surfaces_hair_is_refused():
     bpy.ops.object.mode_set(mode="OBJECT")
     np.testing.assert_array_equal(attributes.read(hair.data, "position"), before)
     hair.select_set(True)
-    snap(target)  # as a whole it changes to the other surface
+    snap(target)  # if all its strands are snapped, hair changes to the other surface
     assert hair.data.surface == target
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects snapped to the limit surface: places, rotations, parents, and what holds them back."""
+"""Objects snapped to the limit surface: places, rotations, parents, and obstacles."""
 
 import bpy
 import numpy as np
@@ -8,7 +8,7 @@ import scenes
 from mathutils import Matrix, Vector
 from snap_truth import Truth, add_object, mirrored, near, snap, stretched, world_locations
 
-EXACT = 1e-6  # in single precision, of objects some units away from the origin
+EXACT = 1e-6  # the error of single precision for objects some units away from the origin
 
 
 @pytest.mark.parametrize("scene", ["cross", "grid with holes", "mixed polygons"])
@@ -35,7 +35,7 @@ def test_snapping_twice_is_snapping_once():
         snap(target, **properties)
         twice = np.array([thing.matrix_world for thing in things])
         np.testing.assert_allclose(twice[:, :3, 3], once[:, :3, 3], atol=EXACT)
-        # Next to corners the frame turns by far more than one moves.
+        # Next to corners a small move turns the frame by a large angle.
         np.testing.assert_allclose(twice, once, atol=1e-4)
 
 
@@ -83,7 +83,9 @@ def test_along_an_axis(orientation, axis):
 
 
 def check_along_lines(truth, before, after, directions):
-    """What moved is on the surface and moved along its line, and nothing is closer there."""
+    """Each moved object is on the surface and has moved along its line, and nothing on the line is
+    closer.
+    """
     moved = np.linalg.norm(after - before, axis=1) > 0
     assert moved.any()
     for start, end, direction, did in zip(before, after, directions, moved, strict=True):
@@ -98,7 +100,7 @@ def check_along_lines(truth, before, after, directions):
 
 
 def crossed(truth, start, direction):
-    """Where the line meets the triangles through the samples."""
+    """Returns where the line meets the triangles through the samples."""
     side = int(np.sqrt(len(truth.samples) // truth.surface.face_count))
     grid = truth.samples.reshape(-1, side, side, 3)
     a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
@@ -156,7 +158,7 @@ def test_one_way_along_the_own_normal():
 
 
 def test_an_object_on_the_surface_stays_there_whichever_way(capfd):
-    """On its border too, where a line might miss it."""
+    """This holds on the border, too, where a line might miss the surface."""
     target = stretched(scenes.mixed_polygons())
     things = [add_object(point) for point in near(target, 30, 0.5)]
     snap(target)
@@ -179,8 +181,9 @@ def test_maximum_distance_and_report(capfd):
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_facing(side):
-    """Two sheets that face each other: the closer one is passed over if it faces away. A mirrored
-    object is the same two sheets."""
+    """Two sheets face each other: the closer one is skipped if it faces away. A mirrored object has
+    the same two sheets.
+    """
     y, x = np.mgrid[:5, :5].reshape(2, -1)
     sheet = np.stack([x, y, 0 * x], axis=1).astype(float)
     first = (np.arange(4) * 5)[:, None] + np.arange(4)
@@ -231,7 +234,7 @@ def test_align(mode, align, placed):
         tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
         np.testing.assert_allclose(axes[:, :, 0], tangent, atol=1e-4)
     else:
-        # By the smallest angle: what is at right angles to both normals is not turned.
+        # With the smallest angle, the direction at right angles to both normals does not change.
         was = before[:, :, 2] / np.linalg.norm(before[:, :, 2], axis=1, keepdims=True)
         for old, new, a, b in zip(before, matrix, was, normals, strict=True):
             turn = np.array(Vector(a).rotation_difference(Vector(b)).to_matrix())
@@ -239,7 +242,7 @@ def test_align(mode, align, placed):
 
 
 def family():
-    """A stretched and turned parent with a child at an angle, both away from the target."""
+    """Adds a stretched and turned parent with a rotated child, both away from the target."""
     parent = add_object((0.3, 0.2, 0.8), name="Parent")
     parent.scale, parent.rotation_euler = (2, 1, 0.5), (0.2, 0.3, 0.4)
     child = add_object((0.2, 0.1, 0.6), name="Child")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Snapping as an operator: undo, adjusting afterwards, refusals, and what the panels show."""
+"""Snapping as an operator: undo, adjusting afterwards, refusals, and the panels."""
 
 from types import SimpleNamespace
 from unittest.mock import MagicMock
@@ -82,7 +82,9 @@ SELECT_ALL = {
     ("kind", "mode"), [*((kind, "EDIT") for kind in EDITED), ("hair", "SCULPT_CURVES")]
 )
 def test_undo_redo_and_adjusting_in_edit_mode(kind, mode):
-    """As Blender runs an operator again with other properties: undone, then called anew."""
+    """Blender runs an operator again with other properties in this way: it undoes it and calls it
+    anew.
+    """
     make, points = EDITED[kind]
     ob = make(choose_target(stretched(scenes.cross())))
     ob.name = "Edited"
@@ -238,7 +240,9 @@ def test_properties_are_where_the_result_is_adjusted():
 
 
 def test_the_view_is_the_3d_viewports():
-    """And it is kept, for adjusting the result when the viewport has turned."""
+    """The view is stored, so that adjusting the result still works after the viewport has
+    turned.
+    """
     turned = Matrix.Rotation(0.3, 4, "X") @ Matrix.Translation((1, 2, -20))
     region = SimpleNamespace(view_matrix=turned, is_perspective=True)
     operator = SimpleNamespace(view_matrix=Matrix.Diagonal((0,) * 4), view_is_perspective=False)
@@ -265,7 +269,7 @@ def test_the_target_is_saved_with_the_scene(tmp_path):
 
 
 def test_a_target_that_is_gone_from_the_scene():
-    """It stays a target: its surface does not depend on being seen."""
+    """The object stays a target, because its surface does not depend on its visibility."""
     target = choose_target(stretched(scenes.cross()))
     truth = Truth(target)
     cloud = add_cloud(target)

@@ -72,7 +72,7 @@ def test_hidden_vertices_stay():
 
 
 def test_along_vertex_normals():
-    """A small ball inside a large one: each vertex goes straight out."""
+    """A small ball is inside a large one: each vertex moves straight outwards."""
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=4, location=(1, 2, 3))
     target = choose_target(bpy.context.object)
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1, radius=1, location=(1, 2, 3))
@@ -82,7 +82,7 @@ def test_along_vertex_normals():
         snap(mode="NORMAL", direction="POSITIVE")
     after = world_vertices(ball)
     np.testing.assert_allclose(truth.distances(after), 0, atol=EXACT)
-    # Blender's vertex normals are some 1e-5 off.
+    # Blender's vertex normals have errors of about 1e-5.
     np.testing.assert_allclose(np.cross(after - before, before - (1, 2, 3)), 0, atol=1e-4)
     assert np.linalg.norm(after - (1, 2, 3), axis=1).min() > 3
 

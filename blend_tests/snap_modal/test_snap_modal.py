@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""view3d.limit_snap_modal without a window: at a location, and where it refuses.
+"""view3d.limit_snap_modal without a window: at a location, and its refusals.
 
 Mouse and keys are tested in blend_tests/gui.
 """
@@ -22,7 +22,9 @@ def target():
 
 
 def foot(target):
-    """Position and outward normal in the world, by the surface of the cage put there."""
+    """Returns the position and outward normal in the world, from the surface of the cage in world
+    space.
+    """
     evaluated = scenes.surface_without_addon(target).evaluate(FACE, [UV], derivatives=1)
     matrix = np.array(target.matrix_world, np.float64)
     normal = evaluated.normal[0] @ np.linalg.inv(matrix[:3, :3])
@@ -60,7 +62,7 @@ def test_object(target):
 def test_vertex(target):
     triangle = scenes.add_mesh("Triangle", [(0, 0, 5), (1, 0, 5), (0, 1, 5)], [(0, 1, 2)])
     triangle.scale = (2, 1, 3)
-    target.select_set(False)  # or it would be edited as well
+    target.select_set(False)  # otherwise it would be edited as well
     bpy.context.view_layer.update()
     bpy.ops.object.mode_set(mode="EDIT")
     assert drag(element=1) == {"FINISHED"}
@@ -94,7 +96,7 @@ def test_strand(target, hair_mode):
 
 @pytest.mark.parametrize("kind", ["VIEWPORT", "RENDER"])
 def test_on_the_polygons_that_are_shown(target, kind):
-    """At a corner of a face they have the vertex of the subdivided mesh."""
+    """At a corner of a face the polygons have the vertex of the subdivided mesh."""
     subsurf = scenes.add_subsurf(target)
     subsurf.levels, subsurf.render_levels = 1, 2
     ob = pin(target)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Areas and weights of faces added up over fine polygons, to hold scattered locations against."""
+"""Areas and weights of faces, summed over fine polygons, to compare scattered locations with."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,7 @@ STEPS = 24  # polygons along each side of a Ptex face
 
 
 def grid(face_count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The middles of STEPS x STEPS cells on each face."""
+    """Returns the middles of STEPS x STEPS cells on each face."""
     at = (np.arange(STEPS) + 0.5) / STEPS
     u, v = (x.ravel() for x in np.meshgrid(at, at))
     face = np.repeat(np.arange(face_count), STEPS**2)
@@ -19,7 +19,9 @@ def grid(face_count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cell_areas(ob: bpy.types.Object, boundary: str = "ALL") -> np.ndarray:
-    """Of the cells of `grid`, in the world, each as two triangles with corners on the surface."""
+    """Returns the areas of the cells of `grid` in the world, each as two triangles with corners on
+    the surface.
+    """
     surface = scenes.surface_without_addon(ob, boundary)
     at = np.arange(STEPS + 1) / STEPS
     v, u = (x.ravel() for x in np.meshgrid(at, at, indexing="ij"))
@@ -35,7 +37,7 @@ def cell_areas(ob: bpy.types.Object, boundary: str = "ALL") -> np.ndarray:
 def expected_parts(
     ob: bpy.types.Object, density: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
 ) -> np.ndarray:
-    """What part of all locations each face should get."""
+    """Returns the share of all locations that each face should get."""
     areas = cell_areas(ob)
     if density:
         areas = areas * density(*grid(len(areas) // STEPS**2))
@@ -44,7 +46,9 @@ def expected_parts(
 
 
 def check_parts(face: np.ndarray, parts: np.ndarray) -> None:
-    """By the chi-square test; what it adds up has the mean and half the variance `freedom`."""
+    """Applies the chi-square test, whose sum has the mean `freedom` and twice that as its
+    variance.
+    """
     counts = np.bincount(face, minlength=len(parts))
     assert not counts[parts == 0].any()
     expected = len(face) * parts[parts > 0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes with attributes of every kind, and what Blender's own subdivision makes of them."""
+"""Meshes with attributes of every type, and what Blender's own subdivision makes of them."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from limit_surface import ids
 from limit_surface.reading import attributes
 from mathutils.kdtree import KDTree
 
-BEST = 10  # quality at which Blender's vertices are on the limit surface
+BEST = 10  # the quality at which Blender's vertices are on the limit surface
 KINDS = {
     "POINT": ("FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR", "INT", "BOOLEAN"),
     "CORNER": ("FLOAT", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR", "INT"),
@@ -21,8 +21,9 @@ GROUPS = ("Left", "Few")
 
 
 def dress(ob: bpy.types.Object, seed: int = 0) -> bpy.types.Object:
-    """Random values in attributes of every kind, two UV maps with seams, vertex groups, materials,
-    seams."""
+    """Adds random values in attributes of every type, two UV maps with seams, vertex groups and
+    materials.
+    """
     rng, mesh = np.random.default_rng(seed), ob.data
     for domain, kinds in KINDS.items():
         for kind in kinds:
@@ -69,7 +70,7 @@ def make(ob: bpy.types.Object, **properties: object) -> bpy.types.Object:
 
 
 def bytes_of(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
-    """Colours of 8 bits as they are stored."""
+    """Returns colours of 8 bits as they are stored."""
     data = mesh.attributes[name].data
     values = np.empty(4 * len(data), np.float32)
     data.foreach_get("color_srgb", values)
@@ -81,14 +82,14 @@ def corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def corner_normals(mesh: bpy.types.Mesh) -> np.ndarray:
-    """As Blender shows them."""
+    """Returns the normals of corners as Blender shows them."""
     values = np.empty(3 * len(mesh.loops), np.float32)
     mesh.corner_normals.foreach_get("vector", values)
     return values.reshape(-1, 3)
 
 
 def weights(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> np.ndarray:
-    """(vertices, groups)."""
+    """Returns weights (vertices, groups)."""
     values = np.zeros((len(mesh.vertices), len(ob.vertex_groups)))
     for i, vertex in enumerate(mesh.vertices):
         for element in vertex.groups:
@@ -98,13 +99,15 @@ def weights(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> np.ndarray:
 
 @dataclass
 class Matched:
-    """Of each polygon, and each corner, of one mesh: which it is in another with the same ones."""
+    """For each polygon, and each corner, of one mesh the number that it has in another mesh with
+    the same polygons.
+    """
 
     polygon: np.ndarray
     corner: np.ndarray
 
     def rows(self, domain: str, mesh: bpy.types.Mesh, other: bpy.types.Mesh):
-        """Pairs of elements: of the one mesh and of the other."""
+        """Yields pairs of elements, one of each mesh."""
         if domain == "FACE":
             return np.arange(len(self.polygon)), self.polygon
         if domain == "CORNER":
@@ -114,7 +117,7 @@ class Matched:
 
 
 def match(mesh: bpy.types.Mesh, other: bpy.types.Mesh) -> Matched:
-    """Quads by the places of their corners; all else is left to be compared."""
+    """Matches quads by the places of their corners; everything else is compared afterwards."""
     here, there = (_quads(each) for each in (mesh, other))
     assert len(here) == len(there)
     tree = KDTree(len(there))

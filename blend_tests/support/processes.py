@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Programs run in a Blender module of their own, apart from the tests' one."""
+"""Programs that run in a Blender module of their own, apart from that of the tests."""
 
 import os
 import subprocess
@@ -8,7 +8,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# Blender's clean-up at exit can hang after a Python error: leave at once, with the right code.
+# Blender's clean-up at exit can hang after a Python error, so the process ends at once, with the
+# right code.
 LEAVE = """
 import os, sys, traceback
 def leave(*error):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What projected images are measured against: Blender's own mesh, so finely subdivided that it is
-the limit surface, its own UVs, and rays of its own camera. Nothing of the add-on is asked."""
+"""The truth for projected images: Blender's own mesh, so finely subdivided that it is the limit
+surface, its own UVs, and rays of its own camera. None of this uses the add-on.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from mathutils.bvhtree import BVHTree
 
 
 def fine_subsurf(ob: bpy.types.Object, level: int = 5) -> bpy.types.SubsurfModifier:
-    """Its vertices lie on the limit surface but for single precision."""
+    """Adds a modifier that puts vertices on the limit surface, up to single precision."""
     subsurf = ob.modifiers.new("Subdivision", "SUBSURF")
     subsurf.levels = subsurf.render_levels = level
     subsurf.quality = 10
@@ -21,7 +22,7 @@ def fine_subsurf(ob: bpy.types.Object, level: int = 5) -> bpy.types.SubsurfModif
 
 
 class FineMesh:
-    """In the world."""
+    """The fine mesh in the world."""
 
     def __init__(self, ob: bpy.types.Object) -> None:
         mesh = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
@@ -36,7 +37,7 @@ class FineMesh:
         self._tree = BVHTree.FromPolygons(self.positions.tolist(), self._triangles.tolist())
 
     def seen(self, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        """(n, 2) on the UV map, where rays hit first; NaN where they miss."""
+        """Returns the places (n, 2) on the UV map that rays hit first; NaN where they miss."""
         hits = [
             self._tree.ray_cast(Vector(o), Vector(d))
             for o, d in zip(origins.tolist(), directions.tolist(), strict=True)
@@ -54,7 +55,7 @@ class FineMesh:
         return found
 
     def is_seen(self, points: np.ndarray, eye: np.ndarray) -> np.ndarray:
-        """Whether nothing lies between the points and an eye."""
+        """Tells whether nothing lies between the points and an eye."""
         away = eye - points
         lengths = np.linalg.norm(away, axis=1)
         off = 1e-4 * lengths.max()
@@ -68,7 +69,7 @@ class FineMesh:
 
 
 def add_camera(location, target=(0, 0, 0), **settings: object) -> bpy.types.Object:
-    """The scene's camera from now on."""
+    """Adds a camera and makes it the scene's camera."""
     data = bpy.data.cameras.new("Camera")
     for name, value in settings.items():
         setattr(data, name, value)
@@ -85,7 +86,9 @@ def add_camera(location, target=(0, 0, 0), **settings: object) -> bpy.types.Obje
 def camera_rays(
     ob: bpy.types.Object, st: np.ndarray, size: tuple[int, int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Origins and directions through places of the camera's frame, as Blender draws that."""
+    """Returns origins and directions of rays through places of the camera's frame, as Blender draws
+    that frame.
+    """
     render = bpy.context.scene.render
     render.resolution_x, render.resolution_y = size
     frame = np.array(ob.data.view_frame(scene=bpy.context.scene))
@@ -100,14 +103,14 @@ def camera_rays(
 
 
 def pixels(image: bpy.types.Image) -> np.ndarray:
-    """(height, width, 4), as Blender's buffer has them."""
+    """Returns pixels (height, width, 4) as in Blender's buffer."""
     values = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(values)
     return values.reshape(image.size[1], image.size[0], image.channels or 4)
 
 
 def sampled(values: np.ndarray, uv: np.ndarray) -> np.ndarray:
-    """Between the four nearest pixels, linearly."""
+    """Interpolates linearly between the four nearest pixels."""
     height, width = values.shape[:2]
     place = uv * [width, height] - 0.5
     first = np.floor(place).astype(int)
@@ -121,7 +124,9 @@ def sampled(values: np.ndarray, uv: np.ndarray) -> np.ndarray:
 
 
 def image_of_places(size: tuple[int, int] = (64, 64)) -> bpy.types.Image:
-    """Its red is s, its green is t: linear between pixels, whatever is looked up is told."""
+    """Makes an image whose red is s and whose green is t. They are linear between pixels, so any
+    lookup returns its own place.
+    """
     image = bpy.data.images.new("Places", *size, alpha=True, float_buffer=True, is_data=True)
     t, s = (np.mgrid[: size[1], : size[0]] + 0.5) / np.array(size[::-1])[:, None, None]
     values = np.stack([s, t, 0 * s + 0.25, 0 * s + 1], axis=-1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators that say why they do nothing, and leave everything as it was."""
+"""Operators that refuse with a reason, and change nothing."""
 
 import bpy
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects to test on, and what is looked at in them."""
+"""Objects for tests, and functions that look at them."""
 
 from collections.abc import Callable, Sequence
 
@@ -20,7 +20,7 @@ def add_mesh(
     faces: Sequence[Sequence[int]],
     edges: Sequence[tuple[int, int]] = (),
 ) -> bpy.types.Object:
-    """A new object, active, as a user's is."""
+    """Adds a new object and makes it active, as a user does."""
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(positions, edges, faces)
     ob = bpy.data.objects.new(name, mesh)
@@ -35,21 +35,23 @@ def cross() -> bpy.types.Object:
 
 
 def grid_with_holes() -> bpy.types.Object:
-    """5 x 4 quads on a bent sheet, two of them missing: corners of 1, 2 and 3 faces."""
+    """Adds 5 x 4 quads on a bent sheet without two of them, so that it has corners of 1, 2 and 3
+    faces.
+    """
     positions = [(x, y, 0.3 * np.sin(1.3 * x) + 0.2 * y * y) for y in range(5) for x in range(6)]
     faces = np.delete(grids.grid_faces(5, 4), [6, 13], axis=0)
     return add_mesh("Holes", positions, faces.tolist())
 
 
 def flat_grid(side: int) -> bpy.types.Object:
-    """Squares of size 1: away from the border the limit surface is the mesh itself."""
+    """Adds squares of size 1. Away from the border the limit surface is the mesh itself."""
     y, x = np.mgrid[: side + 1, : side + 1].reshape(2, -1)
     faces = grids.grid_faces(side, side)
     return add_mesh("Flat", np.stack([x, y, 0 * x], axis=1), faces.tolist())
 
 
 def mixed_polygons() -> bpy.types.Object:
-    """A triangle, a pentagon and quads around a vertex, open all around."""
+    """Adds a triangle, a pentagon and quads around a vertex, with an open boundary."""
     return add_mesh("Mixed", *zoo.polygons())
 
 
@@ -73,7 +75,7 @@ def add_subsurf(ob: bpy.types.Object, boundary: str = "ALL") -> bpy.types.Subsur
 
 
 def add_uv_map(ob: bpy.types.Object, affine: Callable[[np.ndarray], np.ndarray]) -> None:
-    """A UV map that is a function of the vertices' positions."""
+    """Adds a UV map that is a function of the vertices' positions."""
     layer = ob.data.uv_layers.new(name="Flat")
     corners = attributes.read(ob.data, ids.CORNER_VERTEX)
     positions = attributes.read(ob.data, "position")[corners]
@@ -97,7 +99,7 @@ def add_points(ob: bpy.types.Object, **properties: object) -> bpy.types.Object:
 
 
 def strands(hair: bpy.types.Object) -> np.ndarray:
-    """Control points (strands, points, 3) in the hair's own space."""
+    """Returns control points (strands, points, 3) in the hair's own space."""
     return attributes.read(hair.data, "position").reshape(len(hair.data.curves), -1, 3)
 
 
@@ -106,7 +108,7 @@ def locations(data: bpy.types.ID) -> tuple[np.ndarray, np.ndarray]:
 
 
 def ptex_corners(ob: bpy.types.Object, corner_values: np.ndarray) -> np.ndarray:
-    """Values at the four corners of every Ptex face, told polygon by polygon."""
+    """Returns the values at the four corners of every Ptex face, calculated polygon by polygon."""
     found = []
     for polygon in ob.data.polygons:
         p = corner_values[polygon.loop_start : polygon.loop_start + polygon.loop_total]
@@ -132,7 +134,9 @@ def on_base_mesh(ob: bpy.types.Object, face: np.ndarray, uv: np.ndarray) -> np.n
 
 
 def surface_without_addon(ob: bpy.types.Object, boundary: str = "ALL") -> limitsurf.LimitSurface:
-    """The limit surface of the mesh that Blender shows once all Subdivision modifiers are off."""
+    """Returns the limit surface of the mesh that Blender shows once all Subdivision modifiers are
+    disabled.
+    """
     subsurfs = [m for m in ob.modifiers if m.type == "SUBSURF"]
     shown = [m.show_viewport for m in ob.modifiers]
     for modifier in list(ob.modifiers)[ob.modifiers.find(subsurfs[0].name) if subsurfs else 0 :]:
@@ -151,6 +155,6 @@ def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def file_contents() -> dict[str, list[str]]:
-    """The names of everything in the file, kind by kind."""
+    """Returns the names of everything in the file, by type."""
     kinds = (p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION")
     return {kind: sorted(item.name_full for item in getattr(bpy.data, kind)) for kind in kinds}

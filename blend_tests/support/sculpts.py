@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Copies of meshes that Blender has subdivided, and somebody has sculpted."""
+"""Copies of meshes that Blender has subdivided, with a sculpted shape."""
 
 from collections.abc import Callable
 
@@ -11,8 +11,9 @@ from limit_surface.reading import attributes
 
 
 def subdivided_copy(ob: bpy.types.Object, levels: int, name: str = "Sculpt") -> bpy.types.Object:
-    """A mesh of its own, with the vertices where plain subdivision puts them, so that its limit
-    surface is the same, and a modifier of its own."""
+    """Makes a mesh of its own, with the vertices where plain subdivision puts them, so that its
+    limit surface is the same, and with a modifier of its own.
+    """
     copy = ob.copy()
     copy.data, copy.name = ob.data.copy(), name
     bpy.context.collection.objects.link(copy)
@@ -39,5 +40,5 @@ def reshape(ob: bpy.types.Object, change: Callable[[np.ndarray], np.ndarray]) ->
 
 
 def ripples(at: np.ndarray) -> np.ndarray:
-    """In all three directions."""
+    """Moves vertices in all three directions."""
     return at + 0.1 * np.sin(3 * at[:, [1, 2, 0]])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tests snap: hair, points of meshes and curves, bones."""
+"""Things for tests to snap: hair, points of meshes and curves, bones."""
 
 import bpy
 import numpy as np
@@ -18,7 +18,9 @@ BONES = {  # head, tail, parent, connected
 
 
 def add_hair(target, sizes=SIZES, seed=1):
-    """Strands of various lengths near the target, in a space of their own; selected."""
+    """Adds strands of various lengths near the target, in a space of their own, and selects
+    them.
+    """
     rng = np.random.default_rng(seed)
     data = bpy.data.hair_curves.new("Hair")
     data.add_curves(sizes)
@@ -35,7 +37,7 @@ def add_hair(target, sizes=SIZES, seed=1):
 
 
 def world_strands(ob):
-    """One array (points, 3) for each strand."""
+    """Returns one array (points, 3) for each strand."""
     bpy.context.view_layer.update()
     points = attributes.read(ob.data, "position").astype(np.float64)
     points = scenes.transformed(ob.matrix_world, points)
@@ -55,7 +57,7 @@ def choose_target(ob):
 
 
 def add_cloud(target, count=12, spread=0.3):
-    """Loose vertices around the target, in a stretched object of their own."""
+    """Adds loose vertices around the target, in a stretched object of their own."""
     cloud = scenes.add_mesh("Cloud", near(target, count, spread), [])
     cloud.rotation_euler, cloud.scale = (0.3, 0.1, 0.2), (1, 2, 0.5)
     bpy.context.view_layer.update()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What snapping is measured against: dense samples of the surface, refined in ever smaller strides.
+"""The truth for snapping: dense samples of the surface, refined in ever smaller steps.
 
-Nothing but evaluation is asked of limitsurf here.
+Of limitsurf only evaluation is used here.
 """
 
 import bpy
@@ -9,11 +9,12 @@ import numpy as np
 import scenes
 
 SIDE = 17  # samples along each side of a face
-STARTS = 6  # of the refinement, for each point: the closest samples of as many faces
+# number of starts of the refinement for each point: the closest samples of so many faces
+STARTS = 6
 
 
 class Truth:
-    """An object's limit surface in world space."""
+    """The limit surface of an object in world space."""
 
     def __init__(self, ob: bpy.types.Object, boundary: str = "ALL") -> None:
         bpy.context.view_layer.update()
@@ -30,7 +31,9 @@ class Truth:
         return scenes.transformed(self.matrix, self.surface.evaluate(face, uv).position)
 
     def normals(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """Outward as Blender shows them: those of a mirrored object point the same way."""
+        """Returns normals that point outward as Blender shows them: those of a mirrored object
+        point the same way.
+        """
         local = self.surface.frames(face, uv)[:, :, 2]
         world = np.linalg.solve(self.matrix[:3, :3].T, local.T).T
         return world / np.linalg.norm(world, axis=1, keepdims=True)
@@ -39,7 +42,7 @@ class Truth:
         return np.array([self.closest(point)[2] for point in np.reshape(points, (-1, 3))])
 
     def closest(self, point: np.ndarray) -> tuple[int, np.ndarray, float]:
-        """Face, (u, v) and distance."""
+        """Returns the face, (u, v) and distance."""
         squared = ((self.samples - point) ** 2).sum(axis=1).reshape(self._faces, -1)
         face = np.argsort(squared.min(axis=1))[:STARTS]
         uv = self._uv[: SIDE**2][squared[face].argmin(axis=1)]
@@ -50,14 +53,15 @@ class Truth:
             positions = self.positions(np.repeat(face, len(steps)), tried.reshape(-1, 2))
             off = np.linalg.norm(positions - point, axis=1).reshape(tried.shape[:2])
             best = tried[np.arange(len(face)), off.argmin(axis=1)]
-            if np.array_equal(best, uv):  # else there may be more to gain in the same strides
+            # otherwise steps of the same size may bring the point closer
+            if np.array_equal(best, uv):
                 reach *= 0.5
             uv = best
         closest = off.min(axis=1).argmin()
         return int(face[closest]), uv[closest], float(off.min())
 
     def normals_at(self, points: np.ndarray) -> np.ndarray:
-        """Of the closest points."""
+        """Returns the normals of the closest points."""
         found = [self.closest(point) for point in points]
         return self.normals(
             np.array([f for f, _, _ in found]), np.array([uv for _, uv, _ in found])
@@ -65,7 +69,7 @@ class Truth:
 
 
 def stretched(ob: bpy.types.Object) -> bpy.types.Object:
-    """Rotated and scaled differently along each axis."""
+    """Rotates an object and scales it differently along each axis."""
     ob.location, ob.rotation_euler, ob.scale = (1, -2, 3), (0.4, 0.5, 0.6), (2, 0.7, 1.3)
     bpy.context.view_layer.update()
     return ob
@@ -78,7 +82,7 @@ def mirrored(ob: bpy.types.Object) -> bpy.types.Object:
 
 
 def near(ob: bpy.types.Object, count: int, spread: float, seed: int = 0) -> np.ndarray:
-    """Random points around an object's vertices, in world space."""
+    """Returns random points around an object's vertices, in world space."""
     rng = np.random.default_rng(seed)
     vertices = np.array([vertex.co for vertex in ob.data.vertices])
     chosen = vertices[rng.integers(len(vertices), size=count)]
@@ -88,7 +92,7 @@ def near(ob: bpy.types.Object, count: int, spread: float, seed: int = 0) -> np.n
 def add_object(
     location: np.ndarray, data: bpy.types.ID | None = None, name: str = "Thing"
 ) -> bpy.types.Object:
-    """Selected, and not active."""
+    """Adds an object that is selected and not active."""
     ob = bpy.data.objects.new(name, data)
     ob.location = location
     bpy.context.collection.objects.link(ob)
@@ -97,7 +101,7 @@ def add_object(
 
 
 def snap(ob: bpy.types.Object, **properties: object) -> None:
-    """To an object, in Object Mode."""
+    """Snaps to an object, in Object Mode."""
     scenes.activate(ob)
     bpy.context.view_layer.update()
     assert bpy.ops.object.limit_snap(**properties) == {"FINISHED"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that a task finds again by their names, and libraries."""
+"""Objects that a task finds again by their names and libraries."""
 
 import bpy
 import pytest

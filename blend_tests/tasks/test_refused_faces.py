@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is said of faces that have no limit surface."""
+"""The texts about faces that have no limit surface."""
 
 from limit_surface.tasks.refused_faces import left_out, reasons
 

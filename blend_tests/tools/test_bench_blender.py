@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The benchmark's answers found by brute force, and its table."""
+"""The benchmark's answers, found by brute force, and its table."""
 
 import bench_blender
 import bench_blender_truth as truth

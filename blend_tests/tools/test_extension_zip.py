@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The extension as it is shipped: built, checked, installed into a clean folder and used there."""
+"""The extension as it is released: it is built, checked, installed into a clean folder and used
+there.
+"""
 
 import os
 import subprocess
@@ -31,7 +33,9 @@ def package(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def packages_without_limitsurf(tmp_path_factory) -> Path:
-    """This environment's packages by links, all but the module that the zip has to bring."""
+    """Makes a folder with links to this environment's packages, except for the module that the zip
+    has to bring.
+    """
     folder = tmp_path_factory.mktemp("packages")
     for entry in Path(sysconfig.get_paths()["platlib"]).iterdir():
         if not entry.name.lower().startswith(("limitsurf", "_limitsurf", "__pycache__")):
@@ -104,7 +108,7 @@ print("used from", user)
 def test_installed_into_a_clean_folder_and_used(package, packages_without_limitsurf, tmp_path):
     done = run_python(
         INSTALL_AND_USE.format(package=str(package)),
-        "-S",  # no site-packages but those named here
+        "-S",  # no site-packages except those named here
         PYTHONPATH=str(packages_without_limitsurf),
         BLENDER_USER_RESOURCES=str(tmp_path),
         PYTHONNOUSERSITE="1",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panel, menus and preferences, drawn into a layout that takes notes."""
+"""Panel, menus and preferences, drawn into a layout that records calls."""
 
 import os
 import subprocess
@@ -87,7 +87,7 @@ def properties_of(operator):
 
 
 def shown_in_redo_panel(**chosen):
-    """Names of properties, where these are chosen."""
+    """Returns the names of the properties that are shown with these choices."""
     last = bpy.types.OBJECT_OT_limit_hair_add
     names = properties_of(ids.HAIR_ADD).keys()
     values = {name: chosen.get(name, "") for name in names}
@@ -171,7 +171,7 @@ def check_reason_is_shown(spoil, reason):
 
 @pytest.mark.parametrize("again", ["", "limit_surface.unregister(); limit_surface.register()"])
 def test_scripts_that_do_not_unregister_end(again):
-    """Blender as a module does not by itself, with classes registered."""
+    """The bpy module by itself does not end while classes are registered."""
     program = f"import limit_surface; limit_surface.register(); {again}\nprint('made', flush=True)"
     path = os.pathsep.join([str(ROOT / "addon"), os.environ.get("PYTHONPATH", "")])
     done = subprocess.run(
@@ -198,7 +198,7 @@ def test_a_folder_of_that_name_is_not_the_module(tmp_path):
     (tmp_path / "limitsurf").mkdir()
     without = "not (os.path.exists(p + '/limitsurf') or 'site-packages' in p)"
     spoil = f"sys.path = [{str(tmp_path)!r}, *(p for p in sys.path if {without})]"
-    # Blender itself comes from site-packages, and is found before they are taken away.
+    # Blender itself comes from site-packages, and is imported before they are removed.
     check_reason_is_shown(
         f"import bpy, gpu_extras.batch, numpy, os; {spoil}", "is not the native module"
     )
