@@ -35,7 +35,8 @@ Points directionsAround() {
   Eigen::Index row = 0;
   for (int i = 0; i < 27; ++i) {
     if (i != 13) {
-      directions.row(row++) << i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1;
+      const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+      directions.row(row++) << x, y, z;
     }
   }
   return directions;
