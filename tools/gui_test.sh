@@ -3,9 +3,10 @@
 #
 # Tests in a real Blender with a window: real clicks, keys and wheel, on a screen that nobody sees.
 #
-#   tools/gui_test.sh [--prepare | OPTIONS OF PYTEST]
+#   tools/gui_test.sh [--prepare | --bench | OPTIONS OF PYTEST]
 #
 # --prepare  only makes the Blender that they run in, where it is missing
+# --bench    no tests, but how quickly the window answers (tools/bench_window.py)
 #
 # That is Debian 13's, in a folder of its own (tools/gui/chroot.sh), with the extension installed
 # from its zip as users do it. Takes root; ends with 77 where the tests cannot be run, having said
@@ -49,6 +50,10 @@ fi
 set_up
 rm -rf "$CHROOT_OUT"/*
 build_extension
+if [[ ${1-} == --bench ]]; then
+  in_chroot python3 -B /project/tools/bench_window.py
+  exit
+fi
 status=0
 in_chroot python3 -B -m pytest -q -p no:cacheprovider --confcutdir /project/blend_tests/gui \
   --basetemp /tmp/window-tests --junitxml /out/results.xml "$@" /project/blend_tests/gui ||

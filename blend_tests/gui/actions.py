@@ -6,6 +6,7 @@ import time
 
 import bpy
 import numpy as np
+from figures.meshes import grids
 from mathutils import Euler
 
 TIMES = []  # see time_moves
@@ -93,11 +94,7 @@ def sheet() -> list[list[float]]:
     mesh.from_pydata(
         [(x, y, bend(x, y)) for x, y in grid],
         [],
-        [
-            (i, i + 1, i + 1 + columns, i + columns)
-            for i, (x, y) in enumerate(grid)
-            if x < columns - 1 and y < rows - 1
-        ],
+        grids.grid_faces(columns - 1, rows - 1).tolist(),
     )
     ob = bpy.data.objects.new("Sheet", mesh)
     ob.location, ob.rotation_euler, ob.scale = (-3, -1.5, 0.5), (0.2, -0.1, 0.3), (1.2, 0.9, 1.1)
@@ -221,8 +218,7 @@ def attribute(name: str, attribute: str, index: int) -> object:
 def large_sheet(side: int) -> int:
     """A wavy sheet of side x side faces that fills the view, active; the number of its faces."""
     y, x = np.mgrid[: side + 1, : side + 1].reshape(2, -1) * (8 / side) - 4
-    first = np.arange(side)[:, None] * (side + 1) + np.arange(side)
-    faces = first.reshape(-1, 1) + [0, 1, side + 2, side + 1]
+    faces = grids.grid_faces(side, side)
     bpy.data.batch_remove(bpy.data.objects)
     mesh = bpy.data.meshes.new("Sheet")
     mesh.from_pydata(np.stack([x, y, 0.2 * np.sin(3 * x) * np.cos(2 * y)], 1), [], faces.tolist())

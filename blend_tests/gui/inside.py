@@ -9,7 +9,8 @@ from pathlib import Path
 
 import bpy
 
-sys.path.insert(0, str(Path(__file__).parent))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / "docs")]
 # Both would swallow clicks.
 bpy.context.preferences.view.show_splash = False
 bpy.context.preferences.view.show_tooltips = False
@@ -18,20 +19,33 @@ import actions  # noqa: E402
 import texture_actions  # noqa: E402
 
 POLL = 0.01  # seconds
+#: Rounds of the main loop, POLL apart, in which an event is dealt with, and everything that it sets
+#: off (a button is lit for 0.02 s before it acts); in the last DRAWN of them all is drawn
+ROUNDS, DRAWN = 8, 2
 ACTIONS = {**vars(actions), **vars(texture_actions)}
 
 
 def serve() -> None:
     listener = Listener(os.environ["LIMIT_SURFACE_SOCKET"])
     connection = None
+    rounds = 0  # still to be gone before "settle" is answered
 
     def tick() -> float:
-        nonlocal connection
+        nonlocal connection, rounds
         if connection is None:
             connection = listener.accept()
-        while connection.poll():
+        if rounds:
+            rounds -= 1
+            if 0 < rounds <= DRAWN:
+                outcome("redraw", (), {})
+            if rounds == 0:
+                connection.send((False, None))
+        while not rounds and connection.poll():
             name, arguments, keywords = connection.recv()
-            connection.send(outcome(name, arguments, keywords))
+            if name == "settle":
+                rounds = ROUNDS
+            else:
+                connection.send(outcome(name, arguments, keywords))
         return POLL
 
     bpy.app.timers.register(tick, first_interval=1.0, persistent=True)

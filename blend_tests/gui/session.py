@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A Blender with a window and a real mouse, driven from outside.
 
-`session.call("name", ...)` runs a function of inside.py within Blender; mouse and keys are X11's.
+`session.call("name", ...)` runs a function of actions.py or texture_actions.py within Blender;
+mouse and keys are X11's. Nothing here waits for a fixed time: after each input Blender's main loop
+goes round some times, and whatever comes later than that is polled for.
 """
 
 import os
@@ -9,19 +11,21 @@ import re
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from multiprocessing.connection import Client
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 HERE = Path(__file__).parent
 OUT = Path("/out")
 PACKAGES = OUT
 WIDTH, HEIGHT = 1280, 800
-SHOWN_AFTER = 0.5  # seconds: what was drawn is on the screen
+LIMIT = 120  # seconds, after which something that is waited for counts as missing
+POLL = 0.05  # seconds between two looks at what is waited for
 ROW = 20  # pixels, of a button
 TAB_STRIP = 22  # pixels at the sidebar's right edge
 MOST_ENTRIES = 30  # of a menu
@@ -56,7 +60,7 @@ def install_extension(user: Path) -> str:
         env={**os.environ, "BLENDER_USER_RESOURCES": str(user)},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=LIMIT,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -64,6 +68,22 @@ def install_extension(user: Path) -> str:
 
 def is_near(pixels: np.ndarray, color: Sequence[int]) -> np.ndarray:
     return (np.abs(pixels.astype(int) - color) < 12).all(axis=2)
+
+
+def wait_until(look: Callable[[], Any], what: str) -> Any:
+    """What `look` returns, once that is neither None nor False."""
+    deadline = time.monotonic() + LIMIT
+    while (seen := look()) is None or seen is False:
+        if time.monotonic() > deadline:
+            pytest.fail(f"{what}: not after {LIMIT} s")
+        time.sleep(POLL)
+    return seen
+
+
+def class_name(operator: str) -> str:
+    """By which Blender knows an operator whose name in bpy.ops is this."""
+    category, name = operator.split(".")
+    return f"{category.upper()}_OT_{name}"
 
 
 class BlenderSession:
@@ -89,14 +109,14 @@ class BlenderSession:
         self._connection = self._connect(str(address))
 
     def _connect(self, address: str) -> Any:
-        deadline = time.monotonic() + 60
-        while time.monotonic() < deadline:
+        def connection() -> Any:
             assert self._process.poll() is None, "Blender ended: see blender.log"
             try:
                 return Client(address)
             except (FileNotFoundError, ConnectionRefusedError):
-                time.sleep(0.2)
-        raise TimeoutError("Blender does not answer: see blender.log")
+                return None
+
+        return wait_until(connection, "Blender answers (see blender.log)")
 
     def __enter__(self) -> "BlenderSession":
         return self
@@ -108,14 +128,24 @@ class BlenderSession:
         for report in Path("/tmp").glob("*.crash.txt"):
             shutil.copy(report, OUT)
 
-    def call(self, name: str, *arguments: Any, timeout: float = 60, **keywords: Any) -> Any:
-        """What the function of inside.py returns, once Blender has nothing else to do."""
+    def call(self, name: str, *arguments: Any, **keywords: Any) -> Any:
+        """What the function within Blender returns, once Blender has nothing else to do."""
         self._connection.send((name, arguments, keywords))
-        if not self._connection.poll(timeout):
-            raise TimeoutError(f"{name} in Blender has not ended after {timeout} s")
+        if not self._connection.poll(LIMIT):
+            pytest.fail(f"{name} in Blender has not ended after {LIMIT} s")
         raised, value = self._connection.recv()
         assert not raised, value
         return value
+
+    def await_value(self, value: Any, name: str, *arguments: Any) -> None:
+        """Until the function within Blender returns this value."""
+        wait_until(lambda: self.call(name, *arguments) == value, f"{name}{arguments} is {value!r}")
+
+    def await_end(self, operator: str) -> None:
+        """Until this operator, object.limit_points_add, say, has done its work."""
+        self.await_value([], "running")
+        self.settle()
+        self.await_value(class_name(operator), "last_operator")
 
     def new_file(self) -> None:
         self.key("Escape")
@@ -124,10 +154,8 @@ class BlenderSession:
         self.move(*self.call("view_centre"))
 
     def settle(self) -> None:
-        """Waits until everything that was sent has been dealt with and drawn."""
-        time.sleep(0.1)
-        for _ in range(2):
-            self.call("redraw")
+        """Until everything that was sent has been dealt with and drawn."""
+        self.call("settle")
 
     # Mouse positions are Blender's: from the window's lower left.
 
@@ -200,11 +228,18 @@ class BlenderSession:
         x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
         return self._find(x, top or bar["top"] - 10, bar["bottom"], f"bpy.ops.{command}(")
 
-    def find_confirmation(self, before: np.ndarray) -> tuple[float, float]:
-        """Where a dialog's OK is: of what has become blue since then, the lowest."""
+    def await_dialog(self, before: np.ndarray) -> tuple[float, float]:
+        """Where the OK is of the dialog that opens, given what was to be seen before."""
+        return wait_until(lambda: self._confirmation(before), "a dialog with an OK is open")
+
+    def _confirmation(self, before: np.ndarray) -> tuple[float, float] | None:
+        """Of what has become blue since then, the lowest."""
         now = self.pixels(self.screenshot("dialog"))
         blue = is_near(now, CONFIRMATION) & ~is_near(before, CONFIRMATION)
-        row = np.flatnonzero(blue.sum(axis=1) > ROW)[-1] - ROW // 4
+        rows = np.flatnonzero(blue.sum(axis=1) > ROW)
+        if len(rows) == 0:
+            return None
+        row = rows[-1] - ROW // 4
         return np.flatnonzero(blue[row]).mean(), HEIGHT - 1 - row
 
     def operators_in_menu(self) -> list[str]:
@@ -242,19 +277,32 @@ class BlenderSession:
         raise AssertionError(f"nothing that copies {copied!r} between {top} and {bottom} at {x}")
 
     def screenshot(self, name: str) -> Path:
+        """Of a screen on which nothing moves any more."""
         path = OUT / f"{name}.png"
-        time.sleep(SHOWN_AFTER)
-        self._run("import", "-window", "root", path)
+        before = b""
+
+        def is_still() -> bool:
+            nonlocal before
+            self.settle()
+            self.picture(path)
+            shown, before = before, self.pixels(path).tobytes()
+            return shown == before
+
+        wait_until(is_still, f"the screen is still for {path.name}")
         return path
+
+    def picture(self, path: Path) -> None:
+        """Of the screen as it is."""
+        self._run("import", "-window", "root", path)
 
     def pixels(self, picture: Path) -> np.ndarray:
         """(rows, columns, 3) of 0 to 255."""
         command = ["convert", picture, "-depth", "8", "rgb:-"]
-        raw = subprocess.run(command, capture_output=True, check=True, timeout=30).stdout
+        raw = subprocess.run(command, capture_output=True, check=True, timeout=LIMIT).stdout
         return np.frombuffer(raw, np.uint8).reshape(HEIGHT, WIDTH, 3)
 
     def _xdotool(self, *words: object) -> None:
         self._run("xdotool", *map(str, words))
 
     def _run(self, *command: object) -> None:
-        subprocess.run(command, env=self._environment, check=True, timeout=30)
+        subprocess.run(command, env=self._environment, check=True, timeout=LIMIT)

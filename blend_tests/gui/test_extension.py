@@ -17,6 +17,7 @@ def test_installed_with_its_native_module(blender):
 def test_hair_by_a_click_and_ctrl_z(blender):
     blender.open_tab()
     blender.click(*blender.find_button(ADD_HAIR))
+    blender.await_end(ADD_HAIR)
     assert blender.call("objects") == [*START, HAIR]
     assert blender.call("curve_count", HAIR) == FACES * 20**2
     blender.screenshot("hair")
@@ -30,9 +31,11 @@ def test_hair_by_a_click_and_ctrl_z(blender):
 def test_redo_panel_makes_it_anew(blender):
     blender.open_tab()
     blender.click(*blender.find_button(ADD_HAIR))
+    blender.await_end(ADD_HAIR)
     fields = blender.open_redo_panel()
     blender.screenshot("redo")
     blender.move(*blender.find_field(*fields, value="20"))
     blender.key("Return", "ctrl+a", "2", "1", "Return")
+    blender.await_end(ADD_HAIR)
     assert blender.call("curve_count", HAIR) == FACES * 21**2
     assert blender.call("objects") == [*START, HAIR]

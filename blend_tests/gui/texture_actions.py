@@ -9,6 +9,7 @@ import threading
 import bpy
 import numpy as np
 from actions import activate, view
+from figures.meshes import grids
 from mathutils import Euler, Vector
 
 FACES = 8  # faces of the sheet along each side
@@ -38,8 +39,7 @@ def textured_sheet(wave: float) -> None:
 def _grid(wave: float) -> bpy.types.Mesh:
     side = FACES + 1
     y, x = np.mgrid[:side, :side].reshape(2, -1) * (6 / FACES) - 3
-    first = np.arange(FACES)[:, None] * side + np.arange(FACES)
-    faces = first.reshape(-1, 1) + [0, 1, side + 1, side]
+    faces = grids.grid_faces(FACES, FACES)
     mesh = bpy.data.meshes.new("Sheet")
     mesh.from_pydata(np.stack([x, y, wave * np.sin(x) * np.cos(y)], 1), [], faces.tolist())
     uv = np.stack([x, y], 1)[faces.ravel()] / 6.2 + 0.5

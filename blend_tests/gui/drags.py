@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A long drag over a large mesh, for the tests and for tools/bench_window.py."""
+
+from typing import NamedTuple
+
+import numpy as np
+from session import BlenderSession
+
+SIDE = 317  # squared: a bit over 100,000 faces
+FREE, CONSTRAINED = 40, 10  # moves
+
+
+class Moves(NamedTuple):
+    """Seconds that each move took the operator."""
+
+    free: np.ndarray
+    border: np.ndarray
+    boundary: np.ndarray
+
+
+def circle(blender: BlenderSession, moves: int) -> None:
+    for turn in np.linspace(0, 2 * np.pi, moves):
+        blender.move(520 + 150 * np.cos(turn), 380 + 100 * np.sin(turn))
+
+
+def drag_over_large_sheet(blender: BlenderSession) -> Moves:
+    """All over it, along its faces' borders and along its boundary; the drag goes on."""
+    assert blender.call("large_sheet", SIDE) > 100_000
+    blender.call("pin")
+    blender.call("time_moves")
+    blender.call("start_drag")
+    circle(blender, FREE)
+    for key in "x", "y":
+        blender.key(key)  # is followed as a move is
+        circle(blender, CONSTRAINED)
+    times = np.array(blender.call("times"))
+    ends = np.cumsum([FREE, CONSTRAINED + 1, CONSTRAINED + 1])
+    assert len(times) >= ends[-1]
+    return Moves(*np.split(times[-ends[-1] :], ends[:-1]))

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Dragging follows each move, whatever the size of the target. tools/bench_window.py tells whether
+it keeps up with the screen.
+"""
+
+import drags
+import numpy as np
+import pytest
+from quadric import Camera
+
+
+def test_moves_on_a_hundred_thousand_faces(blender):
+    moves = drags.drag_over_large_sheet(blender)
+    assert len(moves.free) == drags.FREE
+    assert len(moves.border) == len(moves.boundary) == drags.CONSTRAINED + 1
+    found = np.array(blender.call("matrix", "Pin"))[:3, 3]
+    assert np.abs(found[:2]).max() == pytest.approx(4, abs=1e-6)  # on the boundary
+    blender.key("z")
+    at = 450, 400
+    blender.move(*at)
+    found = np.array(blender.call("matrix", "Pin"))[:3, 3]
+    assert found[2] == pytest.approx(0.2 * np.sin(3 * found[0]) * np.cos(2 * found[1]), abs=1e-3)
+    shown = Camera(**blender.call("camera")).pixel(found)
+    np.testing.assert_allclose(shown, at, atol=0.1)
+    blender.key("Return")
+    assert not blender.call("running")

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How quickly the extension answers in Blender's window: dragging over a large mesh, the window
+while a long bake goes on, and ESC. Prints a table in Markdown.
+
+    tools/gui_test.sh --bench
+
+runs it in the Blender of the window tests, without a graphics card: what is drawn takes longer
+there than anywhere else, so only the times of dragging are the extension's own.
+"""
+
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blend_tests/gui"))
+
+import drags  # noqa: E402
+from session import BlenderSession, virtual_screen, wait_until  # noqa: E402
+from test_textures import BAKE_MAPS, LONG_BAKE  # noqa: E402
+from test_waiting import ADD_POINTS, MOST  # noqa: E402
+
+ANSWERS = 20  # of the window, one after the other
+
+
+def measured(blender: BlenderSession) -> list[tuple[str, float, float]]:
+    """What, and its median and largest time in seconds."""
+    rows = [(f"Dragging, {name}", *summary(times)) for name, times in moves(blender)]
+    waiting, escape = bake(blender)
+    rows.append(("The window's answer while maps are baked", *summary(waiting)))
+    rows.append(("ESC while maps are baked", escape, escape))
+    escape = scatter(blender)
+    rows.append(("ESC while points are scattered", escape, escape))
+    return rows
+
+
+def summary(times: np.ndarray) -> tuple[float, float]:
+    return float(np.median(times)), float(np.max(times))
+
+
+def moves(blender: BlenderSession) -> list[tuple[str, np.ndarray]]:
+    blender.new_file()
+    found = drags.drag_over_large_sheet(blender)
+    blender.key("Escape")
+    return list(found._asdict().items())
+
+
+def bake(blender: BlenderSession) -> tuple[np.ndarray, float]:
+    """Times of the window's answers, and until ESC has ended all threads."""
+    blender.new_file()
+    blender.call("textured_sheet", 0.35)
+    blender.settle()
+    threads = blender.call("threads")
+    before = blender.pixels(blender.screenshot("bench_before"))
+    with tempfile.TemporaryDirectory() as folder:
+        blender.call("start", BAKE_MAPS, **LONG_BAKE, folder=folder)
+        blender.await_dialog(before)
+        blender.key("Return")
+        await_start(blender)
+        answers = [seconds(lambda: blender.call("redraw")) for _ in range(ANSWERS)]
+        return np.array(answers), seconds(lambda: escape(blender, threads))
+
+
+def scatter(blender: BlenderSession) -> float:
+    blender.new_file()
+    threads = blender.call("threads")
+    blender.call("set_next", ADD_POINTS, distribution="BLUE_NOISE", amount="COUNT", count=MOST)
+    blender.call("start", ADD_POINTS, distribution="BLUE_NOISE", amount="COUNT", count=MOST)
+    await_start(blender)
+    return seconds(lambda: escape(blender, threads))
+
+
+def await_start(blender: BlenderSession) -> None:
+    wait_until(lambda: blender.call("running") or None, "the work has begun")
+
+
+def escape(blender: BlenderSession, threads: int) -> None:
+    blender.key("Escape")
+    blender.await_value([], "running")
+    blender.await_value(threads, "threads")
+
+
+def seconds(work: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
+
+
+def main() -> None:
+    with (
+        virtual_screen() as screen,
+        tempfile.TemporaryDirectory() as user,
+        BlenderSession(screen, Path(user)) as blender,
+    ):
+        print("| | median | at most |", "|---|---:|---:|", sep="\n")
+        for what, median, most in measured(blender):
+            print(f"| {what} | {1000 * median:.1f} ms | {1000 * most:.1f} ms |")
+
+
+if __name__ == "__main__":
+    main()
