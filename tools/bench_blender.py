@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nearest points and rays in Blender: the limit surface beside `mathutils.bvhtree.BVHTree`, which
-asks the polygons that Blender shows. Prints a table in Markdown: times, and each one's errors.
+"""Nearest points and rays in Blender: the limit surface is compared with
+`mathutils.bvhtree.BVHTree`, which searches the polygons that Blender shows. Prints a table in
+Markdown with the times and the errors of each.
 
     .venv/bin/python tools/bench_blender.py
 
-BVHTree takes one point or ray at a time: its times include the loop in Python, as they do for
-everybody who uses it. Ours are for one call with an array.
+BVHTree takes one point or ray at a time, so its times include a loop in Python, as in any script
+that uses it. The limit surface takes one call with an array.
 """
 
 import argparse
@@ -26,12 +27,12 @@ import bench_blender_truth as truth  # noqa: E402
 from limit_surface.reading import cage  # noqa: E402
 from mathutils.bvhtree import BVHTree  # noqa: E402
 
-#: The viewport's levels of a new modifier, and a fine mesh
+#: The viewport level of a new modifier, and that of a fine mesh
 TREE_LEVELS = (1, 4)
-#: Queries whose right answers are found by brute force
+#: The number of queries whose exact answers are found by brute force
 CHECKED = 500
 REPEATS = 3
-#: In a large file
+#: The number of other objects in a large file
 OTHER_OBJECTS = 3000
 
 
@@ -39,19 +40,19 @@ OTHER_OBJECTS = 3000
 class Row:
     what: str
     set_up: float  # seconds
-    nearest: float  # a second
+    nearest: float  # queries per second
     nearest_errors: "Errors"
-    rays: float  # a second
+    rays: float  # queries per second
     ray_errors: "Errors"
 
 
 @dataclass
 class Errors:
-    """Relative to the diagonal of the mesh."""
+    """The errors relative to the diagonal of the mesh."""
 
-    largest: float  # of the distance
+    largest: float  # the error of the distance
     rms: float
-    position: float  # the largest
+    position: float  # the largest error
     missed: int
 
     def __str__(self) -> str:
@@ -81,7 +82,7 @@ class Bench:
         return depsgraph
 
     def reading(self, others: int) -> float:
-        """Seconds that it takes to read the cage in a file that has so many other objects."""
+        """Returns the seconds that reading the cage takes in a file with so many other objects."""
         for _ in range(others):
             thing = bpy.data.objects.new("Thing", None)
             bpy.context.scene.collection.objects.link(thing)
@@ -106,7 +107,7 @@ class Bench:
         )
 
     def _searched(self) -> limitsurf.LimitSurface:
-        """A surface that is ready to be asked."""
+        """Returns a surface whose search structure is built."""
         surface = limitsurf.LimitSurface(self.cage.mesh)
         surface.closest(self.points[:1])
         return surface
@@ -157,14 +158,15 @@ class Bench:
 
 
 def _positions_and_distances(found: list[tuple]) -> tuple[np.ndarray, np.ndarray]:
-    """NaN where nothing was found."""
+    """Returns NaN where nothing was found."""
     position = [hit[0][:] if hit[0] else (np.nan,) * 3 for hit in found]
     return np.array(position), np.array([np.nan if hit[3] is None else hit[3] for hit in found])
 
 
 def timed(work: Callable[[], object], clock: Callable[[], float] = time.process_time) -> tuple:
-    """What it returns, and the shortest of some times: seconds of one core, which other programs
-    on the machine do not lengthen, or by another clock."""
+    """Returns the result, and the shortest of some times: seconds of one core, which do not depend
+    on other programs on the machine, or the seconds of another clock.
+    """
     times = []
     for _ in range(REPEATS):
         begin = clock()
@@ -194,9 +196,15 @@ def table(rows: list[Row]) -> str:
 
 def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--faces", type=int, default=10_000, help="about so many")
-    parser.add_argument("--queries", type=int, default=200_000, help="asked of the limit surface")
-    parser.add_argument("--tree-queries", type=int, default=50_000, help="asked of each BVHTree")
+    parser.add_argument(
+        "--faces", type=int, default=10_000, help="approximate number of the mesh's faces"
+    )
+    parser.add_argument(
+        "--queries", type=int, default=200_000, help="number of queries of the limit surface"
+    )
+    parser.add_argument(
+        "--tree-queries", type=int, default=50_000, help="number of queries of each BVHTree"
+    )
     options = parser.parse_args(arguments)
     bench = Bench(round(options.faces**0.5), options.queries, options.tree_queries)
     print(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A mesh to ask about, and answers that owe nothing to any search: for `bench_blender.py`."""
+"""A mesh for queries, and answers that use no search structure, for `bench_blender.py`."""
 
 from typing import NamedTuple
 
@@ -10,13 +10,15 @@ from figures.meshes import grids
 from limit_surface.reading import subdivided_mesh
 from mathutils.bvhtree import BVHTree
 
-WIDTH = 1.0  # of a face
-SLOPE = 0.7  # of the mesh, at most
-REACH = 0.3  # how much farther than the nearest polygon a face of the nearest point can be
+WIDTH = 1.0  # as a share of a face
+SLOPE = 0.7  # at most this share of the mesh
+REACH = 0.3  # how much farther than the nearest polygon the polygons of the right face can be
 
 
 def add_sheet(side: int, seed: int = 0) -> bpy.types.Object:
-    """About side x side faces over a plane, wavy, open, with holes, and some cut in triangles."""
+    """Adds about side x side faces over a plane: wavy, open, with holes, and some of them cut into
+    triangles.
+    """
     y, x = np.mgrid[: side + 1, : side + 1].reshape(2, -1) * WIDTH
     z = 0.9 * np.sin(0.45 * x) * np.cos(0.35 * y) + 0.25 * np.sin(1.1 * (x + y))
     rng = np.random.default_rng(seed)
@@ -38,12 +40,13 @@ def add_sheet(side: int, seed: int = 0) -> bpy.types.Object:
 class Rays(NamedTuple):
     origin: np.ndarray
     direction: np.ndarray
-    hit: np.ndarray  # of the limit surface, its only one
+    hit: np.ndarray  # the only hit on the limit surface
 
 
 def rays(surface: limitsurf.LimitSurface, count: int, seed: int = 0) -> Rays:
-    """From above towards random places, more steeply than any slope of the surface: each of them
-    meets it there and nowhere else."""
+    """Returns rays from above towards random places, steeper than any slope of the surface: each of
+    them meets it there and nowhere else.
+    """
     rng = np.random.default_rng(seed)
     hit = surface.evaluate(
         rng.integers(0, surface.face_count, count), rng.random((count, 2))
@@ -55,7 +58,7 @@ def rays(surface: limitsurf.LimitSurface, count: int, seed: int = 0) -> Rays:
 
 
 def points_nearby(surface: limitsurf.LimitSurface, count: int, seed: int = 0) -> np.ndarray:
-    """Within 5 % of the diagonal."""
+    """Returns points within 5 % of the diagonal."""
     rng = np.random.default_rng(seed)
     face, uv = rng.integers(0, surface.face_count, count), rng.random((count, 2))
     diagonal = np.linalg.norm(np.ptp(surface.positions, axis=0))
@@ -66,8 +69,10 @@ def points_nearby(surface: limitsurf.LimitSurface, count: int, seed: int = 0) ->
 def nearest(
     surface: limitsurf.LimitSurface, face_sizes: np.ndarray, tree: BVHTree, points: np.ndarray
 ) -> np.ndarray:
-    """The nearest points of the limit surface, by brute force: every face that comes into question
-    by its level 4 polygons, in `tree`, is sampled ever more closely around its best sample."""
+    """Returns the nearest points of the limit surface by brute force: every face that could hold
+    the nearest point, judged by its level 4 polygons in `tree`, is sampled ever more closely around
+    its best sample.
+    """
     polygon_face = subdivided_mesh.corner_locations(face_sizes, 4).face[::4]
     row, face = [], []
     for i, point in enumerate(points.tolist()):
@@ -86,7 +91,7 @@ def nearest(
 def _nearest_on_faces(
     surface: limitsurf.LimitSurface, face: np.ndarray, points: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """On each face the nearest to its point, and how far it is."""
+    """Returns for each face the point nearest to its query, and the distance."""
     centre, width = np.full((len(face), 2), 0.5), 0.5
     while width > 1e-13:
         samples = 33 if width == 0.5 else 9
@@ -101,6 +106,6 @@ def _nearest_on_faces(
             best = np.argmin(np.linalg.norm(position - points[i][:, None], axis=2), axis=1)
             centre[i] = uv[i, best]
             found[i] = position[np.arange(len(i)), best]
-        # The samples beside the best one still lie inside.
+        # The neighbours of the best sample still lie inside.
         width *= 3 / (samples - 1)
     return found, np.linalg.norm(found - points, axis=1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How long calls of the module `limitsurf` keep other Python threads waiting, and how soon Ctrl-C
-ends them. Prints a table in Markdown.
+"""Measures how long calls of the module `limitsurf` keep other Python threads waiting, and how soon
+Ctrl-C ends them. Prints a table in Markdown.
 
     .venv/bin/python tools/bench_interrupts.py
 """
@@ -20,12 +20,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "native/python/test
 
 import shapes  # noqa: E402
 
-LET_RUN = 1.0  # seconds, before Ctrl-C
-LOOK = 0.001  # seconds between two looks of the other thread at its clock
+LET_RUN = 1.0  # seconds before Ctrl-C
+LOOK = 0.001  # seconds between two readings of the clock by the other thread
 
 
 def calls() -> dict[str, Callable[[], object]]:
-    """Each would take tens of seconds or more."""
+    """Returns calls, each of which would take tens of seconds or more."""
     around = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.pole(200)))
     near = np.tile([[1e-4, 2e-4]], (4_000_000, 1))
     positions, faces = shapes.grid(300, 300)
@@ -49,8 +49,9 @@ def calls() -> dict[str, Callable[[], object]]:
 
 
 def measured(call: Callable[[], object]) -> tuple[float, float] | None:
-    """The longest pause of another thread, and the time from Ctrl-C to the end; None where the
-    call had ended before. Seconds."""
+    """Returns in seconds the longest pause of another thread, and the time from Ctrl-C to the end;
+    None where the call had ended before.
+    """
     over = threading.Event()
     longest, asked = 0.0, 0.0
 

@@ -51,7 +51,7 @@ def parse_arguments() -> argparse.Namespace:
         "--wheels", type=Path, default=ROOT / "dist/wheels", help="folder of repaired wheels"
     )
     parser.add_argument(
-        "--output", type=Path, default=ROOT / "dist", help="folder that the zip goes to"
+        "--output", type=Path, default=ROOT / "dist", help="folder to write the zip to"
     )
     parser.add_argument(
         "--build-wheel",
@@ -87,7 +87,7 @@ def find_wheels(folder: Path, version: str) -> list[Path]:
 
 
 def lay_out(source: Path, packed: list[Path]) -> None:
-    """A copy of the add-on with its licence, and the wheels in it and in its manifest."""
+    """Lays out a copy of the add-on with its licence, and the wheels in it and in its manifest."""
     shutil.copytree(ADDON, source, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(LICENCE, source / "LICENSE")
     (source / "wheels").mkdir()
@@ -102,8 +102,8 @@ def lay_out(source: Path, packed: list[Path]) -> None:
 
 
 def blender_extension(*arguments: str | Path) -> None:
-    """Blender's own command line for extensions; it needs no running Blender."""
-    spec = importlib.util.find_spec("bpy")  # found, not imported
+    """Runs Blender's own command line for extensions; it needs no running Blender."""
+    spec = importlib.util.find_spec("bpy")  # the package is found without importing it
     if spec is None:
         fail(f"{sys.executable} has no bpy: run this by the environment's Python")
     bpy = Path(spec.origin).parent

@@ -33,10 +33,10 @@ import projectors  # noqa: E402
 import shapes  # noqa: E402
 
 INTERPOLATIONS = ("none", "corners_only", "corners_plus1", "corners_plus2", "boundaries", "all")
-#: At most so many of a golden mesh's own locations
+#: The largest number of a golden mesh's own locations that are used
 OWN_LOCATIONS = 1000
 RANDOM_LOCATIONS = 300
-#: Powers of 1/2: how far from a corner of a face locations lie, in u and v
+#: Powers of 1/2: the distances in u and v of locations from a corner of a face
 NEAR_CORNERS = (0, 1, 3, 7, 20, 45)
 QUERIES = 150
 TEXEL = (1 / 96, 1 / 64)
@@ -262,7 +262,7 @@ def re_posed(s: Subject) -> Iterator[Any]:
 
 
 def images(threads: int) -> Iterator[Any]:
-    """What needs no surface."""
+    """Yields the rows that need no surface."""
     rng = np.random.default_rng(17)
     pixels = rng.random((37, 53, 4), np.float32)
     st = rng.uniform(-0.5, 1.5, (600, 2))
@@ -339,7 +339,7 @@ def _golden_subject(name: str, threads: int) -> Subject:
     return Subject(surface, uv_map, (truth.face, truth.uv), threads)
 
 
-#: Each a surface and its UV map
+#: Each entry makes a surface and its UV map
 MAPPED: dict[str, Callable[[], tuple[ls.LimitSurface, ls.SurfaceData]]] = {
     **{
         f"mapped_sheet_{rule}": lambda rule=rule: projectors.sheet(interpolation=rule)
@@ -361,7 +361,7 @@ def digest(results: Iterator[Any]) -> str:
 
 
 def _add(found: "hashlib._Hash", result: Any) -> None:
-    """Type, shape and bits; all NaN count as the same."""
+    """Adds type, shape and bits; all NaN count as the same."""
     if dataclasses.is_dataclass(result):
         for field in dataclasses.fields(result):
             found.update(field.name.encode())
@@ -376,7 +376,7 @@ def _add(found: "hashlib._Hash", result: Any) -> None:
 
 
 def rows(names: list[str], threads: int) -> Iterator[tuple[str, str]]:
-    """Names of mesh and subject, and the checksum."""
+    """Yields the names of mesh and subject, and the checksum."""
 
     def wanted(name: str) -> bool:
         return not names or name in names
@@ -397,7 +397,7 @@ def rows(names: list[str], threads: int) -> Iterator[tuple[str, str]]:
 
 
 def differences(expected: dict[str, str], found: dict[str, str]) -> list[str]:
-    """A line for each row that is not in both lists with the same checksum."""
+    """Returns a line for each row that is not in both lists with the same checksum."""
     said = []
     for row in dict.fromkeys([*expected, *found]):
         if row not in found:
@@ -410,7 +410,7 @@ def differences(expected: dict[str, str], found: dict[str, str]) -> list[str]:
 
 
 def read_list(path: Path) -> dict[str, str]:
-    """Of each row its checksum, the first word of a line."""
+    """Returns the checksum of each row, the first word of its line."""
     lines = (line.split(" ", 1) for line in path.read_text().splitlines())
     return {row: checksum for checksum, row in lines}
 
@@ -419,9 +419,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("meshes", nargs="*", help="only these (default: all)")
+    parser.add_argument("meshes", nargs="*", help="names of meshes (default: all)")
     parser.add_argument("--check", type=Path, metavar="FILE", help="compare with this list")
-    parser.add_argument("--threads", type=int, default=1, help="0: one for each core (default: 1)")
+    parser.add_argument(
+        "--threads", type=int, default=1, help="number of threads, 0 for one per core (default: 1)"
+    )
     arguments = parser.parse_args()
     unknown = set(arguments.meshes) - {"images", *golden.names(), *MAPPED}
     if unknown:

@@ -24,7 +24,9 @@ NONE, STORED, AS_BASE = 0, 1, 2
 
 
 def base_name(name: str, names: set[str]) -> str:
-    """The mesh that differs by its boundary rule alone: most of its values are the same."""
+    """Returns the name of the mesh that differs only by its boundary rule; most of its values are
+    the same.
+    """
     if name.startswith("boundary_corners_"):
         twin = name.replace("boundary_corners_", "boundary_smooth_")
     elif name.endswith("_corners"):

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 #
-# Formats the C++ and Python sources; with --check only says what is not as it should be.
+# Formats the C++ and Python sources; with --check it only lists what is not formatted.
 set -euo pipefail
 case ${1-} in
   '' | --check) ;;

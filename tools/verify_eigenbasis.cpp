@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Prints, for each valence, what the eigenbasis of its vertices is worth:
+// Prints, for each valence, how exact the eigenbasis of its vertices is:
 //   - the defective eigenvalue of the ring matrix S and its zero-based index among the eigenvalues
-//   in
-//     decreasing order (Lacewell & Burley 2007, figure 4), found by ranks of S - lambda, S being
-//     made from OpenSubdiv's masks;
+//     in decreasing order (Lacewell & Burley 2007, figure 4), found by ranks of S - lambda, where S
+//     is made from OpenSubdiv's masks;
 //   - max |A - T J T^-1|, A being the whole face's subdivision matrix;
 //   - the evaluator's error against explicit recursive subdivision in 50 decimal digits.
 //
@@ -41,7 +40,7 @@ struct Line {
   double derivative = 0;
 };
 
-/// First, second, middle and last face: all there is up to symmetry and rotation of the modes.
+/// The first, second, middle and last face: by symmetry these represent all faces.
 std::vector<int> someFaces(int faces) {
   const std::set<int> some = {0, std::min(1, faces - 1), faces / 2, faces - 1};
   return {some.begin(), some.end()};
@@ -139,7 +138,7 @@ test::Cage fanAround(const Ring& ring) {
   return cage;
 }
 
-/// The evaluator at random and on shells down to 2^-40.
+/// The evaluator's errors at random places and on shells at distances down to 2^-40.
 void measureEvaluator(const Ring& ring, Line& line) {
   const int faces = ring.faces;
   const test::Cage cage = fanAround(ring);

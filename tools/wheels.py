@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wheels of the native module that carry the libraries they need.
 
-For the Python that runs this, and for others of which there are only the headers: a module needs
-no more to be compiled, and is tried where that Python is. All of them link one library, which is
-compiled once, in the build tree of the preset `release`.
+They are built for the Python that runs this program, and for others of which only the headers are
+installed: headers are enough to compile a module, which can be tested only where that Python is.
 """
 
 import base64
@@ -32,9 +31,10 @@ class BuildError(Exception):
 
 
 def build(folder: Path, other_headers: list[Path]) -> None:
-    """Repaired wheels into `folder`: for this Python, and for each of the other ones' headers.
+    """Builds repaired wheels in `folder`: for this Python, and for each Python whose headers are
+    given.
 
-    Builds without isolation: with what this environment holds, and no network.
+    The build is not isolated: it uses the packages of this environment, and no network.
     """
     with alone(), tempfile.TemporaryDirectory() as raw:
         library = compiled_library()
@@ -51,7 +51,7 @@ def build(folder: Path, other_headers: list[Path]) -> None:
 
 
 def interpreter(headers: Path) -> str:
-    """Such as cp313."""
+    """Returns a name such as cp313."""
     levels = (headers / "patchlevel.h").read_text()
     major, minor = (
         re.search(rf"#define PY_{name}_VERSION\s+(\d+)", levels).group(1)
@@ -70,7 +70,7 @@ def alone() -> Iterator[None]:
 
 
 def compiled_library() -> Path:
-    """The folder of the library's CMake package, after it has been brought up to date."""
+    """Brings the library's CMake package up to date, and returns its folder."""
     if not (LIBRARY_TREE / "build.ninja").exists():
         run("cmake", "-S", ROOT, "--preset", "release")
     compile_in(LIBRARY_TREE, "--target", "limitsurf")
@@ -83,18 +83,20 @@ def compile_in(build_tree: Path, *options: str) -> None:
 
 
 def compiled_module(headers: Path, library: Path) -> Path:
-    """The native module for the Python whose headers lie in a folder such as include/python3.13."""
+    """Returns the module for the Python whose headers lie in a folder such as "
+    "include/python3.13."""
     name = interpreter(headers)
     build_folder = ROOT / "build" / f"{name}-headers"
     include = build_folder / "include"
     for source in (headers, headers.parent / MULTIARCH / headers.name):
-        if source.exists():  # Debian keeps pyconfig.h apart
+        if source.exists():  # Debian stores pyconfig.h in another folder
             target = include / source.relative_to(headers.parent)
             shutil.copytree(source, target, dirs_exist_ok=True)
     suffix = f".cpython-{name.removeprefix('cp')}-{MULTIARCH}.so"
     definitions = {
         "CMAKE_BUILD_TYPE": "Release",
-        "CMAKE_SYSTEM_NAME": "Linux",  # set, this is a build for elsewhere: no interpreter is asked
+        # setting this makes it a cross build, which asks no interpreter
+        "CMAKE_SYSTEM_NAME": "Linux",
         "CMAKE_SYSTEM_PROCESSOR": "x86_64",
         "CMAKE_CXX_FLAGS": f"-isystem {include}",
         "LIMITSURF_PREBUILT": library,
@@ -111,7 +113,7 @@ def compiled_module(headers: Path, library: Path) -> Path:
 
 
 def with_module(wheel: Path, module: Path, name: str) -> Path:
-    """A copy of a wheel that is not yet repaired, with another Python's module in it."""
+    """Returns a copy of a wheel that is not yet repaired, with another Python's module in it."""
     own = wheel.stem.split("-")[2]
     target = wheel.with_name(wheel.name.replace(own, name))
     record = io.StringIO()
@@ -136,8 +138,9 @@ def with_module(wheel: Path, module: Path, name: str) -> Path:
 
 
 def run(*command: str | Path) -> str:
-    """What the program says; it is shown only where it fails."""
-    programs = Path(sys.executable).parent  # not resolved: the environment's, not the system's
+    """Returns the program's output, which is shown only where the program fails."""
+    # the path is not resolved, so that it is the environment's program, not the system's
+    programs = Path(sys.executable).parent
     environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
     done = subprocess.run(command, env=environment, capture_output=True, text=True)
     if done.returncode:

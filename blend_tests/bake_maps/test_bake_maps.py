@@ -306,7 +306,7 @@ def test_refusals(tmp_path):
     bake(maps={"POSITION"})
     refused("The existing image Bowl Position has 64 x 64 pixels: set .* or turn Reuse Images off")
     refused(
-        "has float pixels, which the chosen format does not have",
+        "has float pixels, which do not fit the chosen format",
         width=64,
         height=64,
         format="PNG_8",

@@ -336,7 +336,7 @@ def test_surfaces_that_are_flattened():
     ob = paraboloid()
     ob.scale = (1, 0, 1)
     bpy.context.view_layer.update()
-    check_refused("has no volume")
+    check_refused("has a scale of 0")
     run(ob, space="LOCAL")
 
 

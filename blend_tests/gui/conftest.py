@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender with a window, for tests that tools/gui_test.sh starts; others do not see them."""
+"""A Blender with a window, for tests that tools/gui_test.sh starts; other runs do not collect
+them.
+"""
 
 import shutil
 import sys
@@ -25,6 +27,8 @@ else:
 
     @pytest.fixture
     def blender(session):
-        """With a new file, the extension enabled, the mouse in the middle of the viewport."""
+        """Returns Blender with a new file, the extension enabled, and the mouse in the middle of
+        the viewport.
+        """
         session.new_file()
         return session

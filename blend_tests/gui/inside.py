@@ -52,7 +52,7 @@ def serve() -> None:
 
 
 def outcome(name: str, arguments: tuple, keywords: dict) -> tuple[bool, object]:
-    """Whether it failed, and what came of it."""
+    """Returns whether it failed, and its result."""
     try:
         window = bpy.context.window_manager.windows[0]
         with bpy.context.temp_override(window=window):

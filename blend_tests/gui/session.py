@@ -172,7 +172,7 @@ class BlenderSession:
         self.settle()
 
     def drag(self, start: Sequence[float], end: Sequence[float]) -> None:
-        """With the left button held down."""
+        """Drags with the left button held down."""
         self.move(*start)
         self._xdotool("mousedown", 1)
         self.settle()
@@ -181,12 +181,12 @@ class BlenderSession:
         self.settle()
 
     def wheel(self, steps: int) -> None:
-        """Upwards, or down if negative."""
+        """Turns the wheel upwards, or downwards if negative."""
         for _ in range(abs(steps)):
             self.press(4 if steps > 0 else 5)
 
     def key(self, *names: str) -> None:
-        """X11's names, such as ctrl+z, F9, Escape, period."""
+        """Presses a key by X11's name, such as ctrl+z, F9, Escape, period."""
         for name in names:
             self._xdotool("key", name)
             self.settle()
@@ -203,8 +203,9 @@ class BlenderSession:
         raise AssertionError("no tab Limit in the sidebar")
 
     def open_panel(self, panel: str) -> float:
-        """In the open tab: A above a panel's header opens and closes it, and only there. Where its
-        buttons are, or further down."""
+        """Opens a panel in the open tab: the key A above a panel's header, and only there, opens
+        and closes it. Returns a place at or above its buttons.
+        """
         self.call("count_draws", panel)
         bar = self.call("sidebar")
         x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
@@ -222,8 +223,9 @@ class BlenderSession:
         return self.call("draws", panel) > before
 
     def find_button(self, command: str, top: float | None = None) -> tuple[float, float]:
-        """Where in the open tab, or from so high on down, the button is that runs an operator, by
-        what it copies."""
+        """Returns where in the open tab, or below a given height, the button of an operator is, by
+        the text that it copies.
+        """
         bar = self.call("sidebar")
         x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
         return self._find(x, top or bar["top"] - 10, bar["bottom"], f"bpy.ops.{command}(")
@@ -243,7 +245,7 @@ class BlenderSession:
         return np.flatnonzero(blue[row]).mean(), HEIGHT - 1 - row
 
     def operators_in_menu(self) -> list[str]:
-        """Of the menu that is open: as many as there are, each once."""
+        """Returns the operators of the open menu, which must have so many, each once."""
         found = []
         while len(found) < MOST_ENTRIES:
             self.call("clear_clipboard")
@@ -255,18 +257,22 @@ class BlenderSession:
         raise AssertionError(f"a menu without an end: {found}")
 
     def open_redo_panel(self) -> tuple[float, float]:
-        """By F9 in the middle of the viewport; where the column of its fields begins."""
+        """Opens the redo panel by F9 in the middle of the viewport, and returns where the column of
+        its fields begins.
+        """
         x, y = self.call("view_centre")
         self.move(x, y)
         self.key("F9")
         return x + 200, y
 
     def find_field(self, x: float, y: float, value: str) -> tuple[float, float]:
-        """Where below (x, y) a field is that holds a value."""
+        """Returns where below (x, y) a field with this value is."""
         return self._find(x, y, y - 400, value)
 
     def _find(self, x: float, top: float, bottom: float, copied: str) -> tuple[float, float]:
-        """What Ctrl+C copies tells what is under the mouse: this, not with more digits."""
+        """Searches by what Ctrl+C copies from under the mouse: this text, not the same number with
+        more digits.
+        """
         copied_here = re.compile(re.escape(copied) + r"(?!\d)")
         self.call("clear_clipboard")
         for y in range(round(top), round(bottom), -ROW * 3 // 4):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators that make textures and meshes, by their panel, dialogs, redo panels and menu."""
+"""The operators that make textures and meshes, used by their panel, dialogs, redo panels and
+menu.
+"""
 
 import numpy as np
 import pytest
@@ -29,7 +31,9 @@ LONG_BAKE = {
 
 @pytest.fixture
 def sheet(blender):
-    """In the view; afterwards Blender has complained of nothing."""
+    """Adds the sheet, which fills the view, and checks afterwards that Blender has reported no
+    errors.
+    """
     log = OUT / "blender.log"
     blender.call("flush")
     begin = log.stat().st_size
@@ -43,7 +47,9 @@ def sheet(blender):
 
 
 def checker(side=256):
-    """(rows, columns, 3) of 0 to 255, the lowest row first; one square tells which way it is."""
+    """Returns pixels (rows, columns, 3) from 0 to 255, the lowest row first; one square shows the
+    orientation.
+    """
     y, x = np.mgrid[:side, :side] * SQUARES // side
     pixels = np.where(((x + y) % 2 == 0)[..., None], FIRST, SECOND)
     pixels[(x == 2) & (y == 4)] = MARK
@@ -52,7 +58,7 @@ def checker(side=256):
 
 @pytest.fixture
 def image(sheet):
-    """That the next projection puts into the sheet's texture."""
+    """Makes the image that the next projection paints into the sheet's texture."""
     pixels = checker()
     sheet.call("new_image", "Checker", np.dstack([pixels / 255, np.ones(pixels.shape[:2])]))
     sheet.call("remember")
@@ -62,7 +68,7 @@ def image(sheet):
 
 
 def project(sheet):
-    """By the button and the dialog that it opens; what was to be seen before."""
+    """Projects by the button and the dialog that it opens; returns the view as it was before."""
     sheet.open_tab()
     top = sheet.open_panel(PANEL)
     blank = sheet.pixels(sheet.screenshot("project_before"))
@@ -95,7 +101,9 @@ def test_projected_from_the_view_it_looks_like_the_image_and_is_undone(sheet, im
 
 
 def test_projection_is_adjusted_in_the_redo_panel(sheet, image):
-    """From the pixels that were there before: over itself the image would not change anything."""
+    """The redo panel starts from the pixels before the projection: painted over itself the image
+    would change nothing.
+    """
     before = sheet.call("image_digest", "Texture")
     project(sheet)
     after = sheet.call("image_digest", "Texture")
@@ -111,7 +119,9 @@ def test_projection_is_adjusted_in_the_redo_panel(sheet, image):
 
 
 def assert_undistorted(shown, blank, camera, image):
-    """Wherever the sheet was seen the image is, as large as fits into the middle of the view."""
+    """Checks that the image is wherever the sheet was seen, as large as fits into the middle of the
+    view.
+    """
     rows, columns = np.nonzero(is_near(blank, BLANK))
     (left, bottom), (width, height) = camera["corner"], camera["size"]
     side = min(width, height)
@@ -123,7 +133,8 @@ def assert_undistorted(shown, blank, camera, image):
         axis=1,
     )
     square = st * SQUARES
-    from_border = np.abs(square - np.rint(square)).min(axis=1) * side / SQUARES  # screen's pixels
+    # in pixels of the screen
+    from_border = np.abs(square - np.rint(square)).min(axis=1) * side / SQUARES
     inside = ((st > 0) & (st < 1)).all(axis=1)
     seen = shown[rows, columns].astype(int)
     clear = inside & (from_border > 3)
@@ -193,7 +204,7 @@ def test_mesh_is_adjusted_in_the_redo_panel(sheet):
 
 
 def test_curvature_is_seen(sheet):
-    """Blue where the sheet bulges, red where it is hollow."""
+    """The sheet is blue where it bulges, and red where it is hollow."""
     there = sheet.call("contents")
     sheet.open_tab()
     top = sheet.open_panel(PANEL)

@@ -308,7 +308,7 @@ def test_density_0_everywhere(distribution):
 def test_a_vertex_group_that_would_be_taken_for_an_attribute():
     weigh(scenes.cross(), "position")
     check_refused(
-        "Cross has an attribute with the name position",
+        "Cross has an attribute with the same name as the vertex group position",
         density_source="VERTEX_GROUP",
         vertex_group="position",
     )

@@ -146,7 +146,7 @@ def test_too_low_a_density_is_refused():
 @pytest.mark.parametrize("distribution", ["UNIFORM", "BLUE_NOISE"])
 def test_an_object_without_area_is_refused(distribution):
     place(scenes.flat_grid(2), {"scale": (0, 1, 1)})
-    check_refused("no area|has no volume", distribution=distribution, count=10)
+    check_refused("no area|has a scale of 0", distribution=distribution, count=10)
 
 
 @pytest.mark.parametrize("given", [{"count": 4_000_000}, {"density": 1e6}, {"distance": 5e-4}])

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# A Debian 13 with its own Blender, beside this system: sourced by tools/gui_test.sh.
+# Functions for a Debian 13 with its own Blender, in a chroot. tools/gui_test.sh sources this file.
 #
-#   chroot_obstacle          prints why there can be none here, if so
-#   make_chroot              makes it where it is missing (a minute or two, 1.3 GB)
-#   in_chroot COMMAND...     runs something in it, without network
+#   chroot_obstacle          prints the reason why a chroot is not possible here, if there is one
+#   make_chroot              makes the chroot if it is missing (a minute or two, 1.3 GB)
+#   in_chroot COMMAND...     runs a command in it, without network
 #
 # It lies in build/window and is kept. Everything is mounted in a namespace of its own, so that
 # nothing stays mounted and no process survives, however the command ends.
@@ -13,10 +13,10 @@ CHROOT=$ROOT/build/window/trixie
 CHROOT_OUT=$ROOT/build/window/out # /out inside; the checkout is /project, read-only
 
 CHROOT_PACKAGES=(
-  blender python3-numpy libgl1-mesa-dri libegl-mesa0 # a window on a machine without graphics
-  xvfb xauth xdotool imagemagick                     # a screen, a mouse, pictures of the screen
+  blender python3-numpy libgl1-mesa-dri libegl-mesa0 # Blender, and OpenGL without a graphics card
+  xvfb xauth xdotool imagemagick                     # a virtual screen, a mouse, and screenshots
   python3-pytest
-  libpython3.13-dev # headers for the module that this Blender loads
+  libpython3.13-dev # headers to compile the module that this Blender loads
 )
 
 chroot_obstacle() {
@@ -24,7 +24,7 @@ chroot_obstacle() {
   if [[ $(uname -sm) != "Linux x86_64" ]]; then
     echo "they need Linux on x86-64"
   elif ((EUID != 0)); then
-    echo "a chroot takes root"
+    echo "a chroot needs the rights of root"
   elif ! unshare --mount --pid --net --fork true 2>/dev/null; then
     echo "this system allows no namespaces (unshare), as in a container without privileges"
   elif ! command -v debootstrap >/dev/null && ! command -v apt-get >/dev/null; then
@@ -44,7 +44,7 @@ make_chroot() {
   local log=$ROOT/build/window/setup.log
   mkdir -p "$CHROOT_OUT"
   chroot_is_ready && return
-  say "A Debian 13 with Blender for the window tests (a minute or two, 1.3 GB)"
+  say "Fetching a Debian 13 with Blender for the window tests (a minute or two, 1.3 GB)"
   if ! fetch_debian "$CHROOT.partial" >"$log" 2>&1 </dev/null; then
     tail -n 40 "$log" >&2
     fail "The Debian for the window tests could not be fetched." "(The whole output: $log)"
@@ -53,7 +53,7 @@ make_chroot() {
   mv "$CHROOT.partial" "$CHROOT"
 }
 
-# Steps are joined, as nothing stops a function that is asked whether it succeeds.
+# The steps are joined by &&, because `set -e` has no effect in a function that is called by `if`.
 fetch_debian() {
   local folder=$1
   rm -rf --one-file-system "$folder" &&
@@ -70,7 +70,7 @@ fetch_debian() {
 
 hasten_dpkg() {
   local settings=$1/etc/dpkg/dpkg.cfg.d/limit-surface
-  echo force-unsafe-io >"$settings" # it can be made anew: no waiting for the disk
+  echo force-unsafe-io >"$settings" # the chroot is replaceable: dpkg need not wait for the disk
   printf 'path-exclude=/usr/share/%s/*\n' doc man locale info >>"$settings"
 }
 
@@ -78,7 +78,7 @@ in_chroot() {
   enter "$CHROOT" --net "$@"
 }
 
-# enter FOLDER [--net] COMMAND...: --net for a network of its own, with nobody in it
+# enter FOLDER [--net] COMMAND...: --net gives the command an empty network of its own
 enter() {
   local folder=$1 options=(--mount --pid --fork --kill-child --propagation private)
   shift
@@ -109,7 +109,7 @@ install_debootstrap() {
     --no-install-recommends debootstrap
 }
 
-# The one that this system's own apt uses.
+# Prints the mirror that this system's own apt uses.
 debian_mirror() {
   local found
   found=$(apt-get indextargets --format '$(ORIGIN) $(SITE) $(RELEASE) $(COMPONENT)' \

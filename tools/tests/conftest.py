@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of pages share; the programs that draw figures become importable."""
+"""Fixtures that the tests of pages share. The programs that draw figures can be imported."""
 
 import sys
 from pathlib import Path
@@ -14,7 +14,7 @@ from figures.meshes.grids import grid_faces  # noqa: E402
 
 @pytest.fixture
 def sheet() -> dict[str, np.ndarray]:
-    """Nine flat unit squares: what the examples call `positions` and `faces`."""
+    """Returns nine flat unit squares, which the examples call `positions` and `faces`."""
     y, x = np.mgrid[:4, :4].reshape(2, -1)
     positions = np.stack([x, y, 0 * x], axis=1).astype(float)
     return {"positions": positions, "faces": grid_faces(3, 3)}

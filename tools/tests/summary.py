@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 def count(report: Path) -> tuple[int, int, int]:
-    """Passed, failed and skipped tests in a JUnit report."""
+    """Returns the numbers of passed, failed and skipped tests in a JUnit report."""
     passed = failed = skipped = 0
     for case in ET.parse(report).iter("testcase"):
         if case.find("failure") is not None or case.find("error") is not None:

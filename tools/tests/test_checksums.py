@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tools/checksums.py: the same bits every time, and a name for each row that differs."""
+"""tools/checksums.py gives the same bits every time, and names each row that differs."""
 
 import subprocess
 import sys

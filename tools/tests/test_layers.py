@@ -34,7 +34,9 @@ OF_OTHERS = re.compile(r"pybind11|Python\.h|\bbpy\b")
 
 
 def includes(root: Path) -> Iterator[tuple[Path, str, str]]:
-    """Every source file with its room and the room that it includes, once for each include."""
+    """Yields every source file with its room and the room that it includes, once for each
+    include.
+    """
     for path in sorted(root.rglob("*")):
         if path.suffix in (".h", ".cpp"):
             inside = path.relative_to(root)

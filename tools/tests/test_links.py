@@ -17,7 +17,7 @@ ELSEWHERE = ("http:", "https:", "mailto:")
 
 
 def text(page: Path) -> str:
-    """Without code blocks, in which brackets mean something else."""
+    """Returns the page without code blocks, in which brackets mean something else."""
     return re.sub(r"^```.*?^```$", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
 
 
@@ -27,7 +27,7 @@ def targets(page: Path) -> list[str]:
 
 @cache
 def anchors(page: Path) -> set[str]:
-    """Of the page's headings, as GitHub makes them."""
+    """Returns the anchors of the page's headings, as GitHub makes them."""
     found: set[str] = set()
     for heading in re.findall(r"^#+ (.*)$", text(page), flags=re.MULTILINE):
         shown = LINK.sub(lambda link: link[0].split("]")[0][1:], heading)
@@ -51,7 +51,7 @@ def test_links_lead_somewhere(page):
 
 
 def test_links_are_found():
-    """So that the test above cannot pass because it sees none."""
+    """This ensures that the test above does not pass because it finds no links."""
     assert sum(len(targets(page)) for page in PAGES) > 100
     assert any("#" in target for page in PAGES for target in targets(page))
 

@@ -11,7 +11,7 @@ from figures import comparison
 from figures import projection as program
 
 ROOT = Path(__file__).parents[2]
-BLOCK = 20  # pixels a side
+BLOCK = 20  # pixels along each side
 
 
 def test_picture_is_up_to_date():
@@ -35,7 +35,8 @@ def test_wrong_pictures_are_seen(monkeypatch):
 
 def test_example(sheet):
     positions, faces = sheet["positions"], sheet["faces"]
-    camera = np.diag([0.5, 0.5, -0.1, 1.0])  # straight down on (-2, -2) to (2, 2)
+    # looks straight down on the square from (-2, -2) to (2, 2)
+    camera = np.diag([0.5, 0.5, -0.1, 1.0])
     known = {
         **sheet,
         "uvs": positions[:, :2] / 3,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the README and the pages about the Python module and the C++ library show is what runs."""
+"""The examples in the README and in the pages about the Python module and the C++ library run."""
 
 import re
 import subprocess
@@ -13,7 +13,7 @@ CONSUMER = ROOT / "native/tests/consumer"
 
 
 def blocks(page: str, kind: str) -> list[str]:
-    """The page's code blocks that open with exactly ```kind."""
+    """Returns the page's code blocks that open with exactly ```kind."""
     text = (ROOT / page).read_text()
     return re.findall(rf"^```{kind}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
 

@@ -33,12 +33,14 @@ BETWEEN_CAPABILITIES = {("snap_modal", "snap")}
 
 
 def room_of(parts: tuple[str, ...], root: Path = ADDON) -> str:
-    """The folder of a module whose path in the extension has these parts; "" for the root."""
+    """Returns the folder of a module whose path in the extension has these parts; "" for the
+    root.
+    """
     return parts[0] if parts and (root / parts[0]).is_dir() else ""
 
 
 def imports(root: Path = ADDON) -> Iterator[tuple[Path, str, str]]:
-    """Every file with its room and the room that it imports, once for each import."""
+    """Yields every file with its room and the room that it imports, once for each import."""
     for path in sorted(root.rglob("*.py")):
         inside = path.relative_to(root)
         if inside == Path("__init__.py"):

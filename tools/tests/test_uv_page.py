@@ -12,7 +12,7 @@ from figures import comparison
 from figures import uv as program
 
 ROOT = Path(__file__).parents[2]
-BLOCK = 16  # pixels a side
+BLOCK = 16  # pixels along each side
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def test_picture_is_up_to_date(shown):
 
 
 class Sabotaged:
-    """A map whose texels are not what they should be."""
+    """A map whose texels are deliberately wrong."""
 
     def __init__(self, uv_map, spoil):
         self.uv_map, self.spoil = uv_map, spoil

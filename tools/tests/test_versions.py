@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One version, in every place that states it; CMakeLists.txt is where it is changed."""
+"""The version is the same in every place that states it; it is changed in CMakeLists.txt."""
 
 import re
 import tomllib

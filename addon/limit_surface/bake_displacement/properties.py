@@ -86,7 +86,7 @@ class DisplacementProperties(TextureProperties):
             (
                 "WORLD",
                 "World Space",
-                "Compare the meshes where the objects are in the world",
+                "Compare the meshes in world space, where the objects are",
                 "",
                 0,
             ),
@@ -129,7 +129,7 @@ class DisplacementProperties(TextureProperties):
         name="Layout",
         description="How places of the surface are arranged in the image",
         items=(
-            ("UV", "UV Map", "Arrange them by a UV map, as it is on the limit surface", "", 0),
+            ("UV", "UV Map", "Arrange them by the UV map on the limit surface", "", 0),
             (
                 "PTEX",
                 "Tile per Face",

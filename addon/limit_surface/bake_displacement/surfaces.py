@@ -112,5 +112,5 @@ def _carried(
     try:
         relative = np.linalg.solve(base_matrix, matrix)
     except np.linalg.LinAlgError:
-        raise RefusalError(f"{base_name} has no volume: its scale is 0 along an axis") from None
+        raise RefusalError(f"{base_name} has a scale of 0 along an axis") from None
     return positions @ relative[:3, :3].T + relative[:3, 3]

@@ -78,7 +78,7 @@ class Output:
                 )
         if described.is_float != self._is_float:
             depth = "float" if described.is_float else "8-bit"
-            raise RefusalError(f"{whose} has {depth} pixels, which the chosen format does not have")
+            raise RefusalError(f"{whose} has {depth} pixels, which do not fit the chosen format")
         if not described.is_data:
             raise RefusalError(
                 f"{whose} has the color space {described.colorspace}, but data need Non-Color"

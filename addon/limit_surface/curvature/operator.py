@@ -111,8 +111,8 @@ class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
     )
     full_color: FloatProperty(
         name="Full Color",
-        description="Absolute curvature from which on the color is the fullest. 0 chooses a value "
-        "such that 95% of the colors are paler",
+        description="Absolute curvature at which the color reaches its full strength. 0 chooses a "
+        "value such that 95% of the places are paler",
         default=0.0,
         min=0.0,
         soft_max=100.0,

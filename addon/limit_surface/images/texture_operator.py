@@ -16,7 +16,7 @@ class TextureProperties:
 
     width: IntProperty(
         name="Width",
-        description="Of new images, or of each of their tiles, in texels",
+        description="Size of new images, or of each of their tiles, in texels",
         default=1024,
         min=1,
         max=LARGEST,
@@ -24,7 +24,7 @@ class TextureProperties:
     )
     height: IntProperty(
         name="Height",
-        description="Of new images, or of each of their tiles, in texels",
+        description="Size of new images, or of each of their tiles, in texels",
         default=1024,
         min=1,
         max=LARGEST,
@@ -32,8 +32,8 @@ class TextureProperties:
     )
     margin: IntProperty(
         name="Margin",
-        description="So many texels around the UV map's islands take what is nearest on them, so "
-        "that no seams are seen",
+        description="Number of texels around the UV map's islands that are filled from the "
+        "nearest place on an island, so that no seams are visible",
         default=16,
         min=0,
         max=256,
@@ -41,35 +41,35 @@ class TextureProperties:
     )
     uv_map: StringProperty(
         name="UV Map",
-        description="Name of the UV map that places the texels. Without one the active map is "
-        "taken",
+        description="Name of the UV map that places the texels. If empty, the active UV map is "
+        "used",
     )
     overlap: EnumProperty(
         name="Overlap",
-        description="If several places of the surface share texels on the UV map",
+        description="What happens where several places of the surface share texels on the UV map",
         items=(
             (
                 "ERROR",
                 "Refuse",
-                "Nothing is made, unless it is no more than one texel in 500, where a map folds at "
-                "the corners of its islands: then the face with the lowest number counts, and a "
-                "warning says how many texels there are",
+                "Make nothing if more than one texel in 500 is shared. Fewer can be folds at the "
+                "corners of islands: these texels show the face with the lowest number, and a "
+                "warning gives their number",
                 "",
                 0,
             ),
-            ("ALLOW", "Allow", "The place on the face with the lowest number counts", "", 1),
+            ("ALLOW", "Allow", "Show the face with the lowest number in these texels", "", 1),
         ),
         default="ERROR",
     )
     allow_large: BoolProperty(
         name="Allow Large Images",
-        description="Make what takes gigabytes of memory",
+        description="Allow images that take gigabytes of memory",
         default=False,
         options={"SKIP_SAVE"},
     )
     summary: StringProperty(
         name="Result",
-        description="What the operator made",
+        description="Summary of what the operator made",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 

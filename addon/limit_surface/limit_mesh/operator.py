@@ -26,7 +26,7 @@ class _Result:
 
 class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
     """Make a mesh whose vertices and normals are exactly those of the active mesh's limit surface,
-    for renderers that want polygons"""
+    for renderers that need polygons"""
 
     bl_idname = ids.LIMIT_MESH
     bl_label = "Mesh on Limit Surface"

@@ -66,8 +66,8 @@ class DensityChoice:
             raise RefusalError(f"{ob.name} has no vertex group {self.vertex_group!r}")
         if self.vertex_group in ob.data.attributes:
             raise RefusalError(
-                f"{ob.name} has an attribute with the name {self.vertex_group} of the vertex "
-                "group, which cannot be read then: rename the group"
+                f"{ob.name} has an attribute with the same name as the vertex group "
+                f"{self.vertex_group}, which hides the group: rename the group"
             )
         return [self.vertex_group]
 

@@ -41,7 +41,7 @@ class WorldSpace:
         self._handedness = np.sign(np.linalg.det(self._linear))
         singular_values = np.linalg.svd(self._linear, compute_uv=False)
         if singular_values[-1] <= 1e-12 * singular_values[0]:
-            raise RefusalError("The object has no volume: its scale is 0 along an axis")
+            raise RefusalError("The object has a scale of 0 along an axis")
         self._inverse = np.linalg.inv(self._linear)
         self.mean_scale = float(np.cbrt(singular_values.prod()))
 

@@ -82,12 +82,12 @@ class Made:
 
 
 class ScatterOperator(WatchedOperator, distribution_properties.DistributionProperties):
-    """Mixin: locations by one of the distributions, and the rules of asking and reporting.
+    """Mixin for operators that scatter things: distributions, confirmation and reports.
 
     A subclass names what it makes (`noun`, plural). These are the steps of the work, each within
     one of the steps that `tasks/watched_operator.py` lists, with the class that provides them:
 
-    1. in `invoke` or `start`, `check_properties`: the subclass refuses what makes no sense;
+    1. in `invoke` or `start`, `check_properties`: the subclass refuses contradictory properties;
     2. `_order`: ScatterOperator reads the region and the distribution from Blender;
     3. in `invoke`, `_ask`: ScatterOperator has users confirm what is very large;
     4. `maker`: the subclass gives the function that makes its arrays;

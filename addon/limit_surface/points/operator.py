@@ -28,7 +28,7 @@ class Points:
 
 class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
     """Scatter points over the active mesh's limit surface: vertices that carry the surface's
-    normal, tangent and rotation, and an instance of an object on each if you like"""
+    normal, tangent and rotation, and optionally an instance of an object on each"""
 
     bl_idname = ids.POINTS_ADD
     bl_label = "Add Points on Limit Surface"

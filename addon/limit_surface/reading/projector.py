@@ -45,7 +45,7 @@ def inverse(matrix: np.ndarray, called: str) -> np.ndarray:
     """Raises RefusalError where an object's scale is 0 along an axis."""
     values = np.linalg.svd(matrix[:3, :3], compute_uv=False)
     if not values[-1] > SINGULAR * values[0]:
-        raise RefusalError(f"{called} has no volume: its scale is 0 along an axis")
+        raise RefusalError(f"{called} has a scale of 0 along an axis")
     return np.linalg.inv(matrix)
 
 

@@ -61,7 +61,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
     )
     full_color: FloatProperty(
         name="Full Color",
-        description="Distance from which on the color is yellow, in world units. 0 chooses the "
+        description="Distance at which the color becomes yellow, in world units. 0 chooses the "
         "largest distance that is found",
         default=0.0,
         min=0.0,

@@ -88,8 +88,8 @@ class SnappedHair:
             turn[bound] = new @ np.swapaxes(old, 1, 2)
             if not bound.all():
                 outcome.notes.append(
-                    f"{np.count_nonzero(~bound):,} strands that were on no surface were turned to "
-                    "the normal alone"
+                    f"{np.count_nonzero(~bound):,} strands were not bound to a surface and "
+                    "were only turned to the normal"
                 )
         return turn
 

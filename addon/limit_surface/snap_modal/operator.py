@@ -26,7 +26,7 @@ FINE = 0.1  # the share of a wheel step that is used with Shift
 
 class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
     """Drag over the exact limit surface with the mouse: the selected object over the active mesh; a
-    vertex in Edit Mode, or a strand of hair by its root, over the target chosen in the tab Limit"""
+    vertex in Edit Mode, or a strand of hair by its root, over the target in the tab Limit"""
 
     bl_idname = ids.SNAP_MODAL
     bl_label = "Drag on Limit Surface"
