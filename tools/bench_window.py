@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How quickly the extension answers in Blender's window: dragging over a large mesh, the window
-while a long bake goes on, and ESC. Prints a table in Markdown.
+"""Measures how quickly the extension answers in Blender's window: dragging over a large mesh, the
+window during a long bake, and ESC. Prints a table in Markdown.
 
     tools/gui_test.sh --bench
 
-runs it in the Blender of the window tests, without a graphics card: what is drawn takes longer
-there than anywhere else, so only the times of dragging are the extension's own.
+This command runs it in the Blender of the window tests, without a graphics card. Drawing takes
+longer there than elsewhere, so only the times of dragging are those of the extension itself.
 """
 
 import sys
@@ -23,11 +23,11 @@ from session import BlenderSession, virtual_screen, wait_until  # noqa: E402
 from test_textures import BAKE_MAPS, LONG_BAKE  # noqa: E402
 from test_waiting import ADD_POINTS, MOST  # noqa: E402
 
-ANSWERS = 20  # of the window, one after the other
+ANSWERS = 20  # the number of the window's answers that are measured
 
 
 def measured(blender: BlenderSession) -> list[tuple[str, float, float]]:
-    """What, and its median and largest time in seconds."""
+    """Returns the name of what is measured, and its median and largest time in seconds."""
     rows = [(f"Dragging, {name}", *summary(times)) for name, times in moves(blender)]
     waiting, escape = bake(blender)
     rows.append(("The window's answer while maps are baked", *summary(waiting)))
@@ -49,7 +49,9 @@ def moves(blender: BlenderSession) -> list[tuple[str, np.ndarray]]:
 
 
 def bake(blender: BlenderSession) -> tuple[np.ndarray, float]:
-    """Times of the window's answers, and until ESC has ended all threads."""
+    """Returns the times of the window's answers, and the time from ESC to the end of all
+    threads.
+    """
     blender.new_file()
     blender.call("textured_sheet", 0.35)
     blender.settle()

@@ -83,8 +83,9 @@ def compile_in(build_tree: Path, *options: str) -> None:
 
 
 def compiled_module(headers: Path, library: Path) -> Path:
-    """Returns the module for the Python whose headers lie in a folder such as "
-    "include/python3.13."""
+    """Returns the module for the Python whose headers lie in a folder such as
+    include/python3.13.
+    """
     name = interpreter(headers)
     build_folder = ROOT / "build" / f"{name}-headers"
     include = build_folder / "include"

@@ -21,7 +21,7 @@ def _load() -> tuple[ModuleType | None, str]:
         import limitsurf
     except Exception as error:  # a broken binary may raise any error, which is the reason to show
         return None, f"{type(error).__name__}: {error}"
-    # A plain folder of that name on sys.path imports as an empty package.
+    # A folder of that name on sys.path would be imported as an empty package.
     if not hasattr(limitsurf, "LimitSurface"):
         return None, f"{list(limitsurf.__path__)[0]} is not the native module"
     return limitsurf, ""
@@ -36,7 +36,7 @@ else:
 errors: tuple[type[Exception], ...] = (
     (limitsurf.MeshError, limitsurf.LocationError) if limitsurf else ()
 )
-#: What an operator reports as the reason why it did nothing.
+#: The errors that an operator reports as the reason why it did nothing
 refusals: tuple[type[Exception], ...] = (RefusalError, *errors)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from figures.meshes import grids
 from mathutils import Euler
 
-TIMES = []  # see time_moves
+TIMES = []  # filled by time_moves
 
 
 def new_file() -> None:

@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from session import BlenderSession
 
-SIDE = 317  # squared: a bit over 100,000 faces
-FREE, CONSTRAINED = 40, 10  # moves
+SIDE = 317  # the square of this is slightly more than 100,000 faces
+FREE, CONSTRAINED = 40, 10  # number of moves
 
 
 class Moves(NamedTuple):
-    """Seconds that each move took the operator."""
+    """The seconds that the operator spent at each move."""
 
     free: np.ndarray
     border: np.ndarray
@@ -24,14 +24,16 @@ def circle(blender: BlenderSession, moves: int) -> None:
 
 
 def drag_over_large_sheet(blender: BlenderSession) -> Moves:
-    """All over it, along its faces' borders and along its boundary; the drag goes on."""
+    """Drags all over the sheet, along its faces' borders and along its boundary, and does not end
+    the drag.
+    """
     assert blender.call("large_sheet", SIDE) > 100_000
     blender.call("pin")
     blender.call("time_moves")
     blender.call("start_drag")
     circle(blender, FREE)
     for key in "x", "y":
-        blender.key(key)  # is followed as a move is
+        blender.key(key)  # the drag follows this event as it follows a move
         circle(blender, CONSTRAINED)
     times = np.array(blender.call("times"))
     ends = np.cumsum([FREE, CONSTRAINED + 1, CONSTRAINED + 1])

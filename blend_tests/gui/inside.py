@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs within Blender: does what the tests ask for, between two events of the main loop."""
+"""The program within Blender: it does what the tests ask for, between two events of the main
+loop.
+"""
 
 import os
 import sys
@@ -11,7 +13,7 @@ import bpy
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "docs")]
-# Both would swallow clicks.
+# Both would intercept clicks.
 bpy.context.preferences.view.show_splash = False
 bpy.context.preferences.view.show_tooltips = False
 
@@ -19,8 +21,9 @@ import actions  # noqa: E402
 import texture_actions  # noqa: E402
 
 POLL = 0.01  # seconds
-#: Rounds of the main loop, POLL apart, in which an event is dealt with, and everything that it sets
-#: off (a button is lit for 0.02 s before it acts); in the last DRAWN of them all is drawn
+#: The number of rounds of the main loop, POLL apart, in which an event and everything that follows
+#: from it is handled (a button is lit for 0.02 s before it acts). In the last DRAWN of them
+#: everything is drawn.
 ROUNDS, DRAWN = 8, 2
 ACTIONS = {**vars(actions), **vars(texture_actions)}
 
@@ -28,7 +31,7 @@ ACTIONS = {**vars(actions), **vars(texture_actions)}
 def serve() -> None:
     listener = Listener(os.environ["LIMIT_SURFACE_SOCKET"])
     connection = None
-    rounds = 0  # still to be gone before "settle" is answered
+    rounds = 0  # rounds that remain before "settle" is answered
 
     def tick() -> float:
         nonlocal connection, rounds

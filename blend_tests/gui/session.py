@@ -24,12 +24,12 @@ HERE = Path(__file__).parent
 OUT = Path("/out")
 PACKAGES = OUT
 WIDTH, HEIGHT = 1280, 800
-LIMIT = 120  # seconds, after which something that is waited for counts as missing
-POLL = 0.05  # seconds between two looks at what is waited for
-ROW = 20  # pixels, of a button
-TAB_STRIP = 22  # pixels at the sidebar's right edge
-MOST_ENTRIES = 30  # of a menu
-CONFIRMATION = (71, 114, 179)  # color of a dialog's OK
+LIMIT = 120  # seconds after which a test stops waiting and fails
+POLL = 0.05  # seconds between two checks of what is waited for
+ROW = 20  # the height of a button in pixels
+TAB_STRIP = 22  # the width in pixels of the strip of tabs at the sidebar's right edge
+MOST_ENTRIES = 30  # the largest number of entries in a menu
+CONFIRMATION = (71, 114, 179)  # the color of a dialog's OK button
 ADDON = "bl_ext.user_default.limit_surface"
 
 
@@ -52,7 +52,7 @@ def virtual_screen() -> Iterator[str]:
 
 
 def install_extension(user: Path) -> str:
-    """As *Install from Disk* does it; what Blender says about it."""
+    """Installs the extension as *Install from Disk* does, and returns Blender's output."""
     (package,) = PACKAGES.glob("limit_surface-*.zip")
     command = ("blender", "--command", "extension", "install-file", "-r", "user_default")
     done = subprocess.run(
@@ -71,7 +71,7 @@ def is_near(pixels: np.ndarray, color: Sequence[int]) -> np.ndarray:
 
 
 def wait_until(look: Callable[[], Any], what: str) -> Any:
-    """What `look` returns, once that is neither None nor False."""
+    """Returns the result of `look` as soon as it is neither None nor False."""
     deadline = time.monotonic() + LIMIT
     while (seen := look()) is None or seen is False:
         if time.monotonic() > deadline:
@@ -81,7 +81,7 @@ def wait_until(look: Callable[[], Any], what: str) -> Any:
 
 
 def class_name(operator: str) -> str:
-    """By which Blender knows an operator whose name in bpy.ops is this."""
+    """Returns the name by which Blender knows the class of an operator in bpy.ops."""
     category, name = operator.split(".")
     return f"{category.upper()}_OT_{name}"
 
@@ -129,7 +129,9 @@ class BlenderSession:
             shutil.copy(report, OUT)
 
     def call(self, name: str, *arguments: Any, **keywords: Any) -> Any:
-        """What the function within Blender returns, once Blender has nothing else to do."""
+        """Returns the result of the function within Blender, once Blender has nothing else to
+        do.
+        """
         self._connection.send((name, arguments, keywords))
         if not self._connection.poll(LIMIT):
             pytest.fail(f"{name} in Blender has not ended after {LIMIT} s")
@@ -138,11 +140,11 @@ class BlenderSession:
         return value
 
     def await_value(self, value: Any, name: str, *arguments: Any) -> None:
-        """Until the function within Blender returns this value."""
+        """Waits until the function within Blender returns this value."""
         wait_until(lambda: self.call(name, *arguments) == value, f"{name}{arguments} is {value!r}")
 
     def await_end(self, operator: str) -> None:
-        """Until this operator, object.limit_points_add, say, has done its work."""
+        """Waits until this operator, object.limit_points_add for example, has done its work."""
         self.await_value([], "running")
         self.settle()
         self.await_value(class_name(operator), "last_operator")
@@ -154,10 +156,10 @@ class BlenderSession:
         self.move(*self.call("view_centre"))
 
     def settle(self) -> None:
-        """Until everything that was sent has been dealt with and drawn."""
+        """Waits until all input has been handled and drawn."""
         self.call("settle")
 
-    # Mouse positions are Blender's: from the window's lower left.
+    # Mouse positions are counted from the window's lower left, as in Blender.
 
     def move(self, x: float, y: float) -> None:
         self._xdotool("mousemove", round(x), HEIGHT - 1 - round(y))
@@ -231,11 +233,13 @@ class BlenderSession:
         return self._find(x, top or bar["top"] - 10, bar["bottom"], f"bpy.ops.{command}(")
 
     def await_dialog(self, before: np.ndarray) -> tuple[float, float]:
-        """Where the OK is of the dialog that opens, given what was to be seen before."""
+        """Waits for a dialog and returns the place of its OK button, given the picture before it
+        opened.
+        """
         return wait_until(lambda: self._confirmation(before), "a dialog with an OK is open")
 
     def _confirmation(self, before: np.ndarray) -> tuple[float, float] | None:
-        """Of what has become blue since then, the lowest."""
+        """Returns the lowest of the places that have become blue."""
         now = self.pixels(self.screenshot("dialog"))
         blue = is_near(now, CONFIRMATION) & ~is_near(before, CONFIRMATION)
         rows = np.flatnonzero(blue.sum(axis=1) > ROW)
@@ -283,7 +287,7 @@ class BlenderSession:
         raise AssertionError(f"nothing that copies {copied!r} between {top} and {bottom} at {x}")
 
     def screenshot(self, name: str) -> Path:
-        """Of a screen on which nothing moves any more."""
+        """Returns a picture of the screen, once nothing moves on it any more."""
         path = OUT / f"{name}.png"
         before = b""
 
@@ -298,11 +302,11 @@ class BlenderSession:
         return path
 
     def picture(self, path: Path) -> None:
-        """Of the screen as it is."""
+        """Returns a picture of the screen as it is."""
         self._run("import", "-window", "root", path)
 
     def pixels(self, picture: Path) -> np.ndarray:
-        """(rows, columns, 3) of 0 to 255."""
+        """Returns pixels (rows, columns, 3) from 0 to 255."""
         command = ["convert", picture, "-depth", "8", "rgb:-"]
         raw = subprocess.run(command, capture_output=True, check=True, timeout=LIMIT).stdout
         return np.frombuffer(raw, np.uint8).reshape(HEIGHT, WIDTH, 3)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dragging follows each move, whatever the size of the target. tools/bench_window.py tells whether
-it keeps up with the screen.
+"""Dragging follows each move, whatever the size of the target. Its speed is measured by
+tools/bench_window.py.
 """
 
 import drags

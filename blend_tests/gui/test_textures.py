@@ -21,7 +21,7 @@ BLANK = (255, 0, 255)
 SQUARES = 8
 FIRST, SECOND, MARK = (230, 60, 40), (40, 90, 220), (60, 200, 80)
 FACE_ROWS = 8**2
-#: Minutes on two cores
+#: A bake of this size takes minutes on two cores
 LONG_BAKE = {
     "maps": {"POSITION", "NORMAL_TANGENT", "CURVATURE_MEAN", "CAVITY"},
     "width": 4096,

@@ -10,13 +10,13 @@ from session import OUT, class_name
 ADD_POINTS = "object.limit_points_add"
 POINTS = "Limit Points"
 START = ["Camera", "Cube", "Light"]
-SOME_SECONDS = 400_000  # points
-MOST = 3_000_000  # that are made without asking: a minute or so
+SOME_SECONDS = 400_000  # number of points
+MOST = 3_000_000  # the largest number made without confirmation, which takes about a minute
 
 
 @pytest.fixture
 def scatter(blender):
-    """scatter(count): points by a click, which come later."""
+    """Returns a function that starts to scatter so many points by a click."""
     blender.call("set_next", ADD_POINTS, distribution="BLUE_NOISE", amount="COUNT", count=300)
     blender.open_tab()
     button = blender.find_button(ADD_POINTS)
@@ -39,7 +39,7 @@ def test_esc_ends_it_at_once(blender, scatter):
     blender.await_value([], "running")
     blender.await_value(threads, "threads")
     assert blender.call("objects") == START
-    blender.call("set_next", ADD_POINTS, count=300)  # and then it can be called again
+    blender.call("set_next", ADD_POINTS, count=300)  # afterwards the operator can be called again
     blender.click(*blender.find_button(ADD_POINTS))
     blender.await_end(ADD_POINTS)
     assert blender.call("vertex_count", POINTS) == 300

@@ -56,7 +56,7 @@ def test_pixels_are_read_and_written(kind, tmp_path):
 
 
 class Writes(bpy.types.Operator):
-    """For tests"""
+    """Write pixels, for the tests"""
 
     bl_idname = "image.limit_test_write"
     bl_label = "Write"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What has been read from Blender's data, and the surfaces that are made of it."""
+"""The inputs of a bake: what is read from Blender's data, and the surfaces that are made of it."""
 
 from __future__ import annotations
 

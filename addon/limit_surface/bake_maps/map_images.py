@@ -32,9 +32,9 @@ MAPPED = 0.3  # the part of a tile's progress at which its texels are known
 
 @dataclass(frozen=True)
 class Order:
-    body: Body  # in the space of the maps
+    body: Body  # the surface in the space of the maps
     in_object: Body  # the same surface, or one in the object's space
-    polygons: Polygons | None  # if a map in tangent space is wanted
+    polygons: Polygons | None  # set if a map in tangent space is made
     maps: tuple[str, ...]
     settings: Settings
     size: tuple[int, int]
@@ -52,7 +52,7 @@ class _Tile:
 
 @dataclass
 class Baked:
-    """Images by map and tile, and what their values mean."""
+    """The images by map and tile, and the meaning of their values."""
 
     pixels: dict[str, dict[int, np.ndarray]] = field(default_factory=dict)
     ranges: dict[str, Range] = field(default_factory=dict)  # ranges of the maps that are encoded

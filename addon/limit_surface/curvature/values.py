@@ -23,7 +23,7 @@ class Values:
 
     mean: np.ndarray  # (n,)
     gaussian: np.ndarray
-    k1: np.ndarray  # the larger one
+    k1: np.ndarray  # the larger principal curvature
     k2: np.ndarray
     direction1: np.ndarray  # (n, 3) unit vectors
     direction2: np.ndarray

@@ -10,9 +10,9 @@ from ..placing.rotations import WorldSpace
 
 @dataclass(frozen=True)
 class Shape:
-    length: float  # world units
+    length: float  # in world units
     points: int  # number of control points on each strand, including the root
-    tilt: tuple[float, float]  # radians, towards u and v
+    tilt: tuple[float, float]  # in radians, towards u and v
     random: float  # the largest random angle, in radians
 
     def strands(

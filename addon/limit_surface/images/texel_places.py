@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators that make textures share: a cage with its UV map, and where the texels of an image
-lie on the limit surface.
+"""A cage with its UV map, and the places of an image's texels on the limit surface. All operators
+that make textures use them.
 
     found = texel_places.read_cage(ob, depsgraph, "UVMap")          # "" for the active map
     surface = limitsurf.LimitSurface(found.mesh)
     uv_data = texel_places.uv_data(surface, found, ob.name)         # the map on the limit
     at = texel_places.texels(uv_data, (1024, 1024), margin=16)      # at.x, at.y, at.face, at.uv
-    for rows in texel_places.parts(len(at.x), progress): ...  # a piece at a time
+    for rows in texel_places.parts(len(at.x), progress): ...  # part by part
 """
 
 from __future__ import annotations

@@ -99,7 +99,7 @@ class Made:
     attributes: list[Attribute]
     carrier: Carrier  # makes the edges' attributes, once the mesh has numbered its edges
     groups: Groups
-    levels: tuple[int, int]  # the lowest and the highest
+    levels: tuple[int, int]  # the lowest and the highest level
     refused: Mapping[int, str]
     warnings: list[str]
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is placed on limit surfaces: where, how many, how densely, and how it is tied there."""
+"""The placing of things on limit surfaces: their places, number, density and binding."""

@@ -52,7 +52,7 @@ def read(image: bpy.types.Image, channel: str, extension: str) -> ImageMap:
     """
     if image.source == "TILED":
         raise RefusalError(f"The image {image.name} is tiled (UDIM), which is not supported")
-    pixels = np.empty(len(image.pixels), np.float32)  # reads the file
+    pixels = np.empty(len(image.pixels), np.float32)  # `image.pixels` reads the file
     width, height = image.size
     if not pixels.size:
         raise RefusalError(f"The image {image.name} has no pixels: check that its file exists")

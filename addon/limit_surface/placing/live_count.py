@@ -113,7 +113,7 @@ _counts: dict[str, LiveCount] = {}
 
 
 def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, noun: str) -> str:
-    """For the panel about things of that name."""
+    """Returns the text for the panel about things of that name."""
     if context.screen and context.screen.is_animation_playing:
         return "Not counted during playback"
     question = Question(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rays through an image that meet the surface, and how far the surface goes on between them."""
+"""Rays through an image that meet the surface, and the extent of the surface between their hits."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class Source(Protocol):
 class Seen:
     """The settings that decide on which places an image falls, and with which weight."""
 
-    facing: tuple[float, float]  # angles
+    facing: tuple[float, float]  # the two angles of Facing
     two_sided: bool
     occlusion: bool
     samples: Literal[1, 4, 16]

@@ -59,7 +59,7 @@ class Cage:
 
     @property
     def chosen_uv_map(self) -> UvMap:
-        """For those who have found out that there is one."""
+        """The UV map, for callers that have checked that there is one."""
         assert self.uv_map is not None
         return self.uv_map
 

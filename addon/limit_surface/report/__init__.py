@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far the mesh that Blender shows is from the limit surface."""
+"""The distance of the mesh that Blender shows from the limit surface."""
 
 from .operator import OBJECT_OT_limit_report
 from .panel import VIEW3D_PT_limit_report

@@ -32,7 +32,7 @@ MODES = ("OBJECT", "EDIT_ARMATURE", *POINTS, *HAIR_MODES)
 
 
 class Snapped(Protocol):
-    noun: str  # plural
+    noun: str  # in the plural
     stores_location: bool
 
     def elements(self) -> Elements: ...

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The limit surface that things are snapped to, as it stands in the world."""
+"""The limit surface in world space to which things are snapped."""
 
 from typing import Literal, NamedTuple
 
