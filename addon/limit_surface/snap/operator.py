@@ -253,8 +253,10 @@ def _obstacle(context: bpy.types.Context) -> str:
     if not native.available():
         return native.obstacle()
     if context.mode not in MODES:
-        return "Only available in Object Mode, and in Edit Mode of meshes, curves, hair, lattices "
-        "and armatures"
+        return (
+            "Only available in Object Mode, and in Edit Mode of meshes, curves, hair, lattices and "
+            "armatures"
+        )
     target = find_target(context)
     if context.mode == "OBJECT":
         if target is None or target.type != "MESH":
