@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// limitsurf beside OpenSubdiv's Bfr, in one process and one run.
+// Benchmarks of limitsurf beside OpenSubdiv's Bfr, in one process and one run.
 //
 //   limitsurf_bench                       all tables
 //   limitsurf_bench --benchmark_filter=boundary-EV
-//   limitsurf_bench --samples=20000       locations in a batch (default 100000)
-//   limitsurf_bench --fresh-memory        results in memory that the system has just handed out
-//   limitsurf_bench --large[=1000]        opening a grid of 1000 x 1000 quads: time and memory
-//   limitsurf_bench --semi-sharp[=100]    the same, every edge of 100 x 100 quads semi-sharp
+//   limitsurf_bench --samples=20000       the number of locations in a batch (default 100000)
+//   limitsurf_bench --fresh-memory        results in memory newly allocated by the system
+//   limitsurf_bench --large[=1000]        time and memory for opening a grid of 1000 x 1000 quads
+//   limitsurf_bench --semi-sharp[=100]    the same for 100 x 100 quads whose edges are semi-sharp
 //   limitsurf_bench --queries[=1000000]   closest points and rays beside Embree, and random points
-//   limitsurf_bench --uv[=4096]           UV maps inverted, in an image of so many texels a side
+//   limitsurf_bench --uv[=4096]           UV maps inverted, for an image with this many texels a
+//   side
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 #include <opensubdiv/version.h>
@@ -20,20 +21,21 @@
 #include <exception>
 #include <vector>
 
-#include "agreement.h"
-#include "bake_benchmarks.h"
-#include "evaluation_benchmarks.h"
-#include "large_mesh.h"
+#include "bench/support/agreement.h"
+#include "bench/surface/evaluation_benchmarks.h"
+#include "bench/surface/opening_cost.h"
+#include "bench/uv/uv_benchmarks.h"
 #ifdef LIMITSURF_BENCH_EMBREE
-#include "query_benchmarks.h"
+#include "bench/search/search_benchmarks.h"
 #endif
-#include "ratio_reporter.h"
-#include "scatter_benchmarks.h"
-#include "setup_benchmarks.h"
+#include "bench/sample/sampling_benchmarks.h"
+#include "bench/support/ratio_reporter.h"
+#include "bench/surface/setup_benchmarks.h"
 
 namespace {
 
-/// The number after `flag` and "=", the default if there is none, 0 if `argument` is another flag.
+/// The number after `flag` and "=", the default if there is no number, 0 if `argument` is another
+/// flag.
 int valueOf(const char* argument, const char* flag, int default_value) {
   const std::size_t length = std::strlen(flag);
   if (std::strncmp(argument, flag, length) != 0) return 0;
@@ -41,8 +43,8 @@ int valueOf(const char* argument, const char* flag, int default_value) {
   return argument[length] == '=' ? std::atoi(argument + length + 1) : 0;
 }
 
-/// Makes the allocator keep what is freed. By default it returns a batch's result arrays to the
-/// system, and then page faults of the next batch cost more than an evaluation on a regular face.
+/// Makes the allocator keep freed memory. By default it returns the result arrays of a batch to the
+/// system, and the page faults of the next batch cost more than evaluations on regular faces.
 void recycleMemory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);  // glibc's maximum
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
@@ -55,7 +57,7 @@ int runTables(int argc, char** argv, int sample_count) {
 
   std::vector<Group> groups = evaluationGroups(sample_count);
   for (Group& group : setupGroups()) groups.push_back(std::move(group));
-  for (Group& group : scatterGroups(sample_count)) groups.push_back(std::move(group));
+  for (Group& group : samplingGroups(sample_count)) groups.push_back(std::move(group));
   RatioReporter reporter;
   runGroups(groups, reporter);
 
@@ -69,7 +71,7 @@ int runTables(int argc, char** argv, int sample_count) {
                       groups);
   reporter.printTable(kPosingTable, "New positions, ns per irregular face",
                       {"mesh", "faces", "irregular"}, groups);
-  reporter.printTable(kScatterSetupTable, "Preparing to scatter, ns per face", {"mesh", "faces"},
+  reporter.printTable(kSamplerSetupTable, "Preparing to scatter, ns per face", {"mesh", "faces"},
                       groups);
   reporter.printTable(kUniformTable, "Uniform points, ns each", {"mesh", "faces"}, groups);
   reporter.printTable(kBlueNoiseTable, "Blue noise, ns per point", {"mesh", "faces"}, groups);
@@ -79,7 +81,7 @@ int runTables(int argc, char** argv, int sample_count) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Ours come first, so that the caller's own win.
+  // These arguments come first, so that those of the caller override them.
   static char interleave[] = "--benchmark_enable_random_interleaving=true";
   static char repetitions[] = "--benchmark_repetitions=9";
   static char time[] = "--benchmark_min_time=0.03";
@@ -110,7 +112,7 @@ int main(int argc, char** argv) {
     if (uv_side > 0) return limitsurf::bench::measureUvMaps(uv_side);
     if (query_count > 0) {
 #ifdef LIMITSURF_BENCH_EMBREE
-      return limitsurf::bench::measureQueries(query_count);
+      return limitsurf::bench::measureSearches(query_count);
 #else
       std::fprintf(stderr, "built without Embree\n");
       return 2;

@@ -5,8 +5,9 @@
 
 namespace limitsurf {
 
-/// SplitMix64's output function (Steele, Lea, Flood 2014): random bits by counter, so that a sample
-/// depends on its seed and number alone.
+/// The output function of SplitMix64 (Steele, Lea & Flood: "Fast Splittable Pseudorandom Number
+/// Generators", 2014). It makes random bits of a counter, so that a sample depends on its seed and
+/// its number alone.
 inline std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -14,7 +15,7 @@ inline std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Uniform in [0, 1).
+/// A number in [0, 1), uniformly distributed if the bits are.
 inline double uniformIn01(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
 }  // namespace limitsurf

@@ -13,7 +13,7 @@ namespace {
 
 using Frame = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
-/// Places in a frame's columns.
+/// The columns of a frame.
 constexpr int kTangent = 0, kBitangent = 1, kNormal = 2;
 
 void requireAsMany(Eigen::Index a, const char* name_a, Eigen::Index b, const char* name_b) {
@@ -27,7 +27,7 @@ struct PointsAndNormals {
   Points position, normal;
 };
 
-/// Normals are always unit vectors.
+/// Positions and normals of the base. Normals are unit vectors everywhere.
 PointsAndNormals pointsAndNormals(const LimitSurface& base, Span<Location> at, int threads) {
   Evaluation here = base.evaluate(at, Derivatives::first, true, threads);
   completeNormals(base, at, here.normal, threads);

@@ -10,6 +10,7 @@
 namespace limitsurf {
 namespace {
 
+/// The least integer whose square is not below the number.
 int leastSquareRoot(int number) {
   int root = static_cast<int>(std::sqrt(static_cast<double>(number)));
   while (static_cast<long long>(root) * root < number) {

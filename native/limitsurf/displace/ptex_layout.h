@@ -7,20 +7,21 @@
 
 namespace limitsurf {
 
-/// An image that holds a square tile for each Ptex face, so that no UV map is needed.
+/// The layout of an image that holds a square tile for each Ptex face, so that no UV map is needed.
 ///
-/// A tile has (resolution + 1) x (resolution + 1) pixels: pixel (i, j) holds the value at
-/// (u, v) = (i, j) / resolution. So the values along a face's sides stand in the tiles of all faces
-/// that meet there, and what is interpolated bilinearly within a tile, which needs no neighbour,
-/// is continuous across faces wherever the values are.
+/// A tile has (resolution + 1) x (resolution + 1) pixels; pixel (i, j) holds the value at
+/// (u, v) = (i, j) / resolution. The values along the sides of a face therefore stand in the tiles
+/// of all faces that meet there. Bilinear interpolation within a tile needs no neighbouring tile,
+/// and it is continuous across faces wherever the values are.
 ///
-/// Tiles follow each other in rows of columns() tiles from the lower left corner of the image, face
-/// after face: that of face f begins at the pixel (f mod columns, f div columns) * (resolution +
-/// 1). Pixels of an unfinished last row belong to no face.
+/// Tiles stand in rows of columns() tiles from the lower left corner of the image, face after face:
+/// the tile of face f begins at the pixel (f mod columns, f div columns) * (resolution + 1). The
+/// pixels that remain in the last row belong to no face.
 class PtexLayout {
  public:
-  /// Throws std::invalid_argument for no faces, a resolution that is no power of two or is above
-  /// kMostResolution, and where the image would have more than kMostSide pixels along a side.
+  /// Throws std::invalid_argument for fewer than one face, for a resolution that is not a power of
+  /// two or exceeds kMostResolution, and if the image would have more than kMostSide pixels along a
+  /// side.
   PtexLayout(int faces, int resolution);
 
   static constexpr int kMostResolution = 4096;
@@ -36,15 +37,15 @@ class PtexLayout {
   struct Pixel {
     int x, y;
   };
-  /// A tile's first pixel.
+  /// The first pixel of a face's tile.
   Pixel origin(int face) const;
-  /// All pixels of all tiles, face after face, row after row; and what place each stands for.
+  /// All pixels of all tiles, face after face and row after row, and the location of each.
   std::vector<Pixel> pixels() const;
   std::vector<Location> locations() const;
 
-  /// Where on the image a location's value is found, from (0, 0) at its lower left corner to (1,
-  /// 1): bilinear filtering there reads pixels of the face's own tile alone. One row per location,
-  /// whose face must be one of the layout's.
+  /// The image coordinates of locations, a row for each: (0, 0) is the lower left corner of the
+  /// image, (1, 1) the upper right one. Bilinear interpolation there reads pixels of the face's own
+  /// tile alone. Throws LocationError naming the first row whose face is not one of the layout's.
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> mapCoordinates(Span<Location> at) const;
 
  private:

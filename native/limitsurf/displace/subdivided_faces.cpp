@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "limitsurf/displace/face_cells.h"
+#include "limitsurf/displace/face_grid.h"
 #include "limitsurf/displace/subdivided_vertices.h"
 #include "limitsurf/parallel.h"
 
@@ -45,7 +45,7 @@ int findLevels(const ControlMesh& base, const ControlMesh& subdivided) {
          number(16 * at_one) + ", ... when they are subdivided");
 }
 
-/// Sizes first, so that all other checks may rely on them.
+/// Checks the sizes of all faces; the other checks rely on them.
 void checkSizes(const ControlMesh& base, const ControlMesh& subdivided, int levels) {
   for (int face = 0; face < subdivided.faceCount(); ++face) {
     const int expected = levels == 0 ? base.faceSize(face) : 4;
@@ -56,8 +56,7 @@ void checkSizes(const ControlMesh& base, const ControlMesh& subdivided, int leve
   }
 }
 
-/// A vertex number for each corner of the subdivided mesh's faces, as the base's subdivision in
-/// this order has them.
+/// The vertex of each corner of the faces that subdividing the base produces in this order.
 std::vector<int> expectedVertices(const ControlMesh& base, int levels, FaceOrder order) {
   if (levels == 0) {
     return base.faceVertices();
@@ -66,12 +65,12 @@ std::vector<int> expectedVertices(const ControlMesh& base, int levels, FaceOrder
   std::vector<int> result;
   std::size_t first = 0;
   for (int face = 0; face < base.faceCount(); ++face) {
-    const FaceCells cells(base.faceSize(face), levels);
-    result.resize(result.size() + 4 * static_cast<std::size_t>(cells.count()));
-    for (int part = 0; part < cells.parts(); ++part) {
-      for (int j = 0; j < cells.side(); ++j) {
-        for (int i = 0; i < cells.side(); ++i) {
-          int* corners = &result[4 * (first + cells.index(order, part, i, j))];
+    const FaceGrid grid(base.faceSize(face), levels);
+    result.resize(result.size() + 4 * static_cast<std::size_t>(grid.count()));
+    for (int part = 0; part < grid.parts(); ++part) {
+      for (int j = 0; j < grid.side(); ++j) {
+        for (int i = 0; i < grid.side(); ++i) {
+          int* corners = &result[4 * (first + grid.index(order, part, i, j))];
           corners[0] = vertices.at(face, part, i, j);
           corners[1] = vertices.at(face, part, i + 1, j);
           corners[2] = vertices.at(face, part, i + 1, j + 1);
@@ -79,20 +78,21 @@ std::vector<int> expectedVertices(const ControlMesh& base, int levels, FaceOrder
         }
       }
     }
-    first += static_cast<std::size_t>(cells.count());
+    first += static_cast<std::size_t>(grid.count());
     InterruptionPoint::pass();
   }
   return result;
 }
 
-/// A corner that shows that two ways of sharing vertices are not the same.
+/// A corner at which two lists of vertices share them differently.
 struct Difference {
   std::size_t corner;
-  std::size_t other;  ///< whose vertex it should have, or should not have
-  bool shares;        ///< though it should not
+  std::size_t other;  ///< the corner whose vertex it should have, or should not have
+  bool shares;        ///< it has the same vertex though it should not
 };
 
-/// Vertex numbers differ, but there must be one of ours for one of theirs.
+/// Vertices may be numbered differently, but there must be a one-to-one correspondence between
+/// them.
 std::optional<Difference> findDifference(const std::vector<int>& expected,
                                          const std::vector<int>& found) {
   const auto firstUses = [](const std::vector<int>& numbers) {
@@ -171,7 +171,7 @@ SubdividedFaces::SubdividedFaces(const ControlMesh& base, const ControlMesh& sub
     for (int corner = 0; corner < parts; ++corner) {
       parts_.push_back({first, size, corner});
     }
-    first += levels_ == 0 ? parts : FaceCells(size, levels_).count();
+    first += levels_ == 0 ? parts : FaceGrid(size, levels_).count();
   }
 }
 
@@ -180,11 +180,11 @@ Location SubdividedFaces::locate(const Location& at) const {
   if (levels_ == 0) {
     return at;
   }
-  const FaceCells cells(part.size, levels_);
-  const double u = std::ldexp(at.u, cells.sideLog2()), v = std::ldexp(at.v, cells.sideLog2());
-  const int i = std::min(static_cast<int>(u), cells.side() - 1);
-  const int j = std::min(static_cast<int>(v), cells.side() - 1);
-  return {part.first + cells.index(order_, part.corner, i, j), u - i, v - j};
+  const FaceGrid grid(part.size, levels_);
+  const double u = std::ldexp(at.u, grid.sideLog2()), v = std::ldexp(at.v, grid.sideLog2());
+  const int i = std::min(static_cast<int>(u), grid.side() - 1);
+  const int j = std::min(static_cast<int>(v), grid.side() - 1);
+  return {part.first + grid.index(order_, part.corner, i, j), u - i, v - j};
 }
 
 std::vector<Location> SubdividedFaces::locate(Span<Location> at, int threads) const {

@@ -8,7 +8,7 @@
 namespace limitsurf {
 namespace {
 
-/// An edge is known by its vertices.
+/// The key of an edge, made of its vertices.
 std::uint64_t edgeKey(int a, int b) {
   return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
          static_cast<std::uint32_t>(std::max(a, b));

@@ -8,15 +8,15 @@
 
 namespace limitsurf {
 
-/// Numbers for the vertices of a subdivided mesh: first the mesh's own, then those within its
-/// edges, then those within its faces.
+/// A numbering of the vertices of a subdivided mesh: first the vertices of the mesh, then those
+/// within its edges, then those within its faces.
 class SubdividedVertices {
  public:
-  /// `levels` is 1 at least. Throws MeshError for more than 2^31 vertices.
+  /// `levels` must be at least 1. Throws MeshError for more than 2^31 vertices.
   SubdividedVertices(const ControlMesh& mesh, int levels);
 
-  /// The vertex (i, j) / side of a part (Ptex face) of a face, 0 <= i, j <= side, where side is
-  /// 2^levels for quads and half as much for others' parts.
+  /// The vertex at (u, v) = (i, j) / side of a part (Ptex face) of a face, 0 <= i, j <= side, where
+  /// side is 2^levels on a quad, and half of that on the parts of other faces.
   int at(int face, int part, int i, int j) const;
 
  private:
@@ -25,9 +25,9 @@ class SubdividedVertices {
   int onPart(int face, int part, int i, int j) const;
 
   const ControlMesh& mesh_;
-  int per_edge_;                   ///< polygons along an edge of the mesh
+  int per_edge_;                   ///< the number of polygons along an edge of the mesh
   std::vector<int> edge_at_;       ///< for each corner, the edge that leaves it
-  std::vector<int> first_within_;  ///< vertex within each face
+  std::vector<int> first_within_;  ///< for each face, the first vertex inside it
 };
 
 }  // namespace limitsurf

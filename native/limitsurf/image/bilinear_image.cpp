@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kPlacesPerTask = 4096;
 
-/// The two pixels along an axis, and how far it is from the first to the second.
+/// The two pixels around a place along one axis, and the part of the way from the first to the
+/// second.
 struct Between {
   Between(double place, int count) {
     const double along = std::clamp(place * count - 0.5, 0.0, count - 1.0);

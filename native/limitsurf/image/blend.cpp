@@ -25,7 +25,7 @@ void checkShapes(const Colours& below, const Colours& above, const Eigen::Vector
   }
 }
 
-/// What is laid over, where `under` is the lower colour times its alpha.
+/// The colour that is laid over. `under` is the lower colour times its alpha.
 float laidOver(float colour, float under, float under_alpha, BlendMode mode) {
   switch (mode) {
     case BlendMode::add:

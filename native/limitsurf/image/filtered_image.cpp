@@ -13,7 +13,7 @@
 namespace limitsurf {
 namespace {
 
-constexpr std::size_t kPlacesPerTask = 256;
+constexpr std::size_t kPlacesPerTask = 256, kRowsOfPixelsPerTask = 16;
 
 [[noreturn]] void refusePixel(int x, int y, int channel, float value) {
   std::ostringstream message;
@@ -22,7 +22,7 @@ constexpr std::size_t kPlacesPerTask = 256;
   throw std::invalid_argument(message.str());
 }
 
-/// A copy with colours multiplied by alpha, where `multiply` and there is one.
+/// A copy of the pixels. With `multiply` their colours are multiplied by alpha, if they have one.
 PixelGrid copied(const float* pixels, int width, int height, int channels, bool multiply,
                  int threads) {
   if (width < 1 || height < 1 || channels < 1 || channels > 4) {
@@ -32,24 +32,25 @@ PixelGrid copied(const float* pixels, int width, int height, int channels, bool 
   }
   PixelGrid image(width, height, channels);
   std::vector<int> not_finite(static_cast<std::size_t>(height), -1);
-  parallelFor(
-      static_cast<std::size_t>(height), 16, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t y = begin; y < end; ++y) {
-          const float* from = pixels + image.rowLength() * y;
-          float* to = image.row(static_cast<int>(y));
-          for (std::size_t i = 0; i < image.rowLength(); ++i) {
-            if (!std::isfinite(from[i]) && not_finite[y] < 0) {
-              not_finite[y] = static_cast<int>(i);
-            }
-            to[i] = from[i];
-          }
-          for (std::size_t i = 0; multiply && channels == 4 && i < image.rowLength(); i += 4) {
-            for (std::size_t c = 0; c < 3; ++c) {
-              to[i + c] *= to[i + 3];
-            }
-          }
-        }
-      });
+  parallelFor(static_cast<std::size_t>(height), kRowsOfPixelsPerTask, threads,
+              [&](std::size_t begin, std::size_t end) {
+                for (std::size_t y = begin; y < end; ++y) {
+                  const float* from = pixels + image.rowLength() * y;
+                  float* to = image.row(static_cast<int>(y));
+                  for (std::size_t i = 0; i < image.rowLength(); ++i) {
+                    if (!std::isfinite(from[i]) && not_finite[y] < 0) {
+                      not_finite[y] = static_cast<int>(i);
+                    }
+                    to[i] = from[i];
+                  }
+                  for (std::size_t i = 0; multiply && channels == 4 && i < image.rowLength();
+                       i += 4) {
+                    for (std::size_t c = 0; c < 3; ++c) {
+                      to[i + c] *= to[i + 3];
+                    }
+                  }
+                }
+              });
   for (int y = 0; y < height; ++y) {
     const int i = not_finite[static_cast<std::size_t>(y)];
     if (i >= 0) {

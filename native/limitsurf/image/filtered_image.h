@@ -6,42 +6,43 @@
 
 namespace limitsurf {
 
-/// What lies outside an image's frame: nothing (0, transparent), its border's pixels, the image
-/// again, or mirrored and again.
+/// What lies outside the frame of an image: nothing (0, transparent), the pixels of its border, its
+/// repetition, or its mirrored repetition.
 enum class Extension { clip, extend, repeat, mirror };
 
-/// Bound on the error of FilteredImage::sample() against the exact integral of the image (linear
-/// between pixels' centres) under a Gaussian that has half a texel for standard deviation, for
-/// pixels from 0 to 1 and footprints that are at least 1.5 pixels long and at most kMostEccentric
-/// times as long as wide. Not near borders that Extension::extend continues: what it repeats is the
-/// border of a halving. Measured, not derived: most images stay within 0.05; the worst seen is
-/// 0.127, of stripes a pixel wide beside a mirrored border, which halving makes even.
+/// Bound on the error of FilteredImage::sample(), for pixels from 0 to 1 and footprints that are at
+/// least 1.5 pixels long and at most kMostEccentric times as long as wide. The error is the
+/// difference from the exact integral of the image, linear between the centres of pixels, under a
+/// Gaussian whose standard deviation is half a texel. The bound does not hold near borders that
+/// Extension::extend continues, because the border of a halved image is repeated there. Measured,
+/// not derived: most images stay within 0.05; the worst error seen is 0.127, for stripes a pixel
+/// wide beside a mirrored border, which halving turns into a plain colour.
 constexpr double kFilterError = 0.15;
 
 /// Narrower footprints are widened to this ratio of length to width.
 constexpr double kMostEccentric = 32;
 
-/// One value a row, one column a channel.
+/// A row for each colour, a column for each channel.
 using Colours = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// What FilteredImage::sample() throws for these arguments.
+/// Throws what FilteredImage::sample() throws for these arguments.
 void checkSamples(Eigen::Ref<const ImagePoints> st, Eigen::Ref<const Footprints> footprint);
 
-/// An image that can be looked up through footprints of any size and shape without aliasing.
+/// An image that can be sampled under footprints of any size and shape without aliasing.
 ///
-/// Of four channels the last is alpha, and colours are filtered multiplied by it: what is
-/// transparent brings no dark fringe. With fewer channels there is no alpha.
+/// The last of four channels is alpha, and colours are filtered after multiplication by it, so that
+/// transparent pixels leave no dark fringe. An image of fewer channels has no alpha.
 ///
-/// The code is our own since the libraries that filter textures well are those that hosts load
-/// under the same names themselves (OpenImageIO in Blender), or want files.
+/// The filter is implemented here because the libraries that filter textures well either are loaded
+/// by host applications under the same symbol names (OpenImageIO in Blender) or read files only.
 ///
-/// Memory: 1.34 times the pixels as float32, at most twice for images of a single row.
+/// Memory: 1.34 times that of the pixels as float32, at most twice that for images of a single row.
 class FilteredImage {
  public:
-  /// `pixels`: height rows of width pixels of `channels` (1 to 4) numbers, from the bottom up.
-  /// `premultiplied`: their colours come multiplied by alpha.
+  /// `pixels` holds `height` rows of `width` pixels of `channels` (1 to 4) numbers, from the bottom
+  /// up. With `premultiplied` their colours are already multiplied by alpha.
   ///
-  /// Throws std::invalid_argument for sizes below 1, another number of channels, and naming the
+  /// Throws std::invalid_argument for sizes below 1, for another number of channels, and naming the
   /// first pixel that is not finite. Cost: O(pixels).
   FilteredImage(const float* pixels, int width, int height, int channels, Extension extension,
                 bool premultiplied = false, int threads = 0);
@@ -50,21 +51,22 @@ class FilteredImage {
   int height() const { return pyramid_.level(0).height; }
   int channels() const { return pyramid_.level(0).channels; }
 
-  /// The image at each place as a texel sees it; alpha is straight.
+  /// The image under the footprint at each place, with straight alpha.
   ///
-  /// Footprints of at most a pixel's length: linear between pixels' centres, unfiltered. From 1.5
-  /// pixels on: an elliptical weighted average (Greene & Heckbert, "Creating Raster Omnimax Images
-  /// from Multiple Perspective Views Using the Elliptical Weighted Average Filter", 1986), with
-  /// half the footprint for standard deviation, on the level on which the ellipse's short axis has
-  /// about a pixel's standard deviation; what the level has been averaged already is taken off the
-  /// ellipse. Between, both are mixed. Error: kFilterError.
+  /// For footprints of at most a pixel's length the result is bilinear between the centres of
+  /// pixels. For those of 1.5 pixels and more it is an elliptical weighted average (Greene &
+  /// Heckbert: "Creating Raster Omnimax Images from Multiple Perspective Views Using the Elliptical
+  /// Weighted Average Filter", 1986) whose standard deviation is half the footprint. It is computed
+  /// on the level of the image pyramid on which the short axis of the ellipse has a standard
+  /// deviation of about a pixel, and the ellipse is reduced by the averaging that the level has
+  /// undergone. Between the two lengths both results are mixed. Error: kFilterError.
   ///
-  /// Vectors of a footprint that are longer than kLongestFootprint are shortened to it. A row of
-  /// NaN in `st` is nowhere: all channels are 0. The same bits for a row whatever the threads and
-  /// the other rows.
+  /// Vectors of a footprint that are longer than kLongestFootprint are shortened to it. Where a row
+  /// of `st` has a NaN all channels are 0. The bits of a row depend neither on the number of
+  /// threads nor on the other rows.
   ///
-  /// Throws std::invalid_argument for another number of rows and naming the first that is infinite
-  /// or has a footprint that is not finite. Cost: O(length / width) a row.
+  /// Throws std::invalid_argument for different numbers of rows, and naming the first row that is
+  /// infinite or has a footprint that is not finite. Cost: O(length / width) a row.
   Colours sample(const ImagePoints& st, const Footprints& footprint, int threads = 0) const;
 
  private:

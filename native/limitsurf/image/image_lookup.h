@@ -3,121 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
+#include "limitsurf/image/covariance.h"
 #include "limitsurf/image/filtered_image.h"
 #include "limitsurf/image/image_pyramid.h"
+#include "limitsurf/image/pixel_sum.h"
 #include "limitsurf/uv/footprint.h"
 
 namespace limitsurf {
 
-/// Sums of weighted pixels, of which some lie outside the image.
-template <int kChannels>
-class PixelSum {
- public:
-  PixelSum(const PixelGrid& level, Extension extension) : level_(level), extension_(extension) {}
-
-  void add(int x, int y, float weight) {
-    weights_ += weight;
-    const int column = inside(x, level_.width), row = inside(y, level_.height);
-    if (column >= 0 && row >= 0) {
-      addPixel(level_.row(row) + kChannels * column, weight);
-    }
-  }
-
-  /// weight(x) for the pixels first to last of row y.
-  template <typename Weight>
-  void addRow(int y, int first, int last, const Weight& weight) {
-    const int row = inside(y, level_.height);
-    if (row < 0) {
-      for (int x = first; x <= last; ++x) {
-        weights_ += weight(x);
-      }
-      return;
-    }
-    const float* pixels = level_.row(row);
-    if (first >= 0 && last < level_.width) {
-      for (int x = first; x <= last; ++x) {
-        const float w = weight(x);
-        weights_ += w;
-        addPixel(pixels + kChannels * x, w);
-      }
-      return;
-    }
-    for (int x = first; x <= last; ++x) {
-      const float w = weight(x);
-      weights_ += w;
-      const int column = inside(x, level_.width);
-      if (column >= 0) {
-        addPixel(pixels + kChannels * column, w);
-      }
-    }
-  }
-
-  /// Adds the mean, times `part`, to `out`.
-  void addMean(float part, float* out) const {
-    for (int c = 0; c < kChannels; ++c) {
-      out[c] += part * sum_[c] / weights_;
-    }
-  }
-
- private:
-  void addPixel(const float* pixel, float weight) {
-    for (int c = 0; c < kChannels; ++c) {
-      sum_[c] += weight * pixel[c];
-    }
-  }
-
-  /// The pixel that stands for one at i, or -1 for none.
-  int inside(int i, int count) const {
-    if (i >= 0 && i < count) {
-      return i;
-    }
-    switch (extension_) {
-      case Extension::clip:
-        return -1;
-      case Extension::extend:
-        return std::clamp(i, 0, count - 1);
-      case Extension::repeat:
-        return modulo(i, count);
-      default: {
-        const int j = modulo(i, 2 * count);
-        return j < count ? j : 2 * count - 1 - j;
-      }
-    }
-  }
-  static int modulo(int i, int period) {
-    const int rest = i % period;
-    return rest < 0 ? rest + period : rest;
-  }
-
-  const PixelGrid& level_;
-  Extension extension_;
-  float sum_[kChannels] = {};
-  float weights_ = 0;
-};
-
-/// A covariance in the plane, of an ellipse around it.
-struct Spread {
-  double xx, xy, yy;
-
-  /// The larger and the smaller of both principal variances.
-  double largest() const { return (xx + yy) / 2 + std::hypot((xx - yy) / 2, xy); }
-  double smallest() const { return std::max(0., (xx * yy - xy * xy) / largest()); }
-
-  /// With a smallest variance of at least `least`, which is below the largest.
-  Spread widened(double least) const {
-    const double large = largest(), small = smallest();
-    if (small >= least) {
-      return *this;
-    }
-    // (large I - V) / (large - small) projects on the short axis.
-    const double factor = (least - small) / (large - small);
-    return {xx + factor * (large - xx), xy - factor * xy, yy + factor * (large - yy)};
-  }
-};
-
-/// FilteredImage::sample() for one place after the other.
+/// FilteredImage::sample() for one place after the other: bilinear interpolation for footprints up
+/// to a pixel, an elliptical weighted average (Greene & Heckbert 1986) for larger ones.
 template <int kChannels>
 class ImageLookup {
  public:
@@ -127,7 +23,7 @@ class ImageLookup {
   void sample(const double* st, const double* footprint, float* out) const {
     std::fill(out, out + kChannels, 0.f);
     const double s = nearby(st[0]), t = nearby(st[1]);
-    const Spread texel = squareOf(footprint);
+    const Covariance texel = squareOf(footprint);
     const double length = std::sqrt(texel.largest());
     const double average = std::clamp((length - kPixel) / (kFiltered - kPixel), 0., 1.);
     if (average < 1) {
@@ -144,17 +40,19 @@ class ImageLookup {
   }
 
  private:
-  /// Footprints up to the first are not filtered, and from the second on not interpolated.
+  /// Footprints up to kPixel are interpolated, those from kFiltered on are averaged, and between
+  /// the two both are mixed. In pixels.
   static constexpr double kPixel = 1, kFiltered = 1.5;
-  /// Of the filter in texels, and of linear interpolation and a pixel's square in pixels.
+  /// Variances: of the filter, in squared texels, and of linear interpolation (the convolution of
+  /// two unit intervals) and of a pixel (a unit interval), in squared pixels.
   static constexpr double kTexelVariance = 0.25, kLinearVariance = 1. / 6,
                           kSquareVariance = 1. / 12;
-  /// The least variance with which a level is summed up, in pixels.
+  /// The least variance of the filter on the level on which pixels are added up, in squared pixels.
   static constexpr double kLeastVariance = 0.5;
-  /// The bell (1 - r^2)^3 on the disc r < 1 has the variance 1 / 10.
+  /// The bell (1 - r^2)^3 on the disc r < 1 has the variance 1 / 10 along each axis.
   static constexpr double kBellSquare = 10;
 
-  /// A place with the same surroundings, as far as footprints reach, that is not far away.
+  /// A place not far from the image that has the same surroundings, as far as footprints reach.
   double nearby(double x) const {
     constexpr double kFar = 64;
     if (std::abs(x) < kFar) {
@@ -169,8 +67,8 @@ class ImageLookup {
     }
   }
 
-  /// F F^T in pixels, where the columns of F are how far (s, t) moves from texel to texel.
-  Spread squareOf(const double* footprint) const {
+  /// F F^T in squared pixels, where the columns of F are the steps of (s, t) from texel to texel.
+  Covariance squareOf(const double* footprint) const {
     const PixelGrid& image = pyramid_.level(0);
     double f[4];
     for (int axis = 0; axis < 2; ++axis) {
@@ -197,21 +95,22 @@ class ImageLookup {
     sum.addMean(part, out);
   }
 
-  void addAverage(double s, double t, const Spread& texel, float part, float* out) const {
-    Spread wanted = {kTexelVariance * texel.xx + kLinearVariance, kTexelVariance * texel.xy,
-                     kTexelVariance * texel.yy + kLinearVariance};
+  void addAverage(double s, double t, const Covariance& texel, float part, float* out) const {
+    Covariance wanted = {kTexelVariance * texel.xx + kLinearVariance, kTexelVariance * texel.xy,
+                         kTexelVariance * texel.yy + kLinearVariance};
     wanted = wanted.widened(wanted.largest() / (kMostEccentric * kMostEccentric));
     const PixelGrid& level = pyramid_.level(levelFor(wanted.smallest()));
     const double x_scale = static_cast<double>(level.width) / pyramid_.level(0).width,
                  y_scale = static_cast<double>(level.height) / pyramid_.level(0).height;
-    // In the level's pixels, less what averaging has done: s pixels in one, (s^2 - 1) / 12.
-    const Spread spread = {x_scale * x_scale * (wanted.xx + kSquareVariance) - kSquareVariance,
-                           x_scale * y_scale * wanted.xy,
-                           y_scale * y_scale * (wanted.yy + kSquareVariance) - kSquareVariance};
-    addBell(s * level.width - 0.5, t * level.height - 0.5, spread, level, part, out);
+    // In pixels of the level. Averaging s pixels into one has already contributed a variance of
+    // (s^2 - 1) / 12.
+    const Covariance filter = {x_scale * x_scale * (wanted.xx + kSquareVariance) - kSquareVariance,
+                               x_scale * y_scale * wanted.xy,
+                               y_scale * y_scale * (wanted.yy + kSquareVariance) - kSquareVariance};
+    addBell(s * level.width - 0.5, t * level.height - 0.5, filter, level, part, out);
   }
 
-  /// The coarsest level on which so small a variance in pixels of the image is still
+  /// The coarsest level on which a variance, in squared pixels of the image, is still at least
   /// kLeastVariance.
   int levelFor(double variance) const {
     int level = 0;
@@ -224,12 +123,12 @@ class ImageLookup {
     return level;
   }
 
-  /// The mean under the bell around (x, y), which has the given spread.
-  void addBell(double x, double y, const Spread& spread, const PixelGrid& level, float part,
+  /// Adds the mean of the level under the bell around (x, y) that has the covariance of the filter.
+  void addBell(double x, double y, const Covariance& filter, const PixelGrid& level, float part,
                float* out) const {
-    const double scale = 1 / (kBellSquare * (spread.xx * spread.yy - spread.xy * spread.xy));
-    const double a = scale * spread.yy, b = -scale * spread.xy, c = scale * spread.xx;
-    const double reach = std::sqrt(kBellSquare * spread.yy);
+    const double scale = 1 / (kBellSquare * (filter.xx * filter.yy - filter.xy * filter.xy));
+    const double a = scale * filter.yy, b = -scale * filter.xy, c = scale * filter.xx;
+    const double reach = std::sqrt(kBellSquare * filter.yy);
     PixelSum<kChannels> sum(level, extension_);
     const int top = static_cast<int>(std::floor(y + reach));
     for (int row = static_cast<int>(std::ceil(y - reach)); row <= top; ++row) {

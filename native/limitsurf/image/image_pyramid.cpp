@@ -8,14 +8,15 @@
 namespace limitsurf {
 namespace {
 
-/// The pixels of a line that lie under one pixel of its half, at most three, with their parts.
+/// The pixels of a line that one pixel of the halved line covers, at most three, with their
+/// weights.
 struct Share {
   int first = 0, count = 0;
   float parts[3];
 };
 
-/// Exact in integers: in units of 1 / (length half), a pixel of the line is `half` long and one of
-/// the half `length`.
+/// The shares of all pixels of a halved line, computed exactly in integers: in units of
+/// 1 / (length * half) a pixel of the line is `half` long, and one of the halved line `length`.
 std::vector<Share> shares(int length, int half) {
   std::vector<Share> result(static_cast<std::size_t>(half));
   const auto n = static_cast<std::int64_t>(length), m = static_cast<std::int64_t>(half);

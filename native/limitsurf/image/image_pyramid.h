@@ -7,7 +7,7 @@
 
 namespace limitsurf {
 
-/// An image of float32 pixels, row after row, the channels of a pixel together.
+/// An image of float32 pixels, row after row, with the channels of a pixel side by side.
 struct PixelGrid {
   PixelGrid(int columns, int rows, int channels_of_each)
       : width(columns),
@@ -26,9 +26,9 @@ struct PixelGrid {
   std::unique_ptr<float[]> values;
 };
 
-/// An image and its halvings, down to one pixel. Sizes are halved and rounded up; a pixel of the
-/// half is the mean of the original over the pixel's area, so that every level covers the same
-/// square and has the same mean, whatever the size.
+/// An image and its repeated halvings, down to one pixel. Sizes are halved and rounded up. A pixel
+/// of a halved image is the mean of the larger one over the pixel's area, so that all levels cover
+/// the same square and have the same mean for any size.
 class ImagePyramid {
  public:
   explicit ImagePyramid(PixelGrid image, int threads = 0);

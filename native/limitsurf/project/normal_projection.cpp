@@ -17,7 +17,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What a direction along the surface's normal becomes in the source's space and in the world.
+/// The maps of points and normals from the surface's space to the source's and to world space.
 struct Spaces {
   explicit Spaces(const NormalProjectOptions& options)
       : points(options.transform.topRows<3>()),
@@ -31,18 +31,18 @@ struct Spaces {
 
   Eigen::Matrix<double, 3, 4> points;  ///< to the source's space
   Eigen::Matrix3d vectors;
-  Eigen::Matrix3d normals;        ///< from a normal to what is perpendicular in the world
-  Eigen::Matrix3d world_normals;  ///< to the world's space, with that length
+  Eigen::Matrix3d normals;  ///< from a normal to the vector that is perpendicular in the world
+  Eigen::Matrix3d world_normals;  ///< the same to world space, where lengths are measured
 };
 
-/// Where each texel's ray meets the source: `along` counts in lengths of its direction, and is
-/// negative against the normal.
+/// The first hit of each texel's ray on the source. `along` is its distance, in lengths of the
+/// ray's direction, negative against the normal.
 struct Meetings {
   std::vector<Location> at;
   Eigen::VectorXd along;
 };
 
-/// Directions of all rays and the first hits along them, or against them.
+/// The rays of all texels along the normals.
 class NormalRays {
  public:
   NormalRays(const TexelPlaces& places, const Spaces& spaces, const NormalProjectOptions& options)
@@ -58,6 +58,7 @@ class NormalRays {
 
   const Points& directions() const { return directions_; }
 
+  /// The nearest hits along the normals, against them, or in both directions.
   Meetings meet(const SurfaceSearch& source, RayDirection which, int threads) const {
     Meetings found;
     found.at.resize(static_cast<std::size_t>(origins_.rows()));
@@ -72,6 +73,7 @@ class NormalRays {
   }
 
  private:
+  /// Replaces hits by those in one direction that are nearer.
   void keepNearer(const SurfaceSearch& source, double sign, Meetings& found, int threads) const {
     const Eigen::VectorXd lengths = directions_.rowwise().norm();
     const double farthest =
@@ -88,24 +90,24 @@ class NormalRays {
   }
 
   Points origins_, directions_;
-  Eigen::VectorXd longest_;  ///< in lengths of the direction
+  Eigen::VectorXd longest_;  ///< the largest distance, in lengths of the direction
 };
 
-/// First derivatives of the source and its map, which may be taken aside.
+/// The first derivatives of the source and its map at locations.
 struct SourcePlaces {
   SourcePlaces(const LimitSurface& source, const SurfaceData& map, Span<Location> at, int threads)
       : on_source(source.evaluate(at, Derivatives::first, false, threads)),
         on_map(map.evaluate(at, Derivatives::first, threads)) {}
 
-  /// How the map moves when the origin of a ray along `direction` moves by the columns of `steps`;
-  /// not finite where that has no answer.
+  /// The steps of the map when the origin of a ray along `direction` moves by the columns of
+  /// `steps`. They are not finite where the ray is tangent to the source or the source is singular.
   Eigen::Matrix2d mapSteps(Eigen::Index row, const Vector3& direction,
                            const Eigen::Matrix<double, 3, 2>& steps) const {
     const Vector3 du = on_source.du.row(row), dv = on_source.dv.row(row);
     const Vector3 across = du.cross(dv);
     const Eigen::Matrix<double, 3, 2> in_plane =
         steps - direction * (across.transpose() * steps) / across.dot(direction);
-    // Solves du a + dv b = step for a step within the plane.
+    // Solves du a + dv b = step for a step in the tangent plane.
     const double square = across.squaredNorm();
     Eigen::Matrix2d parameters, map;
     parameters.row(0) = dv.cross(across).transpose() * in_plane / square;

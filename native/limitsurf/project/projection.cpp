@@ -18,13 +18,13 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// 0 up to 0, 1 from 1 on, a cubic between.
+/// The cubic that rises from 0 at 0 to 1 at 1, continued by 0 and 1.
 double smoothStep(double x) {
   const double t = std::clamp(x, 0., 1.);
   return t * t * (3 - 2 * t);
 }
 
-/// Angles between normals and directions, as the world has them.
+/// Angles between normals and directions, measured in world space.
 class WorldAngles {
  public:
   explicit WorldAngles(const Eigen::Matrix4d& world)
@@ -38,7 +38,7 @@ class WorldAngles {
   Eigen::Matrix3d linear_, normals_;
 };
 
-/// The part of [x - reach, x + reach] that is in [0, 1].
+/// The part of [x - reach, x + reach] that lies in [0, 1].
 double partInside(double x, double reach) {
   if (x >= reach && x <= 1 - reach) {
     return 1;

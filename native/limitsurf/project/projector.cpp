@@ -10,16 +10,16 @@
 namespace limitsurf {
 namespace {
 
-/// Volumes that unit vectors span count as none from here on down.
+/// Unit vectors that span at most this volume are linearly dependent.
 constexpr double kSingular = 1e-13;
-/// An eye that is farther away, in diagonals, is at infinity.
+/// An eye farther away than this counts as infinitely far away. In diagonals of the surface.
 constexpr double kFarthestEye = 1e10;
 
 [[noreturn]] void refuseSingular(const char* name) {
   throw std::invalid_argument(std::string(name) + " is singular");
 }
 
-/// The vector that is perpendicular to three unit vectors, as long as they span volume.
+/// The vector perpendicular to three unit vectors; its length is the volume that they span.
 Eigen::Vector4d perpendicular(const Eigen::RowVector4d& a, const Eigen::RowVector4d& b,
                               const Eigen::RowVector4d& c) {
   Eigen::Vector4d result;
@@ -64,7 +64,7 @@ Eigen::Matrix3d invertibleLinearPart(const Eigen::Matrix4d& matrix, const char* 
 Projector::Projector(const Eigen::Matrix4d& matrix, const LimitSurface& surface)
     : matrix_(matrix), eye_(Vector3::Zero()), backwards_(Vector3::Zero()) {
   checkFinite(matrix, "matrix");
-  // In coordinates in which the surface is around the origin and of size 1.
+  // All is computed in coordinates in which the surface has size 1 and lies around the origin.
   const Points& cage = surface.positions();
   Vector3 middle = Vector3::Zero();
   double size = 1;

@@ -3,7 +3,7 @@
 
 namespace limitsurf {
 
-/// Which way rays leave a surface: along its normals, against them, or both.
+/// The direction of rays from a surface: along its normals, against them, or both.
 enum class RayDirection { both, outward, inward };
 
 }  // namespace limitsurf

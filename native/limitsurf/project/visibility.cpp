@@ -9,7 +9,7 @@
 namespace limitsurf {
 namespace {
 
-/// Far from the origin coordinates themselves are rounded: 16 units in the last place.
+/// The rounding of coordinates far from the origin: 16 units in the last place.
 constexpr double kRoundingBias = 0x1p-48;
 
 double defaultBias(const Points& cage) {

@@ -9,21 +9,23 @@
 
 namespace limitsurf {
 
-/// Which part of a texel can be seen from a projector's eye: project()'s rays.
+/// The part of each texel that is visible from a projector's eye, by the rays of project().
 class Visibility {
  public:
-  /// Refers to all of them.
+  /// Keeps references to all arguments.
   Visibility(const LimitSurface& surface, const Projector& projector, const SurfaceSearch& occluder,
              const ProjectOptions& options, int threads);
 
-  /// Multiplies each weight by the part of the texel's samples that are seen. Texels without weight
-  /// cost nothing.
+  /// Multiplies each weight by the part of the texel's samples that are visible. Texels of weight 0
+  /// are not tested.
   void apply(Span<Location> at, const TexelPlaces& places, Eigen::VectorXd& weight) const;
 
  private:
+  /// Evaluates the samples of the texels in these rows: a square grid over each.
   void evaluateSamples(Span<Location> at, const TexelPlaces& places,
                        const std::vector<Eigen::Index>& rows, Points& position,
                        Points& normal) const;
+  /// For each sample whether it is visible.
   std::vector<char> areSeen(const Points& position, const Points& normal) const;
 
   const LimitSurface& surface_;

@@ -11,22 +11,25 @@
 namespace limitsurf {
 namespace {
 
-/// Gauss-Legendre points and weights on [0, 1], six of them.
+/// The six points and weights of Gauss-Legendre quadrature on [0, 1].
 constexpr int kPoints = 6;
 constexpr double kAt[kPoints] = {0.033765242898423975, 0.16939530676686776, 0.38069040695840156,
                                  0.6193095930415985,   0.8306046932331322,  0.966234757101576};
 constexpr double kWeight[kPoints] = {0.08566224618958525, 0.1803807865240693, 0.23395696728634546,
                                      0.23395696728634546, 0.1803807865240693, 0.08566224618958525};
 
-/// Halving a square changes its integral by less than this once the quadrature has converged.
+/// The quadrature of a square has converged when halving the square changes it by at most this
+/// part.
 constexpr double kConverged = kAreaError / 10;
 constexpr int kMostHalvings = 10;
-/// Patches at most 2^-kSmallDepth of a face wide are integrated without halving: their share of the
-/// area is so small that their quadrature may be as much less exact.
+/// Patches that are at most 2^-kSmallDepth of a face wide are integrated without halving: their
+/// share of the area is so small that their relative error may be larger by the same factor.
 constexpr int kSmallDepth = 3;
+/// The number of tiles that one task integrates.
+constexpr std::size_t kTilesPerTask = 8;
 
-/// Squares of a patch's parameters, each integrated by itself and in quarters until that makes no
-/// difference.
+/// Adaptive quadrature over squares of a patch's parameters: a square is integrated as a whole and
+/// in quarters, and the quarters in the same way until both agree.
 class PatchArea {
  public:
   explicit PatchArea(const BezierPatch& patch) : patch_(patch) {}
@@ -72,13 +75,14 @@ double areaOf(const BezierPatch& patch, int halvings) {
   return PatchArea(patch)(0, 0, 1, halvings);
 }
 
-/// How small a piece's part of its face is: 2^-depth wide, or a strip of that.
+/// The depth of a piece: it covers a square or a strip of its face that is 2^-depth wide.
 int depthOf(const FaceRectangle& on) {
   return -std::ilogb(std::max(std::abs(on.us + on.ut), std::abs(on.vs + on.vt)));
 }
 
-/// Patch after patch towards the extraordinary vertex, until the rest, which shrinks by a factor
-/// below 1/2 a step, is negligible. The deeper a patch, the less its own precision matters.
+/// The area of a core, patch after patch towards the extraordinary vertex, until what remains,
+/// which shrinks by a factor below 1/2 with each step, is negligible. The deeper a patch lies, the
+/// less its own precision matters.
 double areaOfCore(const SurfacePatches& patches, SurfacePiece core) {
   constexpr int kAdaptiveSteps = 6;
   const int tile_depth = depthOf(patches.rectangle(core));
@@ -108,7 +112,7 @@ double surfaceArea(const LimitSurface& surface, int threads) {
   checkThreads(threads);
   const SurfacePatches patches(surface, threads);
   std::vector<double> areas(static_cast<std::size_t>(patches.tileCount()));
-  parallelFor(areas.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
+  parallelFor(areas.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     std::vector<SurfacePiece> pieces;
     for (std::size_t tile = begin; tile < end; ++tile) {
       pieces.clear();

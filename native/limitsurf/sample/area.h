@@ -5,11 +5,13 @@
 
 namespace limitsurf {
 
-/// Area: relative to the area. Not where du x dv vanishes along a curve, as on a mesh folded over
-/// in a plane: there the integrand has a kink and 1e-7 is reached.
+/// Bound on the relative error of surfaceArea(); measured, not derived. It does not hold where du x
+/// dv vanishes along a curve, as on a mesh that is folded over in a plane: the integrand has a kink
+/// there, and the error reaches 1e-7.
 constexpr double kAreaError = 1e-9;
 
-/// Area of the limit surface; relative error: see kAreaError.
+/// Area of the limit surface, in squared units of the control mesh, by Gauss-Legendre quadrature on
+/// parameter squares that are halved until it has converged. Relative error: kAreaError.
 double surfaceArea(const LimitSurface& surface, int threads = 0);
 
 }  // namespace limitsurf

@@ -7,7 +7,7 @@
 
 namespace limitsurf {
 
-/// Of vectors with the padding that patches have.
+/// The cross product of vectors with the padding that patches have.
 inline Vector3 cross(const BezierPatch::Point& a, const BezierPatch::Point& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -18,12 +18,12 @@ inline double length(const BezierPatch::Point& a) {
   return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
-/// ds x dt on a rectangle of a patch, whose length is the surface's area per area of (s, t): a
-/// polynomial of degree 5 both ways, in Bezier form with respect to the patch's (s, t).
+/// The vector ds x dt on a rectangle of a patch: a polynomial of degree 5 in s and in t, in Bezier
+/// form. Its length is the area of the surface per area of (s, t), the patch's own parameters.
 class AreaForm {
  public:
   explicit AreaForm(const BezierPatch& patch) {
-    // Bernstein products: the coefficients of the factors over those of the product.
+    // Product of Bernstein polynomials: the binomials of the factors over those of the product.
     constexpr double kTwo[3] = {1, 2, 1}, kThree[4] = {1, 3, 3, 1};
     constexpr double kFive[6] = {1, 5, 10, 10, 5, 1};
     BezierPatch::Point ds[4][3], dt[3][4];
@@ -53,16 +53,16 @@ class AreaForm {
     }
   }
 
-  /// No length on the rectangle is above it.
+  /// Upper bound of the length on the rectangle.
   double bound() const {
     double squared = 0;
     for (const Vector3& p : points_) {
       squared = std::max(squared, p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
     }
-    return std::sqrt(squared) * (1 + 1e-12);  // the form's own rounding
+    return std::sqrt(squared) * (1 + kRounding);
   }
 
-  /// Bound on its derivative along s or t.
+  /// Upper bound of the length of its derivative along s or t.
   double derivativeBound(bool along_t) const {
     const int step = along_t ? 6 : 1, across = along_t ? 1 : 6;
     double bound = 0;
@@ -75,7 +75,7 @@ class AreaForm {
     return 5 * bound;
   }
 
-  /// Its lower (0) or upper (1) half along s or t.
+  /// The form on the lower (0) or upper (1) half of the rectangle along s or t.
   AreaForm half(bool along_t, int which) const {
     AreaForm result = *this;
     const int step = along_t ? 6 : 1, across = along_t ? 1 : 6;
@@ -96,10 +96,13 @@ class AreaForm {
     return result;
   }
 
-  /// Mean length, by its values on 4 x 4 points of the midpoint rule.
+  /// Mean length, by the midpoint rule on 4 x 4 points.
   double mean() const;
 
  private:
+  /// More than the relative rounding error of the coefficients.
+  static constexpr double kRounding = 1e-12;
+
   Vector3 points_[36];
 };
 

@@ -14,21 +14,22 @@
 namespace limitsurf {
 namespace {
 
-/// More than any machine's memory holds today.
+/// More locations than this fit into no machine's memory.
 constexpr std::int64_t kMostLocations = std::int64_t{1} << 40;
-/// Samples between two calls of Progress.
-constexpr std::size_t kSlab = std::size_t{1} << 17;
+/// The number of samples between two calls of Progress, and the number that one task takes.
+constexpr std::size_t kSamplesPerReport = std::size_t{1} << 17;
 constexpr std::size_t kSamplesPerTask = 2048;
 
-/// Independent locations with probability in proportion to area times the table's densities, each
-/// from an endless sequence of its own of candidates, most of which are accepted.
+/// Independent random locations, by rejection: their density is proportional to area times the
+/// densities of the table. Each sample has an endless sequence of candidates of its own, most of
+/// which are accepted.
 class Candidates {
  public:
   Candidates(const SurfacePatches& patches, const std::vector<AreaCell>& cells,
              const CellTable& table, const DensityField& density, std::uint64_t seed)
       : patches_(patches), cells_(cells), table_(table), density_(density), key_(mixed(seed)) {}
 
-  /// The next accepted candidate of a sample; `attempt` counts them.
+  /// The next candidate of a sample that is accepted. `attempt` counts the candidates tried.
   Location next(std::size_t sample, std::uint32_t& attempt) const {
     const std::uint64_t stream = mixed(key_ ^ mixed(sample));
     Location at;
@@ -37,14 +38,14 @@ class Candidates {
     return at;
   }
 
-  /// One more random number for the candidate before `attempt`.
+  /// One more random number for the candidate that next() returned last.
   double number(std::size_t sample, std::uint32_t attempt) const {
     const std::uint64_t stream = mixed(key_ ^ mixed(sample));
     return uniformIn01(mixed(stream + kNumbers * (attempt - 1) + kNumbers - 1));
   }
 
  private:
-  /// Of a candidate.
+  /// The number of random numbers that a candidate may use.
   static constexpr std::uint64_t kNumbers = 5;
 
   bool accept(std::uint64_t stream, Location& at) const {
@@ -72,7 +73,8 @@ class Candidates {
     return test * bound * table_.largest(choice.cell) < area * density_.at(at);
   }
 
-  /// A patch of a core, with the bound on its |ds x dt|.
+  /// Picks a patch of a core, and the bound of |ds x dt| on it. Returns false where rounding leads
+  /// beyond the last patch: the candidate is rejected then.
   bool pickFromCore(const AreaCell& cell, double number, SurfacePiece& piece, double& bound) const {
     double rest = number * cell.bound;
     CoreTail tail(patches_, cell.piece, cell.outer);
@@ -100,12 +102,13 @@ void report(const Progress& progress, std::size_t done, std::size_t all) {
   }
 }
 
+/// The first accepted candidate of each sample.
 std::vector<Location> allAccepted(const Candidates& candidates, std::size_t count, int threads,
                                   const Progress& progress) {
   std::vector<Location> result(count);
-  for (std::size_t first = 0; first < count; first += kSlab) {
+  for (std::size_t first = 0; first < count; first += kSamplesPerReport) {
     report(progress, first, count);
-    const std::size_t size = std::min(kSlab, count - first);
+    const std::size_t size = std::min(kSamplesPerReport, count - first);
     parallelFor(size, kSamplesPerTask, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = first + begin; i < first + end; ++i) {
         std::uint32_t attempt = 0;
@@ -117,7 +120,9 @@ std::vector<Location> allAccepted(const Candidates& candidates, std::size_t coun
   return result;
 }
 
-/// Thins candidates by a function whose largest value is only known from what it has shown.
+/// Accepts candidates by a density function whose largest value is unknown: the largest value seen
+/// so far stands for it, and whenever a larger one appears, the samples accepted before are tested
+/// anew.
 class Thinning {
  public:
   Thinning(const Candidates& candidates, const Density& density, std::size_t count, int threads,
@@ -128,10 +133,10 @@ class Thinning {
         progress_(progress),
         samples_(count) {}
 
-  /// Asks about these before all others.
+  /// Reads the function at these locations before any candidate's, to find a large value early.
   void pilot(Span<Location> at) {
-    for (std::size_t first = 0; first < at.size(); first += kSlab) {
-      const auto part = at.subspan(first, std::min(kSlab, at.size() - first));
+    for (std::size_t first = 0; first < at.size(); first += kSamplesPerReport) {
+      const auto part = at.subspan(first, std::min(kSamplesPerReport, at.size() - first));
       for (const double weight : density_.weights(part)) {
         largest_ = std::max(largest_, weight);
       }
@@ -148,10 +153,11 @@ class Thinning {
     while (!open.empty()) {
       const double before = largest_;
       std::vector<std::size_t> still_open;
-      for (std::size_t first = 0; first < open.size(); first += kSlab) {
+      for (std::size_t first = 0; first < open.size(); first += kSamplesPerReport) {
         report(progress_, samples_.size() - (open.size() - first) - still_open.size(),
                samples_.size());
-        tryNext(Span<std::size_t>(open).subspan(first, std::min(kSlab, open.size() - first)),
+        tryNext(Span<std::size_t>(open).subspan(first,
+                                                std::min(kSamplesPerReport, open.size() - first)),
                 still_open);
       }
       open.swap(still_open);
@@ -170,12 +176,13 @@ class Thinning {
   struct Sample {
     Location at;
     double weight = 0;
-    double test = 0;  ///< times the largest weight must stay below the weight
+    double test = 0;  ///< accepted if below weight / largest weight
     std::uint32_t attempt = 0;
 
     bool accepted(double largest) const { return test * largest < weight; }
   };
 
+  /// Replaces these samples by their next candidates, and lists those that are rejected again.
   void tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_open) {
     std::vector<Location> at(open.size());
     parallelFor(open.size(), kSamplesPerTask, threads_, [&](std::size_t begin, std::size_t end) {
@@ -202,7 +209,7 @@ class Thinning {
     }
   }
 
-  /// Lists all samples again that are not accepted: with a larger maximum fewer are.
+  /// Lists all samples that are rejected under the present maximum, which has become larger.
   void reopen(std::vector<std::size_t>& open) const {
     open.clear();
     for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -212,6 +219,7 @@ class Thinning {
     }
   }
 
+  /// A density that is 0 at this many locations is taken to be 0 everywhere.
   static constexpr std::size_t kMostZeros = std::size_t{1} << 20;
 
   const Candidates& candidates_;
@@ -223,9 +231,12 @@ class Thinning {
   std::size_t asked_ = 0;
 };
 
-/// Corners and middles of the faces that have a surface, at most a million or so.
+/// At most this many faces are read in advance.
+constexpr std::size_t kPilotFaces = 200000;
+
+/// The corners and middles of faces that have a surface, of about kPilotFaces of them at most.
 std::vector<Location> pilotLocations(const std::vector<bool>& has_surface) {
-  const std::size_t stride = has_surface.size() / 200000 + 1;
+  const std::size_t stride = has_surface.size() / kPilotFaces + 1;
   std::vector<Location> at;
   for (std::size_t face = 0; face < has_surface.size(); face += stride) {
     if (has_surface[face]) {
@@ -275,15 +286,15 @@ std::vector<Location> AreaSampler::uniform(std::int64_t count, std::uint64_t see
   const std::size_t samples = static_cast<std::size_t>(count);
   if (density.function()) {
     const DensityField constant;
-    const Candidates candidates(data_->patches, data_->cells, data_->plain, constant, seed);
+    const Candidates candidates(data_->patches, data_->cells, data_->uniform, constant, seed);
     Thinning thinning(candidates, density, samples, threads, progress);
     thinning.pilot(pilotLocations(data_->hasSurface()));
     return thinning.run();
   }
   const DensityField field(density);
   if (field.isConstant()) {
-    return allAccepted(Candidates(data_->patches, data_->cells, data_->plain, field, seed), samples,
-                       threads, progress);
+    return allAccepted(Candidates(data_->patches, data_->cells, data_->uniform, field, seed),
+                       samples, threads, progress);
   }
   const CellTable table(data_->patches, data_->cells, field, threads);
   if (!(table.total() > 0)) {

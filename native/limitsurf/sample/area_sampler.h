@@ -12,7 +12,7 @@
 
 namespace limitsurf {
 
-/// What blue noise is wanted: exactly one of `count` and `radius`.
+/// The blue noise that is wanted. Exactly one of `count` and `radius` must be given.
 struct BlueNoiseOptions {
   std::optional<std::int64_t> count;
   std::optional<double> radius;
@@ -21,20 +21,21 @@ struct BlueNoiseOptions {
 };
 
 struct BlueNoise {
-  std::vector<Location> at;  ///< in the order of their faces
-  /// The minimum distance that they keep: radius / sqrt(density / largest density) around each,
-  /// two points the mean of theirs.
+  std::vector<Location> at;  ///< in the order of the faces
+  /// The distance that the points keep. A point has the radius
+  /// radius / sqrt(density / largest density), and two points keep at least the mean of their
+  /// radii.
   double radius = 0;
 };
 
-/// Random points on a limit surface, by its area: |du x dv|, not (u, v), decides.
+/// Random points on a limit surface, distributed by the area of the surface, not by (u, v).
 ///
-/// Made for the surface's pose of that moment. It refers to the surface, which must live on and
-/// keep its pose. All const members may be called from many threads at once. A seed gives the same
-/// points on every machine and with any number of threads.
+/// A sampler is made for one pose of the surface. It refers to the surface, which must outlive it
+/// and keep that pose. All const members may be called from many threads at once. A seed gives the
+/// same points on every machine and with any number of threads.
 ///
-/// Making it: O(faces), 0.05 s for 10,000. Memory: some 100 bytes a face, a few times that around
-/// extraordinary vertices.
+/// Cost of making it: O(faces), 0.05 s for 10,000. Memory: about 100 bytes a face, a few times as
+/// much around extraordinary vertices.
 class AreaSampler {
  public:
   explicit AreaSampler(const LimitSurface& surface, int threads = 0);
@@ -42,44 +43,46 @@ class AreaSampler {
   AreaSampler(AreaSampler&&) noexcept;
   AreaSampler& operator=(AreaSampler&&) noexcept;
 
-  /// `count` independent locations, uniform by area, or in proportion to area times density.
+  /// `count` independent random locations, uniform by area, or in proportion to area times density.
   ///
-  /// By rejection under bounds that hold, so that the distribution is exact: no quadrature, no
-  /// polygons. In random order: the first n of a longer sequence are what a count of n gives
-  /// (with a function for a density only if it shows no larger value later on).
+  /// They come from rejection sampling under strict bounds, so the distribution is exact: neither
+  /// quadrature nor polygons are involved. The order is random: the first n of a longer sequence
+  /// are the locations for a count of n (for a density function only if no larger value appears
+  /// later).
   ///
-  /// A function is asked about the corners and middles of faces first, to find how large it gets,
-  /// then about each candidate; the larger its largest value is than its mean, the longer it takes.
+  /// A density function is read at the corners and middles of faces first, to find a large value,
+  /// then at each candidate. The more its largest value exceeds its mean, the longer that takes.
   ///
-  /// Throws std::invalid_argument for a negative count, a density that is 0 everywhere, negative or
-  /// not finite, and for a count above 0 on a surface without area. Cost: some 0.2 microseconds
-  /// each, all threads together.
+  /// Throws std::invalid_argument for a negative count, for a density that is 0 everywhere,
+  /// negative or not finite, and for a count above 0 on a surface without area. Cost: about 0.2
+  /// microseconds a location on all threads together.
   std::vector<Location> uniform(std::int64_t count, std::uint64_t seed, const Density& density = {},
                                 int threads = 0, const Progress& progress = {}) const;
 
-  /// Points that keep a distance from each other and are random otherwise (Poisson-disk sampling).
+  /// Random points that keep a distance from each other (Poisson-disc sampling).
   ///
-  /// Two points are in conflict if the chord between them is shorter than the radius and the
-  /// surface's normals there are less than 90 degrees apart, so that the two sides of a thin sheet
-  /// do not see each other. Face borders, boundaries and creases mean nothing else.
+  /// Two points conflict if the chord between them is shorter than the radius and the angle between
+  /// their normals is below 90 degrees, so that points on the two sides of a thin sheet do not
+  /// conflict. Borders of faces, boundaries and creases have no other effect.
   ///
-  /// With a radius the points are maximal: there is no place left at which one more fits, larger
-  /// than kGap of the radius there. With a count there are exactly so many, as far apart as such
-  /// random points get, and the radius that they keep is said.
+  /// For a radius the points are maximal: no room for another point remains that is wider than kGap
+  /// times the radius. For a count there are exactly as many points, as far apart as such random
+  /// points can be, and the result says which radius they keep.
   ///
-  /// A density makes the radius grow as 1 / sqrt(density / largest density); two points have to
-  /// keep the mean of theirs. There are none where it is 0. A function is read on a regular grid
-  /// on each face whose squares are at most a radius wide (with 2^25 values at most), and bilinear
-  /// between; points at which it is 0 are dropped in the end.
+  /// With a density the radius of a point is proportional to 1 / sqrt(density / largest density),
+  /// and two points keep the mean of their radii. No point lies where the density is 0. A density
+  /// function is read on a regular grid of each face whose squares are at most a radius wide (2^25
+  /// values at most) and interpolated bilinearly; points at which the function is 0 are removed.
   ///
-  /// Throws std::invalid_argument as uniform() does, for a radius that is not above 0 and finite,
-  /// or so small that more than 2^31 points would come out, and for faces so sheared that cells of
-  /// (u, v) would be far more than points.
-  /// Cost: O(points + faces); some 12 microseconds each, all threads together.
+  /// Throws std::invalid_argument as uniform() does; for a radius that is not finite and above 0,
+  /// or so small that there would be more than 2^31 points; and for faces sheared so strongly that
+  /// there would be far more cells of (u, v) than points. Cost: O(points + faces), about 12
+  /// microseconds a point on all threads together.
   BlueNoise blueNoise(const BlueNoiseOptions& options, int threads = 0,
                       const Progress& progress = {}) const;
 
-  /// Of the radius: the resolution to which blue noise is maximal.
+  /// The width of the largest gap that may remain between discs of blue noise, as a part of the
+  /// radius.
   static constexpr double kGap = 1. / 512;
 
  private:

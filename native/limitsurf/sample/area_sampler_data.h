@@ -5,26 +5,31 @@
 
 #include "limitsurf/sample/area_cells.h"
 #include "limitsurf/sample/area_sampler.h"
+#include "limitsurf/sample/cell_table.h"
 #include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
 
+/// What an AreaSampler keeps: the surface's patches, cut into cells.
 struct AreaSampler::Data {
   Data(const LimitSurface& limit_surface, int threads)
       : surface(limit_surface),
         patches(limit_surface, threads),
         cells(areaCells(patches, threads)),
-        plain(patches, cells, DensityField(), threads) {}
+        uniform(patches, cells, DensityField(), threads) {}
 
-  /// More than rounding errors.
-  bool hasArea() const { return plain.total() > 1e-14 * patches.diagonal() * patches.diagonal(); }
-  /// Whether each Ptex face has a surface, with area or not.
+  /// An area of this part of the diagonal's square and less is nothing but rounding errors.
+  static constexpr double kNoArea = 1e-14;
+  bool hasArea() const {
+    return uniform.total() > kNoArea * patches.diagonal() * patches.diagonal();
+  }
+  /// For each Ptex face whether it has a surface, with area or without.
   std::vector<bool> hasSurface() const;
 
   const LimitSurface& surface;
   SurfacePatches patches;
   std::vector<AreaCell> cells;
-  CellTable plain;
+  CellTable uniform;  ///< for a density that is the same everywhere
 };
 
 }  // namespace limitsurf

@@ -6,24 +6,40 @@
 #include <stdexcept>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/pi.h"
 #include "limitsurf/sample/area_sampler_data.h"
 #include "limitsurf/sample/crowding.h"
-#include "limitsurf/sample/dart_throwing.h"
+#include "limitsurf/sample/poisson_disc_sampling.h"
 
 namespace limitsurf {
 namespace {
 
-/// How many discs find room on an area of radius squared: where no more fits, discs of half the
-/// radius cover 0.547 of a plane (Feder 1980).
-constexpr double kPacking = 0.547 * 4 / 3.141592653589793;
+/// The number of points that an area of radius squared holds when no more fit: discs of half the
+/// radius then cover 0.547 of a plane (Feder: "Random sequential adsorption", 1980).
+constexpr double kPacking = 0.547 * 4 / kPi<double>;
+/// The number of points that fit into a signed integer of 32 bits.
 constexpr double kMostPoints = 2147483647;
-/// With a count: so many times as many are thrown, and the most crowded removed again.
+/// For a count, about kSurplus times as many points are sampled and the most crowded are removed. A
+/// sampling that has more than kMostSurplus times as many is repeated with a larger radius.
 constexpr double kSurplus = 1.03, kMostSurplus = 1.25;
-constexpr int kMostAttempts = 60;
-/// Squares of a face's grid of a density's values, at most 2^kMostLevels a side.
+/// A sampling that keeps missing the count is repeated at most this many times; after a quarter of
+/// that, any surplus will do.
+constexpr int kMostAttempts = 60, kPatientAttempts = kMostAttempts / 4;
+/// The radius shrinks to this part at least when there were too few points, so that the repetition
+/// makes progress.
+constexpr double kLeastShrinking = 0.98;
+/// The number of points is taken to be at least this part of the count when the next radius is
+/// chosen: an estimate from few points is poor.
+constexpr double kLeastExcess = 0.25;
+/// A density function is read on a regular grid of each face with at most 2^kMostLevels squares a
+/// side and at most kMostValues values in all, unless one square a face is more already.
 constexpr int kMostLevels = 10;
-/// And so many on the whole surface, if one a face is not more already.
 constexpr double kMostValues = 1 << 25;
+/// Radii are enlarged by a part of this size for the rounding of distances, of a few units in the
+/// last place.
+constexpr double kRadiusRounding = 1e-12;
+/// The part of the progress that sampling has; removing and sorting points have the rest.
+constexpr double kSamplingPart = 0.95;
 
 std::string text(double value) {
   std::ostringstream out;
@@ -31,7 +47,7 @@ std::string text(double value) {
   return out.str();
 }
 
-/// The longest way across each face with a surface, along u or v; -1 for others.
+/// For each face that has a surface its largest extent along u or v, roughly; -1 for others.
 std::vector<double> faceSizes(const LimitSurface& surface, const std::vector<bool>& has_surface,
                               int threads) {
   constexpr int kSteps = 2, kSide = kSteps + 1;
@@ -59,7 +75,7 @@ std::vector<double> faceSizes(const LimitSurface& surface, const std::vector<boo
   return sizes;
 }
 
-/// Makes blue noise, once or, for a count, until the count is met.
+/// Makes blue noise: once for a radius, repeatedly for a count until there are enough points.
 class BlueNoiseMaker {
  public:
   BlueNoiseMaker(const LimitSurface& surface, const SurfacePatches& patches,
@@ -92,7 +108,7 @@ class BlueNoiseMaker {
       throw std::invalid_argument("radius is " + text(radius) + ": about " + text(expected_) +
                                   " points would come out; at most 2147483647 can");
     }
-    return result(thrown(radius), radius);
+    return result(sampled(radius), radius);
   }
 
   BlueNoise ofCount(std::size_t count) {
@@ -111,33 +127,39 @@ class BlueNoiseMaker {
       if (!(radius >= DiscGrid::smallestRadius(box_))) {
         break;
       }
-      std::vector<Dart> darts = thrown(radius);
-      const double excess = static_cast<double>(darts.size()) / static_cast<double>(count);
-      const bool is_enough = darts.size() >= count;
+      std::vector<NoisePoint> points = sampled(radius);
+      const double excess = static_cast<double>(points.size()) / static_cast<double>(count);
+      const bool is_enough = points.size() >= count;
       if (is_enough &&
-          (excess <= kMostSurplus || darts.size() <= count + 2 || attempt > kMostAttempts / 4)) {
-        Crowding crowding(box_, std::move(darts), threads_);
+          (excess <= kMostSurplus || points.size() <= count + 2 || attempt > kPatientAttempts)) {
+        Crowding crowding(box_, std::move(points), threads_);
         crowding.thin(count);
         const double slack = crowding.slack();
-        const double held = radius * slack * (1 - 1e-12) - margin_;
-        return result(std::move(crowding.darts()), std::max(held, 0.));
+        const double held = radius * slack * (1 - kRadiusRounding) - margin_;
+        return result(std::move(crowding.points()), std::max(held, 0.));
       }
-      const double step = std::sqrt(std::max(excess, 0.25) / kSurplus);
-      radius *= is_enough ? step : std::min(step, 0.98);
+      const double step = std::sqrt(std::max(excess, kLeastExcess) / kSurplus);
+      radius *= is_enough ? step : std::min(step, kLeastShrinking);
     }
     throw std::invalid_argument("count is " + std::to_string(count) +
                                 ": there is no room for so many points");
   }
 
  private:
+  /// A density function is read on finer grids while its values change the radius much, at most
+  /// this many times.
   static constexpr int kMostReadings = 4;
+  /// A grid has at least 2^kFewestLevels squares a side while all faces together then have no more
+  /// than kFewestValues: coarser grids might miss everything that the function shows.
+  static constexpr int kFewestLevels = 3;
+  static constexpr std::size_t kFewestValues = std::size_t{1} << 20;
 
   double pointsOf(double radius) const { return kPacking * weighed_area_ / (radius * radius); }
   double radiusOf(std::size_t count) const {
     return std::sqrt(kPacking * weighed_area_ / (kSurplus * static_cast<double>(count)));
   }
 
-  /// Area times density, roughly.
+  /// Estimates the integral of the density over the surface.
   void setWeighedArea() {
     weighed_area_ = 0;
     for (const AreaCell& cell : cells_) {
@@ -145,13 +167,14 @@ class BlueNoiseMaker {
     }
   }
 
+  /// Reads the density function on grids whose squares are at most a radius wide, where the limits
+  /// on the number of values allow it.
   void readFunction(double radius) {
     if (sizes_.empty()) {
       sizes_ = faceSizes(surface_, has_surface_, threads_);
     }
-    // Coarse grids might miss all there is.
     int fewest = 0;
-    while (fewest < 3 && (sizes_.size() << (2 * fewest)) < (std::size_t{1} << 20)) {
+    while (fewest < kFewestLevels && (sizes_.size() << (2 * fewest)) < kFewestValues) {
       ++fewest;
     }
     std::vector<int> levels(sizes_.size(), -1);
@@ -173,50 +196,51 @@ class BlueNoiseMaker {
     setWeighedArea();
   }
 
-  std::vector<Dart> thrown(double radius) {
-    DartThrowing throwing(patches_, box_, density_, radius * (1 + 1e-12) + margin_,
-                          AreaSampler::kGap, expected_, options_.seed, threads_);
-    throwing.run([&](std::size_t darts) {
-      done_ = std::max(done_, std::min(static_cast<double>(darts) / expected_, 1.));
+  std::vector<NoisePoint> sampled(double radius) {
+    PoissonDiscSampling sampling(patches_, box_, density_, radius * (1 + kRadiusRounding) + margin_,
+                                 AreaSampler::kGap, expected_, options_.seed, threads_);
+    sampling.run([&](std::size_t points) {
+      done_ = std::max(done_, std::min(static_cast<double>(points) / expected_, 1.));
       if (progress_) {
-        progress_(0.95 * done_);
+        progress_(kSamplingPart * done_);
       }
     });
-    std::vector<Dart> darts = std::move(throwing.darts());
+    std::vector<NoisePoint> points = std::move(sampling.points());
     if (options_.density.function()) {
-      removeZeros(darts);
+      removeZeros(points);
     }
-    return darts;
+    return points;
   }
 
-  /// Between the points at which it was read the function may be 0.
-  void removeZeros(std::vector<Dart>& darts) const {
+  /// Removes points at which the density function is 0: it may be 0 between the points of the grid.
+  void removeZeros(std::vector<NoisePoint>& points) const {
     std::size_t kept = 0;
     constexpr std::size_t kBatch = std::size_t{1} << 16;
     std::vector<Location> at;
-    for (std::size_t first = 0; first < darts.size(); first += at.size()) {
+    for (std::size_t first = 0; first < points.size(); first += at.size()) {
       at.clear();
-      for (std::size_t i = first; i < std::min(darts.size(), first + kBatch); ++i) {
-        at.push_back(darts[i].at);
+      for (std::size_t i = first; i < std::min(points.size(), first + kBatch); ++i) {
+        at.push_back(points[i].at);
       }
       const std::vector<double> weights = options_.density.weights(at);
       for (std::size_t i = 0; i < at.size(); ++i) {
         if (weights[i] > 0) {
-          darts[kept++] = darts[first + i];
+          points[kept++] = points[first + i];
         }
       }
     }
-    darts.resize(kept);
+    points.resize(kept);
   }
 
-  /// In the order of their faces, each face's in the order in which they were thrown.
-  BlueNoise result(std::vector<Dart> darts, double radius) const {
-    std::stable_sort(darts.begin(), darts.end(),
-                     [](const Dart& a, const Dart& b) { return a.at.face < b.at.face; });
+  /// The points in the order of their faces, those of a face in the order of their acceptance.
+  BlueNoise result(std::vector<NoisePoint> points, double radius) const {
+    std::stable_sort(points.begin(), points.end(), [](const NoisePoint& a, const NoisePoint& b) {
+      return a.at.face < b.at.face;
+    });
     BlueNoise noise;
-    noise.at.resize(darts.size());
-    std::transform(darts.begin(), darts.end(), noise.at.begin(),
-                   [](const Dart& dart) { return dart.at; });
+    noise.at.resize(points.size());
+    std::transform(points.begin(), points.end(), noise.at.begin(),
+                   [](const NoisePoint& point) { return point.at; });
     noise.radius = radius;
     if (progress_) {
       progress_(1);
@@ -231,7 +255,7 @@ class BlueNoiseMaker {
   const BlueNoiseOptions& options_;
   int threads_;
   const Progress& progress_;
-  double margin_;  // of radii, for the rounding of positions
+  double margin_;  // added to radii, for the rounding of positions
 
   Box box_;
   DensityField density_;

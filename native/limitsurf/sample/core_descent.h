@@ -3,16 +3,16 @@
 
 #include <vector>
 
+#include "limitsurf/sample/bounded_patch.h"
 #include "limitsurf/sample/core_tail.h"
-#include "limitsurf/sample/dart_cell.h"
 #include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
 
-/// All of a core, patch by patch, as far inwards as somebody asks.
+/// A core, split patch by patch towards its vertex, as far inwards as a query needs.
 class CoreDescent {
  public:
-  /// What is left of the core when it is smaller than `gap` does not matter.
+  /// The descent stops where the remaining core is smaller than `gap`.
   CoreDescent(const SurfacePatches& patches, const SurfacePiece& core, double gap)
       : patches_(patches), gap_(gap), vertex_(patches.coreVertex(core)) {
     patches_.split(core, first_);
@@ -28,12 +28,13 @@ class CoreDescent {
 
   const SurfacePatches::SplitCore& firstSplit() const { return first_; }
   const Vector3& vertex() const { return vertex_; }
-  /// Nothing of the core is farther from the vertex.
+  /// No point of the core is farther from the vertex.
   double reach() const { return reach_; }
 
-  /// Whether all normals are less than 90 degrees from this one, of unit length.
+  /// Whether the angle between `unit`, a unit vector, and every normal of the core is below 90
+  /// degrees.
   bool facesAll(const Vector3& unit) {
-    for (std::size_t i = 0; i < extents_.size() || goOn(); ++i) {
+    for (std::size_t i = 0; i < extents_.size() || descend(); ++i) {
       if (!extents_[i].facesAll(unit)) {
         return false;
       }
@@ -44,14 +45,14 @@ class CoreDescent {
  private:
   void append(const SurfacePatches::SplitCore& split) {
     for (const BezierPatch& patch : split.patches) {
-      extents_.push_back(BoundedPatch(patch).extent(DartCell()));
+      extents_.push_back(BoundedPatch(patch).extent(TrialCell()));
     }
     core_ = split.core;
     rest_ = CoreTail::farthest(vertex_, split.core_box);
   }
 
-  /// One step more, if it matters.
-  bool goOn() {
+  /// Splits the remaining core once more. Returns false if it is too small for that.
+  bool descend() {
     if (2 * rest_ <= gap_ || core_.steps >= SurfacePatches::kMostSteps) {
       return false;
     }
@@ -67,8 +68,8 @@ class CoreDescent {
   double reach_;
   SurfacePatches::SplitCore first_;
 
-  SurfacePiece core_;  // the rest
-  double rest_;        // its reach
+  SurfacePiece core_;  // what remains after the last split
+  double rest_;        // the reach of that
   std::vector<CellExtent> extents_;
 };
 

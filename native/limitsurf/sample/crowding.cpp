@@ -10,44 +10,44 @@
 namespace limitsurf {
 namespace {
 
-constexpr std::size_t kDartsPerTask = 1024;
+constexpr std::size_t kPointsPerTask = 1024;
 
 }  // namespace
 
-Crowding::Crowding(const Box& box, std::vector<Dart> darts, int threads)
-    : box_(box), darts_(std::move(darts)), threads_(threads) {}
+Crowding::Crowding(const Box& box, std::vector<NoisePoint> points, int threads)
+    : box_(box), points_(std::move(points)), threads_(threads) {}
 
 DiscGrid Crowding::grid() const {
   double smallest = std::numeric_limits<double>::infinity(), largest = 0;
-  for (const Dart& dart : darts_) {
-    smallest = std::min(smallest, kReach * dart.radius);
-    largest = std::max(largest, kReach * dart.radius);
+  for (const NoisePoint& point : points_) {
+    smallest = std::min(smallest, kReach * point.radius);
+    largest = std::max(largest, kReach * point.radius);
   }
   DiscGrid grid(box_, smallest, largest);
-  for (const Dart& dart : darts_) {
-    grid.insert(dart.position, kReach * dart.radius);
+  for (const NoisePoint& point : points_) {
+    grid.insert(point.position, kReach * point.radius);
   }
   return grid;
 }
 
 template <typename Visit>
-void Crowding::forEachNeighbour(const DiscGrid& grid, std::size_t dart, const Visit& visit) const {
-  const Dart& own = darts_[dart];
+void Crowding::forEachNeighbour(const DiscGrid& grid, std::size_t point, const Visit& visit) const {
+  const NoisePoint& own = points_[point];
   grid.any(own.position, kReach * own.radius, [&](int number) {
     const std::size_t other = static_cast<std::size_t>(number);
-    if (other != dart && seeEachOther(own.normal, darts_[other].normal)) {
-      const double distance = length(Vector3(darts_[other].position - own.position));
-      visit(other, 2 * distance / (own.radius + darts_[other].radius));
+    if (other != point && seeEachOther(own.normal, points_[other].normal)) {
+      const double distance = length(Vector3(points_[other].position - own.position));
+      visit(other, 2 * distance / (own.radius + points_[other].radius));
     }
     return false;
   });
 }
 
 void Crowding::thin(std::size_t count) {
-  while (darts_.size() > count) {
+  while (points_.size() > count) {
     const DiscGrid all = grid();
-    std::vector<double> crowds(darts_.size());
-    parallelFor(crowds.size(), kDartsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> crowds(points_.size());
+    parallelFor(crowds.size(), kPointsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         double crowd = 0;
         forEachNeighbour(all, i, [&](std::size_t, double distance) {
@@ -57,14 +57,14 @@ void Crowding::thin(std::size_t count) {
         crowds[i] = crowd;
       }
     });
-    std::vector<std::size_t> order(darts_.size());
+    std::vector<std::size_t> order(points_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return crowds[a] != crowds[b] ? crowds[a] > crowds[b] : a < b;
     });
-    // Not two neighbours at a time: without the one the other is not crowded any more.
-    std::vector<char> is_removed(darts_.size(), 0), has_lost(darts_.size(), 0);
-    std::size_t left = darts_.size();
+    // No two neighbours are removed at a time: without the one the other is crowded no longer.
+    std::vector<char> is_removed(points_.size(), 0), has_lost(points_.size(), 0);
+    std::size_t left = points_.size();
     for (const std::size_t i : order) {
       if (left == count) {
         break;
@@ -76,19 +76,19 @@ void Crowding::thin(std::size_t count) {
       }
     }
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < darts_.size(); ++i) {
+    for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!is_removed[i]) {
-        darts_[kept++] = darts_[i];
+        points_[kept++] = points_[i];
       }
     }
-    darts_.resize(kept);
+    points_.resize(kept);
   }
 }
 
 double Crowding::slack() const {
   const DiscGrid all = grid();
-  std::vector<double> closest(darts_.size());
-  parallelFor(closest.size(), kDartsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> closest(points_.size());
+  parallelFor(closest.size(), kPointsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       closest[i] = kReach;
       forEachNeighbour(all, i, [&](std::size_t, double distance) {

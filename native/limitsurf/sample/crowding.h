@@ -3,32 +3,32 @@
 
 #include <vector>
 
-#include "limitsurf/sample/dart_throwing.h"
+#include "limitsurf/sample/poisson_disc_sampling.h"
 
 namespace limitsurf {
 
-/// How close darts are to each other, up to kReach times their radii.
+/// The crowding of points: how close they are to each other, up to kReach times their radii.
 class Crowding {
  public:
   static constexpr double kReach = 1.5;
 
-  Crowding(const Box& box, std::vector<Dart> darts, int threads);
+  Crowding(const Box& box, std::vector<NoisePoint> points, int threads);
 
-  /// Removes the most crowded ones until `count` are left.
+  /// Removes the most crowded points until `count` are left.
   void thin(std::size_t count);
-  /// All radii times this are kept too: at most kReach.
+  /// The largest factor, at most kReach, by which all radii can be multiplied without a conflict.
   double slack() const;
 
-  std::vector<Dart>& darts() { return darts_; }
+  std::vector<NoisePoint>& points() { return points_; }
 
  private:
   DiscGrid grid() const;
-  /// Calls visit(other, distance over the mean of the radii) for those that a dart sees.
+  /// Calls visit(other, distance / mean of both radii) for each neighbour that a point sees.
   template <typename Visit>
-  void forEachNeighbour(const DiscGrid& grid, std::size_t dart, const Visit& visit) const;
+  void forEachNeighbour(const DiscGrid& grid, std::size_t point, const Visit& visit) const;
 
   Box box_;
-  std::vector<Dart> darts_;
+  std::vector<NoisePoint> points_;
   int threads_;
 };
 

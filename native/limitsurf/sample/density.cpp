@@ -41,7 +41,7 @@ Density::Density(const LimitSurface& surface, const Eigen::VectorXd& weights, in
   corners_.resize(4 * base_face.size(), 0);
   const DataRows values = surface.varying(weights, threads).evaluate(at, {}, threads).value;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    // Sums of weights may round to less than 0 where all are 0.
+    // A sum of weights that are all 0 may round to less than 0.
     corners_[4 * static_cast<std::size_t>(at[i].face) + i % 4] =
         std::max(values(static_cast<Eigen::Index>(i), 0), 0.);
   }

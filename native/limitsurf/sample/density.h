@@ -10,32 +10,33 @@
 
 namespace limitsurf {
 
-/// How densely a surface is to be covered, here against there. Weights are relative: doubling all
-/// changes nothing. Where they are 0 there is nothing.
+/// How densely points are to cover a surface. Weights are relative: doubling all of them changes
+/// nothing. No point lies where the weight is 0.
 class Density {
  public:
-  /// Weights of a batch of locations. Called on the thread that asked for samples.
+  /// Writes the weights of a batch of locations. It is called on the thread that asked for samples.
   using Function = std::function<void(Span<Location> at, double* weights)>;
 
-  /// The same everywhere.
+  /// The same weight everywhere.
   Density() = default;
 
-  /// By any function of the location.
+  /// Any function of the location.
   explicit Density(Function function) : function_(std::move(function)) {}
 
-  /// A weight for each vertex of the control mesh, linear along edges and bilinear on each Ptex
-  /// face, as LimitSurface::varying() has it. Throws std::invalid_argument for another number of
-  /// weights and naming the first that is negative or not finite.
+  /// A weight for each vertex of the control mesh, interpolated linearly along edges and bilinearly
+  /// on each Ptex face, as by LimitSurface::varying(). Throws std::invalid_argument if there are
+  /// not as many weights as vertices, and naming the first weight that is negative or not finite.
   Density(const LimitSurface& surface, const Eigen::VectorXd& weights, int threads = 0);
 
   bool isConstant() const { return !function_ && corners_.empty(); }
-  /// None where the weights are the vertices'.
+  /// The function; empty if the weights are given at vertices.
   const Function& function() const { return function_; }
-  /// Of vertices' weights: those of each Ptex face at (0, 0), (1, 0), (0, 1) and (1, 1).
+  /// Where weights are given at vertices: those of each Ptex face at (0, 0), (1, 0), (0, 1), (1,
+  /// 1).
   const std::vector<double>& corners() const { return corners_; }
 
-  /// The function's weights; std::invalid_argument naming the first location at which it is
-  /// negative or not finite.
+  /// The function's weights at the locations. Throws std::invalid_argument naming the first
+  /// location at which the function is negative or not finite.
   std::vector<double> weights(Span<Location> at) const;
 
  private:

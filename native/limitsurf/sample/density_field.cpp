@@ -11,10 +11,10 @@
 namespace limitsurf {
 namespace {
 
-/// Locations that a function is asked about at a time.
+/// The number of locations at which a function is read in one call.
 constexpr std::size_t kBatch = std::size_t{1} << 16;
 
-/// The grid's square that a coordinate lies in, and where in it.
+/// The square of a grid that a coordinate lies in, and the place within the square, 0 to 1.
 struct GridPlace {
   GridPlace(double x, int side) {
     const double scaled = x * side;
@@ -113,8 +113,8 @@ double DensityField::largestOn(const FaceRectangle& rectangle) const {
       largest = std::max(largest, at({rectangle.face, u, v}));
     }
   }
-  // On each square of the grid the largest is at a corner: lines of the grid that cross the
-  // rectangle's sides, and points inside it.
+  // A bilinear function is largest at a corner. The corners here are those of the rectangle, the
+  // points at which lines of the grid cross its sides, and the points of the grid inside it.
   const int side = 1 << levels_[rectangle.face];
   const auto inside = [side](double low, double high) {
     return std::pair(static_cast<int>(std::floor(low * side)) + 1,

@@ -9,25 +9,28 @@
 
 namespace limitsurf {
 
-/// Weights on the whole surface, relative to the largest, that can be bounded: bilinear between the
-/// points of a regular grid on each Ptex face. 1 everywhere if made of a constant density.
+/// A density on the whole surface, relative to its largest value, of which bounds are known: it is
+/// bilinear between the points of a regular grid on each Ptex face. A constant density is 1
+/// everywhere.
 class DensityField {
  public:
   DensityField() = default;
-  /// Of a density that is no function, exactly. Throws std::invalid_argument where all is 0.
+  /// A density that is given at vertices, exactly. Throws std::invalid_argument if it is 0
+  /// everywhere.
   explicit DensityField(const Density& density);
-  /// Of a function: 2^levels[face] squares a side, -1 for faces that are not to be asked about.
+  /// A density function, read on a grid of 2^levels[face] squares a side; faces with level -1 are
+  /// not read.
   DensityField(const Density& density, const std::vector<int>& levels);
 
   bool isConstant() const { return first_.empty(); }
-  /// What all weights have been divided by.
+  /// The largest weight, by which all have been divided.
   double largest() const { return largest_; }
 
-  /// In [0, 1].
+  /// The density at a location, in [0, 1].
   double at(const Location& location) const;
-  /// The largest on a rectangle.
+  /// The largest density on a rectangle.
   double largestOn(const FaceRectangle& rectangle) const;
-  /// A mean of the rectangle's corners and middle.
+  /// An estimate of the mean density on a rectangle, from its corners and its middle.
   double meanOn(const FaceRectangle& rectangle) const;
 
  private:
@@ -37,7 +40,7 @@ class DensityField {
   double largest_ = 1;
   std::vector<int> levels_;
   std::vector<std::size_t> first_;
-  std::vector<double> values_;  // row by row of each face: (2^level + 1)^2
+  std::vector<double> values_;  // face by face, row by row: (2^level + 1)^2 for each face
 };
 
 }  // namespace limitsurf

@@ -12,15 +12,16 @@
 
 namespace limitsurf {
 
-/// Discs of radius `smallest` and more, to be found by where they are: a hashed grid of cubes for
-/// each power of two of the radius.
+/// Discs in space that can be found by their position: a hashed grid of cubes for each power of two
+/// of the radius (a hierarchical hash grid).
 ///
-/// A disc is kept on the level of its radius. For the larger ones around it, eight cubes of each
-/// higher level hold all; for smaller ones, of which there may be any number, eight cubes of its
-/// own level are searched downwards, and a cube knows whether there is anything below it.
+/// A disc is kept on the level of its radius. Around a position, eight cubes of each higher level
+/// hold all larger discs that matter. Smaller discs, of which there may be any number, are found by
+/// descending from eight cubes of the position's own level; a cube knows whether there is anything
+/// below it.
 class DiscGrid {
  public:
-  /// All positions are within `box`, all radii from `smallest` to `largest`.
+  /// All positions must lie in `box`, and all radii between `smallest` and `largest`.
   DiscGrid(const Box& box, double smallest, double largest) : origin_(box.low) {
     sides_.push_back(2 * smallest);
     while (2 * largest > sides_.back()) {
@@ -29,7 +30,7 @@ class DiscGrid {
     clear();
   }
 
-  /// The smallest radius for which positions in the box have numbers.
+  /// The smallest radius for which the indices of all cubes in the box fit into 32 bits.
   static double smallestRadius(const Box& box) {
     return (box.high - box.low).maxCoeff() / (std::uint32_t{1} << 30);
   }
@@ -39,7 +40,7 @@ class DiscGrid {
   void clear() {
     discs_.clear();
     on_level_.assign(sides_.size(), 0);
-    // What it held last is a fair guess at what it will hold next.
+    // The table will probably hold as many cubes as it held last.
     std::size_t cubes = kFewestCubes;
     while (cubes < 2 * used_) {
       cubes *= 2;
@@ -48,7 +49,7 @@ class DiscGrid {
     used_ = 0;
   }
 
-  /// Numbered in the order in which they come.
+  /// Adds a disc. Discs are numbered in the order in which they are added.
   void insert(const Vector3& position, double radius) {
     const int level = levelOf(radius);
     Index at[3];
@@ -67,8 +68,8 @@ class DiscGrid {
     }
   }
 
-  /// Calls visit(number) for the discs whose centre is closer to the position than the mean of both
-  /// radii, until it returns true; whether it did.
+  /// Calls visit(number) for each disc whose centre is closer to the position than the mean of both
+  /// radii, until visit() returns true. Returns whether it did.
   template <typename Visit>
   bool any(const Vector3& position, double radius, const Visit& visit) const {
     const int own = levelOf(radius);
@@ -82,7 +83,8 @@ class DiscGrid {
       const int own_corner =
           (middle[0] - low[0]) | (middle[1] - low[1]) << 1 | (middle[2] - low[2]) << 2;
       for (int i = 0; i < 8; ++i) {
-        const int corner = i ^ own_corner;  // the position's own cube first: what ends the search
+        // The position's own cube comes first, since a disc in it often ends the search.
+        const int corner = i ^ own_corner;
         const Index at[3] = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
                              low[2] + (corner >> 2)};
         if (anyIn(level, at, level == own, position, radius, visit)) {
@@ -99,15 +101,17 @@ class DiscGrid {
   struct Disc {
     double position[3];
     double radius;
-    std::int32_t next;  // of the same cube
+    std::int32_t next;  // the next disc of the same cube, or -1
   };
   struct Cube {
     Index at[3] = {0, 0, 0};
-    std::int8_t level = -1;  // -1: none
+    std::int8_t level = -1;  // -1: this place of the table is free
     bool has_below = false;
-    std::int32_t first = -1;
+    std::int32_t first = -1;  // the disc added last
   };
   static constexpr std::size_t kFewestCubes = 1024;
+  /// The sides of cubes are rounded; distances to them are enlarged by more than that.
+  static constexpr double kSideRounding = 1e-9;
 
   int levelOf(double radius) const {
     int level = 0;
@@ -117,7 +121,7 @@ class DiscGrid {
     return level;
   }
 
-  /// Of the cube that holds the position moved down by a part of a cube's side.
+  /// The index of the cube that holds the position, moved down by the part `down` of a cube's side.
   void indexOf(const Vector3& position, int level, double down, Index at[3]) const {
     for (int i = 0; i < 3; ++i) {
       at[i] = static_cast<Index>(std::floor((position[i] - origin_[i]) / sides_[level] - down));
@@ -198,7 +202,7 @@ class DiscGrid {
       return false;
     }
     const double side = sides_[level - 1];
-    // Discs of the level below are no larger than half its cubes' side.
+    // The radius of a disc on the level below is at most half the side of that level's cubes.
     const double reach = (side / 2 + radius) / 2;
     for (int corner = 0; corner < 8; ++corner) {
       const Index child[3] = {2 * at[0] + (corner & 1), 2 * at[1] + (corner >> 1 & 1),
@@ -209,8 +213,7 @@ class DiscGrid {
         const double outside = std::max({low, -(low + side), 0.});
         squared += outside * outside;
       }
-      // A little more, for the rounding of the cubes' sides.
-      if (squared <= reach * reach * (1 + 1e-9) &&
+      if (squared <= reach * reach * (1 + kSideRounding) &&
           anyIn(level - 1, child, true, position, radius, visit)) {
         return true;
       }
@@ -224,10 +227,10 @@ class DiscGrid {
   }
 
   Vector3 origin_;
-  std::vector<double> sides_;  // of the cubes of each level
-  std::vector<std::size_t> on_level_;
+  std::vector<double> sides_;          // the side of the cubes of each level
+  std::vector<std::size_t> on_level_;  // the number of discs on each level
   std::vector<Disc> discs_;
-  std::vector<Cube> cubes_;  // hashed, open addressing
+  std::vector<Cube> cubes_;  // a hash table with open addressing
   std::size_t used_ = 0;
 };
 

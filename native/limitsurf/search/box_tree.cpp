@@ -55,8 +55,10 @@ class BoxTree::Builder {
   }
 
  private:
+  /// The number of bins that centres are sorted into.
   static constexpr int kBins = 16;
-  /// From here on halves of equal number end the matter within 32 more levels.
+  /// Parts at this depth and below are cut into halves of equal number, which reach single leaves
+  /// within 32 more levels.
   static constexpr int kHeuristicDepth = kMostDepth - 32;
 
   struct Part {
@@ -64,6 +66,7 @@ class BoxTree::Builder {
     std::int32_t size() const { return end - begin; }
   };
 
+  /// Adds the node over a part and all nodes below it. Returns its number.
   std::int32_t addNode(const Part& part, int depth) {
     const std::int32_t index = static_cast<std::int32_t>(nodes_.size());
     nodes_.emplace_back();
@@ -82,11 +85,13 @@ class BoxTree::Builder {
     return index;
   }
 
+  /// Twice the centre of a leaf's box.
   float centre(std::int32_t leaf, int axis) const {
     return leaves_[leaf].low[axis] + leaves_[leaf].high[axis];
   }
 
-  /// Where to cut a part of two and more leaves, sorted so that neither half is empty.
+  /// Sorts a part of two or more leaves into two halves, neither of them empty, and returns where
+  /// the second begins.
   std::int32_t divide(const Part& part, int depth) {
     float low[3], high[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -117,6 +122,7 @@ class BoxTree::Builder {
     return middle;
   }
 
+  /// The same by the surface area heuristic along one axis; a half may be empty.
   std::int32_t divideByArea(const Part& part, int axis, float low, float scale) {
     const auto bin = [&](std::int32_t leaf) {
       return std::clamp(static_cast<int>((centre(leaf, axis) - low) * scale), 0, kBins - 1);

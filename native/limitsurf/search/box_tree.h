@@ -8,28 +8,29 @@
 
 namespace limitsurf {
 
-/// A box in single precision, rounded outwards.
+/// An axis-aligned box in single precision, rounded outwards.
 struct BoxF {
   using Corner = Eigen::Array4f;  // padded to a register; the fourth is 0
   Corner low, high;
 
-  BoxF();  ///< empty
+  BoxF();  ///< an empty box
   explicit BoxF(const Box& box);
   void include(const BoxF& box);
-  /// Half of its surface.
+  /// Half of the area of its surface.
   float halfArea() const;
 };
 
-/// A binary tree of boxes over leaves that somebody else keeps, built by the surface area heuristic
-/// (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies").
+/// A binary tree of axis-aligned boxes, a bounding volume hierarchy, over leaves that the caller
+/// keeps. It is built by the surface area heuristic in bins (Wald: "On fast Construction of
+/// SAH-based Bounding Volume Hierarchies", 2007).
 class BoxTree {
  public:
   struct Node {
     BoxF boxes[2];
-    std::int32_t children[2];  ///< a node, or ~(position in the order of leaves)
+    std::int32_t children[2];  ///< a node's number, or ~(a leaf's place in the order of leaves)
   };
 
-  /// `order` gets the leaves' numbers in the order in which the tree refers to them.
+  /// Sets `order` to the numbers of the leaves, in the order in which the tree refers to them.
   BoxTree(const std::vector<BoxF>& leaves, std::vector<std::int32_t>& order);
 
   bool empty() const { return nodes_.empty(); }
@@ -37,12 +38,12 @@ class BoxTree {
   static bool isLeaf(std::int32_t child) { return child < 0; }
   static std::int32_t leaf(std::int32_t child) { return ~child; }
 
-  /// No path from the root has more nodes.
+  /// The number of nodes on the longest path from the root.
   static constexpr int kMostDepth = 64;
 
  private:
   class Builder;
-  std::vector<Node> nodes_;  ///< the root first; one with a single leaf has an empty second box
+  std::vector<Node> nodes_;  ///< the root first; over a single leaf its second box is empty
 };
 
 }  // namespace limitsurf

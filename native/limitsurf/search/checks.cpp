@@ -10,7 +10,7 @@
 namespace limitsurf {
 namespace {
 
-/// Beyond, squared distances overflow.
+/// The squares of distances between larger coordinates would overflow.
 constexpr double kFarthest = 1e150;
 
 [[noreturn]] void refuse(const char* name, Eigen::Index row, const Points& rows,
@@ -65,38 +65,6 @@ void checkAngle(double max_angle) {
     throw std::invalid_argument("max_angle is " + std::to_string(max_angle) +
                                 "; it must be between 0 and pi");
   }
-}
-
-Hits hitsAt(const LimitSurface& surface, std::vector<Location> at, int threads) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  Hits hits;
-  hits.at = std::move(at);
-  std::vector<Location> found;
-  found.reserve(hits.at.size());
-  for (Location& location : hits.at) {
-    if (location.face >= 0) {
-      found.push_back(location);
-    } else {
-      location.u = location.v = kNaN;
-    }
-  }
-  Evaluation e = surface.evaluate(found, Derivatives::first, true, threads);
-  if (found.size() == hits.at.size()) {
-    hits.position = std::move(e.position);
-    hits.normal = std::move(e.normal);
-    return hits;
-  }
-  hits.position.setConstant(static_cast<Eigen::Index>(hits.at.size()), 3, kNaN);
-  hits.normal = hits.position;
-  Eigen::Index next = 0;
-  for (std::size_t row = 0; row < hits.at.size(); ++row) {
-    if (hits.at[row].face >= 0) {
-      hits.position.row(static_cast<Eigen::Index>(row)) = e.position.row(next);
-      hits.normal.row(static_cast<Eigen::Index>(row)) = e.normal.row(next);
-      ++next;
-    }
-  }
-  return hits;
 }
 
 }  // namespace limitsurf

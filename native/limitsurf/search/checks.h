@@ -5,18 +5,18 @@
 
 namespace limitsurf {
 
-/// Throw std::invalid_argument that quotes what is wrong and in which row.
-/// Finite, and not so far away that squares overflow. `name`: of one row, as in "point".
-void checkFinite(const Points& rows, const char* name);
-void checkDirections(const Points& rows);
-void checkRows(const Points& rows, Eigen::Index expected, const char* name);
-/// Not NaN and not negative.
-void checkDistance(double max_distance);
-/// Between 0 and pi.
-void checkAngle(double max_angle);
+// Checks of arguments. Each throws std::invalid_argument naming the first wrong row or value.
 
-/// Position and normal at the locations, NaN where the face is -1; distances are left to the
-/// caller.
-Hits hitsAt(const LimitSurface& surface, std::vector<Location> at, int threads);
+/// Coordinates must be finite, and so small that their squares do not overflow. `name` is what a
+/// row is called in the message, as in "point".
+void checkFinite(const Points& rows, const char* name);
+/// Directions must be finite and not 0.
+void checkDirections(const Points& rows);
+/// There must be as many rows as `expected`.
+void checkRows(const Points& rows, Eigen::Index expected, const char* name);
+/// The distance must be 0 or more, and not NaN.
+void checkDistance(double max_distance);
+/// The angle, in radians, must be between 0 and pi.
+void checkAngle(double max_angle);
 
 }  // namespace limitsurf

@@ -10,11 +10,12 @@
 namespace limitsurf {
 namespace {
 
-/// A square cell of a patch.
+/// A dyadic square of the patch's parameters.
 struct Cell : ParameterSquare {
   int depth;
 };
 
+/// The search for the closest point of one patch.
 class PatchSearch {
  public:
   PatchSearch(const BezierPatch& patch, const Vector3& point, const Facing* facing,
@@ -46,13 +47,14 @@ class PatchSearch {
   }
 
  private:
-  /// Cells so small that the distance over one varies by less than rounding.
+  /// At this depth the distance over a cell varies by less than rounding.
   static constexpr int kMostDepth = 40;
-  /// A patch so far from being one, as of no area, that its closest point cannot be told is not
-  /// followed for ever.
+  /// A search ends after this many cells: on degenerate patches, as of no area, many points may be
+  /// equally close but for rounding.
   static constexpr int kMostCells = 1 << 17;
-  /// Every so many halvings the squared distance is made anew.
+  /// The squared distance is computed anew after every so many halvings.
   static constexpr int kFreshDepths = 4;
+  /// The relative rounding of the squared distance's coefficients: a few units in the last place.
   static constexpr double kRounding = 1e-15;
 
   using Values = BezierPatch::Values;
@@ -63,8 +65,9 @@ class PatchSearch {
 
   bool isBetter(double squared_distance) const { return squared_distance < best_.enough(); }
 
-  /// Whether the whole patch lies beyond the plane through the closest point so far, at right
-  /// angles to the way there: the tightest bound on flat patches, and on those of no area.
+  /// Whether the whole patch lies beyond the plane through the closest point so far, perpendicular
+  /// to the direction of that point. This is the tightest bound for flat patches and for those of
+  /// no area.
   bool isBehindFoot() const {
     const double enough = best_.distance - best_.tolerance;
     const Vector3& n = best_.direction;
@@ -76,7 +79,8 @@ class PatchSearch {
     return true;
   }
 
-  /// Whether no normal counts: where all products of tangents look away, sums of them do.
+  /// Whether no normal of the patch meets the condition: normals are sums of cross products of
+  /// differences of control points, and all of these face away.
   bool facesAway() const {
     if (!facing_ || !(facing_->least_cosine > 0)) {
       return false;
@@ -102,25 +106,25 @@ class PatchSearch {
     return any;
   }
 
-  /// Whether the distance falls towards sides of the cell beyond which the sheet goes on: then no
-  /// foot is in it.
+  /// Whether the distance falls towards a side of the cell beyond which the sheet continues: then
+  /// no foot is in the cell.
   bool fallsOutwards(const Cell& cell, const SquaredDistance::Shape& shape) const {
     const unsigned borders = bordersOf(cell);
     return (shape.s_strictly && (borders & (shape.s_side < 0 ? kSideS0 : kSideS1)) == 0) ||
            (shape.t_strictly && (borders & (shape.t_side < 0 ? kSideT0 : kSideT1)) == 0);
   }
 
-  /// The cell's sides at which the sheet ends.
+  /// The sides of the cell at which the sheet ends, as bits.
   unsigned bordersOf(const Cell& cell) const {
     return patch_.borders &
            ((cell.s == 0 ? kSideS0 : 0u) | (cell.t == 0 ? kSideT0 : 0u) |
             (cell.s + cell.size == 1 ? kSideS1 : 0u) | (cell.t + cell.size == 1 ? kSideT1 : 0u));
   }
 
-  /// What rounding may have done to the coefficients, and to those of its quarters.
+  /// Bound on the rounding of the coefficients, and of those of the quarters.
   static double noiseOf(const SquaredDistance& f) { return kRounding * f.largest(); }
 
-  /// The patch's control points on a cell, less the point.
+  /// The control points of the patch on a cell, relative to the searching point.
   void pointsOf(const Cell& cell, BezierPatch::Point out[16]) const {
     std::copy(relative_.points, relative_.points + 16, out);
     for (int i = 0; i < 4; ++i) {
@@ -131,6 +135,8 @@ class PatchSearch {
     }
   }
 
+  /// Searches a cell: finds the minimum on it if the squared distance is convex there, else divides
+  /// the cell.
   void visit(const SquaredDistance& f, double noise, const Cell& cell) {
     const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., f.least())));
     const double least_slack = reach * best_.tolerance;
@@ -173,7 +179,7 @@ class PatchSearch {
       }
       const Cell next{{cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half}, cell.depth + 1};
       if (next.depth % kFreshDepths == 0) {
-        // Quarters inherit the rounding of the whole: those of the points are as small as they.
+        // Quarters inherit the rounding of the whole; points computed for the cell have less.
         BezierPatch::Point points[16];
         pointsOf(next, points);
         const SquaredDistance fresh(points);
@@ -192,11 +198,12 @@ class PatchSearch {
     best_.offer(at.value.head<3>().matrix(), patch_.on.at(s, t));
   }
 
-  /// Whether the minimum over a convex cell is one over the smooth sheet around it as well, with a
-  /// normal that counts. On a side of the cell beyond which the sheet goes on, the distance must
-  /// not fall across it.
+  /// Whether the minimum over a convex cell is a minimum over the smooth sheet around it as well,
+  /// with a normal that meets the condition. Where it lies on a side of the cell beyond which the
+  /// sheet continues, the distance must not fall across that side.
   bool isFoot(const Cell& cell, double s, double t) const {
-    // The patch's own points give tangents all their digits, however far away the point is.
+    // Tangents are computed from the patch's own points, so that they keep all their digits however
+    // far away the searching point is.
     Values at, to_foot;
     patch_.evaluate<1>(s, t, at);
     relative_.evaluate<0>(s, t, to_foot);
@@ -213,15 +220,17 @@ class PatchSearch {
         (t == t1 && !(borders & kSideT1) && falls(at.dt, 1))) {
       return false;
     }
-    // Patches keep the orientation of their face, turned by right angles.
+    // A patch has the orientation of its face, up to rotations by right angles.
     const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
     return normal.norm() > kParallel * ds.norm() * dt.norm() ? facing_->accepts(normal)
                                                              : facing_->accepts(patch_.on.at(s, t));
   }
 
-  /// The sine of an angle that rounding may bring about.
+  /// A distance counts as falling across a side if the sine of the angle exceeds this; rounding
+  /// stays below it.
   static constexpr double kFlat = 1e-9;
-  /// The sine of an angle between tangents below which rounding may turn the normal.
+  /// If the sine of the angle between the tangents is below this, rounding may turn their cross
+  /// product too far, and the surface's frame decides about the normal.
   static constexpr double kParallel = 1e-3;
 
   const BezierPatch& patch_;

@@ -10,21 +10,21 @@
 
 namespace limitsurf {
 
-/// The closest point so far of one search.
+/// The closest point that a search has found so far.
 struct ClosestSoFar {
   double distance = std::numeric_limits<double>::infinity();
   Location at;
   Vector3 direction = Vector3::Zero();  ///< of unit length, from the searching point to it
 
-  /// A tenth of kSearchError; points that are nearer by less than that are not looked for.
+  /// Points that are closer by less than this are not searched for: a tenth of kSearchError.
   double tolerance = 0;
 
-  /// What may be left out: whose squared distance is at least this.
+  /// Everything whose squared distance is at least this may be left out.
   double enough() const {
     const double least = distance - tolerance;
     return least > 0 ? least * least : -std::numeric_limits<double>::infinity();
   }
-  /// `offset`: from the searching point to the one found at `where`.
+  /// Takes the point at `where` if it is closer. `offset` leads there from the searching point.
   void offer(const Vector3& offset, const Location& where) {
     const double found = offset.norm();
     if (found < distance) {
@@ -35,7 +35,7 @@ struct ClosestSoFar {
   }
 };
 
-/// Which feet count: those whose normals are within an angle of a direction.
+/// A condition on feet: the normal must be within an angle of a direction.
 struct Facing {
   const LimitSurface& surface;
   Vector3 direction;
@@ -44,16 +44,16 @@ struct Facing {
   bool accepts(const Vector3& normal) const {
     return normal.dot(direction) >= least_cosine * normal.norm() * direction.norm();
   }
-  /// Where the tangents do not tell the normal.
+  /// The same where the tangents do not determine the normal: by the surface's frame.
   bool accepts(const Location& at) const {
     const auto frame = surface.frames({&at, 1}, 1);
     return accepts(Vector3(frame(0, 2), frame(0, 5), frame(0, 8)));
   }
 };
 
-/// Improves `best` by the closest point of the patch, or with `facing` by its closest foot that
-/// counts: exact branch and bound on the squared distance, ended by Newton's iteration wherever
-/// that is convex.
+/// Improves `best` by the closest point of the patch or, with `facing`, by its closest foot that
+/// meets the condition. The method is branch and bound on the squared distance; Newton's iteration
+/// finds the minimum wherever the squared distance is convex.
 void closestOnPatch(const BezierPatch& patch, const Vector3& point, const Facing* facing,
                     ClosestSoFar& best);
 

@@ -9,20 +9,74 @@ namespace {
 
 using Values = BezierPatch::Values;
 
+/// Newton's iteration converges quadratically, so these limits only end searches on degenerate
+/// patches. Both are chosen, not derived.
 constexpr int kMostIterations = 40, kMostHalvings = 30;
-/// Steps of Newton's at which the next would be nothing but rounding.
+/// After a step of Newton's as short as this the next one, its square, is shorter than rounding.
 constexpr double kLastStep = 1e-7;
-/// By how much the last step may seem to lead up.
+/// The last step may raise the squared distance by this part, which is more than its rounding.
 constexpr double kStepRounding = 1e-12;
-/// Parameters that differ by so little are the same.
+/// Parameters that differ by less are the same.
 constexpr double kArrived = 1e-15;
+/// A Hessian whose determinant is at most this part of the product of its diagonal is not safely
+/// positive definite: the step of Gauss and Newton replaces Newton's.
+constexpr double kIndefinite = 1e-12;
+/// The same for the matrix of Gauss and Newton, which is never indefinite: below this it is
+/// singular but for rounding, and only one parameter moves.
+constexpr double kSingular = 1e-14;
 
 double dot(const BezierPatch::Point& a, const BezierPatch::Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// A step for the second parameter alone; where it has arrived, one for the first.
-void along(double g1, double g2, double h1, double h2, double& d1, double& d2) {
+/// A step of the parameters.
+struct Step {
+  double s = 0, t = 0;
+};
+
+/// The derivatives of half the squared distance.
+struct Gradient {
+  explicit Gradient(const Values& at) : s(dot(at.value, at.ds)), t(dot(at.value, at.dt)) {}
+  double s, t;
+};
+
+/// The Hessian of half the squared distance, or an approximation of it that is positive.
+struct Hessian {
+  explicit Hessian(const Values& at)
+      : tangents{dot(at.ds, at.ds), dot(at.dt, at.dt), dot(at.ds, at.dt)},
+        ss(tangents[0] + dot(at.value, at.dss)),
+        tt(tangents[1] + dot(at.value, at.dtt)),
+        st(tangents[2] + dot(at.value, at.dst)),
+        is_newton(ss > 0 && tt > 0) {}
+
+  /// Newton's step, where that leads down for certain; else the step of Gauss and Newton, whose
+  /// matrix takes the Hessian's place; else a step along the parameter with the larger derivative.
+  Step step(const Gradient& g) {
+    double determinant = ss * tt - st * st;
+    if (!(ss > 0 && determinant > kIndefinite * ss * tt)) {
+      is_newton = false;
+      ss = tangents[0];
+      tt = tangents[1];
+      st = tangents[2];
+      determinant = ss * tt - st * st;
+    }
+    if (determinant > kSingular * ss * tt) {
+      return {(st * g.t - tt * g.s) / determinant, (st * g.s - ss * g.t) / determinant};
+    }
+    Step step;
+    if (ss > 0 || tt > 0) {
+      (ss > tt ? step.s : step.t) = ss > tt ? -g.s / ss : -g.t / tt;
+    }
+    return step;
+  }
+
+  double tangents[3];  ///< ss, tt and st of the matrix of Gauss and Newton
+  double ss, tt, st;
+  bool is_newton;  ///< the matrix is the Hessian itself, with a positive diagonal
+};
+
+/// A step of the second parameter alone; if that has arrived, a step of the first alone.
+void moveAlong(double g1, double g2, double h1, double h2, double& d1, double& d2) {
   d1 = 0;
   d2 = h2 > 0 ? -g2 / h2 : 0;
   if (std::abs(d2) < kArrived) {
@@ -31,104 +85,135 @@ void along(double g1, double g2, double h1, double h2, double& d1, double& d2) {
   }
 }
 
-/// Whether on a side of the cell the distance falls towards its inside.
-bool fallsFromSide(const ParameterSquare& cell, double s, double t, const Values& at) {
-  const double gs = dot(at.value, at.ds), gt = dot(at.value, at.dt);
-  return (s == cell.s && gs < 0) || (s == cell.s + cell.size && gs > 0) ||
-         (t == cell.t && gt < 0) || (t == cell.t + cell.size && gt > 0);
-}
-
 bool leadsOut(double x, double step, double low, double high) {
   return (x <= low && step < 0) || (x >= high && step > 0);
 }
 
-}  // namespace
+/// minimizeDistance(), as steps from the present (s, t).
+class FootIteration {
+ public:
+  FootIteration(const BezierPatch& patch, const ParameterSquare& square, double& s, double& t)
+      : patch_(patch),
+        size_(square.size),
+        s0_(square.s),
+        s1_(square.s + square.size),
+        t0_(square.t),
+        t1_(square.t + square.size),
+        s_(s),
+        t_(t) {
+    patch_.evaluate<2>(s_, t_, at_);
+    squared_ = dot(at_.value, at_.value);
+  }
 
-bool minimizeDistance(const BezierPatch& patch, const ParameterSquare& cell, double slack,
-                      double& s, double& t) {
-  const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
-  Values at, next;
-  patch.evaluate<2>(s, t, at);
-  double f = dot(at.value, at.value);
-  for (int i = 0; i < kMostIterations; ++i) {
-    const double gs = dot(at.value, at.ds), gt = dot(at.value, at.dt);
-    const double ss = dot(at.ds, at.ds), tt = dot(at.dt, at.dt), st = dot(at.ds, at.dt);
-    double hss = ss + dot(at.value, at.dss), htt = tt + dot(at.value, at.dtt),
-           hst = st + dot(at.value, at.dst);
-    const bool free_s = !((s <= cell.s && gs >= 0) || (s >= s1 && gs <= 0));
-    const bool free_t = !((t <= cell.t && gt >= 0) || (t >= t1 && gt <= 0));
-    if (!free_s && !free_t) {
-      return true;
-    }
-    double ds = 0, dt = 0;
-    bool newton = hss > 0 && htt > 0;
-    if (free_s && free_t) {
-      double determinant = hss * htt - hst * hst;
-      if (!(hss > 0 && determinant > 1e-12 * hss * htt)) {  // Gauss and Newton's
-        newton = false;
-        hss = ss;
-        htt = tt;
-        hst = st;
-        determinant = hss * htt - hst * hst;
-      }
-      if (determinant > 1e-14 * hss * htt) {
-        ds = (hst * gt - htt * gs) / determinant;
-        dt = (hst * gs - hss * gt) / determinant;
-      } else if (hss > 0 || htt > 0) {  // along the steepest side
-        (hss > htt ? ds : dt) = hss > htt ? -gs / hss : -gt / htt;
-      }
-    }
-    // A side on which the iteration stands, and out of which the step leads, stays active for
-    // this step: the other parameter moves, or where it has arrived, this one inwards.
-    if (free_s && free_t) {
-      if (leadsOut(s, ds, cell.s, s1)) {
-        along(gs, gt, hss, htt, ds, dt);
-      } else if (leadsOut(t, dt, cell.t, t1)) {
-        along(gt, gs, htt, hss, dt, ds);
-      }
-    } else if (free_s) {
-      along(gt, gs, htt, hss, dt, ds);
-    } else {
-      along(gs, gt, hss, htt, ds, dt);
-    }
-    // A step that leads out of the cell is cut off where it leaves; the side then becomes active.
-    double part = 1;
-    const auto cut = [&](double from, double step, double low, double high) {
-      if (step > 0 && from + step > high) {
-        part = std::min(part, (high - from) / step);
-      } else if (step < 0 && from + step < low) {
-        part = std::min(part, (low - from) / step);
-      }
-    };
-    cut(s, ds, cell.s, s1);
-    cut(t, dt, cell.t, t1);
-    // Newton's next step would be the square of this one.
-    const bool last = newton && part == 1 && std::abs(ds) + std::abs(dt) < kLastStep;
-    bool lower = false;
-    for (int halvings = 0; halvings < kMostHalvings && !lower; ++halvings, part /= 2) {
-      const double next_s = std::clamp(s + part * ds, cell.s, s1),
-                   next_t = std::clamp(t + part * dt, cell.t, t1);
-      if (next_s == s && next_t == t) {
+  bool run(double slack) {
+    for (int i = 0; i < kMostIterations; ++i) {
+      const Gradient g(at_);
+      const bool free_s = !((s_ <= s0_ && g.s >= 0) || (s_ >= s1_ && g.s <= 0));
+      const bool free_t = !((t_ <= t0_ && g.t >= 0) || (t_ >= t1_ && g.t <= 0));
+      if (!free_s && !free_t) {
         return true;
       }
-      patch.evaluate<2>(next_s, next_t, next);
-      const double next_f = dot(next.value, next.value);
-      lower = next_f <= f || (last && next_f <= f * (1 + kStepRounding));
-      if (lower) {
-        s = next_s;
-        t = next_t;
-        f = next_f;
-        at = next;
+      Hessian h(at_);
+      const Step step = activeStep(g, h, free_s, free_t);
+      const double part = partInside(step);
+      const bool is_last =
+          h.is_newton && part == 1 && std::abs(step.s) + std::abs(step.t) < kLastStep;
+      switch (descend(step, part, is_last)) {
+        case Descent::kNoMove:
+          return true;
+        case Descent::kNoDescent:
+          return is_last ||
+                 (std::abs(free_s ? g.s : 0) + std::abs(free_t ? g.t : 0)) * size_ <= slack;
+        case Descent::kDescended:
+          break;
+      }
+      if (is_last && !fallsFromSide()) {
+        return true;
       }
     }
-    if (!lower) {
-      return last || (std::abs(free_s ? gs : 0) + std::abs(free_t ? gt : 0)) * cell.size <= slack;
-    }
-    if (last && !fallsFromSide(cell, s, t, at)) {
-      return true;
-    }
+    return false;
   }
-  return false;
+
+ private:
+  enum class Descent { kDescended, kNoDescent, kNoMove };
+
+  /// A step that respects the active sides. A side on which the iteration stands, and out of which
+  /// the step would lead, stays active for this step: the other parameter moves or, if that has
+  /// arrived, this one moves inwards.
+  Step activeStep(const Gradient& g, Hessian& h, bool free_s, bool free_t) const {
+    Step step;
+    if (free_s && free_t) {
+      step = h.step(g);
+      if (leadsOut(s_, step.s, s0_, s1_)) {
+        moveAlong(g.s, g.t, h.ss, h.tt, step.s, step.t);
+      } else if (leadsOut(t_, step.t, t0_, t1_)) {
+        moveAlong(g.t, g.s, h.tt, h.ss, step.t, step.s);
+      }
+    } else if (free_s) {
+      moveAlong(g.t, g.s, h.tt, h.ss, step.t, step.s);
+    } else {
+      moveAlong(g.s, g.t, h.ss, h.tt, step.s, step.t);
+    }
+    return step;
+  }
+
+  /// The part of a step that stays in the square: a step that leads out is cut where it leaves the
+  /// square, and the side it meets becomes active.
+  double partInside(const Step& step) const {
+    double part = 1;
+    const auto cut = [&](double from, double length, double low, double high) {
+      if (length > 0 && from + length > high) {
+        part = std::min(part, (high - from) / length);
+      } else if (length < 0 && from + length < low) {
+        part = std::min(part, (low - from) / length);
+      }
+    };
+    cut(s_, step.s, s0_, s1_);
+    cut(t_, step.t, t0_, t1_);
+    return part;
+  }
+
+  /// Goes a part of the step, halved until the distance does not grow.
+  Descent descend(const Step& step, double part, bool is_last) {
+    Values next;
+    for (int halvings = 0; halvings < kMostHalvings; ++halvings, part /= 2) {
+      const double next_s = std::clamp(s_ + part * step.s, s0_, s1_),
+                   next_t = std::clamp(t_ + part * step.t, t0_, t1_);
+      if (next_s == s_ && next_t == t_) {
+        return Descent::kNoMove;
+      }
+      patch_.evaluate<2>(next_s, next_t, next);
+      const double next_squared = dot(next.value, next.value);
+      if (next_squared <= squared_ || (is_last && next_squared <= squared_ * (1 + kStepRounding))) {
+        s_ = next_s;
+        t_ = next_t;
+        squared_ = next_squared;
+        at_ = next;
+        return Descent::kDescended;
+      }
+    }
+    return Descent::kNoDescent;
+  }
+
+  /// Whether the iteration stands on a side of the square from which the distance falls inwards.
+  bool fallsFromSide() const {
+    const Gradient g(at_);
+    return (s_ == s0_ && g.s < 0) || (s_ == s1_ && g.s > 0) || (t_ == t0_ && g.t < 0) ||
+           (t_ == t1_ && g.t > 0);
+  }
+
+  const BezierPatch& patch_;
+  const double size_, s0_, s1_, t0_, t1_;
+  double &s_, &t_;
+  Values at_;
+  double squared_;
+};
+
+}  // namespace
+
+bool minimizeDistance(const BezierPatch& patch, const ParameterSquare& square, double slack,
+                      double& s, double& t) {
+  return FootIteration(patch, square, s, t).run(slack);
 }
 
 }  // namespace limitsurf

@@ -6,12 +6,12 @@
 
 namespace limitsurf {
 
-/// Newton's iteration for the least distance of a patch from the origin, within a square of its
-/// parameters, by an active set of the square's sides. `patch` has no anchor: its points are
-/// relative to the origin.
+/// Minimises the distance of a patch from the origin over a square of the patch's parameters, by
+/// Newton's iteration with an active set of the square's sides. `patch` must have no anchor: its
+/// points are relative to the origin. The iteration starts and ends at (s, t).
 ///
-/// Whether it arrived at a point where no direction leads down, or none so far that the squared
-/// distance, if it is convex, could fall by more than `slack`.
+/// Returns whether it arrived at a point from which no direction leads down, or none so far that
+/// the squared distance, if it is convex, could fall by more than `slack`.
 bool minimizeDistance(const BezierPatch& patch, const ParameterSquare& square, double slack,
                       double& s, double& t);
 

@@ -4,12 +4,14 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "limitsurf/float_rounding.h"
+
 namespace limitsurf {
 namespace {
 
-float roundedUp(double x) {
-  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
-}
+/// Directions at a smaller angle do not span a plane well enough: the coordinate axes serve
+/// instead.
+constexpr double kLeastSine = 1e-6;
 
 }  // namespace
 
@@ -17,7 +19,7 @@ OrientedBox::OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& 
                          const Vector3& across) {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  // an axis in each row
   const Vector3 normal = along.cross(across);
-  if (normal.norm() > 1e-6 * along.norm() * across.norm() && along.allFinite() &&
+  if (normal.norm() > kLeastSine * along.norm() * across.norm() && along.allFinite() &&
       across.allFinite()) {
     frame.row(0) = along.normalized();
     frame.row(2) = normal.normalized();
@@ -32,7 +34,8 @@ OrientedBox::OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& 
       axes_[i][j] = static_cast<float>(frame(i, j));
     }
   }
-  for (int i = 0; i < 3; ++i) {  // by the axes as they were rounded
+  // Extents are measured along the axes as they were rounded.
+  for (int i = 0; i < 3; ++i) {
     double half = 0;
     for (Eigen::Index p = 0; p < points.rows(); ++p) {
       half = std::max(half, std::abs(coordinate(i, points.row(p).transpose())));

@@ -9,21 +9,21 @@
 
 namespace limitsurf {
 
-/// A ray in coordinates of which the surface is near the origin; the direction is a unit vector.
+/// A ray, in coordinates in which the surface lies near the origin. The direction is a unit vector.
 struct Ray {
   Vector3 origin, direction;
 };
 
-/// A box with axes of its own, that fits a patch closely whichever way that lies. In single
-/// precision; its extents allow for that.
+/// An oriented box: it has axes of its own and fits a patch closely whichever way the patch lies.
+/// It is kept in single precision; its extents include the rounding.
 class OrientedBox {
  public:
-  /// Around points, a row each, with axes as near as can be to the two directions.
+  /// A box around points, one a row, whose axes are as close as possible to the two directions.
   OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& along, const Vector3& across);
-  /// With the coordinate axes.
+  /// A box with the coordinate axes.
   explicit OrientedBox(const Box& box);
 
-  /// No point in the box is nearer than the root of this.
+  /// A lower bound of the squared distance of the box from a point.
   double squaredDistance(const Vector3& point) const {
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
@@ -33,16 +33,17 @@ class OrientedBox {
     return sum * kNearlyOne;
   }
 
-  /// Whether the ray meets the box, widened by `margin` (a diagonal's 1e-13), between the distances
-  /// `from` and `to`; `from` is raised to where it enters.
+  /// Whether the ray meets the box, widened by `margin` (1e-13 of a diagonal), between the
+  /// distances `from` and `to`. Raises `from` to where the ray enters.
   bool meets(const Ray& ray, double margin, double& from, double to) const {
     for (int i = 0; i < 3; ++i) {
       const double start = coordinate(i, ray.origin);
       const double rate = axes_[i][0] * ray.direction[0] + axes_[i][1] * ray.direction[1] +
                           axes_[i][2] * ray.direction[2];
       const double half = half_[i] + margin;
-      if (std::abs(rate) < 1e-12) {
-        // As far as the surface reaches, a diagonal, it moves by 1e-12 of that across.
+      if (std::abs(rate) < kParallel) {
+        // Over a diagonal, as far as the surface reaches, the ray moves along this axis by 1e-12 of
+        // that, which is ten margins: twice that is allowed.
         if (std::abs(start) > half + 20 * margin) {
           return false;
         }
@@ -56,7 +57,9 @@ class OrientedBox {
   }
 
  private:
-  /// Axes in single precision are unit vectors at right angles to 3e-7.
+  /// A ray counts as perpendicular to an axis if the cosine of their angle is below this.
+  static constexpr double kParallel = 1e-12;
+  /// Axes rounded to single precision are orthonormal to 3e-7.
   static constexpr double kNearlyOne = 1 - 1e-6;
 
   double coordinate(int i, const Vector3& point) const {

@@ -3,7 +3,7 @@
 
 namespace limitsurf {
 
-/// A square of a patch's parameters.
+/// A square of a patch's parameters: (s, t) to (s + size, t + size).
 struct ParameterSquare {
   double s, t, size;
 };

@@ -12,15 +12,15 @@
 
 namespace limitsurf {
 
-/// A leaf of the search tree: a bicubic patch, or a core that searches split as they come to it.
+/// A leaf of the search tree: a bicubic patch, or a core, which searches split when they reach it.
 struct SearchLeaf {
   OrientedBox box;
   SurfacePiece piece;
 };
 
-/// A surface's patches under a tree of boxes. Boxes have coordinates of their own, of which single
-/// precision can hold squares: relative to `middle`, times `scale`, which makes the diagonal about
-/// 1.
+/// The patches of a surface under a tree of boxes. Boxes have coordinates of their own, whose
+/// squares single precision can hold: relative to `middle` and times `scale`, so that the diagonal
+/// of the control mesh is about 1.
 struct SearchTree {
   SearchTree(const LimitSurface& limit_surface, int threads);
 
@@ -29,25 +29,27 @@ struct SearchTree {
   Vector3 middle;
   double diagonal;
   double scale;  ///< a power of two
-  /// What a search may leave undone: a tenth of kSearchError.
+  /// The error that a search may leave: a tenth of kSearchError.
   double tolerance;
   Vector3 inBoxes(const Vector3& point) const { return scale * (point - middle); }
   Box inBoxes(const Box& box) const { return {inBoxes(box.low), inBoxes(box.high)}; }
 
   std::vector<SearchLeaf> leaves;  ///< in the order of the tree
   std::unique_ptr<BoxTree> tree;
-  /// The leaves' patches, as long as all together stay below kPatchBytes; those of cores are unset.
+  /// The patches of the leaves, or none if they would need more than kPatchBytes together; those of
+  /// cores are not set.
   std::vector<BezierPatch> kept;
 
  private:
   static constexpr std::size_t kPatchBytes = std::size_t{64} << 20;
 
-  /// A tile's pieces with boxes around them, cores split so far that they fit closely.
+  /// Appends the pieces of a tile and boxes around them. Cores are split so far that their boxes
+  /// fit closely.
   void addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
 };
 
-/// The patches of leaves. Where they are not kept, searches near each other need the same ones
-/// again and again. One cache belongs to one thread.
+/// The patches of leaves: kept by the tree, or else in a cache, since neighbouring searches need
+/// the same patches. A cache belongs to one thread.
 class PatchCache {
  public:
   explicit PatchCache(const SearchTree& data) : data_(data) {

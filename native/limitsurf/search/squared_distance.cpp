@@ -9,7 +9,11 @@ namespace limitsurf {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// The relative rounding of differences of coefficients.
 constexpr double kRounding = 1e-14;
+/// A polynomial of degree 6 has second derivatives of 6 * 5 = 30 times the second differences of
+/// its coefficients, and mixed ones of 6 * 6 = 36 times the mixed differences.
+constexpr double kSecond = 30, kMixed = 36;
 constexpr double kBinomial3[4] = {1, 3, 3, 1};
 constexpr double kInverse6[7] = {1,       1. / 6, 1. / 15, 1. / 20,  // of the binomials
                                  1. / 15, 1. / 6, 1};
@@ -17,7 +21,7 @@ constexpr double kInverse6[7] = {1,       1. / 6, 1. / 15, 1. / 20,  // of the b
 }  // namespace
 
 SquaredDistance::SquaredDistance(const BezierPatch::Point points[16]) {
-  // With the binomials multiplied in, the product of two polynomials is a plain convolution.
+  // With the binomials multiplied in, the product of two polynomials is a convolution.
   double x[3][16];
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
@@ -107,14 +111,14 @@ SquaredDistance::Shape SquaredDistance::shape(double slack) const {
     for (int j = 0; j < 5; ++j) {
       second = std::min(second, f_.at(i, j) - 2 * f_.at(i, j + 1) + f_.at(i, j + 2));
     }
-    shape.convex = 30 * second + slack > 0;
+    shape.convex = kSecond * second + slack > 0;
   } else if (shape.t_side != 0) {
     const int j = shape.t_side < 0 ? 0 : 6;
     double second = kInfinity;
     for (int i = 0; i < 5; ++i) {
       second = std::min(second, f_.at(i, j) - 2 * f_.at(i + 1, j) + f_.at(i + 2, j));
     }
-    shape.convex = 30 * second + slack > 0;
+    shape.convex = kSecond * second + slack > 0;
   } else {
     shape.convex = isConvex(slack);
   }
@@ -128,7 +132,7 @@ bool SquaredDistance::isConvex(double slack) const {
       ss = std::min(ss, f_.at(i, j) - 2 * f_.at(i + 1, j) + f_.at(i + 2, j));
     }
   }
-  ss = 30 * ss + slack;
+  ss = kSecond * ss + slack;
   if (!(ss > 0)) {
     return false;
   }
@@ -137,7 +141,7 @@ bool SquaredDistance::isConvex(double slack) const {
       tt = std::min(tt, f_.at(i, j) - 2 * f_.at(i, j + 1) + f_.at(i, j + 2));
     }
   }
-  tt = 30 * tt + slack;
+  tt = kSecond * tt + slack;
   if (!(tt > 0)) {
     return false;
   }
@@ -147,7 +151,7 @@ bool SquaredDistance::isConvex(double slack) const {
           st, std::abs((f_.at(i + 1, j + 1) - f_.at(i, j + 1)) - (f_.at(i + 1, j) - f_.at(i, j))));
     }
   }
-  st *= 36;
+  st *= kMixed;
   return ss * tt >= st * st;
 }
 
@@ -167,8 +171,9 @@ bool SquaredDistance::isNowhereConvex() const {
     }
   }
   const double rounding = kRounding * f_.largest();
-  const double st = 36 * std::max({0., low, -high});
-  return ss < -rounding || tt < -rounding || 30 * (ss + rounding) * 30 * (tt + rounding) < st * st;
+  const double st = kMixed * std::max({0., low, -high});
+  return ss < -rounding || tt < -rounding ||
+         kSecond * (ss + rounding) * kSecond * (tt + rounding) < st * st;
 }
 
 }  // namespace limitsurf

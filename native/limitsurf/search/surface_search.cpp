@@ -9,8 +9,14 @@
 namespace limitsurf {
 namespace {
 
+/// The number of tiles whose leaves one task finds, and of leaves whose patches it keeps.
+constexpr std::size_t kTilesPerTask = 1024, kLeavesPerTask = 1024;
+/// A core's box is found from the patches of so many further steps.
+constexpr int kStepsForBox = 2;
+
 using PatchPoints = Eigen::Matrix<double, 16, 3, Eigen::RowMajor>;
 
+/// The control points of a patch in the coordinates of boxes.
 PatchPoints pointsOf(const BezierPatch& patch, const Vector3& middle, double scale) {
   PatchPoints points;
   const Vector3 anchor = patch.anchor.head<3>().matrix() - middle;
@@ -40,17 +46,16 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
       diagonal(patches.diagonal()),
       scale(diagonal > 0 ? std::ldexp(1., -std::ilogb(diagonal)) : 1),
       tolerance(kSearchError / 10 * diagonal) {
-  constexpr std::size_t kBlock = 1024;
   const std::size_t tiles = static_cast<std::size_t>(patches.tileCount());
   struct Block {
     std::vector<SearchLeaf> leaves;
     std::vector<BoxF> boxes;
   };
-  std::vector<Block> blocks((tiles + kBlock - 1) / kBlock);
+  std::vector<Block> blocks((tiles + kTilesPerTask - 1) / kTilesPerTask);
   parallelFor(blocks.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
-      for (std::size_t tile = block * kBlock; tile < std::min(tiles, (block + 1) * kBlock);
-           ++tile) {
+      for (std::size_t tile = block * kTilesPerTask;
+           tile < std::min(tiles, (block + 1) * kTilesPerTask); ++tile) {
         addLeaves(static_cast<int>(tile), blocks[block].leaves, blocks[block].boxes);
       }
     }
@@ -70,7 +75,7 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
   }
   if (leaves.size() * sizeof(BezierPatch) <= kPatchBytes) {
     kept.resize(leaves.size());
-    parallelFor(leaves.size(), 1024, threads, [&](std::size_t begin, std::size_t end) {
+    parallelFor(leaves.size(), kLeavesPerTask, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t leaf = begin; leaf < end; ++leaf) {
         if (!leaves[leaf].piece.isCore()) {
           kept[leaf] = patches.patch(leaves[leaf].piece);
@@ -93,13 +98,14 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
       addPatch(piece, patches.patch(piece));
       continue;
     }
-    // Small tiles are split once, whole faces twice; further steps only narrow the core's box.
+    // The cores of small tiles are split once, those of whole faces twice. Further steps only make
+    // the core's box smaller.
     const FaceRectangle on = patches.rectangle(piece);
     const int steps = std::abs(on.us + on.ut) == 1 ? 2 : 1;
     SurfacePatches::SplitCore split;
     SurfacePiece core = piece, rest = piece;
     Box box;
-    for (int step = 1; step <= steps + 2; ++step) {
+    for (int step = 1; step <= steps + kStepsForBox; ++step) {
       patches.split(rest, split);
       rest = split.core;
       for (int quarter = 0; quarter < 3; ++quarter) {

@@ -6,7 +6,7 @@
 namespace limitsurf {
 
 CageEdges::CageEdges(const ControlMesh& mesh) : of_corner(mesh.faceVertices().size()) {
-  // Corners by the smaller vertex of their edge, then, vertex by vertex, by the larger one.
+  // Corners are sorted by the smaller vertex of their edge, then by the larger one.
   std::vector<int> larger(of_corner.size()),
       starts(static_cast<std::size_t>(mesh.vertexCount()) + 1);
   std::vector<int> smaller(of_corner.size());

@@ -7,11 +7,11 @@
 
 namespace limitsurf {
 
-/// Numbers the edges of a control mesh: pairs of vertices that follow each other around a face.
+/// The numbered edges of a control mesh: pairs of vertices that follow each other around a face.
 struct CageEdges {
   explicit CageEdges(const ControlMesh& mesh);
 
-  std::vector<int> of_corner;  ///< the edge from each corner of each face to the face's next
+  std::vector<int> of_corner;  ///< for each corner of each face, the edge to the face's next corner
   int count = 0;
 };
 

@@ -6,7 +6,8 @@
 namespace limitsurf {
 namespace {
 
-/// Numbers of faces whose grid has no more points than this are in an array.
+/// The numbers of a face are kept in an array if its grid has at most this many points, else in a
+/// hash table.
 constexpr std::uint64_t kMostDense = 1 << 18;
 
 std::uint64_t gridSize(int squares, int level) {
@@ -48,9 +49,9 @@ FacePlace FaceDivision::place(const GridPoint& point) const {
   const int before = (square + size - 1) % size;
   return j == 0             ? onEdge(square, i)
          : i == 0           ? onEdge(before, 2 * n - j)
-         : i == n && j == n ? inside(0, n, n)       // the centre
-         : j == n           ? inside(before, n, i)  // on the line from an edge's middle to it
-                            : inside(square, i, j);
+         : i == n && j == n ? inside(0, n, n)  // the centre
+         : j == n ? inside(before, n, i)  // on the line from the middle of an edge to the centre
+                  : inside(square, i, j);
 }
 
 InsideNumbers::InsideNumbers(const FaceDivision& division)
@@ -61,7 +62,7 @@ InsideNumbers::InsideNumbers(const FaceDivision& division)
   }
 }
 
-std::uint64_t InsideNumbers::cell(const GridPoint& inside) const {
+std::uint64_t InsideNumbers::key(const GridPoint& inside) const {
   const int shift = kMostTessellationLevels - level_;
   const std::uint64_t side = (std::uint64_t{1} << level_) + 1;
   return (static_cast<std::uint64_t>(inside.square) * side + (inside.i >> shift)) * side +
@@ -69,11 +70,11 @@ std::uint64_t InsideNumbers::cell(const GridPoint& inside) const {
 }
 
 int& InsideNumbers::operator[](const GridPoint& inside) {
-  return is_dense_ ? dense_[cell(inside)] : sparse_.emplace(cell(inside), kNone).first->second;
+  return is_dense_ ? dense_[key(inside)] : sparse_.emplace(key(inside), kNone).first->second;
 }
 
 bool InsideNumbers::contains(const GridPoint& inside) const {
-  return is_dense_ ? dense_[cell(inside)] != kNone : sparse_.count(cell(inside)) != 0;
+  return is_dense_ ? dense_[key(inside)] != kNone : sparse_.count(key(inside)) != 0;
 }
 
 GradedFace::GradedFace(const FaceDivision& division)
@@ -156,7 +157,7 @@ bool GradedFace::exists(const GridPoint& point) const {
 void GradedFace::addHanging(const GridPoint& from, const GridPoint& to,
                             std::vector<GridPoint>& around) const {
   const GridPoint middle{from.square, (from.i + to.i) / 2, (from.j + to.j) / 2};
-  // Sides are halved where they are divided at all: without a middle there is nothing else.
+  // Sides are divided by halving only: without a middle there is no other point either.
   const int length = std::abs(from.i - to.i) + std::abs(from.j - to.j);
   if (length <= smallest_side_ || !exists(middle)) {
     return;

@@ -11,26 +11,27 @@
 namespace limitsurf {
 
 constexpr int kMostTessellationLevels = 12;
-/// Points of a tessellation lie at multiples of 1 / kGridSide in u and v.
+/// The points of a tessellation have multiples of 1 / kGridSide for u and v.
 constexpr int kGridSide = 1 << kMostTessellationLevels;
 
-/// A place on a face of the control mesh: (i, j) / kGridSide are u and v on its Ptex face number
-/// `square`, counted from the face's first.
+/// A place on a face of the control mesh: (u, v) = (i, j) / kGridSide on its Ptex face number
+/// `square`, counted from the first of that face.
 struct GridPoint {
   int square, i, j;
 };
 
-/// A point where several squares of a face meet has one place only.
+/// A place on a face as an address that is unique: points at which several squares meet have only
+/// one.
 struct FacePlace {
   enum Kind { kVertex, kEdge, kInside } kind;
   int element;       ///< the face's vertex, or its edge from that vertex to the next
-  int step;          ///< on an edge: from its first vertex, in parts of 2 kGridSide
-  GridPoint inside;  ///< on none: as one of the squares has it
+  int step;          ///< on an edge: the distance from its first vertex, in parts of 2 kGridSide
+  GridPoint inside;  ///< inside the face: the place on one of the squares
 };
 
-/// How one face of the control mesh is to be divided: into squares of 2^level cells a side, with
-/// 2^edge_levels[e] segments along its edge e. A quad is one square; any other face has one at
-/// every corner, with half as many cells a side. No edge is coarser than the face.
+/// The division of one face of the control mesh: into squares with 2^level cells a side, and with
+/// 2^edge_levels[e] segments along edge e. A quad is one square; any other face has a square at
+/// each corner, with half as many cells a side. No edge is coarser than the face.
 struct FaceDivision {
   int size = 4;
   int level = 0;
@@ -38,27 +39,27 @@ struct FaceDivision {
 
   bool isQuad() const { return size == 4; }
   int squareCount() const { return isQuad() ? 1 : size; }
-  /// Of the squares, each of which has 2^squareLevel() cells a side.
+  /// The level of the squares, each of which has 2^squareLevel() cells a side.
   int squareLevel() const { return isQuad() ? level : level - 1; }
   bool isUniform() const;
-  /// Of the smallest cells, as squareLevel().
+  /// The level of the smallest cells, counted as squareLevel().
   int finestSquareLevel() const;
   FacePlace place(const GridPoint& point) const;
 };
 
-/// A number for each point of a face that lies on none of its edges.
+/// Numbers for the points of a face that lie on none of its edges.
 class InsideNumbers {
  public:
   static constexpr int kNone = -1;
 
   explicit InsideNumbers(const FaceDivision& division);
 
-  /// kNone for a place that is asked for the first time.
+  /// The number of a place; kNone at first.
   int& operator[](const GridPoint& inside);
   bool contains(const GridPoint& inside) const;
 
  private:
-  std::uint64_t cell(const GridPoint& inside) const;
+  std::uint64_t key(const GridPoint& inside) const;
 
   const int level_;
   const bool is_dense_;
@@ -66,20 +67,20 @@ class InsideNumbers {
   std::unordered_map<std::uint64_t, int> sparse_;
 };
 
-/// The polygons of a face whose edges are finer than itself, all quads and triangles.
+/// The polygons, quads and triangles, of a face some of whose edges are finer than the face itself.
 ///
-/// A cell at an edge is split into four until it has the edge's level, and so ever larger cells
-/// lead to those of the face's own level. Cells that see vertices of smaller neighbours on their
-/// sides become triangles around their centre. At a corner where edges of different levels meet, a
-/// cell cannot be split without leaving a point on the coarser one: it becomes such triangles too,
-/// and they are thin if the levels differ by more than two.
+/// A cell at an edge is split into four until it has the level of the edge, so that the sizes of
+/// cells grow gradually from the edge to the face's own level. A cell with vertices of smaller
+/// neighbours on its sides becomes triangles around its centre. At a corner where edges of
+/// different levels meet, a cell cannot be split without adding a point to the coarser edge: it
+/// becomes such triangles too, and they are thin if the levels differ by more than two.
 class GradedFace {
  public:
   explicit GradedFace(const FaceDivision& division);
 
   std::size_t polygonCount() const { return polygon_count_; }
   std::size_t cornerCount() const { return corner_count_; }
-  /// Points that lie on no edge.
+  /// The number of points that lie on no edge.
   std::size_t insidePointCount() const { return inside_point_count_; }
 
   /// Calls body(corners) with the corners of each polygon, a Span of three or four GridPoints.
@@ -111,7 +112,7 @@ class GradedFace {
   bool exists(const GridPoint& point) const;
   void outline(const Cell& cell, std::vector<GridPoint>& around) const;
   void addHanging(const GridPoint& from, const GridPoint& to, std::vector<GridPoint>& around) const;
-  /// Of the segments along an edge, as long as a square's side is kGridSide.
+  /// The length of the segments along an edge, where the side of a square is kGridSide.
   int segment(int edge) const;
 
   const FaceDivision division_;
@@ -121,7 +122,7 @@ class GradedFace {
   std::size_t polygon_count_ = 0, corner_count_ = 0, inside_point_count_ = 0;
 };
 
-/// Calls body(corners) with the corners of each quad of a face that is divided alike all over.
+/// Calls body(corners) with the corners of each quad of a face that is divided uniformly.
 template <typename Body>
 void forEachQuad(const FaceDivision& division, const Body& body) {
   const int side = kGridSide >> division.squareLevel();

@@ -14,9 +14,10 @@
 namespace limitsurf {
 namespace {
 
-/// Evaluated at a time: derivatives need little memory, and progress is told.
+/// The number of points evaluated at a time: their derivatives need little memory, and the progress
+/// is reported between two parts.
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
-/// Of the progress, when all but the normals of corners is there.
+/// The part of the progress that all but the normals of corners has.
 constexpr double kPointsPart = 0.8;
 
 static_assert(Tessellation::Corner::kSteps == kGridSide);
@@ -33,7 +34,7 @@ void checkSize(std::size_t points, const std::string& whose) {
   }
 }
 
-/// Of the points inside faces; no face has fewer.
+/// The number of points inside faces if no edge is finer than its face: there are at least as many.
 std::size_t leastPoints(const ControlMesh& mesh, const std::vector<int>& levels) {
   std::size_t points = 0;
   for (int face = 0; face < mesh.faceCount(); ++face) {
@@ -68,7 +69,8 @@ void evaluatePoints(const LimitSurface& surface, Tessellation& result, int threa
   });
 }
 
-/// A corner has its point's normal where both are seen from the same Ptex face.
+/// Evaluates the normals of corners. A corner has the normal of its point if both are on the same
+/// Ptex face.
 void evaluateCornerNormals(const LimitSurface& surface, Tessellation& result, int threads,
                            const Progress& progress) {
   result.corner_normals.resize(static_cast<Eigen::Index>(result.face_vertices.size()), 3);
@@ -97,7 +99,7 @@ void evaluateCornerNormals(const LimitSurface& surface, Tessellation& result, in
   });
 }
 
-/// `whose`: what an error says of the levels.
+/// tessellate() for levels that are allowed. `whose` names them in error messages.
 Tessellation tessellateAs(const LimitSurface& surface, const std::vector<int>& levels,
                           const std::string& whose, const TessellationOptions& options) {
   checkSize(leastPoints(surface.mesh(), levels), whose);

@@ -10,55 +10,56 @@
 
 namespace limitsurf {
 
-/// Polygons on the limit surface. Points come face of the mesh by face, in the order in which that
-/// face's polygons first name them.
+/// Polygons on the limit surface. Points stand in the order of the mesh's faces, those of a face in
+/// the order in which its polygons first use them.
 struct Tessellation {
-  /// u and v of a polygon's corner on the polygon's own Ptex face, in parts of kSteps.
+  /// (u, v) of a polygon's corner on the polygon's own Ptex face, in parts of kSteps.
   struct Corner {
     static constexpr int kSteps = 4096;
     std::uint16_t u, v;
   };
 
   Points positions, normals;
-  std::vector<Location> locations;  ///< of the points
+  std::vector<Location> locations;  ///< one for each point
 
-  std::vector<int> face_sizes;     ///< 3 or 4 corners each
+  std::vector<int> face_sizes;     ///< the number of corners of each polygon, 3 or 4
   std::vector<int> face_vertices;  ///< the corners' points, one polygon after the other
   std::vector<int> base_face;      ///< per polygon: the face of the mesh
   std::vector<int> ptex_face;      ///< per polygon: the Ptex face that it lies on
   std::vector<Corner> corners;
-  Points corner_normals;  ///< only if asked for
+  Points corner_normals;  ///< no rows unless asked for
 
-  /// Of a corner, counted over all polygons, which is one of that polygon's.
+  /// The location of a corner of a polygon. Corners are counted over all polygons.
   Location cornerLocation(std::size_t polygon, std::size_t corner) const;
 };
 
 struct TessellationOptions {
   int threads = 0;
-  bool corner_normals = false;                  ///< of each polygon's corners as well
+  bool corner_normals = false;  ///< compute a normal for each corner of each polygon as well
   Progress progress{};
 };
 
-/// Watertight quads on the limit surface: a quad becomes 2^levels x 2^levels of them, each
-/// sub-face of an n-gon half as many a side. Points on shared edges exist once.
+/// Watertight quads on the limit surface: a quad becomes 2^levels x 2^levels of them, and each
+/// sub-face of an n-gon half as many a side. Points on shared edges exist only once.
 ///
-/// A point's normal is the one seen from its location: one of several along creases, and at
-/// irregular vertices without one the direction of frames(). Corner normals are those of each
-/// polygon's own face.
+/// The normal of a point is the surface's at the point's location: one of several along creases,
+/// and that of frames() at irregular vertices without a normal. The normal of a corner is that of
+/// the polygon's own face.
 ///
-/// Throws std::invalid_argument for levels below 0, below 1 where the mesh has faces other than
-/// quads, or above 12. Memory: 72 bytes a point and 8 a polygon corner, 24 more with corner
-/// normals, and 12 a polygon.
+/// Throws std::invalid_argument for levels below 0, below 1 if the mesh has faces other than quads,
+/// or above 12. Memory: 72 bytes a point, 12 a polygon, and 8 for each corner of a polygon, 24 more
+/// with normals of corners.
 Tessellation tessellate(const LimitSurface& surface, int levels,
                         const TessellationOptions& options = {});
 
-/// The same with a level for each face of the mesh; those of refused faces mean nothing. An edge
-/// has 2^level segments for the largest level of its faces. In coarser faces cells become smaller
-/// towards it, and some of them triangles around their centre (GradedFace tells which). No vertex
-/// lies on another polygon's side, and a face's polygons cover it once, oriented as it is.
+/// The same with a level for each face of the mesh; the levels of refused faces are ignored. An
+/// edge has 2^level segments for the largest level of its faces. On a coarser face the cells become
+/// smaller towards such an edge, and some of them become triangles around their centre (see
+/// GradedFace). No vertex lies on the side of another polygon, and the polygons of a face cover it
+/// once, with its orientation.
 ///
-/// Throws std::invalid_argument for another number of levels, and naming the first face whose
-/// level is not allowed.
+/// Throws std::invalid_argument for another number of levels, and naming the first face whose level
+/// is not allowed.
 Tessellation tessellate(const LimitSurface& surface, std::vector<int> levels,
                         const TessellationOptions& options = {});
 

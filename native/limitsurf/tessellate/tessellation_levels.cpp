@@ -19,9 +19,13 @@
 namespace limitsurf {
 namespace {
 
+/// The number of segments of each side of a Ptex face in which lengths are measured.
 constexpr int kLengthSamples = 8;
+/// The number of faces between two reports of the progress.
+constexpr std::size_t kFacesPerReport = 1024;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+/// Throws std::invalid_argument for a size or options out of range.
 void check(double size, const char* name, const LevelOptions& options) {
   checkThreads(options.threads);
   if (!(size > 0) || !std::isfinite(size)) {
@@ -34,7 +38,8 @@ void check(double size, const char* name, const LevelOptions& options) {
   }
 }
 
-/// Which of the mesh's faces have which Ptex faces, and which of its edges are no smooth inside.
+/// The squares (Ptex faces) of the mesh's faces, and which edges of the mesh are kinks: boundaries
+/// and infinitely sharp edges.
 class Squares {
  public:
   explicit Squares(const LimitSurface& surface)
@@ -79,7 +84,7 @@ class Squares {
   int leastLevel(int face) const { return isQuad(face) ? 0 : 1; }
   int cells(int face, int level) const { return 1 << (isQuad(face) ? level : level - 1); }
 
-  /// Of a square's sides, from (0, 0) around: whether polygons show their outline there.
+  /// For each side of a square, counter-clockwise from (0, 0), whether it is a kink.
   std::array<bool, 4> kinks(int face, int square) const {
     if (isQuad(face)) {
       return {isKink(face, 0), isKink(face, 1), isKink(face, 2), isKink(face, 3)};
@@ -120,7 +125,7 @@ class Squares {
   std::vector<bool> is_kink_;
 };
 
-/// Places (i, j) / side of one Ptex face, evaluated.
+/// The surface at the places (i, j) / side of one Ptex face.
 class Samples {
  public:
   Samples(const LimitSurface& surface, int face, int side, bool normals) : side_(side) {
@@ -143,7 +148,8 @@ class Samples {
   Evaluation at_;
 };
 
-/// Between a cell's polygon, cut either way, and the surface; the cell begins at (i0, j0).
+/// The deviation between the surface and a cell's polygon, cut along either diagonal. The cell
+/// begins at the sample (i0, j0).
 double cellDeviation(const Samples& at, int i0, int j0, int size) {
   const Vector3 p00 = at.position(i0, j0), p10 = at.position(i0 + size, j0),
                 p01 = at.position(i0, j0 + size), p11 = at.position(i0 + size, j0 + size);
@@ -152,7 +158,7 @@ double cellDeviation(const Samples& at, int i0, int j0, int size) {
     for (int i = 0; i <= size; ++i) {
       const Vector3 normal = at.normal(i0 + i, j0 + j);
       if (!normal.allFinite()) {
-        continue;  // at irregular vertices, where polygons are on the surface
+        continue;  // an irregular vertex, at which the polygon touches the surface
       }
       const double x = static_cast<double>(i) / size, y = static_cast<double>(j) / size;
       const Vector3 here = at.position(i0 + i, j0 + j);
@@ -168,7 +174,7 @@ double cellDeviation(const Samples& at, int i0, int j0, int size) {
   return largest;
 }
 
-/// Between segments of `size` samples along a side and the curve there.
+/// The deviation between segments of `size` samples along a side and the curve of the side.
 double sideDeviation(const Samples& at, int number, int size) {
   const int n = at.side();
   const auto place = [&](int k) {
@@ -190,6 +196,7 @@ double sideDeviation(const Samples& at, int number, int size) {
   return largest;
 }
 
+/// The largest deviation of a face at a level.
 double deviation(const LimitSurface& surface, const Squares& squares, int face, int level) {
   const int cells = squares.cells(face, level);
   const int size = std::max(2, kDeviationSamples / cells);
@@ -211,7 +218,7 @@ double deviation(const LimitSurface& surface, const Squares& squares, int face, 
   return largest;
 }
 
-/// As long as a segment between two points of space is in the picture.
+/// The length in the picture of the segment between two points of space.
 double seenLength(const PictureView& view, const Vector3& from, const Vector3& to) {
   Eigen::Vector4d a = view.matrix * from.homogeneous(), b = view.matrix * to.homogeneous();
   const auto clip = [&](Eigen::Vector4d& hidden, const Eigen::Vector4d& seen) {
@@ -227,7 +234,7 @@ double seenLength(const PictureView& view, const Vector3& from, const Vector3& t
   return (a.head<2>() / a.w() - b.head<2>() / b.w()).norm();
 }
 
-/// Of the sides of the smallest cells that are looked at.
+/// The longest side of the cells in which lengths are measured.
 double longestStep(const LimitSurface& surface, const Squares& squares, int face,
                    const PictureView* view) {
   double longest = 0;
@@ -246,6 +253,7 @@ double longestStep(const LimitSurface& surface, const Squares& squares, int face
   return longest;
 }
 
+/// The lowest level that each face may have.
 FaceLevels lowest(const LimitSurface& surface, const Squares& squares) {
   const auto count = static_cast<Eigen::Index>(surface.mesh().faceCount());
   FaceLevels result{std::vector<int>(static_cast<std::size_t>(count), 0),
@@ -256,13 +264,12 @@ FaceLevels lowest(const LimitSurface& surface, const Squares& squares) {
   return result;
 }
 
-/// Calls body(i) for i in [0, count), in parallel, and tells the progress from `begin` to `end`.
+/// Calls body(i) for i in [0, count), in parallel, and reports the progress from `begin` to `end`.
 template <typename Body>
 void forEachFace(std::size_t count, const LevelOptions& options, double begin, double end,
                  const Body& body) {
-  constexpr std::size_t kAtOnce = 1024;
-  for (std::size_t first = 0; first < count; first += kAtOnce) {
-    const std::size_t some = std::min(kAtOnce, count - first);
+  for (std::size_t first = 0; first < count; first += kFacesPerReport) {
+    const std::size_t some = std::min(kFacesPerReport, count - first);
     parallelFor(some, 1, options.threads, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) {
         body(first + i);

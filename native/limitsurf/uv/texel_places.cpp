@@ -14,11 +14,12 @@
 namespace limitsurf {
 namespace {
 
-/// Jacobians whose columns are closer to a line than this are singular.
+/// Columns are linearly dependent if the sine of their angle is at most this.
 constexpr double kSingular = 1e-12;
 
-/// Surface and map at some locations, and how both move from texel to texel there.
+/// The derivatives of surface and map at locations, and the steps from texel to texel.
 struct TexelDerivatives : MapDerivatives {
+  /// Whether surface and map are regular there, and all derivatives that are needed exist.
   bool isRegularAt(Eigen::Index row) const {
     const Evaluation& e = on_surface;
     const Vector3 du = e.du.row(row), dv = e.dv.row(row);
@@ -27,7 +28,7 @@ struct TexelDerivatives : MapDerivatives {
             (normalBy(e.duu, e.duv, row).allFinite() && normalBy(e.duv, e.dvv, row).allFinite()));
   }
 
-  /// The unit normal's derivative, where du and dv have the given ones.
+  /// The derivative of the unit normal, given the derivatives of du and dv.
   Vector3 normalBy(const Points& du_by, const Points& dv_by, Eigen::Index row) const {
     const Vector3 du = on_surface.du.row(row), dv = on_surface.dv.row(row);
     const Vector3 across = du.cross(dv);
@@ -37,7 +38,7 @@ struct TexelDerivatives : MapDerivatives {
     return (change - normal * normal.dot(change)) / across.norm();
   }
 
-  /// Steps from texel to texel into `row` of places.
+  /// Writes the steps from texel to texel into a row of `places`.
   void put(Eigen::Index from, const Eigen::Vector2d& texel, TexelPlaces& places,
            Eigen::Index row) const {
     if (!isRegular(jacobian(from))) {

@@ -8,7 +8,7 @@
 namespace limitsurf {
 namespace {
 
-/// A cubic's Bezier points, `stride` apart, to those of its halves.
+/// From the Bezier points of a cubic, `stride` apart, to those of its halves.
 void halve(const Point2* p, int stride, Point2* low, Point2* high) {
   const Point2 ab = 0.5 * (p[0] + p[stride]), bc = 0.5 * (p[stride] + p[2 * stride]),
                cd = 0.5 * (p[2 * stride] + p[3 * stride]);
@@ -60,7 +60,7 @@ void UvCell::evaluate(double s, double t, Point2& value, Point2& ds, Point2& dt)
 }
 
 JacobianBounds::JacobianBounds(const UvCell& cell) {
-  // Products of Bernstein polynomials: the binomials of the factors over those of the product.
+  // Product of Bernstein polynomials: the binomials of the factors over those of the product.
   constexpr double kOf2[3] = {1, 2, 1}, kOf3[4] = {1, 3, 3, 1}, kOf5[6] = {1, 5, 10, 10, 5, 1};
   const Point2* p = cell.points;
   double sums[6][6] = {};

@@ -5,20 +5,21 @@
 
 namespace limitsurf {
 
-/// A square of a patch's parameters, (s0, t0) to (s0 + size, t0 + size), and the map on it, a
-/// bicubic polynomial in Bezier form.
+/// A dyadic square of a patch's parameters, (s0, t0) to (s0 + size, t0 + size), and the map on it,
+/// a bicubic polynomial in Bezier form.
 struct UvCell {
   Point2 points[16];  ///< row by row: [4 t + s]
   double s0 = 0, t0 = 0, size = 1;
 
   Box2 box() const;
-  /// Its quarters. De Casteljau.
+  /// The quarters of the cell, by de Casteljau's algorithm.
   void quarter(UvCell out[4]) const;
-  /// Value and derivatives at (s, t) of the cell, 0 to 1.
+  /// Value and derivatives at (s, t), which run from 0 to 1 on the cell.
   void evaluate(double s, double t, Point2& value, Point2& ds, Point2& dt) const;
 };
 
-/// Bernstein coefficients, 6 x 6, of the Jacobian determinant on a cell: they bound it.
+/// Bounds on the Jacobian determinant on a cell: the least and the largest of its 6 x 6 Bernstein
+/// coefficients.
 struct JacobianBounds {
   explicit JacobianBounds(const UvCell& cell);
   double least, largest;

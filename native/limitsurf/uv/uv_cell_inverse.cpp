@@ -6,7 +6,8 @@
 namespace limitsurf {
 namespace {
 
-/// A cubic's Bezier points, `stride` apart, to its powers from the middle.
+/// From the Bezier points of a cubic, `stride` apart, to its coefficients of powers about the
+/// middle.
 void toPowers(Point2* p, int stride) {
   const Point2 a = p[0], b = p[stride], c = p[2 * stride], d = p[3 * stride];
   p[0] = 0.125 * ((a + d) + 3 * (b + c));
@@ -34,7 +35,7 @@ bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
   }
   m_s_ = Point2(mean_t[1], -mean_s[1]) / determinant;
   m_t_ = Point2(-mean_t[0], mean_s[0]) / determinant;
-  // Row r of M J - 1, entry by entry.
+  // The entries of M J - 1, bounded row by row.
   Point2 from_s = Point2::Zero(), from_t = Point2::Zero();
   for (int i = 0; i < 12; ++i) {
     from_s = from_s.max((ds[i][0] * m_s_ + ds[i][1] * m_t_ - Point2(1, 0)).abs());
@@ -63,7 +64,8 @@ bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
     }
     second = 2 * ss + 6 * st + 2 * tt;
   }
-  // Half of the second derivative, and a quarter of the tolerance.
+  // Newton's error is half the second derivative times the squared step; a quarter of the tolerance
+  // is allowed for it.
   curvature_ = 2 * (second / tolerance).maxCoeff();
   const double m_norm = (m_s_.abs() * tolerance[0] + m_t_.abs() * tolerance[1]).maxCoeff();
   border_width_ = 8 * m_norm;
@@ -93,7 +95,7 @@ inline void CellInverse::evaluate(const Point2& x, const Point2& target, Point2&
     row[j] = s * (c[1] + high);
     row_ds[j] = (c[1] + high) + s * (c[2] + 2 * c3s);
   }
-  // The constant last: what it leaves of the target is small.
+  // The constant terms are added last, since what they leave of the target is small.
   for (int j = 1; j < 4; ++j) {
     row[j] += c_[4 * j];
   }

@@ -5,50 +5,53 @@
 
 namespace limitsurf {
 
-/// The inverse of the map on a cell on which its Jacobian hardly changes.
+/// The inverse of the map on a cell on which its Jacobian matrix changes little.
 ///
-/// Let M be the inverse of the mean Jacobian and |M J - 1| <= q everywhere on the cell, in the
-/// maximum norm; differences of control points bound it. Then the map is one-to-one, and Newton's
-/// iteration, brought back into the cell after each step, comes closer to the point that is sought
-/// by a factor of 2q / (1 - q) at least: it finds the point if it is there, and otherwise shows
-/// that it is not.
+/// Let M be the inverse of the mean Jacobian J, and |M J - 1| <= q everywhere on the cell, in the
+/// maximum norm; differences of control points give q. Then the map is one-to-one, and Newton's
+/// iteration, projected back into the cell after each step, reduces the distance from the solution
+/// by a factor of 2q / (1 - q) or better. It finds the solution if the cell has one, and otherwise
+/// proves that there is none.
 class CellInverse {
  public:
-  /// Whether the Jacobian changes so little; all else has a meaning only then. `tolerance`: what
-  /// may be left of each coordinate.
+  /// Sets the cell, and returns whether its Jacobian changes little enough; all other members
+  /// require that. `tolerance` is the error allowed in each coordinate.
   bool set(const UvCell& cell, const Point2& tolerance);
 
-  /// A place in the cell, from its middle: -1/2 to 1/2.
+  /// A place in the cell, in coordinates from -1/2 to 1/2 about its middle.
   struct Place {
     Point2 x;
     Point2 ds, dt;  ///< the map's derivatives before the last step
     double determinant;
-    /// Newton's last step, not brought back into the cell: a start for points nearby.
+    /// Where Newton's last step led, before the projection into the cell: a start for nearby
+    /// points.
     Point2 beyond;
   };
-  /// Whether the cell takes the value `target`, to the tolerance; out.x is where the search begins
-  /// and ends.
+  /// Whether the map takes the value `target` on the cell, up to the tolerance. The search begins
+  /// and ends at out.x.
   bool find(const Point2& target, Place& out) const;
 
-  /// Where the linear part of the map takes that value.
+  /// The place at which the linear part of the map takes that value.
   Point2 guess(const Point2& target) const;
-  /// The map's derivatives at a place, from the cell's middle.
+  /// The derivatives of the map at a place.
   void derivatives(const Point2& x, Point2& ds, Point2& dt) const;
-  /// Farther than this from the cell's sides, the map's distance to them is more than four times
-  /// the tolerance.
+  /// The image of a place farther than this from the cell's sides is more than four tolerances away
+  /// from the images of the sides.
   double borderWidth() const { return border_width_; }
 
  private:
+  /// The largest q. Each step then reduces the error by a factor of 2/7 or better, so that
+  /// kMostSteps steps exhaust the digits of a double.
   static constexpr double kMostVariation = 1. / 8;
   static constexpr int kMostSteps = 32;
 
   void evaluate(const Point2& x, const Point2& target, Point2& rest, Point2& ds, Point2& dt) const;
 
-  Point2 c_[16];      // coefficients of powers of s and t, from the middle: [4 t + s]
+  Point2 c_[16];      // coefficients of powers of s and t about the middle: [4 t + s]
   Point2 m_s_, m_t_;  // the columns of M
   Point2 tolerance_;
-  double curvature_;    // times a step squared: Newton's error in units of the tolerance
-  double contraction_;  // of the distance that is left, in units of the step that was made
+  double curvature_;    // times a squared step this is Newton's error in units of the tolerance
+  double contraction_;  // bound on the remaining distance, in units of the last step
   double border_width_;
 };
 

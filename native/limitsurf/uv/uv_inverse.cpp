@@ -6,11 +6,11 @@
 namespace limitsurf {
 namespace {
 
-/// The points of a cell's four sides.
+/// The control points of the four sides of a cell.
 constexpr int kSides[4][4] = {{0, 1, 2, 3}, {12, 13, 14, 15}, {0, 4, 8, 12}, {3, 7, 11, 15}};
 
-/// Around all of a cell's image that lies in a row: the image ends at the sides, and they lie
-/// within the hulls of their points.
+/// Bounds of the part of a cell's image that lies in a row: the image ends at the sides of the
+/// cell, and these lie in the hulls of their control points.
 class RowRange {
  public:
   RowRange(const UvCell& cell, const Point2& tolerance) : cell_(cell), tolerance_(tolerance) {}
@@ -28,7 +28,7 @@ class RowRange {
   }
 
  private:
-  /// The part of the line from a to b that lies in the row.
+  /// Includes the part of the line from a to b that lies in the row.
   void addPart(const Point2& a, const Point2& b, double y, Box2& range) const {
     const double low = y - tolerance_[1], high = y + tolerance_[1];
     if (std::max(a[1], b[1]) < low || std::min(a[1], b[1]) > high) {
@@ -47,13 +47,13 @@ class RowRange {
   const Point2 tolerance_;
 };
 
-/// A place in a cell whose image is as near to a point as may be, from the middle of the cell on
-/// (Levenberg and Marquardt).
+/// The place in a cell whose image is nearest to a point, by the Levenberg-Marquardt iteration from
+/// the middle of the cell.
 class LeastSquares {
  public:
   LeastSquares(const UvCell& cell, const Point2& target) : cell_(cell), target_(target) {
     evaluate(at_, rest_, ds_, dt_);
-    double damping = 1e-3;
+    double damping = kFirstDamping;
     for (int step = 0; step < kMostSteps && rest_.matrix().squaredNorm() > 0; ++step) {
       const double ss = (ds_ * ds_).sum(), st = (ds_ * dt_).sum(), tt = (dt_ * dt_).sum();
       const double added = damping * (ss + tt);
@@ -70,9 +70,9 @@ class LeastSquares {
         rest_ = rest;
         ds_ = ds;
         dt_ = dt;
-        damping *= 0.1;
+        damping *= kLessDamping;
       } else {
-        damping *= 10;
+        damping *= kMoreDamping;
       }
     }
   }
@@ -83,7 +83,11 @@ class LeastSquares {
   double determinant() const { return cross(ds_, dt_); }
 
  private:
+  /// The number of steps at most, the damping at first relative to the trace of the matrix, and the
+  /// factors by which it changes after a step that led nearer and after one that did not. Chosen,
+  /// not derived.
   static constexpr int kMostSteps = 60;
+  static constexpr double kFirstDamping = 1e-3, kLessDamping = 0.1, kMoreDamping = 10;
 
   void evaluate(const Point2& at, Point2& rest, Point2& ds, Point2& dt) const {
     Point2 value;
@@ -185,7 +189,7 @@ void LatticeInverse::addRows(const UvCell& cell, const CellInverse& inverse,
     for (int x = row.x0; x <= row.x1; ++x) {
       const Point2 target(x, y);
       const int done = x - row.x0;
-      // Extrapolated quadratically as soon as three points are known.
+      // The start is extrapolated, quadratically as soon as three points are known.
       place.x = done == 0 ? inverse.guess(target)
                           : Point2(last + (done > 2 ? Point2(2 * step - before) : step));
       if (inverse.find(target, place)) {
@@ -212,7 +216,7 @@ void LatticeInverse::addPlace(const UvCell& cell, const CellInverse& inverse,
   find.flipped = place.determinant < 0;
   const Point2 from_sides = 0.5 - place.x.abs();
   if (from_sides.minCoeff() <= inverse.borderWidth()) {
-    // Along the sides, counter-clockwise in s and t.
+    // The wedge lies between the directions along the sides, counter-clockwise in s and t.
     const bool at_s = from_sides[0] <= inverse.borderWidth();
     const bool at_t = from_sides[1] <= inverse.borderWidth();
     const bool s_low = place.x[0] < 0, t_low = place.x[1] < 0;

@@ -4,8 +4,8 @@
 #include <mutex>
 
 #include "limitsurf/parallel.h"
-#include "limitsurf/uv/uv_locate.h"
 #include "limitsurf/uv/uv_raster.h"
+#include "limitsurf/uv/uv_search.h"
 
 namespace limitsurf {
 
@@ -25,7 +25,7 @@ struct UvMap::Data {
 
  private:
   mutable std::mutex mutex_;
-  mutable std::unique_ptr<UvBorders> borders_;  // made when a margin asks for them
+  mutable std::unique_ptr<UvBorders> borders_;  // made for the first margin
 };
 
 UvMap::UvMap(const SurfaceData& map, int threads)

@@ -4,18 +4,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/pi.h"
+
 namespace limitsurf {
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
-/// Wedges that have no more than this in common only touch. Radians.
+constexpr double kTurn = 2 * kPi<double>;
+/// Wedges that have at most this angle in common only touch. Radians.
 constexpr double kTouching = 1e-4;
 
+/// A wedge as the angle at which it begins and its width.
 struct Angles {
   explicit Angles(const Wedge& wedge) : begin(std::atan2(wedge.first[1], wedge.first[0])) {
     width = std::atan2(wedge.last[1], wedge.last[0]) - begin;
     width += width < 0 ? kTurn : 0;
-    // A cell's corner or side spans half a turn at most: this is a wedge that rounding has turned.
+    // A corner or a side of a cell spans half a turn at most: a wider wedge is an empty one that
+    // rounding has turned inside out.
     width = width > kMostWidth ? 0 : width;
   }
   double begin, width;

@@ -7,15 +7,15 @@
 
 namespace limitsurf {
 
-/// A find on the border of its cell, as one of those at a lattice point.
+/// A find on the border of its cell, one of those at a lattice point.
 struct BorderFind {
   std::int64_t point;
   int wedge_count;
   Wedge wedges[2];
 };
 
-/// Whether the images of cells around a point overlap, each being given by its wedges. Those of
-/// neighbours on the surface only touch.
+/// Whether the images of cells around a point overlap; the wedges of each find give the image of
+/// its cell. The images of neighbouring cells only touch.
 bool doWedgesOverlap(const BorderFind* begin, const BorderFind* end);
 
 }  // namespace limitsurf

@@ -11,11 +11,11 @@
 namespace limitsurf {
 namespace {
 
-/// Beyond, SurfacePatches runs out of the range of single precision.
+/// The boxes of SurfacePatches would exceed the range of single precision beyond this.
 constexpr double kFarthest = 1e36;
 
-/// Tiles that one thread takes at a time.
-constexpr std::size_t kTilesPerTask = 1024;
+/// The number of pieces that one task finds boxes for.
+constexpr std::size_t kPiecesPerTask = 1024;
 
 Box2 inPlane(const Box& box) { return {box.low.head<2>().array(), box.high.head<2>().array()}; }
 
@@ -27,11 +27,11 @@ Box2 boxOf(const BezierPatch& patch) {
   return box;
 }
 
-/// Whether a map is mirrored at an extraordinary vertex is seen after so many steps: at the vertex
-/// itself directions may become parallel, as at smooth corners, and rounding would decide.
+/// Whether a map is mirrored at an extraordinary vertex is decided after this many steps: closer to
+/// the vertex directions may become parallel, as at smooth corners, and rounding would decide.
 constexpr int kSignSteps = 8;
 
-/// The determinant of a patch's derivatives at its (0, 0), up to a positive factor.
+/// The Jacobian determinant of a patch at its (0, 0), up to a positive factor.
 double jacobianAtCorner(const BezierPatch& patch) {
   const Point2 ds = (patch.points[1] - patch.points[0]).head<2>();
   const Point2 dt = (patch.points[4] - patch.points[0]).head<2>();
@@ -74,7 +74,7 @@ UvPatches::UvPatches(const SurfaceData& map, int threads) : patches_(checked(map
       pieces_.push_back({piece, {}});
     }
   }
-  parallelFor(pieces_.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+  parallelFor(pieces_.size(), kPiecesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfacePiece& piece = pieces_[i].piece;
       pieces_[i].box =
@@ -131,33 +131,36 @@ void UvPatches::invertCore(const UvPiece& piece, const PlaneFrame& frame, Lattic
     if (!is_point && core.steps < SurfacePatches::kMostSteps) {
       continue;
     }
-    // The vertex itself, seen between the corners of the last three patches: in all faces around it
-    // after the same number of steps, as directions may converge slowly.
-    while (core.steps < SurfacePatches::kMostSteps) {
-      patches_.split(core, split);
-      core = split.core;
-    }
-    const Point2 first = split.patches[0].points[0].head<2>() * frame.scale,
-                 middle = split.patches[1].points[0].head<2>() * frame.scale,
-                 last = split.patches[2].points[0].head<2>() * frame.scale;
-    Find find;
-    find.s = find.t = 0;
-    find.flipped = flipped;
-    find.on_border = true;
-    find.wedge_count = 2;
-    find.wedges[0] = {first, middle};
-    find.wedges[1] = {middle, last};
-    if (find.flipped) {
-      std::swap(find.wedges[0].first, find.wedges[0].last);
-      std::swap(find.wedges[1].first, find.wedges[1].last);
-    }
     sink.enter(patches_.rectangle(piece.piece));
-    for (find.y = inside.y0; find.y <= inside.y1; ++find.y) {
-      for (find.x = inside.x0; find.x <= inside.x1; ++find.x) {
-        sink.add(find);
-      }
-    }
+    addVertex(core, split, flipped, frame, inside, sink);
     return;
+  }
+}
+
+void UvPatches::addVertex(SurfacePiece core, SurfacePatches::SplitCore& split, bool flipped,
+                          const PlaneFrame& frame, const Lattice& inside, Sink& sink) const {
+  while (core.steps < SurfacePatches::kMostSteps) {
+    patches_.split(core, split);
+    core = split.core;
+  }
+  const Point2 first = split.patches[0].points[0].head<2>() * frame.scale,
+               middle = split.patches[1].points[0].head<2>() * frame.scale,
+               last = split.patches[2].points[0].head<2>() * frame.scale;
+  Find find;
+  find.s = find.t = 0;
+  find.flipped = flipped;
+  find.on_border = true;
+  find.wedge_count = 2;
+  find.wedges[0] = {first, middle};
+  find.wedges[1] = {middle, last};
+  if (find.flipped) {
+    std::swap(find.wedges[0].first, find.wedges[0].last);
+    std::swap(find.wedges[1].first, find.wedges[1].last);
+  }
+  for (find.y = inside.y0; find.y <= inside.y1; ++find.y) {
+    for (find.x = inside.x0; find.x <= inside.x1; ++find.x) {
+      sink.add(find);
+    }
   }
 }
 

@@ -7,12 +7,12 @@
 
 namespace limitsurf {
 
-/// A point or vector of the plane that a UV map leads to.
+/// A point or vector in the plane of a UV map.
 using Point2 = Eigen::Array2d;
 
 inline double cross(const Point2& a, const Point2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// An axis-aligned box in the plane; empty when made.
+/// An axis-aligned box in the plane. It is empty at first.
 struct Box2 {
   Point2 low = Point2::Constant(std::numeric_limits<double>::infinity());
   Point2 high = Point2::Constant(-std::numeric_limits<double>::infinity());
@@ -24,13 +24,12 @@ struct Box2 {
   Box2 grown(const Point2& by) const { return {low - by, high + by}; }
 };
 
-/// The points with whole numbers for coordinates in a rectangle, its borders included: the centres
-/// of texels.
+/// The points with integer coordinates in a rectangle, its borders included: the centres of texels.
 struct Lattice {
   int x0, y0, x1, y1;
 
   bool empty() const { return x0 > x1 || y0 > y1; }
-  /// Those in a box as well; none if a coordinate is NaN.
+  /// The points that lie in a box as well; none if a coordinate is NaN.
   Lattice within(const Box2& box) const {
     return {notBelow(box.low[0], x0, x1), notBelow(box.low[1], y0, y1),
             notAbove(box.high[0], x0, x1), notAbove(box.high[1], y0, y1)};
@@ -45,11 +44,11 @@ struct Lattice {
   }
 };
 
-/// From map coordinates to those in which a lattice is given.
+/// The transformation from map coordinates to those of a lattice.
 struct PlaneFrame {
-  Point2 origin;  ///< of the map
+  Point2 origin;  ///< in map coordinates
   Point2 scale;
-  double shift;  ///< of both coordinates, after scaling
+  double shift;  ///< added to both coordinates after scaling
 
   Point2 at(const Point2& in_map) const { return (in_map - origin) * scale + shift; }
   Box2 at(const Box2& in_map) const { return {at(in_map.low), at(in_map.high)}; }

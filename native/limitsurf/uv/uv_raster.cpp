@@ -8,22 +8,24 @@
 #include <stdexcept>
 
 #include "limitsurf/parallel.h"
-#include "limitsurf/uv/uv_margin.h"
+#include "limitsurf/uv/nearest_chords.h"
 
 namespace limitsurf {
 namespace {
 
-/// An image is done in bands of about so many texels: a band's slots stay in the cache, and there
-/// are enough of them for all threads.
+/// An image is rasterized in bands of about this many texels: the slots of a band fit into the
+/// cache, and there are enough bands for all threads.
 constexpr int kTexelsPerBand = 1 << 17;
 
-/// Where pieces lie on each other in more layers than this, bands are the smaller, so that work is
-/// never long without a word on the progress. Boxes make two or three layers of any map.
+/// Where pieces lie on each other in more layers than this, bands are smaller, so that the progress
+/// is reported often enough. The boxes of pieces make two or three layers of any map.
 constexpr double kFewLayers = 8;
-/// But pieces shall not stand in more lists than these together, besides one each.
+/// Bands are not so small that the lists of their pieces have more entries than this together,
+/// besides one for each piece.
 constexpr double kMostListed = 1 << 25;
 
-/// Between two words on the progress: so many texels of all layers, in so many bands.
+/// The number of texels of all layers between two reports of the progress, and the limits on the
+/// number of bands between them.
 constexpr double kTexelsPerReport = 1 << 22;
 constexpr double kFewestBandsPerReport = 4, kMostBandsPerReport = 16;
 
@@ -35,7 +37,7 @@ void checkRange(const char* name, double value, double least, double most) {
   }
 }
 
-/// An image's bands of rows, and which pieces of the map have a part in which of them.
+/// The bands of rows of an image, and for each the pieces of the map that may have a part in it.
 class Bands {
  public:
   Bands(const UvPatches& map, const RasterOptions& options)
@@ -81,13 +83,13 @@ class Bands {
   const Point2& tolerance() const { return tolerance_; }
 
  private:
-  /// Those in the piece's box.
+  /// The texels in the box of a piece.
   Lattice texelsOf(const UvPiece& piece) const {
     return image().within(frame_.at(piece.box).grown(tolerance_));
   }
 
   void chooseRows(const UvPatches& map) {
-    double texels = 0, rows = 0;  // of all pieces
+    double texels = 0, rows = 0;  // those of all pieces, added up
     for (const UvPiece& piece : map.pieces()) {
       const Lattice inside = texelsOf(piece);
       if (!inside.empty()) {
@@ -109,10 +111,11 @@ class Bands {
   std::size_t per_report_ = 1;
   PlaneFrame frame_;
   Point2 tolerance_;
-  std::vector<std::size_t> begins_;  // of each band, and one more
+  std::vector<std::size_t> begins_;  // where each band begins, and the end of the last
   std::vector<int> pieces_;          // band after band
 };
 
+/// Appends texels to a result.
 class TexelWriter {
  public:
   explicit TexelWriter(Texels& out) : out_(out) {}
@@ -138,6 +141,7 @@ class TexelWriter {
   Texels& out_;
 };
 
+/// Appends the texels of a band that the map covers.
 void append(const LatticeFinds& finds, const Lattice& lattice, TexelWriter out) {
   for (int y = lattice.y0; y <= lattice.y1; ++y) {
     for (int x = lattice.x0; x <= lattice.x1; ++x) {
@@ -148,7 +152,7 @@ void append(const LatticeFinds& finds, const Lattice& lattice, TexelWriter out) 
   }
 }
 
-/// The same with the margin around the finds.
+/// The same with the texels of the margin.
 void append(const LatticeFinds& finds, const Lattice& lattice, const BorderChords& chords,
             std::size_t band, TexelWriter out) {
   NearestChords nearest(chords, lattice);
@@ -173,6 +177,7 @@ void moveTo(std::vector<T>& from, std::vector<T>& to, std::size_t begin) {
   from = {};
 }
 
+/// The texels of all bands, one band after the other. Empties the parts.
 Texels concatenate(std::vector<Texels>& parts, int threads) {
   std::vector<std::size_t> begins;
   std::size_t size = 0;

@@ -4,14 +4,14 @@
 #include <functional>
 #include <vector>
 
-#include "limitsurf/uv/uv_border.h"
+#include "limitsurf/uv/uv_borders.h"
 #include "limitsurf/uv/uv_map.h"
 #include "limitsurf/uv/uv_overlap.h"
 #include "limitsurf/uv/uv_patches.h"
 
 namespace limitsurf {
 
-/// The best find of each point of a lattice.
+/// The best find at each point of a lattice.
 class LatticeFinds : public UvPatches::Sink {
  public:
   struct Slot {
@@ -19,7 +19,7 @@ class LatticeFinds : public UvPatches::Sink {
     std::int32_t face = -1;
     bool overlap = false;
     bool flipped = false;
-    bool within_cell = false;  ///< a find that is not on a border of its cell
+    bool within_cell = false;  ///< there is a find that is not on the border of its cell
   };
 
   explicit LatticeFinds(const Lattice& lattice)
@@ -29,7 +29,7 @@ class LatticeFinds : public UvPatches::Sink {
 
   void enter(const FaceRectangle& on) override { on_ = on; }
   void add(const Find& find) override;
-  /// To be called when all finds have been added.
+  /// Decides about overlaps. It must be called after all finds have been added.
   void finish();
 
   const Slot& at(int x, int y) const {
@@ -44,10 +44,10 @@ class LatticeFinds : public UvPatches::Sink {
   std::vector<BorderFind> border_finds_;
 };
 
-/// Throws std::invalid_argument.
+/// Throws std::invalid_argument naming the first option out of range.
 void checkOptions(const RasterOptions& options);
 
-/// `borders` are asked for a margin only.
+/// UvMap::rasterize(). `borders` is called only if there is a margin.
 Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& borders,
                  const RasterOptions& options, int threads, const Progress& progress);
 

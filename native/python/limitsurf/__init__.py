@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exact evaluation of Catmull-Clark limit surfaces, at and near extraordinary vertices and open
-boundaries included.
+"""Exact evaluation of Catmull-Clark limit surfaces, also at and near extraordinary vertices and
+open boundaries.
 
     mesh = limitsurf.ControlMesh.from_faces(positions, faces)
     surface = limitsurf.LimitSurface(mesh)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the calls on arrays return: named arrays, one row per location."""
+"""The results of calls on arrays: named arrays with a row for each location."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +12,7 @@ Array = NDArray[np.floating[Any]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
-    """Position and derivatives, (n, 3) each; None where they were not asked for."""
+    """Positions, derivatives and normals, (n, 3) each; None for those that were not wanted."""
 
     position: Array
     du: Array | None
@@ -25,7 +25,7 @@ class Evaluation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DataEvaluation:
-    """Data and their derivatives, (n, d) each; None where they were not asked for."""
+    """Data and their derivatives, (n, d) each; None for those that were not wanted."""
 
     value: Array
     du: Array | None
@@ -37,8 +37,8 @@ class DataEvaluation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curvature:
-    """Principal curvatures k1 >= k2 with unit directions; mean and Gaussian curvature; and whether
-    the location is exactly at an irregular vertex, where they are an average or NaN."""
+    """Gaussian, mean and principal curvatures (n,), k1 >= k2; the unit directions (n, 3) of k1 and
+    k2; whether a location is exactly at an irregular vertex, where all are an average or NaN."""
 
     gaussian: Array
     mean: Array
@@ -51,8 +51,8 @@ class Curvature:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MapDistortion:
-    """How a UV map stretches a surface, (n,) each: area of the surface per area of the map, and the
-    largest and smallest length on the surface per length on the map."""
+    """The distortion of a UV map, (n,) each: the area of the surface per area of the map, and the
+    largest and the smallest length on the surface per length on the map."""
 
     area: Array
     stretch_high: Array
@@ -61,7 +61,7 @@ class MapDistortion:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stencils:
-    """Sparse rows (CSR) of weights on the cage's vertices."""
+    """Sparse rows (CSR) of weights of the control mesh's vertices."""
 
     offsets: NDArray[np.int64]
     indices: NDArray[np.int32]
@@ -72,7 +72,7 @@ class Stencils:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Locations:
-    """Ptex faces (n,) and parameters (n, 2)."""
+    """Locations on a surface: Ptex face ids (n,) and parameters (n, 2)."""
 
     face: NDArray[np.int32]
     uv: NDArray[np.float64]
@@ -83,7 +83,7 @@ class Locations:
 
 @dataclass(frozen=True, eq=False)
 class BlueNoise(Locations):
-    """Locations, and the distance that they keep from each other where the density is largest."""
+    """Locations, and the distance they keep from each other where the density is largest."""
 
     __slots__ = ("radius",)
 
@@ -92,7 +92,7 @@ class BlueNoise(Locations):
 
 @dataclass(frozen=True, eq=False)
 class MapLocations(Locations):
-    """Locations at points of a UV map; face is -1 and uv NaN where it does not cover them."""
+    """Locations of points of a UV map; where it does not cover a point, face is -1 and uv NaN."""
 
     __slots__ = ("overlap", "flipped")
 
@@ -102,7 +102,7 @@ class MapLocations(Locations):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Texels:
-    """Texels of an image, sorted by row and then by column, and the locations under them."""
+    """Texels of an image, sorted by row and then by column, and the locations of their centres."""
 
     x: NDArray[np.int32]
     y: NDArray[np.int32]
@@ -118,7 +118,8 @@ class Texels:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hits:
-    """Points found on the surface, one a row; where there is none, face is -1 and the rest NaN."""
+    """Points found on the surface, a row for each search; where none was found, face is -1 and
+    everything else NaN."""
 
     face: NDArray[np.int32]
     uv: Array
@@ -141,7 +142,7 @@ class RayHits(Hits):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Projection:
-    """Places in an image that texels see, (n, 2), with footprints (n, 2, 2) and weights (n,)."""
+    """The image on texels: places in the image (n, 2), footprints (n, 2, 2) and weights (n,)."""
 
     st: NDArray[np.float64]
     footprint: NDArray[np.float64]
@@ -153,7 +154,7 @@ class Projection:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PtexTexels:
-    """Pixels (x, y) of a PtexLayout, y upwards, and the locations (face, uv) they stand for."""
+    """The pixels (x, y) of a PtexLayout, y upwards, and their locations (face, uv)."""
 
     x: NDArray[np.int32]
     y: NDArray[np.int32]
@@ -166,7 +167,7 @@ class PtexTexels:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FaceLevels:
-    """A level for each face of a mesh, and what was measured there."""
+    """A level for each face of a mesh, and the deviation or the length that was measured there."""
 
     levels: NDArray[np.int32]
     measure: NDArray[np.float64]
@@ -174,7 +175,7 @@ class FaceLevels:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tessellation:
-    """Polygons on the limit surface, and where their points and corners lie."""
+    """Polygons on the limit surface, with the locations of their points and corners."""
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float64]
@@ -189,6 +190,6 @@ class Tessellation:
 
     @property
     def corner_locations(self) -> Locations:
-        """Of the polygons' corners, each on its polygon's own Ptex face."""
+        """The locations of the polygons' corners, each on its polygon's own Ptex face."""
         face = np.repeat(self.ptex_face, self.face_sizes)
         return Locations(face, self.corner_uv.astype(np.float64))

@@ -83,6 +83,10 @@ Points pointsOf(const Doubles& array) {
   return Eigen::Map<const Points>(array.data(), array.shape(0), 3);
 }
 
+py::array_t<double> pointArray(const Points& points) {
+  return py::array_t<double>({points.rows(), Eigen::Index{3}}, points.data());
+}
+
 Output::Output(const py::dtype& dtype, std::vector<py::ssize_t> shape)
     : array_(py::array(dtype, std::move(shape))),
       data_(array_->mutable_data()),

@@ -19,28 +19,30 @@ using Doubles = py::array_t<double, py::array::c_style>;
 using Integers = py::array_t<std::int64_t, py::array::c_style>;
 using Floats = py::array_t<float, py::array::c_style>;
 
-/// "(4, 2)".
+/// The shape of an array as text, as in "(4, 2)".
 std::string shapeText(const py::array& array);
 
-/// Throws the error that a wrong value in an array deserves.
+/// Throws an error with this message.
 using RaiseText = void (*)(const std::string&);
 
+/// An array of anything that numpy can view as integers. Throws TypeError for floats, booleans and
+/// all else, and calls `raise` for integers beyond 64 bits.
 Integers integers(const py::handle& object, const char* name, RaiseText raise);
 
-/// Anything numpy can view as integers; TypeError for floats, booleans and the rest, Error for
-/// integers beyond 64 bits.
+/// The same; throws Error for integers beyond 64 bits.
 template <typename Error>
 Integers integers(const py::handle& object, const char* name) {
   return integers(object, name, [](const std::string& text) { throw Error(text); });
 }
 
-/// Anything numpy can convert to float64; TypeError for what is not real numbers.
+/// An array of anything that numpy can convert to float64. Throws TypeError for all but real
+/// numbers.
 Doubles doubles(const py::handle& object, const char* name);
 
-/// The same rounded to float32, without a detour where that is what it is.
+/// The same rounded to float32. An array of float32 is not converted.
 Floats floats(const py::object& object, const char* name);
 
-/// One dimension, else Error quoting the shape.
+/// Throws Error quoting the shape unless the array has one dimension.
 template <typename Error>
 void requireVector(const py::array& array, const char* name) {
   if (array.ndim() != 1) {
@@ -48,7 +50,7 @@ void requireVector(const py::array& array, const char* name) {
   }
 }
 
-/// Two dimensions and `columns` columns, else Error quoting the shape.
+/// Throws Error quoting the shape unless the array has two dimensions and `columns` columns.
 template <typename Error>
 void requireRows(const py::array& array, const char* name, int columns) {
   if (array.ndim() != 2 || array.shape(1) != columns) {
@@ -62,16 +64,17 @@ py::array_t<T> arrayOf(const std::vector<T>& values) {
   return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-/// A (n, 3) array as points.
+/// The points of an (n, 3) array, and the (n, 3) array of points.
 Points pointsOf(const Doubles& array);
+py::array_t<double> pointArray(const Points& points);
 
-/// A float64 or float32 array of the given shape, by numpy dtype.
+/// An array of results, float64 or float32. Without a shape it is None.
 class Output {
  public:
   Output() = default;
   Output(const py::dtype& dtype, std::vector<py::ssize_t> shape);
 
-  /// Copies `count` numbers to the place of the array that begins `offset` numbers in.
+  /// Copies `count` numbers to the array, from its number `offset` on.
   void put(std::size_t offset, const double* from, std::size_t count);
   py::object object() const { return array_ ? py::object(*array_) : py::none(); }
   bool wanted() const { return array_.has_value(); }
@@ -82,7 +85,7 @@ class Output {
   bool single_ = false;
 };
 
-/// float64 or float32; TypeError for another.
+/// The dtype, float64 or float32. Throws TypeError for another one.
 py::dtype floatType(const py::object& dtype);
 
 }  // namespace limitsurf::python

@@ -22,8 +22,8 @@ enum class FaceCheck {
   size,   ///< those that do not fit into an int; the surface checks the others
 };
 
-/// The rows of a batch. LocationError for arrays of other shapes, and for the first face id that is
-/// refused.
+/// The locations of a batch. Throws LocationError for arrays of other shapes, and naming the first
+/// row whose face id is refused.
 Locations locationsOf(int face_count, const py::object& face, const py::object& uv,
                       FaceCheck check = FaceCheck::range);
 
@@ -57,17 +57,17 @@ CheckedLocations locationsOn(const Surface& surface, const py::object& face, con
   return CheckedLocations(surface, std::move(at));
 }
 
-/// ValueError for orders above `highest` and below 0.
+/// Throws ValueError for an order below 0 or above `highest`.
 void checkDerivatives(int derivatives, int highest);
 
-/// For a call that has let go of the GIL: lets Ctrl-C end it.
+/// Lets Ctrl-C end the call. It is used by calls that have released the GIL.
 InterruptionPoint interruptible();
 
-/// Rows evaluated at a time, so that results are copied while they are in the cache.
+/// The number of rows evaluated at a time: the results are copied while they are in the cache.
 constexpr std::size_t kRowsPerChunk = std::size_t{1} << 17;
 
-/// Calls body(first row, the chunk's locations) for chunk after chunk, without the GIL, with what
-/// the mutex guards held still, and so that Ctrl-C ends it.
+/// Calls body(first row, locations) for chunk after chunk of a batch, without the GIL. What the
+/// mutex guards does not change meanwhile, and Ctrl-C ends the call.
 template <typename Body>
 void inChunks(std::shared_mutex& mutex, const CheckedLocations& at, const Body& body) {
   const py::gil_scoped_release release;
@@ -78,10 +78,10 @@ void inChunks(std::shared_mutex& mutex, const CheckedLocations& at, const Body& 
   }
 }
 
-/// limitsurf.Locations; rows whose face is -1 have NaN for (u, v).
+/// A limitsurf.Locations of these locations; where face is -1, (u, v) is NaN.
 py::object locations(const Locations& at);
 
-/// A class of limitsurf._results.
+/// The class of this name in limitsurf._results.
 py::object result(const char* name);
 
 }  // namespace limitsurf::python

@@ -9,11 +9,11 @@
 
 namespace limitsurf::python {
 
-/// The names of an enum's values.
+/// The names of the values of an enum.
 template <typename Enum>
 using Choices = std::vector<std::pair<const char*, Enum>>;
 
-/// MeshError that tells the known names where `value` is none of them.
+/// The value of the name `value`. Throws MeshError listing the known names if it is none of them.
 template <typename Enum>
 Enum choice(const std::string& value, const char* name, const Choices<Enum>& choices) {
   std::string known;

@@ -102,7 +102,7 @@ std::shared_ptr<BoundMesh> makeMesh(const py::object& positions, const py::objec
   return std::shared_ptr<BoundMesh>(new BoundMesh(points, size_vector, vertex_vector, options));
 }
 
-/// (F, k) array or a sequence of sequences -> sizes and vertices.
+/// The face sizes and face vertices of an (F, k) array or of a sequence of sequences.
 std::pair<py::object, py::object> flattened(const py::object& faces) {
   const py::module_ numpy = py::module_::import("numpy");
   if (py::isinstance<py::array>(faces)) {
@@ -125,10 +125,6 @@ std::pair<py::object, py::object> flattened(const py::object& faces) {
                         : numpy.attr("concatenate")(vertices)};
 }
 
-py::array_t<double> positionArray(const Points& points) {
-  return py::array_t<double>({points.rows(), Eigen::Index{3}}, points.data());
-}
-
 py::object edgeSharpness(const ControlMesh& mesh) {
   const EdgeSharpness& sharpness = mesh.options().edge_sharpness;
   py::array_t<std::int64_t> edges(
@@ -147,7 +143,7 @@ py::object vertexSharpness(const ControlMesh& mesh) {
 
 py::tuple state(const ControlMesh& mesh) {
   const MeshOptions& o = mesh.options();
-  return py::make_tuple(positionArray(mesh.positions()), arrayOf(mesh.faceSizes()),
+  return py::make_tuple(pointArray(mesh.positions()), arrayOf(mesh.faceSizes()),
                         arrayOf(mesh.faceVertices()), edgeSharpness(mesh), vertexSharpness(mesh),
                         text(o.boundary, kBoundaries), text(o.creasing, kCreasings),
                         text(o.triangles, kTriangles), text(o.scheme, kSchemes), arrayOf(o.holes));
@@ -185,38 +181,38 @@ void bindControlMesh(py::module_& module) {
           "vertex_sharpness"_a = py::none(), "boundary"_a = "smooth", "creasing"_a = "uniform",
           "triangles"_a = "catmark", "scheme"_a = "catmark", "holes"_a = py::none(), kFromFacesDoc)
       .def_property_readonly(
-          "positions", [](const BoundMesh& mesh) { return positionArray(mesh.positions()); },
-          "(V, 3) float64, a copy.")
+          "positions", [](const BoundMesh& mesh) { return pointArray(mesh.positions()); },
+          "(V, 3) float64: a copy of the positions.")
       .def_property_readonly(
           "face_sizes", [](const BoundMesh& mesh) { return arrayOf(mesh.faceSizes()); },
-          "(F,) int32: vertices of each face.")
+          "(F,) int32: the number of vertices of each face.")
       .def_property_readonly(
           "face_vertices", [](const BoundMesh& mesh) { return arrayOf(mesh.faceVertices()); },
-          "Vertex indices of all faces, one face after the other, int32.")
+          "int32: the vertex indices of all faces, one face after the other.")
       .def_property_readonly(
           "boundary",
           [](const BoundMesh& mesh) { return text(mesh.options().boundary, kBoundaries); },
-          "'smooth' or 'corners'.")
+          "The boundary rule, 'smooth' or 'corners'.")
       .def_property_readonly(
           "triangles",
           [](const BoundMesh& mesh) { return text(mesh.options().triangles, kTriangles); },
-          "'catmark' or 'smooth'.")
+          "The rule for triangles, 'catmark' or 'smooth'.")
       .def_property_readonly(
           "creasing",
           [](const BoundMesh& mesh) { return text(mesh.options().creasing, kCreasings); },
-          "'uniform' or 'chaikin'.")
+          "The creasing method, 'uniform' or 'chaikin'.")
       .def_property_readonly(
           "scheme", [](const BoundMesh& mesh) { return text(mesh.options().scheme, kSchemes); },
-          "'catmark' or 'bilinear'.")
+          "The subdivision scheme, 'catmark' or 'bilinear'.")
       .def_property_readonly(
           "edge_sharpness", [](const BoundMesh& mesh) { return edgeSharpness(mesh); },
-          "As it was given: edges (E, 2) int64 and values (E,) float64.")
+          "The given sharpness of edges: edges (E, 2) int64 and values (E,) float64.")
       .def_property_readonly(
           "vertex_sharpness", [](const BoundMesh& mesh) { return vertexSharpness(mesh); },
-          "As it was given: vertices (n,) int64 and values (n,) float64.")
+          "The given sharpness of vertices: vertices (n,) int64 and values (n,) float64.")
       .def_property_readonly(
           "holes", [](const BoundMesh& mesh) { return arrayOf(mesh.options().holes); },
-          "Faces that have no surface, int64.")
+          "int64: the faces that are holes and have no surface.")
       .def("__repr__",
            [](const BoundMesh& mesh) {
              return "ControlMesh(" + std::to_string(mesh.vertexCount()) + " vertices, " +

@@ -10,8 +10,8 @@
 
 namespace limitsurf::python {
 
-/// Python can make an object without initialising it (`cls.__new__(cls)`); its memory is then all
-/// zero, which every member of the bound classes takes for empty.
+/// Memory that is zero at first. Python can make an object without initialising it
+/// (`cls.__new__(cls)`), and the members of the bound classes take zero for empty.
 struct ZeroedMemory {
   static void* operator new(std::size_t size) {
     void* memory = std::calloc(1, size);

@@ -17,14 +17,14 @@
 namespace limitsurf::python {
 namespace {
 
-/// Rows displaced at a time: a progress bar moves, and Ctrl-C is heard.
+/// The number of rows displaced between two reports of the progress; Ctrl-C takes effect there.
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
 
 const Choices<RayDirection> kDirections = {{"both", RayDirection::both},
                                            {"outward", RayDirection::outward},
                                            {"inward", RayDirection::inward}};
 
-/// The class as Python sees it.
+/// SubdividedFaces that Python may have made without initialising them.
 class BoundFaces : public ZeroedMemory {
  public:
   BoundFaces(const ControlMesh& base, const ControlMesh& subdivided)
@@ -54,7 +54,7 @@ py::object locate(const BoundFaces& bound, const py::object& face, const py::obj
   return locations(at);
 }
 
-/// Holds two poses still, which may be one.
+/// Keeps the poses of two surfaces unchanged; both may be the same surface.
 class HeldPoses {
  public:
   HeldPoses(const SharedSurface& first, const SharedSurface& second) : first_(first) {
@@ -68,7 +68,7 @@ class HeldPoses {
   std::optional<HeldPose> second_;
 };
 
-/// A frame for each of `rows` locations, or none.
+/// The frames of `rows` locations, or none.
 FrameRows framesOf(const py::object& frames, std::size_t rows) {
   if (frames.is_none()) {
     return FrameRows(0, 9);
@@ -196,13 +196,14 @@ void bindSubdividedFaces(py::module_& module) {
            "base"_a, "subdivided"_a)
       .def_property_readonly(
           "levels", [](const BoundFaces& b) { return b.faces().levels(); },
-          "How often the base was subdivided, 0 to 12.")
+          "The number of subdivisions of the base, 0 to 12.")
       .def_property_readonly(
           "order",
           [](const BoundFaces& b) {
             return b.faces().order() == FaceOrder::blender ? "blender" : "opensubdiv";
           },
-          "'blender' or 'opensubdiv'; up to one level the two are the same, and 'blender' is said.")
+          "'blender' or 'opensubdiv'. Up to one level both orders are the same, and it is "
+          "'blender'.")
       .def("locate", &locate, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0,
            kLocateOnSubdividedDoc)
       .def("__repr__", [](const BoundFaces& b) {

@@ -8,7 +8,7 @@ namespace limitsurf::python {
 /// SubdividedFaces.
 void bindSubdividedFaces(py::module_& module);
 
-/// What surfaces have to do with displacement.
+/// vector_displacement(), scalar_displacement() and displaced()
 void bindDisplacement(py::class_<SharedSurface>& type);
 
 }  // namespace limitsurf::python

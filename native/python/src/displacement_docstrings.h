@@ -4,12 +4,12 @@
 namespace limitsurf::python {
 
 constexpr const char* kSubdividedFacesDoc =
-    R"(Which face of a subdivided control mesh lies where on the mesh that it was made of.
+    R"(The places of the faces of a subdivided control mesh on the mesh that was subdivided, the base.
 
-The subdivided mesh may have any shape (it was sculpted, say) and number its vertices as it likes.
-Its faces must be those of the base subdivided 0 to 12 times, in Blender's order (Subdivision
-Surface, Multiresolution) or in OpenSubdiv's (corner by corner, recursively), and share vertices as
-those do. All of that is checked; positions are not looked at.
+The subdivided mesh may have any shape (it may have been sculpted) and any order of vertices. Its faces
+must be those of the base subdivided 0 to 12 times, in Blender's order (Subdivision Surface,
+Multiresolution) or in OpenSubdiv's (corner by corner, recursively), and must share vertices in the same
+way. All this is checked; positions are not used.
 
     faces = limitsurf.SubdividedFaces(base.mesh, sculpted.mesh)
     there = faces.locate(face, uv)                  # the same places on the subdivided mesh
@@ -22,60 +22,70 @@ MeshError
 )";
 
 constexpr const char* kLocateOnSubdividedDoc =
-    R"(The same places on the subdivided mesh, as Locations: exactly, as (u, v) are scaled by a power
-of two. Of places between two of its faces one is given.)";
+    R"(The same places on the subdivided mesh: Locations.
+
+They are exact, since (u, v) are scaled by a power of two. A place between two faces is assigned to one of
+them. (u, v) must lie in [0, 1]. Raises LocationError for a face that is not one of the base's Ptex faces.)";
 
 constexpr const char* kVectorDisplacementDoc =
-    R"(How to get from this surface to another one of the same structure, at the same places.
+    R"(The displacement from this surface to another one of the same structure, at the same places.
 
 Parameters
 ----------
 target : LimitSurface
-    Of a mesh with the same faces, or with those of this one's mesh subdivided (SubdividedFaces tells
-    what counts), in any pose. Both surfaces are taken in their present pose and in one space: a
-    target that lies elsewhere is brought here by set_positions().
+    A surface whose mesh has the same faces, or those of this mesh subdivided (SubdividedFaces says
+    what is required), in any pose. Both surfaces are used in their present pose and in the same space;
+    set_positions() moves a target into this space.
 face, uv : as in evaluate()
     Locations on this surface.
 frames : (n, 3, 3) array of float, optional
-    Columns tangent, bitangent, normal of each location, orthonormal: those of tangent_frames() or
-    frames(). Vectors are then given by their components along tangent, normal, bitangent: the order
-    in which Blender's Vector Displacement node reads red, green, blue in tangent space.
+    An orthonormal frame for each location, with the columns tangent, bitangent and normal: those of
+    tangent_frames() or frames(). Vectors are then returned as their components along tangent, normal
+    and bitangent, the order in which Blender's Vector Displacement node reads red, green and blue.
 progress : callable, optional
-    Called with the part of the work that is done, 0 to 1.
+    It is called with the part of the work that is done, 0 to 1.
 
 Returns
 -------
-(n, 3) float64: target - self; error 3e-13 of the diagonal of both meshes.
+(n, 3) float64
+    target - self. Error bound: 3e-13 of the diagonal of the box around both meshes.
 
 Raises
 ------
 MeshError
-    Where the structures do not match, and where a face of the target has no limit surface.
+    If the structures do not match, and for a face of the target that has no limit surface.
+
+Cost: two evaluations a location.
 )";
 
 constexpr const char* kScalarDisplacementDoc =
-    R"(How far along the exact normals another surface of any structure lies.
+    R"(The distance of another surface, of any structure, along this surface's exact normals.
 
-The nearest point at which the line along the normal meets the target's limit surface counts.
+It is measured to the nearest point at which the line along the normal meets the target's limit surface.
 
 Parameters
 ----------
 target : LimitSurface
-    In the same space.
+    The other surface, in the same space.
 face, uv : as in evaluate()
+    Locations on this surface.
 max_distance : float
-    Nothing further away counts.
+    Points farther away are not found.
 direction : 'both', 'outward' or 'inward'
 progress : callable, optional
-    Called with the part of the work that is done, 0 to 1.
+    It is called with the part of the work that is done, 0 to 1.
 
 Returns
 -------
-(n,) float64: distances, negative inward; NaN where nothing is met.
+(n,) float64
+    Distances, negative inward; NaN where the line does not meet the target.
+
+Raises ValueError for a max_distance that is NaN or negative. Cost: an evaluation, and a ray in each
+direction.
 )";
 
 constexpr const char* kDisplacedDoc =
-    R"(Points of the surface, moved: reads a displacement map back.
+    R"(The points of the surface moved by displacements: reads a displacement map back.
 
     values = limitsurf.bilinear(pixels, uv_map.evaluate(face, uv).value)
     moved = surface.displaced(face, uv, values[:, :3], frames=frames)
@@ -84,11 +94,11 @@ Parameters
 ----------
 face, uv : as in evaluate()
 values : (n, 3) or (n,) array of float
-    Vectors, or distances along the normals: as vector_displacement() and scalar_displacement() give
+    Vectors, or distances along the normals, as vector_displacement() and scalar_displacement() return
     them.
 frames : (n, 3, 3) array of float, optional
-    Those in which the vectors' components are given (in the order tangent, normal, bitangent);
-    without them vectors are taken as they are.
+    The frames in which the vectors are given by their components (in the order tangent, normal,
+    bitangent). Without frames the vectors are given in space.
 
 Returns
 -------

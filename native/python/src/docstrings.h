@@ -9,390 +9,433 @@ constexpr const char* kControlMeshDoc =
 Parameters
 ----------
 positions : (V, 3) array of float
-    Finite; any unit of length.
+    The vertices. All coordinates must be finite; the unit of length is arbitrary.
 face_sizes : (F,) array of int
-    Vertices of each face, 3 to 65,535.
+    The number of vertices of each face, 3 to 65,535.
 face_vertices : (sum of face_sizes,) array of int
-    Vertex indices of all faces, one face after the other, counter-clockwise seen from outside.
+    The vertex indices of all faces, one face after the other, counter-clockwise as seen from outside.
 edge_sharpness : (edges (E, 2) int, values (E,) float), optional
 vertex_sharpness : (vertices (n,) int, values (n,) float), optional
-    0 is smooth, 10 and more (inf included) infinitely sharp, and what lies between sharp for so many
-    steps of subdivision; rounded to float32. Of an edge that is given twice the last counts.
+    0 is smooth, 10 and more (inf included) is infinitely sharp, and a value between is sharp for that
+    many steps of subdivision. Values are rounded to float32. If an edge is given twice, the last value
+    counts.
 boundary : 'smooth' or 'corners'
     'smooth': every boundary is a uniform cubic B-spline curve (OpenSubdiv's EDGE_ONLY, Blender's
-    'ALL'); 'corners': boundary vertices with one face stay where they are.
+    'ALL'). 'corners': boundary vertices with one face are interpolated.
 creasing : 'uniform' or 'chaikin'
-    'chaikin' averages sharpness with that of the other edges at a vertex, step by step.
+    'chaikin' averages the sharpness of an edge with that of the other sharp edges at its vertices in
+    each step of subdivision.
 triangles : 'catmark' or 'smooth'
-    'smooth': OpenSubdiv's TRI_SUB_SMOOTH.
+    The rule for triangles; 'smooth' is OpenSubdiv's TRI_SUB_SMOOTH.
 scheme : 'catmark' or 'bilinear'
-    'bilinear': each Ptex face is a bilinear patch, and sharpness means nothing.
+    With 'bilinear' each Ptex face is a bilinear patch, and sharpness has no effect.
 holes : (n,) array of int, optional
-    Faces that have no surface, though their neighbours see them.
+    Faces that have no surface, but belong to the neighbourhoods of other faces.
 
 Raises
 ------
 MeshError
-    For what makes the mesh meaningless: sizes that do not add up, indices out of range, positions
-    that are not finite, more than 65,535 edges at a vertex, and options that are not known.
-    Faces that merely have no limit surface are told by LimitSurface.refused instead.
+    For face sizes that do not add up, indices out of range, positions that are not finite, more than
+    65,535 edges at a vertex, and unknown options. A face that only has no limit surface is no error:
+    LimitSurface.refused lists it.
 TypeError
-    For arrays of the wrong kind, such as floats where indices are wanted.
+    For arrays of the wrong kind, such as floats instead of indices.
+
+Cost: O(number of corners).
 )";
 
 constexpr const char* kFromFacesDoc =
-    R"(The same from faces given as an (F, k) array or as a list of lists of vertex indices.)";
+    R"(The control mesh whose faces are given as an (F, k) array or as a list of lists of vertex indices.
+
+All other parameters, and the errors raised, are those of ControlMesh.)";
 
 constexpr const char* kLimitSurfaceDoc =
     R"(The Catmull-Clark limit surface of a control mesh, evaluated exactly at any location.
 
-A location is (face, u, v): a Ptex face id and parameters in [0, 1]. A quad is one Ptex face with
-(0,0), (1,0), (1,1), (0,1) at its vertices 0 to 3; an n-gon is n of them, one per corner, with (0,0)
-at the corner, u towards the next vertex and (1,1) at the centre.
+A location is (face, u, v): a Ptex face id and parameters in [0, 1]. A quad is one Ptex face, with
+(0,0), (1,0), (1,1), (0,1) at its vertices 0 to 3. An n-gon consists of n Ptex faces, one for each
+corner, with (0,0) at the corner, u towards the next vertex and (1,1) at the centre.
 
-Topology is analysed once, here; set_positions() re-poses cheaply. Every call on arrays releases the
-GIL, uses all cores (threads=0; threads=n at most n), can be interrupted, and gives the same bits for
-a location whatever the thread count and the rest of the batch. (Asking for more derivatives may
-change the last bits of the others.)
+The topology is analysed once, when the surface is made; set_positions() changes the pose at a low
+cost. Every call on arrays releases the GIL, uses all cores (threads=0) or at most n (threads=n), and
+ends on Ctrl-C. The bits of a result depend neither on the number of threads nor on the rest of the
+batch. (If more derivatives are wanted, the last bits of the others may change.)
 
-The method is Stam 1998 inside and Lacewell & Burley 2007 at boundaries, at any valence.
+The method is that of Stam ("Exact Evaluation of Catmull-Clark Subdivision Surfaces at Arbitrary
+Parameter Values", 1998) in the interior, and that of Lacewell & Burley ("Exact Evaluation of
+Catmull-Clark Subdivision Surfaces Near B-Spline Boundaries", 2007) at boundaries, for any valence.
 )";
 
 constexpr const char* kSetPositionsDoc =
-    R"(Re-pose: the same topology under new positions, (V, 3) float.
+    R"(Sets new positions, (V, 3) float, under the same topology.
 
-Raises MeshError for another shape or values that are not finite, and then changes nothing. Costs
-O(V) and the irregular faces; waits for evaluations that run in other threads.
+Raises MeshError for an array of another shape and for values that are not finite; the positions do
+not change then. Raises RuntimeError in a function that a call on the same surface has called. Waits
+for evaluations that run in other threads. Cost: O(V), plus O(valence^2) for each irregular vertex.
 )";
 
 constexpr const char* kEvaluateDoc =
-    R"(Limit positions and derivatives with respect to the face's own (u, v).
+    R"(Evaluates limit positions, and derivatives with respect to the face's own (u, v).
 
 Parameters
 ----------
 face : int or (n,) array of int
+    Ptex face ids.
 uv : (n, 2) array of float in [0, 1]
 derivatives : 0, 1 or 2
+    The highest order of derivatives that is wanted.
 threads : int
+    0 means all cores, n at most n.
 dtype : float64 or float32
-    Of the results; all is computed in float64.
+    The type of the results. Everything is computed in float64.
 
 Returns
 -------
 Evaluation
-    .position and, as far as asked for (else None), .du .dv .normal, .duu .duv .dvv; (n, 3) each.
-    Exactly at an irregular vertex: position always; derivatives along a boundary that bounds the
-    face are the limit curve's; du = dv = 0 at interior valence 2 and 3; all others are NaN, and so
-    is the normal where approaches to the vertex do not agree on one.
+    .position; with derivatives >= 1 .du .dv .normal; with derivatives=2 .duu .duv .dvv; (n, 3) each.
+    Those that are not wanted are None. Exactly at an irregular vertex the position is always finite,
+    derivatives along a boundary of the face are those of the limit curve, and du = dv = 0 at interior
+    valence 2 and 3. All other derivatives are NaN there, and so is the normal if it depends on the
+    direction from which the vertex is approached.
 
-Error: position 1e-13 of the bounding box's diagonal; du, dv 1e-12 and second derivatives 1e-11 of
-the larger of the value itself and the face's largest; normals 1e-11 radians (at a smooth corner of
-one face only outside 2^-20 of the vertex).
+Error bounds: positions 1e-13 of the bounding box's diagonal; du and dv 1e-12, and second derivatives
+1e-11, of the larger of the value itself and the largest on the face; normals 1e-11 radians (at a
+smooth corner of one face only farther than 2^-20 from the vertex).
 
 Cost: O(1) a location, O(valence) within about 1/16 of an irregular vertex.
 
-Raises LocationError naming the first row out of range, MeshError for a refused face, TypeError for
-faces that are not integers.
+Raises LocationError naming the first row that is out of range, MeshError for a refused face, and
+TypeError for faces that are not integers.
 )";
 
 constexpr const char* kFramesDoc =
     R"((n, 3, 3) rotations whose columns are the tangent (along du), normal x tangent, and the normal.
 
-Always finite: at an irregular vertex the limit over u = v = 2^-n as seen from the vertex; where du
-or the normal vanishes, completed from dv, then from the least aligned world axis.
+Frames are always finite. At an irregular vertex the frame is the limit for u = v = 2^-n, measured from
+the vertex. Where du or the normal vanishes, the frame is completed from dv, then from the world axis
+that is least aligned with it. Parameters and errors are those of evaluate().
 )";
 
 constexpr const char* kCurvatureDoc =
-    R"(Curvature: .gaussian .mean .k1 .k2 (n,) with k1 >= k2, and their unit .direction1 .direction2 (n, 3).
+    R"(The curvature of the surface.
 
-Signs follow the normal: a sphere seen from outside curves negatively. .irregular (n,) bool tells the
-locations exactly at an irregular vertex, where curvature has no limit in general. There
+Returns Curvature: .gaussian .mean .k1 .k2 (n,), with k1 >= k2, in the inverse (gaussian: squared
+inverse) unit of length; the unit directions .direction1 .direction2 (n, 3) of k1 and k2; and .irregular
+(n,) bool, which is True exactly at an irregular vertex, where curvature has no limit in general. Signs
+follow the normal: a sphere whose normals point outwards has negative curvature.
 
-irregular="none": all is NaN;
-irregular="average": a mean over the faces of the location's own sector, those around the vertex that
-    boundaries and infinitely sharp edges do not part from its face. On each of them four places stand
-    on a square with the vertex at one corner and sides of `radius` edges: at (1, 1/4), (1, 3/4),
-    (3/4, 1), (1/4, 1) times the side, as seen from the vertex. The side is `radius` in u and v on a
-    quad, and 2 * radius on a sub-face of an n-gon, whose sides are half edges. Their shape operators,
-    each turned by the shortest rotation into the vertex's tangent plane, are averaged, weighted by
-    area. k1, k2 and the directions are the mean's; gaussian is k1 * k2. All faces of the sector give
-    the same bits; a mesh subdivided once gives the same at twice the radius.
+At an irregular vertex the result depends on `irregular`:
 
-Where the vertex has no normal the plane is perpendicular to the mean of the places' normals. Places
-where the surface is singular (du x dv = 0), or turned the opposite way, are left out; where none
-remains, and at singular places anywhere, the result is NaN.
+'none': everything is NaN.
+'average': the result is a mean over the faces of the location's own sector, which are those around the
+    vertex that no boundary or infinitely sharp edge separates from the location's face. On each of them
+    four places lie on a square with the vertex at one corner: at (1, 1/4), (1, 3/4), (3/4, 1) and
+    (1/4, 1) times its side, measured from the vertex. The side is `radius` in u and v on a quad, and
+    2 * radius on a sub-face of an n-gon, whose sides are half edges. The shape operators at these places
+    are rotated into the vertex's tangent plane, each by the smallest possible rotation, and averaged
+    with the area as weight. k1, k2 and the directions are those of the mean; gaussian is k1 * k2. All
+    faces of the sector return the same bits. A mesh that is subdivided once returns the same result at
+    twice the radius.
 
-Error of averages: 1e-9 of what curvature would be if second derivatives all pointed along the normal;
-below a radius of 2^-40 or so no digit is left of it. Cost: O(valence^2) for each such vertex,
-and O(faces) for each 131,072 locations that need any.
+If the vertex has no normal, the plane is perpendicular to the mean of the normals at the places. Places
+at which the surface is singular (du x dv = 0) or has an opposite normal are left out. If none remains,
+and at singular places anywhere, the result is NaN.
 
-Raises ValueError for a radius outside (0, 1/2], MeshError for another word, and as evaluate().
+Error bound of averages: 1e-9 of the curvature that second derivatives of the same length along the
+normal would have; below a radius of about 2^-40 no digit remains. Cost: as evaluate(), and O(valence^2)
+for each such vertex, and O(faces) for each 131,072 locations if any is at such a vertex.
+
+Raises ValueError for a radius outside (0, 1/2], MeshError for another `irregular`, and all errors that
+evaluate() raises.
 )";
 
 constexpr const char* kStencilsDoc =
-    R"(The exact linear weights of position (and du, dv with derivatives=1) on the cage's vertices.
+    R"(The exact weights with which positions (with derivatives=1 also du and dv) depend on the vertices.
 
-Returns Stencils in CSR form: row i is .indices[.offsets[i]:.offsets[i + 1]] with .weights,
-.du_weights, .dv_weights (None if not asked for). Position weights add up to 1, the others to 0. Where
-a derivative has no limit its weights are NaN. Weights depend on topology alone: they serve all poses.
+Positions and derivatives are linear in the vertices of the control mesh. Returns Stencils in CSR form:
+row i has the vertices .indices[.offsets[i]:.offsets[i + 1]] and the corresponding .weights, .du_weights
+and .dv_weights (None unless wanted). The weights of a position add up to 1, those of a derivative to 0.
+Where a derivative has no limit its weights are NaN. Weights depend on the topology alone, so they are
+valid for all poses.
 
-Cost: as evaluate(), but O(valence^2) on tiles at an irregular vertex.
+Parameters and errors are those of evaluate(). Cost: as evaluate(), but O(valence^2) on tiles at an
+irregular vertex.
 )";
 
 constexpr const char* kFaceVaryingDoc =
-    R"(Data that every face corner picks for itself, such as a UV map: SurfaceData.
+    R"(Data given at the corners of faces, such as a UV map: SurfaceData.
 
-Where all corners around a vertex pick the same row the data are as smooth as the surface; an edge
-whose two faces pick different rows, at either end, is a seam.
+Each corner of a face refers to a row of values. If all corners at a vertex refer to the same row, the
+data are as smooth there as the surface. An edge whose two faces refer to different rows at either end
+is a seam.
 
 Parameters
 ----------
 values : (m, d) or (m,) array of float
-    Finite; (m,) is taken for (m, 1).
+    Values must be finite; (m,) means (m, 1).
 indices : (sum of the mesh's face_sizes,) array of int
-    A row of values for each corner, one face after the other, as face_vertices.
+    The row of values of each corner, one face after the other, in the order of face_vertices.
 interpolation : str
-    Where the data are linear, by OpenSubdiv's FVAR_LINEAR_* rules:
+    Where the data are linear, by OpenSubdiv's rules FVAR_LINEAR_*:
     'none': nowhere. Seams and boundaries are smooth curves, also around corners of one face.
-    'corners_only': values with one face at a vertex stay where they are.
-    'corners_plus1': so do those at junctions of more than two values, and those across a seam from
-    a value that a sharp edge pins.
-    'corners_plus2': so do those where a seam ends inside, and both at a vertex where one of two has
-    one face.
-    'boundaries': seams and boundaries are straight from value to value.
-    'all': bilinear on each Ptex face.
+    'corners_only': at values that have only one face at a vertex: these are interpolated.
+    'corners_plus1': also at junctions of more than two values, and at values across a seam from one
+    that a sharp edge pins.
+    'corners_plus2': also where a seam ends inside, and at both values of a vertex if one of the two
+    has only one face.
+    'boundaries': along seams and boundaries, which are straight from value to value.
+    'all': everywhere; the data are bilinear on each Ptex face.
 threads : int
 
-Sharp edges and vertices are as sharp for the data as for the surface. Faces around a vertex where
-seams meet semi-sharp edges that decay in a way that is not supported are refused when evaluated:
-'chaikin' creases of different sharpness, or, with 'corners_plus1' and 'corners_plus2', several
-edges on one side only that decay to an average which no float32 sharpness decays to.
+Sharp edges and vertices are as sharp for the data as for the surface. A face is refused at evaluation
+if, at one of its vertices, seams meet semi-sharp edges in a way that is not supported: 'chaikin'
+creases of different sharpness or, with 'corners_plus1' and 'corners_plus2', several edges on one side
+only whose average sharpness no float32 value decays to.
 
 Raises
 ------
 MeshError
-    For an index out of range, naming the corner, or values that are not finite, naming the row.
+    For an index out of range, naming the corner, and for values that are not finite, naming the row.
 TypeError
     For indices that are not integers.
 
-Cost: as making the surface.
+Cost: that of making the surface.
 )";
 
 constexpr const char* kVertexDataDoc =
-    R"(Data at the vertices, (V, d) or (V,) float, interpolated exactly as positions are: SurfaceData.
+    R"(Data at the vertices, (V, d) or (V,) float, subdivided exactly as positions are: SurfaceData.
 
-Raises MeshError for another number of rows and values that are not finite. Costs a set_positions()
-for every three columns.
+Raises MeshError for another number of rows and for values that are not finite. Cost: that of
+set_positions() for every three columns.
 )";
 
 constexpr const char* kVaryingDoc =
     R"(Data at the vertices, (V, d) or (V,) float, linear along edges and bilinear on each Ptex face.
 
-A sub-face of an n-gon has the values of its corner, of its edges' midpoints and the mean of all
-corners. Returns SurfaceData; raises as vertex_data(). Cost: as making the surface.
+A sub-face of an n-gon has the values of its corner, of the midpoints of two edges, and the mean of all
+corners. Returns SurfaceData. Raises the errors of vertex_data(). Cost: that of making the surface.
 )";
 
 constexpr const char* kSurfaceDataDoc =
-    R"(Data on a limit surface, evaluated exactly: what LimitSurface.face_varying(), .vertex_data() and
-.varying() return.
+    R"(Data on a limit surface, evaluated exactly.
 
-It does not depend on the surface's positions and may outlive the surface. It does not pickle.
+LimitSurface.face_varying(), .vertex_data() and .varying() return them. They do not depend on the
+positions of the surface, and may outlive it. They cannot be pickled.
 )";
 
 constexpr const char* kEvaluateDataDoc =
-    R"(The data and their derivatives with respect to the face's own (u, v).
+    R"(Evaluates the data, and their derivatives with respect to the face's own (u, v).
 
-Parameters are those of LimitSurface.evaluate(), and so are the errors raised. Returns
-DataEvaluation: .value and, as far as asked for (else None), .du .dv, .duu .duv .dvv; (n, d) each.
-Exactly at a vertex that is irregular for the data, derivatives without a limit are NaN.
+Parameters and errors are those of LimitSurface.evaluate(). Returns DataEvaluation: .value; with
+derivatives >= 1 .du .dv; with derivatives=2 .duu .duv .dvv; (n, d) each, None if not wanted. Exactly at
+a vertex that is irregular for the data, derivatives that have no limit are NaN.
 
-Error bounds are those of LimitSurface.evaluate(), relative to the values' bounding box. Cost: as
-that, for every three columns.
+Error bounds are those of LimitSurface.evaluate(), relative to the bounding box of the values. Cost:
+that of LimitSurface.evaluate() for every three columns.
 )";
 
 constexpr const char* kSetValuesDoc =
-    R"(Other values, (m, d) or (m,) float as before, in the same places.
+    R"(Replaces the values by others of the same shape, (m, d) or (m,) float.
 
-Raises MeshError for another shape or values that are not finite, and then changes nothing. Costs a
-LimitSurface.set_positions() for every three columns; waits for evaluations in other threads.
+Raises MeshError for another shape and for values that are not finite; the values do not change then.
+Raises RuntimeError in a function that a call on the same data has called. Waits for evaluations in
+other threads. Cost: that of LimitSurface.set_positions() for every three columns.
 )";
 
 constexpr const char* kVertexLocationsDoc =
-    R"(Locations (.face, .uv) of all cage vertices, in vertex order.
+    R"(A location (.face, .uv) of every vertex of the control mesh, in the order of the vertices: Locations.
 
-face = -1, uv = NaN for vertices of no face with a limit surface.
+face is -1 and uv NaN for vertices that no face with a limit surface has.
 )";
 
 constexpr const char* kScatterJitteredDoc =
-    R"(per_side x per_side random locations a Ptex face, one in each cell of a regular grid.
+    R"(Stratified random locations: one in each of per_side x per_side equal squares of every Ptex face.
 
-Lacewell & Burley 2007, figure 1. Locations (.face, .uv) in face order; refused faces get none. The
-same seed (0 to 2^64 - 1) gives the same locations on every machine.
+Figure 1 of Lacewell & Burley 2007 shows such locations. Returns Locations (.face, .uv) in face order;
+refused faces have none. A seed (0 to 2^64 - 1) gives the same locations on every machine.
+
+Raises ValueError for a per_side below 1. Cost: O(locations).
 )";
 
 constexpr const char* kScatterUniformDoc =
-    R"(Independent random locations, uniform by limit area, or in proportion to area times density.
+    R"(Independent random locations, uniform by the area of the surface, or by area times density.
 
-Exactly so, inside each face as well: |du x dv| decides, not (u, v). Returns Locations (.face, .uv)
-in random order; the first n of a longer sequence are what a count of n gives. The same seed (0 to
-2^64 - 1) gives the same locations on every machine and with any number of threads.
+The distribution is exact, also within each face: it follows the area, not (u, v). Returns Locations
+(.face, .uv) in random order; the first n of a longer sequence are the locations for a count of n. A
+seed (0 to 2^64 - 1) gives the same locations on every machine and with any number of threads.
 
-density: (V,) weights of the vertices, linear over each Ptex face, or a function of (face, uv),
-arrays (n,) int32 and (n, 2), that returns (n,) weights. Weights are relative, finite and at least
-0; where they are 0 there is nothing. The function must not call set_positions(); the larger its
-largest value is than its mean, the longer it takes. progress, a function, is called now and then
-with the part done, 0 to 1; what it raises ends the call.
+density is None; or (V,) weights of the vertices, bilinear on each Ptex face; or a function that takes
+(face, uv), arrays (n,) int32 and (n, 2) float64, and returns (n,) weights. Weights are relative, finite
+and at least 0; no location lies where the weight is 0. The function must not call set_positions(). The
+more its largest value exceeds its mean, the longer the call takes. progress is a function that is
+called from time to time with the part of the work that is done, 0 to 1; an exception that it raises
+ends the call.
 
-Raises ValueError for a negative count, densities that are negative, not finite, of another shape or
-0 everywhere, and a surface without area. Some 0.2 microseconds a location; the first call builds a
-table that is kept until set_positions().
+Raises ValueError for a negative count, for a density that is negative, not finite, of another shape or
+0 everywhere, and for a surface without area. Cost: about 0.2 microseconds a location. The first call
+builds a table that is kept until set_positions().
 )";
 
 constexpr const char* kScatterBlueNoiseDoc =
-    R"(Random points that keep a distance from each other (Poisson-disk sampling, blue noise).
+    R"(Random points that keep a distance from each other: blue noise, by Poisson-disc sampling.
 
-Exactly one of count and radius. Two points are in conflict if the chord between them is shorter
-than the radius and the normals there are less than 90 degrees apart: the sides of a thin sheet do
-not see each other. With a radius the points are maximal: nowhere is there place for one more, to
-1/512 of the radius. With a count there are exactly so many, as far apart as such random points get.
-Returns BlueNoise: .face, .uv in face order and .radius, the distance that the points keep.
+Exactly one of count and radius must be given. Two points conflict if the chord between them is shorter
+than the radius and the angle between their normals is below 90 degrees, so that points on the two sides
+of a thin sheet do not conflict. For a radius the points are maximal: no room for another point remains
+that is wider than 1/512 of the radius. For a count there are exactly as many points, as far apart as
+such random points can be. Returns BlueNoise: .face and .uv in face order, and .radius, the distance
+that the points keep.
 
-density, seed and progress: as for scatter_uniform(). The radius grows as 1 / sqrt(density / largest
-density), and two points keep the mean of theirs. A function is read on a grid of each face whose
-squares are at most a radius wide, and is linear between; where it is 0 there are no points.
+seed, density and progress are those of scatter_uniform(). With a density the radius of a point is
+proportional to 1 / sqrt(density / largest density), and two points keep the mean of their radii. A
+density function is read on a grid of each face whose squares are at most a radius wide, and
+interpolated; no point lies where it is 0.
 
-Raises ValueError as scatter_uniform(), and for a radius that is not above 0 and finite or of which
-more than 2^31 points would come, and faces too sheared. Some 12 microseconds a point.
+The method is that of White, Cline & Egbert ("Poisson Disk Point Sets by Hierarchical Dart Throwing",
+2007) on the limit surface. Raises ValueError as scatter_uniform() does, for a radius that is not finite
+and above 0 or would lead to more than 2^31 points, and for faces that are sheared too strongly. Cost:
+about 12 microseconds a point.
 )";
 
 constexpr const char* kClosestDoc =
-    R"(The closest point of the limit surface, itself and not of polygons, for each of (n, 3) points.
+    R"(The closest point of the limit surface to each of (n, 3) points.
 
-Boundaries, creases and corners are part of the surface. max_distance leaves out what is farther.
-facing, (n, 3) or (3,) directions, accepts only feet whose normal is within max_angle (radians) of
-them; a foot is where the distance over its smooth sheet (boundaries and infinitely sharp edges end
-one) is smallest in its neighbourhood. progress, a function, is called now and then with the part
-done, 0 to 1; what it raises ends the call.
+The exact surface is searched, not polygons; boundaries, creases and corners are parts of it. Points
+farther than max_distance are not found. With facing, directions (n, 3) or (3,), only feet count whose
+normal is within max_angle (radians, 0 to pi) of the direction. A foot is a local minimum of the distance
+on the smooth sheet it lies on; boundaries and infinitely sharp edges end a sheet. progress is a function
+that is called from time to time with the part of the work that is done, 0 to 1; an exception that it
+raises ends the call.
 
-Returns Hits: .face (n,) int32, .uv (n, 2), .position and .normal (n, 3), which are what evaluate()
-gives there, and .distance (n,). Where there is none face is -1 and the rest NaN.
+Returns Hits: .face (n,) int32, .uv (n, 2), .position and .normal (n, 3), those of evaluate() at the
+location, and .distance (n,). Where no point is found face is -1 and everything else NaN.
 
-Error: the distance is within 1e-12 of the cage's diagonal of the true minimum, for points within
-1,000 diagonals. Branch and bound over control hulls, then Newton's iteration where the distance is
-convex; microseconds a point. The first call builds a search tree that is kept until
-set_positions().
+Error bound: the distance exceeds the true minimum by at most 1e-12 of the control mesh's diagonal, for
+points within 1,000 diagonals of it. The method is branch and bound over control hulls, with Newton's
+iteration where the distance is convex. Cost: some microseconds a point. The first call builds a search
+tree that is kept until set_positions().
 
-Raises ValueError for other shapes, points that are not finite and options without meaning.
+Raises ValueError for arrays of other shapes, for points that are not finite, and for a max_distance or
+max_angle out of range.
 )";
 
 constexpr const char* kRayCastDoc =
     R"(The first point at which each ray meets the limit surface, from either side.
 
-origins and directions, (n, 3) each; directions need not be unit vectors. Rays that graze the
-surface within 1e-12 of the cage's diagonal hit it; none slip through between faces. Returns Hits
-(see closest()); .distance counts along the normalised direction, is at least 0 and at most
-max_distance. Error of hits: 1e-12 of the diagonal, for origins within 1,000 diagonals.
+origins and directions are (n, 3) each; directions need not be unit vectors. A ray that touches the
+surface within 1e-12 of the control mesh's diagonal hits it, and no ray passes between two faces.
+Returns Hits (see closest()); .distance is measured along the normalised direction and lies between 0
+and max_distance. Error bound of hits: 1e-12 of the diagonal, for origins within 1,000 diagonals of the
+mesh.
 
-Raises ValueError for other shapes, rows that are not finite and directions without length.
+Raises ValueError for arrays of other shapes, for rows that are not finite, and for directions of
+length 0. Cost: some microseconds a ray; the first call builds the search tree of closest().
 )";
 
 constexpr const char* kRayCastAllDoc =
-    R"(All points at which each ray meets the limit surface, sorted along it.
+    R"(All points at which each ray meets the limit surface, sorted along the ray.
 
-As ray_cast(), but RayHits: the fields of Hits with one row for each hit, and .offsets (n + 1,)
-int64: the hits of ray i are rows offsets[i] to offsets[i + 1] - 1. A hit on the border of several
-faces counts once; of a stretch on which a ray runs within the surface, the beginning on each
-patch is given.
+Parameters and errors are those of ray_cast(). Returns RayHits: the fields of Hits with a row for each
+hit, and .offsets (n + 1,) int64; the hits of ray i are rows offsets[i] to offsets[i + 1] - 1. A hit on
+the border of several faces counts once. Where a ray runs within the surface, one point at the beginning
+of each patch is returned.
 )";
 
 constexpr const char* kTessellateDoc =
     R"(Watertight polygons on the limit surface: 2^levels x 2^levels quads a face.
 
-Each sub-face of an n-gon gets half as many a side, so levels >= 1 where there are n-gons. levels
-may be (F,) integers, one for each face of the mesh (those of refused faces mean nothing): an edge
-then has 2^level segments for the largest level of its faces, and coarser faces pass over to it by
-smaller quads and triangles.
+Each sub-face of an n-gon becomes half as many quads a side, so levels must be at least 1 if there are
+n-gons. levels may also be (F,) integers, one for each face of the mesh; those of refused faces are
+ignored. An edge then has 2^level segments for the larger level of its faces, and a coarser face has
+smaller quads and triangles towards such an edge.
 
 Returns Tessellation:
-    .positions .normals (n, 3), .locations: of the points, each of which exists once
-    .faces (m, 4) int32: the polygons; those of triangles end in -1
-    .face_sizes (m,) .face_vertices (k,) int32: the same without such ends
-    .base_face .ptex_face (m,) int32: the mesh's face, and the Ptex face, that a polygon lies on
-    .corner_uv (k, 2) float32: of the polygons' corners on their own Ptex face, exactly
+    .positions .normals (n, 3), .locations: the points, each of which exists once
+    .faces (m, 4) int32: the polygons; rows of triangles end in -1
+    .face_sizes (m,) .face_vertices (k,) int32: the same polygons without padding
+    .base_face .ptex_face (m,) int32: the face of the mesh, and the Ptex face, on which a polygon lies
+    .corner_uv (k, 2) float32: (u, v) of the polygons' corners on their own Ptex face, exactly
     .corner_locations: the same as Locations
-    .corner_normals (k, 3): with corner_normals=True, else None; as seen from the polygon's own
-        face, so one-sided at creases
-Normals are always finite: at irregular vertices without one they are the third column of frames().
-progress: called with the part that is done, 0 to 1. ValueError names the first face whose level is
-not 0 (n-gons: 1) to 12.
+    .corner_normals (k, 3): None unless corner_normals=True; the normals of the polygon's own face, so
+        that they are one-sided at creases
+Normals are always finite: at irregular vertices without a normal they are the third column of frames().
+progress is called with the part of the work that is done, 0 to 1.
+
+Raises ValueError naming the first face whose level is not 0 (on n-gons 1) to 12. Cost: an evaluation
+for each point.
 )";
 
 constexpr const char* kLevelsWithinDoc =
-    R"(Levels for tessellate(), as low as keeps polygons within `tolerance` of the surface.
+    R"(The lowest levels for tessellate() at which polygons are within `tolerance` of the surface.
 
-That is measured, not bounded: between the surface and either way of cutting polygons into triangles,
-at the middles of sides, diagonals and quads and at 8 or more places along each side of a Ptex face,
-along the surface's normal; on borders and infinitely sharp edges the sides' distance as well.
-Neighbours are raised until levels differ by 2 at most across an edge.
+Deviations are measured, not bounded: along the surface's normal, between the surface and both ways of
+cutting a polygon into triangles, at the middles of sides, diagonals and quads and at 8 or more places
+along each side of a Ptex face. On boundaries and infinitely sharp edges the distance of the sides is
+measured as well. Levels of neighbours are raised until they differ by at most 2 across an edge.
 
-Returns FaceLevels: .levels (F,) int32, .measure (F,): the deviation at that level or, where a
-neighbour raised it, at a lower one; above `tolerance` where the level `most` is too low. 0 and NaN
-for refused faces. ValueError unless tolerance > 0 and most is 1 to 12.
+Returns FaceLevels: .levels (F,) int32, and .measure (F,), the deviation at that level or, if a neighbour
+raised it, at a lower one; it exceeds `tolerance` where the level `most` is too low. Refused faces have 0
+and NaN. Raises ValueError unless tolerance is above 0 and most is 1 to 12. Cost: four to six evaluations
+for each point of the tessellation.
 )";
 
 constexpr const char* kLevelsOfLengthDoc =
-    R"(Levels for tessellate(), as low as keeps sides of polygons no longer than `length`.
+    R"(The lowest levels for tessellate() at which no side of a polygon is longer than `length`.
 
-With matrix (4, 4) that is a length in a picture: matrix @ (x, y, z, 1) are homogeneous coordinates
-there, and what has w < nearest is not seen, so has no length. Lengths are measured between places
-at eighths of each side of a Ptex face. Neighbours are raised until levels differ by 2 at most
-across an edge.
+With a matrix (4, 4) lengths are measured in a picture: matrix @ (x, y, z, 1) are its homogeneous
+coordinates, and points with w < nearest are not visible and have no length. Lengths are measured between
+places at eighths of each side of a Ptex face. Levels of neighbours are raised until they differ by at
+most 2 across an edge.
 
-Returns FaceLevels: .levels (F,) int32, .measure (F,): the longest side at that level or, where a
-neighbour raised it, at a lower one; above `length` where the level `most` is too low. 0 and NaN for
-refused faces. ValueError unless length > 0 and most is 1 to 12.
+Returns FaceLevels: .levels (F,) int32, and .measure (F,), the longest side at that level or, if a
+neighbour raised it, at a lower one; it exceeds `length` where the level `most` is too low. Refused faces
+have 0 and NaN. Raises ValueError unless length is above 0 and most is 1 to 12. Cost: 81 evaluations for
+each Ptex face.
 )";
 
 constexpr const char* kRasterizeDoc =
-    R"(Where the texels of an image lie on the surface: the UV map inverted on its limit.
+    R"(The locations of an image's texels on the surface, by the exact inverse of the UV map.
 
 Parameters
 ----------
 width, height : int, 1 to 65,536
 tile : (int, int)
-    The image covers [i, i + 1] x [j, j + 1] of the map: UDIM tile 1001 + i + 10 j.
+    The image covers [i, i + 1] x [j, j + 1] of the map, which is UDIM tile 1001 + i + 10 j.
 margin : float
-    Texels outside the map's image whose centre is no farther from it than so many texels get the
-    location on its border that is nearest.
+    In texels, 0 to 4,096. A texel outside the map's image whose centre is no farther from it than that
+    gets the nearest location on the border of the image.
 threads : int
-progress : function of the part that is done, 0 to 1, optional
+progress : function, optional
+    It is called with the part of the work that is done, 0 to 1.
 
 Returns
 -------
 Texels
-    Sorted by row (y), then by column (x), with y upwards as in Blender's images. Texel (x, y)'s
-    centre is tile + ((x + 0.5) / width, (y + 0.5) / height) on the map.
+    Sorted by row (y), then by column (x), with y upwards as in Blender's images. The centre of texel
+    (x, y) is tile + ((x + 0.5) / width, (y + 0.5) / height) on the map.
     .x .y : (n,) int32
     .face : (n,) int32, .uv : (n, 2)
-        The location, exact to 1e-12 of the diagonal of the box around the map's values and (0, 0).
+        The location. The map takes it to the centre of the texel up to 1e-12 of the diagonal of the
+        box around the map's values and (0, 0).
     .inside : (n,) bool
         False for texels of the margin.
     .overlap : (n,) bool
-        Several places of the surface lie there; that with the lowest Ptex face is given, among
-        those of one face that with the lowest v, then u.
+        The map takes several places of the surface there. The place on the lowest Ptex face is
+        returned; on one face that with the lowest v, then the lowest u.
     .flipped : (n,) bool
         The map is mirrored there.
 
-No texel is lost on edges that faces share. Faces whose image has no area cover none.
+No texel is lost on edges that faces share. Faces whose image has no area cover no texels.
 
-Raises ValueError for data of other than two columns, and for sizes out of range.
+Raises ValueError for data of other than two columns, and for sizes out of range. Cost: O(faces log
+faces) for the first call on these values, then O(texels).
 )";
 
 constexpr const char* kLocateDoc =
-    R"(Which places of the surface lie at points of the UV map: (n, 2) float.
+    R"(The places of the surface that the UV map takes to points (n, 2).
 
-Returns MapLocations: .face (n,) is -1 and .uv (n, 2) NaN where the map does not cover the point;
-.overlap and .flipped as rasterize() has them. A point on the map's border counts as covered.
+Returns MapLocations: .face (n,) and .uv (n, 2), which are -1 and NaN where the map does not cover the
+point; .overlap and .flipped are those of rasterize(). A point on the border of the map counts as covered.
 
 Raises ValueError for data of other than two columns, and naming the first row that is not finite.
 )";

@@ -11,7 +11,7 @@
 #include "control_mesh.h"
 #include "limitsurf/image/blend.h"
 #include "limitsurf/image/filtered_image.h"
-#include "limitsurf/project/box.h"
+#include "limitsurf/project/box_projectors.h"
 #include "matrices.h"
 #include "progress.h"
 #include "projection_docstrings.h"
@@ -19,7 +19,7 @@
 namespace limitsurf::python {
 namespace {
 
-/// Rows looked up at a time: a progress bar moves, and Ctrl-C is heard.
+/// The number of rows sampled between two reports of the progress; Ctrl-C takes effect there.
 constexpr Eigen::Index kRowsPerPart = Eigen::Index{1} << 18;
 
 const Choices<Extension> kExtensions = {{"clip", Extension::clip},
@@ -163,7 +163,7 @@ void bindImages(py::module_& module) {
           [](const BoundImage& b) {
             return py::make_tuple(b.image().height(), b.image().width(), b.image().channels());
           },
-          "(h, w, c) of the pixels that it was made of.")
+          "(h, w, c): the shape of the pixels.")
       .def("sample", &sample, "st"_a, "footprint"_a, py::kw_only(), "threads"_a = 0,
            "progress"_a = py::none(), kSampleDoc)
       .def("__repr__", [](const BoundImage& b) {

@@ -7,7 +7,8 @@
 
 namespace limitsurf::python {
 
-/// A (4, 4) array; ValueError for another shape. None, where that is allowed, is the identity.
+/// The matrix of a (4, 4) array; matrixOrNone() returns the identity for None. Throw ValueError for
+/// an array of another shape.
 Eigen::Matrix4d matrixOf(const py::object& object, const char* name);
 Eigen::Matrix4d matrixOrNone(const py::object& object, const char* name);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/pybind11.h>
 
-#include "bake.h"
 #include "control_mesh.h"
 #include "displacement.h"
 #include "images.h"
@@ -9,16 +8,20 @@
 #include "limitsurf/error.h"
 #include "ptex_layout.h"
 #include "surface_data.h"
+#include "tangent_frames.h"
 
 PYBIND11_MODULE(_limitsurf, module) {
   namespace py = pybind11;
   module.doc() = "The native part of limitsurf.";
   module.attr("__version__") = LIMITSURF_VERSION;
   py::register_exception<limitsurf::MeshError>(module, "MeshError", PyExc_ValueError).doc() =
-      "A control mesh that has no meaning, or a request for a face without limit surface. The "
-      "message names the face, vertex or row and the value.";
+      "An invalid control mesh, or a face that has no limit surface. The message names the face, "
+      "vertex or row and the wrong value.";
   py::register_exception<limitsurf::LocationError>(module, "LocationError", PyExc_ValueError)
-      .doc() = "A location outside the surface's domain. The message names the row and the value.";
+      .doc() =
+      "A location that does not exist: an unknown face, or (u, v) that is NaN or outside [0, 1]. "
+      "The "
+      "message names the row and the wrong value.";
   limitsurf::python::bindControlMesh(module);
   limitsurf::python::bindSurfaceData(module);
   limitsurf::python::bindImages(module);

@@ -5,8 +5,8 @@
 
 namespace limitsurf::python {
 
-/// What Python asks to be told: called with the GIL on the calling thread, and what it raises ends
-/// the call.
+/// The argument `progress`: None, or a Python function, which is called with the GIL on the calling
+/// thread. An exception that it raises ends the call.
 class ProgressReport {
  public:
   explicit ProgressReport(const py::object& report) : report_(report) {

@@ -20,14 +20,14 @@
 namespace limitsurf::python {
 namespace {
 
-/// Rows projected at a time: a progress bar moves, and Ctrl-C is heard.
+/// The number of rows projected between two reports of the progress; Ctrl-C takes effect there.
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
 
 const Choices<RayDirection> kRayDirections = {{"both", RayDirection::both},
                                               {"outward", RayDirection::outward},
                                               {"inward", RayDirection::inward}};
 
-/// Projections row by row, as numpy arrays.
+/// The numpy arrays of a projection.
 class ProjectionArrays {
  public:
   explicit ProjectionArrays(py::ssize_t rows)
@@ -35,7 +35,7 @@ class ProjectionArrays {
         footprint_(py::dtype("float64"), {rows, 2, 2}),
         weight_(py::dtype("float64"), {rows}) {}
 
-  /// Without the GIL.
+  /// Sets rows from `begin` on. It may be called without the GIL.
   void put(std::size_t begin, const Projection& part) {
     const auto rows = static_cast<std::size_t>(part.weight.size());
     st_.put(2 * begin, part.st.data(), 2 * rows);
@@ -50,8 +50,8 @@ class ProjectionArrays {
   Output st_, footprint_, weight_;
 };
 
-/// Puts body(locations) of one part after the other into arrays, without the GIL. Nothing that
-/// `lock` holds is held while progress is told.
+/// Writes body(locations) of one part after the other into the arrays, without the GIL. The lock
+/// that `lock` returns is not held while the progress is reported.
 template <typename Lock, typename Body>
 void projectInParts(const Locations& at, const ProgressReport& report, ProjectionArrays& arrays,
                     const Lock& lock, const Body& body) {
@@ -105,7 +105,7 @@ py::object project(const SharedSurface& shared, const SharedData& uv_map, const 
   return arrays.object();
 }
 
-/// Holds the data of two maps still, which may be one.
+/// Keeps the values of two maps unchanged; both may be the same map.
 class HeldMaps {
  public:
   HeldMaps(const SharedData& a, const SharedData& b) : first_(a.mutex) {

@@ -15,13 +15,13 @@ namespace limitsurf::python {
 namespace {
 
 constexpr const char* kPtexLayoutDoc =
-    R"(An image that holds a square tile for each Ptex face, so that no UV map is needed.
+    R"(The layout of an image that holds a square tile for each Ptex face, so that no UV map is needed.
 
-A tile has resolution + 1 pixels a side (resolution is a power of two): pixel (i, j) holds the value
-at (u, v) = (i, j) / resolution. Values along a face's sides stand in the tiles of all faces that
-meet there, so bilinear interpolation within a tile is continuous from face to face and needs no
-neighbour. Tiles follow each other in rows of `columns` from the image's lower left corner: the tile
-of face f begins at pixel (f % columns, f // columns) * (resolution + 1).
+A tile has resolution + 1 pixels a side, where resolution is a power of two; pixel (i, j) holds the value
+at (u, v) = (i, j) / resolution. The values along the sides of a face stand in the tiles of all faces that
+meet there, so that bilinear interpolation within a tile needs no neighbouring tile and is continuous from
+face to face. Tiles stand in rows of `columns` from the lower left corner of the image: the tile of face f
+begins at the pixel (f % columns, f // columns) * (resolution + 1).
 
     layout = limitsurf.PtexLayout(surface.face_count, 64)
     texels = layout.texels()                              # .x .y .face .uv of every pixel
@@ -30,33 +30,39 @@ of face f begins at pixel (f % columns, f // columns) * (resolution + 1).
 )";
 
 constexpr const char* kTexelsDoc =
-    R"(All pixels of all tiles, face after face: .x .y (upwards), and the location .face .uv that each
-stands for.)";
+    R"(All pixels of all tiles, face after face: PtexTexels.
+
+.x and .y (upwards) are (n,) int32; .face (n,) int32 and .uv (n, 2) float64 are the pixels' locations.)";
 
 constexpr const char* kMapCoordinatesDoc =
-    R"((n, 2) float64: where on the image, from (0, 0) at its lower left corner to (1, 1), the values
-of locations are found. As UVs of a mesh they make a renderer read the image, with linear filtering,
-no mipmaps.)";
+    R"((n, 2) float64: the image coordinates of locations, with (0, 0) at the lower left corner of the image
+and (1, 1) at the upper right one.
+
+As the UVs of a mesh they make a renderer read the image; it must filter linearly and without mipmaps.
+Raises LocationError for a face that is not in the layout.)";
 
 constexpr const char* kBilinearDoc =
-    R"(Values of an image between its pixels, interpolated bilinearly in double precision.
+    R"(Values of an image at any place, interpolated bilinearly in double precision.
 
 Parameters
 ----------
 pixels : (h, w, c) array of float
-    Rows from the lower left corner upwards, as Blender has them; rounded to float32.
+    Rows from the lower left corner upwards, as in Blender's images; values are rounded to float32.
 st : (n, 2) array of float
-    From (0, 0) at the lower left corner to (1, 1); pixel centres are half a pixel inside. Outside of
-    the outermost centres the nearest value on their border counts.
+    Places, with (0, 0) at the lower left corner of the image and (1, 1) at the upper right one. The
+    centre of the first pixel is half a pixel inside. Beyond the outermost centres the value is the
+    nearest one on their border.
 
 Returns
 -------
 (n, c) float64.
+
+Raises ValueError for arrays of other shapes and naming the first place that is not finite.
 )";
 
 using PlaceRows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-/// The class as Python sees it.
+/// A layout that Python may have made without initialising it.
 class BoundLayout : public ZeroedMemory {
  public:
   BoundLayout(int faces, int resolution)
@@ -124,17 +130,19 @@ void bindPtexLayout(py::module_& module) {
       .def(py::init<int, int>(), "face_count"_a, "resolution"_a)
       .def_property_readonly(
           "face_count", [](const BoundLayout& b) { return b.layout().faces(); },
-          "Number of Ptex faces.")
+          "The number of Ptex faces.")
       .def_property_readonly(
           "resolution", [](const BoundLayout& b) { return b.layout().resolution(); },
-          "Pixels along the side of a tile, less one.")
+          "The number of pixels along the side of a tile, less one.")
       .def_property_readonly(
           "columns", [](const BoundLayout& b) { return b.layout().columns(); },
-          "Tiles in a row: the square root of their number, rounded up.")
+          "The number of tiles in a row: the square root of their number, rounded up.")
       .def_property_readonly(
-          "width", [](const BoundLayout& b) { return b.layout().width(); }, "Of the image.")
+          "width", [](const BoundLayout& b) { return b.layout().width(); },
+          "The width of the image, in pixels.")
       .def_property_readonly(
-          "height", [](const BoundLayout& b) { return b.layout().height(); }, "Of the image.")
+          "height", [](const BoundLayout& b) { return b.layout().height(); },
+          "The height of the image, in pixels.")
       .def("texels", &texels, kTexelsDoc)
       .def("map_coordinates", &mapCoordinates, "face"_a, "uv"_a, kMapCoordinatesDoc)
       .def("__repr__", [](const BoundLayout& b) {

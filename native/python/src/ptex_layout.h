@@ -5,7 +5,7 @@
 
 namespace limitsurf::python {
 
-/// PtexLayout, and the function that reads its images back.
+/// PtexLayout, and bilinear(), which reads its images.
 void bindPtexLayout(pybind11::module_& module);
 
 }  // namespace limitsurf::python

@@ -10,15 +10,15 @@
 
 #include "arrays.h"
 #include "control_mesh.h"
-#include "held_still.h"
-#include "lazily.h"
+#include "kept_value.h"
 #include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
+#include "pose_hold.h"
 
 namespace limitsurf::python {
 
-/// A surface that may be re-posed while other Python threads, without the GIL, evaluate it.
+/// A surface whose positions may be set while other Python threads evaluate it without the GIL.
 struct SharedSurface : ZeroedMemory {
   explicit SharedSurface(std::shared_ptr<BoundMesh> m)
       : mesh(std::move(m)), surface_(std::make_unique<LimitSurface>(*mesh)) {}
@@ -34,29 +34,37 @@ struct SharedSurface : ZeroedMemory {
     return *surface_;
   }
 
-  /// With the mutex held alone.
+  /// Forgets what was made for the pose. The mutex must be held exclusively.
   void forgetPose() {
     search.forget();
     sampler.forget();
     ++pose_;
   }
-  /// Another number after every set_positions().
+  /// The number of the pose, which changes with every set_positions().
   std::uint64_t pose() const { return pose_; }
 
   std::shared_ptr<BoundMesh> mesh;
   mutable std::shared_mutex mutex;
-  Lazily<SurfaceSearch, LimitSurface> search;
-  Lazily<AreaSampler, LimitSurface> sampler;
+  KeptValue<SurfaceSearch, LimitSurface> search;
+  KeptValue<AreaSampler, LimitSurface> sampler;
 
  private:
   std::unique_ptr<LimitSurface> surface_;
   std::atomic<std::uint64_t> pose_{0};
 };
 
-using HeldPose = HeldStill<SharedSurface>;
+using HeldPose = PoseHold<SharedSurface>;
 
-void bindQueries(py::class_<SharedSurface>& type);
-void bindScatter(py::class_<SharedSurface>& type);
-void bindTessellate(py::class_<SharedSurface>& type);
+// The methods of LimitSurface by subject.
+/// evaluate(), frames(), curvature(), stencils()
+void bindEvaluation(py::class_<SharedSurface>& type);
+/// face_varying(), vertex_data(), varying()
+void bindDataMakers(py::class_<SharedSurface>& type);
+/// tessellate(), levels_within(), levels_of_length()
+void bindTessellation(py::class_<SharedSurface>& type);
+/// closest(), ray_cast(), ray_cast_all()
+void bindSearch(py::class_<SharedSurface>& type);
+/// area() and the scatter methods
+void bindSampling(py::class_<SharedSurface>& type);
 
 }  // namespace limitsurf::python

@@ -7,8 +7,9 @@
 #include "batches.h"
 #include "choices.h"
 #include "docstrings.h"
-#include "held_still.h"
 #include "limitsurf/error.h"
+#include "pose_hold.h"
+#include "shared_surface.h"
 
 namespace limitsurf::python {
 namespace {
@@ -51,7 +52,7 @@ void setValues(SharedData& shared, const py::object& values, int threads) {
   const DataRows rows = rowsOf(values);
   SurfaceData& data = shared.data();
   const py::gil_scoped_release release;
-  if (HeldStill<SharedData>::isHeldHere(shared)) {
+  if (PoseHold<SharedData>::isHeldHere(shared)) {
     throw std::runtime_error(
         "set_values() called by a function that a call on the same data called: it would wait for "
         "itself");
@@ -59,6 +60,31 @@ void setValues(SharedData& shared, const py::object& values, int threads) {
   const std::unique_lock<std::shared_mutex> lock(shared.mutex);
   data.setValues(rows, threads);
   shared.uv_map.forget();
+}
+
+std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::object& values,
+                                        const py::object& indices, const std::string& interpolation,
+                                        int threads) {
+  checkThreads(threads);
+  const Interpolation rule = interpolationOf(interpolation);
+  const DataRows rows = rowsOf(values);
+  const Integers picked = integers<MeshError>(indices, "indices");
+  requireVector<MeshError>(picked, "indices");
+  const std::vector<std::int64_t> corners(picked.data(), picked.data() + picked.size());
+  const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
+  return std::make_unique<SharedData>(shared.surface().faceVarying(rows, corners, rule, threads));
+}
+
+/// `make`: LimitSurface::vertexData() or varying().
+template <SurfaceData (LimitSurface::*make)(const DataRows&, int) const>
+std::unique_ptr<SharedData> perVertex(const SharedSurface& shared, const py::object& values,
+                                      int threads) {
+  checkThreads(threads);
+  const DataRows rows = rowsOf(values);
+  const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
+  return std::make_unique<SharedData>((shared.surface().*make)(rows, threads));
 }
 
 }  // namespace
@@ -94,7 +120,7 @@ void bindSurfaceData(py::module_& module) {
   type.def_property_readonly(
           "shape",
           [](const SharedData& s) { return py::make_tuple(s.data().rows(), s.data().columns()); },
-          "(m, d) of the values that it was made of.")
+          "(m, d): the shape of the values.")
       .def("set_values", &setValues, "values"_a, "threads"_a = 0, kSetValuesDoc)
       .def("evaluate", &evaluate, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
            "threads"_a = 0, "dtype"_a = py::dtype("float64"), kEvaluateDataDoc)
@@ -103,6 +129,16 @@ void bindSurfaceData(py::module_& module) {
                std::to_string(s.data().columns()) + " columns)";
       });
   bindUvMap(type);
+}
+
+void bindDataMakers(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  type.def("face_varying", &faceVarying, "values"_a, "indices"_a, "interpolation"_a, py::kw_only(),
+           "threads"_a = 0, kFaceVaryingDoc)
+      .def("vertex_data", &perVertex<&LimitSurface::vertexData>, "values"_a, py::kw_only(),
+           "threads"_a = 0, kVertexDataDoc)
+      .def("varying", &perVertex<&LimitSurface::varying>, "values"_a, py::kw_only(),
+           "threads"_a = 0, kVaryingDoc);
 }
 
 }  // namespace limitsurf::python

@@ -8,13 +8,13 @@
 #include <string>
 
 #include "control_mesh.h"
-#include "lazily.h"
+#include "kept_value.h"
 #include "limitsurf/surface/surface_data.h"
 #include "limitsurf/uv/uv_map.h"
 
 namespace limitsurf::python {
 
-/// Data whose values may be set while other Python threads, without the GIL, evaluate them.
+/// Data whose values may be set while other Python threads evaluate them without the GIL.
 class SharedData : public ZeroedMemory {
  public:
   explicit SharedData(SurfaceData data) : data_(std::make_unique<SurfaceData>(std::move(data))) {}
@@ -23,16 +23,16 @@ class SharedData : public ZeroedMemory {
   SurfaceData& data();
 
   mutable std::shared_mutex mutex;
-  Lazily<UvMap, SurfaceData> uv_map;
+  KeptValue<UvMap, SurfaceData> uv_map;
 
  private:
   std::unique_ptr<SurfaceData> data_;
 };
 
-/// MeshError for a name that is no rule.
+/// The rule of this name. Throws MeshError for another name.
 Interpolation interpolationOf(const std::string& name);
 
-/// A (m, d) array, or (m,) as one column; MeshError for another shape.
+/// The rows of an (m, d) array, or of (m,) as one column. Throws MeshError for another shape.
 DataRows rowsOf(const pybind11::object& values);
 
 void bindSurfaceData(pybind11::module_& module);

@@ -12,29 +12,29 @@
 
 #include "batches.h"
 #include "docstrings.h"
-#include "held_still.h"
+#include "pose_hold.h"
 #include "progress.h"
 #include "surface_data.h"
 
 namespace limitsurf::python {
 namespace {
 
-/// Rows looked up at a time: a progress bar moves, and Ctrl-C is heard.
+/// The number of points searched between two reports of the progress; Ctrl-C takes effect there.
 constexpr Eigen::Index kRowsPerLookup = Eigen::Index{1} << 12;
 
-/// What use(uv map) gives, without the GIL and with the values held still.
+/// The result of use(uv map), called without the GIL. The values do not change meanwhile.
 template <typename Use>
 auto withMap(const SharedData& shared, int threads, const Use& use) {
   checkThreads(threads);
   const SurfaceData& data = shared.data();
   const py::gil_scoped_release release;
-  const HeldStill<SharedData> held(shared);
+  const PoseHold<SharedData> held(shared);
   const InterruptionPoint point = interruptible();
   return use(shared.uv_map.get(data, threads));
 }
 
-/// An array that takes a vector's elements over, without a copy. `Shown` is what numpy sees of
-/// them: of each T as many as go into it.
+/// An array that takes over the elements of a vector, without a copy. Its type is `Shown`; a T that
+/// consists of several becomes a row.
 template <typename Shown, typename T>
 py::array_t<Shown> taken(std::vector<T>&& from) {
   constexpr auto kColumns = static_cast<py::ssize_t>(sizeof(T) / sizeof(Shown));

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cameras and mapped surfaces for the tests of projecting, and what numpy says they see."""
+"""Cameras and mapped surfaces for the tests of projection, and their views computed by numpy."""
 
 import limitsurf as ls
 import numpy as np
@@ -19,7 +19,7 @@ def looking(eye, at, up=(0.0, 0.0, 1.0)):
 
 
 def perspective(half_width=0.5, half_height=0.5, near=0.1, far=100.0, shift=(0.0, 0.0)):
-    """The frame is 2 half_width x 2 half_height at distance 1."""
+    """A perspective matrix whose frame is 2 half_width x 2 half_height at distance 1."""
     return np.array(
         [
             [1 / half_width, 0, shift[0], 0],
@@ -42,13 +42,13 @@ def orthographic(half_width=1.0, half_height=1.0, near=0.1, far=100.0):
 
 
 def image_of(matrix, points):
-    """st of points, by the definition."""
+    """The st of points, by definition."""
     clip = points @ matrix[:, :3].T + matrix[:, 3]
     return (clip[:, :2] / clip[:, 3:] + 1) / 2
 
 
 def sheet(columns=6, rows=5, height=0.3, interpolation="none", seed=1):
-    """A curved open mesh over [0, 1]^2 with seams nowhere: (surface, its map of a square)."""
+    """A curved open mesh over [0, 1]^2 without seams: (surface, its map of a square)."""
     x, y = np.meshgrid(np.linspace(0, 1, columns + 1), np.linspace(0, 1, rows + 1))
     rng = np.random.default_rng(seed)
     z = height * np.sin(5 * x + 1) * np.cos(4 * y)
@@ -62,7 +62,7 @@ def sheet(columns=6, rows=5, height=0.3, interpolation="none", seed=1):
 
 
 def plane(side=4, height=0.0, turned=False):
-    """Squares over [0, 1]^2 in the plane z = height, and the map (x, y). Corners are kept."""
+    """Squares over [0, 1]^2 in the plane z = height, with pinned corners, and the map (x, y)."""
     steps = np.linspace(0, 1, side + 1)
     x, y = np.meshgrid(steps, steps)
     places = np.stack([x, y], axis=-1).reshape(-1, 2)

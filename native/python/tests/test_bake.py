@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tangent frames and distortion of UV maps, by differences along the map itself."""
+"""Tangent frames and distortion of UV maps, compared with differences along the map."""
 
 import limitsurf as ls
 import numpy as np
@@ -11,7 +11,7 @@ STEP = 1e-4
 
 @pytest.fixture
 def mapped():
-    """A bent sheet and a map without overlaps, with seams nowhere."""
+    """A bent sheet and a map without overlaps and seams."""
     rng = np.random.default_rng(3)
     positions, faces = shapes.grid(4, 3)
     uv = positions[:, :2] * (0.2, 0.25) + rng.uniform(-0.03, 0.03, (len(positions), 2)) + 0.1
@@ -21,7 +21,7 @@ def mapped():
 
 
 def along(surface, uv_map, at, axis):
-    """dP/dU or dP/dV: positions where the map is a little more, and a little less."""
+    """dP/dU or dP/dV, from positions at which the map has slightly larger and smaller values."""
     step = STEP * np.eye(2)[axis]
     here = uv_map.evaluate(at.face, at.uv).value
     ends = [uv_map.locate(here + s * step) for s in (1, -1)]
@@ -67,7 +67,7 @@ def test_distortion_by_differences(mapped):
 
 
 def test_area_ratios_add_up_to_the_area(mapped):
-    """The mean over the map's texels times their area is the surface's area."""
+    """The mean area ratio of the map's texels, times their area, is the area of the surface."""
     surface, uv_map = mapped
     texels = uv_map.rasterize(400, 400)
     ratio = surface.map_distortion(uv_map, texels.face, texels.uv).area
@@ -111,7 +111,7 @@ def test_errors_and_types(mapped):
 
 
 def shading(seed, n=200):
-    """Interpolated frames: not unit, not at right angles; both signs."""
+    """Interpolated frames, neither of unit length nor orthogonal, with both signs."""
     rng = np.random.default_rng(seed)
     normals = rng.normal(size=(n, 3)) * rng.uniform(0.3, 1, (n, 1))
     tangents = np.cross(normals, rng.normal(size=(n, 3))) + 0.1 * rng.normal(size=(n, 3))
@@ -125,7 +125,7 @@ def test_shading_frames_and_back():
     wanted /= np.linalg.norm(wanted, axis=1, keepdims=True)
     told = ls.into_shading_frames(wanted, normals, tangents, signs)
     np.testing.assert_allclose(np.linalg.norm(told, axis=1), 1, atol=1e-14)
-    # What renderers do with it, written out
+    # The formula of renderers
     across = signs[:, None] * np.cross(normals, tangents)
     found = told[:, :1] * tangents + told[:, 1:2] * across + told[:, 2:] * normals
     found /= np.linalg.norm(found, axis=1, keepdims=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Displacement between surfaces, and what maps of it give back.
+"""Displacement between surfaces, and the reading of its maps.
 
 Subdivided meshes are made by the rules spelled out in catmull_clark.py.
 """
@@ -72,7 +72,7 @@ def test_an_affine_map_displaces_as_it_says(name, levels, anywhere):
 
 
 def test_a_sculpted_child_is_found_in_its_quarter():
-    """Of one subdivided face, with numbers that nobody else computes."""
+    """One subdivided face, compared with numbers computed independently."""
     positions, faces = bent_grid()
     base = surface_of(positions, faces)
     fine, fine_faces = catmull_clark.subdivided(positions, faces, 1)
@@ -105,7 +105,7 @@ def test_frames(anywhere):
 
 
 def test_distances_between_planes(anywhere):
-    """Grids that are flat inside: the normal is (0, 0, 1), the target z = a x + b y + c."""
+    """Grids that are flat inside: the normal is (0, 0, 1), and the target is z = a x + b y + c."""
     positions, faces = shapes.grid(4, 4)
     base = surface_of(positions, faces)
     wide, wide_faces = shapes.grid(7, 5)
@@ -140,7 +140,7 @@ def test_the_nearer_of_two_sheets_counts(anywhere):
 
 
 def test_distances_between_closed_surfaces(anywhere):
-    """The nearest crossing of the line along the normal, of all that rays find."""
+    """The nearest of all crossings of the line along the normal that rays find."""
     base = surface_of(*shapes.cube())
     positions, faces = shapes.house()
     around = surface_of((shapes.cube()[0] - 0.5) * 1.3 + 0.55, shapes.cube()[1])
@@ -160,7 +160,7 @@ def test_distances_between_closed_surfaces(anywhere):
 
 
 def test_normals_at_irregular_vertices():
-    """Corners of four boundary faces have no normal; a distance is found all the same."""
+    """Corners of four boundary faces have no normal, but a distance is found there as well."""
     base = surface_of(*shapes.fan(5, False))
     at = base.vertex_locations()
     assert np.isnan(base.evaluate(at.face, at.uv, 1).normal).any()
@@ -270,7 +270,7 @@ def test_holes_in_the_target_are_named(cube):
 
 
 def test_bilinear():
-    """Against the four pixels around, by hand."""
+    """Values are compared with those computed from the four pixels around."""
     rng = np.random.default_rng(2)
     pixels = rng.random((5, 7, 3)).astype(np.float32)
     st = rng.uniform(-0.2, 1.2, (200, 2))
@@ -307,7 +307,7 @@ def test_tiles(faces, resolution):
     column, row = texels.face % layout.columns, texels.face // layout.columns
     inside = np.stack([texels.x - side * column, texels.y - side * row], axis=1)
     np.testing.assert_array_equal(inside / resolution, texels.uv)
-    # The centre of a texel is where its place is looked up.
+    # A texel is read at its centre.
     at = layout.map_coordinates(texels.face, texels.uv) * [layout.width, layout.height]
     np.testing.assert_allclose(at, np.stack([texels.x, texels.y], axis=1) + 0.5, atol=1e-9)
 
@@ -346,7 +346,7 @@ def test_layouts_without_meaning():
 
 
 def map_error(base, target, size, face, uv):
-    """Of the points that a map of size x size texels gives back, in tangent space."""
+    """The error of the points that a map of size x size texels, in tangent space, leads to."""
     uv_map = sheet_map(base)
     texels = uv_map.rasterize(size, size, margin=3)
     frames = base.tangent_frames(uv_map, texels.face, texels.uv)
@@ -363,7 +363,7 @@ def map_error(base, target, size, face, uv):
 
 
 def test_maps_give_the_target_back(anywhere):
-    """Twice as many texels along a side: a quarter of the error."""
+    """With twice as many texels along a side the error is a quarter."""
     positions, faces = bent_grid()
     base = surface_of(positions, faces)
     fine, fine_faces = catmull_clark.subdivided(positions, faces, 2)
@@ -381,14 +381,14 @@ def test_maps_give_the_target_back(anywhere):
 
 
 def inner_rows(base, face, uv):
-    """Which locations are well within the sheet, whatever the resolution."""
+    """Whether locations are well within the sheet, for any resolution."""
     columns, rows = 4, 3
     i, j = face % columns + uv[:, 0], face // columns + uv[:, 1]
     return (np.abs(i - columns / 2) < columns / 2 - 0.5) & (np.abs(j - rows / 2) < rows / 2 - 0.5)
 
 
 def shared_sides(base, count=37):
-    """Sides of Ptex faces at which two meet, each as places in the same order."""
+    """The sides at which two Ptex faces meet, each as places in the same order."""
     t = np.linspace(0, 1, count)
     zero, one = np.zeros(count), np.ones(count)
     ends = {}
@@ -406,7 +406,7 @@ def shared_sides(base, count=37):
 
 
 def test_tiles_give_the_target_back_without_seams(anywhere):
-    """In object space, on a closed mesh of n-gons without any UV map."""
+    """Displacement in object space, on a closed mesh of n-gons without a UV map."""
     positions, faces = shapes.house()
     base = surface_of(positions, faces)
     fine, fine_faces = catmull_clark.subdivided(positions, faces, 2)

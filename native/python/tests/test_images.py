@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Filtered images, blending, and the sides of a box, as Python sees them."""
+"""Filtered images, blending and the projectors of a box, called from Python."""
 
 from typing import Any
 
@@ -28,7 +28,7 @@ def test_rows_run_from_the_bottom_and_channels_stay(rng):
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
 def test_footprints_run_across_the_image(rng, channels):
-    """A footprint along s averages columns, one along t rows."""
+    """A footprint along s averages columns, and one along t averages rows."""
     pixels = np.zeros((64, 64, channels), np.float32)
     pixels[:, ::2] = 1
     image = ls.FilteredImage(pixels, "mirror")
@@ -98,7 +98,7 @@ def test_looking_up_tells_progress_and_can_be_stopped():
 
 
 def over(below, above, weight, mode):
-    """By the definitions, in double precision, straight alpha."""
+    """The expected blend by the definitions, in double precision, with straight alpha."""
     below, above = below.astype(float), above.astype(float)
     under, alpha = below[:, 3:], above[:, 3:] * weight[:, None]
     cb, cs = below[:, :3], above[:, :3]
@@ -178,7 +178,7 @@ def test_weights_of_a_boxs_sides(rng):
     share = np.abs(normals) / np.abs(normals).sum(axis=1, keepdims=True)
     np.testing.assert_allclose(ls.box_weights(normals, 1).reshape(-1, 3, 2).sum(axis=2), share)
 
-    # Planes of the surface in a stretched box.
+    # The planes of the surface, in a stretched box.
     box = np.array([[1, 0.5, 0, 0], [0, 3, 0, 0], [0, 0, 0.2, 0], [0, 0, 0, 1]])
     across = np.linalg.inv(box[:3, :3]).T @ normals.T
     np.testing.assert_allclose(ls.box_weights(normals, 0.3, box), ls.box_weights(across.T, 0.3))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Projecting images: places, footprints and weights against what numpy finds."""
+"""Projected images: places, footprints and weights, compared with those computed by numpy."""
 
 import limitsurf as ls
 import numpy as np
@@ -29,7 +29,7 @@ def sheet():
 
 
 def to_eye(matrix, points):
-    """Unit vectors towards the eye, from the matrix's null vector."""
+    """Unit vectors towards the eye, computed from the matrix's null vector."""
     null = np.linalg.svd(matrix[[0, 1, 3]])[2][-1]
     if abs(null[3]) > 1e-9:
         out = null[:3] / null[3] - points
@@ -94,7 +94,7 @@ def test_angles_are_the_worlds(anywhere):
     face, uv = anywhere(surface, 1000)
     options = {"facing": (0.5, 1.2), "frame": False}
     seen = surface.project(uv_map, face, uv, camera @ world, TEXEL, world=world, **options)
-    # The mirrored cage's normals point the other way.
+    # The normals of the mirrored cage point in the opposite direction.
     expected = in_world.project(
         map_in_world, face, uv, camera, TEXEL, facing=(np.pi - 1.2, np.pi - 0.5), frame=False,
         occlusion=False,
@@ -174,7 +174,7 @@ def test_a_dense_mesh_hides_the_same(anywhere):
             )
         ]
     )
-    # Apart from points within the mesh's error of a silhouette or of the shadow's border.
+    # Points within the mesh's error of a silhouette or of the shadow's border are left out.
     assert np.mean(seen.weight != ~hidden) < 0.02
 
 
@@ -255,7 +255,7 @@ def test_nothing_behind_the_eye(sheet, anywhere):
 
 
 def texels(side):
-    """Locations under the centres of a plane's side x side texels."""
+    """The locations of the centres of a plane's side x side texels."""
     y, x = np.mgrid[0:side, 0:side]
     places = (np.stack([x, y], -1).reshape(-1, 2) + 0.5) / side
     cells = np.minimum((4 * places).astype(int), 3)
@@ -299,7 +299,7 @@ def test_samples_make_borders_of_shadows_smooth(samples):
     seen = surface.project(
         uv_map, face, uv, camera, (1 / side, 1 / side), samples=samples, frame=False
     )
-    # The map's texels are squares on the planes: the same as so many smaller texels.
+    # The map's texels are squares on the planes, so the result is that of as many smaller texels.
     small_face, small_uv = texels(side * per_side)
     small = surface.project(uv_map, small_face, small_uv, camera, (1, 1), frame=False).weight
     expected = small.reshape(side, per_side, side, per_side).mean(axis=(1, 3)).ravel()

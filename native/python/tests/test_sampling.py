@@ -85,7 +85,7 @@ def test_tessellation_is_watertight(surface, mesh, levels):
     assert t.positions.shape == t.normals.shape
     assert len(t.locations) == len(t.positions)
     edges = directed_edges(t.faces)
-    # Every directed edge once: an inner edge's two faces run along it in opposite directions.
+    # Every directed edge occurs once: the two faces of an inner edge have opposite directions.
     assert len(np.unique(edges, axis=0)) == len(edges)
     present = set(map(tuple, edges))
     boundary = sum((b, a) not in present for a, b in present)
@@ -94,7 +94,7 @@ def test_tessellation_is_watertight(surface, mesh, levels):
     for face in corners:
         cage_edges |= set(zip(face, np.roll(face, -1), strict=True))
     assert boundary == sum((b, a) not in cage_edges for a, b in cage_edges) * 2**levels
-    # No point twice, none unused.
+    # No point occurs twice, and none is unused.
     assert len(np.unique(t.faces)) == len(t.positions)
 
 

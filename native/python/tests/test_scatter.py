@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Uniform and blue-noise scattering by limit area."""
+"""Uniform and blue-noise scattering by the area of the limit surface."""
 
 import ctrl_c
 import limitsurf as ls
@@ -9,7 +9,7 @@ import shapes
 
 
 def bent(surface):
-    """Another pose: faces of different sizes, areas that vary within them."""
+    """The surface in another pose: faces have different sizes, and the area varies within them."""
     p = surface.positions
     x, y = p[:, 0], p[:, 1]
     surface.set_positions(np.stack([x + 0.2 * x**2, y + 0.3 * x, p[:, 2] + 0.3 * y**2], axis=1))
@@ -17,7 +17,7 @@ def bent(surface):
 
 
 def triangle_areas(surface, levels):
-    """Per Ptex face, of a fine tessellation: not what the sampler goes by."""
+    """The area of each Ptex face, from a fine tessellation, which the sampler does not use."""
     mesh = surface.tessellate(levels)
     # No point that a face shares with others tells it: the face is that of a point just inside.
     a, b, c, d = np.moveaxis(mesh.positions[mesh.faces], 1, 0)
@@ -30,7 +30,7 @@ def triangle_areas(surface, levels):
 
 
 def distances(surface, at, radius):
-    """The smallest of all pairs that see each other, over their mean radius."""
+    """The smallest distance of all pairs that see each other, divided by their mean radius."""
     s = surface.evaluate(at.face, at.uv, derivatives=1)
     gaps = np.linalg.norm(s.position[:, None] - s.position[None], axis=2)
     radius = np.broadcast_to(radius, len(at))
@@ -95,7 +95,7 @@ BLUE_NOISE_FIRST = ["0x1.6fa07b3f2fccbp-2", "0x1.359a5fd8aed68p-5"]
 
 
 def test_the_same_on_every_machine(cube):
-    # Written down once: a seed means these places, on whatever machine.
+    # These values are fixed: a seed gives these places on every machine.
     at = cube.scatter_uniform(1000, 2**64 - 1)
     assert np.bincount(at.face).tolist() == UNIFORM_COUNTS
     assert [x.hex() for x in at.uv[0]] == UNIFORM_FIRST
@@ -124,11 +124,11 @@ def test_blue_noise_of_a_radius_is_maximal(surface):
     assert noise.radius == radius
     assert distances(surface, noise, radius) >= 1
     points = surface.evaluate(noise.face, noise.uv, derivatives=1)
-    darts = surface.scatter_jittered(60, 9)
-    thrown = surface.evaluate(darts.face, darts.uv, derivatives=1)
-    for rows in np.array_split(np.arange(len(darts)), 1 + len(darts) // 2000):
-        gap = np.linalg.norm(thrown.position[rows, None] - points.position[None], axis=2)
-        sees = thrown.normal[rows] @ points.normal.T > -0.01
+    trials = surface.scatter_jittered(60, 9)
+    tried = surface.evaluate(trials.face, trials.uv, derivatives=1)
+    for rows in np.array_split(np.arange(len(trials)), 1 + len(trials) // 2000):
+        gap = np.linalg.norm(tried.position[rows, None] - points.position[None], axis=2)
+        sees = tried.normal[rows] @ points.normal.T > -0.01
         assert np.all(((gap < radius * (1 + 1 / 512)) & sees).any(axis=1))
 
 
@@ -144,7 +144,7 @@ def test_density_by_vertex_weights(cube):
     at = cube.scatter_uniform(60_000, density=weights)
     got = np.bincount(at.face, minlength=6)
     assert got[1] == 0
-    # Beside the bottom the weight is linear; by symmetry the cube's area there is half of a face's.
+    # Beside the bottom the weight is linear; by symmetry it covers half of a face's area there.
     assert np.isclose(got[0] / got[2:].mean(), 2, rtol=0.05)
     noise = cube.scatter_blue_noise(count=3000, density=weights)
     weight = cube.varying(weights).evaluate(noise.face, noise.uv).value[:, 0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""UV maps inverted: texels and points to locations."""
+"""Inverted UV maps: the locations of texels and of points."""
 
 import beside
 import ctrl_c
@@ -13,7 +13,7 @@ FIELDS = ["x", "y", "face", "uv", "inside", "overlap", "flipped"]
 
 
 def map_of(positions, faces, interpolation="none"):
-    """Seen from above, within [0.1, 0.9]^2; the surface is not needed any more."""
+    """The surface projected from above, within [0.1, 0.9]^2; the map outlives the surface."""
     mesh = ls.ControlMesh.from_faces(positions, faces)
     values = positions[:, :2] + 0.2 * positions[:, 2:]
     low, high = values.min(axis=0), values.max(axis=0)
@@ -98,7 +98,7 @@ def test_irregular_vertices_and_polygons():
     [(1, False, "none"), (3, False, "none"), (8, True, "none")],
 )
 def test_vertices_of_maps_that_neither_fold_nor_flip(faces, is_closed, interpolation):
-    """At the vertex itself the directions along which it is left become parallel, or nearly."""
+    """At the vertex itself the directions of its edges become parallel, or nearly so."""
     positions, corners = shapes.fan(faces, is_closed, 0)
     mesh = ls.ControlMesh.from_faces(positions, corners)
     surface = ls.LimitSurface(mesh)

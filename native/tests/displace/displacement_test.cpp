@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Displacement between surfaces whose difference is known, and what images of it are read by.
+// Displacement between surfaces whose difference is known, and the reading of images of it.
 #include "limitsurf/displace/displacement.h"
 
 #include <gtest/gtest.h>

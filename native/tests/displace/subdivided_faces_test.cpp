@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The same places on a mesh and on its subdivisions: those that OpenSubdiv makes, in its own order
-// of faces and in Blender's.
+// The same places on a mesh and on its subdivisions, which OpenSubdiv makes, in its own order of
+// faces and in Blender's.
 #include "limitsurf/displace/subdivided_faces.h"
 
 #include <gtest/gtest.h>
@@ -21,12 +21,13 @@
 namespace limitsurf::test {
 namespace {
 
-/// A cell of a subdivided face: part (Ptex face, counted from the face's first), column and row.
+/// One face of the grid that a subdivided face becomes: part (Ptex face, counted from the face's
+/// first), column and row.
 struct Cell {
   int part, i, j;
 };
 
-/// Blender's order, walked as Blender walks.
+/// Blender's order of faces, by Blender's own loops.
 std::vector<Cell> blendersCells(int corners, int levels) {
   std::vector<Cell> cells;
   if (corners == 4) {
@@ -57,7 +58,7 @@ std::vector<Cell> blendersCells(int corners, int levels) {
   return cells;
 }
 
-/// The subdivided cage with its faces as Blender would number them.
+/// The subdivided cage with its faces in Blender's order.
 Cage inBlendersOrder(const Cage& cage, int levels) {
   Cage result = subdivided(cage, levels);
   const std::vector<FarSquare> squares = FarRefinement(cage, levels).squares;
@@ -83,7 +84,7 @@ Cage inBlendersOrder(const Cage& cage, int levels) {
   return result;
 }
 
-/// Other numbers for the same vertices.
+/// The same cage with its vertices in another order.
 Cage withVerticesShuffled(Cage cage, Random& random) {
   std::vector<int> to(cage.vertexCount());
   std::iota(to.begin(), to.end(), 0);
@@ -110,7 +111,7 @@ std::vector<Location> randomLocations(const Cage& cage, int count, Random& rando
   return at;
 }
 
-/// Both meshes have the same limit surface, so the same place has the same position.
+/// Both meshes have the same limit surface, so a place has the same position on both.
 double worstDistance(const Cage& base, const Cage& target, FaceOrder order, int levels,
                      Random& random) {
   const SubdividedFaces faces(controlMesh(base), controlMesh(target));
@@ -149,7 +150,7 @@ TEST(SubdividedFaces, TheSamePlaceIsFoundOnMixturesWithSharpness) {
   Random random(2);
   for (int seed = 1; seed <= 6; ++seed) {
     Cage cage = mixture(seed);
-    // OpenSubdiv's Chaikin rule is another one where sharpness above 1 decays.
+    // OpenSubdiv's Chaikin rule differs where sharpness above 1 decays.
     const bool chaikin = seed % 3 == 0;
     sharpenAtRandom(
         cage, random, 3, 5,
@@ -200,13 +201,13 @@ TEST(SubdividedFaces, PlacesBetweenFacesAreGivenToOneOfThem) {
   expectAt({0, 0x1p-60, 0}, {0, 0x1p-59, 0});
 }
 
-/// Boundaries are sharp by themselves.
+/// Boundaries are sharp without a given sharpness.
 Cage withoutSharpness(Cage cage) {
   cage.options = {};
   return cage;
 }
 
-/// What is said of a mesh that is no subdivision of the base.
+/// The message about a mesh that is not a subdivision of the base.
 void expectRefused(const Cage& base, const Cage& target, const std::vector<std::string>& parts) {
   std::vector<std::string> all = parts;
   all.emplace_back("structures do not match: ");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Filtered look-ups, held against sums over many samples of the image as it is defined: linear
-// between the centres of its pixels, continued outside as the extension says.
+// Filtered samples, compared with sums over many values of the image by its definition: linear
+// between the centres of its pixels, and continued outside by its extension.
 #include "limitsurf/image/filtered_image.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace limitsurf::test {
 namespace {
 
-/// An image of one channel that can be read anywhere, slowly.
+/// An image of one channel that can be read anywhere, at a high cost.
 struct PlainImage {
   PlainImage(int columns, int rows) : width(columns), height(rows), pixels(columns * rows) {}
 
@@ -50,7 +50,7 @@ struct PlainImage {
   std::vector<float> pixels;
 };
 
-/// Sides that are no powers of two, one of them a prime.
+/// An image whose sides are no powers of two, one of them a prime.
 PlainImage checker(int square, int width = 300, int height = 257) {
   PlainImage image(width, height);
   for (int y = 0; y < height; ++y) {
@@ -72,7 +72,8 @@ struct Footprint {
   double s_x, s_y, t_x, t_y;
 };
 
-/// `length` pixels long, `ratio` times less wide, turned in the image and within the texel.
+/// A footprint `length` pixels long and `ratio` times less wide, rotated in the image and in the
+/// texel.
 Footprint turned(const PlainImage& image, double length, double ratio, double angle,
                  double within) {
   const double width = length / ratio;
@@ -91,7 +92,7 @@ float sampled(const FilteredImage& image, double s, double t, const Footprint& f
   return image.sample(st, footprint, 1)(0, 0);
 }
 
-/// The mean over weight(x, y), which looks at texel coordinates around the texel's centre.
+/// The mean under weight(x, y), a function of texel coordinates around the centre of the texel.
 template <typename Weight>
 double mean(const PlainImage& image, Extension extension, double s, double t, const Footprint& f,
             double reach, int per_side, const Weight& weight) {
@@ -108,7 +109,7 @@ double mean(const PlainImage& image, Extension extension, double s, double t, co
   return sum / weights;
 }
 
-/// Half a texel for standard deviation.
+/// The Gaussian with a standard deviation of half a texel.
 double gaussian(double x, double y) { return std::exp(-2 * (x * x + y * y)); }
 
 TEST(FilteredImage, IsTheIntegralUnderAGaussian) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "limitsurf/sample/area.h"
-#include "limitsurf/sample/jittered.h"
+#include "limitsurf/sample/jittered_sampling.h"
 #include "limitsurf/tessellate/tessellation.h"
 #include "support/cages/meshes.h"
 #include "support/random.h"

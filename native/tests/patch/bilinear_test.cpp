@@ -7,7 +7,7 @@
 #include <array>
 
 #include "limitsurf/sample/area.h"
-#include "limitsurf/sample/jittered.h"
+#include "limitsurf/sample/jittered_sampling.h"
 #include "limitsurf/tessellate/tessellation.h"
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Projectors and projections on shapes for which formulas are known.
+// Projectors and projections on shapes with known formulas.
 #include "limitsurf/project/projection.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "limitsurf/image/blend.h"
-#include "limitsurf/project/box.h"
+#include "limitsurf/project/box_projectors.h"
 #include "limitsurf/project/projector.h"
 #include "limitsurf/uv/texel_places.h"
 #include "support/cages/meshes.h"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kNear = 0.5, kFar = 40;
 
-/// Camera coordinates: -z is forward.
+/// The projection of a camera that looks along its own -z.
 Eigen::Matrix4d perspective(double half_width) {
   Eigen::Matrix4d m = Eigen::Matrix4d::Zero();
   m(0, 0) = m(1, 1) = 1 / half_width;
@@ -39,7 +39,7 @@ Eigen::Matrix4d orthographic(double half_width) {
   return m;
 }
 
-/// The camera's place in the world, upside down and anyhow.
+/// The camera's transformation in the world: an arbitrary rotation and translation.
 Eigen::Isometry3d somewhere(Random& random, const Vector3& eye) {
   const Eigen::Quaterniond turn = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
                                                      random.uniform(-1, 1), random.uniform(-1, 1))
@@ -47,13 +47,13 @@ Eigen::Isometry3d somewhere(Random& random, const Vector3& eye) {
   return Eigen::Translation3d(eye) * turn;
 }
 
-/// (x, y) of the vertices as a map.
+/// The map whose values are (x, y) of the vertices.
 SurfaceData flatMap(const LimitSurface& surface) {
   return surface.vertexData(surface.positions().leftCols<2>());
 }
 
-/// The parabolic cylinder z = bend x^2 / 2 over the middle of a grid of 8 x 8 around (0, 0), where
-/// the cubic splines of these control points are it exactly.
+/// A grid of 8 x 8 around (0, 0) whose surface, in the middle, is exactly the parabolic cylinder
+/// z = bend x^2 / 2.
 LimitSurface parabola(double bend) {
   Cage cage = grid(8, 8);
   cage.positions.leftCols<2>().array() -= 4;
@@ -179,7 +179,7 @@ TEST(Projection, AlongTheNormalsOfAParabola) {
   for (Eigen::Index i = 0; i < seen.weight.size(); ++i) {
     const double x = e.position(i, 0), y = e.position(i, 1);
     ASSERT_NEAR(e.position(i, 2), bend / 2 * x * x, 1e-13);
-    // From (x, bend x^2 / 2) along (-bend x, 1) up to the ceiling.
+    // The ray leads from (x, bend x^2 / 2) along (-bend x, 1) up to the ceiling.
     EXPECT_NEAR(seen.st(i, 0), x - bend * x * (height - bend / 2 * x * x), 1e-11);
     EXPECT_NEAR(seen.st(i, 1), y, 1e-11);
     const double widened = 1 - bend * height + 1.5 * bend * bend * x * x;
@@ -201,7 +201,7 @@ TEST(Projection, StepsAsideWhereThereAreNoDerivatives) {
     EXPECT_TRUE(here.along_x.allFinite());
     EXPECT_TRUE(here.position == surface.evaluate(vertex).position);
     EXPECT_NEAR(here.normal.norm(), 1, 1e-12);
-    // x of the map is x of space.
+    // The map's x is that of space.
     EXPECT_NEAR(here.along_x(0, 0), 0.01, 1e-10);
     EXPECT_NEAR(here.along_x(0, 1), 0, 1e-10);
   }

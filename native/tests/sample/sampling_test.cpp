@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Locations and polygons that cover the whole surface: vertices, scattering, tessellation, area,
+// Locations and polygons that cover the whole surface: vertices, scattering, tessellation, area and
 // bounds.
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <set>
 
 #include "limitsurf/sample/area.h"
-#include "limitsurf/sample/jittered.h"
+#include "limitsurf/sample/jittered_sampling.h"
 #include "limitsurf/tessellate/tessellation.h"
 #include "support/cages/meshes.h"
 #include "support/truth/corner_points.h"
@@ -89,7 +89,7 @@ TEST(ScatterJittered, IsUniformWithinItsCells) {
   EXPECT_LT(std::abs(mixed) * 12 / std::sqrt(static_cast<double>(at.size())), 4);
 }
 
-/// Sum of the quads' areas, each as two triangles.
+/// The sum of the areas of quads, each taken as two triangles.
 double polygonArea(const Tessellation& mesh) {
   double sum = 0;
   for (std::size_t q = 0; q < mesh.face_vertices.size(); q += 4) {
@@ -126,7 +126,7 @@ TEST(Tessellate, IsWatertight) {
     for (const auto& [a, b] : cage_edges) cage_boundary += cage_edges.count({b, a}) == 0;
     EXPECT_EQ(boundary, cage_boundary << levels);
     EXPECT_EQ(closed, boundary == 0);
-    // Euler's characteristic is that of the cage.
+    // The Euler characteristic is that of the cage.
     const long tessellated = mesh.positions.rows() -
                              (static_cast<long>(edges.size()) + boundary) / 2 +
                              static_cast<long>(mesh.face_vertices.size()) / 4;
@@ -151,7 +151,7 @@ TEST(Tessellate, LiesOnTheSurface) {
     if (e.normal.row(i).hasNaN()) continue;
     EXPECT_LE((e.normal.row(i) - mesh.normals.row(i)).norm(), 1e-11) << describe(mesh.locations[i]);
   }
-  // The quads face the way the normals do.
+  // The quads have the orientation of the normals.
   int turned = 0;
   for (std::size_t q = 0; q < mesh.face_vertices.size(); q += 4) {
     const auto p = [&](int i) -> Vector3 { return mesh.positions.row(mesh.face_vertices[q + i]); };
@@ -171,7 +171,8 @@ TEST(Tessellate, RefusesSillyLevels) {
 TEST(Area, IsThatOfFineTessellations) {
   for (const Cage& cage : {cross(), cube(), prism(5, true)}) {
     const LimitSurface surface = limitSurface(cage);
-    // Polygons' areas converge by a factor of 4 per level: extrapolate that away, twice.
+    // The error of the polygons' area falls by a factor of 4 with each level, so it is extrapolated
+    // twice.
     const double a4 = polygonArea(tessellate(surface, 4)), a5 = polygonArea(tessellate(surface, 5)),
                  a6 = polygonArea(tessellate(surface, 6));
     const double b5 = a5 + (a5 - a4) / 3, b6 = a6 + (a6 - a5) / 3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Blue noise: distances by brute force, and darts thrown at random that must all be in conflict.
+// Blue noise: distances by brute force, and random trials, all of which must conflict with a point.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -10,7 +10,7 @@
 #include "limitsurf/pi.h"
 #include "limitsurf/sample/area.h"
 #include "limitsurf/sample/area_sampler.h"
-#include "limitsurf/sample/jittered.h"
+#include "limitsurf/sample/jittered_sampling.h"
 #include "limitsurf/surface/surface_data.h"
 #include "support/cages/meshes.h"
 #include "support/cages/strange_meshes.h"
@@ -33,7 +33,7 @@ BlueNoiseOptions byCount(std::int64_t count, std::uint64_t seed = 1) {
   return options;
 }
 
-/// The radius by which about so many points come out.
+/// A radius that leads to about `count` points.
 double radiusFor(const LimitSurface& surface, double count) {
   return std::sqrt(0.7 * surfaceArea(surface) / count);
 }
@@ -44,8 +44,8 @@ bool same(const BlueNoise& a, const BlueNoise& b) {
                     [](auto& x, auto& y) { return x.face == y.face && x.u == y.u && x.v == y.v; });
 }
 
-/// The smallest distance of points whose normals are less than 90 degrees apart, over the mean of
-/// their radii: all pairs.
+/// The smallest distance of all pairs of points whose normals are less than 90 degrees apart,
+/// divided by the mean of their radii.
 double smallestDistance(const LimitSurface& surface, const std::vector<Location>& at,
                         const Weight& radius) {
   const Evaluation all = surface.evaluate(at, Derivatives::first, true);
@@ -64,13 +64,13 @@ double smallestDistance(const LimitSurface& surface, const std::vector<Location>
   return smallest;
 }
 
-/// How many of a great many random darts, the same number on each face, are in conflict with none
-/// of the points, by so much as the resolution allows.
-int openDarts(const LimitSurface& surface, const BlueNoise& noise, int per_side) {
+/// Of a great many random trials, the same number on each face, the number that conflict with none
+/// of the points, where distances are as large as the resolution allows.
+int openTrials(const LimitSurface& surface, const BlueNoise& noise, int per_side) {
   const double reach = noise.radius * (1 + AreaSampler::kGap);
   const PointCloud cloud(surface, noise.at, reach);
-  const std::vector<Location> darts = scatterJittered(surface, per_side, 99);
-  const Evaluation all = surface.evaluate(darts, Derivatives::first, true);
+  const std::vector<Location> trials = scatterJittered(surface, per_side, 99);
+  const Evaluation all = surface.evaluate(trials, Derivatives::first, true);
   int open = 0;
   for (Eigen::Index i = 0; i < all.position.rows(); ++i) {
     bool is_open = true;
@@ -105,12 +105,13 @@ TEST(BlueNoise, KeepsItsDistanceAndLeavesNoGap) {
       EXPECT_GT(static_cast<double>(noise.at.size()), 0.7 * count);
       EXPECT_GE(smallestDistance(surface, noise.at, [&](auto&) { return noise.radius; }), 1);
       const int per_side = static_cast<int>(std::sqrt(200000. / surface.faceCount()));
-      EXPECT_EQ(openDarts(surface, noise, per_side), 0);
+      EXPECT_EQ(openTrials(surface, noise, per_side), 0);
     }
   }
 }
 
-/// As many as random sequential packings of a plane have, 0.547 of the area covered.
+/// There are as many points as in random sequential packings of a plane, which cover 0.547 of the
+/// area.
 TEST(BlueNoise, IsAsDenseAsRandomPackingsAre) {
   const LimitSurface surface = limitSurface(bent(torus(24, 12)));
   const BlueNoise noise = AreaSampler(surface).blueNoise(byRadius(radiusFor(surface, 30000)));
@@ -119,14 +120,14 @@ TEST(BlueNoise, IsAsDenseAsRandomPackingsAre) {
   EXPECT_NEAR(covered, 0.547, 0.01);
 }
 
-/// Its two sides are much closer than the radius.
+/// The two sides of the sheet are much closer to each other than the radius.
 TEST(BlueNoise, SidesOfAThinSheetDoNotSeeEachOther) {
   Cage cage = torus(24, 12);
   cage.positions.col(2) *= 1e-3;
   const LimitSurface surface = limitSurface(cage);
   const BlueNoise noise = AreaSampler(surface).blueNoise(byRadius(radiusFor(surface, 4000)));
   EXPECT_GE(smallestDistance(surface, noise.at, [&](auto&) { return noise.radius; }), 1);
-  EXPECT_EQ(openDarts(surface, noise, 20), 0);
+  EXPECT_EQ(openTrials(surface, noise, 20), 0);
   const PointCloud cloud(surface, noise.at, noise.radius);
   int pairs = 0;
   for (std::size_t i = 0; i < noise.at.size(); ++i) {
@@ -134,7 +135,7 @@ TEST(BlueNoise, SidesOfAThinSheetDoNotSeeEachOther) {
       pairs += other != static_cast<int>(i) && distance < noise.radius;
     });
   }
-  // Each has two or three within reach on the other side.
+  // Each point has two or three points within reach on the other side.
   EXPECT_GT(pairs, static_cast<int>(noise.at.size()));
 }
 
@@ -166,7 +167,7 @@ TEST(BlueNoise, IsEvenlySpreadOverArea) {
   double total = 0;
   for (const double area : expected) total += area;
   for (std::size_t face = 0; face < count.size(); ++face) {
-    // Deviations come from the faces' borders alone.
+    // Deviations come from the borders of faces alone.
     const double share = 40000 * expected[face] / total;
     EXPECT_NEAR(count[face], share, 1.5 * std::pow(share, 0.25) + 0.03 * share) << face;
   }
@@ -226,7 +227,7 @@ TEST(BlueNoise, FollowsVertexWeights) {
 
 TEST(BlueNoise, FollowsAFunction) {
   const LimitSurface surface = limitSurface(bent(grid(8, 8)));
-  // None in every third face, four times as dense in the next.
+  // Every third face has no points, and the next one four times as many.
   const auto weightOf = [](const Location& at) {
     return at.face % 3 == 0 ? 0. : at.face % 3 == 1 ? 4. : 1.;
   };
@@ -264,7 +265,7 @@ TEST(BlueNoise, NothingIsWhereAFunctionIsZero) {
   for (const Location& at : noise.at) EXPECT_GT(weightOf(at), 0);
 }
 
-/// By far too fine a radius: the function is not asked about each place, and the radius refused.
+/// A radius that is far too small is refused, and the function is not read everywhere before.
 TEST(BlueNoise, AFunctionIsAskedAtAsManyPlacesAsAreOfUse) {
   const LimitSurface surface = limitSurface(grid(20, 20));
   std::size_t asked = 0;
@@ -287,7 +288,8 @@ TEST(BlueNoise, LeavesOutFacesWithoutASurface) {
   }
 }
 
-/// No area here and there, or normals that point both ways: it ends, and keeps its distance.
+/// Where faces have no area, or normals point in opposite directions, sampling ends and the points
+/// keep their distance.
 TEST(BlueNoise, EndsOnDegenerateSurfaces) {
   Cage folded = grid(6, 6);
   for (Eigen::Index i = 0; i < folded.positions.rows(); ++i) {

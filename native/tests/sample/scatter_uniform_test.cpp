@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Uniform scattering: counts against integrals of area by quadrature of the evaluated surface.
+// Uniform scattering: counts are compared with integrals of area, by quadrature of the evaluated
+// surface.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -18,7 +19,7 @@
 namespace limitsurf::test {
 namespace {
 
-/// A right sampler exceeds it once in a few million tests.
+/// A correct sampler exceeds this once in a few million tests.
 constexpr double kMostDeviations = 5;
 constexpr int kSide = 4, kPoints = 24;
 
@@ -37,7 +38,7 @@ Eigen::VectorXd randomWeights(const Cage& cage, std::uint64_t seed) {
   return weights;
 }
 
-/// Vertices' weights at a location, written out from their definition.
+/// The weights of vertices at a location, by their definition.
 double weightAt(const Cage& cage, const Eigen::VectorXd& weights, const Location& at) {
   const PtexFace ptex = ptexFaces(cage)[at.face];
   const std::vector<int>& face = cage.faces[ptex.base_face];
@@ -73,7 +74,7 @@ TEST(ScatterUniform, IsUniformByAreaWithinFacesToo) {
   }
 }
 
-/// Close to an extraordinary vertex, where all is made of ever smaller patches.
+/// Close to an extraordinary vertex, where the surface consists of ever smaller patches.
 TEST(ScatterUniform, IsUniformByAreaAroundExtraordinaryVertices) {
   const int faces = 30;
   const LimitSurface surface = limitSurface(fan(faces, true, 4));
@@ -133,7 +134,7 @@ TEST(ScatterUniform, FollowsAFunction) {
             kMostDeviations);
 }
 
-/// The largest value lies where nothing was asked at first.
+/// The largest value lies where the function is not read at first.
 TEST(ScatterUniform, FollowsAFunctionWithAPeak) {
   const LimitSurface surface = limitSurface(scatteredCage());
   const auto isPeak = [](const Location& l) {

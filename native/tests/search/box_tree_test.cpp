@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The tree of boxes: every leaf once, in boxes that hold it, never too deep.
+// The tree of boxes: it has every leaf once, in boxes that contain it, and is never too deep.
 #include "limitsurf/search/box_tree.h"
 
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ TEST(BoxTree, HasEveryLeafOnceInItsBoxes) {
 }
 
 TEST(BoxTree, IsNeverTooDeep) {
-  // What a heuristic may peel off one by one: equal boxes, nested ones, exponential rows.
+  // Leaves that a heuristic may split off one by one: equal boxes, nested boxes, exponential rows.
   Boxes equal(5000, box({0, 0, 0}, {1, 1, 1}));
   expectSound("equal", equal);
   Boxes points(3000, box({1, 2, 3}, {1, 2, 3}));

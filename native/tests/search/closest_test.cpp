@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Closest points, held against dense samples with local refinement, against subdivision in 50
-// digits and against OpenSubdiv's points of the surface.
+// Closest points, compared with dense samples and their local refinement, with subdivision in 50
+// digits and with OpenSubdiv's points of the surface.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -54,7 +54,7 @@ Vector3 direction(Random& random) {
   }
 }
 
-/// `count` of each kind: near the surface, around it, in its middle, beyond it.
+/// `count` points of each kind: near the surface, around it, in its middle, and far away.
 Points pointsAround(const LimitSurface& surface, int count, Random& random) {
   const Middle middle(surface);
   std::vector<Vector3> rows;
@@ -75,7 +75,7 @@ Points pointsAround(const LimitSurface& surface, int count, Random& random) {
   return rowsOf(rows);
 }
 
-/// What holds for any result: it is a point of the surface, at the distance that it says.
+/// Expects that a result is a point of the surface, at the distance that it states.
 void expectConsistent(const std::string& name, const LimitSurface& surface, const Points& points,
                       const Hits& hits) {
   ASSERT_EQ(static_cast<Eigen::Index>(hits.at.size()), points.rows());
@@ -105,7 +105,7 @@ void expectConsistent(const std::string& name, const LimitSurface& surface, cons
   }
 }
 
-/// Holds the search at all the points against brute force; gives the worst excess / diagonal.
+/// Compares the search with brute force at all points. Returns the largest excess / diagonal.
 double compareWithBruteForce(const std::string& name, const BruteForce& truth,
                              const SurfaceSearch& search, const Points& points) {
   const Hits hits = search.closest(points);
@@ -163,8 +163,8 @@ TEST(Closest, OfAPointOfTheSurfaceIsThatPoint) {
 }
 
 TEST(Closest, IsNearerThanOpenSubdivsPoints) {
-  // Points of the surface that the library has no part in: no one of them may be nearer, and the
-  // nearest of them cannot be farther away than a step between them.
+  // The library has no part in these points of the surface: none of them may be nearer than the
+  // result, and the nearest of them cannot be farther away than a step between them.
   Random random(3);
   for (const auto& [name, cage] : NamedCages{{"cross", cross()},
                                              {"cube", perturbed(cube(), 0.2, 1)},
@@ -191,8 +191,8 @@ TEST(Closest, IsNearerThanOpenSubdivsPoints) {
 }
 
 TEST(Closest, IsOnTheSurfaceOfSubdivisionIn50Digits) {
-  // Both ways: points of that surface are found at distance 0, and what is found elsewhere is as
-  // far away as it says, and no neighbour of it is nearer.
+  // Points of that surface are found at distance 0. Points found elsewhere are at the stated
+  // distance, and none of their neighbours is nearer.
   Random random(4);
   NamedCages cages;
   for (const auto& [name, cage] : queryCages()) {
@@ -308,7 +308,7 @@ TEST(Closest, KeepsToTheGreatestDistance) {
 }
 
 TEST(Closest, FacingLeavesOutFeetThatLookElsewhere) {
-  // Truth: minima inside faces and on borders, where no neighbour has a say.
+  // The truth: minima inside faces and on borders, where no neighbouring face matters.
   Random random(7);
   int kept = 0, elsewhere = 0;
   for (const auto& [name, cage] : queryCages()) {
@@ -358,7 +358,7 @@ TEST(Closest, FacingLeavesOutFeetThatLookElsewhere) {
 }
 
 TEST(Closest, FacingTakesTheSideOfASheetThatIsAskedFor) {
-  // Two parallel squares, the lower one looking down.
+  // Two parallel squares; the normal of the lower one points down.
   Cage cage = grid(3, 3);
   const Cage lower = reversed(placed(cage, 1, {0, 0, -1}));
   for (const std::vector<int>& face : lower.faces) {
@@ -468,7 +468,7 @@ TEST(Closest, FromBeyondAllMeasureIsStillOfTheSurface) {
   expectThrow<std::invalid_argument>([&] { search.closest(beyond); }, {"row 0", "point", "1e+160"});
 }
 
-/// Points where many places are about equally close: the worst for branch and bound.
+/// Points to which many places are about equally close: the worst case of branch and bound.
 NamedCages roundCages() {
   return {{"cube", cube()},
           {"prism of 32", prism(32, false)},
@@ -497,7 +497,7 @@ TEST(Closest, IsFoundAtFocalPoints) {
         rows.push_back(Middle(surface).at + size * diagonal * random.vector(1));
         rows.push_back(size * diagonal * random.vector(1));
       }
-      // The middle of a torus' tube, the axis of a prism.
+      // The middle of the tube of a torus, and the axis of a prism.
       rows.push_back(Vector3(2, 0, 0) + size * diagonal * random.vector(1));
       rows.push_back(Vector3(0, 0, 0.3) + size * diagonal * random.vector(1));
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rays, held against known points of the surface, against all roots that dense samples and Newton's
-// iteration find, and against what a closed surface must give.
+// Rays, compared with known points of the surface, with all roots that dense samples and Newton's
+// iteration find, and with what must hold for a closed surface.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -62,7 +62,7 @@ Vector3 middleOf(const LimitSurface& surface) {
 
 double diagonalOf(const LimitSurface& surface) { return diagonal(surface.positions()); }
 
-/// What holds for every hit: it is a point of the surface, on the ray, as far along it as it says.
+/// Expects that a hit is a point of the surface and of the ray, at the distance that it states.
 void expectOnTheRay(const std::string& where, const LimitSurface& surface, const LongRay& ray,
                     const Hits& hits, Eigen::Index row) {
   const Location& at = hits.at[static_cast<std::size_t>(row)];
@@ -78,7 +78,7 @@ void expectOnTheRay(const std::string& where, const LimitSurface& surface, const
   EXPECT_GE(hits.distance[row], 0) << where;
 }
 
-/// Whether some hit of ray `ray` is at that distance along it.
+/// Whether ray `ray` has a hit at that distance.
 bool anyAt(const RayHits& hits, std::size_t ray, double distance, double slack) {
   for (std::int64_t row = hits.offsets[ray]; row < hits.offsets[ray + 1]; ++row) {
     if (std::abs(hits.distance[row] - distance) <= slack) return true;
@@ -86,7 +86,7 @@ bool anyAt(const RayHits& hits, std::size_t ray, double distance, double slack) 
   return false;
 }
 
-/// All that one kind of call says about the rays must be said by the other too.
+/// Expects that rayCast() and rayCastAll() agree.
 void expectFirstOfAll(const std::string& name, const LimitSurface& surface, const Rays& rays,
                       const Hits& first, const RayHits& all) {
   ASSERT_EQ(all.offsets.size(), rays.size() + 1);
@@ -113,7 +113,7 @@ void expectFirstOfAll(const std::string& name, const LimitSurface& surface, cons
   }
 }
 
-/// Rays from everywhere to everywhere, half of them from far away.
+/// Random rays, half of them from far away.
 Rays raysAround(const LimitSurface& surface, int count, Random& random) {
   const double diagonal = diagonalOf(surface);
   const Vector3 middle = middleOf(surface);
@@ -128,7 +128,7 @@ Rays raysAround(const LimitSurface& surface, int count, Random& random) {
   return rays;
 }
 
-/// Whether before that distance the ray enters a stretch on which it runs within the surface.
+/// Whether the ray, before that distance, enters a stretch on which it runs within the surface.
 bool runsWithin(const RayHits& hits, std::size_t ray, const Vector3& along, double distance) {
   for (std::int64_t row = hits.offsets[ray]; row < hits.offsets[ray + 1]; ++row) {
     if (hits.distance[row] <= distance && std::abs(along.dot(hits.normal.row(row))) < 1e-8) {
@@ -155,7 +155,7 @@ void expectNoneTwice(const std::string& where, const RayHits& hits, std::size_t 
   }
 }
 
-/// Every root that brute force finds is found, and none twice.
+/// Every root that brute force finds is found, and no root twice.
 void compareWithBruteForce(const NamedCages& cages, int count, int per_side) {
   Random random(1);
   long found = 0;
@@ -190,7 +190,8 @@ TEST(RayCast, FindsWhatBruteForceFinds) { compareWithBruteForce(queryCages(), 12
 TEST(SlowRayCast, FindsWhatBruteForceFinds) { compareWithBruteForce(queryCages(), 1500, 32); }
 
 TEST(RayCast, FindsThePointsItIsSentThrough) {
-  // Anywhere, on edges, at vertices, on boundaries; from all sides, at distances up to 1000.
+  // Targets anywhere, on edges, at vertices and on boundaries; origins on all sides, at distances
+  // up to 1000.
   Random random(2);
   for (const auto& [name, cage] : queryCages()) {
     const LimitSurface surface = limitSurface(cage);
@@ -214,7 +215,7 @@ TEST(RayCast, FindsThePointsItIsSentThrough) {
     expectFirstOfAll(name, surface, rays, first, all);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      // The ray itself is rounded: it passes the point within this.
+      // The ray itself is rounded: this is how far it may pass from the point.
       const double rounding = 4 * 0x1p-53 * (distances[i] + rays.origins[i].norm());
       const Vector3 normal = e.normal.row(row);
       const double sine = normal.allFinite() ? std::abs(normal.dot(rays.directions[i])) : 1e-3;
@@ -259,10 +260,10 @@ TEST(RayCast, FindsPointsAtGrazingAngles) {
     const Hits first = search.rayCast(rays.originRows(), rays.directionRows());
     expectFirstOfAll(name, surface, rays, first, all);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      // A ray along the tangent may stay within the tolerance for the root of it.
+      // A ray along a tangent stays within the tolerance over a length of about its square root.
       const double slack = std::min(1e-4, 1e-11 / std::max(angles[i], 1e-11)) * unit;
-      // What lies on the border of a face may be the border of the surface, which a ray at such an
-      // angle passes by for rounding; in a plane the ray meets the surface before.
+      // A point on the border of a face may be on the border of the surface, which a ray at such an
+      // angle may miss because of rounding; in a plane the ray meets the surface earlier.
       const Location& place = at[points[i]];
       const auto inside = [](double x) { return x > 1e-6 && x < 1 - 1e-6; };
       if (angles[i] < 1e-3 && !(inside(place.u) && inside(place.v))) continue;
@@ -278,7 +279,7 @@ TEST(RayCast, FindsPointsAtGrazingAngles) {
 }
 
 TEST(RayCast, MissesWhatItPasses) {
-  // Outside of a convex surface, along its tangent planes; beside open boundaries.
+  // Rays outside a convex surface, along its tangent planes, and rays beside open boundaries.
   Random random(4);
   const Cage round = cube();
   const LimitSurface surface = limitSurface(round);
@@ -304,7 +305,7 @@ TEST(RayCast, MissesWhatItPasses) {
                                              {"hexagon", ngon(6, 5)},
                                              {"mixture", mixture(3)},
                                              {"fan", fan(9, false, 16)}}) {
-    // On a boundary, across it: -du x n or the like leads out of the surface.
+    // Across a boundary: a direction such as -du x n leads out of the surface.
     const LimitSurface sheet = limitSurface(open);
     const SurfaceSearch over(sheet);
     const double size = diagonalOf(sheet);
@@ -325,7 +326,7 @@ TEST(RayCast, MissesWhatItPasses) {
         const RayHits hits = over.rayCastAll(ray.originRows(), ray.directionRows());
         return anyAt(hits, 0, 0.3 * size, 1e-6 * size);
       };
-      // Only where no neighbour goes on.
+      // Only where no neighbouring face continues the surface.
       if (countAt(1e-4) || countAt(1e-6)) continue;
       EXPECT_FALSE(countAt(1e-8)) << name << ", " << describe(b);
       EXPECT_TRUE(countAt(-1e-9)) << name << ", " << describe(b);
@@ -339,7 +340,7 @@ TEST(RayCast, NoRayLeavesAClosedSurface) {
   for (const auto& [name, cage] : closedCages()) {
     const LimitSurface surface = limitSurface(cage);
     const SurfaceSearch search(surface);
-    // A point inside: between two hits of a ray.
+    // A point inside the surface: between two hits of a ray.
     Rays probe;
     for (int i = 0; i < 20; ++i) {
       const Vector3 to = direction(random);
@@ -360,7 +361,7 @@ TEST(RayCast, NoRayLeavesAClosedSurface) {
     ASSERT_GT(thickest, 0) << name;
     Rays rays;
     for (int i = 0; i < 3000; ++i) rays.add(inside, direction(random));
-    // Towards all kinds of places where faces meet.
+    // Rays towards all kinds of places at which faces meet.
     const Points targets = surface.evaluate(searchedLocations(surface, 3000, random)).position;
     for (Eigen::Index i = 0; i < targets.rows(); ++i) {
       rays.add(inside, targets.row(i).transpose() - inside);
@@ -375,7 +376,7 @@ TEST(RayCast, NoRayLeavesAClosedSurface) {
         const double sine = std::abs(rays.directions[i].normalized().dot(all.normal.row(row)));
         transversal = transversal && sine > 1e-4;
       }
-      // Through sharp edges and corners a ray may touch; only smooth cages are counted there.
+      // A ray may touch sharp edges and corners, so hits there are counted on smooth cages only.
       const bool sharp =
           !cage.options.edge_sharpness.edges.empty() || cage.options.scheme == Scheme::bilinear;
       if (!transversal || (sharp && i >= 3000)) continue;
@@ -388,7 +389,7 @@ TEST(RayCast, NoRayLeavesAClosedSurface) {
 }
 
 TEST(RayCast, InAPlaneOfTheSurface) {
-  // Rays that run within a plane sheet, along a generator, along a crease, along an edge.
+  // Rays within a plane sheet, along a generator, along a crease, and along an edge.
   Random random(6);
   for (const auto& [name, cage] : NamedCages{{"plane", grid(4, 3)},
                                              {"holes", gridWithHoles(5, 4, {6, 12})},
@@ -419,7 +420,7 @@ TEST(RayCast, InAPlaneOfTheSurface) {
 }
 
 TEST(RayCast, FirstHitOfARayInAPlaneIsWhereItEnters) {
-  // The square [0, 1]^2 with corners: the sheet begins at x = 0.
+  // The square [0, 1]^2 with pinned corners: the sheet begins at x = 0.
   Cage cage = grid(1, 1);
   cage.options.boundary = Boundary::corners;
   cage.options.scheme = Scheme::bilinear;
@@ -465,7 +466,8 @@ TEST(RayCast, CoincidentSheetsCountEach) {
 }
 
 TEST(RayCast, BeginsAtItsOrigin) {
-  // At the surface: distance 0; nothing behind; the far side of a closed surface.
+  // A ray that begins on the surface hits it at distance 0, nothing behind it, and the far side of
+  // a closed surface.
   Random random(8);
   const LimitSurface surface = limitSurface(perturbed(cube(), 0.2, 1));
   const SurfaceSearch search(surface);
@@ -526,7 +528,7 @@ TEST(RayCast, DirectionsOfAnyLengthAndAlongTheAxes) {
   }
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1., 1.}) {
-      // Through the middle of faces, along edges of patches, and with negative zeros.
+      // Rays through the middles of faces, along edges of patches, and with negative zeros.
       for (const double aside : {0.5, 0.43, 0.25, 1. / 3}) {
         from.setConstant(aside);
         to.setConstant(-0.);

@@ -37,7 +37,7 @@ std::vector<int> randomLevels(const Cage& cage, int most, Random& random) {
   return levels;
 }
 
-/// Calls body(polygon, corner, the polygon's next corner).
+/// Calls body(polygon, corner, next corner of the polygon).
 template <typename Body>
 void forEachSide(const Tessellation& mesh, const Body& body) {
   std::size_t first = 0;
@@ -127,7 +127,7 @@ TEST(TessellationLevels, ThreadsAndEqualLevelsChangeNothing) {
   EXPECT_EQ(one.normals, all.normals);
 }
 
-/// The largest distance from the surface of places all over the polygons.
+/// The largest distance of sampled places on the polygons from the surface.
 double farthest(const SurfaceSearch& search, const Tessellation& mesh, Random& random) {
   Points places(4 * mesh.face_sizes.size(), 3);
   std::size_t corner = 0;
@@ -160,7 +160,7 @@ TEST(LevelsWithin, PolygonsAreAsCloseAsAskedAndNoCloserThanNeeded) {
     const FaceLevels found = levelsWithin(surface, tolerance, options);
     EXPECT_LE(found.measure.maxCoeff(), tolerance);
     EXPECT_LE(farthest(search, tessellate(surface, found.levels), random), tolerance);
-    // One level less everywhere is too little.
+    // One level less is not enough anywhere.
     std::vector<int> fewer = found.levels;
     for (std::size_t face = 0; face < fewer.size(); ++face) {
       fewer[face] = std::max(fewer[face] - 1, cage.faces[face].size() == 4 ? 0 : 1);
@@ -172,7 +172,7 @@ TEST(LevelsWithin, PolygonsAreAsCloseAsAskedAndNoCloserThanNeeded) {
 }
 
 TEST(LevelsWithin, OutlinesCountOnPlanes) {
-  // Flat, but its boundary is a curve.
+  // The surface is flat, but its boundary is a curve.
   const LimitSurface surface = limitSurface(grid(3, 3));
   const FaceLevels found = levelsWithin(surface, 1e-3);
   EXPECT_GE(found.levels[0], 3);  // a corner
@@ -215,7 +215,7 @@ TEST(LevelsOfLength, UnitSquaresNeedTheLogarithm) {
 }
 
 TEST(LevelsOfLength, WhatIsBehindHasNoLength) {
-  // Looking along x from x = 2.5: w is the depth.
+  // The view is along x from x = 2.5; w is the depth.
   const LimitSurface surface = limitSurface(grid(12, 1));
   PictureView view;
   view.matrix << 0, 100, 0, 0, 0, 0, 100, 0, 0, 0, 1, 0, 1, 0, 0, -2.5;

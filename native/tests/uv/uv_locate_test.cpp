@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Single points looked up in UV maps.
+// Searches of UV maps for single points.
 #include <gtest/gtest.h>
 
 #include <cmath>

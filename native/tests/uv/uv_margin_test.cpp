@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The margins of rasterised UV maps, against the nearest of a great many points of the map.
+// The margins of rasterised UV maps, compared with the nearest of a great many points of the map.
 #include <gtest/gtest.h>
 
 #include <cstdio>

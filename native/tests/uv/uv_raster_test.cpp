@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rasterised UV maps, held against a great many evaluated triangles, closed forms and the map's own
-// evaluation.
+// Rasterised UV maps, compared with a great many evaluated triangles, with closed forms and with
+// the evaluation of the map.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -91,8 +91,8 @@ TEST(UvRaster, IsSortedAndTheSameForAnyNumberOfThreads) {
   }
 }
 
-// Every edge of the 8 x 8 faces and every vertex lies under texel centres, some with coordinates
-// that binary numbers do not hold.
+// The centres of texels lie on every edge and every vertex of the 8 x 8 faces; some coordinates
+// have no exact binary representation.
 TEST(UvRaster, LosesNothingOnEdgesThroughTexelCentres) {
   for (const Interpolation interpolation : {Interpolation::all, Interpolation::boundaries}) {
     for (const int side : {9, 17, 41, 57}) {
@@ -118,8 +118,8 @@ TEST(UvRaster, LosesNothingOnEdgesThroughTexelCentres) {
   }
 }
 
-// Shared edges as curves, through texel centres that lie on them to rounding only: the centres of
-// an image of one texel, which is moved so that its centre is a point of an edge.
+// Shared edges are curves here, and the centres of texels lie on them up to rounding: an image of
+// one texel is moved so that its centre is a point of an edge.
 TEST(UvRaster, LosesNothingOnCurvedEdgesAndAtIrregularVertices) {
   const NamedCages cages = {{"fan 3", fan(3, true, 1)},
                             {"fan 5", fan(5, true, 2)},
@@ -158,8 +158,8 @@ TEST(UvRaster, LosesNothingOnCurvedEdgesAndAtIrregularVertices) {
   }
 }
 
-// Two islands on each other, edge on edge: an overlap everywhere, also on their edges; beside each
-// other with a common border: none.
+// Two islands that lie on each other overlap everywhere, also along their edges. Two islands beside
+// each other, with a common border, do not overlap.
 TEST(UvRaster, TellsStackedIslandsFromNeighbours) {
   Cage cage = grid(4, 4);
   const int vertices = cage.vertexCount(), faces = 16;
@@ -264,7 +264,7 @@ TEST(UvRaster, FindsBothSheetsAlongLongFolds) {
   };
   for (const int columns : {1, 3}) {
     const NamedMap named = gridMap(columns, 5, Interpolation::corners_only, place);
-    // The height of one side; the rest is the same, moved along.
+    // The height of one side; the rest of the sheet is the same, translated.
     constexpr int kSamples = 500;
     std::vector<Location> side;
     for (int face = 0; face < 5; ++face) {
@@ -289,7 +289,7 @@ TEST(UvRaster, FindsBothSheetsAlongLongFolds) {
           count += (heights(i, 1) < height) != (heights(i + 1, 1) < height);
         }
         const int row = rows[y * options.width + x];
-        // Beside a fold samples do not tell.
+        // Close to a fold the samples are not conclusive.
         for (Eigen::Index i = 1; i + 1 < heights.rows(); ++i) {
           is_close |=
               (heights(i, 1) - heights(i - 1, 1)) * (heights(i + 1, 1) - heights(i, 1)) <= 0 &&
@@ -331,7 +331,7 @@ TEST(UvRaster, TilesAreWindowsOfOneMap) {
       count += texels.size();
     }
   }
-  // The area of the image in texels, its borders apart.
+  // The area of the image in texels, without its borders.
   const UvWitness witness(named.surface, named.map, 48);
   DataRows points(64 * 32 * 20, 2);
   Eigen::Index row = 0;
@@ -365,7 +365,7 @@ TEST(UvRaster, FacesWithoutAreaCoverNothing) {
             UvMap(gridMap(6, 6, Interpolation::corners_only, bent).map).rasterize(options).size(),
             0u);
       }
-      // A point is found where it is exactly a texel's centre, or not at all.
+      // A point is found if it is exactly the centre of a texel, and not otherwise.
       EXPECT_LE(UvMap(gridMap(6, 6, interpolation, point).map).rasterize(image(side, side)).size(),
                 1u);
     }

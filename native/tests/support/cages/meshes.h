@@ -11,14 +11,15 @@ namespace limitsurf::test {
 /// vertex is the only irregular one of its faces, which are the Ptex faces 0, 4, 8, ... with the
 /// vertex at (0, 0). Positions are perturbed at random.
 ///
-/// `closed`: an interior vertex of valence `faces`; else a boundary vertex of valence `faces` + 1.
+/// With `closed` the vertex is an interior one of valence `faces`, otherwise a boundary vertex of
+/// valence `faces` + 1.
 Cage fan(int faces, bool closed, std::uint64_t seed);
 
 /// A closed disc of triangles around vertex 0.
 Cage pole(int triangles);
 
-/// One n-gon for a centre, with a quad beyond each side: irregular at the n-gon's centre and,
-/// with n != 4, at all its vertices.
+/// An n-gon with a quad beyond each side. It is irregular at the n-gon's centre and, if n != 4, at
+/// all its vertices.
 Cage ngon(int sides, std::uint64_t seed);
 
 /// columns x rows unit squares in the plane z = 0.
@@ -29,7 +30,7 @@ Cage gridWithHoles(int columns, int rows, const std::vector<int>& holes);
 Cage cross();
 Cage cube();
 Cage tetrahedron();
-/// A prism over a regular polygon, with or without its two lids.
+/// A prism over a regular polygon, with or without its bottom and top.
 Cage prism(int sides, bool closed);
 /// A closed torus of quads; all its vertices are regular.
 Cage torus(int around, int across);

@@ -12,21 +12,21 @@ namespace limitsurf::test {
 /// and refused faces, sheets that meet, the bilinear scheme, planes.
 NamedCages queryCages();
 
-/// Those of them without boundaries.
+/// The query cages that have no boundaries.
 NamedCages closedCages();
 
-/// Cages that are no surface at all, or hardly: points, lines, faces without area.
+/// Degenerate cages: points, lines, faces without area.
 NamedCages degenerateCages();
 
 /// `count` locations on faces that have a surface: anywhere, on sides, at corners and within 2^-5
 /// to 2^-40 of these.
 std::vector<Location> searchedLocations(const LimitSurface& surface, int count, Random& random);
 
-/// Whether the location lies within a side of its face, corners apart, that is a boundary or an
-/// infinitely sharp edge. Not for the bilinear scheme.
+/// Whether the location lies on a side of its face, but not at a corner, and the side is a boundary
+/// or an infinitely sharp edge. Not valid for the bilinear scheme.
 bool isOnBorder(const CornerPoints& corners, const Location& at);
 
-/// All coordinates times `factor`, plus `offset`.
+/// The cage with all coordinates multiplied by `factor` and moved by `offset`.
 Cage placed(Cage cage, double factor, const Vector3& offset = Vector3::Zero());
 
 }  // namespace limitsurf::test

@@ -11,20 +11,20 @@ namespace limitsurf::test {
 
 RasterOptions image(int width, int height, double margin = 0);
 
-/// Of a texel, on the map.
+/// The centre of a texel, on the map.
 Eigen::RowVector2d centre(const RasterOptions& options, int x, int y);
-/// Of all texels, row by row.
+/// The centres of all texels, row by row.
 DataRows centres(const RasterOptions& options);
 
-/// Where the texels' locations lie on the map.
+/// The values of the map at the locations of texels.
 DataRows valuesAt(const SurfaceData& map, const Texels& texels);
 
-/// By pixel, y * width + x; -1 where there is no texel.
+/// The row of `texels` of each pixel, y * width + x; -1 if there is none.
 std::vector<int> rowsOf(const Texels& texels, const RasterOptions& options);
 
 bool sameBits(const Texels& a, const Texels& b);
 
-/// A map on columns x rows squares with one value a vertex, which `place` puts somewhere.
+/// A map on columns x rows squares with one value for each vertex, which `place` chooses.
 template <typename Place>
 NamedMap gridMap(int columns, int rows, Interpolation interpolation, const Place& place) {
   const Cage cage = grid(columns, rows);

@@ -10,31 +10,31 @@
 
 namespace limitsurf::test {
 
-/// Curved, with extraordinary vertices of several valences, creases of all kinds, boundaries, holes
-/// and n-gons.
+/// A curved cage with extraordinary vertices of several valences, creases of all kinds, boundaries,
+/// holes and n-gons.
 Cage scatteredCage();
 
-/// Bends and shears it: faces of very different sizes and shapes, and areas that vary within each.
+/// Bends and shears a cage, so that faces have very different sizes and shapes, and the area varies
+/// within each.
 Cage bent(Cage cage);
 
 /// Integrals over each of side x side squares of each Ptex face, [face][row][column], by the
-/// midpoint rule on so many points a square: of area, times `weight` where there is one. Faces
-/// without a surface have 0.
+/// midpoint rule: of area, multiplied by `weight` if there is one. Faces without a surface have 0.
 using Weight = std::function<double(const Location& at)>;
 std::vector<double> areas(const LimitSurface& surface, int side, int points,
                           const Weight& weight = {});
 
-/// How many locations lie in each of these squares.
+/// The number of locations in each of these squares.
 std::vector<double> counts(const LimitSurface& surface, const std::vector<Location>& at, int side);
 
-/// By how many standard deviations chi-square exceeds (or falls below) its mean, if counts have the
-/// expected proportions. Expects nothing where nothing is expected.
+/// The number of standard deviations by which chi-square exceeds (or falls below) its mean, if
+/// counts have the expected proportions. Expects a count of 0 where the expected proportion is 0.
 double chiSquareDeviation(const std::vector<double>& counts, const std::vector<double>& expected);
 
-/// Points on a surface, found by where they are.
+/// Points on a surface that can be found by their position.
 class PointCloud {
  public:
-  /// Cubes of `side`.
+  /// The points are sorted into cubes of this side.
   PointCloud(const LimitSurface& surface, const std::vector<Location>& at, double side);
 
   const Points& position() const { return all_.position; }

@@ -12,19 +12,19 @@
 
 namespace limitsurf::test {
 
-/// A UV map of a cage, by name.
+/// A named UV map of a cage.
 struct NamedMap {
   std::string name;
   LimitSurface surface;
   SurfaceData map;
 };
 
-/// Maps of everything that makes one hard to invert, within about [0, 1]^2: all interpolations, one
-/// island and many, irregular vertices, poles, creases, polygons; plain ones, mirrored and
-/// overlapping ones, and with random values that fold everywhere.
+/// Maps with everything that makes inversion hard, within about [0, 1]^2: all interpolations, one
+/// island and many, irregular vertices, poles, creases and polygons; plain, mirrored and
+/// overlapping maps, and maps of random values that fold everywhere.
 std::vector<NamedMap> uvMaps();
 
-/// What lies over a point of the plane.
+/// The places over a point of the plane.
 struct Sheets {
   int count = 0;
   int lowest_face = -1;
@@ -32,22 +32,23 @@ struct Sheets {
   bool flipped = false;  ///< one of the lowest face
 };
 
-/// A map as a great many triangles: per_side x per_side evaluated squares on each Ptex face. It
-/// knows nothing of how the map is inverted.
+/// A map as a great many triangles: per_side x per_side evaluated squares on each Ptex face. It is
+/// independent of the inversion.
 class UvWitness {
  public:
   UvWitness(const LimitSurface& surface, const SurfaceData& map, int per_side);
 
-  /// At each point; `known` is false where points at `deviation()` around it have other sheets.
+  /// The places over each point; `known` is false where points at a distance of `deviation()` lie
+  /// on other sheets.
   struct Answer {
     bool known;
     Sheets sheets;
   };
   std::vector<Answer> at(const DataRows& points) const;
 
-  /// How far the triangles are from the map.
+  /// The distance of the triangles from the map.
   double deviation() const { return deviation_; }
-  /// To the nearest of the points that the triangles are made of, coordinates times `scale`.
+  /// The distance to the nearest vertex of the triangles, with coordinates multiplied by `scale`.
   double distance(const Eigen::RowVector2d& point, const Eigen::RowVector2d& scale) const;
 
  private:

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limitsurf/mesh/control_mesh.h"
+#include "limitsurf/types.h"
+
+namespace limitsurf::bench {
+
+/// A control mesh as arrays, from which each library makes its own.
+struct Cage {
+  Points positions;
+  std::vector<std::int64_t> face_sizes;
+  std::vector<std::int64_t> face_vertices;
+  EdgeSharpness edge_sharpness;
+
+  int faceCount() const { return static_cast<int>(face_sizes.size()); }
+  int ptexFaceCount() const;
+  /// The diagonal of the bounding box.
+  double diagonal() const;
+  ControlMesh controlMesh() const {
+    MeshOptions options;
+    options.edge_sharpness = edge_sharpness;
+    return ControlMesh(positions, face_sizes, face_vertices, options);
+  }
+};
+
+// The meshes below are open unless said otherwise. Their heights are random, but the same in every
+// call.
+
+/// 1232 quads of every class: a 12x12 grid cut to a plus (four concave, eight convex corners), open
+/// fans of boundary valence 4 to 7, closed fans of valence 3, 5 and 6, with 6x6 quads a sector.
+Cage everyClassCage();
+
+/// The cross of Lacewell & Burley 2007, figure 1, many times: four boundary EVs on every face.
+Cage crossesCage();
+
+/// Alternating triangles and pentagons, without quads.
+Cage polygonsCage();
+
+/// A closed torus of quads, all of whose faces are regular.
+Cage torusCage();
+
+/// A closed mesh: 120 faces of 540 have one EV, of valence 3 or 5; all others are regular.
+Cage interiorEvCage();
+
+/// A torus with square holes: three faces at each concave corner have one EV, of boundary valence
+/// 4; all others are regular.
+Cage boundaryEvCage();
+
+/// Separate 3x3 grids: four faces of nine have one corner (boundary valence 2).
+Cage cornersCage();
+
+/// side x side quads, of which about one in fifty is irregular: single faces are missing (boundary
+/// EVs), and single edges are turned (interior EVs of valence 3 and 5).
+Cage largeCage(int side);
+
+/// side x side quads. Every edge is semi-sharp, with a random sharpness from 0.5 to 4.
+Cage semiSharpCage(int side);
+
+}  // namespace limitsurf::bench

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "bench/support/ratio_reporter.h"
+
+namespace limitsurf::bench {
+
+constexpr char kEvaluationTable[] = "evaluate";
+
+/// Benchmarks of batches of about `sample_count` locations, by class of face, order of the
+/// locations and order of derivatives.
+std::vector<Group> evaluationGroups(int sample_count);
+
+}  // namespace limitsurf::bench

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "limitsurf/random_bits.h"
+#include "limitsurf/surface/surface_patches.h"
+
+namespace limitsurf {
+
+/// A part of the surface in which there may still be room for a point: a dyadic rectangle of a
+/// patch's parameters, or a core. Each round makes one trial in it, a random candidate.
+struct TrialCell {
+  SurfacePiece piece;
+  std::uint32_t column = 0, row = 0;  ///< of 2^level each
+  std::uint8_t s_level = 0, t_level = 0;
+
+  static constexpr int kMostLevels = 31;
+
+  double width() const { return 1. / (std::uint32_t{1} << s_level); }
+  double height() const { return 1. / (std::uint32_t{1} << t_level); }
+
+  /// The lower (0) or upper (1) half along s, and along t.
+  TrialCell halfOfS(unsigned which) const {
+    TrialCell half = *this;
+    ++half.s_level;
+    half.column = 2 * column + which;
+    return half;
+  }
+  TrialCell halfOfT(unsigned which) const {
+    TrialCell half = *this;
+    ++half.t_level;
+    half.row = 2 * row + which;
+    return half;
+  }
+
+  /// Random bits that no other cell has under the same key.
+  std::uint64_t bits(std::uint64_t key) const {
+    const auto join = [](std::uint64_t high, std::uint32_t low) { return high << 32 | low; };
+    const std::uint32_t part =
+        static_cast<std::uint32_t>(piece.steps) << 16 | static_cast<std::uint16_t>(piece.part);
+    key = mixed(key ^ mixed(join(static_cast<std::uint32_t>(piece.tile), part)));
+    key = mixed(key ^ mixed(join(column, row)));
+    return mixed(key ^ static_cast<std::uint64_t>(s_level << 8 | t_level));
+  }
+};
+
+}  // namespace limitsurf

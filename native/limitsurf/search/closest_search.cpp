@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/search/checks.h"
+#include "limitsurf/search/closest_on_patch.h"
+#include "limitsurf/search/hit_evaluation.h"
+#include "limitsurf/search/search_tree.h"
+
+namespace limitsurf {
+namespace {
+
+/// A point in single precision, for distances from the boxes of the tree: a box that contains the
+/// point in spite of rounding.
+struct BoxPoint {
+  explicit BoxPoint(const Vector3& point) {
+    const double margin = kRounding * (point.cwiseAbs().maxCoeff() + 1);
+    low << static_cast<float>(point[0] - margin), static_cast<float>(point[1] - margin),
+        static_cast<float>(point[2] - margin), 0;
+    high << static_cast<float>(point[0] + margin), static_cast<float>(point[1] + margin),
+        static_cast<float>(point[2] + margin), 0;
+  }
+
+  /// A lower bound of the squared distance from a box.
+  float squaredDistance(const BoxF& box) const {
+    const float squared = (box.low - high).max(low - box.high).max(0.f).square().sum();
+    return std::min(squared * kNearlyOne, std::numeric_limits<float>::max());
+  }
+
+  BoxF::Corner low, high;
+
+ private:
+  /// Four units in the last place of single precision, 2^-24 each, and a little more.
+  static constexpr double kRounding = 2.5e-7;
+  /// Less than 1 by more than the relative rounding of the squared distance.
+  static constexpr float kNearlyOne = 1 - 1e-6f;
+};
+
+double squaredDistance(const Box& box, const Vector3& point) {
+  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.).squaredNorm();
+}
+
+/// Angles from here on count as pi, and then no cosine is too small.
+constexpr double kNearlyPi = 3.1415926535897, kAnyCosine = -2;
+
+/// Searches for one point after the other.
+class ClosestSearch {
+ public:
+  explicit ClosestSearch(const SearchTree& data) : data_(data), cache_(data) {}
+
+  /// The location of the closest point, with face -1 if none is within `max_distance`.
+  Location find(const Vector3& point, double max_distance, const Facing* facing) {
+    point_ = point;
+    facing_ = facing;
+    best_ = {};
+    best_.tolerance = data_.tolerance;
+    // Points at max_distance itself count, in spite of rounding.
+    best_.distance = max_distance * (1 + kDistanceRounding) + 2 * data_.tolerance;
+    if (!data_.tree->empty()) {
+      descend(data_.inBoxes(point));
+    }
+    return best_.at;
+  }
+
+ private:
+  static constexpr double kDistanceRounding = 1e-15;
+
+  /// ClosestSoFar::enough() in the coordinates of boxes.
+  double enoughInBoxes() const { return best_.enough() * (data_.scale * data_.scale); }
+
+  /// Walks down the tree, nearer boxes first. `point` is in the coordinates of boxes.
+  void descend(const Vector3& point) {
+    struct Entry {
+      std::int32_t node;
+      float squared;
+    };
+    const BoxPoint box_point(point);
+    Entry stack[BoxTree::kMostDepth + 1];
+    int height = 0;
+    Entry next{0, 0};
+    while (true) {
+      if (next.squared < enoughInBoxes()) {
+        if (!BoxTree::isLeaf(next.node)) {
+          const BoxTree::Node& node = data_.tree->node(next.node);
+          const float near[2] = {box_point.squaredDistance(node.boxes[0]),
+                                 box_point.squaredDistance(node.boxes[1])};
+          const int first = near[1] < near[0] ? 1 : 0;
+          stack[height++] = {node.children[1 - first], near[1 - first]};
+          next = {node.children[first], near[first]};
+          continue;
+        }
+        const std::int32_t leaf = BoxTree::leaf(next.node);
+        if (data_.leaves[leaf].box.squaredDistance(point) < enoughInBoxes()) {
+          visitLeaf(leaf);
+        }
+      }
+      if (height == 0) {
+        return;
+      }
+      next = stack[--height];
+    }
+  }
+
+  void visitLeaf(std::int32_t leaf) {
+    const SearchLeaf& found = data_.leaves[leaf];
+    if (found.piece.isCore()) {
+      visitCore(found.piece);
+    } else {
+      closestOnPatch(cache_.patch(leaf), point_, facing_, best_);
+    }
+  }
+
+  void visitCore(SurfacePiece core) {
+    const Vector3 vertex = data_.patches.coreVertex(core);
+    if (!facing_) {
+      best_.offer(vertex - point_, data_.patches.rectangle(core).at(0, 0));
+    }
+    SurfacePatches::SplitCore split;
+    while (true) {
+      data_.patches.split(core, split);
+      for (const BezierPatch& patch : split.patches) {
+        closestOnPatch(patch, point_, facing_, best_);
+      }
+      core = split.core;
+      if (!(squaredDistance(split.core_box, point_) < best_.enough())) {
+        return;
+      }
+      if (data_.patches.coreRadius(core) <= data_.tolerance ||
+          core.steps >= SurfacePatches::kMostSteps) {
+        offerVertex(core, vertex);
+        return;
+      }
+    }
+  }
+
+  /// Offers the vertex in place of the rest of a core, which is smaller than the tolerance.
+  void offerVertex(const SurfacePiece& core, const Vector3& vertex) {
+    const Location at = data_.patches.rectangle(core).at(0, 0);
+    if (facing_ && !facing_->accepts(at)) {
+      return;
+    }
+    best_.offer(vertex - point_, at);
+  }
+
+  const SearchTree& data_;
+  PatchCache cache_;
+  Vector3 point_;
+  const Facing* facing_ = nullptr;
+  ClosestSoFar best_;
+};
+
+}  // namespace
+
+Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
+                            int threads) const {
+  checkThreads(threads);
+  checkFinite(points, "point");
+  checkDistance(options.max_distance);
+  const bool facing = options.facing.rows() > 0;
+  if (facing) {
+    checkRows(options.facing, points.rows(), "facing");
+    checkDirections(options.facing);
+  }
+  checkAngle(options.max_angle);
+  // An angle of pi accepts all normals; a cosine of -2 keeps rounding from excluding any.
+  const double least_cosine =
+      options.max_angle >= kNearlyPi ? kAnyCosine : std::cos(options.max_angle);
+  std::vector<Location> at(static_cast<std::size_t>(points.rows()));
+  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    ClosestSearch search(*data_);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      std::optional<Facing> filter;
+      if (facing) {
+        filter.emplace(Facing{data_->surface, options.facing.row(row).transpose(), least_cosine});
+      }
+      at[i] = search.find(points.row(row).transpose(), options.max_distance,
+                          filter ? &*filter : nullptr);
+    }
+  });
+  Hits hits = hitsAt(data_->surface, std::move(at), threads);
+  hits.distance.resize(points.rows());
+  for (Eigen::Index row = 0; row < points.rows(); ++row) {
+    hits.distance[row] = (hits.position.row(row) - points.row(row)).norm();
+  }
+  return hits;
+}
+
+}  // namespace limitsurf

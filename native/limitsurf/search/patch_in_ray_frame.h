@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limitsurf/bernstein.h"
+#include "limitsurf/search/oriented_box.h"
+#include "limitsurf/search/parameter_square.h"
+#include "limitsurf/surface/bezier_patch.h"
+
+namespace limitsurf {
+
+/// A ray and two axes perpendicular to it, in coordinates in which the surface lies near the
+/// origin.
+struct RayFrame {
+  explicit RayFrame(const Ray& ray);
+  Vector3 origin, direction, across[2];
+};
+
+/// A bicubic patch in the frame of a ray: how far aside of the ray its points lie, and how far
+/// along it.
+class PatchInRayFrame {
+ public:
+  PatchInRayFrame(const BezierPatch& patch, const RayFrame& ray);
+
+  Bernstein<3> x, y;  ///< aside, along the ray's two axes
+  Bernstein<3> z;     ///< along the ray
+
+  /// The offset of a point from the ray, with its derivatives.
+  struct Aside {
+    double x, y, xs, ys, xt, yt;
+
+    double squared() const { return x * x + y * y; }
+  };
+  Aside aside(double s, double t) const;
+  /// How far along the ray a point lies.
+  double along(double s, double t) const;
+
+  /// Newton's iteration, within the square, for the point at which the ray crosses the patch.
+  /// Returns whether the point at which it ends is within the tolerance of the ray.
+  bool cross(const ParameterSquare& square, double tolerance, double& s, double& t) const;
+
+  /// The Levenberg-Marquardt iteration, within the square, for the least distance from the ray. It
+  /// is slower, but also finds points that the ray only touches. Returns whether that distance is
+  /// within the tolerance.
+  bool approach(const ParameterSquare& square, double tolerance, double& s, double& t) const;
+
+  /// The same on one side of the square: sides 0 and 1 lie along s, at the low and the high end of
+  /// t, sides 2 and 3 along t.
+  bool approachSide(const ParameterSquare& square, int side, double tolerance, double& s,
+                    double& t) const;
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "limitsurf/search/patch_in_ray_frame.h"
+#include "limitsurf/surface/bezier_patch.h"
+
+namespace limitsurf {
+
+/// A point at which a ray meets the surface.
+struct RayHit {
+  double distance;
+  Location at;
+  Vector3 position;
+  /// The sine of the angle between the ray and the surface; 0 where the surface's tangents are
+  /// parallel.
+  double sine;
+
+  /// How far along the ray the surface stays within twice the tolerance of it: another hit so near
+  /// may be the same.
+  double slack(double tolerance) const { return 2 * tolerance / std::max(sine, kGrazingSine); }
+  /// At smaller angles the curvature of the surface, not the angle, leads it away from the ray.
+  static constexpr double kGrazingSine = 1e-7;
+};
+
+/// Collects the hits of one ray.
+struct CollectedHits {
+  bool first_only;  ///< only the nearest hit is wanted
+  /// The distance at which the ray begins.
+  double from;
+  /// Hits farther away are not searched for: the largest distance or, with first_only, that of the
+  /// nearest hit so far.
+  double nearest;
+  /// The distance from the surface within which the ray counts as meeting it: a tenth of
+  /// kSearchError.
+  double tolerance;
+  /// Parts of the surface farther from the ray than this are not searched. It is more than rounding
+  /// and less than the tolerance: points between the two are hits if the search comes upon them.
+  double margin() const { return tolerance / 32; }
+  std::vector<RayHit> hits;
+
+  void add(const RayHit& hit);
+};
+
+/// Adds the points at which the ray meets the patch. The method is exact subdivision of the patch
+/// as seen along the ray, preconditioned so that the patch's parameters are nearly its coordinates.
+/// Newton's iteration finds the point wherever at most one root is possible; where the ray only
+/// touches the patch, the point nearest to the ray is taken.
+void intersectPatch(const BezierPatch& patch, const RayFrame& ray, CollectedHits& out);
+
+}  // namespace limitsurf

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "batches.h"
+#include "choices.h"
+#include "docstrings.h"
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+namespace {
+
+py::object evaluate(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                    int derivatives, int threads, const py::object& dtype) {
+  checkDerivatives(derivatives, 2);
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  // position, du, dv, normal, duu, duv, dvv
+  Output outputs[7];
+  const int wanted = derivatives == 0 ? 1 : derivatives == 1 ? 4 : 7;
+  for (int i = 0; i < wanted; ++i) {
+    outputs[i] = Output(type, {rows, 3});
+  }
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
+    const Evaluation e = shared.surface().evaluate(chunk, static_cast<Derivatives>(derivatives),
+                                                   derivatives > 0, threads);
+    const Points* values[7] = {&e.position, &e.du, &e.dv, &e.normal, &e.duu, &e.duv, &e.dvv};
+    for (int i = 0; i < wanted; ++i) {
+      outputs[i].put(3 * begin, values[i]->data(), 3 * chunk.size());
+    }
+  });
+  return result("Evaluation")(outputs[0].object(), outputs[1].object(), outputs[2].object(),
+                              outputs[4].object(), outputs[5].object(), outputs[6].object(),
+                              outputs[3].object());
+}
+
+py::object frames(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                  int threads, const py::object& dtype) {
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
+    const auto rotations = shared.surface().frames(chunk, threads);
+    output.put(9 * begin, rotations.data(), 9 * chunk.size());
+  });
+  return output.object();
+}
+
+py::object curvature(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                     const std::string& irregular, double radius, int threads,
+                     const py::object& dtype) {
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const IrregularRule rule = choice<IrregularRule>(
+      irregular, "irregular", {{"none", IrregularRule::none}, {"average", IrregularRule::average}});
+  checkCurvatureRadius(radius);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  Output scalars[4], directions[2];
+  for (Output& output : scalars) {
+    output = Output(type, {rows});
+  }
+  for (Output& output : directions) {
+    output = Output(type, {rows, 3});
+  }
+  py::array_t<bool> is_irregular(rows);
+  bool* flags = is_irregular.mutable_data();
+  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
+    const Curvature c = shared.surface().curvature(chunk, rule, radius, threads);
+    const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
+    for (int i = 0; i < 4; ++i) {
+      scalars[i].put(begin, values[i]->data(), chunk.size());
+    }
+    directions[0].put(3 * begin, c.direction1.data(), 3 * chunk.size());
+    directions[1].put(3 * begin, c.direction2.data(), 3 * chunk.size());
+    std::copy(c.irregular.data(), c.irregular.data() + chunk.size(), flags + begin);
+  });
+  return result("Curvature")(scalars[0].object(), scalars[1].object(), scalars[2].object(),
+                             scalars[3].object(), directions[0].object(), directions[1].object(),
+                             is_irregular);
+}
+
+py::object stencils(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                    int derivatives, int threads) {
+  checkDerivatives(derivatives, 1);
+  checkThreads(threads);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  Stencils all;
+  all.offsets.push_back(0);
+  inChunks(shared.mutex, at, [&](std::size_t, const LocationBatch& chunk) {
+    const Stencils part = shared.surface().stencils(chunk, derivatives > 0, threads);
+    const std::int64_t before = all.offsets.back();
+    for (std::size_t i = 1; i < part.offsets.size(); ++i) {
+      all.offsets.push_back(before + part.offsets[i]);
+    }
+    const auto append = [](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(all.indices, part.indices);
+    append(all.weights, part.weights);
+    append(all.du_weights, part.du_weights);
+    append(all.dv_weights, part.dv_weights);
+  });
+  const auto optional = [&](const std::vector<double>& weights) {
+    return derivatives > 0 ? py::object(arrayOf(weights)) : py::object(py::none());
+  };
+  return result("Stencils")(arrayOf(all.offsets), arrayOf(all.indices), arrayOf(all.weights),
+                            optional(all.du_weights), optional(all.dv_weights));
+}
+
+}  // namespace
+
+void bindEvaluation(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  const py::object float64 = py::dtype("float64");
+  type.def("evaluate", &evaluate, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
+           "threads"_a = 0, "dtype"_a = float64, kEvaluateDoc)
+      .def("frames", &frames, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0, "dtype"_a = float64,
+           kFramesDoc)
+      .def("curvature", &curvature, "face"_a, "uv"_a, py::kw_only(), "irregular"_a = "none",
+           "radius"_a = kCurvatureRadius, "threads"_a = 0, "dtype"_a = float64, kCurvatureDoc)
+      .def("stencils", &stencils, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
+           "threads"_a = 0, kStencilsDoc);
+}
+
+}  // namespace limitsurf::python

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "batches.h"
+#include "docstrings.h"
+#include "limitsurf/sample/area.h"
+#include "limitsurf/sample/area_sampler.h"
+#include "limitsurf/sample/jittered_sampling.h"
+#include "progress.h"
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+namespace {
+
+/// A density function that calls a Python function of (face, uv).
+Density::Function densityFunction(const py::object& function) {
+  return [&function](Span<Location> at, double* weights) {
+    const py::gil_scoped_acquire acquire;
+    const auto rows = static_cast<py::ssize_t>(at.size());
+    py::array_t<int> face(rows);
+    py::array_t<double> uv({rows, py::ssize_t{2}});
+    int* faces = face.mutable_data();
+    double* uvs = uv.mutable_data();
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      faces[i] = at[i].face;
+      uvs[2 * i] = at[i].u;
+      uvs[2 * i + 1] = at[i].v;
+    }
+    const Doubles values = doubles(function(face, uv), "density's result");
+    if (values.ndim() != 1 || values.shape(0) != rows) {
+      throw std::invalid_argument("density returned shape " + shapeText(values) + " for " +
+                                  std::to_string(rows) + " locations; expected (" +
+                                  std::to_string(rows) + ",)");
+    }
+    std::copy(values.data(), values.data() + rows, weights);
+  };
+}
+
+/// The argument `density`: None, a function, or weights of the mesh's vertices.
+class DensityArgument {
+ public:
+  explicit DensityArgument(const py::object& density) : object_(density) {
+    if (density.is_none() || PyCallable_Check(density.ptr())) {
+      return;
+    }
+    const Doubles array = doubles(density, "density");
+    requireVector<std::invalid_argument>(array, "density");
+    weights_ = Eigen::Map<const Eigen::VectorXd>(array.data(), array.shape(0));
+  }
+
+  /// The density on a surface. It is called without the GIL.
+  Density on(const LimitSurface& surface, int threads) const {
+    if (weights_) {
+      return Density(surface, *weights_, threads);
+    }
+    return object_.is_none() ? Density() : Density(densityFunction(object_));
+  }
+
+ private:
+  const py::object& object_;
+  std::optional<Eigen::VectorXd> weights_;
+};
+
+/// The result of sample(sampler, density, progress), called without the GIL.
+template <typename Sample>
+auto sampled(const SharedSurface& shared, const py::object& density, int threads,
+             const py::object& progress, const Sample& sample) {
+  checkThreads(threads);
+  const DensityArgument argument(density);
+  const ProgressReport report(progress);
+  const Progress tell = progress.is_none() ? Progress() : Progress(report);
+  const py::gil_scoped_release release;
+  const HeldPose held(shared);
+  const InterruptionPoint point = interruptible();
+  const AreaSampler& sampler = shared.sampler.get(shared.surface(), threads);
+  return sample(sampler, argument.on(shared.surface(), threads), tell);
+}
+
+double area(const SharedSurface& shared, int threads) {
+  checkThreads(threads);
+  const py::gil_scoped_release release;
+  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  const InterruptionPoint point = interruptible();
+  return surfaceArea(shared.surface(), threads);
+}
+
+py::object scatterJittered(const SharedSurface& shared, int per_side, std::uint64_t seed,
+                           int threads) {
+  checkThreads(threads);
+  Locations at;
+  {
+    const py::gil_scoped_release release;
+    const InterruptionPoint point = interruptible();
+    at = limitsurf::scatterJittered(shared.surface(), per_side, seed, threads);
+  }
+  return locations(at);
+}
+
+py::object scatterUniform(const SharedSurface& shared, std::int64_t count, std::uint64_t seed,
+                          const py::object& density, int threads, const py::object& progress) {
+  return locations(
+      sampled(shared, density, threads, progress,
+              [&](const AreaSampler& sampler, const Density& weights, const Progress& tell) {
+                return sampler.uniform(count, seed, weights, threads, tell);
+              }));
+}
+
+py::object scatterBlueNoise(const SharedSurface& shared, std::optional<std::int64_t> count,
+                            std::optional<double> radius, std::uint64_t seed,
+                            const py::object& density, int threads, const py::object& progress) {
+  const BlueNoise noise =
+      sampled(shared, density, threads, progress,
+              [&](const AreaSampler& sampler, const Density& weights, const Progress& tell) {
+                return sampler.blueNoise({count, radius, seed, weights}, threads, tell);
+              });
+  const py::object at = locations(noise.at);
+  return result("BlueNoise")(at.attr("face"), at.attr("uv"), noise.radius);
+}
+
+}  // namespace
+
+void bindSampling(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  type.def("area", &area, py::kw_only(), "threads"_a = 0,
+           "The area of the limit surface, in squared units of length, without refused faces. "
+           "Relative "
+           "error: 1e-9 (1e-7 where du x dv vanishes along a curve).")
+      .def("scatter_jittered", &scatterJittered, "per_side"_a, "seed"_a = 0, py::kw_only(),
+           "threads"_a = 0, kScatterJitteredDoc)
+      .def("scatter_uniform", &scatterUniform, "count"_a, "seed"_a = 0, "density"_a = py::none(),
+           py::kw_only(), "threads"_a = 0, "progress"_a = py::none(), kScatterUniformDoc)
+      .def("scatter_blue_noise", &scatterBlueNoise, py::kw_only(), "count"_a = py::none(),
+           "radius"_a = py::none(), "seed"_a = 0, "density"_a = py::none(), "threads"_a = 0,
+           "progress"_a = py::none(), kScatterBlueNoiseDoc);
+}
+
+}  // namespace limitsurf::python

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/tessellate/tessellation.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "batches.h"
+#include "docstrings.h"
+#include "limitsurf/tessellate/tessellation_levels.h"
+#include "progress.h"
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+namespace {
+
+bool isOneNumber(const py::object& object) {
+  return PyIndex_Check(object.ptr()) &&
+         !(py::isinstance<py::array>(object) && py::cast<py::array>(object).ndim() > 0);
+}
+
+int levelOf(std::int64_t level) {
+  return static_cast<int>(std::clamp<std::int64_t>(level, std::numeric_limits<int>::min(),
+                                                   std::numeric_limits<int>::max()));
+}
+
+Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
+                          const TessellationOptions& options) {
+  if (isOneNumber(levels)) {
+    int overflow = 0;
+    const std::int64_t wide = PyLong_AsLongLongAndOverflow(py::int_(levels).ptr(), &overflow);
+    const int level =
+        levelOf(overflow == 0 ? wide : overflow * std::numeric_limits<std::int64_t>::max());
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    return tessellate(shared.surface(), level, options);
+  }
+  const Integers each = integers<std::invalid_argument>(levels, "levels");
+  requireVector<std::invalid_argument>(each, "levels");
+  std::vector<int> of_faces(static_cast<std::size_t>(each.size()));
+  std::transform(each.data(), each.data() + each.size(), of_faces.begin(), levelOf);
+  const py::gil_scoped_release release;
+  const HeldPose held(shared);
+  const InterruptionPoint point = interruptible();
+  return tessellate(shared.surface(), std::move(of_faces), options);
+}
+
+/// The polygons as rows of four corners; the rows of triangles end in -1.
+py::array_t<int> facesOf(const Tessellation& t) {
+  const auto count = static_cast<py::ssize_t>(t.face_sizes.size());
+  py::array_t<int> faces({count, py::ssize_t{4}});
+  const int* corner = t.face_vertices.data();
+  int* row = faces.mutable_data();
+  for (const int size : t.face_sizes) {
+    row[3] = -1;
+    std::copy(corner, corner + size, row);
+    corner += size;
+    row += 4;
+  }
+  return faces;
+}
+
+py::array_t<float> cornerUvs(const Tessellation& t) {
+  py::array_t<float> uvs({static_cast<py::ssize_t>(t.corners.size()), py::ssize_t{2}});
+  float* to = uvs.mutable_data();
+  for (const Tessellation::Corner& corner : t.corners) {
+    *to++ = static_cast<float>(corner.u) / Tessellation::Corner::kSteps;
+    *to++ = static_cast<float>(corner.v) / Tessellation::Corner::kSteps;
+  }
+  return uvs;
+}
+
+py::object tessellate(const SharedSurface& shared, const py::object& levels, bool corner_normals,
+                      int threads, const py::object& progress) {
+  checkThreads(threads);
+  TessellationOptions options{threads, corner_normals, ProgressReport(progress)};
+  const Tessellation t = tessellation(shared, levels, options);
+  const py::object normals =
+      corner_normals ? py::object(pointArray(t.corner_normals)) : py::object(py::none());
+  return result("Tessellation")(pointArray(t.positions), pointArray(t.normals), facesOf(t),
+                                locations(t.locations), arrayOf(t.face_sizes),
+                                arrayOf(t.face_vertices), arrayOf(t.base_face),
+                                arrayOf(t.ptex_face), cornerUvs(t), normals);
+}
+
+py::object faceLevels(const FaceLevels& found) {
+  return result("FaceLevels")(arrayOf(found.levels),
+                              py::array_t<double>(found.measure.size(), found.measure.data()));
+}
+
+py::object levelsWithin(const SharedSurface& shared, double tolerance, int most, int threads,
+                        const py::object& progress) {
+  const LevelOptions options{most, threads, ProgressReport(progress)};
+  FaceLevels found;
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    found = limitsurf::levelsWithin(shared.surface(), tolerance, options);
+  }
+  return faceLevels(found);
+}
+
+PictureView viewOf(const py::object& matrix, double nearest) {
+  const Doubles array = doubles(matrix, "matrix");
+  if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) {
+    throw std::invalid_argument("matrix has shape " + shapeText(array) + "; expected (4, 4)");
+  }
+  PictureView view;
+  view.matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(array.data());
+  view.nearest = nearest;
+  return view;
+}
+
+py::object levelsOfLength(const SharedSurface& shared, double length, const py::object& matrix,
+                          double nearest, int most, int threads, const py::object& progress) {
+  const LevelOptions options{most, threads, ProgressReport(progress)};
+  const bool in_picture = !matrix.is_none();
+  const PictureView view = in_picture ? viewOf(matrix, nearest) : PictureView();
+  FaceLevels found;
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    found =
+        limitsurf::levelsOfLength(shared.surface(), length, in_picture ? &view : nullptr, options);
+  }
+  return faceLevels(found);
+}
+
+}  // namespace
+
+void bindTessellation(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  type.def("tessellate", &tessellate, "levels"_a, py::kw_only(), "corner_normals"_a = false,
+           "threads"_a = 0, "progress"_a = py::none(), kTessellateDoc)
+      .def("levels_within", &levelsWithin, "tolerance"_a, "most"_a = LevelOptions().most,
+           py::kw_only(), "threads"_a = 0, "progress"_a = py::none(), kLevelsWithinDoc)
+      .def("levels_of_length", &levelsOfLength, "length"_a, "matrix"_a = py::none(),
+           "nearest"_a = 0.0, "most"_a = LevelOptions().most, py::kw_only(), "threads"_a = 0,
+           "progress"_a = py::none(), kLevelsOfLengthDoc);
+}
+
+}  // namespace limitsurf::python
