@@ -29,7 +29,7 @@ LAYERS = (
 )
 UNKNOWN = {("eigen", "mesh")}
 MOST_IN_FOLDER = 40
-INCLUDE = re.compile(r'^#include "limitsurf/(?:(\w+)/)?[\w.]+"', re.MULTILINE)
+INCLUDE = re.compile(r'^#include "limitsurf/(?:(\w+)/)?[\w./]+"', re.MULTILINE)
 OF_OTHERS = re.compile(r"pybind11|Python\.h|\bbpy\b")
 
 

@@ -10,6 +10,7 @@
 #include "limitsurf/mesh/control_mesh.h"
 #include "limitsurf/mesh/interpolation.h"
 #include "limitsurf/surface/location_batch.h"
+#include "limitsurf/surface/tiles/surface_tiles.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -207,10 +208,25 @@ class LimitSurface {
   // Weights.
   //
   // The surface is linear in the control points. Take stencils() where the same locations are
-  // evaluated for many poses outside of this library, or where a solver needs the linear map.
+  // evaluated for many poses outside of this library, or where a solver needs the linear map; take
+  // tiles() where another program (a shader, a node tree) evaluates many locations itself.
 
   /// The exact linear weights of the position (and of du and dv) on the control mesh's vertices.
   Stencils stencils(const LocationBatch& at, bool first_derivatives = false, int threads = 0) const;
+
+  /// The bicubic tiles that the locations lie in, for evaluating them elsewhere and in other poses.
+  /// Tiles near extraordinary vertices are at most `max_depth` halvings of a face deep: a location
+  /// nearer to the vertex is moved (SurfaceTiles::moved). Faces are split as far as it takes until
+  /// sharpness has decayed and each part has one irregular vertex at most, and those parts once
+  /// more, whatever `max_depth` is.
+  ///
+  /// Depends on the topology alone, not on the pose. Error: kTilePositionError and
+  /// kTileDerivativeError. Throws std::invalid_argument for a max_depth outside
+  /// [1, SurfaceTiles::kLargestDepth]. Cost: O(1) for each location, and O(valence^2) for each tile
+  /// beside an extraordinary vertex; the rows of its points are as long as its neighbourhood is
+  /// large.
+  SurfaceTiles tiles(const LocationBatch& at, int max_depth = SurfaceTiles::kDefaultDepth,
+                     int threads = 0) const;
 
   // Data on the surface.
   //

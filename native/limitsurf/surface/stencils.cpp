@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <map>
 #include <vector>
 
+#include "limitsurf/patch/point_weights.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/tile_weights.h"
 #include "limitsurf/surface/vertex_limit.h"
@@ -39,7 +38,7 @@ class Row {
     if (at.turns % 2 == 1) {
       std::swap(undefined_[0], undefined_[1]);
     }
-    expandRefined();
+    moveToVertices(table_.points, weights_);
     for (auto& [point, w] : weights_) {
       for (int d = 0; d < 2; ++d) {
         if (undefined_[d]) {
@@ -49,7 +48,7 @@ class Row {
     }
   }
 
-  const std::map<int, Weights, std::greater<int>>& weights() const { return weights_; }
+  const PointWeights<Weights>& weights() const { return weights_; }
 
  private:
   static void turn(int c, double& du, double& dv) {
@@ -60,9 +59,7 @@ class Row {
     }
   }
 
-  void add(int point, const Weights& w) {
-    weights_.try_emplace(point, Weights::Zero()).first->second += w;
-  }
+  void add(int point, const Weights& w) { addWeight(weights_, point, w); }
 
   void addBSpline(const TileLocation& at) {
     const BSplineTile& tile = table_.bsplines[at.tile.index];
@@ -127,20 +124,8 @@ class Row {
     return w;
   }
 
-  void expandRefined() {
-    while (!weights_.empty() && weights_.begin()->first >= table_.points.cagePoints()) {
-      const auto [point, w] = *weights_.begin();
-      weights_.erase(weights_.begin());
-      const Span<int> sources = table_.points.sources(point);
-      const std::vector<double>& mask = table_.points.weights(point);
-      for (std::size_t i = 0; i < sources.size(); ++i) {
-        add(sources[i], mask[i] * w);
-      }
-    }
-  }
-
   const TileTable& table_;
-  std::map<int, Weights, std::greater<int>> weights_;
+  PointWeights<Weights> weights_;
   bool undefined_[2] = {false, false};
 };
 

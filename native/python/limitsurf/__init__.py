@@ -41,6 +41,7 @@ from ._results import (
     Stencils,
     Tessellation,
     Texels,
+    Tiles,
 )
 
 __all__ = [
@@ -67,6 +68,7 @@ __all__ = [
     "SurfaceData",
     "Tessellation",
     "Texels",
+    "Tiles",
     "__version__",
     "bilinear",
     "blend_over",

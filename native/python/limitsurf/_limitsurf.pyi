@@ -21,6 +21,7 @@ from ._results import (
     Stencils,
     Tessellation,
     Texels,
+    Tiles,
 )
 
 __version__: str
@@ -229,6 +230,14 @@ class LimitSurface(metaclass=_BoundType):
         *,
         threads: int = 0,
     ) -> Stencils: ...
+    def tiles(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        max_depth: int | None = None,
+        *,
+        threads: int = 0,
+    ) -> Tiles: ...
     def face_varying(
         self,
         values: ArrayLike,

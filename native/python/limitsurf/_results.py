@@ -71,6 +71,25 @@ class Stencils:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Tiles:
+    """Bicubic tiles of locations, and the points that they consist of (LimitSurface.tiles())."""
+
+    points_offsets: NDArray[np.int64]
+    points_indices: NDArray[np.int32]
+    points_weights: NDArray[np.float64]
+    tile_points: NDArray[np.int32]
+    tile_anchor: NDArray[np.int32]
+    tile_base: NDArray[np.int32]
+    tile: NDArray[np.int32]
+    tile_uv: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    moved: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.tile)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Locations:
     """Locations on a surface: Ptex face ids (n,) and parameters (n, 2)."""
 

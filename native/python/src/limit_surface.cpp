@@ -136,6 +136,7 @@ void bindLimitSurface(py::module_& module) {
   bindPose(type);
   bindEvaluation(type);
   bindDataMakers(type);
+  bindSurfaceTiles(type);
   bindTangentFrames(type);
   bindTessellation(type);
   bindSearch(type);

@@ -66,5 +66,7 @@ void bindTessellation(py::class_<SharedSurface>& type);
 void bindSearch(py::class_<SharedSurface>& type);
 /// area() and the scatter methods
 void bindSampling(py::class_<SharedSurface>& type);
+/// tiles()
+void bindSurfaceTiles(py::class_<SharedSurface>& type);
 
 }  // namespace limitsurf::python

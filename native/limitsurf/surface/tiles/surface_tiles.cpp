@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/tiles/surface_tiles.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/tiles/tile_control_points.h"
+#include "limitsurf/surface/tiles/tile_place.h"
+
+namespace limitsurf {
+namespace {
+
+/// Locations that make one task: finding their tile costs far less than an evaluation.
+constexpr std::size_t kPlacesPerTask = 4096;
+/// Tiles that make one task: a tile costs up to 16 rows of weights.
+constexpr std::size_t kTilesPerTask = 16;
+
+/// Gives refined points their numbers, equal rows the same.
+class PointNumbers {
+ public:
+  PointNumbers(const RefinedPoints& points, SurfaceTiles& out) : points_(points), out_(out) {
+    out.cage_points = points.cagePoints();
+  }
+
+  int numberOf(const ControlPoint& point) {
+    if (point.point < 0) {
+      return numberOf(point.row);
+    }
+    if (point.point < points_.cagePoints()) {
+      return point.point;
+    }
+    const auto [known, is_new] = of_table_.try_emplace(point.point, 0);
+    if (is_new) {
+      known->second = numberOf(onCage(points_, {{point.point, 1}}));
+    }
+    return known->second;
+  }
+
+  int withoutWeights() { return numberOf(CageRow{}); }
+
+ private:
+  int numberOf(const CageRow& row) {
+    std::string bytes(row.indices.size() * (sizeof(int) + sizeof(double)), '\0');
+    if (!bytes.empty()) {
+      const std::size_t size = row.indices.size() * sizeof(int);
+      std::memcpy(bytes.data(), row.indices.data(), size);
+      std::memcpy(bytes.data() + size, row.weights.data(), row.weights.size() * sizeof(double));
+    }
+    const int next = out_.cage_points + static_cast<int>(out_.points_offsets.size()) - 1;
+    const auto [known, is_new] = of_row_.try_emplace(std::move(bytes), next);
+    if (is_new) {
+      out_.points_indices.insert(out_.points_indices.end(), row.indices.begin(), row.indices.end());
+      out_.points_weights.insert(out_.points_weights.end(), row.weights.begin(), row.weights.end());
+      out_.points_offsets.push_back(static_cast<std::int64_t>(out_.points_indices.size()));
+    }
+    return known->second;
+  }
+
+  const RefinedPoints& points_;
+  SurfaceTiles& out_;
+  std::unordered_map<int, int> of_table_;
+  std::unordered_map<std::string, int> of_row_;
+};
+
+/// The different parts in the order of their keys.
+std::vector<TilePart> differentParts(const std::vector<Place>& places) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> by_key(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    by_key[i] = {places[i].part.key(), i};
+  }
+  std::sort(by_key.begin(), by_key.end());
+  std::vector<TilePart> parts;
+  for (std::size_t i = 0; i < by_key.size(); ++i) {
+    if (i == 0 || by_key[i].first != by_key[i - 1].first) {
+      parts.push_back(places[by_key[i].second].part);
+    }
+  }
+  return parts;
+}
+
+/// The number of the part with this key, which is one of them.
+int tileOf(const std::vector<TilePart>& parts, std::uint64_t key) {
+  const auto found =
+      std::lower_bound(parts.begin(), parts.end(), key,
+                       [](const TilePart& part, std::uint64_t k) { return part.key() < k; });
+  return static_cast<int>(found - parts.begin());
+}
+
+}  // namespace
+
+SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int threads) const {
+  data_->check(at, threads);
+  if (max_depth < 1 || max_depth > SurfaceTiles::kLargestDepth) {
+    throw std::invalid_argument("max_depth is " + std::to_string(max_depth) + "; expected 1 to " +
+                                std::to_string(SurfaceTiles::kLargestDepth));
+  }
+  const TileTable& table = data_->table;
+  std::vector<Place> places(at.size());
+  parallelFor(at.size(), kPlacesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    const PlaceFinder find(table, data_->pose, max_depth);
+    for (std::size_t i = begin; i < end; ++i) {
+      places[i] = find(at[i]);
+    }
+  });
+
+  const std::vector<TilePart> parts = differentParts(places);
+  std::vector<ControlPoints> controls(parts.size());
+  const TileBuilder build(table);
+  parallelFor(parts.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      controls[i] = build(parts[i]);
+    }
+  });
+
+  SurfaceTiles out;
+  PointNumbers numbers(table.points, out);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    std::array<int, 16> points;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      points[k] = numbers.numberOf(controls[i].points[k]);
+    }
+    out.tile_points.push_back(points);
+    out.tile_anchor.push_back(numbers.numberOf(controls[i].anchor));
+    out.tile_base.push_back(controls[i].relative ? numbers.withoutWeights()
+                                                 : out.tile_anchor.back());
+  }
+
+  const auto rows = static_cast<Eigen::Index>(at.size());
+  out.tile.resize(at.size());
+  out.moved.resize(at.size());
+  out.tile_uv.resize(rows, 2);
+  out.scale.resize(rows, 2);
+  parallelFor(at.size(), kPlacesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Place& place = places[i];
+      out.tile[i] = tileOf(parts, place.part.key());
+      out.moved[i] = place.moved;
+      out.tile_uv.row(static_cast<Eigen::Index>(i)) << place.u, place.v;
+      out.scale.row(static_cast<Eigen::Index>(i)) << place.u_scale, place.v_scale;
+    }
+  });
+  return out;
+}
+
+}  // namespace limitsurf

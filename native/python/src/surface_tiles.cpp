@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/tiles/surface_tiles.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "batches.h"
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+namespace {
+
+constexpr char kTilesDoc[] =
+    R"(tiles(face, uv, max_depth=None, *, threads=0)
+
+The bicubic tiles that locations lie in: what another program (a shader, a node tree) needs to
+evaluate the limit surface at these locations exactly, in any pose of the mesh. Like OpenSubdiv's
+PatchTable with local point stencils, but without approximation at extraordinary vertices.
+
+Parameters
+    face: (n,) integers, Ptex face ids. One integer stands for all rows.
+    uv: (n, 2), each in [0, 1].
+    max_depth: tiles beside an extraordinary vertex are at most this many halvings of a face deep,
+        1 to 256; None means 24. A location that lies deeper, or exactly at the vertex, is moved to
+        the nearest such tile on the way from the vertex to the location. Faces are split as far as
+        it takes until sharpness has decayed and each part has one irregular vertex at most, and
+        those parts once more, whatever max_depth is.
+    threads: 0 uses all cores.
+
+Returns Tiles, with
+    points_offsets (r + 1,), points_indices, points_weights: refined points as sparse rows (CSR) of
+        weights on the mesh's V vertices. Row i is point V + i; points below V are the vertices.
+    tile_points (t, 16): point ids of each tile's B-spline control points, v-major: column 4 y + x.
+    tile_anchor (t,), tile_base (t,): point ids.
+    tile (n,): the tile of each location. tile_uv (n, 2): the place in the tile, in [0, 1].
+    scale (n, 2): factors that turn derivatives by tile_uv into du and dv.
+    moved (n,): whether the location was moved.
+
+With p the positions of the points and b(t) = ((1 - t)^3, 3 t^3 - 6 t^2 + 4,
+-3 t^3 + 3 t^2 + 3 t + 1, t^3) / 6, a location in tile k at (s, t) has the position
+    p[tile_anchor[k]] + sum of b_x(s) b_y(t) (p[tile_points[k, 4 y + x]] - p[tile_base[k]]).
+Tiles that are small have control points whose weights add up to 0, so that they keep their digits
+in single precision.
+
+Everything depends on the topology and on the locations alone, not on the pose. Error: 1e-14 of the
+diagonal of the mesh's bounding box in position, 1e-12 of the tile's size in derivatives by tile_uv.
+Cost: O(1) a location, O(valence^2) a tile beside an extraordinary vertex.
+
+Raises LocationError for a face or (u, v) that does not exist, MeshError for a face that has no limit
+surface, ValueError for a max_depth out of range.
+
+Source: Stam 1998 and Lacewell & Burley 2007, the control points of their regular sub-patches.)";
+
+template <typename T>
+py::array_t<T> rowsOf(const Eigen::Matrix<T, Eigen::Dynamic, 2, Eigen::RowMajor>& rows) {
+  return py::array_t<T>({rows.rows(), Eigen::Index{2}}, rows.data());
+}
+
+py::array_t<int> tilePoints(const SurfaceTiles& tiles) {
+  const auto count = static_cast<py::ssize_t>(tiles.tile_points.size());
+  py::array_t<int> array({count, py::ssize_t{16}});
+  if (count > 0) {
+    std::memcpy(array.mutable_data(), tiles.tile_points.data(),
+                tiles.tile_points.size() * sizeof(tiles.tile_points[0]));
+  }
+  return array;
+}
+
+py::array_t<bool> flags(const std::vector<char>& values) {
+  py::array_t<bool> array(static_cast<py::ssize_t>(values.size()));
+  std::copy(values.begin(), values.end(), array.mutable_data());
+  return array;
+}
+
+py::object surfaceTiles(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                        const std::optional<int>& max_depth, int threads) {
+  checkThreads(threads);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  SurfaceTiles tiles;
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    tiles = shared.surface().tiles(at, max_depth.value_or(SurfaceTiles::kDefaultDepth), threads);
+  }
+  return result("Tiles")(arrayOf(tiles.points_offsets), arrayOf(tiles.points_indices),
+                         arrayOf(tiles.points_weights), tilePoints(tiles),
+                         arrayOf(tiles.tile_anchor), arrayOf(tiles.tile_base), arrayOf(tiles.tile),
+                         rowsOf(tiles.tile_uv), rowsOf(tiles.scale), flags(tiles.moved));
+}
+
+}  // namespace
+
+void bindSurfaceTiles(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  type.def("tiles", &surfaceTiles, "face"_a, "uv"_a, "max_depth"_a = py::none(), py::kw_only(),
+           "threads"_a = 0, kTilesDoc);
+}
+
+}  // namespace limitsurf::python
