@@ -133,6 +133,7 @@ class Builder {
       throw std::logic_error("a face is still no tile after the deepest split");
     }
     std::vector<int> faces;
+    faces.reserve(splits.size());
     for (const Split& split : splits) {
       faces.push_back(split.face);
     }

@@ -99,7 +99,8 @@ class Bands {
       }
     }
     const double layers = texels / width_ / height_;
-    const double wanted = kTexelsPerBand / width_ / std::max(1., layers / kFewLayers);
+    const int whole_rows = kTexelsPerBand / width_;
+    const double wanted = whole_rows / std::max(1., layers / kFewLayers);
     rows_ = static_cast<int>(
         std::clamp(std::max(wanted, rows / kMostListed), 1., static_cast<double>(height_)));
     per_report_ =
