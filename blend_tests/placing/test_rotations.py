@@ -50,5 +50,5 @@ def test_world_frames_are_orthonormal_and_map_back(q, scale):
 
 
 def test_a_singular_matrix_is_refused():
-    with pytest.raises(RefusalError, match="scale is 0"):
+    with pytest.raises(RefusalError, match="has a scale of 0 along an axis"):
         WorldSpace(np.diag([1.0, 0.0, 1.0, 1.0]))
