@@ -7,7 +7,7 @@ import numpy as np
 from session import BlenderSession
 
 SIDE = 317  # the square of this is slightly more than 100,000 faces
-FREE, CONSTRAINED = 40, 10  # number of moves
+FREE, CONSTRAINED = 40, 10  # number of moves that are enough for a median
 
 
 class Moves(NamedTuple):
@@ -23,19 +23,21 @@ def circle(blender: BlenderSession, moves: int) -> None:
         blender.move(520 + 150 * np.cos(turn), 380 + 100 * np.sin(turn))
 
 
-def drag_over_large_sheet(blender: BlenderSession) -> Moves:
-    """Drags all over the sheet, along its faces' borders and along its boundary, and does not end
-    the drag.
+def drag_over_large_sheet(
+    blender: BlenderSession, free: int = FREE, constrained: int = CONSTRAINED
+) -> Moves:
+    """Drags all over the sheet, along its faces' borders and along its boundary, with so many moves
+    each, and does not end the drag.
     """
     assert blender.call("large_sheet", SIDE) > 100_000
     blender.call("pin")
     blender.call("time_moves")
     blender.call("start_drag")
-    circle(blender, FREE)
+    circle(blender, free)
     for key in "x", "y":
         blender.key(key)  # the drag follows this event as it follows a move
-        circle(blender, CONSTRAINED)
+        circle(blender, constrained)
     times = np.array(blender.call("times"))
-    ends = np.cumsum([FREE, CONSTRAINED + 1, CONSTRAINED + 1])
+    ends = np.cumsum([free, constrained + 1, constrained + 1])
     assert len(times) >= ends[-1]
     return Moves(*np.split(times[-ends[-1] :], ends[:-1]))

@@ -10,9 +10,10 @@ from quadric import Camera
 
 
 def test_moves_on_a_hundred_thousand_faces(blender):
-    moves = drags.drag_over_large_sheet(blender)
-    assert len(moves.free) == drags.FREE
-    assert len(moves.border) == len(moves.boundary) == drags.CONSTRAINED + 1
+    # A move takes seconds where the screen is drawn without a graphics card.
+    moves = drags.drag_over_large_sheet(blender, free=10, constrained=4)
+    assert len(moves.free) == 10
+    assert len(moves.border) == len(moves.boundary) == 5
     found = np.array(blender.call("matrix", "Pin"))[:3, 3]
     assert np.abs(found[:2]).max() == pytest.approx(4, abs=1e-6)  # on the boundary
     blender.key("z")
