@@ -26,7 +26,7 @@ build_extension() {
   local options=() hash
   hash=$(module_hash)
   if [[ $(cat "$PACKAGES/module" 2>/dev/null) != "$hash" ]]; then
-    say "The extension, with a native module for this Blender's Python besides"
+    say "The extension, with a native module for this Blender's Python"
     rm -rf "$PACKAGES"
     options=(--build-wheel --python-headers "$HEADERS")
   fi

@@ -2,7 +2,6 @@
 """The sidebar tab shows the next run's settings, and how many things it will make."""
 
 import re
-import time
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
@@ -12,6 +11,7 @@ import scenes
 from limit_surface import ids
 from limit_surface.placing import distribution_properties, live_count
 from scenes import add_hair, add_points, add_subsurf
+from waiting import wait_until
 
 
 @pytest.fixture(autouse=True)
@@ -54,8 +54,7 @@ def answered(panel):
         if not bpy.app.timers.is_registered(count._look_later):
             continue
         bpy.app.timers.unregister(count._look_later)
-        while count._look() is not None:
-            time.sleep(0.01)
+        wait_until(lambda count=count: count._look() is None, "the count is known")
         said = shown_count(panel)
     return said
 

@@ -54,19 +54,6 @@ class FineMesh:
             found[rows] = np.einsum("ni,nij->nj", weights, self._uv[triangle])
         return found
 
-    def is_seen(self, points: np.ndarray, eye: np.ndarray) -> np.ndarray:
-        """Tells whether nothing lies between the points and an eye."""
-        away = eye - points
-        lengths = np.linalg.norm(away, axis=1)
-        off = 1e-4 * lengths.max()
-        starts = points + off * away / lengths[:, None]
-        return np.array(
-            [
-                self._tree.ray_cast(Vector(o), Vector(d))[2] is None
-                for o, d in zip(starts.tolist(), away.tolist(), strict=True)
-            ]
-        )
-
 
 def add_camera(location, target=(0, 0, 0), **settings: object) -> bpy.types.Object:
     """Adds a camera and makes it the scene's camera."""

@@ -68,7 +68,7 @@ def source(
         return FromBox(world, to_box, fitted(size), pixels, properties.blend, is_framed)
     if properties.source == "NORMALS":
         return _along_normals(properties, context, world, shown)
-    thrown = projector(properties, context, world, size)
+    found = projector(properties, context, world, size)
     seen = Seen(
         facing=facing(properties),
         two_sided=properties.two_sided,
@@ -79,7 +79,7 @@ def source(
     )
     # Where the frame cuts the image off, its pixels must not fade before the frame.
     extension = "EXTEND" if is_framed else properties.extension
-    return FromProjector(world, thrown, _filtered(shown, extension), seen)
+    return FromProjector(world, found, _filtered(shown, extension), seen)
 
 
 def facing(properties: bpy.types.OperatorProperties) -> tuple[float, float]:

@@ -34,7 +34,7 @@ class OBJECT_OT_limit_project_image(
     def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
         ob = context.active_object
-        if self.mode == "DECAL" and self.source not in properties.THROWN:
+        if self.mode == "DECAL" and self.source not in properties.ALONG_RAYS:
             raise RefusalError("A decal can be made only from a camera, a view or a planar empty")
         depsgraph = context.evaluated_depsgraph_get()
         if self.mode == "DECAL":

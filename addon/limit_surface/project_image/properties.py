@@ -15,7 +15,7 @@ from bpy.props import (
 from ..images.texture_operator import TextureProperties
 
 # Sources that project the image along rays through its pixels.
-THROWN = {"CAMERA", "VIEW", "PLANAR"}
+ALONG_RAYS = {"CAMERA", "VIEW", "PLANAR"}
 
 
 class ProjectionProperties(TextureProperties):
@@ -273,7 +273,7 @@ def _draw_texture(column: bpy.types.UILayout, properties: bpy.types.OperatorProp
 def _draw_coverage(column: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
     if properties.source == "BOX":
         column.prop(properties, "blend")
-    if properties.source not in THROWN:
+    if properties.source not in ALONG_RAYS:
         return
     column.prop(properties, "facing", index=0, text="Full Up To")
     column.prop(properties, "facing", index=1, text="Nothing From")

@@ -31,8 +31,9 @@ from .job import Job
 from .polling import mesh_in_object_mode
 from .progress import Waiting, progress_bar
 
-#: Work of more elements than this runs in a thread and shows its progress
-PATIENCE = 0.3  # seconds
+#: Where a user waits, work that is not done after so many seconds shows its progress while Blender
+#: stays usable.
+PATIENCE = 0.3
 
 VIEW_NAVIGATION = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION"}
 

@@ -15,6 +15,7 @@
 #include "bench/support/embree_peer.h"
 #include "bench/support/process_cost.h"
 #include "bench/support/random.h"
+#include "limitsurf/pi.h"
 #include "limitsurf/sample/area.h"
 #include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/search/surface_search.h"
@@ -93,7 +94,7 @@ struct Queries {
 };
 
 Vector3 randomDirection(Random& random) {
-  const double z = random.between(-1, 1), angle = random.between(-M_PI, M_PI);
+  const double z = random.between(-1, 1), angle = random.between(-kPi<double>, kPi<double>);
   const double radius = std::sqrt(1 - z * z);
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }

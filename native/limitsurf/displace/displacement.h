@@ -41,9 +41,9 @@ struct ScalarDisplacementOptions {
   RayDirection direction = RayDirection::both;
 };
 
-/// The base's points moved by vectors, the inverse of vectorDisplacement(). `components` has a row
-/// for each location. `frames` has as many rows, and the vectors are given by their components in
-/// them; or it has none, and the vectors are given in space.
+/// Moves the base's points by vectors. It is the inverse of vectorDisplacement(). `components` has
+/// a row for each location. `frames` has as many rows, and the vectors are given by their
+/// components in them; or it has none, and the vectors are given in space.
 Points displaced(const LimitSurface& base, Span<Location> at, const Points& components,
                  const FrameRows& frames, int threads = 0);
 

@@ -46,7 +46,7 @@ class CageMesh final : public FaceMesh {
     return level_.GetEdgeSharpness(level_.GetFaceEdges(side.face)[side.corner]);
   }
 
-  /// The same, without a look at each edge where none is sharp.
+  /// The same, but faster if no edge is sharp.
   // NOLINTNEXTLINE(bugprone-derived-method-shadowing-base-method)
   FaceCorner across(FaceCorner side) const {
     return has_sharpness_ ? FaceMesh::across(side) : twin(side);

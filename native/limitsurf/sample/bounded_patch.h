@@ -110,8 +110,8 @@ class BoundedPatch {
   /// Products of the bounds on derivatives are cheaper than the derivatives of ds x dt itself. They
   /// serve as long as they prove that ds x dt changes by no more than this part of its length.
   static constexpr double kLoose = 0.25;
-  /// |ds x dt| relative to bounds on |ds| and |dt|, below which cancellation leaves no digits worth
-  /// having: some thousand times the rounding of the products. Chosen, not derived.
+  /// |ds x dt| relative to bounds on |ds| and |dt|, below which cancellation leaves no correct
+  /// digits: some thousand times the rounding of the products. Chosen, not derived.
   static constexpr double kCrossRounding = 1e-12;
 
   const Slopes& normalSlopes() const {

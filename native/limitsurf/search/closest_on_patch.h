@@ -19,7 +19,7 @@ struct ClosestSoFar {
   /// Points that are closer by less than this are not searched for: a tenth of kSearchError.
   double tolerance = 0;
 
-  /// Everything whose squared distance is at least this may be left out.
+  /// A part of the surface may be left out if its squared distance is at least this.
   double enough() const {
     const double least = distance - tolerance;
     return least > 0 ? least * least : -std::numeric_limits<double>::infinity();
@@ -44,7 +44,8 @@ struct Facing {
   bool accepts(const Vector3& normal) const {
     return normal.dot(direction) >= least_cosine * normal.norm() * direction.norm();
   }
-  /// The same where the tangents do not determine the normal: by the surface's frame.
+  /// The same test with the surface's frame, for places where the tangents do not determine the
+  /// normal.
   bool accepts(const Location& at) const {
     const auto frame = surface.frames({&at, 1}, 1);
     return accepts(Vector3(frame(0, 2), frame(0, 5), frame(0, 8)));

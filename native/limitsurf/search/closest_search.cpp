@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/pi.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/closest_on_patch.h"
 #include "limitsurf/search/hit_evaluation.h"
@@ -44,7 +45,7 @@ double squaredDistance(const Box& box, const Vector3& point) {
 }
 
 /// Angles from here on count as pi, and then no cosine is too small.
-constexpr double kNearlyPi = 3.1415926535897, kAnyCosine = -2;
+constexpr double kNearlyPi = kPi<double> - 1e-13, kAnyCosine = -2;
 
 /// Searches for one point after the other.
 class ClosestSearch {

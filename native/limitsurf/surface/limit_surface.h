@@ -216,9 +216,9 @@ class LimitSurface {
 
   /// The bicubic tiles that the locations lie in, for evaluating them elsewhere and in other poses.
   /// Tiles near extraordinary vertices are at most `max_depth` halvings of a face deep: a location
-  /// nearer to the vertex is moved (SurfaceTiles::moved). Faces are split as far as it takes until
-  /// sharpness has decayed and each part has one irregular vertex at most, and those parts once
-  /// more, whatever `max_depth` is.
+  /// nearer to the vertex is moved (SurfaceTiles::moved). Faces are split until sharpness
+  /// has decayed and each part has at most one irregular vertex; these parts are split once more.
+  /// This does not depend on `max_depth`.
   ///
   /// Depends on the topology alone, not on the pose. Error: kTilePositionError and
   /// kTileDerivativeError. Throws std::invalid_argument for a max_depth outside

@@ -26,9 +26,9 @@ Parameters
     uv: (n, 2), each in [0, 1].
     max_depth: tiles beside an extraordinary vertex are at most this many halvings of a face deep,
         1 to 256; None means 24. A location that lies deeper, or exactly at the vertex, is moved to
-        the nearest such tile on the way from the vertex to the location. Faces are split as far as
-        it takes until sharpness has decayed and each part has one irregular vertex at most, and
-        those parts once more, whatever max_depth is.
+        the nearest such tile on the way from the vertex to the location. Faces are split
+        until sharpness has decayed and each part has at most one irregular vertex; these parts are
+        split once more. This does not depend on max_depth.
     threads: 0 uses all cores.
 
 Returns Tiles, with

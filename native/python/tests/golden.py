@@ -26,10 +26,6 @@ class Golden:
     uv: np.ndarray
     values: dict  # quantity -> (samples, 3), NaN where there is none
 
-    @property
-    def has_sharpness(self) -> bool:
-        return len(self.sharp_edges) + len(self.sharp_vertices) > 0
-
 
 def names() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob("*/*.golden"))

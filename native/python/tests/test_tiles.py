@@ -30,9 +30,9 @@ def evaluated(tiles, cage):
     size = np.linalg.norm(np.ptp(control, axis=1), axis=1)[tiles.tile]
     control = control.reshape(-1, 4, 4, 3)[tiles.tile]
     (s, t), anchor = tiles.tile_uv.T, p[tiles.tile_anchor][tiles.tile]
-    position = anchor + np.einsum("nx,ny,nyxd->nd", cubic(s), cubic(t), control)
-    by_s = np.einsum("nx,ny,nyxd->nd", cubic_slope(s), cubic(t), control)
-    by_t = np.einsum("nx,ny,nyxd->nd", cubic(s), cubic_slope(t), control)
+    position = anchor + np.einsum("nx,ny,nyxc->nc", cubic(s), cubic(t), control)
+    by_s = np.einsum("nx,ny,nyxc->nc", cubic_slope(s), cubic(t), control)
+    by_t = np.einsum("nx,ny,nyxc->nc", cubic(s), cubic_slope(t), control)
     return position, (by_s, by_t), size
 
 
@@ -126,7 +126,9 @@ def test_agree_with_evaluation_at_any_depth(mesh):
 
 def test_at_a_vertex_and_too_near_to_it_are_moved():
     surface = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.fan(5, True)))
-    uv = np.array([[0, 0], [2.0**-30, 2.0**-31], [2.0**-25, 0], [2.0**-24, 0], [0.3, 0.2], [1, 0.5]])
+    uv = np.array(
+        [[0, 0], [2.0**-30, 2.0**-31], [2.0**-25, 0], [2.0**-24, 0], [0.3, 0.2], [1, 0.5]]
+    )
     tiles = surface.tiles(0, uv)
     assert tiles.moved.tolist() == [True, True, True, False, False, False]
     position, slopes, _ = evaluated(tiles, surface.positions)

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "limitsurf/pi.h"
 #include "limitsurf/search/surface_search.h"
 #include "support/cages/meshes.h"
 #include "support/cages/query_cages.h"
@@ -381,7 +382,7 @@ TEST(Closest, FacingTakesTheSideOfASheetThatIsAskedFor) {
   options.facing = Eigen::RowVector3d(1e200, 0, 0);
   options.max_angle = 1.5;
   EXPECT_EQ(search.closest(point, options).at[0].face, -1);
-  options.max_angle = 3.14159265358979323846;
+  options.max_angle = kPi<double>;
   EXPECT_NEAR(search.closest(point, options).distance[0], 0.1, 1e-12);
 }
 
