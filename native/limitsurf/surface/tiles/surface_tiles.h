@@ -48,8 +48,9 @@ struct SurfaceTiles {
   /// the vertex itself, the face's diagonal) first reaches a tile that is allowed.
   std::vector<char> moved;
 
-  /// Tiles are at most 2^-depth wide for the depth that LimitSurface::tiles() is given; this one
-  /// serves float: a distance of 2^-24 edges is lost in a float coordinate.
+  /// Tiles beside an extraordinary vertex are at least 2^-depth of a face wide, for the depth that
+  /// LimitSurface::tiles() is given. This one suits float, whose coordinates do not tell places
+  /// apart that are 2^-24 of an edge from each other.
   static constexpr int kDefaultDepth = 24;
   static constexpr int kLargestDepth = 256;
 };
