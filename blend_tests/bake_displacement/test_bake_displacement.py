@@ -183,10 +183,11 @@ def test_distances(capfd):
     np.testing.assert_allclose(pixels[met][:, 0], 0.5 + 0.1 * across[met], atol=SINGLE)
     assert (pixels[inside & (across > 2)][:, :3] == 0).all()
     np.testing.assert_array_equal(pixels[..., 0], pixels[..., 1])
-    assert "Slope was not met at 1,352 of 2,704 texels" in said
-    assert "they hold 0" in said
-    refused(ob, "Slope is met nowhere", target="Slope", mode="SCALAR", max_distance=0.1)
-    refused(ob, "Slope is met nowhere", target="Slope", mode="SCALAR", direction="INWARD")
+    assert "Slope was not found along the normals of 1,352 of 2,704 texels" in said
+    assert "these texels hold 0" in said
+    missed = "No normal of the surface meets Slope"
+    refused(ob, missed, target="Slope", mode="SCALAR", max_distance=0.1)
+    refused(ob, missed, target="Slope", mode="SCALAR", direction="INWARD")
 
 
 def test_polygons_of_multiresolution(base):
@@ -280,7 +281,7 @@ def test_paths_that_would_not_do(sculpt, base, tmp_path):
         ("a.png does not end in .exr", tmp_path / "a.png", {}),
         ("which has not been saved: save it first", "//a.exr", {}),
         (
-            "a.exr would be the file of 2 tiles",
+            "Each of the 2 tiles is saved in its own file: a.exr must contain <UDIM>",
             tmp_path / "a.exr",
             {"use_tiles": True, "uv_map": "Flat.001"},
         ),

@@ -59,7 +59,7 @@ def answered(panel):
     return said
 
 
-SPREADS = [
+DISTRIBUTIONS = [
     {"per_side": 7},
     {"distribution": "UNIFORM", "amount": "COUNT", "count": 1234},
     {"distribution": "BLUE_NOISE", "amount": "COUNT", "count": 321},
@@ -79,20 +79,20 @@ SPREADS = [
 ]
 
 
-@pytest.mark.parametrize("spread", SPREADS)
-def test_so_many_are_made(spread):
+@pytest.mark.parametrize("properties", DISTRIBUTIONS)
+def test_so_many_are_made(properties):
     ob = scenes.grid_with_holes()
     ob.scale = (0.7, 1.2, 1)
     ob.vertex_groups.new(name="Some").add(list(range(14)), 0.8, "REPLACE")
     ob.data.polygons.foreach_set("select", [i % 2 == 0 for i in range(len(ob.data.polygons))])
     add_subsurf(ob)
-    settings_of(ids.POINTS_ADD, **spread)
+    settings_of(ids.POINTS_ADD, **properties)
     said = answered(ids.POINTS_PANEL)
     count = int(re.search(r"([\d,]+) points$", said)[1].replace(",", ""))
-    made = len(add_points(ob, **spread).data.vertices)
+    made = len(add_points(ob, **properties).data.vertices)
     if said.startswith("About"):
         assert made == pytest.approx(count, rel=0.1)
-        assert "DISTANCE" in spread.values() or "density_source" in spread
+        assert "DISTANCE" in properties.values() or "density_source" in properties
     else:
         assert made == count
 

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Faces chosen by material slots and by selection: nothing is made on any other face."""
 
+from operator import itemgetter
+
 import areas
 import bpy
 import numpy as np
 import pytest
 import scenes
 from limit_surface.reading import attributes
+from limit_surface.reading.subdivided_mesh import ptex_face_counts
 from refusals import check_refused
 from scenes import add_hair, add_points, locations
 
-SPREADS = [
+DISTRIBUTIONS = [
     {"distribution": "JITTERED", "per_side": 5},
     {"distribution": "UNIFORM", "count": 5000},
     {"distribution": "BLUE_NOISE", "distance": 0.08},
@@ -29,40 +32,41 @@ def with_materials(ob, slots=3):
 def ptex_polygons(ob):
     """Returns the polygon of each Ptex face."""
     sizes = attributes.face_sizes(ob.data)
-    return np.repeat(np.arange(len(sizes)), np.where(sizes == 4, 1, sizes))
+    return np.repeat(np.arange(len(sizes)), ptex_face_counts(sizes))
 
 
 def covered_polygons(ob, made):
     return np.unique(ptex_polygons(ob)[locations(made.data)[0]])
 
 
-@pytest.mark.parametrize("spread", SPREADS, ids=lambda spread: spread["distribution"])
+@pytest.mark.parametrize("properties", DISTRIBUTIONS, ids=itemgetter("distribution"))
 @pytest.mark.parametrize("slots", [{"1"}, {"0", "2"}])
-def test_material_slots(spread, slots):
+def test_material_slots(properties, slots):
     ob = scenes.mixed_polygons()
     slot = with_materials(ob)
-    points = add_points(ob, material_slots=slots, **spread)
+    points = add_points(ob, material_slots=slots, **properties)
     wanted = np.flatnonzero(np.isin(slot, [int(s) for s in slots]))
     np.testing.assert_array_equal(covered_polygons(ob, points), wanted)
 
 
-@pytest.mark.parametrize("spread", SPREADS, ids=lambda spread: spread["distribution"])
-def test_selected_faces(spread):
+@pytest.mark.parametrize("properties", DISTRIBUTIONS, ids=itemgetter("distribution"))
+def test_selected_faces(properties):
     ob = scenes.grid_with_holes()
     wanted = [2, 3, 11]
     select = np.isin(np.arange(len(ob.data.polygons)), wanted)
     ob.data.polygons.foreach_set("select", select)
-    points = add_points(ob, faces="SELECTED", **spread)
+    points = add_points(ob, faces="SELECTED", **properties)
     np.testing.assert_array_equal(covered_polygons(ob, points), wanted)
 
 
-@pytest.mark.parametrize("spread", SPREADS, ids=lambda spread: spread["distribution"])
-def test_a_face_attribute_and_material_slots_together(spread):
+@pytest.mark.parametrize("properties", DISTRIBUTIONS, ids=itemgetter("distribution"))
+def test_a_face_attribute_and_material_slots_together(properties):
     ob = scenes.grid_with_holes()
     slot = with_materials(ob)
     scalp = np.arange(len(slot)) < 9
     attributes.write(ob.data, "scalp", "BOOLEAN", "FACE", scalp)
-    hair = add_hair(ob, faces="ATTRIBUTE", face_attribute="scalp", material_slots={"0"}, **spread)
+    properties = {**properties, "face_attribute": "scalp", "material_slots": {"0"}}
+    hair = add_hair(ob, faces="ATTRIBUTE", **properties)
     wanted = np.flatnonzero(scalp & (slot == 0))
     np.testing.assert_array_equal(covered_polygons(ob, hair), wanted)
 

@@ -9,8 +9,7 @@ import scenes
 from limit_surface import ids
 from limit_surface.native import limitsurf
 from limit_surface.placing.rotations import quaternions
-from limit_surface.reading import attributes, cage
-from mathutils import Matrix
+from limit_surface.reading import attributes, cage, ragged_rows
 
 SINGLE = 2e-6
 
@@ -48,21 +47,10 @@ class Made:
 
     def areas(self):
         """Returns the areas of the polygons in the image, positive for counter-clockwise ones."""
-        starts = np.cumsum(self.sizes) - self.sizes
-        following = np.arange(len(self.vertices)) + 1
-        following[starts + self.sizes - 1] = starts
-        a, b = self.st[self.vertices], self.st[self.vertices[following]]
-        return np.add.reduceat(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], starts) / 2
-
-
-def posed(ob, mirrored=False):
-    ob.matrix_world = (
-        Matrix.Translation((1, -2, 0.5))
-        @ Matrix.Rotation(0.4, 4, (1, 2, 3))
-        @ Matrix.Diagonal((-0.7 if mirrored else 0.7, 1.2, 0.9, 1))
-    )
-    bpy.context.view_layer.update()
-    return ob
+        a = self.st[self.vertices]
+        b = a[ragged_rows.following(self.sizes)]
+        strips = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        return np.add.reduceat(strips, ragged_rows.starts(self.sizes)) / 2
 
 
 def surface_of(ob):
@@ -79,7 +67,7 @@ def seen_from_above(ob, **settings):
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("settings", [{"lens": 45.0}, {"type": "ORTHO", "ortho_scale": 8.0}])
 def test_vertices_lie_on_the_surface_under_their_pixels(settings, mirrored):
-    ob = posed(scenes.grid_with_holes(), mirrored)
+    ob = truth.posed(scenes.grid_with_holes(), mirrored)
     camera = seen_from_above(ob, **settings)
     image((80, 40))
     made = Made(add_decal(ob))
@@ -114,7 +102,7 @@ def test_the_outline_is_the_surfaces():
     truth.add_camera((0.5, 0.5, 5), (0.5, 0.5, 0), type="ORTHO", ortho_scale=3)
     image()
     made = Made(add_decal(ob, decal_resolution=31))
-    # Each border point is within 2^-16 of a cell's side; corners of the square are cut off.
+    # Each border point is within 2^-16 of a quad's side; corners of the square are cut off.
     assert made.areas().sum() == pytest.approx(1 / 9, abs=4 * 0.5 / 31**2)
     uncut = add_decal(ob, decal_resolution=310)
     assert Made(uncut).areas().sum() == pytest.approx(1 / 9, abs=4 * 0.5 / 310**2)
@@ -176,7 +164,7 @@ def test_no_polygon_joins_two_sheets(gap):
     truth.add_camera((0, 0, 9), type="ORTHO", ortho_scale=5)
     image()
     made = Made(add_decal(ob, decal_resolution=40))
-    starts = np.cumsum(made.sizes) - made.sizes
+    starts = ragged_rows.starts(made.sizes)
     height = made.local[made.vertices, 2]
     spread = np.maximum.reduceat(height, starts) - np.minimum.reduceat(height, starts)
     assert spread.max() < 1e-6
@@ -201,7 +189,7 @@ def test_creases_do_not_cut():
 
 
 def test_offsets_are_along_the_normal_in_world_units():
-    ob = posed(scenes.grid_with_holes())
+    ob = truth.posed(scenes.grid_with_holes())
     seen_from_above(ob)
     image()
     flat, raised = (Made(add_decal(ob, decal_offset=offset)) for offset in (0.0, 0.125))
@@ -217,7 +205,7 @@ def test_offsets_are_along_the_normal_in_world_units():
 
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_normals_are_the_surfaces(mirrored):
-    ob = posed(scenes.grid_with_holes(), mirrored)
+    ob = truth.posed(scenes.grid_with_holes(), mirrored)
     seen_from_above(ob)
     image()
     decal = add_decal(ob)
@@ -228,7 +216,7 @@ def test_normals_are_the_surfaces(mirrored):
     cosine = np.einsum("ij,ij->i", corner.reshape(-1, 3), exact[made.vertices])
     assert cosine.min() > 1 - 1e-6
     flat = np.array([polygon.normal for polygon in decal.data.polygons])
-    starts = np.cumsum(made.sizes) - made.sizes
+    starts = ragged_rows.starts(made.sizes)
     assert (np.einsum("ij,ij->i", flat, exact[made.vertices[starts]]) > 0).mean() > 0.99
 
 

@@ -38,16 +38,6 @@ def bent_sheet(level=5):
     return ob
 
 
-def moved(ob, mirrored=False):
-    ob.matrix_world = (
-        Matrix.Translation((1, -2, 0.5))
-        @ Matrix.Rotation(0.4, 4, (1, 2, 3))
-        @ Matrix.Diagonal((-0.7 if mirrored else 0.7, 1.2, 0.9, 1))
-    )
-    bpy.context.view_layer.update()
-    return ob
-
-
 def middle(ob):
     return np.array(ob.matrix_world @ Matrix.Translation((2.5, 2, 0.5)).to_translation())
 
@@ -64,7 +54,7 @@ def test_every_place_shows_what_the_camera_shows_there(name, mirrored):
     """The pixels of the image hold their own coordinates: along the camera's rays the texture shows
     these coordinates.
     """
-    ob = moved(bent_sheet(), mirrored)
+    ob = truth.posed(bent_sheet(), mirrored)
     axis = np.array(ob.matrix_world)[:3, 2]
     away = 7 * axis / np.linalg.norm(axis) + [2, 0, 0]
     target = middle(ob)
@@ -437,7 +427,7 @@ def test_refusals_about_images():
     refused(ob, "The image Missing has no pixels", target="Missing", **existing)
     refused(ob, "Shown cannot be painted into itself", target="Shown", **existing)
     bpy.data.images["Target"].colorspace_settings.name = "AgX Base sRGB"
-    refused(ob, "Target is in the color space AgX Base sRGB", target="Target", **existing)
+    refused(ob, "Target has the color space AgX Base sRGB", target="Target", **existing)
     refused(ob, "GiB of memory: set Allow Large Images", width=16384, height=16384)
     endless = np.ones((8, 8, 4))
     endless[2, 3, 1] = np.inf

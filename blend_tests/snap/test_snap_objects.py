@@ -176,7 +176,7 @@ def test_maximum_distance_and_report(capfd):
     np.testing.assert_allclose([t.location.z for t in things], [0, 0, 3], atol=1e-6)
     said = capfd.readouterr().out
     assert "2 of 3 objects snapped, moved by 0.75 on average, 1 at most (to Flat)" in said
-    assert "1 objects could not be snapped: 1 with no surface within 2" in said
+    assert "1 objects could not be snapped: no surface was found within 2 (1)" in said
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -315,12 +315,12 @@ def test_locked_channels():
     target = scenes.flat_grid(4)
     thing = add_object((2, 2.2, 1))
     thing.lock_location[2] = True
-    refused_and_unchanged(target, thing, "1 locked")
+    refused_and_unchanged(target, thing, "the location or rotation is locked")
     thing.lock_location = (True, True, False)
     snap(target)  # straight down, which is free
     np.testing.assert_allclose(thing.location, (2, 2.2, 0), atol=1e-6)
     thing.rotation_euler, thing.lock_rotation = (0.5, 0, 0), (True, False, False)
-    refused_and_unchanged(target, thing, "1 locked", align="NORMAL")
+    refused_and_unchanged(target, thing, "the location or rotation is locked", align="NORMAL")
 
 
 def test_constraints_and_drivers():
@@ -329,10 +329,10 @@ def test_constraints_and_drivers():
     other.select_set(False)
     thing = add_object((2, 2.2, 1))
     thing.constraints.new("COPY_LOCATION").target = other
-    refused_and_unchanged(target, thing, "held elsewhere by constraints or drivers")
+    refused_and_unchanged(target, thing, "constraints or drivers hold the object elsewhere")
     thing.constraints.clear()
     thing.driver_add("location", 2).driver.expression = "1.5"
-    refused_and_unchanged(target, thing, "held elsewhere by constraints or drivers")
+    refused_and_unchanged(target, thing, "constraints or drivers hold the object elsewhere")
 
 
 def test_those_that_can_be_moved_are(capfd):
@@ -341,14 +341,15 @@ def test_those_that_can_be_moved_are(capfd):
     held.lock_location = (True, True, True)
     snap(target)
     assert [round(ob.location.z, 6) for ob in (free, held)] == [0, 1]
-    assert "1 objects could not be snapped: 1 locked" in capfd.readouterr().out
+    said = capfd.readouterr().out
+    assert "1 objects could not be snapped: the location or rotation is locked (1)" in said
 
 
 def test_what_carries_the_target():
     target = scenes.flat_grid(4)
     carrier = add_object((0, 0, 1))
     target.parent = carrier
-    refused_and_unchanged(target, carrier, "1 that would move Flat with them")
+    refused_and_unchanged(target, carrier, "Flat is parented to the object and would move with it")
 
 
 def test_a_target_that_comes_along(capfd):
@@ -387,7 +388,7 @@ def test_linked_objects(tmp_path):
     linked = found.objects[0]
     bpy.context.collection.objects.link(linked)
     linked.select_set(True)
-    refused_and_unchanged(target, linked, "1 linked from another file")
+    refused_and_unchanged(target, linked, "the object is linked from another file")
 
 
 @pytest.mark.parametrize("kind", ["VIEWPORT", "RENDER"])

@@ -157,7 +157,7 @@ def test_nothing_within_reach_changes_nothing():
     things = [add_object((0, 0, 9)), add_object((0, 0, 8))]
     scenes.activate(target)
     before = scenes.file_contents()
-    refused("2 objects could not be snapped: 2 with no surface within 1", max_distance=1)
+    refused("2 objects could not be snapped: no surface was found within 1", max_distance=1)
     assert [thing.location.z for thing in things] == [9, 8]
     assert scenes.file_contents() == before
 
@@ -191,8 +191,8 @@ def test_a_flattened_object_has_no_direction():
     add_object((0, 0, 1)).scale = (1, 1, 0)
     scenes.activate(target)
     bpy.context.view_layer.update()
-    refused("1 with no direction of their own", mode="NORMAL")
-    refused("1 that cannot be turned to the normal", align="NORMAL")
+    refused("no normal or axis that gives the direction of the search", mode="NORMAL")
+    refused("the object cannot be turned to the normal", align="NORMAL")
 
 
 def test_a_flattened_edited_object():

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from limit_surface import ids
 from limit_surface.reading import attributes
-from mathutils import Vector
+from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
 
 
@@ -53,6 +53,17 @@ class FineMesh:
             weights = np.column_stack([1 - weights.sum(axis=1), weights[:, :, 0]])
             found[rows] = np.einsum("ni,nij->nj", weights, self._uv[triangle])
         return found
+
+
+def posed(ob: bpy.types.Object, mirrored: bool = False) -> bpy.types.Object:
+    """Moves, turns and stretches the object by a matrix of its own, and returns it."""
+    ob.matrix_world = (
+        Matrix.Translation((1, -2, 0.5))
+        @ Matrix.Rotation(0.4, 4, (1, 2, 3))
+        @ Matrix.Diagonal((-0.7 if mirrored else 0.7, 1.2, 0.9, 1))
+    )
+    bpy.context.view_layer.update()
+    return ob
 
 
 def add_camera(location, target=(0, 0, 0), **settings: object) -> bpy.types.Object:

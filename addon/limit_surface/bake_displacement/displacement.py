@@ -61,7 +61,8 @@ def measure(request: Request, progress: Progress) -> Measured:
         raise RefusalError("No texel lies on the surface: check that the UV map lies on the image")
     if not ranges:
         raise RefusalError(
-            f"{request.surfaces.target_name} is met nowhere along the normals: no image was made"
+            f"No normal of the surface meets {request.surfaces.target_name} in the chosen "
+            "direction and within the chosen distance"
         )
     lows, highs = zip(*ranges, strict=True)
     return Measured(tiles, count, missing, overlapping, float(min(lows)), float(max(highs)))

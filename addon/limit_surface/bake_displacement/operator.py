@@ -49,8 +49,8 @@ class OBJECT_OT_limit_bake_displacement(
         ob = context.active_object
         if self.create_material and self.layout_kind == "PTEX":
             raise RefusalError(
-                "A material finds its texels by a UV map: choose the layout UV Map, or turn "
-                "Create Material off"
+                "A material needs a UV map, which the layout Tile per Face does not use: choose "
+                "the layout UV Map, or turn Create Material off"
             )
         if self.create_material:
             material.check(ob)
@@ -91,8 +91,8 @@ class OBJECT_OT_limit_bake_displacement(
             )
         if tiles > 1 and "<UDIM>" not in self._path.name:
             raise RefusalError(
-                f"{self._path.name} would be the file of {tiles} tiles: put <UDIM> where their "
-                "numbers go"
+                f"Each of the {tiles} tiles is saved in its own file: {self._path.name} must "
+                "contain <UDIM>, which is replaced by the number of the tile"
             )
 
     @property
@@ -149,8 +149,8 @@ class OBJECT_OT_limit_bake_displacement(
         if measured.missing:
             self.report(
                 {"WARNING"},
-                f"{request.surfaces.target_name} was not met at {measured.missing:,} of "
-                f"{measured.count:,} texels: they hold 0",
+                f"{request.surfaces.target_name} was not found along the normals of "
+                f"{measured.missing:,} of {measured.count:,} texels: these texels hold 0",
             )
         if measured.overlapping:
             self.report({"WARNING"}, f"{ob.name}: {overlap.told(measured.overlapping)}")

@@ -103,9 +103,9 @@ class BakeProperties(TextureProperties):
     )
     curvature_range: FloatProperty(
         name="Curvature Range",
-        description="Curvature that 8-bit and 16-bit images show as 1. Its negative is shown as "
-        "0, and zero curvature as 0.5. For Gaussian curvature the square of this number is used. "
-        "0 chooses a range that contains 95% of the values",
+        description="Largest curvature that 8-bit and 16-bit images can show. They store it as "
+        "1, its negative as 0, and zero curvature as 0.5. The largest Gaussian curvature is the "
+        "square of this number. 0 chooses a range that contains 95% of the values",
         default=0.0,
         min=0.0,
         soft_max=100.0,

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .. import ids
 from ..errors import RefusalError
 from ..tasks import polling
 from ..tasks.job import Job, Progress
-from ..tasks.watched_operator import WatchedOperator, draw_summary
+from ..tasks.properties import LargeCountProperty, draw_summary
+from ..tasks.watched_operator import WatchedOperator
 from . import colours, text
 from .control_mesh import ControlMesh
 from .roots import StoredRoots
@@ -26,7 +27,7 @@ _PLACES: dict[str, type[Places]] = {
 }
 
 
-class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
+class OBJECT_OT_limit_curvature(WatchedOperator, LargeCountProperty, bpy.types.Operator):
     """Store the limit surface's exact curvature, its principal directions and colors as
     attributes"""
 
@@ -117,17 +118,6 @@ class OBJECT_OT_limit_curvature(WatchedOperator, bpy.types.Operator):
         min=0.0,
         soft_max=100.0,
         precision=4,
-    )
-    allow_large: BoolProperty(
-        name="Allow Large Counts",
-        description="Allow the operator to make millions of polygons without confirmation",
-        default=False,
-        options={"SKIP_SAVE"},
-    )
-    summary: StringProperty(
-        name="Result",
-        description="Summary of the curvature that was found",
-        options={"HIDDEN", "SKIP_SAVE"},
     )
 
     @classmethod

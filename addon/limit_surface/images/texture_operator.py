@@ -6,7 +6,8 @@ them.
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
-from ..tasks.watched_operator import WatchedOperator, draw_summary
+from ..tasks.properties import draw_summary
+from ..tasks.watched_operator import WatchedOperator
 
 LARGEST = 16384  # texels along a side
 
@@ -66,11 +67,6 @@ class TextureProperties:
         description="Allow images that take gigabytes of memory",
         default=False,
         options={"SKIP_SAVE"},
-    )
-    summary: StringProperty(
-        name="Result",
-        description="Summary of what the operator made",
-        options={"HIDDEN", "SKIP_SAVE"},
     )
 
 

@@ -12,8 +12,9 @@ from ..placing import new_objects
 from ..reading import cage
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
+from ..tasks.properties import LargeCountProperty, draw_summary
 from ..tasks.refused_faces import left_out, reasons
-from ..tasks.watched_operator import WatchedOperator, draw_summary
+from ..tasks.watched_operator import WatchedOperator
 from . import blender_mesh, levels, tessellation
 
 
@@ -24,7 +25,7 @@ class _Result:
     notes: list[str]
 
 
-class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
+class OBJECT_OT_limit_mesh(WatchedOperator, LargeCountProperty, bpy.types.Operator):
     """Make a mesh whose vertices and normals are exactly those of the active mesh's limit surface,
     for renderers that need polygons"""
 
@@ -119,17 +120,6 @@ class OBJECT_OT_limit_mesh(WatchedOperator, bpy.types.Operator):
         name="Hide Original",
         description="Hide the active mesh in the viewport and in renders",
         default=False,
-    )
-    allow_large: BoolProperty(
-        name="Allow Large Counts",
-        description="Allow the operator to make millions of polygons without confirmation",
-        default=False,
-        options={"SKIP_SAVE"},
-    )
-    summary: StringProperty(
-        name="Result",
-        description="Summary of what the operator made",
-        options={"HIDDEN", "SKIP_SAVE"},
     )
 
     def draw(self, _context: bpy.types.Context) -> None:

@@ -41,7 +41,7 @@ class DistributionProperties:
             (
                 "JITTERED",
                 "Jittered",
-                "Make the same number on each face: one at a random place in each cell of a grid",
+                "Divide each face into equal squares and make one at a random place in each",
                 "",
                 0,
             ),
@@ -65,8 +65,8 @@ class DistributionProperties:
     )
     per_side: IntProperty(
         name="Per Side",
-        description="Number of grid cells along each side of a face, for Jittered. 20 makes 400 "
-        "on each quad, and 400 for each corner of any other face",
+        description="Number of squares along each side of a face, for Jittered. 20 makes 400 "
+        "squares on each quad, and 400 for each corner of any other face",
         default=20,
         min=1,
         max=10_000,

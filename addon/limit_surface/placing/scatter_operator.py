@@ -6,16 +6,16 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, StringProperty
 
 from ..errors import RefusalError
 from ..reading import cage, displayed_mesh
 from ..tasks import polling
 from ..tasks.job import Job, Progress, part_of
 from ..tasks.object_keys import ObjectKey
+from ..tasks.properties import LargeCountProperty, draw_summary
 from ..tasks.refused_faces import left_out, reasons
 from ..tasks.request_size import RequestSize
-from ..tasks.watched_operator import WatchedOperator, draw_summary
+from ..tasks.watched_operator import WatchedOperator
 from . import distribution_properties, region, roots
 from .distribution import TOO_LOW, Distribution, Scattered
 
@@ -81,7 +81,9 @@ class Made:
     things: Any  # what the function from the operator's `maker` returns
 
 
-class ScatterOperator(WatchedOperator, distribution_properties.DistributionProperties):
+class ScatterOperator(
+    WatchedOperator, LargeCountProperty, distribution_properties.DistributionProperties
+):
     """Mixin for operators that scatter things: distributions, confirmation and reports.
 
     A subclass names what it makes (`noun`, plural). These are the steps of the work, each within
@@ -99,19 +101,6 @@ class ScatterOperator(WatchedOperator, distribution_properties.DistributionPrope
 
     bl_options = {"REGISTER", "UNDO"}
     noun = ""
-
-    allow_large: BoolProperty(
-        name="Allow Large Counts",
-        description="Allow the operator to make millions of elements without confirmation. "
-        "Scripts have to set it, because they cannot confirm",
-        default=False,
-        options={"SKIP_SAVE"},
-    )
-    summary: StringProperty(
-        name="Result",
-        description="Summary of what the operator made",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
 
     @property
     def too_large(self) -> str:

@@ -69,8 +69,8 @@ def of(image: bpy.types.Image) -> Encoding:
         return Encoding(False, None, False, has_alpha)
     if space.name not in {SRGB, LINEAR}:
         raise RefusalError(
-            f"The image {image.name} is in the color space {space.name}: among images of 8 bits, "
-            f"only those with {SRGB}, {LINEAR} and data can be projected or painted on"
+            f"The 8-bit image {image.name} has the color space {space.name}: 8-bit images can be "
+            f"projected or painted on only if their color space is {SRGB}, {LINEAR} or Non-Color"
         )
     return Encoding(space.name == SRGB, _primaries(), False, has_alpha)
 

@@ -13,10 +13,10 @@ from ..reading import ragged_rows
 from ..tasks.job import Progress
 from .rays import Hits, Rays, joined
 
-# parts of the progress: for the grid, and for each end of the cells' sides
+# parts of the progress: for the grid, and for each end of the quads' sides
 CAST, HALVED = 0.2, 0.35
 
-# The corners of a cell, counter-clockwise from the lower left: their columns and rows relative to
+# The corners of a quad, counter-clockwise from the lower left: their columns and rows relative to
 # it
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
@@ -29,8 +29,8 @@ class Decal:
 
 
 @dataclass(frozen=True)
-class Cells:
-    """The cells of the grid. Side i leads from corner i to the next."""
+class Quads:
+    """The quads of the grid of rays. Side i leads from corner i to the next."""
 
     corner: np.ndarray  # (n, 4) vertices
     valid: np.ndarray  # (n, 4) whether the corner lies on the surface
@@ -39,9 +39,9 @@ class Cells:
     there: np.ndarray  # and from its second; -1 where it does not end
 
 
-def make(rays: Rays, cells: tuple[int, int], progress: Progress) -> Decal:
-    """Makes the decal on a grid of so many columns and rows of cells."""
-    columns, rows = cells
+def make(rays: Rays, quads: tuple[int, int], progress: Progress) -> Decal:
+    """Makes the decal on a grid of so many columns and rows of quads."""
+    columns, rows = quads
     y, x = np.mgrid[: rows + 1, : columns + 1].reshape(2, -1)
     grid = rays.cast(np.stack([x / columns, y / rows], axis=1))
     progress(CAST)
@@ -65,9 +65,9 @@ def make(rays: Rays, cells: tuple[int, int], progress: Progress) -> Decal:
     left = len(along_rows) + np.arange(len(along_columns)).reshape(rows, columns + 1)
     side = np.stack([below[:-1], left[:, 1:], below[1:], left[:, :-1]]).reshape(4, -1).T
     here, there = ends[side, 0], ends[side, 1]
-    # The upper and the left side are stored in the direction opposite to that around the cell.
+    # The upper and the left side are stored in the direction opposite to that around the quad.
     here[:, 2:], there[:, 2:] = ends[side[:, 2:], 1], ends[side[:, 2:], 0]
-    found = Cells(corner, grid.valid[corner], goes_on[side], here, there)
+    found = Quads(corner, grid.valid[corner], goes_on[side], here, there)
     return _polygons(rays, joined(parts), found)
 
 
@@ -81,42 +81,42 @@ def sag(rays: Rays, decal: Decal) -> float:
     return float(depth[middle.valid].max(initial=0))
 
 
-def _polygons(rays: Rays, hits: Hits, cells: Cells) -> Decal:
-    whole = cells.goes_on.all(axis=1)
-    slit, hits = _around_slits(rays, hits, cells)
-    found = [cells.corner[whole], *_runs(cells), slit]
+def _polygons(rays: Rays, hits: Hits, quads: Quads) -> Decal:
+    whole = quads.goes_on.all(axis=1)
+    slit, hits = _around_slits(rays, hits, quads)
+    found = [quads.corner[whole], *_runs(quads), slit]
     sizes = np.concatenate([np.full(len(some), some.shape[1]) for some in found])
     used, vertices = np.unique(np.concatenate([f.ravel() for f in found]), return_inverse=True)
     return Decal(hits.take(used), sizes, vertices.ravel())
 
 
-def _runs(cells: Cells) -> list[np.ndarray]:
+def _runs(quads: Quads) -> list[np.ndarray]:
     """Yields the polygon of each run of corners between which the surface goes on, with the points
     at which it ends before and after.
     """
     found = []
     for first in range(4):
-        begins = cells.valid[:, first] & ~cells.goes_on[:, first - 1]
+        begins = quads.valid[:, first] & ~quads.goes_on[:, first - 1]
         for length in (1, 2, 3):
             of = [(first + k) % 4 for k in range(length)]
-            runs = begins & cells.goes_on[:, of[:-1]].all(axis=1) & ~cells.goes_on[:, of[-1]]
-            before, after = cells.there[runs, first - 1], cells.here[runs, of[-1]]
-            found.append(np.column_stack([before, cells.corner[runs][:, of], after]))
+            runs = begins & quads.goes_on[:, of[:-1]].all(axis=1) & ~quads.goes_on[:, of[-1]]
+            before, after = quads.there[runs, first - 1], quads.here[runs, of[-1]]
+            found.append(np.column_stack([before, quads.corner[runs][:, of], after]))
     return found
 
 
-def _around_slits(rays: Rays, hits: Hits, cells: Cells) -> tuple[np.ndarray, Hits]:
-    """Returns triangles of the cells in which the surface ends on one side only. They join the
-    middle and the cell's outline, as far as the surface goes on from the middle.
+def _around_slits(rays: Rays, hits: Hits, quads: Quads) -> tuple[np.ndarray, Hits]:
+    """Returns triangles of the quads in which the surface ends on one side only. They join the
+    middle and the quad's outline, as far as the surface goes on from the middle.
     """
-    cell, side = np.nonzero(~cells.goes_on & (cells.goes_on.sum(axis=1) == 3)[:, None])
-    corner = np.take_along_axis(cells.corner[cell], (side[:, None] + np.arange(4)) % 4, axis=1)
+    quad, side = np.nonzero(~quads.goes_on & (quads.goes_on.sum(axis=1) == 3)[:, None])
+    corner = np.take_along_axis(quads.corner[quad], (side[:, None] + np.arange(4)) % 4, axis=1)
     middle = rays.cast(hits.st[corner].mean(axis=1))
     outline = np.column_stack(
-        [cells.there[cell, side], np.roll(corner, -1, axis=1), cells.here[cell, side]]
+        [quads.there[quad, side], np.roll(corner, -1, axis=1), quads.here[quad, side]]
     )
-    number = len(hits) + np.arange(len(cell))
-    spokes = np.repeat(np.arange(len(cell)), outline.shape[1])
+    number = len(hits) + np.arange(len(quad))
+    spokes = np.repeat(np.arange(len(quad)), outline.shape[1])
     reached = np.zeros(len(spokes), bool)
     looked_at = np.flatnonzero(middle.valid[spokes])
     ends = hits.take(outline.ravel()[looked_at])

@@ -26,7 +26,7 @@ class Order:
     world: WorldSurface
     projector: Projector
     image: str
-    cells: tuple[int, int]
+    quads: tuple[int, int]
     steepest: float
     two_sided: bool
     offset: float
@@ -35,7 +35,7 @@ class Order:
     def work(self, progress: Progress) -> Made:
         self.world.check_eye(self.projector)
         rays = decal.Rays(self.world, self.projector, self.steepest, self.two_sided)
-        found = decal.make(rays, self.cells, part_of(progress, 0, CAST))
+        found = decal.make(rays, self.quads, part_of(progress, 0, CAST))
         if not len(found.sizes):
             raise RefusalError(
                 f"The image cannot be seen on the surface: no part of the image {self.image} falls "
@@ -80,7 +80,7 @@ def order(
 ) -> Order:
     image = inputs.image(properties.image)
     size = tuple(image.size)
-    # Cells are as square as possible with whole numbers of columns and rows.
+    # Quads are as square as possible with whole numbers of columns and rows.
     columns, rows = np.rint(properties.decal_resolution * fitted(size)).clip(1).astype(int).tolist()
     RequestSize("polygons", columns * rows, 1).check(properties.allow_large)
     return Order(
@@ -88,7 +88,7 @@ def order(
         world=world,
         projector=inputs.projector(properties, context, world, size),
         image=image.name,
-        cells=(columns, rows),
+        quads=(columns, rows),
         steepest=inputs.facing(properties)[1],
         two_sided=properties.two_sided,
         offset=properties.decal_offset,

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Spread:
+class Statistics:
     """The largest and the mean of one distance over the displayed mesh."""
 
     largest: float = 0.0  # the largest at all places
@@ -39,8 +39,8 @@ class Spread:
 @dataclass
 class Distances:
     level: int
-    apart: Spread  # distances from the nearest point of the limit surface
-    slide: Spread  # distances from the same place of the limit surface, with the same face, u and v
+    apart: Statistics  # distances from the nearest point of the limit surface
+    slide: Statistics  # distances from the same location (face, u and v) of the limit surface
     at_vertices: np.ndarray  # (v,) the largest `apart` around each vertex of the cage
 
 
@@ -71,7 +71,7 @@ def measure(
     groups = patches(found, shown, surface.refused)
     total = sum(group.count for group in groups)
     done = 0
-    result = Distances(shown.level, Spread(), Spread(), np.zeros(len(found.mesh.positions)))
+    result = Distances(shown.level, Statistics(), Statistics(), np.zeros(len(found.mesh.positions)))
     for group in groups:
         for part in group.parts():
             face, uv = part.locations()

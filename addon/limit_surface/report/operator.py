@@ -4,14 +4,15 @@
 from dataclasses import dataclass
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .. import ids
 from ..reading import cage, displayed_mesh
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
+from ..tasks.properties import draw_summary
 from ..tasks.refused_faces import left_out
-from ..tasks.watched_operator import WatchedOperator, draw_summary
+from ..tasks.watched_operator import WatchedOperator
 from .distances import Distances, measure_all
 from .storage import check_attributes, store_numbers, store_on_mesh
 from .text import numbers, sentence
@@ -68,11 +69,6 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         soft_max=1.0,
         precision=5,
         subtype="DISTANCE",
-    )
-    summary: StringProperty(
-        name="Result",
-        description="Summary of the distances, with a line for each mesh",
-        options={"HIDDEN", "SKIP_SAVE"},
     )
 
     def draw(self, _context: bpy.types.Context) -> None:

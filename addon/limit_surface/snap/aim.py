@@ -94,8 +94,10 @@ class Aim:
             failures=elements.left_out
             + Counter(
                 {
-                    "with coordinates that are not finite": np.count_nonzero(~finite),
-                    "with no direction of their own": np.count_nonzero(finite & ~directed),
+                    "the coordinates are not finite numbers": np.count_nonzero(~finite),
+                    "there is no normal or axis that gives the direction of the search": (
+                        np.count_nonzero(finite & ~directed)
+                    ),
                     self._missed(): np.count_nonzero(~hit),
                 }
             ),
@@ -158,5 +160,7 @@ class Aim:
     def _missed(self) -> str:
         within = "" if np.isinf(self.max_distance) else f" within {self.max_distance:.6g}"
         if self.mode != "NEAREST":
-            return f"with no surface on their line{within}"
-        return f"with no surface{' that faces them' if self.max_angle is not None else ''}{within}"
+            return f"no surface was found on the line of the search{within}"
+        if self.max_angle is not None:
+            return f"no surface that faces the same way was found{within}"
+        return f"no surface was found{within}"

@@ -30,7 +30,7 @@ class SnappedBones:
         self._space = WorldSpace(self._matrix)
         chosen = [b for b in _parents_first(ob.data) if _is_shown(b) and _is_head_chosen(b)]
         self._bones = [bone for bone in chosen if not bone.lock]
-        self._left_out = Counter({"locked": len(chosen) - len(self._bones)})
+        self._left_out = Counter({"the bone is locked": len(chosen) - len(self._bones)})
         ends = np.array([(bone.head, bone.tail) for bone in self._bones], np.float64)
         self._heads, self._tails = ends.reshape(-1, 2, 3).swapaxes(0, 1)
 
@@ -63,7 +63,7 @@ class SnappedBones:
                 if align:
                     bone.align_roll(up[i])
         outcome = Outcome(self.noun, [np.linalg.norm(moves[placed], axis=1)])
-        outcome.failures["that would give a bone no length"] = np.count_nonzero(~placed)
+        outcome.failures["the bone would have no length"] = np.count_nonzero(~placed)
         return outcome
 
 

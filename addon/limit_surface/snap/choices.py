@@ -32,7 +32,7 @@ class Outcome:
         return self.failures.total()
 
     def reasons(self) -> str:
-        return ", ".join(f"{count:,} {reason}" for reason, count in self.failures.most_common())
+        return "; ".join(f"{reason} ({count:,})" for reason, count in self.failures.most_common())
 
     def lines(self) -> tuple[str, str]:
         """Returns lines for the report, where some elements were snapped."""

@@ -91,15 +91,15 @@ class ObjectMove:
 
     def _obstacle(self) -> str:
         if self._changes_what_is_locked():
-            return "locked"
+            return "the location or rotation is locked"
         now = _array(self._ob.matrix_world)
         size = max(np.abs(self._position).max(), np.abs(self._before[:3, 3]).max())
         if not np.abs(now[:3, 3] - self._position).max() <= ELSEWHERE * size:
-            return "held elsewhere by constraints or drivers"
+            return "constraints or drivers hold the object elsewhere"
         if self._align != "NONE":
             askew = np.cross(unit(now[:3, 2]), self._frame[:, 2])
             if not np.linalg.norm(askew) <= ASKEW:
-                return "that cannot be turned to the normal"
+                return "the object cannot be turned to the normal"
         return ""
 
     def _changes_what_is_locked(self) -> bool:

@@ -56,7 +56,9 @@ class SnappedObjects:
             bpy.context.view_layer.update()
             unkept += sum(not child.is_in_place() for kept in moves.values() for child in kept)
         if unkept:
-            outcome.notes.append(f"{unkept:,} children could not be kept in place")
+            outcome.notes.append(
+                f"{unkept:,} children of snapped objects could not be kept where they were"
+            )
         return outcome
 
 

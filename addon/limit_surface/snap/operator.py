@@ -3,13 +3,13 @@
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty
 
 from .. import ids, native
 from ..errors import RefusalError
 from ..tasks.job import part_of
 from ..tasks.progress import progress_bar
-from ..tasks.watched_operator import draw_summary
+from ..tasks.properties import SummaryProperty, draw_summary
 from .aim import Aim, View
 from .choices import Choices, Outcome, merged
 from .properties import PlacingProperties
@@ -17,7 +17,7 @@ from .selection import HAIR_MODES, MODES, check_target, find_target, gather
 from .surface import TargetSurface
 
 
-class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
+class OBJECT_OT_limit_snap(PlacingProperties, SummaryProperty, bpy.types.Operator):
     """Snap to the exact limit surface: selected objects and hair to that of the active mesh, or
     outside Object Mode the selected elements to that of the target in the sidebar tab Limit"""
 
@@ -116,11 +116,6 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
     view_is_perspective: BoolProperty(
         name="View Is Perspective",
         description="Whether the lines of sight of the view meet at the eye, for the view's Z axis",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
-    summary: StringProperty(
-        name="Result",
-        description="Summary of what the operator did",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
@@ -230,10 +225,10 @@ class OBJECT_OT_limit_snap(PlacingProperties, bpy.types.Operator):
         ]
         done = [outcome for outcome in outcomes if outcome.placed]
         if not done:
-            raise RefusalError("; ".join(failed) or "Nothing that can be snapped is selected")
+            raise RefusalError(". ".join(failed) or "Nothing that can be snapped is selected")
         self.summary = "\n".join(line for outcome in done for line in outcome.lines())
         if failed:
-            self.report({"WARNING"}, "; ".join(failed))
+            self.report({"WARNING"}, ". ".join(failed))
         if surface.has_changed(depsgraph):
             self.report(
                 {"WARNING"},

@@ -65,7 +65,7 @@ def gather(context: bpy.types.Context, surface: TargetSurface) -> Selection:
         try:
             selection.parts.append(make())
         except RefusalError as error:
-            selection.failures[f"refused ({error})"] += 1
+            selection.failures[str(error)] += 1
     return selection
 
 
@@ -79,13 +79,13 @@ def _objects(
         if ob == target:
             continue
         if ob in carriers:
-            failures[f"that would move {target.name} with them"] += 1
+            failures[f"{target.name} is parented to the object and would move with it"] += 1
         elif not (ob.data if ob.type == "CURVES" else ob).is_editable:
-            failures["linked from another file"] += 1
+            failures["the object is linked from another file"] += 1
         elif ob.type != "CURVES":
             movable.append(ob)
         elif ob.data in curves:
-            failures["sharing curves with another"] += 1
+            failures["another selected object has the same curves"] += 1
         else:
             curves.add(ob.data)
             hair.append(ob)

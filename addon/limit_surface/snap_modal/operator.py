@@ -40,8 +40,8 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
     )
     face: IntProperty(
         name="Face",
-        description="Ptex face on which the element is put. With `uv` it is the location that "
-        "scripts and the redo panel set",
+        description="Ptex face of the location where the element is put. Scripts and the redo "
+        "panel use it together with `uv`",
         default=-1,
         options={"HIDDEN", "SKIP_SAVE"},
     )

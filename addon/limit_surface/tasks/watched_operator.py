@@ -30,6 +30,7 @@ from .. import native
 from .job import Job
 from .polling import mesh_in_object_mode
 from .progress import Waiting, progress_bar
+from .properties import SummaryProperty
 
 #: Where a user waits, work that is not done after so many seconds shows its progress while Blender
 #: stays usable.
@@ -38,7 +39,7 @@ PATIENCE = 0.3
 VIEW_NAVIGATION = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "NDOF_MOTION"}
 
 
-class WatchedOperator:
+class WatchedOperator(SummaryProperty):
     """Mixin for operators with long work. Where a user waits, the work runs in a thread while
     Blender stays usable, until it is done or ESC ends it. In scripts it runs at once. Refusals are
     reported as errors.
@@ -51,7 +52,6 @@ class WatchedOperator:
         layout: bpy.types.UILayout
         properties: bpy.types.OperatorProperties
         bl_label: str
-        summary: str
 
     _someone_waits = False
     _job: Job | None = None
@@ -139,9 +139,3 @@ class WatchedOperator:
             reason = self.too_large
         self.report({"ERROR"}, reason)
         return {"CANCELLED"}
-
-
-def draw_summary(layout: bpy.types.UILayout, summary: str) -> None:
-    """Draws what an operator has done, line by line, in redo panels and dialogs."""
-    for line in summary.splitlines():
-        layout.label(text=line, icon="INFO")

@@ -4,6 +4,13 @@
 import numpy as np
 
 
+def row_bounds(sizes):
+    """Where each of the rows begins that follow each other end to end, with so many elements each;
+    last, where the whole ends.
+    """
+    return np.concatenate([[0], np.cumsum(sizes)])
+
+
 def grid(columns: int, rows: int):
     x, y = np.meshgrid(np.arange(columns + 1.0), np.arange(rows + 1.0))
     positions = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)

@@ -12,7 +12,7 @@ def test_vertex_locations_are_the_vertices(surface, mesh):
     assert len(at) == len(mesh.positions)
     assert at.uv.shape == (len(at), 2)
     for vertex, (face, (u, v)) in enumerate(zip(at.face, at.uv, strict=True)):
-        sizes = np.concatenate([[0], np.cumsum(mesh.face_sizes)])
+        sizes = shapes.row_bounds(mesh.face_sizes)
         base = surface.base_face[face]
         corners = mesh.face_vertices[sizes[base] : sizes[base + 1]]
         if len(corners) == 4:

@@ -21,13 +21,9 @@ def corners_of(mesh):
     return np.asarray(mesh.face_vertices)
 
 
-def face_starts(mesh):
-    return np.concatenate([[0], np.cumsum(mesh.face_sizes)])
-
-
 def bilinear(surface, corner_values, face, uv):
     """Values at the face corners, carried bilinearly over each Ptex face, at locations."""
-    starts, sizes = face_starts(surface.mesh), np.asarray(surface.mesh.face_sizes)
+    starts, sizes = shapes.row_bounds(surface.mesh.face_sizes), np.asarray(surface.mesh.face_sizes)
     result = []
     for ptex, (u, v) in zip(face, uv, strict=True):
         base, i = surface.base_face[ptex], surface.corner[ptex]
@@ -116,7 +112,7 @@ def test_boundaries_are_straight_along_seams(house):
     values = np.random.default_rng(4).random((2 * len(house.positions), 2))
     fv = house.face_varying(values, indices, "boundaries")
     t = np.linspace(0, 1, 9)[:, None]
-    starts, sizes = face_starts(house.mesh), house.mesh.face_sizes
+    starts, sizes = shapes.row_bounds(house.mesh.face_sizes), house.mesh.face_sizes
     vertices = corners_of(house.mesh)
     sides = {}
     for f in range(len(sizes)):
@@ -271,7 +267,7 @@ def test_values_at_vertices_are_as_many(house):
 @pytest.mark.parametrize("index", [22, -1, 2**40, 2**80])
 def test_indices_out_of_range_are_named(house, index):
     indices = seamed(house.mesh).astype(object)
-    indices[face_starts(house.mesh)[3] + 2] = index
+    indices[shapes.row_bounds(house.mesh.face_sizes)[3] + 2] = index
     with pytest.raises(ls.MeshError, match=str(index)) as error:
         house.face_varying(np.zeros((22, 2)), indices, "none")
     if index < 2**63:

@@ -89,9 +89,9 @@ def corner_steps(t):
 
 def following(t):
     """The next corner around each corner's polygon."""
-    ends = np.cumsum(t.face_sizes)
+    bounds = shapes.row_bounds(t.face_sizes)
     after = np.arange(len(t.face_vertices)) + 1
-    after[ends - 1] = ends - t.face_sizes
+    after[bounds[1:] - 1] = bounds[:-1]
     return after
 
 
@@ -143,14 +143,13 @@ def test_edges_have_the_larger_level(divided):
     """Points in a chain between the cage's vertices: all multiples of 2^-level along an edge."""
     surface, tessellations = divided
     mesh = surface.mesh
-    first = np.concatenate([[0], np.cumsum(np.where(mesh.face_sizes == 4, 1, mesh.face_sizes))])
     for levels, t in tessellations:
         largest = edge_levels(mesh, levels)
-        steps, face_of = corner_steps(t), np.repeat(t.ptex_face, t.face_sizes)
+        steps, face_of = corner_steps(t), np.repeat(t.base_face, t.face_sizes)
         for face in range(len(levels)):
             if face in mesh.holes or mesh.face_sizes[face] != 4:
                 continue
-            here = steps[face_of == first[face]]
+            here = steps[face_of == face]
             corners = mesh.face_vertices[mesh.face_sizes[:face].sum() :][:4]
             for k, (axis, at) in enumerate(((1, 0), (0, STEPS), (1, STEPS), (0, 0))):
                 a, b = sorted((corners[k], corners[(k + 1) % 4]))
@@ -260,7 +259,8 @@ def test_corner_normals_are_seen_from_each_side():
     t = surface.tessellate([3, 2, 4, 2, 3, 2], corner_normals=True)
     at = t.corner_locations
     # What is seen a little way inside the corner's own polygon.
-    middle = np.add.reduceat(at.uv, np.cumsum(t.face_sizes) - t.face_sizes) / t.face_sizes[:, None]
+    starts = shapes.row_bounds(t.face_sizes)[:-1]
+    middle = np.add.reduceat(at.uv, starts) / t.face_sizes[:, None]
     towards = np.repeat(middle, t.face_sizes, axis=0) - at.uv
     near = surface.evaluate(at.face, at.uv + 1e-7 * towards, 1).normal
     assert np.abs(t.corner_normals - near).max() < 1e-4
