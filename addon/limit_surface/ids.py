@@ -13,6 +13,7 @@ PROJECT_IMAGE = "object.limit_project_image"
 CURVATURE = "object.limit_curvature"
 BAKE_DISPLACEMENT = "object.limit_bake_displacement"
 LIMIT_MESH = "object.limit_mesh"
+FOLLOW = "object.limit_follow"
 
 PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
@@ -66,6 +67,25 @@ DECAL_OBJECT = "Limit Decal"
 DECAL_UV = "Image"  # UV map of decals
 INSTANCES_GROUP = "Limit Instances"
 INSTANCES_MARK = "limit_surface_instances"  # custom property of that node group: its version
+
+# What follows a deforming surface: groups, the tables that they read, and their attributes
+GROUP_MARK = "limit_surface_group"  # custom property of node groups: their name and version
+SIGNATURE = "limit_surface_signature"  # custom property of the table of tiles
+CAPTURE_GROUP = "Limit Capture"
+TILES_GROUP = "Limit Tiles"
+SAMPLE_GROUP = "Sample Limit Surface"
+FOLLOW_HAIR_GROUP = "Limit Hair"
+FOLLOW_POINTS_GROUP = "Limit Follow"
+FOLLOW_ORIENTED_GROUP = "Limit Follow Oriented"
+POINTS_TABLE = "Limit Points"
+TILES_TABLE = "Limit Tiles"
+CAGE_POSITION = "cage_position"
+CAGE_COUNT = "cage_count"
+CAGE_TOPOLOGY = "cage_topology"
+CAGE_FITS = "cage_fits"
+TILE_MATRIX = "limit_matrix"
+TILE = "limit_tile"  # the tile of a curve or point, counted from 1; 0 for what does not follow
+TILE_UV = "tile_uv"
 
 CAGE_SCENE = ".limit_cage"
 WEIGHTS_GROUP = ".limit_weights"

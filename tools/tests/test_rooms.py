@@ -20,6 +20,7 @@ CAPABILITIES = (
     "bake_displacement",
     "bake_maps",
     "curvature",
+    "follow",
     "hair",
     "limit_mesh",
     "points",

@@ -105,7 +105,9 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
 
         return make
 
-    def add(self, context: bpy.types.Context, surface: bpy.types.Object, made: Strands) -> None:
+    def add(
+        self, context: bpy.types.Context, surface: bpy.types.Object, made: Strands
+    ) -> bpy.types.Object:
         count, points = made.position.shape[:2]
         curves = bpy.data.hair_curves.new(ids.HAIR_OBJECT)
         try:
@@ -118,7 +120,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
             if made.surface_uv is not None:
                 curves.surface_uv_map = made.uv_map
                 attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", made.surface_uv)
-            add_on_surface(context, ids.HAIR_OBJECT, curves, surface)
+            return add_on_surface(context, ids.HAIR_OBJECT, curves, surface)
         except BaseException:
             bpy.data.hair_curves.remove(curves)
             raise

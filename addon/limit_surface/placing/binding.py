@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The attributes that bind generated things to their places on the surface."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import bpy
 import numpy as np
 
@@ -8,6 +12,9 @@ from .. import ids
 from ..reading import attributes
 from . import roots
 from .rotations import quaternions
+
+if TYPE_CHECKING:
+    import limitsurf
 
 
 class Binding:
@@ -21,6 +28,11 @@ class Binding:
     def fill(self, part: roots.Roots) -> None:
         self.root[part.rows] = part.position
         self.rotation[part.rows] = quaternions(part.frame)
+
+    def put_roots_on(self, surface: limitsurf.LimitSurface) -> None:
+        """Replaces the roots by those on the limit surface."""
+        face, uv = self._locations.face, self._locations.uv.astype(np.float64)
+        self.root[:] = surface.evaluate(face, uv).position
 
     def write(self, data: bpy.types.ID, domain: str) -> None:
         attributes.write(data, ids.FACE, "INT", domain, self._locations.face)

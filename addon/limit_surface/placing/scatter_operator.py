@@ -16,10 +16,12 @@ from ..tasks.properties import LargeCountProperty, draw_summary
 from ..tasks.refused_faces import left_out, reasons
 from ..tasks.request_size import RequestSize
 from ..tasks.watched_operator import WatchedOperator
-from . import distribution_properties, region, roots
+from . import distribution_properties, following, region, roots
 from .distribution import TOO_LOW, Distribution, Scattered
+from .follow_properties import FollowProperties, follows
 
-SCATTERED = 0.5  # the part of the progress at which the locations are made
+# the parts of the progress at which the locations and the things are made
+SCATTERED, MADE = 0.5, 0.9
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,7 @@ class Order:
     distribution: Distribution
     shown: displayed_mesh.DisplayedMesh | None
     size: RequestSize
+    binding: following.Request | None  # None: things do not follow the surface
 
     def ground(self, progress: Progress) -> Ground:
         scattered = self.distribution.scatter(self.region, progress)
@@ -73,18 +76,32 @@ class Order:
             raise RefusalError(TOO_LOW)
         return Ground(self.region.cage, self.region, scattered, self.shown)
 
+    def bound(self, ground: Ground, things: Any) -> following.Bindings | None:
+        """Returns what makes the things follow. They follow the limit surface, so that their
+        distance from it is kept where they stand on displayed polygons.
+        """
+        if self.binding is None:
+            return None
+        if self.shown:
+            things.binding.put_roots_on(self.region.surface)
+        return self.binding.compute(ground.locations)
+
 
 @dataclass(frozen=True)
 class Made:
     surface: ObjectKey
     ground: Ground
     things: Any  # what the function from the operator's `maker` returns
+    bindings: following.Bindings | None
 
 
 class ScatterOperator(
-    WatchedOperator, LargeCountProperty, distribution_properties.DistributionProperties
+    WatchedOperator,
+    LargeCountProperty,
+    distribution_properties.DistributionProperties,
+    FollowProperties,
 ):
-    """Mixin for operators that scatter things: distributions, confirmation and reports.
+    """Mixin for operators that scatter things: distributions, confirmation, binding and reports.
 
     A subclass names what it makes (`noun`, plural). These are the steps of the work, each within
     one of the steps that `tasks/watched_operator.py` lists, with the class that provides them:
@@ -93,10 +110,12 @@ class ScatterOperator(
     2. `_order`: ScatterOperator reads the region and the distribution from Blender;
     3. in `invoke`, `_ask`: ScatterOperator has users confirm what is very large;
     4. `maker`: the subclass gives the function that makes its arrays;
-    5. in the job, `Order.ground`, then the function from step 4: neither touches Blender's data;
-    6. in `finish`, `add`: the subclass puts the arrays into the file. Until `add` returns it
-       cleans up after itself;
-    7. `_report`: ScatterOperator says what was made.
+    5. in the job, `Order.ground`, the function from step 4, and `Order.bound` for things that
+       follow the surface: none of them touches Blender's data;
+    6. in `finish`, `add`: the subclass puts the arrays into the file, and returns the new object.
+       Until `add` returns it cleans up after itself;
+    7. in `finish`, what was found by `Order.bound` is written, so that the object follows;
+    8. `_report`: ScatterOperator says what was made.
     """
 
     bl_options = {"REGISTER", "UNDO"}
@@ -121,17 +140,19 @@ class ScatterOperator(
         return self._begin(context, self._order(context))
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
-        self.add(context, made.surface.find(), made.things)
-        self._report(made.ground)
+        ob = self.add(context, made.surface.find(), made.things)
+        self._report(made.ground, made.bindings.write(ob) if made.bindings else None)
         return {"FINISHED"}
 
     def maker(self, found: cage.Cage) -> Any:
         """Returns a function of the ground and of progress. It returns what `add` is called with,
-        and runs where Blender's data must not be touched.
+        which has a Binding as `binding`, and runs where Blender's data must not be touched.
         """
         raise NotImplementedError
 
-    def add(self, context: bpy.types.Context, surface: bpy.types.Object, made: Any) -> None:
+    def add(
+        self, context: bpy.types.Context, surface: bpy.types.Object, made: Any
+    ) -> bpy.types.Object:
         raise NotImplementedError
 
     def elements_per_location(self) -> int:
@@ -146,6 +167,7 @@ class ScatterOperator(
         layout.use_property_split = True
         distribution_properties.draw(layout, self.properties, context)
         self.draw_own(layout)
+        layout.prop(self, "follow")
         layout.prop(self, "allow_large")
         draw_summary(layout, self.summary)
 
@@ -174,7 +196,8 @@ class ScatterOperator(
 
         def work(progress: Progress) -> Made:
             ground = order.ground(part_of(progress, 0, SCATTERED))
-            return Made(order.surface, ground, make(ground, part_of(progress, SCATTERED, 1)))
+            things = make(ground, part_of(progress, SCATTERED, MADE))
+            return Made(order.surface, ground, things, order.bound(ground, things))
 
         return self.watch(context, Job(work), f"Making {order.size.how_many}")
 
@@ -195,9 +218,10 @@ class ScatterOperator(
         shown = None
         if self.target != "LIMIT":
             shown = displayed_mesh.read(ob, depsgraph, covered.cage, self.target)
-        return Order(ObjectKey.of(ob), covered, distribution, shown, size)
+        binding = following.Request(ob, depsgraph) if follows(self.follow, ob) else None
+        return Order(ObjectKey.of(ob), covered, distribution, shown, size, binding)
 
-    def _report(self, ground: Ground) -> None:
+    def _report(self, ground: Ground, outcome: following.Outcome | None) -> None:
         found, refused = ground.cage, ground.region.refused
         faces = ground.region.face_count
         self.summary = f"{len(ground.locations):,} {self.noun} on {faces:,} faces"
@@ -207,6 +231,8 @@ class ScatterOperator(
             warning = left_out(len(refused), len(found.face_sizes), reasons(refused))
             self.report({"WARNING"}, warning)
         notes = [f"{self.summary} of {self.surface}", *found.notes]
+        if outcome:
+            notes.append("they follow it by nodes")
         if found.without_uv_map:
             notes.append(f"UVs were not stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))

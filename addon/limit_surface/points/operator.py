@@ -60,7 +60,9 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
 
         return make
 
-    def add(self, context: bpy.types.Context, surface: bpy.types.Object, made: Points) -> None:
+    def add(
+        self, context: bpy.types.Context, surface: bpy.types.Object, made: Points
+    ) -> bpy.types.Object:
         mesh = bpy.data.meshes.new(ids.POINTS_OBJECT)
         try:
             mesh.vertices.add(len(made.normal))
@@ -73,6 +75,7 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
             ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, surface)
             if self.instance:
                 put_instances(ob, bpy.data.objects[self.instance])
+            return ob
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise

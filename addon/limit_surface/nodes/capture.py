@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The group *Limit Capture*: hands the control mesh on to what follows the surface.
+
+Its modifier stands directly before the Subdivision Surface modifier. That keeps the control mesh's
+vertices first, and hands on what is stored on them unchanged.
+"""
+
+import bpy
+import numpy as np
+
+from .. import ids
+from .groups import Kind
+from .tree import Socket, Tree
+
+# The product of two remainders is exact in single precision, in which nodes calculate. Sums of its
+# remainders are below 2^31 for a million edges.
+_PRIME, _SMALL_PRIME = 4093, 2039
+
+
+def topology_sum(edges: np.ndarray) -> int:
+    """Returns a checksum of edges (e, 2), given by their vertices: the one that the group
+    calculates. It is different if the vertices' order differs.
+    """
+    first, second = ((edges.astype(np.int64) + 1) % _PRIME).T
+    return int(np.sum(first * second % _SMALL_PRIME).astype(np.int32))
+
+
+def _build() -> bpy.types.NodeTree:
+    tree = Tree(
+        ids.CAPTURE_GROUP,
+        [Socket("Geometry", "Geometry", "Control mesh")],
+        [Socket("Geometry", "Geometry", "Control mesh, with its positions as an attribute")],
+        is_modifier=True,
+    )
+    mesh = tree.inputs["Geometry"]
+    count = tree.get("GeometryNodeAttributeDomainSize", mesh, component="MESH")
+    ends = tree.node("GeometryNodeInputMeshEdgeVertices").outputs
+    first, second = (
+        tree.math("MODULO", tree.math("ADD", ends[k], 1.0), float(_PRIME)) for k in range(2)
+    )
+    summed = tree.node("GeometryNodeAccumulateField", data_type="INT", domain="EDGE")
+    product = tree.math("MODULO", tree.math("MULTIPLY", first, second), float(_SMALL_PRIME))
+    tree.set(next(s for s in summed.inputs if s.enabled), product)
+    total = next(s for s in summed.outputs if s.enabled and s.name == "Total")
+    topology = tree.sample(mesh, total, 0, "INT", "EDGE")
+    kept = tree.store(mesh, ids.CAGE_POSITION, tree.position(), "FLOAT_VECTOR")
+    kept = tree.store(kept, ids.CAGE_COUNT, count, "INT")
+    return tree.finish(Geometry=tree.store(kept, ids.CAGE_TOPOLOGY, topology, "INT"))
+
+
+CAPTURE = Kind(ids.CAPTURE_GROUP, 1, _build)

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The groups of a file that this extension has built, and the modifiers that use them.
+
+A group carries its name and version as a custom property, because users may rename it. A group of
+another version is left alone, and a new one is made beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import bpy
+
+from .. import ids
+
+
+class Kind(NamedTuple):
+    """A group that is built when a file needs it."""
+
+    name: str
+    version: int
+    build: Callable[[], bpy.types.NodeTree]
+
+    @property
+    def mark(self) -> str:
+        return f"{self.name} {self.version}"
+
+    def matches(self, group: bpy.types.NodeTree | None) -> bool:
+        return group is not None and group.get(ids.GROUP_MARK) == self.mark
+
+    def group(self) -> bpy.types.NodeTree:
+        """Returns the file's own group of this kind, which is made if there is none."""
+        for group in bpy.data.node_groups:
+            if group.library is None and self.matches(group):
+                return group
+        group = self.build()
+        group[ids.GROUP_MARK] = self.mark
+        return group
+
+
+def is_of(group: bpy.types.NodeTree | None, name: str) -> bool:
+    """Tells whether it is one of our groups of that name, whatever its version."""
+    mark = group.get(ids.GROUP_MARK, "") if group is not None else ""
+    return isinstance(mark, str) and mark.rpartition(" ")[0] == name
+
+
+def modifiers(ob: bpy.types.Object, name: str) -> Iterator[bpy.types.NodesModifier]:
+    """Yields the object's modifiers that use one of our groups of that name."""
+    for modifier in ob.modifiers:
+        if modifier.type == "NODES" and is_of(modifier.node_group, name):
+            yield modifier
+
+
+def add_modifier(
+    ob: bpy.types.Object, kind: Kind, place: int | None = None, **inputs: Any
+) -> bpy.types.NodesModifier:
+    """Adds a modifier at a place in the stack, or at its end. The names of inputs have underscores
+    for spaces.
+    """
+    modifier = ob.modifiers.new(kind.name, "NODES")
+    modifier.node_group = kind.group()
+    modifier.show_in_editmode = True
+    for name, value in inputs.items():
+        set_input(modifier, name.replace("_", " "), value)
+    if place is not None:
+        ob.modifiers.move(len(ob.modifiers) - 1, place)
+    return modifier
+
+
+def set_input(modifier: bpy.types.NodesModifier, name: str, value: Any) -> None:
+    key = _identifier(modifier, name)
+    inputs = _inputs(modifier)
+    if inputs is None:
+        modifier[key] = value
+    else:
+        getattr(inputs, key).value = value
+    modifier.id_data.update_tag()
+
+
+def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
+    key = _identifier(modifier, name)
+    inputs = _inputs(modifier)
+    return modifier.get(key) if inputs is None else getattr(inputs, key).value
+
+
+def _inputs(modifier: bpy.types.NodesModifier) -> Any:
+    """Returns the holder of the inputs from Blender 5.2 on; before, the modifier holds them."""
+    return getattr(getattr(modifier, "properties", None), "inputs", None)
+
+
+def _identifier(modifier: bpy.types.NodesModifier, name: str) -> str:
+    return next(
+        item.identifier
+        for item in modifier.node_group.interface.items_tree
+        if item.item_type == "SOCKET" and item.in_out == "INPUT" and item.name == name
+    )

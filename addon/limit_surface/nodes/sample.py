@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The group *Sample Limit Surface*: position and frame of the limit surface at places in tiles."""
+
+import bpy
+
+from .. import ids
+from . import tiles
+from .groups import Kind
+from .tree import Socket, Tree, Value
+
+# Derivatives are multiplied by it, because the product of two derivatives in a tile of 2^-20 of a
+# face would be too short to have a direction in single precision.
+_MAGNIFIED = 4096.0
+
+
+def _build() -> bpy.types.NodeTree:
+    tree = Tree(
+        ids.SAMPLE_GROUP,
+        [
+            Socket("Surface", "Object", "Mesh with the modifier Limit Capture"),
+            Socket("Tiles", "Object", "Table of tiles of that surface"),
+            Socket("Tile", "Int", "Tile, counted from 0"),
+            Socket("Tile UV", "Vector", "Place in the tile, each coordinate from 0 to 1"),
+        ],
+        [
+            Socket("Position", "Vector", "Point on the limit surface"),
+            Socket("Normal", "Vector", "Unit vector that points outward"),
+            Socket("Tangent", "Vector", "Unit vector along growing u"),
+            Socket("Rotation", "Rotation", "Turns X to the tangent and Z to the normal"),
+            Socket("du", "Vector", "Derivative by u of the face"),
+            Socket("dv", "Vector", "Derivative by v of the face"),
+            Socket("Fits", "Bool", "Whether the table of tiles fits the control mesh"),
+        ],
+    )
+    table = tree.object_info(tree.inputs["Tiles"])["Geometry"]
+    first = tree.math("MULTIPLY", tree.inputs["Tile"], float(tiles.ROWS_OF_A_TILE))
+    position, du, dv = _in_tile(tree, table, first)
+
+    # from the surface's space to that of the object whose modifier this is
+    matrix = tree.object_info(tree.inputs["Surface"], "RELATIVE")["Transform"]
+    du, dv = (tree.mapped_direction(derivative, matrix) for derivative in (du, dv))
+    normal = tree.scaled(tree.vector("CROSS_PRODUCT", du, dv), _handedness(tree, matrix))
+    rotation = tree.get(
+        "FunctionNodeAxesToRotation", normal, du, primary_axis="Z", secondary_axis="X"
+    )
+    scale = tree.components(
+        tree.sample(table, tree.attribute(tiles.SCALE, "FLOAT_VECTOR"), first, "FLOAT_VECTOR")
+    )
+    fits = tree.sample(table, tree.attribute(ids.CAGE_FITS, "INT"), 0, "INT")
+    return tree.finish(
+        Position=tree.mapped_point(position, matrix),
+        Normal=tree.vector("NORMALIZE", normal),
+        Tangent=tree.vector("NORMALIZE", du),
+        Rotation=rotation,
+        du=tree.scaled(du, tree.math("DIVIDE", scale[0], _MAGNIFIED)),
+        dv=tree.scaled(dv, tree.math("DIVIDE", scale[1], _MAGNIFIED)),
+        Fits=tree.compare("EQUAL", fits, 1),
+    )
+
+
+def _in_tile(tree: Tree, table: Value, first: Value) -> tuple[Value, Value, Value]:
+    """Returns the position, and the magnified derivatives by the place in the tile, in the
+    surface's space. `first` is the table's vertex that holds row 0 of the tile.
+    """
+    uv = tree.inputs["Tile UV"]
+    square = tree.vector("MULTIPLY", uv, uv)
+    (u, v, _), (u2, v2, _) = tree.components(uv), tree.components(square)
+    u3, v3, _ = tree.components(tree.vector("MULTIPLY", square, uv))
+    du, dv, _ = tree.components(tree.scaled(uv, 2 * _MAGNIFIED))
+    du2, dv2, _ = tree.components(tree.scaled(square, 3 * _MAGNIFIED))
+    powers_u, powers_v = tree.combined(u, u2, u3), tree.combined(v, v2, v3)
+    slopes_u, slopes_v = (
+        tree.combined(_MAGNIFIED, once, twice) for once, twice in ((du, du2), (dv, dv2))
+    )
+    # the weights of rows 1 to 3, as polynomials in u
+    weights = tree.matrix(
+        (0.0, 0.5, 0.0), (-1.0, 0.5, 0.0), (0.5, -0.5, 1 / 6), (2 / 3, 1 / 6, 0.0)
+    )
+    weight = tree.components(tree.mapped_point(powers_u, weights))
+    slope = tree.components(tree.mapped_direction(slopes_u, weights))
+
+    field = tree.attribute(ids.TILE_MATRIX, "FLOAT4X4")
+    matrices = [
+        tree.sample(table, field, tree.math("ADD", first, float(x)), "FLOAT4X4")
+        for x in range(tiles.ROWS_OF_A_TILE)
+    ]
+    rows = [tree.mapped_point(powers_v, matrix) for matrix in matrices]
+    slopes = [tree.mapped_direction(slopes_v, matrix) for matrix in matrices]
+    position, by_v = rows[0], slopes[0]
+    by_u: Value = (0.0, 0.0, 0.0)
+    for x in range(3):
+        position = tree.scaled_plus(rows[x + 1], weight[x], position)
+        by_u = tree.scaled_plus(rows[x + 1], slope[x], by_u)
+        by_v = tree.scaled_plus(slopes[x + 1], weight[x], by_v)
+    return position, by_u, by_v
+
+
+def _handedness(tree: Tree, matrix: Value) -> Value:
+    """Returns 1, or -1 for a matrix that mirrors."""
+    x, y, z = (
+        tree.mapped_direction(axis, matrix)
+        for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    )
+    volume = tree.node(
+        "ShaderNodeVectorMath", tree.vector("CROSS_PRODUCT", x, y), z, operation="DOT_PRODUCT"
+    ).outputs["Value"]
+    return tree.math("SIGN", volume)
+
+
+SAMPLE = Kind(ids.SAMPLE_GROUP, 1, _build)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The property by which operators make what they place follow the surface."""
+
+import bpy
+from bpy.props import EnumProperty
+
+from .. import ids
+from ..nodes import groups
+from ..reading import rules
+
+# Objects whose children they deform without a modifier
+_DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}
+
+
+class FollowProperties:
+    """Mixin with the property `follow`."""
+
+    follow: EnumProperty(
+        name="Follow",
+        description="How the new object follows the surface when its mesh deforms",
+        items=(
+            (
+                "AUTO",
+                "Automatic",
+                "Follow by nodes if shape keys, modifiers before the subdivision, an armature or "
+                "animation can deform the mesh. Otherwise do not follow",
+                0,
+            ),
+            (
+                "NODES",
+                "Nodes",
+                "Follow by Geometry Nodes, which work in every Blender, also without this "
+                "extension",
+                1,
+            ),
+            ("NONE", "None", "Stay where the surface is now", 2),
+        ),
+        default="AUTO",
+    )
+
+
+def follows(follow: str, surface: bpy.types.Object) -> bool:
+    """Tells whether things on a surface are to follow it, by the property's value."""
+    if follow == "AUTO":
+        return surface.is_editable and can_deform(surface)
+    return follow != "NONE"
+
+
+def can_deform(surface: bpy.types.Object) -> bool:
+    """Tells whether anything in the file can deform the surface's control mesh."""
+    mesh, subsurf = surface.data, rules.find_subsurf(surface)
+    before = surface.modifiers.find(subsurf.name) if subsurf else len(surface.modifiers)
+    captures = list(groups.modifiers(surface, ids.CAPTURE_GROUP))
+    return bool(
+        mesh.shape_keys
+        or mesh.animation_data
+        or (surface.parent and surface.parent_type in _DEFORMING_PARENTS)
+        or any(
+            (modifier.show_viewport or modifier.show_render) and modifier not in captures
+            for modifier in surface.modifiers[:before]
+        )
+    )

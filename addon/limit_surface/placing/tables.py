@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The two tables by which Geometry Nodes evaluate a limit surface: objects of vertices only.
+
+*Limit Points* holds what the tiles consist of: a vertex for each vertex of the control mesh, one
+for each refined point, and after them the terms of the refined points' sums, three on a vertex.
+*Limit Tiles* holds four vertices for each bicubic tile; its modifier makes their matrices. All that
+follows one surface shares these tables.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..nodes import groups
+from ..nodes import tiles as nodes
+from ..nodes.tiles import TILES
+from ..reading import attributes, ragged_rows
+
+if TYPE_CHECKING:
+    import limitsurf
+
+TERMS_ON_A_VERTEX = len(nodes.TERMS)
+
+
+@dataclass(frozen=True)
+class Bound:
+    """What the tables are made for, as numbers that are compared with the surface in each frame."""
+
+    vertices: int
+    topology: int  # nodes.capture.topology_sum
+    signature: str  # of the topology and the rules of subdivision
+
+
+class PointsTable:
+    """The vertices of *Limit Points* as arrays."""
+
+    def __init__(self, tiles: limitsurf.Tiles, vertices: int) -> None:
+        sizes = np.diff(tiles.points_offsets)
+        count = len(sizes)
+        indices, weights = tiles.points_indices, tiles.points_weights
+        row_of_term = np.repeat(np.arange(count), sizes)
+        total = np.bincount(row_of_term, weights, minlength=count)
+        base = np.zeros(count, np.int64)
+        largest = _largest(np.abs(weights), sizes)
+        base[sizes > 0] = indices[largest]
+
+        # the terms of each refined point fill whole vertices; the places left over weigh nothing
+        used = -(-sizes // TERMS_ON_A_VERTEX)
+        first = ragged_rows.starts(used) * TERMS_ON_A_VERTEX
+        slot = first[row_of_term] + ragged_rows.places(sizes)
+        term_vertices = int(used.sum())
+        of_terms = np.repeat(np.arange(count), used)
+        term_index = np.repeat(base[of_terms], TERMS_ON_A_VERTEX)
+        term_weight = np.zeros(term_vertices * TERMS_ON_A_VERTEX)
+        term_index[slot], term_weight[slot] = indices, weights
+
+        self.refined = count + 1  # one more, without terms, is the origin
+        self.origin = vertices + count
+        begin, end = vertices + count + 1, vertices + count + 1 + term_vertices
+        self.position = np.zeros((end, 3))
+        self.position[begin:] = term_weight.reshape(-1, TERMS_ON_A_VERTEX)
+        # the vertices of the control mesh belong to no refined point
+        self.row = np.full(end, -1)
+        self.row[vertices:begin] = np.arange(count + 1)
+        self.row[begin:] = of_terms
+        self.terms = np.zeros((end, TERMS_ON_A_VERTEX), np.int64)
+        self.terms[vertices : vertices + count, 0] = base
+        self.terms[vertices : vertices + count, 1] = np.rint(total)
+        self.terms[begin:] = term_index.reshape(-1, TERMS_ON_A_VERTEX)
+
+    def fill(self, mesh: bpy.types.Mesh) -> None:
+        _fill(mesh, self.position)
+        attributes.write(mesh, nodes.ROW, "INT", "POINT", self.row)
+        for name, values in zip(nodes.TERMS, self.terms.T, strict=True):
+            attributes.write(mesh, name, "INT", "POINT", values)
+
+
+class TilesTable:
+    """The vertices of *Limit Tiles* as arrays."""
+
+    def __init__(self, tiles: limitsurf.Tiles, origin: int) -> None:
+        count = len(tiles.tile_points)
+        # by rows: x counts along u, and a row runs along v
+        self.control = np.swapaxes(tiles.tile_points.reshape(-1, 4, 4), 1, 2)
+        self.base = np.repeat(self.control[:, :1], 4, axis=1)
+        self.base[:, 0] = tiles.tile_base[:, None]
+        self.anchor = np.full((count, 4), origin)
+        self.anchor[:, 0] = tiles.tile_anchor
+        self.scale = np.zeros((count, 2))
+        self.scale[tiles.tile] = tiles.scale
+
+    def fill(self, mesh: bpy.types.Mesh) -> None:
+        _fill(mesh, np.zeros((self.anchor.size, 3)))
+        for names, values in ((nodes.CONTROL, self.control), (nodes.BASE, self.base)):
+            for name, column in zip(names, values.reshape(-1, 4).T, strict=True):
+                attributes.write(mesh, name, "INT", "POINT", column)
+        attributes.write(mesh, nodes.ANCHOR, "INT", "POINT", self.anchor)
+        scale = np.repeat(self.scale, nodes.ROWS_OF_A_TILE, axis=0)
+        attributes.write(mesh, nodes.SCALE, "FLOAT2", "POINT", scale)
+
+
+def of_surface(surface: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the file's own table of tiles of a surface, if there is one."""
+    for ob in bpy.data.objects:
+        if ob.library is None and surface_of(ob) == surface:
+            return ob
+    return None
+
+
+def surface_of(table: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the surface of a table of tiles, or None for any other object."""
+    modifier = next(groups.modifiers(table, ids.TILES_GROUP), None)
+    return groups.get_input(modifier, "Surface") if modifier else None
+
+
+def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bpy.types.Object:
+    """Makes the tables of a surface, or makes them anew, and returns the table of tiles."""
+    table = of_surface(surface)
+    points = PointsTable(tiles, bound.vertices)
+    held = points_of(table) if table else None
+    holder = held or _new_object(ids.POINTS_TABLE, surface)
+    points.fill(holder.data)
+    if table is None:
+        table = _new_object(ids.TILES_TABLE, surface)
+        groups.add_modifier(table, TILES, Surface=surface)
+    modifier = next(groups.modifiers(table, ids.TILES_GROUP))
+    for name, value in (
+        ("Points", holder),
+        ("Cage Count", bound.vertices),
+        ("Cage Topology", bound.topology),
+        ("Refined Points", points.refined),
+    ):
+        groups.set_input(modifier, name, value)
+    TilesTable(tiles, points.origin).fill(table.data)
+    table[ids.SIGNATURE] = bound.signature
+    return table
+
+
+def points_of(table: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the table of points that a table of tiles reads."""
+    modifier = next(groups.modifiers(table, ids.TILES_GROUP))
+    return groups.get_input(modifier, "Points")
+
+
+def remove(table: bpy.types.Object) -> None:
+    """Removes both tables from the file."""
+    for ob in (points_of(table), table):
+        if ob is not None:
+            mesh = ob.data
+            bpy.data.objects.remove(ob)
+            if not mesh.users:
+                bpy.data.meshes.remove(mesh)
+
+
+def _largest(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """Returns the index of the largest value of each row that is not empty."""
+    row = np.repeat(np.arange(len(sizes)), sizes)
+    order = np.lexsort((values, row))
+    return order[np.cumsum(sizes)[sizes > 0] - 1]
+
+
+def _fill(mesh: bpy.types.Mesh, positions: np.ndarray) -> None:
+    mesh.clear_geometry()
+    mesh.vertices.add(len(positions))
+    attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", positions)
+
+
+def _new_object(name: str, surface: bpy.types.Object) -> bpy.types.Object:
+    ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    home = next((c for c in surface.users_collection if c.is_editable), None)
+    (home or bpy.context.scene.collection).objects.link(ob)
+    ob.hide_viewport = ob.hide_render = ob.hide_select = True
+    return ob

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hair and points that follow a deforming surface by Geometry Nodes."""
+
+import bmesh
+import bpy
+import follow_truth
+import numpy as np
+import pytest
+import scenes
+from limit_surface import ids
+from limit_surface.reading import attributes
+from mathutils import Euler, Matrix
+
+FRAMES = ((1, 0.0), (13, 0.5), (30, 0.0))
+
+
+def deforming(scene: str, mirrored: bool = False) -> bpy.types.Object:
+    ob = scenes.SCENES[scene]()
+    follow_truth.animate(ob)
+    scenes.add_subsurf(ob)
+    turned = Matrix.Translation((0.3, -0.2, 0.5)) @ Euler((0.3, 0.5, -0.7)).to_matrix().to_4x4()
+    ob.matrix_world = turned @ Matrix.Diagonal((-1.2 if mirrored else 1.2, 1.2, 0.8, 1))
+    return ob
+
+
+def follow(*things: bpy.types.Object) -> None:
+    for thing in things:
+        scenes.activate(thing)
+        assert bpy.ops.object.limit_follow(mode="NODES") == {"FINISHED"}
+
+
+def check_hair(ob: bpy.types.Object, hair: bpy.types.Object) -> None:
+    relation = np.linalg.inv(np.array(hair.matrix_world)) @ np.array(ob.matrix_world)
+    now = follow_truth.on_surface(ob, hair.data, relation)
+    expected = follow_truth.moved(scenes.strands(hair), hair.data, now)
+    error = np.abs(follow_truth.shown_strands(hair) - expected).max()
+    assert error < follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("scene", scenes.SCENES)
+def test_strands_follow(scene, mirrored):
+    ob = deforming(scene, mirrored)
+    hair = scenes.add_hair(ob, per_side=3, tilt=(0.4, 0.2), follow="NONE")
+    before = scenes.strands(hair).copy()
+    follow(hair)
+    np.testing.assert_array_equal(scenes.strands(hair), before)
+    for frame, subframe in FRAMES:
+        bpy.context.scene.frame_set(frame, subframe=subframe)
+        check_hair(ob, hair)
+
+
+@pytest.mark.parametrize("scene", scenes.SCENES)
+def test_points_follow_with_their_frames(scene):
+    ob = deforming(scene)
+    points = scenes.add_points(ob, per_side=3, follow="NONE")
+    follow(points)
+    bound = follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
+    for frame, subframe in FRAMES:
+        bpy.context.scene.frame_set(frame, subframe=subframe)
+        now = follow_truth.on_surface(ob, points.data)
+        assert np.abs(follow_truth.shown(points, ids.POSITION) - now.position).max() < bound
+        for name, column in ((ids.TANGENT, 0), (ids.NORMAL, 2)):
+            error = np.abs(follow_truth.shown(points, name) - now.frame[:, :, column]).max()
+            assert error < follow_truth.FRAME_BOUND
+
+
+def test_hair_of_another_transform_follows():
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow="NONE")
+    hair.parent = None
+    hair.matrix_world = Matrix.Translation((1, 2, 3)) @ Matrix.Diagonal((0.5, 0.7, -0.9, 1))
+    follow(hair)
+    bpy.context.scene.frame_set(20)
+    check_hair(ob, hair)
+
+
+def test_one_surface_has_one_pair_of_tables():
+    ob = deforming("cross")
+    hair, points = scenes.add_hair(ob, follow="NONE"), scenes.add_points(ob, follow="NONE")
+    more = scenes.add_hair(ob, seed=5, distribution="UNIFORM", count=40, follow="NONE")
+    follow(hair, points, more)
+    tables = [o for o in bpy.data.objects if not o.modifiers or o.name == ids.TILES_TABLE]
+    assert len(tables) == 2
+    assert [m.name for m in ob.modifiers] == ["Wave", ids.CAPTURE_GROUP, "Subdivision"]
+    bpy.context.scene.frame_set(25)
+    check_hair(ob, hair)
+    check_hair(ob, more)
+
+
+def test_combing_goes_on_working():
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, follow="NONE")
+    follow(hair)
+    bpy.context.scene.frame_set(30)
+    combed = scenes.strands(hair)
+    combed[:, 1:] += [0.1, 0.2, -0.05]
+    attributes.write(hair.data, ids.POSITION, "FLOAT_VECTOR", "POINT", combed)
+    hair.data.update_tag()
+    check_hair(ob, hair)
+
+
+def test_strands_that_are_added_later_stay():
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, points=4, follow="NONE")
+    follow(hair)
+    count = len(hair.data.curves)
+    hair.data.add_curves([4, 4])
+    added = np.arange(24, dtype=np.float32).reshape(2, 4, 3)
+    positions = np.concatenate([scenes.strands(hair)[:count], added])
+    attributes.write(hair.data, ids.POSITION, "FLOAT_VECTOR", "POINT", positions)
+    bpy.context.scene.frame_set(30)
+    np.testing.assert_allclose(follow_truth.shown_strands(hair)[count:], added, atol=1e-5)
+    assert np.abs(follow_truth.shown_strands(hair) - positions)[:count].max() > 0.1
+
+
+def swap_first_vertices(mesh: bpy.types.Mesh) -> None:
+    edited = bmesh.new()
+    edited.from_mesh(mesh)
+    edited.verts.sort(key=lambda vertex: {0: 1, 1: 0}.get(vertex.index, vertex.index))
+    edited.to_mesh(mesh)
+    edited.free()
+
+
+@pytest.mark.parametrize("change", ["count", "order"])
+def test_a_changed_control_mesh_leaves_things_at_rest(change):
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow="NONE")
+    follow(hair)
+    bpy.context.scene.frame_set(30)
+    assert np.abs(follow_truth.shown_strands(hair) - scenes.strands(hair)).max() > 0.1
+    if change == "count":
+        modifier = ob.modifiers.new("Mirror", "MIRROR")
+        ob.modifiers.move(ob.modifiers.find(modifier.name), 0)
+    else:
+        swap_first_vertices(ob.data)
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(follow_truth.shown_strands(hair), scenes.strands(hair), atol=1e-6)
+
+
+def test_it_is_bound_again_after_a_reload(tmp_path):
+    ob = deforming("monkey")
+    follow(scenes.add_hair(ob, per_side=1, follow="NONE"))
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    ob, hair = bpy.data.objects["Suzanne"], bpy.data.objects[ids.HAIR_OBJECT]
+    bpy.context.scene.frame_set(22)
+    check_hair(ob, hair)
+    scenes.activate(ob)
+    more = scenes.add_points(ob, per_side=1, follow="NONE")
+    follow(more)
+    assert len([o for o in bpy.data.objects if o.name.startswith(ids.TILES_TABLE)]) == 1
+
+
+def test_an_object_without_locations_is_refused():
+    ob = deforming("cross")
+    scenes.activate(ob)
+    with pytest.raises(RuntimeError, match="Select hair or points that stand on a limit surface"):
+        bpy.ops.object.limit_follow()
