@@ -7,6 +7,7 @@ import bpy
 
 from . import (
     bake_displacement,
+    bake_frames,
     bake_maps,
     curvature,
     follow,
@@ -36,6 +37,7 @@ _parts = (
     limit_mesh,
     bake_maps,
     bake_displacement,
+    bake_frames,
     project_image,
 )
 
@@ -53,6 +55,7 @@ def register() -> None:
     snap.attach_settings()
     live_count.attach_handlers()
     pixel_undo.attach_handlers()
+    bake_frames.attach_command()
     ui.append_menus()
     if _is_module:
         atexit.register(unregister)
@@ -61,6 +64,7 @@ def register() -> None:
 def unregister() -> None:
     atexit.unregister(unregister)
     ui.remove_menus()
+    bake_frames.detach_command()
     pixel_undo.detach_handlers()
     live_count.detach_handlers()
     snap.detach_settings()

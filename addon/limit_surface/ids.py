@@ -15,6 +15,8 @@ BAKE_DISPLACEMENT = "object.limit_bake_displacement"
 LIMIT_MESH = "object.limit_mesh"
 FOLLOW = "object.limit_follow"
 
+COMMAND = "limit_surface"  # blender --command limit_surface
+
 PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
 HAIR_PANEL = "VIEW3D_PT_limit_hair"
@@ -88,6 +90,7 @@ TILE = "limit_tile"  # the tile of a curve or point, counted from 1; 0 for what 
 TILE_UV = "tile_uv"
 
 CAGE_SCENE = ".limit_cage"
+BAKE_COLLECTION = ".limit_bake"
 WEIGHTS_GROUP = ".limit_weights"
 VERTEX_WEIGHT = ".limit_weight"  # attribute of the private scene's meshes
 

@@ -18,6 +18,7 @@ MOST_IN_ROOT = 6
 ROOMS = ("reading", "tasks", "images", "nodes", "placing")
 CAPABILITIES = (
     "bake_displacement",
+    "bake_frames",
     "bake_maps",
     "curvature",
     "follow",

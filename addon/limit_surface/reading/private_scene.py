@@ -35,7 +35,7 @@ def like(scene: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
         private.frame_float = scene.frame_float
         yield private
     finally:
-        bpy.data.scenes.remove(private)
+        _remove(private)
 
 
 def layer(scene: bpy.types.Scene, shown: bpy.types.ViewLayer) -> bpy.types.ViewLayer:
@@ -44,6 +44,13 @@ def layer(scene: bpy.types.Scene, shown: bpy.types.ViewLayer) -> bpy.types.ViewL
         return scene.view_layers[shown.name]
     _carry_properties(shown, scene.view_layers[0])
     return scene.view_layers[0]
+
+
+def _remove(scene: bpy.types.Scene) -> None:
+    if bpy.context.window:
+        bpy.data.scenes.remove(scene)
+    else:  # Blender on the command line: scenes.remove would crash, because it asks for the window
+        bpy.data.batch_remove([scene])
 
 
 def _empty(scene: bpy.types.Scene) -> None:

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An evaluated object as numpy arrays, for programs that read neither Alembic nor USD."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..reading import attributes
+
+# attributes that are written where an object has them
+_CARRIED = ("radius", ids.FACE, ids.UV, ids.NORMAL, ids.TANGENT, ids.ROTATION)
+
+
+def write(path: Path, ob: bpy.types.Object) -> None:
+    """Writes the object as the viewport shows it. Positions are in the object's space.
+
+    The same arrays give the same bytes: numpy writes no date.
+    """
+    np.savez(path, **_arrays(ob.evaluated_get(bpy.context.evaluated_depsgraph_get())))
+
+
+def _arrays(evaluated: bpy.types.Object) -> dict[str, np.ndarray]:
+    data = evaluated.data
+    if evaluated.type not in ("MESH", "CURVES", "POINTCLOUD"):
+        raise RefusalError(
+            f"{evaluated.name} is neither a mesh nor hair nor points, which npz can hold"
+        )
+    found = {
+        "matrix_world": np.array(evaluated.matrix_world, np.float32),
+        ids.POSITION: attributes.read(data, ids.POSITION),
+    }
+    if evaluated.type == "MESH":
+        found["face_sizes"] = attributes.face_sizes(data)
+        # a mesh without faces need not have the attribute of its corners
+        found["face_vertices"] = np.empty(len(data.loops), np.int32)
+        data.loops.foreach_get("vertex_index", found["face_vertices"])
+    if evaluated.type == "CURVES":
+        offsets = np.empty(len(data.curves) + 1, np.int32)
+        data.curve_offset_data.foreach_get("value", offsets)
+        found["curve_offsets"] = offsets
+    for name in _CARRIED:
+        if name in data.attributes:
+            found[name] = attributes.read(data, name)
+    return found

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The frames of a bake, one after the other."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+
+from .. import ids, native
+from ..errors import RefusalError
+from .arguments import Arguments
+from .exporters import Subject
+from .frame_files import FrameFiles, file_name
+
+# what has become of a file
+WRITTEN, EXISTED, FAILED = "written", "existed", "failed"
+
+# OSError: a full disk, say; RuntimeError: what Blender's exporters report
+_TROUBLE: tuple[type[Exception], ...] = (OSError, RuntimeError, *native.refusals)
+
+
+class Bake:
+    """Raises RefusalError where the arguments do not fit the open file."""
+
+    def __init__(self, arguments: Arguments) -> None:
+        arguments.format.check()
+        self._arguments = arguments
+        self._scene = bpy.context.scene
+        self.objects = _find(arguments, self._scene)
+        self._files = FrameFiles(arguments.folder, arguments.format.suffix)
+
+    @contextmanager
+    def at_first_frame(self) -> Iterator[None]:
+        with _kept_frame(self._scene):
+            self._scene.frame_set(self._arguments.frames[0])
+            yield
+
+    def prepare(self) -> None:
+        """Raises RefusalError where the folder cannot take the frames."""
+        self._files.prepare(
+            {
+                "blender": bpy.app.version_string,
+                "file": Path(bpy.data.filepath).name,
+                "limitsurf": native.version(),
+                "scene": self._scene.name,
+            }
+        )
+
+    def run(self, say: Callable[[str], None]) -> int:
+        """Writes the files that are not there and returns the number of those that failed."""
+        frames = self._arguments.frames
+        total: Counter[str] = Counter()
+        with _kept_frame(self._scene), _subjects(self._scene, self.objects) as subjects:
+            for i, frame in enumerate(frames):
+                start = time.perf_counter()
+                done, remarks = self._write(frame, subjects)
+                total += done
+                seconds = time.perf_counter() - start
+                text = "; ".join([_count(done), *remarks])
+                say(f"frame {frame} ({i + 1} of {len(frames)}, {seconds:.2f} s): {text}")
+        say(f"{len(frames)} frames in {self._arguments.folder}: {_count(total)}")
+        return total[FAILED]
+
+    def _write(self, frame: int, subjects: list[Subject]) -> tuple[Counter[str], list[str]]:
+        """Writes one frame. Returns numbers of files, and remarks."""
+        done: Counter[str] = Counter()
+        remarks = []
+        is_shown = False
+        for subject in subjects:
+            path = self._files.path(file_name(subject.ob.name), frame)
+            if path.is_file() and not self._arguments.overwrite:
+                done[EXISTED] += 1
+                continue
+            if not is_shown:
+                # Handlers are called, as in playback: what follows by handlers is posed by them.
+                self._scene.frame_set(frame)
+                is_shown = True
+            try:
+                with self._files.written(path) as partial:
+                    self._arguments.format.write(partial, subject)
+            except _TROUBLE as error:
+                done[FAILED] += 1
+                remarks.append(f"{path.name}: {_one_line(error)}")
+                continue
+            done[WRITTEN] += 1
+            if self._arguments.format.as_rendered and subject.ob.hide_render:
+                remarks.append(f"{subject.ob.name} is disabled in renders: its file is empty")
+        return done, remarks
+
+
+def _find(arguments: Arguments, scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Returns the objects to bake, or raises RefusalError."""
+    where = bpy.data.filepath or "no file is open"
+    found = []
+    for name in arguments.objects:
+        same = [ob for ob in scene.objects if ob.name == name]
+        if not same:
+            raise RefusalError(f"{where}: the scene {scene.name} has no object {name}")
+        if len(same) > 1:
+            raise RefusalError(f"{len(same)} objects are named {name}, from several files")
+        (ob,) = same
+        if ob.type == "VOLUME":
+            raise RefusalError(f"{name} is a volume, which cannot be baked")
+        if arguments.format.as_rendered and ob.hide_render and not _is_animated(ob):
+            raise RefusalError(f"{name} is disabled in renders: its files would be empty")
+        found.append(ob)
+    names = Counter(file_name(ob.name).lower() for ob in found)  # some systems ignore the case
+    if name := next((name for name, count in names.items() if count > 1), ""):
+        raise RefusalError(f"several objects would be written to the same file {name}")
+    return found
+
+
+def _is_animated(ob: bpy.types.Object) -> bool:
+    animation = ob.animation_data
+    return bool(animation and (animation.action or animation.nla_tracks or animation.drivers))
+
+
+@contextmanager
+def _kept_frame(scene: bpy.types.Scene) -> Iterator[None]:
+    frame, subframe = scene.frame_current, scene.frame_subframe
+    try:
+        yield
+    finally:
+        scene.frame_set(frame, subframe=subframe)
+
+
+@contextmanager
+def _subjects(
+    scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]
+) -> Iterator[list[Subject]]:
+    subjects = []
+    try:
+        for ob in objects:
+            collection = bpy.data.collections.new(ids.BAKE_COLLECTION)
+            subjects.append(Subject(ob, collection))
+            collection.objects.link(ob)
+            scene.collection.children.link(collection)
+        yield subjects
+    finally:
+        for subject in subjects:
+            bpy.data.collections.remove(subject.collection)
+
+
+def _count(done: Counter[str]) -> str:
+    return ", ".join(f"{done[key]:,} {key}" for key in (WRITTEN, EXISTED, FAILED) if done[key])
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def say(text: str) -> None:
+    """Prints a line at once: whoever watches a job wants to see how far it is."""
+    print(f"limit_surface: {text}", file=sys.stdout, flush=True)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether what stands on a surface still fits it."""
+
+from collections.abc import Sequence
+
+import bpy
+
+from .. import ids
+from ..errors import RefusalError
+from ..nodes import groups
+from ..nodes.follow import TILES
+from ..placing import following, tables
+from ..reading import attributes, cage
+
+
+def check(objects: Sequence[bpy.types.Object]) -> None:
+    """Raises RefusalError for the first object whose binding is stale in the current frame."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    cages: dict[bpy.types.Object, cage.Cage] = {}
+    for ob in objects:
+        surface = following.surface_of(ob) if following.is_placed(ob) else None
+        if surface is None:
+            continue
+        if surface not in cages:
+            cages[surface] = cage.read(surface, depsgraph)
+        _check_faces(ob, surface, cages[surface])
+        _check_tables(ob, surface, cages[surface])
+
+
+def _check_faces(ob: bpy.types.Object, surface: bpy.types.Object, found: cage.Cage) -> None:
+    face = attributes.read(ob.data, ids.FACE)
+    strays = int((face >= found.ptex_face_count).sum())
+    if strays:
+        raise RefusalError(
+            f"{strays:,} of the {len(face):,} roots of {ob.name} are bound to faces that "
+            f"{surface.name} does not have: its topology has changed since they were placed"
+        )
+
+
+def _check_tables(ob: bpy.types.Object, surface: bpy.types.Object, found: cage.Cage) -> None:
+    modifier = following.modifier_of(ob)
+    if modifier is None:
+        return
+    table = groups.get_input(modifier, TILES)
+    if table is None or tables.surface_of(table) is None or tables.points_of(table) is None:
+        raise RefusalError(
+            f"{ob.name} follows {surface.name} by tables that have been deleted: bind it again"
+        )
+    if table.get(ids.SIGNATURE) != following.signature(found):
+        raise RefusalError(
+            f"the topology, the creases or the rules of {surface.name} have changed since "
+            f"{ob.name} was bound to it: bind it again"
+        )

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The formats in which an object is written.
+
+Alembic and USD come from Blender's own exporters, which evaluate the object as for a render. They
+write several objects in an order that changes from run to run; with one object in each file, the
+same frame gives the same bytes. One flag of Alembic's polygons is the exception: Blender writes
+`meshtype`, which no program needs, from memory that it has not set.
+"""
+
+from __future__ import annotations
+
+import mmap
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..errors import RefusalError
+from . import arrays
+
+
+@dataclass(frozen=True)
+class Subject:
+    """An object, and a collection that holds nothing else: exporters of a collection evaluate only
+    what its objects need, and write also what is hidden in the viewport.
+    """
+
+    ob: bpy.types.Object
+    collection: bpy.types.Collection
+
+
+@dataclass(frozen=True)
+class Format:
+    name: str
+    suffix: str
+    write: Callable[[Path, Subject], None]
+    build_option: str  # what Blender must have been built with
+    as_rendered: bool  # whether settings for renders count, and not those of the viewport
+
+    def check(self) -> None:
+        """Raises RefusalError where this Blender cannot write the format."""
+        if self.build_option and not getattr(build_options(), self.build_option):
+            raise RefusalError(
+                f"this Blender was built without {self.name}: use another one, or --format npz"
+            )
+
+
+def build_options() -> Any:
+    return bpy.app.build_options
+
+
+def _write_alembic(path: Path, subject: Subject) -> None:
+    _export(
+        bpy.ops.wm.alembic_export,
+        filepath=str(path),
+        collection=subject.collection.name,
+        # A range of one frame is written as the scene is now, whichever frame that is.
+        start=1,
+        end=1,
+        init_scene_frame_range=False,
+        as_background_job=False,
+        evaluation_mode="RENDER",
+    )
+    _remove_date(path)
+
+
+def _write_usd(path: Path, subject: Subject) -> None:
+    _export(
+        bpy.ops.wm.usd_export,
+        filepath=str(path),
+        collection=subject.collection.name,
+        visible_objects_only=False,  # those hidden in the viewport too
+        export_animation=False,
+        export_hair=True,
+        # Textures and volumes would be files of their own.
+        export_materials=False,
+        export_textures=False,
+        export_volumes=False,
+        convert_world_material=False,
+        evaluation_mode="RENDER",
+    )
+
+
+def _export(operator: Callable[..., set[str]], **properties: object) -> None:
+    # Versions of Blender differ in what can be chosen.
+    known = operator.get_rna_type().properties.keys()  # type: ignore[attr-defined]
+    if operator(**{key: value for key, value in properties.items() if key in known}) != {
+        "FINISHED"
+    }:
+        raise RefusalError("Blender's exporter has written nothing")
+
+
+_DATE = re.compile(rb"_ai_DateWritten=([^;\0]*)")
+_EPOCH = b"Thu Jan  1 00:00:00 1970"
+
+
+def _remove_date(path: Path) -> None:
+    """Puts a fixed date in place of the one at which the archive was written."""
+    with path.open("r+b") as file, mmap.mmap(file.fileno(), 0) as contents:
+        start = contents.rfind(b"_ai_DateWritten=")
+        date = _DATE.match(contents, max(start, 0))
+        if not date:
+            raise RefusalError("Blender's exporter has written an archive without a date")
+        contents[date.start(1) : date.end(1)] = _EPOCH.ljust(len(date[1]))[: len(date[1])]
+
+
+FORMATS = {
+    "abc": Format("Alembic", ".abc", _write_alembic, "alembic", True),
+    "usd": Format("USD", ".usd", _write_usd, "usd", True),
+    "usda": Format("USD", ".usda", _write_usd, "usd", True),
+    "npz": Format("numpy", ".npz", lambda path, subject: arrays.write(path, subject.ob), "", False),
+}

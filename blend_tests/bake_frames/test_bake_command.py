@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command that bakes frames: its files, its progress, its exit codes."""
+
+import json
+import os
+import re
+
+import bpy
+import numpy as np
+import pytest
+import scenes
+from bakes import bake, contents, read_back
+from limit_surface import ids
+from limit_surface.bake_frames import command
+from limit_surface.reading import attributes
+
+FORMATS = {"abc": ".abc", "usd": ".usd", "usda": ".usda", "npz": ".npz"}
+
+
+@pytest.fixture
+def waves():
+    """A sheet on which waves run, and hair that follows it."""
+    sheet = scenes.flat_grid(4)
+    sheet.location, sheet.rotation_euler = (1, 2, 3), (0.3, 0.2, 0.1)
+    sheet.modifiers.new("Wave", "WAVE").height = 0.4
+    scenes.add_subsurf(sheet)
+    scenes.add_hair(sheet, per_side=2)
+    bpy.context.scene.frame_set(7)
+    return sheet
+
+
+def shown(ob, frame):
+    """Returns the object's positions in the world in a frame."""
+    bpy.context.scene.frame_set(frame)
+    positions = attributes.read(evaluated(ob).data, "position").astype(np.float64)
+    return scenes.transformed(evaluated(ob).matrix_world, positions)
+
+
+def evaluated(ob):
+    return ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_files_hold_the_objects_as_they_are_in_each_frame(waves, tmp_path, form):
+    waves.modifiers["Subdivision"].levels = waves.modifiers["Subdivision"].render_levels = 0
+    waves.modifiers["Subdivision"].use_limit_surface = False
+    assert bake(tmp_path, "Flat", "Limit Hair", options=("--format", form)) == 0
+    names = {f"{name}.{i:04}{FORMATS[form]}" for name in ("Flat", "Limit Hair") for i in (1, 2, 3)}
+    assert contents(tmp_path).keys() == names | {"bake.json"}
+    hair = bpy.data.objects["Limit Hair"]
+    expected = {i: (shown(waves, i), shown(hair, i)) for i in (1, 2, 3)}
+    for i, (sheet, strands) in expected.items():
+        found = read_back(tmp_path / f"Flat.{i:04}{FORMATS[form]}", "MESH")
+        np.testing.assert_allclose(found, sheet, rtol=0, atol=2e-6)
+        found = read_back(tmp_path / f"Limit Hair.{i:04}{FORMATS[form]}", "CURVES")
+        np.testing.assert_allclose(found, strands, rtol=0, atol=2e-6)
+    assert np.abs(expected[3][0] - expected[1][0]).max() > 0.01
+
+
+def test_arrays_say_what_they_are(waves, tmp_path):
+    assert bake(tmp_path, "Flat", "Limit Hair", frames="2", options=("--format", "npz")) == 0
+    bpy.context.scene.frame_set(2)
+    hair = evaluated(bpy.data.objects["Limit Hair"])
+    with np.load(tmp_path / "Limit Hair.0002.npz") as arrays:
+        np.testing.assert_array_equal(arrays["curve_offsets"], np.arange(65) * 5)
+        for name in (ids.POSITION, ids.FACE, ids.UV, "radius"):
+            np.testing.assert_array_equal(arrays[name], attributes.read(hair.data, name))
+        np.testing.assert_array_equal(arrays["matrix_world"], np.array(hair.matrix_world))
+    with np.load(tmp_path / "Flat.0002.npz") as arrays:
+        assert arrays["face_sizes"].sum() == len(arrays["face_vertices"])
+        assert arrays["face_vertices"].max() == len(arrays["position"]) - 1
+
+
+def test_scene_is_left_as_it_was(waves, tmp_path):
+    before = scenes.file_contents()
+    selected = [ob.name for ob in bpy.context.selected_objects]
+    for form in FORMATS:
+        assert bake(tmp_path, "Flat", options=("--format", form)) == 0
+    assert scenes.file_contents() == before
+    assert [ob.name for ob in bpy.context.selected_objects] == selected
+    assert bpy.context.scene.frame_current == 7
+
+
+def test_progress_is_one_line_a_frame(waves, tmp_path, capfd):
+    bake(tmp_path, "Flat", "Limit Hair", frames="1-5", options=("--step", "2"))
+    lines = [line for line in capfd.readouterr().out.splitlines() if line[:14] == "limit_surface:"]
+    pattern = r"limit_surface: frame (\d) \((\d) of 3, \d+\.\d\d s\): 2 written"
+    assert [re.fullmatch(pattern, line).groups() for line in lines[:-1]] == [
+        ("1", "1"),
+        ("3", "2"),
+        ("5", "3"),
+    ]
+    assert lines[-1] == f"limit_surface: 3 frames in {tmp_path}: 6 written"
+
+
+def test_files_that_exist_are_left_as_they_are(waves, tmp_path, capfd):
+    assert bake(tmp_path, "Flat") == 0
+    whole = contents(tmp_path)
+    (tmp_path / "Flat.0002.abc").unlink()
+    (tmp_path / "Flat.0003.abc").write_text("from another run")
+    capfd.readouterr()
+    assert bake(tmp_path, "Flat") == 0
+    assert "frames in" in capfd.readouterr().out
+    found = contents(tmp_path)
+    assert found["Flat.0003.abc"] == b"from another run"
+    assert len(found["Flat.0002.abc"]) > 1000
+    assert bake(tmp_path, "Flat", options=("--overwrite",)) == 0
+    assert len(contents(tmp_path)["Flat.0003.abc"]) > 1000
+    assert contents(tmp_path).keys() == whole.keys()
+
+
+def test_hidden_in_the_viewport_is_baked(waves, tmp_path):
+    hair = bpy.data.objects["Limit Hair"]
+    expected = shown(hair, 1)
+    hair.hide_viewport = True
+    assert bake(tmp_path, "Limit Hair", frames="1") == 0
+    hair.hide_viewport = False
+    np.testing.assert_allclose(
+        read_back(tmp_path / "Limit Hair.0001.abc", "CURVES"), expected, rtol=0, atol=2e-6
+    )
+
+
+def test_names_of_files(waves, tmp_path):
+    waves.name = "../Face: left"
+    assert (
+        bake(tmp_path / "new" / "folder", "../Face: left", frames="-2-10", options=("--step=12",))
+        == 0
+    )
+    found = contents(tmp_path / "new" / "folder")
+    assert found.keys() == {"_._Face_ left.-0002.abc", "_._Face_ left.0010.abc", "bake.json"}
+    assert [path.name for path in tmp_path.iterdir()] == ["new"]
+
+
+def test_an_object_that_is_not_rendered_in_a_frame(waves, tmp_path, capfd):
+    for frame, hidden in ((1, False), (2, True), (3, False)):
+        waves.hide_render = hidden
+        waves.keyframe_insert("hide_render", frame=frame)
+    assert bake(tmp_path, "Flat") == 0
+    assert "1 written; Flat is disabled in renders: its file is empty" in capfd.readouterr().out
+
+
+def test_a_frame_that_fails(waves, tmp_path, capfd):
+    (tmp_path / "Flat.0002.abc").mkdir()
+    assert bake(tmp_path, "Flat", options=("--overwrite",)) == command.FRAMES_FAILED
+    out = capfd.readouterr().out
+    assert "frame 2 (2 of 3" in out
+    assert "1 failed; Flat.0002.abc: " in out
+    assert out.splitlines()[-1].endswith(": 2 written, 1 failed")
+    assert contents_of_files(tmp_path) == {"Flat.0001.abc", "Flat.0003.abc", "bake.json"}
+
+
+def contents_of_files(folder):
+    return {path.name for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["bake", "--frames", "5-1", "--objects", "Flat"], "ends before it begins"),
+        (["bake", "--frames", "x", "--objects", "Flat"], "neither a frame nor a range"),
+        (["bake", "--frames", "1", "--step", "0", "--objects", "Flat"], "1 or more"),
+        (["bake", "--frames", "1"], "--objects"),
+        (["bake", "--frames", "1", "--objects", "Flat", "--format", "obj"], "'obj'"),
+        (
+            ["bake", "--frames", "1", "--objects", "Nobody"],
+            "no file is open: the scene Scene has",
+        ),
+        (["cook"], "cook"),
+        ([], "COMMAND"),
+    ],
+)
+def test_wrong_arguments(waves, tmp_path, capfd, arguments, reason):
+    where = ["--output", str(tmp_path / "out")] if arguments[:1] == ["bake"] else []
+    assert command.main([*arguments, *where]) == command.BAD_ARGUMENTS
+    assert reason in capfd.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_objects_that_cannot_be_baked(waves, tmp_path, capfd):
+    waves.hide_render = True
+    assert bake(tmp_path, "Flat") == command.BAD_ARGUMENTS
+    assert "Flat is disabled in renders" in capfd.readouterr().err
+    waves.hide_render = False
+    bpy.data.objects["Limit Hair"].name = "FLAT"
+    assert bake(tmp_path, "Flat", "FLAT") == command.BAD_ARGUMENTS
+    assert "the same file flat" in capfd.readouterr().err
+    assert not contents(tmp_path)
+
+
+def test_a_folder_that_cannot_be_written(waves, tmp_path, capfd):
+    (tmp_path / "file").touch()
+    assert bake(tmp_path / "file", "Flat") == command.BAD_ARGUMENTS
+    assert f"cannot write to {tmp_path / 'file'}" in capfd.readouterr().err
+
+
+def test_a_folder_with_another_bake(waves, tmp_path, capfd):
+    assert bake(tmp_path, "Flat", frames="1") == 0
+    record = json.loads((tmp_path / "bake.json").read_text())
+    (tmp_path / "bake.json").write_text(json.dumps(record | {"blender": "3.6.0"}))
+    assert bake(tmp_path, "Flat", frames="2") == command.BAD_ARGUMENTS
+    reason = f"blender 3.6.0, not {bpy.app.version_string}"
+    assert reason in capfd.readouterr().err
+    (tmp_path / "bake.json").write_text("[]")
+    assert bake(tmp_path, "Flat", frames="2") == command.BAD_ARGUMENTS
+    assert "bake.json is not the record of a bake" in capfd.readouterr().err
+
+
+def test_a_file_system_without_links(waves, tmp_path, monkeypatch):
+    def no_links(*_paths):
+        raise PermissionError("Operation not permitted")
+
+    monkeypatch.setattr(os, "link", no_links)
+    assert bake(tmp_path, "Flat", frames="1") == 0
+    assert bake(tmp_path, "Flat", frames="2") == 0
+    assert contents(tmp_path).keys() == {"Flat.0001.abc", "Flat.0002.abc", "bake.json"}
+
+
+def test_stale_binding(waves, tmp_path, capfd):
+    mesh = bpy.data.meshes.new("Fewer")
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+    waves.data = mesh
+    assert bake(tmp_path, "Limit Hair") == command.STALE_BINDING
+    message = "60 of the 64 roots of Limit Hair are bound to faces that Flat does not have"
+    assert message in capfd.readouterr().err
+    assert not contents(tmp_path)
+
+
+def test_a_surface_that_cannot_be_read(waves, tmp_path, capfd):
+    waves.modifiers.clear()
+    waves.modifiers.new("Multires", "MULTIRES")
+    assert bake(tmp_path, "Limit Hair") == command.STALE_BINDING
+    assert "Multiresolution" in capfd.readouterr().err
+
+
+def test_a_format_that_this_blender_cannot_write(waves, tmp_path, capfd, monkeypatch):
+    options = type("Options", (), {"alembic": False, "usd": True})
+    monkeypatch.setattr("limit_surface.bake_frames.exporters.build_options", lambda: options)
+    assert bake(tmp_path, "Flat") == command.BAD_ARGUMENTS
+    assert "built without Alembic" in capfd.readouterr().err
+    assert bake(tmp_path, "Flat", options=("--format", "usd")) == 0
+
+
+def test_help(capfd):
+    assert command.main(["bake", "--help"]) == 0
+    out = capfd.readouterr().out
+    assert "exit codes:" in out
+    assert all(f"--{name}" in out for name in ("frames", "step", "objects", "output", "format"))

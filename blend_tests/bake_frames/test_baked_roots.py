@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Roots in caches are where `limitsurf` says, on the control mesh of each frame."""
+
+import bpy
+import follow_truth
+import numpy as np
+import pytest
+import scenes
+from bakes import bake, read_back
+from limit_surface.bake_frames import command
+from mathutils import Euler, Matrix
+
+FRAMES = range(1, 13)
+SUFFIXES = {"abc": ".abc", "usd": ".usd", "npz": ".npz"}
+
+
+def deforming(scene):
+    """Returns a surface that waves and bends, turns and grows."""
+    ob = scenes.SCENES[scene]()
+    follow_truth.animate(ob)
+    scenes.add_subsurf(ob)
+    for frame, angle, size in ((1, 0.2, 1.0), (12, 0.9, 1.3)):
+        ob.rotation_euler = (angle, 0.3, -angle)
+        ob.scale = (size, 1, 1)
+        ob.keyframe_insert("rotation_euler", frame=frame)
+        ob.keyframe_insert("scale", frame=frame)
+    ob.location = (0.3, -0.2, 0.5)
+    return ob
+
+
+def roots_in_world(ob, thing, frame):
+    bpy.context.scene.frame_set(frame)
+    on_surface = follow_truth.on_surface(ob, thing.data).position
+    return scenes.transformed(np.array(ob.matrix_world, np.float64), on_surface)
+
+
+@pytest.mark.parametrize("form", SUFFIXES)
+@pytest.mark.parametrize("scene", scenes.SCENES)
+def test_roots_are_on_the_limit_surface_in_each_frame(tmp_path, scene, form):
+    ob = deforming(scene)
+    hair = scenes.add_hair(ob, per_side=2, points=3, follow="NODES")
+    points = scenes.add_points(ob, per_side=2, follow="NODES")
+    options = ("--format", form)
+    assert bake(tmp_path, hair.name, points.name, frames="1-12", options=options) == 0
+    size = 2 * follow_truth.diagonal(ob)  # it grows and bends
+    first = roots_in_world(ob, hair, 1)
+    for frame in FRAMES:
+        expected = {thing: roots_in_world(ob, thing, frame) for thing in (hair, points)}
+        for thing, kind, step in ((hair, "CURVES", 3), (points, "MESH", 1)):
+            path = tmp_path / f"{thing.name}.{frame:04}{SUFFIXES[form]}"
+            error = np.abs(read_back(path, kind)[::step] - expected[thing]).max()
+            assert error < follow_truth.POSITION_BOUND * size, (frame, thing.name)
+    assert np.abs(first - roots_in_world(ob, hair, 12)).max() > 0.1
+
+
+def test_hair_with_a_transform_of_its_own(tmp_path):
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, per_side=3, follow="NONE")
+    hair.parent = None
+    turn = Euler((0.5, 0.1, 0.2)).to_matrix().to_4x4()
+    hair.matrix_world = Matrix.Translation((1, 2, 3)) @ turn @ Matrix.Diagonal((0.5, 0.7, 0.9, 1))
+    scenes.activate(hair)
+    assert bpy.ops.object.limit_follow(mode="NODES") == {"FINISHED"}
+    assert bake(tmp_path, hair.name, frames="9") == 0
+    error = read_back(tmp_path / "Limit Hair.0009.abc", "CURVES")[::5] - roots_in_world(ob, hair, 9)
+    assert np.abs(error).max() < 2 * follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
+
+
+@pytest.fixture
+def bound():
+    ob = deforming("cross")
+    scenes.add_hair(ob, per_side=2, follow="NODES")
+    return ob
+
+
+def check_refused(tmp_path, capfd, reason):
+    assert bake(tmp_path, "Limit Hair", frames="3-5") == command.STALE_BINDING
+    assert reason in capfd.readouterr().err
+    assert not list(tmp_path.iterdir())
+    assert bpy.context.scene.frame_current == 1
+
+
+def test_a_crease_that_came_later(bound, tmp_path, capfd):
+    crease = bound.data.edge_creases_ensure()
+    crease.data[3].value = 0.5
+    check_refused(
+        tmp_path, capfd, "the creases or the rules of Cross have changed since Limit Hair"
+    )
+
+
+def test_tables_that_have_been_deleted(bound, tmp_path, capfd):
+    bpy.data.objects.remove(bpy.data.objects["Limit Tiles"])
+    check_refused(tmp_path, capfd, "follows Cross by tables that have been deleted")
+
+
+def test_points_of_the_tables_that_have_been_deleted(bound, tmp_path, capfd):
+    bpy.data.objects.remove(bpy.data.objects["Limit Points"])
+    check_refused(tmp_path, capfd, "follows Cross by tables that have been deleted")
