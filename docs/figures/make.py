@@ -74,6 +74,7 @@ FIGURES = {
     "exact_semisharp": exact("semisharp", "a semi-sharp crease"),
     "exact_several": exact("several", "several extraordinary vertices on one face"),
     "exact_uv": exact("uv", "the end of a UV seam"),
+    "follow": rendered("follow", "hair on a mesh that bends, and its distance from the surface"),
     "limit_mesh": rendered("limit_mesh", "meshes by levels and by flatness, and exact normals"),
     "project_image": rendered("project_image", "an image projected from a camera, and a decal"),
     "report": rendered("report", "distances from the limit surface at two levels, as colours"),
