@@ -63,7 +63,7 @@ def _play(title: str, folder: Path, samples: int) -> tuple[list[Path], list[floa
     hair = bpy.context.active_object
     hair.data.materials.append(scene.material("Hair", HAIR, glow=scene.GLOW))
     if title == BLENDERS:
-        _deform_by_blender(cross, hair)
+        deform_by_blender(cross, hair)
     cross.hide_render = True
     size = np.linalg.norm(np.ptp(attributes.read(cross.data, "position"), axis=0))
     parts, distances = [], []
@@ -104,7 +104,7 @@ def _bending_cross() -> bpy.types.Object:
     return ob
 
 
-def _deform_by_blender(cross: bpy.types.Object, hair: bpy.types.Object) -> None:
+def deform_by_blender(cross: bpy.types.Object, hair: bpy.types.Object) -> None:
     """Binds the hair as Blender does it: its roots at rest are on the bare mesh."""
     bpy.ops.curves.snap_curves_to_surface(attach_mode="NEAREST")
     cross.add_rest_position_attribute = True
