@@ -133,7 +133,7 @@ def test_refusals(target):
     refused("Dragging needs a window and a mouse", face=-1)
     refused("face", face=1000)
     ob.lock_location = (True, True, True)
-    refused("Pin cannot be put there: locked")
+    refused("Pin cannot be put there: the location or rotation is locked")
     ob.lock_location = (False, False, False)
     target.parent = ob
     bpy.context.view_layer.update()

@@ -12,11 +12,11 @@ from collections.abc import Iterable
 import bpy
 import numpy as np
 
+from ..placing.posed_surface import transformed
 from ..placing.rotations import WorldSpace, unit
+from ..placing.turns import shortest
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
-from .surface import transformed
-from .turns import shortest
 
 SHORTEST = 2e-6  # Blender removes bones whose length is at most half of this
 

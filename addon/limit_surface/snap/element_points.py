@@ -6,10 +6,10 @@ from abc import ABC, abstractmethod
 import bpy
 import numpy as np
 
+from ..placing.posed_surface import transformed
 from ..placing.rotations import WorldSpace, unit
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
-from .surface import transformed
 
 
 class SnappedPoints(ABC):

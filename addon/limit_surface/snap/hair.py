@@ -5,14 +5,15 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..placing.posed_surface import transformed
 from ..placing.rotations import WorldSpace, unit
+from ..placing.turns import shortest
 from ..reading import attributes, ragged_rows
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .hair_binding import HairBinding
 from .strands import Strands
-from .surface import TargetSurface, transformed
-from .turns import shortest
+from .surface import TargetSurface
 
 _SELECTION = ".selection"  # defined by Blender; where it is missing, all is selected
 _HANDLES = ("handle_left", "handle_right")  # the handles of Bézier hair

@@ -6,10 +6,11 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
+from ..placing.posed_surface import Places
 from ..placing.rotations import quaternions
+from ..placing.turns import matrices
 from ..reading import attributes
-from .surface import Places, TargetSurface
-from .turns import matrices
+from .surface import TargetSurface
 
 _KINDS = {
     ids.FACE: "INT",

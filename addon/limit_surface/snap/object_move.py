@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..placing.rotations import unit
-from .turns import shortest
+from ..placing.turns import shortest
 
 # Tolerances for Blender's matrices in single precision: a share of the largest coordinate, and an
 # angle

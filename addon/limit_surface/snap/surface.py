@@ -1,21 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The limit surface in world space to which things are snapped."""
 
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import bpy
 import numpy as np
 
-from ..placing.rotations import WorldSpace
+from ..placing.posed_surface import Places, PosedSurface, seen_from
 from ..reading import cage, displayed_mesh, rules
 from ..tasks.refused_faces import check_some_left
 
 SAME = 1e-6  # as a share of the largest coordinate: Blender's single precision allows no more
-
-
-class Places(NamedTuple):
-    position: np.ndarray  # (n, 3)
-    frame: np.ndarray  # (n, 3, 3) rotations: columns tangent, normal x tangent, outward normal
 
 
 class TargetSurface:
@@ -33,10 +28,10 @@ class TargetSurface:
         self.ob = ob
         self._stood = ob.matrix_world.copy()
         self.cage = cage.read(ob, depsgraph)
-        WorldSpace(self.cage.matrix)  # refuses objects whose scale is 0 along an axis
-        self.in_world = self.cage.surface(in_world=True)
+        posed = PosedSurface(self.cage)
+        self.in_world = posed.in_world
         check_some_left(self.in_world, ob.name)
-        self._in_object = self.cage.surface()
+        self._in_object = posed.in_object
         self._shown = (
             None if kind == "LIMIT" else displayed_mesh.read(ob, depsgraph, self.cage, kind)
         )
@@ -62,15 +57,8 @@ class TargetSurface:
 
         Frames are those of the limit surface even on polygons, which would have kinks between them.
         """
-        surface = self._in_object
-        position = self._positions(face, uv)
-        frame = surface.frames(face, uv)
-        if np.array_equal(space, self.cage.matrix):
-            return Places(position, frame)
-        relation = np.linalg.solve(space, self.cage.matrix)
-        seen = WorldSpace(relation).frames(frame)
-        seen[:, :, 1] = np.cross(seen[:, :, 2], seen[:, :, 0])
-        return Places(transformed(relation, position), seen)
+        places = Places(self._positions(face, uv), self._in_object.frames(face, uv))
+        return seen_from(space, places, self.cage.matrix)
 
     def surface_uv(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray | None:
         """Returns coordinates on the UV map of the mesh that the viewport shows, as new hair stores
@@ -88,7 +76,3 @@ class TargetSurface:
         if self._shown is None:
             return self._in_object.evaluate(face, uv).position
         return self._shown.positions(face, uv)
-
-
-def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
-    return points @ matrix[:3, :3].T + matrix[:3, 3]

@@ -12,12 +12,13 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
+from ..placing.posed_surface import Places, transformed
 from ..placing.rotations import WorldSpace
+from ..placing.turns import shortest
 from ..snap.hair_binding import HairBinding
 from ..snap.object_move import ObjectMove
 from ..snap.strands import Strands
-from ..snap.surface import Places, TargetSurface, transformed
-from ..snap.turns import shortest
+from ..snap.surface import TargetSurface
 
 _TRANSFORM = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle")
 _CURVE_POINTS = (ids.POSITION, "handle_left", "handle_right")

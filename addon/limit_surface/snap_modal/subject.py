@@ -8,10 +8,11 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
+from ..placing.posed_surface import transformed
 from ..reading import attributes
 from ..snap.mesh_vertices import as_edited
 from ..snap.selection import ancestors
-from ..snap.surface import TargetSurface, transformed
+from ..snap.surface import TargetSurface
 from .handles import DraggedObject, DraggedStrand, DraggedVertex, Handle
 
 HAIR_MODES = ("OBJECT", "EDIT_CURVES", "SCULPT_CURVES")

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ..placing.rotations import unit
+from .rotations import unit
 
 
 def shortest(source: np.ndarray, target: np.ndarray) -> np.ndarray:

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A limit surface as it is in one frame, seen from the world and from the spaces of objects."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..reading import cage
+from .rotations import WorldSpace
+
+if TYPE_CHECKING:
+    import limitsurf
+
+
+class Places(NamedTuple):
+    position: np.ndarray  # (n, 3)
+    frame: np.ndarray  # (n, 3, 3) rotations: columns tangent, normal x tangent, outward normal
+
+
+class PosedSurface:
+    """Both surfaces are made when they are asked for. That in the world is another one because
+    closest points are different in the space of a stretched object.
+    """
+
+    def __init__(self, found: cage.Cage) -> None:
+        WorldSpace(found.matrix)  # refuses objects whose scale is 0 along an axis
+        self.cage = found
+
+    @cached_property
+    def in_object(self) -> limitsurf.LimitSurface:
+        return self.cage.surface()
+
+    @cached_property
+    def in_world(self) -> limitsurf.LimitSurface:
+        return self.cage.surface(in_world=True)
+
+    def places(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> Places:
+        """Returns positions and frames in the space that the matrix `space` maps to the world."""
+        surface = self.in_object
+        found = Places(surface.evaluate(face, uv).position, surface.frames(face, uv))
+        return seen_from(space, found, self.cage.matrix)
+
+
+def seen_from(space: np.ndarray, places: Places, matrix: np.ndarray) -> Places:
+    """Returns places in the space that the matrix `space` maps to the world. They are given in the
+    space of `matrix`.
+    """
+    if np.array_equal(space, matrix):
+        return places
+    relation = np.linalg.solve(space, matrix)
+    frame = WorldSpace(relation).frames(places.frame)
+    frame[:, :, 1] = np.cross(frame[:, :, 2], frame[:, :, 0])
+    return Places(transformed(relation, places.position), frame)
+
+
+def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
