@@ -80,8 +80,8 @@ def test_one_surface_has_one_pair_of_tables():
     hair, points = scenes.add_hair(ob, follow="NONE"), scenes.add_points(ob, follow="NONE")
     more = scenes.add_hair(ob, seed=5, distribution="UNIFORM", count=40, follow="NONE")
     follow(hair, points, more)
-    tables = [o for o in bpy.data.objects if not o.modifiers or o.name == ids.TILES_TABLE]
-    assert len(tables) == 2
+    names = {o.name for o in bpy.data.objects} - {o.name for o in (ob, hair, points, more)}
+    assert names == {f"{table} of Cross" for table in (ids.POINTS_TABLE, ids.TILES_TABLE)}
     assert [m.name for m in ob.modifiers] == ["Wave", ids.CAPTURE_GROUP, "Subdivision"]
     bpy.context.scene.frame_set(25)
     check_hair(ob, hair)

@@ -170,7 +170,8 @@ def _fill(mesh: bpy.types.Mesh, positions: np.ndarray) -> None:
     attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", positions)
 
 
-def _new_object(name: str, surface: bpy.types.Object) -> bpy.types.Object:
+def _new_object(kind: str, surface: bpy.types.Object) -> bpy.types.Object:
+    name = f"{kind} of {surface.name}"
     ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     home = next((c for c in surface.users_collection if c.is_editable), None)
     (home or bpy.context.scene.collection).objects.link(ob)
