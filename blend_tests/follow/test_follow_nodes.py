@@ -65,6 +65,84 @@ def test_points_follow_with_their_frames(scene):
             assert error < follow_truth.FRAME_BOUND
 
 
+def test_instances_turn_with_their_points():
+    thorn = scenes.add_mesh("Thorn", [(0, 0, 0), (0.1, 0, 0), (0, 0, 1)], [(0, 1, 2)])
+    ob = deforming("cross")
+    points = scenes.add_points(ob, per_side=2, instance=thorn.name, follow="NODES")
+    bpy.context.scene.frame_set(30)
+    now = follow_truth.on_surface(ob, points.data)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    to_points = np.linalg.inv(np.array(points.matrix_world))
+    found = np.array(
+        [
+            to_points @ np.array(instance.matrix_world)
+            for instance in depsgraph.object_instances
+            if instance.is_instance and instance.parent.original == points
+        ]
+    )
+    assert len(found) == len(now.position)
+    assert np.abs(found[:, :3, 3] - now.position).max() < 1e-5
+    assert np.abs(found[:, :3, :3] - now.frame).max() < follow_truth.FRAME_BOUND
+
+
+@pytest.mark.parametrize("target", ["VIEWPORT", "RENDER"])
+def test_hair_on_displayed_polygons_keeps_its_distance(target):
+    ob = deforming("monkey")
+    hair = scenes.add_hair(ob, per_side=1, target=target, follow="NODES")
+    diagonal = follow_truth.diagonal(ob)
+    exact = follow_truth.on_surface(ob, hair.data)
+    offset = np.linalg.norm(scenes.strands(hair)[:, 0] - exact.position, axis=1)
+    assert offset.max() > 1e-4 * diagonal
+    moved = np.abs(follow_truth.shown_strands(hair) - scenes.strands(hair)).max()
+    assert moved < follow_truth.POSITION_BOUND * diagonal
+    bpy.context.scene.frame_set(30)
+    check_hair(ob, hair)
+    later = follow_truth.on_surface(ob, hair.data)
+    distance = np.linalg.norm(follow_truth.shown_strands(hair)[:, 0] - later.position, axis=1)
+    np.testing.assert_allclose(distance, offset, atol=follow_truth.POSITION_BOUND * diagonal)
+
+
+@pytest.mark.parametrize(
+    ("deforms", "follow"), [(False, "AUTO"), (True, "AUTO"), (False, "NODES"), (True, "NONE")]
+)
+def test_new_things_follow_where_they_are_told_to(deforms, follow):
+    ob = deforming("cross") if deforms else scenes.cross()
+    for thing in (scenes.add_hair(ob, follow=follow), scenes.add_points(ob, follow=follow)):
+        follows = follow == "NODES" or (deforms and follow == "AUTO")
+        assert bool(thing.modifiers) == follows
+        assert (ids.TILE in thing.data.attributes) == follows
+
+
+DEFORMERS = {
+    "shape key": lambda ob: ob.shape_key_add(name="Basis"),
+    "modifier": lambda ob: ob.modifiers.new("Cast", "CAST"),
+    "animated mesh": lambda ob: ob.data.vertices[0].keyframe_insert("co"),
+}
+
+
+@pytest.mark.parametrize("deformer", [*DEFORMERS, "armature"])
+def test_automatic_following_sees(deformer):
+    ob = scenes.cross()
+    scenes.add_subsurf(ob)
+    if deformer == "armature":
+        armature = bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones"))
+        bpy.context.collection.objects.link(armature)
+        ob.parent, ob.parent_type = armature, "ARMATURE"
+    else:
+        DEFORMERS[deformer](ob)
+        for modifier in ob.modifiers:
+            if modifier.type == "CAST":
+                ob.modifiers.move(ob.modifiers.find(modifier.name), 0)
+    assert scenes.add_hair(ob).modifiers
+
+
+def test_a_modifier_behind_the_subdivision_deforms_nothing():
+    ob = scenes.cross()
+    scenes.add_subsurf(ob)
+    ob.modifiers.new("Cast", "CAST")
+    assert not scenes.add_hair(ob).modifiers
+
+
 def test_hair_of_another_transform_follows():
     ob = deforming("grid with holes")
     hair = scenes.add_hair(ob, follow="NONE")
