@@ -230,6 +230,37 @@ def test_it_is_bound_again_after_a_reload(tmp_path):
     assert len([o for o in bpy.data.objects if o.name.startswith(ids.TILES_TABLE)]) == 1
 
 
+def test_a_proxy_stands_for_the_surface_in_the_viewport(tmp_path):
+    ob = deforming("monkey")
+    hair = scenes.add_hair(ob, per_side=1, follow="NONE")
+    names = {o.name for o in bpy.context.scene.objects}
+    scenes.activate(hair)
+    bpy.ops.object.limit_follow(use_proxy=True)
+    assert {o.name for o in bpy.context.scene.objects} - names == {
+        f"{table} of Suzanne" for table in (ids.POINTS_TABLE, ids.TILES_TABLE)
+    }
+    proxy = bpy.data.objects[f"{ids.PROXY_OBJECT} of Suzanne"]
+    assert proxy.data == ob.data
+    assert [m.type for m in proxy.modifiers] == ["WAVE", "NODES"]
+    bpy.context.scene.frame_set(30)
+    check_hair(ob, hair)
+    # what is added later keeps the proxy, and a file carries it
+    scenes.add_points(ob, per_side=1, follow="NODES")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    assert [o.name for o in bpy.data.objects if ids.PROXY_OBJECT in o.name] == [
+        f"{ids.PROXY_OBJECT} of Suzanne"
+    ]
+    ob, hair = bpy.data.objects["Suzanne"], bpy.data.objects[ids.HAIR_OBJECT]
+    bpy.context.scene.frame_set(17)
+    check_hair(ob, hair)
+    scenes.activate(hair)
+    bpy.ops.object.limit_follow(use_proxy=False)
+    assert not [o.name for o in bpy.data.objects if ids.PROXY_OBJECT in o.name]
+    bpy.context.scene.frame_set(3)
+    check_hair(ob, hair)
+
+
 def test_an_object_without_locations_is_refused():
     ob = deforming("cross")
     scenes.activate(ob)

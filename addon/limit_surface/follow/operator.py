@@ -2,7 +2,7 @@
 """Operator object.limit_follow."""
 
 import bpy
-from bpy.props import EnumProperty
+from bpy.props import BoolProperty, EnumProperty
 
 from .. import ids, native
 from ..errors import RefusalError
@@ -31,6 +31,15 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
         ),
     )
 
+    use_proxy: BoolProperty(
+        name="Fast Viewport",
+        description="Read a hidden copy of the surface in the viewport, so that the graphics card "
+        "can subdivide the surface itself. Use it with a Subdivision Surface of level 3 and more "
+        "at the end of the stack. Run this operator again after a change of the surface's "
+        "modifiers",
+        default=False,
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not native.available():
@@ -54,6 +63,7 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.prop(self, "mode")
+        self.layout.prop(self, "use_proxy")
         draw_summary(self.layout, self.summary)
 
     def _bind(self, context: bpy.types.Context) -> set[str]:
@@ -64,7 +74,9 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
                 raise RefusalError(f"{ob.name} has no surface: parent it to its mesh")
             by_surface.setdefault(surface, []).append(ob)
         depsgraph = context.evaluated_depsgraph_get()
-        requests = [following.Request(on, depsgraph, obs) for on, obs in by_surface.items()]
+        requests = [
+            following.Request(on, depsgraph, obs, self.use_proxy) for on, obs in by_surface.items()
+        ]
         lines = [str(made.write()) for made in [request.compute() for request in requests]]
         self.summary = "\n".join(lines)
         self.report({"INFO"}, "; ".join(lines))

@@ -39,11 +39,15 @@ def _build() -> bpy.types.NodeTree:
             Socket("Cage Count", "Int", "Number of vertices of the control mesh"),
             Socket("Cage Topology", "Int", "Checksum of the edges of the control mesh"),
             Socket("Refined Points", "Int", "Number of points that are sums over vertices"),
+            Socket("Use Proxy", "Bool", "Read the proxy instead of the surface in the viewport"),
+            Socket("Proxy", "Object", "Copy of the surface that ends at Limit Capture"),
         ],
         [Socket("Geometry", "Geometry", "Table of tiles, with this frame's matrices")],
         is_modifier=True,
     )
-    cage = tree.object_info(tree.inputs["Surface"])["Geometry"]
+    by_proxy = tree.both(tree.get("GeometryNodeIsViewport"), tree.inputs["Use Proxy"])
+    source = tree.switch(by_proxy, tree.inputs["Surface"], tree.inputs["Proxy"], "OBJECT")
+    cage = tree.object_info(source)["Geometry"]
     points = _placed_points(tree, cage)
     matrix = _row_matrix(tree, points)
     table = tree.store(tree.inputs["Geometry"], ids.TILE_MATRIX, matrix, "FLOAT4X4")

@@ -22,7 +22,7 @@ from ..nodes.capture import CAPTURE, topology_sum
 from ..nodes.follow import FOLLOW_HAIR, FOLLOW_ORIENTED, FOLLOW_POINTS, SURFACE, TILES
 from ..reading import attributes, cage, rules
 from ..tasks.object_keys import ObjectKey
-from . import tables
+from . import proxy, tables
 from .roots import Locations
 
 if TYPE_CHECKING:
@@ -98,6 +98,8 @@ class Request:
     where Blender's data need not be touched, and written. All that follows the surface already is
     bound again with it, because the tables are made for all of it together.
 
+    With a proxy the viewport stays fast (see `proxy`); None keeps what there was.
+
     Raises RefusalError for a surface or a thing that cannot be bound; nothing has changed then.
     """
 
@@ -106,6 +108,7 @@ class Request:
         surface: bpy.types.Object,
         depsgraph: bpy.types.Depsgraph,
         things: Sequence[bpy.types.Object] = (),
+        use_proxy: bool | None = None,
     ) -> None:
         check_surface(surface, depsgraph.scene)
         for ob in things:
@@ -113,7 +116,7 @@ class Request:
         followers = followers_of(surface)
         for ob in followers:
             check_thing(ob, surface)
-        self._surface = ObjectKey.of(surface)
+        self._surface, self._use_proxy = ObjectKey.of(surface), use_proxy
         self._things = [ObjectKey.of(ob) for ob in things]
         self._old = len({ob.data for ob in followers})
         everything = dict.fromkeys([*followers, *things])
@@ -148,6 +151,7 @@ class Request:
             place.check_count(data)
         ensure_capture(surface)
         table = tables.write(surface, made.tiles, self._bound)
+        proxy.update(surface, table, self._use_proxy)
         begin = 0
         for data, place in zip(data_blocks, made.places, strict=True):
             rows = slice(begin, begin + len(place.face))
