@@ -68,7 +68,6 @@ LIMIT_MESH_OBJECT = "Limit Mesh"
 DECAL_OBJECT = "Limit Decal"
 DECAL_UV = "Image"  # UV map of decals
 INSTANCES_GROUP = "Limit Instances"
-INSTANCES_MARK = "limit_surface_instances"  # custom property of that node group: its version
 
 # What follows a deforming surface: groups, the tables that they read, and their attributes
 GROUP_MARK = "limit_surface_group"  # custom property of node groups: their name and version
