@@ -218,3 +218,13 @@ def test_undo(dressed):
     bpy.ops.ed.undo_push()
     bpy.ops.ed.undo()
     assert scenes.file_contents() == before
+
+
+def test_what_followers_need_is_not_carried_over():
+    ob = scenes.cross()
+    scenes.add_subsurf(ob)
+    scenes.add_hair(ob, follow="NODES")
+    scenes.activate(ob)
+    bpy.ops.object.limit_mesh()
+    names = bpy.context.active_object.data.attributes.keys()
+    assert not [name for name in names if name.startswith("cage_")]

@@ -26,8 +26,15 @@ if TYPE_CHECKING:
 
 LINEAR = ("FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR")
 SEAM_BEFORE_5 = ".uv_seam"
-#: Attributes that are made with the new mesh, or by its normals
-_OWN = ("position", "custom_normal", "sharp_face")
+#: Attributes that are made with the new mesh, or by its normals, or for what follows the surface
+_OWN = (
+    "position",
+    "custom_normal",
+    "sharp_face",
+    ids.CAGE_POSITION,
+    ids.CAGE_COUNT,
+    ids.CAGE_TOPOLOGY,
+)
 # Rows are evaluated in parts of this size, so that progress is shown and memory stays small.
 _PART = 1 << 18
 
