@@ -14,6 +14,8 @@ CURVATURE = "object.limit_curvature"
 BAKE_DISPLACEMENT = "object.limit_bake_displacement"
 LIMIT_MESH = "object.limit_mesh"
 FOLLOW = "object.limit_follow"
+UNBIND = "object.limit_unbind"
+REBIND = "object.limit_rebind"
 
 COMMAND = "limit_surface"  # blender --command limit_surface
 
@@ -23,6 +25,7 @@ HAIR_PANEL = "VIEW3D_PT_limit_hair"
 POINTS_PANEL = "VIEW3D_PT_limit_points"
 SNAP_PANEL = "VIEW3D_PT_limit_snap"
 TEXTURES_PANEL = "VIEW3D_PT_limit_textures"
+FOLLOW_PANEL = "VIEW3D_PT_limit_follow"
 OBJECT_MENU = "VIEW3D_MT_object_limit_surface"
 
 # Attributes of generated curves and points
@@ -59,6 +62,11 @@ VERTEX_CREASE = "crease_vert"
 CUSTOM_NORMAL = "custom_normal"
 SHARP_EDGE = "sharp_edge"
 
+# Attributes of curves that Blender defines
+HANDLE_LEFT = "handle_left"
+HANDLE_RIGHT = "handle_right"
+SELECTION = ".selection"  # where it is missing, all is selected
+
 REPORT = "limit_report"  # custom property of the surface's object
 
 HAIR_OBJECT = "Limit Hair"
@@ -71,7 +79,7 @@ INSTANCES_GROUP = "Limit Instances"
 
 # What follows a deforming surface: groups, the tables that they read, and their attributes
 GROUP_MARK = "limit_surface_group"  # custom property of node groups: their name and version
-SIGNATURE = "limit_surface_signature"  # custom property of the table of tiles
+SIGNATURE = "limit_surface_signature"  # custom property of the table of tiles, and of what follows
 CAPTURE_GROUP = "Limit Capture"
 TILES_GROUP = "Limit Tiles"
 SAMPLE_GROUP = "Sample Limit Surface"

@@ -7,34 +7,12 @@ import follow_truth
 import numpy as np
 import pytest
 import scenes
+from follow_scenes import check_hair, deforming, follow
 from limit_surface import ids
 from limit_surface.reading import attributes
-from mathutils import Euler, Matrix
+from mathutils import Matrix
 
 FRAMES = ((1, 0.0), (13, 0.5), (30, 0.0))
-
-
-def deforming(scene: str, mirrored: bool = False) -> bpy.types.Object:
-    ob = scenes.SCENES[scene]()
-    follow_truth.animate(ob)
-    scenes.add_subsurf(ob)
-    turned = Matrix.Translation((0.3, -0.2, 0.5)) @ Euler((0.3, 0.5, -0.7)).to_matrix().to_4x4()
-    ob.matrix_world = turned @ Matrix.Diagonal((-1.2 if mirrored else 1.2, 1.2, 0.8, 1))
-    return ob
-
-
-def follow(*things: bpy.types.Object) -> None:
-    for thing in things:
-        scenes.activate(thing)
-        assert bpy.ops.object.limit_follow(mode="NODES") == {"FINISHED"}
-
-
-def check_hair(ob: bpy.types.Object, hair: bpy.types.Object) -> None:
-    relation = np.linalg.inv(np.array(hair.matrix_world)) @ np.array(ob.matrix_world)
-    now = follow_truth.on_surface(ob, hair.data, relation)
-    expected = follow_truth.moved(scenes.strands(hair), hair.data, now)
-    error = np.abs(follow_truth.shown_strands(hair) - expected).max()
-    assert error < follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
 
 
 @pytest.mark.parametrize("mirrored", [False, True])

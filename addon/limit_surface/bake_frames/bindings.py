@@ -9,7 +9,7 @@ from .. import ids
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import TILES
-from ..placing import following, tables
+from ..placing import followers, following, tables
 from ..reading import attributes, cage
 
 
@@ -18,7 +18,7 @@ def check(objects: Sequence[bpy.types.Object]) -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     cages: dict[bpy.types.Object, cage.Cage] = {}
     for ob in objects:
-        surface = following.surface_of(ob) if following.is_placed(ob) else None
+        surface = followers.surface_of(ob) if followers.is_placed(ob) else None
         if surface is None:
             continue
         if surface not in cages:
@@ -38,7 +38,7 @@ def _check_faces(ob: bpy.types.Object, surface: bpy.types.Object, found: cage.Ca
 
 
 def _check_tables(ob: bpy.types.Object, surface: bpy.types.Object, found: cage.Cage) -> None:
-    modifier = following.modifier_of(ob)
+    modifier = followers.modifier_of(ob)
     if modifier is None:
         return
     table = groups.get_input(modifier, TILES)

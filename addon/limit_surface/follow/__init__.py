@@ -2,5 +2,6 @@
 """Things that stay on the limit surface of a mesh that deforms."""
 
 from .operator import OBJECT_OT_limit_follow
+from .unbind_operator import OBJECT_OT_limit_unbind
 
-classes = (OBJECT_OT_limit_follow,)
+classes = (OBJECT_OT_limit_follow, OBJECT_OT_limit_unbind)

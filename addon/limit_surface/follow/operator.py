@@ -7,6 +7,7 @@ from bpy.props import BoolProperty, EnumProperty
 from .. import ids, native
 from ..errors import RefusalError
 from ..placing import following
+from ..placing.followers import is_placed, surface_of
 from ..tasks.properties import SummaryProperty, draw_summary
 
 
@@ -69,7 +70,7 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
     def _bind(self, context: bpy.types.Context) -> set[str]:
         by_surface: dict[bpy.types.Object, list[bpy.types.Object]] = {}
         for ob in _placed(context):
-            surface = following.surface_of(ob)
+            surface = surface_of(ob)
             if surface is None:
                 raise RefusalError(f"{ob.name} has no surface: parent it to its mesh")
             by_surface.setdefault(surface, []).append(ob)
@@ -85,4 +86,4 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
 
 def _placed(context: bpy.types.Context) -> list[bpy.types.Object]:
     chosen = dict.fromkeys([*context.selected_objects, context.active_object])
-    return [ob for ob in chosen if ob is not None and following.is_placed(ob)]
+    return [ob for ob in chosen if ob is not None and is_placed(ob)]

@@ -14,20 +14,20 @@ from ..nodes import groups
 USE, OBJECT = "Use Proxy", "Proxy"
 
 
-def update(surface: bpy.types.Object, table: bpy.types.Object, wanted: bool | None) -> None:
-    """Makes the proxy anew, so that its modifiers are those of the surface, or removes it. None
-    keeps what there was: a proxy or none.
+def update(surface: bpy.types.Object | None, table: bpy.types.Object, wanted: bool | None) -> None:
+    """Makes the proxy anew, so that its modifiers are those of the surface, or removes it where
+    none is wanted or there is no surface. None keeps what there was: a proxy or none.
     """
     modifier = next(groups.modifiers(table, ids.TILES_GROUP))
     old = groups.get_input(modifier, OBJECT)
     if wanted is None:
         wanted = bool(groups.get_input(modifier, USE))
     groups.set_input(modifier, USE, wanted)
-    proxy = _copy(surface) if wanted else None
+    proxy = _copy(surface) if wanted and surface else None
     groups.set_input(modifier, OBJECT, proxy)
     if old is not None and old.library is None:
         bpy.data.objects.remove(old)
-    if proxy is not None:
+    if proxy is not None and surface:
         proxy.name = f"{ids.PROXY_OBJECT} of {surface.name}"
 
 

@@ -15,8 +15,7 @@ from .hair_binding import HairBinding
 from .strands import Strands
 from .surface import TargetSurface
 
-_SELECTION = ".selection"  # defined by Blender; where it is missing, all is selected
-_HANDLES = ("handle_left", "handle_right")  # the handles of Bézier hair
+_HANDLES = (ids.HANDLE_LEFT, ids.HANDLE_RIGHT)  # of Bézier hair
 
 
 class SnappedHair:
@@ -127,9 +126,9 @@ class SnappedHair:
 
 def _selected(data: bpy.types.Curves, sizes: np.ndarray) -> np.ndarray:
     """Tells for each curve (m,) whether any part of it is selected."""
-    if _SELECTION not in data.attributes:
+    if ids.SELECTION not in data.attributes:
         return np.ones(len(sizes), bool)
-    selected = attributes.read(data, _SELECTION) > 0
-    if data.attributes[_SELECTION].domain == "CURVE":
+    selected = attributes.read(data, ids.SELECTION) > 0
+    if data.attributes[ids.SELECTION].domain == "CURVE":
         return selected
     return np.logical_or.reduceat(selected, ragged_rows.starts(sizes))

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_unbind."""
+
+import bpy
+from bpy.props import EnumProperty
+
+from .. import ids, native
+from ..placing.unbinding import Unbinding
+from ..tasks.properties import SummaryProperty, draw_summary
+from .subjects import chosen_followers
+
+
+class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
+    """Make the selected hair and points follow their limit surface no longer, or everything that
+    follows the active mesh"""
+
+    bl_idname = ids.UNBIND
+    bl_label = "Unbind from Limit Surface"
+    bl_options = {"REGISTER", "UNDO"}
+
+    shape: EnumProperty(
+        name="Shape",
+        description="Shape in which things are left",
+        items=(
+            ("SHOWN", "As Shown", "Keep the shape that is shown in this frame", 0),
+            ("REST", "At Rest", "Go back to the shape that things had when they were bound", 1),
+        ),
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not native.available():
+            cls.poll_message_set(native.obstacle())
+        elif context.mode != "OBJECT":
+            cls.poll_message_set("Only available in Object Mode")
+        elif not chosen_followers(context):
+            cls.poll_message_set("Select hair or points that follow a limit surface")
+        else:
+            return True
+        return False
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
+        try:
+            depsgraph = context.evaluated_depsgraph_get()
+            self.summary = Unbinding(chosen_followers(context), depsgraph, self.shape).write()
+        except native.refusals as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, self.summary)
+        return {"FINISHED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        self.layout.use_property_split = True
+        self.layout.prop(self, "shape")
+        draw_summary(self.layout, self.summary)

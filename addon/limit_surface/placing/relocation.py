@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""New places on a surface for strands and points that exist already."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..reading import attributes, ragged_rows
+from .followers import domain_of, is_placed
+from .places import NOWHERE, ROOT_KINDS, Places
+from .posed_surface import transformed
+
+TYPES = ("CURVES", "MESH", "POINTCLOUD")
+_NOTHING = {ids.FACE: NOWHERE, ids.UV: 0.0, ids.REST_ROOT: 0.0, ids.REST_ROTATION: 0.0}
+
+
+class Elements:
+    """The strands or points of an object, and what it stores about their places."""
+
+    def __init__(self, ob: bpy.types.Object) -> None:
+        if ob.type not in TYPES:
+            raise RefusalError(f"{ob.name} is neither hair, nor points, nor a mesh")
+        self.ob, self.data, self.domain = ob, ob.data, domain_of(ob)
+        attributes.check_names(ob, ROOT_KINDS, self.domain)
+        self.matrix = np.array(ob.matrix_world, np.float64)
+        if ids.POSITION not in ob.data.attributes:
+            raise RefusalError(f"{ob.name} has no points")
+        self._points = attributes.read(ob.data, ids.POSITION).astype(np.float64)
+        self.sizes = np.ones(len(self._points), np.int64)
+        if ob.type == "CURVES":
+            self.sizes = np.empty(len(ob.data.curves), np.int32)
+            ob.data.curves.foreach_get("points_length", self.sizes)
+        self.count = len(self.sizes)
+        if not self.count:
+            raise RefusalError(f"{ob.name} has no points")
+        self.has_place = np.zeros(self.count, bool)
+        if is_placed(ob):
+            self.has_place[Places.read(ob.data).rows] = True
+
+    def read(self, name: str) -> np.ndarray:
+        """Returns a stored attribute of the places; zeros, or no face, where there is none yet."""
+        if name in self.data.attributes:
+            return attributes.read(self.data, name)
+        kind = attributes.LAYOUTS[ROOT_KINDS[name]]
+        shape = (self.count,) if kind.width == 1 else (self.count, kind.width)
+        return np.full(shape, _NOTHING[name], kind.dtype)
+
+    def roots(self) -> np.ndarray:
+        """Returns the roots in the world (n, 3): those at rest, or where an element has no place,
+        the first point of the strand, or the point itself.
+        """
+        first = self._points[ragged_rows.starts(self.sizes)]
+        at_rest = self.read(ids.REST_ROOT).astype(np.float64)
+        return transformed(self.matrix, np.where(self.has_place[:, None], at_rest, first))
+
+
+@dataclass
+class Relocation:
+    """New values of the attributes of one data-block. `lost` are the elements that lose their
+    place, `distances` the lengths in world units by which the roots of all others have moved.
+    """
+
+    elements: Elements
+    values: dict[str, np.ndarray] = field(default_factory=dict)
+    lost: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
+    distances: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def data(self) -> bpy.types.ID:
+        return self.elements.data
+
+    @property
+    def places(self) -> Places:
+        """The locations as they will be."""
+        face, turned = self._value(ids.FACE), self._value(ids.REST_ROTATION).any(axis=1)
+        rows = np.flatnonzero((face >= 0) & turned)
+        uv = self._value(ids.UV)[rows].astype(np.float64)
+        return Places(len(face), rows, face[rows], uv)
+
+    def put(self, name: str, rows: np.ndarray, values: np.ndarray | int) -> None:
+        """Changes a stored attribute of some elements."""
+        if name not in self.values:
+            self.values[name] = self.elements.read(name).copy()
+        self.values[name][rows] = values
+
+    def write(self) -> None:
+        for name, values in self.values.items():
+            stored = self.data.attributes.get(name)
+            kind = stored.data_type if stored else ROOT_KINDS[name]
+            domain = stored.domain if stored else self.elements.domain
+            attributes.write(self.data, name, kind, domain, values)
+        self.data.update_tag()
+
+    def _value(self, name: str) -> np.ndarray:
+        return self.values[name] if name in self.values else self.elements.read(name)

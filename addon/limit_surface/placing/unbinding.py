@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ends following: things stay where they are shown now, or go back to where they were at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import CageError, RefusalError
+from ..nodes import groups
+from ..nodes.follow import SURFACE, TILES
+from ..reading import attributes, cage
+from . import followers, following, proxy, tables
+from .places import NOWHERE
+from .posed_surface import PosedSurface
+from .rotations import quaternions
+
+Shape = Literal["SHOWN", "REST"]
+
+# What the modifiers of following change
+_MOVED = (
+    *(ids.POSITION, ids.HANDLE_LEFT, ids.HANDLE_RIGHT),
+    *(ids.NORMAL, ids.TANGENT, ids.ROTATION),
+)
+
+
+@dataclass
+class _Frozen:
+    """New values of attributes of one data-block."""
+
+    data: bpy.types.ID
+    values: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def write(self) -> None:
+        for name, values in self.values.items():
+            attribute = self.data.attributes[name]
+            attributes.write(self.data, name, attribute.data_type, attribute.domain, values)
+        self.data.update_tag()
+
+
+class Unbinding:
+    """What is written when some followers are unbound. Raises RefusalError for those that cannot
+    be; nothing has changed then.
+    """
+
+    def __init__(
+        self, things: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph, shape: Shape
+    ) -> None:
+        for ob in things:
+            following.check_editable(ob)
+        self._things = list(things)
+        self._frozen: list[_Frozen] = []
+        if shape == "SHOWN":
+            for ob in things:
+                _check_own_data(ob)
+            posed: dict[bpy.types.Object | None, PosedSurface | None] = {}
+            for ob in things:
+                surface = followers.surface_of(ob)
+                if surface not in posed:
+                    posed[surface] = _posed(surface, depsgraph)
+                self._frozen.append(_freeze(ob, posed[surface], depsgraph))
+
+    def write(self) -> str:
+        """Changes the file, and returns a report."""
+        surfaces, used = set(), set()
+        for ob in self._things:
+            modifier = followers.modifier_of(ob)
+            surfaces.add(groups.get_input(modifier, SURFACE))
+            used.add(groups.get_input(modifier, TILES))
+            ob.modifiers.remove(modifier)
+        for frozen in self._frozen:
+            frozen.write()
+        for data in dict.fromkeys(ob.data for ob in self._things):
+            if not any(followers.modifier_of(other) for other in _users(data)):
+                _remove_attributes(data)
+        _remove_unused(used - {None}, surfaces - {None})
+        names = ", ".join(ob.name for ob in self._things)
+        where = "where they are shown now" if self._frozen else "where they are at rest"
+        return f"Unbound {where}: {names}"
+
+
+def _check_own_data(ob: bpy.types.Object) -> None:
+    others = [other.name for other in _users(ob.data) if other != ob]
+    if others:
+        raise RefusalError(
+            f"{ob.name} shares its data with {others[0]}: make it a single user, or let it go back "
+            "to rest"
+        )
+    if getattr(ob.data, "shape_keys", None):
+        raise RefusalError(f"{ob.name} has shape keys: apply them first, or let it go back to rest")
+
+
+def _posed(surface: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> PosedSurface | None:
+    """Returns the surface as it is now; None where there is none any more."""
+    try:
+        return PosedSurface(cage.read(surface, depsgraph)) if surface else None
+    except CageError:
+        return None
+
+
+def _freeze(
+    ob: bpy.types.Object, posed: PosedSurface | None, depsgraph: bpy.types.Depsgraph
+) -> _Frozen:
+    """Returns what the modifier shows. The places at rest are those of this frame then, so that
+    what is bound again does not move.
+    """
+    data, frozen = ob.data, _Frozen(ob.data)
+    frozen.values = _shown(ob, depsgraph)
+    if all(np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()):
+        return frozen  # it is at rest, because its tables do not fit
+    follows = attributes.read(data, ids.TILE) > 0
+    if posed is None or not following.holds(data, following.signature(posed.cage)):
+        face = attributes.read(data, ids.FACE)
+        face[follows] = NOWHERE
+        frozen.values[ids.FACE] = face
+        return frozen
+    face, uv = (attributes.read(data, name)[follows] for name in (ids.FACE, ids.UV))
+    places = posed.places(face, uv.astype(np.float64), np.array(ob.matrix_world, np.float64))
+    for name, values in (
+        (ids.REST_ROOT, places.position),
+        (ids.REST_ROTATION, quaternions(places.frame)),
+    ):
+        frozen.values[name] = attributes.read(data, name)
+        frozen.values[name][follows] = values
+    return frozen
+
+
+def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, np.ndarray]:
+    """Returns what the modifier of following alone makes of the object."""
+    modifier = followers.modifier_of(ob)
+    assert modifier is not None
+
+    def leave_alone(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
+        for other in list(copy.modifiers):
+            if other.name != modifier.name:
+                copy.modifiers.remove(other)
+
+    with cage.evaluated_copy(ob, len(ob.modifiers), depsgraph, leave_alone) as evaluated:
+        names = [name for name in _MOVED if name in ob.data.attributes]
+        return {name: attributes.read(evaluated.data, name) for name in names}
+
+
+def _users(data: bpy.types.ID) -> list[bpy.types.Object]:
+    return [ob for ob in bpy.data.objects if ob.data == data]
+
+
+def _remove_attributes(data: bpy.types.ID) -> None:
+    for name in (ids.TILE, ids.TILE_UV):
+        attribute = data.attributes.get(name)
+        if attribute:
+            data.attributes.remove(attribute)
+    if ids.SIGNATURE in data:
+        del data[ids.SIGNATURE]
+    data.update_tag()
+
+
+def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Object]) -> None:
+    """Removes tables that nothing reads any more, and *Limit Capture* from surfaces that no tables
+    read any more.
+    """
+    for table in used:
+        if table.library is None and not _readers(table):
+            surfaces.add(tables.surface_of(table))
+            proxy.update(None, table, False)
+            tables.remove(table)
+    for surface in surfaces - {None}:
+        if surface.is_editable and tables.of_surface(surface) is None:
+            for modifier in list(groups.modifiers(surface, ids.CAPTURE_GROUP)):
+                surface.modifiers.remove(modifier)
+
+
+def _readers(table: bpy.types.Object) -> list[bpy.types.ID]:
+    """Returns the objects and node groups that refer to the table."""
+    users = bpy.data.user_map(subset=[table])[table]
+    return [user for user in users if user.id_type in ("OBJECT", "NODETREE", "MATERIAL")]
