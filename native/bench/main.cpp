@@ -31,6 +31,7 @@
 #include "bench/sample/sampling_benchmarks.h"
 #include "bench/support/ratio_reporter.h"
 #include "bench/surface/setup_benchmarks.h"
+#include "bench/surface/strand_benchmarks.h"
 
 namespace {
 
@@ -57,6 +58,7 @@ int runTables(int argc, char** argv, int sample_count) {
 
   std::vector<Group> groups = evaluationGroups(sample_count);
   for (Group& group : setupGroups()) groups.push_back(std::move(group));
+  for (Group& group : strandGroups(sample_count)) groups.push_back(std::move(group));
   for (Group& group : samplingGroups(sample_count)) groups.push_back(std::move(group));
   RatioReporter reporter;
   runGroups(groups, reporter);
@@ -71,6 +73,8 @@ int runTables(int argc, char** argv, int sample_count) {
                       groups);
   reporter.printTable(kPosingTable, "New positions, ns per irregular face",
                       {"mesh", "faces", "irregular"}, groups);
+  reporter.printTable(kStrandTable, "Posing strands of 8 points, ns per strand",
+                      {"roots", "strands"}, groups);
   reporter.printTable(kSamplerSetupTable, "Preparing to scatter, ns per face", {"mesh", "faces"},
                       groups);
   reporter.printTable(kUniformTable, "Uniform points, ns each", {"mesh", "faces"}, groups);

@@ -266,6 +266,7 @@ class LimitSurface {
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> bounds(int threads = 0) const;
 
  private:
+  friend class StrandPoser;
   friend class SurfacePatches;
   struct Data;
   std::unique_ptr<Data> data_;

@@ -15,31 +15,37 @@ void TiledSurface::check(const LocationBatch& at, int threads) const {
   checked(at);
 }
 
+void TiledSurface::check(std::size_t row, const Location& location) const {
+  const auto inside = [](double t) { return t >= 0 && t <= 1; };  // false for NaN
+  const bool exists = location.face >= 0 && location.face < static_cast<int>(table.faces.size());
+  if (exists && inside(location.u) && inside(location.v) &&
+      table.faces[location.face].kind != TileRef::kNone) {
+    return;
+  }
+  std::ostringstream message;
+  message.precision(17);
+  message << "row " << row << ": ";
+  if (!exists) {
+    message << "face " << location.face << " is not among the " << table.faces.size()
+            << " Ptex faces";
+    throw LocationError(message.str());
+  }
+  if (!inside(location.u) || !inside(location.v)) {
+    message << "(u, v) = (" << location.u << ", " << location.v << ") is outside [0, 1]";
+    throw LocationError(message.str());
+  }
+  const int base = ptex.base_face[location.face];
+  message << "Ptex face " << location.face << " belongs to face " << base
+          << ", which has no limit surface: " << refused.at(base);
+  throw MeshError(message.str());
+}
+
 LocationBatch TiledSurface::checked(const LocationBatch& at) const {
   if (at.checked_on_ == this) {
     return at;
   }
-  std::ostringstream message;
-  message.precision(17);
   for (std::size_t row = 0; row < at.size(); ++row) {
-    const Location& location = at[row];
-    const auto inside = [](double t) { return t >= 0 && t <= 1; };  // false for NaN
-    if (location.face < 0 || location.face >= static_cast<int>(table.faces.size())) {
-      message << "row " << row << ": face " << location.face << " is not among the "
-              << table.faces.size() << " Ptex faces";
-      throw LocationError(message.str());
-    }
-    if (!inside(location.u) || !inside(location.v)) {
-      message << "row " << row << ": (u, v) = (" << location.u << ", " << location.v
-              << ") is outside [0, 1]";
-      throw LocationError(message.str());
-    }
-    if (table.faces[location.face].kind == TileRef::kNone) {
-      const int base = ptex.base_face[location.face];
-      message << "row " << row << ": Ptex face " << location.face << " belongs to face " << base
-              << ", which has no limit surface: " << refused.at(base);
-      throw MeshError(message.str());
-    }
+    check(row, at[row]);
   }
   return LocationBatch(at, this);
 }

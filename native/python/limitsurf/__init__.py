@@ -15,6 +15,7 @@ from ._limitsurf import (
     LocationError,
     MeshError,
     PtexLayout,
+    StrandPoser,
     SubdividedFaces,
     SurfaceData,
     __version__,
@@ -64,6 +65,7 @@ __all__ = [
     "PtexTexels",
     "RayHits",
     "Stencils",
+    "StrandPoser",
     "SubdividedFaces",
     "SurfaceData",
     "Tessellation",
@@ -85,6 +87,7 @@ for _public in (
     LocationError,
     MeshError,
     PtexLayout,
+    StrandPoser,
     SubdividedFaces,
     SurfaceData,
 ):

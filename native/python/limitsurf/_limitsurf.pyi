@@ -150,6 +150,48 @@ class SubdividedFaces(metaclass=_BoundType):
     def order(self) -> Literal["blender", "opensubdiv"]: ...
     def locate(self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0) -> Locations: ...
 
+class StrandPoser(metaclass=_BoundType):
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...  # surfaces make them
+    def __len__(self) -> int: ...
+    @property
+    def bound_count(self) -> int: ...
+    @property
+    def point_count(self) -> int: ...
+    def pose(
+        self,
+        rest_points: ArrayLike,
+        matrix: ArrayLike | None = None,
+        out: NDArray[np.float32] | None = None,
+        *,
+        threads: int = 0,
+    ) -> NDArray[np.float32]: ...
+    def unpose(
+        self,
+        points: ArrayLike,
+        matrix: ArrayLike | None = None,
+        out: NDArray[np.float32] | None = None,
+        *,
+        only: ArrayLike | None = None,
+        threads: int = 0,
+    ) -> NDArray[np.float32]: ...
+    def pose_vectors(
+        self,
+        rest_vectors: ArrayLike,
+        matrix: ArrayLike | None = None,
+        out: NDArray[np.float32] | None = None,
+        *,
+        threads: int = 0,
+    ) -> NDArray[np.float32]: ...
+    def pose_rotations(
+        self,
+        rest_rotations: ArrayLike,
+        matrix: ArrayLike | None = None,
+        out: NDArray[np.float32] | None = None,
+        *,
+        threads: int = 0,
+    ) -> NDArray[np.float32]: ...
+    def fingerprints(self, points: ArrayLike, *, threads: int = 0) -> NDArray[np.int32]: ...
+
 class PtexLayout(metaclass=_BoundType):
     def __init__(self, face_count: int, resolution: int) -> None: ...
     @property
@@ -238,6 +280,16 @@ class LimitSurface(metaclass=_BoundType):
         *,
         threads: int = 0,
     ) -> Tiles: ...
+    def strand_poser(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        rest_roots: ArrayLike,
+        rest_rotations: ArrayLike,
+        offsets: ArrayLike | None = None,
+        *,
+        threads: int = 0,
+    ) -> StrandPoser: ...
     def face_varying(
         self,
         values: ArrayLike,

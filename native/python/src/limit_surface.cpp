@@ -11,6 +11,7 @@
 #include "docstrings.h"
 #include "projection.h"
 #include "shared_surface.h"
+#include "strand_poser.h"
 #include "surface_data.h"
 #include "tangent_frames.h"
 
@@ -137,6 +138,7 @@ void bindLimitSurface(py::module_& module) {
   bindEvaluation(type);
   bindDataMakers(type);
   bindSurfaceTiles(type);
+  bindStrandPoserMaker(type);
   bindTangentFrames(type);
   bindTessellation(type);
   bindSearch(type);

@@ -7,6 +7,7 @@
 #include "limit_surface.h"
 #include "limitsurf/error.h"
 #include "ptex_layout.h"
+#include "strand_poser.h"
 #include "surface_data.h"
 #include "tangent_frames.h"
 
@@ -28,5 +29,6 @@ PYBIND11_MODULE(_limitsurf, module) {
   limitsurf::python::bindShadingFrames(module);
   limitsurf::python::bindSubdividedFaces(module);
   limitsurf::python::bindPtexLayout(module);
+  limitsurf::python::bindStrandPoser(module);
   limitsurf::python::bindLimitSurface(module);
 }

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/strands/strand_poser.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/strands/root_pose.h"
+
+namespace limitsurf {
+namespace {
+
+/// Strands that make one task where their points are only read.
+constexpr std::size_t kStrandsPerTask = 4096;
+
+std::string rowText(const float* row, int count) {
+  std::ostringstream text;
+  for (int i = 0; i < count; ++i) {
+    text << (i == 0 ? "(" : ", ") << row[i];
+  }
+  text << ")";
+  return text.str();
+}
+
+void checkFinite(const char* what, std::size_t row, const float* values, int count) {
+  if (!std::all_of(values, values + count, [](float x) { return std::isfinite(x); })) {
+    throw std::invalid_argument("row " + std::to_string(row) + ": the " + what + " is " +
+                                rowText(values, count));
+  }
+}
+
+void checkRows(const char* what, Eigen::Index rows, std::int64_t expected) {
+  if (rows != expected) {
+    throw std::invalid_argument(std::string(what) + " has " + std::to_string(rows) +
+                                " rows; expected " + std::to_string(expected));
+  }
+}
+
+void checkMap(const Eigen::Matrix4d& map) {
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      const double value = map(row, column);
+      const bool is_right = row < 3 ? std::isfinite(value) : value == (column == 3 ? 1 : 0);
+      if (!is_right) {
+        std::ostringstream message;
+        message << "matrix has " << value << " in row " << row << ", column " << column
+                << (row < 3 ? "; expected a finite number" : "; expected (0, 0, 0, 1) in row 3");
+        throw std::invalid_argument(message.str());
+      }
+    }
+  }
+}
+
+template <typename Rows>
+const float* rowOf(const Rows& rows, std::int64_t row) {
+  return rows.data() + rows.cols() * row;
+}
+template <typename Rows>
+float* rowOf(RowsOut<Rows>& rows, std::int64_t row) {
+  return rows.data() + rows.cols() * row;
+}
+
+Padded padded(const float* p) { return {p[0], p[1], p[2], 0}; }
+
+void store(const Padded& p, float* to) {
+  to[0] = static_cast<float>(p[0]);
+  to[1] = static_cast<float>(p[1]);
+  to[2] = static_cast<float>(p[2]);
+}
+
+/// A rigid motion: x goes to `to` + turn (x - from).
+struct Motion {
+  Padded turn[3];  // the columns
+  Padded from, to;
+
+  Padded turned(const Padded& v) const { return v[0] * turn[0] + v[1] * turn[1] + v[2] * turn[2]; }
+  void move(const float* point, float* out) const { store(to + turned(padded(point) - from), out); }
+  Motion inverse() const {
+    Motion result;
+    for (int i = 0; i < 3; ++i) {
+      result.turn[i] = Padded(turn[0][i], turn[1][i], turn[2][i], 0);
+    }
+    result.from = to;
+    result.to = from;
+    return result;
+  }
+};
+
+/// The motion from the rest root, where the frame was the rotation by the quaternion
+/// `rest_rotation` of any length, to the root as it is posed.
+Motion motionOf(const float* rest_root, const float* rest_rotation, const RootPose& root) {
+  const double w = rest_rotation[0], x = rest_rotation[1], y = rest_rotation[2],
+               z = rest_rotation[3], twice = 2 / (w * w + x * x + y * y + z * z);
+  const double rest[3][3] = {
+      {1 - twice * (y * y + z * z), twice * (x * y - w * z), twice * (x * z + w * y)},
+      {twice * (x * y + w * z), 1 - twice * (x * x + z * z), twice * (y * z - w * x)},
+      {twice * (x * z - w * y), twice * (y * z + w * x), 1 - twice * (x * x + y * y)}};
+  Motion motion;
+  for (int i = 0; i < 3; ++i) {
+    motion.turn[i] =
+        root.frame[0] * rest[i][0] + root.frame[1] * rest[i][1] + root.frame[2] * rest[i][2];
+  }
+  motion.from = padded(rest_root);
+  motion.to = root.position;
+  return motion;
+}
+
+/// A 64-bit word mixed into a hash, after the finaliser of SplitMix64.
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0xbf58476d1ce4e5b9u;
+  return hash ^ (hash >> 32);
+}
+
+std::int32_t fingerprint(const float* points, std::size_t count) {
+  std::size_t bytes = count * 3 * sizeof(float);
+  std::uint64_t hash = mixed(0x9e3779b97f4a7c15u, bytes);
+  const char* at = reinterpret_cast<const char*>(points);
+  for (; bytes >= sizeof(std::uint64_t); bytes -= sizeof(std::uint64_t)) {
+    std::uint64_t word;
+    std::memcpy(&word, at, sizeof word);
+    hash = mixed(hash, word);
+    at += sizeof word;
+  }
+  if (bytes > 0) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, at, bytes);
+    hash = mixed(hash, word);
+  }
+  hash = (hash ^ (hash >> 29)) * 0x94d049bb133111ebu;
+  const auto high = static_cast<std::uint32_t>(hash >> 32);
+  const std::uint32_t never_zero = high == 0 ? 1 : high;
+  std::int32_t result;
+  std::memcpy(&result, &never_zero, sizeof result);
+  return result;
+}
+
+}  // namespace
+
+struct StrandPoser::Data {
+  struct Strand {
+    TileLocation place;
+    float root[3], rotation[4];
+    int row;
+  };
+
+  Data(const LimitSurface::Data& of_surface, std::size_t strand_count,
+       const std::vector<std::int64_t>& point_offsets)
+      : surface(of_surface), count(strand_count), offsets(point_offsets) {}
+
+  void checkOffsets() const;
+  void bind(Span<Location> at, const RowsIn<FloatPoints>& rest_roots,
+            const RowsIn<FloatRotations>& rest_rotations, int threads);
+
+  std::int64_t pointCount() const {
+    return offsets.empty() ? static_cast<std::int64_t>(count) : offsets.back();
+  }
+  std::int64_t begin(std::size_t row) const {
+    return offsets.empty() ? static_cast<std::int64_t>(row) : offsets[row];
+  }
+
+  /// Calls body(row, motion) for each bound strand, in parallel.
+  template <typename Body>
+  void forEachBound(const Eigen::Matrix4d& to_strands, int threads, const Body& body) const {
+    parallelFor(bound.size(), kRowsPerTask, threads, [&](std::size_t first, std::size_t last) {
+      RootFinder root(surface.table, surface.pose, to_strands);
+      for (std::size_t i = first; i < last; ++i) {
+        const Strand& strand = bound[i];
+        body(static_cast<std::size_t>(strand.row),
+             motionOf(strand.root, strand.rotation, root(strand.place)));
+      }
+    });
+  }
+
+  /// Calls body(point, motion) for each point of bound strands, and leave(point) for all others.
+  template <typename Body, typename Leave>
+  void forEachPoint(const Eigen::Matrix4d& to_strands, int threads, const Body& body,
+                    const Leave& leave) const {
+    checkThreads(threads);
+    checkMap(to_strands);
+    forEachBound(to_strands, threads, [&](std::size_t row, const Motion& motion) {
+      for (std::int64_t point = begin(row), end = begin(row + 1); point < end; ++point) {
+        body(point, motion);
+      }
+    });
+    for (const int row : unbound) {
+      for (std::int64_t point = begin(row), end = begin(row + 1); point < end; ++point) {
+        leave(point);
+      }
+    }
+  }
+
+  const LimitSurface::Data& surface;
+  std::size_t count;
+  std::vector<std::int64_t> offsets;
+  std::vector<Strand> bound;
+  std::vector<int> unbound;
+};
+
+void StrandPoser::Data::checkOffsets() const {
+  if (offsets.empty()) {
+    return;
+  }
+  if (offsets.size() != count + 1) {
+    throw std::invalid_argument("there are " + std::to_string(offsets.size()) + " offsets for " +
+                                std::to_string(count) + " strands; expected " +
+                                std::to_string(count + 1));
+  }
+  if (offsets[0] != 0) {
+    throw std::invalid_argument("offset 0 is " + std::to_string(offsets[0]) + "; expected 0");
+  }
+  for (std::size_t i = 1; i < offsets.size(); ++i) {
+    if (offsets[i] < offsets[i - 1]) {
+      throw std::invalid_argument("offset " + std::to_string(i) + " is " +
+                                  std::to_string(offsets[i]) + ", less than the one before it, " +
+                                  std::to_string(offsets[i - 1]));
+    }
+  }
+}
+
+void StrandPoser::Data::bind(Span<Location> at, const RowsIn<FloatPoints>& rest_roots,
+                             const RowsIn<FloatRotations>& rest_rotations, int threads) {
+  const auto isBound = [&](std::size_t row) {
+    return !(rest_rotations.row(static_cast<Eigen::Index>(row)).array() == 0).all();
+  };
+  std::vector<int> rows;
+  for (std::size_t row = 0; row < count; ++row) {
+    (isBound(row) ? rows : unbound).push_back(static_cast<int>(row));
+  }
+  for (const int row : rows) {
+    surface.tiles->check(static_cast<std::size_t>(row), at[static_cast<std::size_t>(row)]);
+  }
+  for (const int row : rows) {
+    checkFinite("rest root", static_cast<std::size_t>(row), rowOf(rest_roots, row), 3);
+    checkFinite("rest rotation", static_cast<std::size_t>(row), rowOf(rest_rotations, row), 4);
+  }
+
+  bound.resize(rows.size());
+  parallelFor(rows.size(), kStrandsPerTask, threads, [&](std::size_t first, std::size_t last) {
+    const TileEvaluator evaluator(surface.table, surface.pose);
+    for (std::size_t i = first; i < last; ++i) {
+      Strand& strand = bound[i];
+      strand.row = rows[i];
+      strand.place = evaluator.locate(at[static_cast<std::size_t>(rows[i])]);
+      std::copy_n(rowOf(rest_roots, rows[i]), 3, strand.root);
+      std::copy_n(rowOf(rest_rotations, rows[i]), 4, strand.rotation);
+    }
+  });
+}
+
+StrandPoser::StrandPoser(const LimitSurface& surface, Span<Location> at,
+                         const RowsIn<FloatPoints>& rest_roots,
+                         const RowsIn<FloatRotations>& rest_rotations,
+                         const std::vector<std::int64_t>& offsets, int threads)
+    : data_(std::make_unique<Data>(*surface.data_, at.size(), offsets)) {
+  checkThreads(threads);
+  const auto count = static_cast<std::int64_t>(at.size());
+  checkRows("rest_roots", rest_roots.rows(), count);
+  checkRows("rest_rotations", rest_rotations.rows(), count);
+  data_->checkOffsets();
+  data_->bind(at, rest_roots, rest_rotations, threads);
+}
+
+StrandPoser::~StrandPoser() = default;
+StrandPoser::StrandPoser(StrandPoser&&) noexcept = default;
+StrandPoser& StrandPoser::operator=(StrandPoser&&) noexcept = default;
+
+std::size_t StrandPoser::size() const { return data_->count; }
+std::size_t StrandPoser::boundCount() const { return data_->bound.size(); }
+std::int64_t StrandPoser::pointCount() const { return data_->pointCount(); }
+
+void StrandPoser::pose(const RowsIn<FloatPoints>& rest_points, RowsOut<FloatPoints> posed,
+                       const Eigen::Matrix4d& to_strands, int threads) const {
+  checkRows("rest_points", rest_points.rows(), pointCount());
+  checkRows("posed", posed.rows(), pointCount());
+  data_->forEachPoint(
+      to_strands, threads,
+      [&](std::int64_t i, const Motion& motion) {
+        motion.move(rowOf(rest_points, i), rowOf(posed, i));
+      },
+      [&](std::int64_t i) { posed.row(i) = rest_points.row(i); });
+}
+
+void StrandPoser::unpose(const RowsIn<FloatPoints>& posed, RowsOut<FloatPoints> rest_points,
+                         const Eigen::Matrix4d& to_strands, const std::vector<char>& only,
+                         int threads) const {
+  checkThreads(threads);
+  checkMap(to_strands);
+  checkRows("posed", posed.rows(), pointCount());
+  checkRows("rest_points", rest_points.rows(), pointCount());
+  if (!only.empty()) {
+    checkRows("only", static_cast<Eigen::Index>(only.size()),
+              static_cast<std::int64_t>(data_->count));
+  }
+  const Data& data = *data_;
+  const auto isWanted = [&](std::size_t row) { return only.empty() || only[row]; };
+  data.forEachBound(to_strands, threads, [&](std::size_t row, const Motion& motion) {
+    if (isWanted(row)) {
+      const Motion back = motion.inverse();
+      for (std::int64_t i = data.begin(row), end = data.begin(row + 1); i < end; ++i) {
+        back.move(rowOf(posed, i), rowOf(rest_points, i));
+      }
+    }
+  });
+  for (const int unbound_row : data.unbound) {
+    const auto row = static_cast<std::size_t>(unbound_row);
+    if (isWanted(row)) {
+      const std::int64_t first = data.begin(row), count = data.begin(row + 1) - first;
+      rest_points.middleRows(first, count) = posed.middleRows(first, count);
+    }
+  }
+}
+
+void StrandPoser::poseVectors(const RowsIn<FloatPoints>& rest_vectors, RowsOut<FloatPoints> posed,
+                              const Eigen::Matrix4d& to_strands, int threads) const {
+  checkRows("rest_vectors", rest_vectors.rows(), pointCount());
+  checkRows("posed", posed.rows(), pointCount());
+  data_->forEachPoint(
+      to_strands, threads,
+      [&](std::int64_t i, const Motion& motion) {
+        store(motion.turned(padded(rowOf(rest_vectors, i))), rowOf(posed, i));
+      },
+      [&](std::int64_t i) { posed.row(i) = rest_vectors.row(i); });
+}
+
+void StrandPoser::poseRotations(const RowsIn<FloatRotations>& rest_rotations,
+                                RowsOut<FloatRotations> posed, const Eigen::Matrix4d& to_strands,
+                                int threads) const {
+  checkRows("rest_rotations", rest_rotations.rows(), pointCount());
+  checkRows("posed", posed.rows(), pointCount());
+  data_->forEachPoint(
+      to_strands, threads,
+      [&](std::int64_t i, const Motion& motion) {
+        const Eigen::Vector4d q = rest_rotations.row(i).cast<double>().transpose();
+        if (q.isZero(0)) {
+          posed.row(i).setZero();
+          return;
+        }
+        Eigen::Matrix3d turn;
+        for (int column = 0; column < 3; ++column) {
+          turn.col(column) = motion.turn[column].head<3>();
+        }
+        Eigen::Quaterniond result =
+            Eigen::Quaterniond(turn) * Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+        result.normalize();
+        const double sign = result.w() < 0 ? -1 : 1;
+        posed.row(i) = (sign * Eigen::RowVector4d(result.w(), result.x(), result.y(), result.z()))
+                           .cast<float>();
+      },
+      [&](std::int64_t i) { posed.row(i) = rest_rotations.row(i); });
+}
+
+std::vector<std::int32_t> StrandPoser::fingerprints(const RowsIn<FloatPoints>& points,
+                                                    int threads) const {
+  checkThreads(threads);
+  checkRows("points", points.rows(), pointCount());
+  std::vector<std::int32_t> result(data_->count);
+  parallelFor(result.size(), kStrandsPerTask, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      const std::int64_t begin = data_->begin(row), end = data_->begin(row + 1);
+      result[row] = fingerprint(points.data() + 3 * begin, static_cast<std::size_t>(end - begin));
+    }
+  });
+  return result;
+}
+
+}  // namespace limitsurf

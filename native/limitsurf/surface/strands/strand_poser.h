@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "limitsurf/surface/limit_surface.h"
+#include "limitsurf/surface/location_batch.h"
+#include "limitsurf/types.h"
+
+namespace limitsurf {
+
+/// One point or vector per row, and one quaternion w, x, y, z per row, in single precision: the
+/// form in which applications store the points of hair.
+using FloatPoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using FloatRotations = Eigen::Matrix<float, Eigen::Dynamic, 4, Eigen::RowMajor>;
+/// Arguments of these types refer to such matrices, or to memory of their layout (Eigen::Map).
+template <typename Rows>
+using RowsIn = Eigen::Ref<const Rows, 0, Eigen::OuterStride<Rows::ColsAtCompileTime>>;
+template <typename Rows>
+using RowsOut = Eigen::Ref<Rows, 0, Eigen::OuterStride<Rows::ColsAtCompileTime>>;
+
+/// Bound on the error of posed points before they are rounded to float: relative to the diagonal of
+/// the control mesh's bounding box, as `to_strands` carries it, plus the distance of the point from
+/// its strand's root. It is the sum of kPositionError and of a rotation's error, which is
+/// kNormalError for each of the normal and the tangent.
+constexpr double kStrandError = 4e-11;
+
+/// Strands that are bound to locations on a limit surface, and are carried along when the surface
+/// is posed: hair, or, as strands of one point each, scattered points and instances.
+///
+/// Each strand was bound at a location where the surface had, at rest, the position r and the frame
+/// R, as LimitSurface::frames() gives it. Where the surface now has P and F there, the strand moves
+/// as a rigid body with its root: a point p of the rest shape goes to
+///
+///   P + F R^-1 (p - r).
+///
+/// r and R are given in the space of the strands. `to_strands` leads from the surface's space to
+/// it: P is carried as a point, and F is made of the carried du, the normal along the cross product
+/// of the carried du and dv, and normal x tangent. F is thus a rotation whatever the matrix is;
+/// where a matrix mirrors, the normal is turned over. Where du or the normal has no limit or
+/// vanishes, F is made in the same way of the columns of frames().
+///
+/// What depends on the locations alone is prepared once. The surface may be posed between the
+/// calls. It is referred to and must live on. Strands whose neighbours in the batch lie on the same
+/// face are posed faster than strands in random order.
+///
+/// A strand whose rest rotation is (0, 0, 0, 0) is not bound: it stays where it is, and its
+/// location and its rest root are not looked at. So attributes that a new strand does not have yet
+/// may be 0.
+///
+/// Every call takes `threads` as LimitSurface's do, and the number gives the same bits. If a call
+/// is interrupted, some rows of its output are written and others are not. Input and output may be
+/// the same array. Points that are not finite give points that are not finite.
+class StrandPoser {
+ public:
+  /// `offsets` holds n + 1 numbers for n locations: strand i consists of the points offsets[i] to
+  /// offsets[i + 1] - 1. If it is empty each strand has one point.
+  ///
+  /// Throws the errors of LimitSurface::evaluate() for the locations of bound strands;
+  /// std::invalid_argument for other numbers of rows, for offsets that do not begin with 0 or that
+  /// decrease, and for a rest root or rest rotation of a bound strand that is not finite, which it
+  /// names with its row. Rotations need not have the length 1.
+  StrandPoser(const LimitSurface& surface, Span<Location> at, const RowsIn<FloatPoints>& rest_roots,
+              const RowsIn<FloatRotations>& rest_rotations,
+              const std::vector<std::int64_t>& offsets = {}, int threads = 0);
+  ~StrandPoser();
+  StrandPoser(StrandPoser&&) noexcept;
+  StrandPoser& operator=(StrandPoser&&) noexcept;
+
+  /// The numbers of strands, of those that are bound, and of points.
+  std::size_t size() const;
+  std::size_t boundCount() const;
+  std::int64_t pointCount() const;
+
+  // The calls below throw std::invalid_argument for arrays of other sizes, and for a matrix that is
+  // not finite or whose last row is not (0, 0, 0, 1). Cost: an evaluation with first derivatives
+  // for each strand, and some nanoseconds for each point.
+
+  /// Moves the points of the rest shape to where they are on the surface as it is posed. Error:
+  /// kStrandError, and the rounding to float.
+  void pose(const RowsIn<FloatPoints>& rest_points, RowsOut<FloatPoints> posed,
+            const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(), int threads = 0) const;
+
+  /// The inverse: the rest shape of points that lie on the surface as it is posed. With `only`, one
+  /// flag per strand, points of other strands are not written.
+  void unpose(const RowsIn<FloatPoints>& posed, RowsOut<FloatPoints> rest_points,
+              const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(),
+              const std::vector<char>& only = {}, int threads = 0) const;
+
+  /// Turns a vector at each point as pose() turns the strand.
+  void poseVectors(const RowsIn<FloatPoints>& rest_vectors, RowsOut<FloatPoints> posed,
+                   const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(),
+                   int threads = 0) const;
+
+  /// Turns a rotation at each point as pose() turns the strand. The results have the length 1 and
+  /// w >= 0, or are 0 where the given rotation is.
+  void poseRotations(const RowsIn<FloatRotations>& rest_rotations, RowsOut<FloatRotations> posed,
+                     const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(),
+                     int threads = 0) const;
+
+  /// A number for each strand that depends on the bits of its points alone and is never 0. If one
+  /// bit of a strand changes, so does its number, but for one case in 2^32. It tells strands that
+  /// somebody has edited from those that are as they were written.
+  std::vector<std::int32_t> fingerprints(const RowsIn<FloatPoints>& points, int threads = 0) const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace limitsurf

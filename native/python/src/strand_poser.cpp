@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/strands/strand_poser.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "batches.h"
+#include "matrices.h"
+#include "strand_poser.h"
+
+namespace limitsurf::python {
+namespace {
+
+constexpr char kMakerDoc[] =
+    R"(strand_poser(face, uv, rest_roots, rest_rotations, offsets=None, *, threads=0)
+
+Strands that are bound to this surface, and are carried along when it is posed: StrandPoser.
+
+Each strand was bound at a location at which the surface had, at rest, the position r and the frame R of
+frames(). Where the surface now has P and F there, a point p of the rest shape is posed at
+P + F R^-1 (p - r): the strand moves as a rigid body with its root.
+
+Parameters
+    face, uv: (n,) Ptex faces and (n, 2), as in evaluate().
+    rest_roots: (n, 3) float32, r in the space of the strands.
+    rest_rotations: (n, 4) float32, quaternions w, x, y, z of any length, or (n, 3, 3) matrices as those
+        of frames(): R in that space. A strand with zeros is not bound: it stays where it is, and its
+        face, uv and rest root are not looked at.
+    offsets: (n + 1,) integers: strand i has the points offsets[i] to offsets[i + 1] - 1. None: each
+        strand has one point, as scattered points have.
+    threads: 0 uses all cores.
+
+Make it once and use it for all frames of an animation. It stays valid when set_positions() gives the
+surface another pose. All arrays are copied.
+
+Raises LocationError and MeshError as evaluate() does, for bound strands, and ValueError for arrays of
+other shapes, for offsets that do not begin with 0 or that decrease, and for a rest root or a rest
+rotation of a bound strand that is not finite, naming its row. Cost: O(n). Memory: 64 bytes a
+strand.)";
+
+constexpr char kClassDoc[] =
+    R"(Strands that are bound to a limit surface (LimitSurface.strand_poser()). They cannot be pickled.
+
+All arrays of points are float32, as Blender's attributes are; others are converted. `out` receives the
+result: a contiguous float32 array, which may be the input itself; without it a new array is returned. If
+a call is interrupted, some rows of `out` are written and others are not.
+
+`matrix` (4, 4) leads from the surface's space to that of the strands; its last row is (0, 0, 0, 1).
+None: they are the same. P is carried as a point; F is made of the carried du, the normal along the cross
+product of the carried du and dv, and normal x tangent. So F is a rotation whatever the matrix is, and
+where the matrix mirrors, the normal is turned over. Where du or the normal has no limit or vanishes, F
+is made of the columns of frames() in the same way.
+
+All methods raise ValueError for arrays of other shapes and for matrices that are not finite, and
+TypeError for an `out` of another kind.
+)";
+
+constexpr char kPoseDoc[] =
+    R"((points, 3) float32: the rest shape, moved to where it is on the surface as it is now posed.
+
+Error: 4e-11 times (the diagonal of the carried control mesh + the distance of the point from its root)
+times the condition number of the matrix, and the rounding to float32. Cost: an evaluation with
+derivatives=1 for each strand, and some nanoseconds for each point. The number of threads gives the same
+bits.
+)";
+
+constexpr char kUnposeDoc[] =
+    R"((points, 3) float32: the rest shape of points on the surface as it is now posed, the inverse of pose().
+
+With `only`, (n,) bool, the points of the other strands are left as they are in `out`, which must be
+given.
+)";
+
+constexpr char kPoseVectorsDoc[] =
+    R"((points, 3) float32: vectors (tangents, normals), one for each point, turned as pose() turns strands.)";
+
+constexpr char kPoseRotationsDoc[] =
+    R"((points, 4) float32: quaternions w, x, y, z, one for each point, turned as pose() turns strands.
+
+Results have the length 1 and w >= 0; where the given quaternion is 0 they are 0.
+)";
+
+constexpr char kFingerprintsDoc[] =
+    R"((n,) int32, never 0: a number for each strand that depends on the bits of its points alone.
+
+Compare it with that of the points as they were written to find the strands that somebody has edited: it
+changes with every bit, but for one case in 2^32.
+)";
+
+/// Python keeps the surface alive as long as this.
+struct BoundStrandPoser : ZeroedMemory {
+  BoundStrandPoser(const SharedSurface& of, StrandPoser made)
+      : surface_(&of), poser_(std::make_unique<StrandPoser>(std::move(made))) {}
+
+  const SharedSurface& surface() const { return *surface_; }
+  const StrandPoser& poser() const {
+    if (!poser_) {
+      throw py::value_error("this StrandPoser was never initialised");
+    }
+    return *poser_;
+  }
+
+ private:
+  const SharedSurface* surface_;
+  std::unique_ptr<StrandPoser> poser_;
+};
+
+/// The rows of an (n, Columns) array of float32.
+template <int Columns>
+using Rows = Eigen::Matrix<float, Eigen::Dynamic, Columns, Eigen::RowMajor>;
+template <int Columns>
+using RowsMap = Eigen::Map<Rows<Columns>>;
+
+template <int Columns>
+Floats rowsOf(const py::object& object, const char* name) {
+  Floats array = floats(object, name);
+  if (array.ndim() == 1 && array.size() == 0) {
+    array = Floats(std::vector<py::ssize_t>{0, Columns});  // []
+  }
+  if (array.ndim() != 2 || array.shape(1) != Columns) {
+    throw py::value_error(std::string(name) + " has shape " + shapeText(array) + "; expected (n, " +
+                          std::to_string(Columns) + ")");
+  }
+  return array;
+}
+
+template <int Columns>
+Eigen::Map<const Rows<Columns>> viewOf(const Floats& array) {
+  return {array.data(), array.shape(0), Columns};
+}
+
+/// Rest rotations: quaternions (n, 4), or matrices (n, 3, 3), which are converted. A matrix of
+/// zeros becomes the quaternion of zeros.
+FloatRotations rotationsOf(const py::object& object) {
+  const py::array any = py::array::ensure(object);
+  if (!any || any.ndim() != 3) {
+    return viewOf<4>(rowsOf<4>(object, "rest_rotations"));
+  }
+  const Doubles array = doubles(object, "rest_rotations");
+  if (array.shape(1) != 3 || array.shape(2) != 3) {
+    throw py::value_error("rest_rotations has shape " + shapeText(array) +
+                          "; expected (n, 4) or (n, 3, 3)");
+  }
+  FloatRotations result(array.shape(0), 4);
+  for (Eigen::Index row = 0; row < result.rows(); ++row) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> matrix(array.data() +
+                                                                                9 * row);
+    if (matrix.isZero(0)) {
+      result.row(row).setZero();
+    } else {
+      const Eigen::Quaterniond q{Eigen::Matrix3d(matrix)};
+      result.row(row) = Eigen::RowVector4d(q.w(), q.x(), q.y(), q.z()).cast<float>();
+    }
+  }
+  return result;
+}
+
+/// The array that receives the result: `out`, or a new one.
+template <int Columns>
+Floats resultArray(const py::object& out, py::ssize_t rows) {
+  if (out.is_none()) {
+    return Floats(std::vector<py::ssize_t>{rows, Columns});
+  }
+  if (!py::isinstance<Floats>(out)) {
+    throw py::type_error("out is no contiguous array of float32");
+  }
+  Floats array = py::reinterpret_borrow<Floats>(out);
+  if (!array.writeable()) {
+    throw py::type_error("out is read-only");
+  }
+  if (array.ndim() != 2 || array.shape(0) != rows || array.shape(1) != Columns) {
+    throw py::value_error("out has shape " + shapeText(array) + "; expected (" +
+                          std::to_string(rows) + ", " + std::to_string(Columns) + ")");
+  }
+  return array;
+}
+
+/// Calls body(input, output, matrix) without the GIL, while the surface keeps its pose.
+template <int Columns, typename Body>
+py::object posed(const BoundStrandPoser& self, const py::object& object, const char* name,
+                 const py::object& matrix, const py::object& out, int threads, const Body& body) {
+  checkThreads(threads);
+  const Floats from = rowsOf<Columns>(object, name);
+  const Eigen::Matrix4d map = matrixOrNone(matrix, "matrix");
+  Floats to = resultArray<Columns>(out, self.poser().pointCount());
+  const Eigen::Map<const Rows<Columns>> input = viewOf<Columns>(from);
+  RowsMap<Columns> output(to.mutable_data(), to.shape(0), Columns);
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(self.surface());
+    const InterruptionPoint point = interruptible();
+    body(input, output, map);
+  }
+  return std::move(to);
+}
+
+py::object pose(const BoundStrandPoser& self, const py::object& rest_points,
+                const py::object& matrix, const py::object& out, int threads) {
+  return posed<3>(self, rest_points, "rest_points", matrix, out, threads,
+                  [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
+                    self.poser().pose(from, to, map, threads);
+                  });
+}
+
+py::object unpose(const BoundStrandPoser& self, const py::object& points, const py::object& matrix,
+                  const py::object& out, const py::object& only, int threads) {
+  std::vector<char> flags;
+  if (!only.is_none()) {
+    const py::array array = py::array::ensure(only);
+    if (!array || array.dtype().kind() != 'b') {
+      throw py::type_error("only is no array of bool");
+    }
+    if (array.ndim() != 1 || array.shape(0) != static_cast<py::ssize_t>(self.poser().size())) {
+      throw py::value_error("only has shape " + shapeText(array) + "; expected (" +
+                            std::to_string(self.poser().size()) + ",)");
+    }
+    if (out.is_none()) {
+      throw py::value_error("only needs out, in which other strands are left as they are");
+    }
+    const auto bools = py::cast<py::array_t<bool, py::array::c_style>>(array);
+    flags.assign(bools.data(), bools.data() + bools.size());
+  }
+  return posed<3>(self, points, "points", matrix, out, threads,
+                  [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
+                    self.poser().unpose(from, to, map, flags, threads);
+                  });
+}
+
+py::object poseVectors(const BoundStrandPoser& self, const py::object& rest_vectors,
+                       const py::object& matrix, const py::object& out, int threads) {
+  return posed<3>(self, rest_vectors, "rest_vectors", matrix, out, threads,
+                  [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
+                    self.poser().poseVectors(from, to, map, threads);
+                  });
+}
+
+py::object poseRotations(const BoundStrandPoser& self, const py::object& rest_rotations,
+                         const py::object& matrix, const py::object& out, int threads) {
+  return posed<4>(self, rest_rotations, "rest_rotations", matrix, out, threads,
+                  [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
+                    self.poser().poseRotations(from, to, map, threads);
+                  });
+}
+
+py::object fingerprints(const BoundStrandPoser& self, const py::object& points, int threads) {
+  checkThreads(threads);
+  const Floats from = rowsOf<3>(points, "points");
+  const Eigen::Map<const Rows<3>> input = viewOf<3>(from);
+  std::vector<std::int32_t> numbers;
+  {
+    const py::gil_scoped_release release;
+    const InterruptionPoint point = interruptible();
+    numbers = self.poser().fingerprints(input, threads);
+  }
+  return arrayOf(numbers);
+}
+
+std::unique_ptr<BoundStrandPoser> makePoser(const SharedSurface& shared, const py::object& face,
+                                            const py::object& uv, const py::object& rest_roots,
+                                            const py::object& rest_rotations,
+                                            const py::object& offsets, int threads) {
+  checkThreads(threads);
+  const LimitSurface& surface = shared.surface();
+  const Locations at = locationsOf(surface.faceCount(), face, uv, FaceCheck::size);
+  const Floats roots = rowsOf<3>(rest_roots, "rest_roots");
+  const FloatRotations rotations = rotationsOf(rest_rotations);
+  std::vector<std::int64_t> starts;
+  if (!offsets.is_none()) {
+    const Integers array = integers<std::invalid_argument>(offsets, "offsets");
+    requireVector<std::invalid_argument>(array, "offsets");
+    if (array.size() == 0) {
+      throw py::value_error("offsets is empty; expected n + 1 numbers for n strands");
+    }
+    starts.assign(array.data(), array.data() + array.size());
+  }
+  const Eigen::Map<const Rows<3>> root_rows = viewOf<3>(roots);
+  const py::gil_scoped_release release;
+  const HeldPose held(shared);
+  const InterruptionPoint point = interruptible();
+  return std::make_unique<BoundStrandPoser>(
+      shared, StrandPoser(surface, at, root_rows, rotations, starts, threads));
+}
+
+}  // namespace
+
+void bindStrandPoser(py::module_& module) {
+  using namespace py::literals;
+  const auto none = py::none();
+  py::class_<BoundStrandPoser>(module, "StrandPoser", kClassDoc)
+      .def("__len__", [](const BoundStrandPoser& self) { return self.poser().size(); })
+      .def_property_readonly(
+          "bound_count", [](const BoundStrandPoser& self) { return self.poser().boundCount(); },
+          "The number of strands that are bound.")
+      .def_property_readonly(
+          "point_count", [](const BoundStrandPoser& self) { return self.poser().pointCount(); },
+          "The number of points of all strands.")
+      .def("pose", &pose, "rest_points"_a, "matrix"_a = none, "out"_a = none, py::kw_only(),
+           "threads"_a = 0, kPoseDoc)
+      .def("unpose", &unpose, "points"_a, "matrix"_a = none, "out"_a = none, py::kw_only(),
+           "only"_a = none, "threads"_a = 0, kUnposeDoc)
+      .def("pose_vectors", &poseVectors, "rest_vectors"_a, "matrix"_a = none, "out"_a = none,
+           py::kw_only(), "threads"_a = 0, kPoseVectorsDoc)
+      .def("pose_rotations", &poseRotations, "rest_rotations"_a, "matrix"_a = none, "out"_a = none,
+           py::kw_only(), "threads"_a = 0, kPoseRotationsDoc)
+      .def("fingerprints", &fingerprints, "points"_a, py::kw_only(), "threads"_a = 0,
+           kFingerprintsDoc);
+}
+
+void bindStrandPoserMaker(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  type.def("strand_poser", &makePoser, "face"_a, "uv"_a, "rest_roots"_a, "rest_rotations"_a,
+           "offsets"_a = py::none(), py::kw_only(), "threads"_a = 0, py::keep_alive<0, 1>(),
+           kMakerDoc);
+}
+
+}  // namespace limitsurf::python
