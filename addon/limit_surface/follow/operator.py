@@ -6,14 +6,21 @@ from bpy.props import BoolProperty, EnumProperty
 
 from .. import ids, native
 from ..errors import RefusalError
-from ..placing import following
-from ..placing.followers import is_placed, surface_of
+from ..placing import following, newcomers
+from ..placing.mending import mended
+from ..placing.relocation import TYPES
 from ..tasks.properties import SummaryProperty, draw_summary
+from .subjects import selected, to_bind
+
+NOTHING = (
+    "Select hair or points that stand on a limit surface, or hair or points and the mesh that they "
+    "are to follow, which must be active"
+)
 
 
 class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
     """Make the selected hair and points follow the limit surface that they stand on, however the
-    mesh deforms"""
+    mesh deforms. Those from elsewhere follow the closest points of the active mesh"""
 
     bl_idname = ids.FOLLOW
     bl_label = "Follow Limit Surface"
@@ -45,8 +52,10 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         if not native.available():
             cls.poll_message_set(native.obstacle())
-        elif not _placed(context):
-            cls.poll_message_set("Select hair or points that stand on a limit surface")
+        elif context.mode != "OBJECT":
+            cls.poll_message_set("Only available in Object Mode")
+        elif not any(ob.type in TYPES for ob in selected(context)):
+            cls.poll_message_set(NOTHING)
         else:
             return True
         return False
@@ -54,7 +63,8 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
         try:
-            return self._bind(context)
+            with mended():
+                return self._bind(context)
         except native.refusals as error:
             self.report({"ERROR"}, str(error))
         except MemoryError:
@@ -68,22 +78,32 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
         draw_summary(self.layout, self.summary)
 
     def _bind(self, context: bpy.types.Context) -> set[str]:
-        by_surface: dict[bpy.types.Object, list[bpy.types.Object]] = {}
-        for ob in _placed(context):
-            surface = surface_of(ob)
-            if surface is None:
-                raise RefusalError(f"{ob.name} has no surface: parent it to its mesh")
-            by_surface.setdefault(surface, []).append(ob)
+        by_surface = to_bind(context)
+        if not by_surface:
+            raise RefusalError(NOTHING)
         depsgraph = context.evaluated_depsgraph_get()
-        requests = [
-            following.Request(on, depsgraph, obs, self.use_proxy) for on, obs in by_surface.items()
-        ]
+        requests = []
+        for on, things in by_surface.items():
+            following.check_surface(on, depsgraph.scene)
+            for ob in things:
+                following.check_thing(ob, on)
+            relocated = newcomers.relocations(things, on, depsgraph)
+            requests.append(following.Request(on, depsgraph, things, self.use_proxy, relocated))
         lines = [str(made.write()) for made in [request.compute() for request in requests]]
         self.summary = "\n".join(lines)
         self.report({"INFO"}, "; ".join(lines))
+        self._take_over(by_surface)
         return {"FINISHED"}
 
-
-def _placed(context: bpy.types.Context) -> list[bpy.types.Object]:
-    chosen = dict.fromkeys([*context.selected_objects, context.active_object])
-    return [ob for ob in chosen if ob is not None and is_placed(ob)]
+    def _take_over(self, by_surface: dict[bpy.types.Object, list[bpy.types.Object]]) -> None:
+        """Makes the surface known to hair, and ends what else moves it."""
+        for surface, things in by_surface.items():
+            for ob in things:
+                if ob.type == "CURVES" and ob.data.surface is None:
+                    ob.data.surface = surface
+                for name in newcomers.disable_deformation_by_blender(ob):
+                    self.report(
+                        {"WARNING"},
+                        f"{ob.name}: the modifier {name} was disabled, because it would move the "
+                        "hair a second time",
+                    )

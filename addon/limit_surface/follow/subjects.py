@@ -3,7 +3,9 @@
 
 import bpy
 
-from ..placing.followers import followers_of, modifier_of
+from ..errors import RefusalError
+from ..placing.followers import followers_of, is_placed, modifier_of, strays_of, surface_of
+from ..placing.relocation import TYPES
 
 
 def selected(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -20,4 +22,34 @@ def chosen_followers(context: bpy.types.Context) -> list[bpy.types.Object]:
     active = context.active_object
     if not found and active is not None and active.type == "MESH":
         found = followers_of(active)
+    return found
+
+
+def to_bind(
+    context: bpy.types.Context,
+) -> dict[bpy.types.Object, list[bpy.types.Object]]:
+    """Returns the selected things by their surface. An active mesh that is no such thing itself is
+    the surface of all others; where nothing else is selected, all that was bound to it is taken.
+    Raises RefusalError for a thing without a surface.
+    """
+    active = context.active_object
+    things = [ob for ob in selected(context) if ob.type in TYPES]
+    if active is not None and active.type == "MESH" and not is_placed(active):
+        things.remove(active)
+        things = things or [*followers_of(active), *strays_of(active)]
+        return {active: things} if things else {}
+    surfaces = {surface_of(ob) for ob in things}
+    found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
+    for ob in things:
+        if ob in surfaces and not is_placed(ob):
+            continue
+        surface = surface_of(ob)
+        if surface is None and active != ob and active in things and active.type == "MESH":
+            surface = active
+        if surface is None:
+            raise RefusalError(
+                f"{ob.name} has no surface: select the mesh that it stands on as well, and make it "
+                "the active object"
+            )
+        found.setdefault(surface, []).append(ob)
     return found

@@ -27,7 +27,12 @@ class Kind(NamedTuple):
         return f"{self.name} {self.version}"
 
     def matches(self, group: bpy.types.NodeTree | None) -> bool:
-        return group is not None and group.get(ids.GROUP_MARK) == self.mark
+        """Tells whether it is a group of this kind that has not lost a group within it."""
+        return (
+            group is not None
+            and group.get(ids.GROUP_MARK) == self.mark
+            and all(n.node_tree for n in group.nodes if n.bl_idname == "GeometryNodeGroup")
+        )
 
     def group(self) -> bpy.types.NodeTree:
         """Returns the file's own group of this kind, which is made if there is none."""
@@ -50,6 +55,17 @@ def modifiers(ob: bpy.types.Object, name: str) -> Iterator[bpy.types.NodesModifi
     for modifier in ob.modifiers:
         if modifier.type == "NODES" and is_of(modifier.node_group, name):
             yield modifier
+
+
+def without_group(ob: bpy.types.Object, name: str) -> Iterator[bpy.types.NodesModifier]:
+    """Yields the object's modifiers that have lost one of our groups of that name. Their inputs are
+    still there, and fit a new group.
+    """
+    for modifier in ob.modifiers:
+        if modifier.type == "NODES" and modifier.node_group is None:
+            own, dot, number = modifier.name.rpartition(".")
+            if name in (modifier.name, own if dot and number.isdigit() else ""):
+                yield modifier
 
 
 def add_modifier(

@@ -56,16 +56,34 @@ def followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     return found
 
 
+def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns the file's own objects that were bound to a surface and have lost their modifier."""
+    return [
+        ob
+        for ob in bpy.data.objects
+        if ob.library is None
+        and is_placed(ob)
+        and ids.TILE in ob.data.attributes
+        and modifier_of(ob) is None
+        and surface_of(ob) == surface
+    ]
+
+
 def ensure_modifier(
     ob: bpy.types.Object, surface: bpy.types.Object, table: bpy.types.Object
 ) -> None:
     """Gives the object the modifier by which it follows the surface."""
-    modifier = modifier_of(ob)
+    kind, modifier = _kind(ob), modifier_of(ob)
     if modifier is None:
-        kind = FOLLOW_HAIR if ob.type == "CURVES" else FOLLOW_POINTS
-        if ids.ROTATION in ob.data.attributes:
-            kind = FOLLOW_ORIENTED
         # Other modifiers shape what follows, or put instances on it.
         modifier = groups.add_modifier(ob, kind, place=0)
+    elif not kind.matches(modifier.node_group):
+        modifier.node_group = kind.group()
     groups.set_input(modifier, SURFACE, surface)
     groups.set_input(modifier, TILES, table)
+
+
+def _kind(ob: bpy.types.Object) -> groups.Kind:
+    if ob.type == "CURVES":
+        return FOLLOW_HAIR
+    return FOLLOW_ORIENTED if ids.ROTATION in ob.data.attributes else FOLLOW_POINTS

@@ -208,7 +208,8 @@ def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:
 
 def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     check_editable(ob)
-    theirs = surface_of(ob)
+    # a mesh that stores no locations may have any mesh as its parent
+    theirs = surface_of(ob) if is_placed(ob) or ob.type == "CURVES" else None
     if theirs not in (None, surface):
         raise RefusalError(f"{ob.name} belongs to {theirs.name}, not to {surface.name}")
     carrier: bpy.types.Object | None = surface

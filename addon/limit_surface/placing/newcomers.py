@@ -6,28 +6,50 @@ their distance from it. Nothing moves.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
 
 from .. import ids
+from ..reading import cage
+from ..tasks.refused_faces import check_some_left
 from .posed_surface import PosedSurface
 from .relocation import Elements, Relocation
 from .rotations import quaternions
 
+_DEFORM_NODE = "GeometryNodeDeformCurvesOnSurface"
+
+
+def relocations(
+    things: Sequence[bpy.types.Object],
+    surface: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+) -> list[Relocation]:
+    """Returns the places of those strands and points that have none yet."""
+    waiting: dict[bpy.types.ID, Elements] = {}
+    for ob in things:
+        elements = Elements(ob)
+        if not elements.has_place.all():
+            waiting.setdefault(ob.data, elements)
+    if not waiting:
+        return []
+    posed = PosedSurface(cage.read(surface, depsgraph))
+    check_some_left(posed.in_world, surface.name)
+    return [
+        bound_at_closest(elements, posed, np.flatnonzero(~elements.has_place))
+        for elements in waiting.values()
+    ]
+
 
 def bound_at_closest(
-    elements: Elements,
-    posed: PosedSurface,
-    rows: np.ndarray,
-    max_distance: float = math.inf,
+    elements: Elements, posed: PosedSurface, rows: np.ndarray, max_distance: float = math.inf
 ) -> Relocation:
     """Binds some elements where they are. Those beyond the distance (world units) are lost."""
     hits = posed.in_world.closest(elements.roots()[rows], max_distance)
     found = hits.face >= 0
-    rows, lost = rows[found], rows[~found]
-    relocation = Relocation(elements, lost=lost, distances=np.zeros(len(rows)))
-    put_places(relocation, posed, rows, hits.face[found], hits.uv[found])
+    relocation = Relocation(elements, lost=rows[~found], distances=np.zeros(int(found.sum())))
+    put_places(relocation, posed, rows[found], hits.face[found], hits.uv[found])
     return relocation
 
 
@@ -48,8 +70,23 @@ def put_places(
     return places.frame
 
 
-def newcomers(ob: bpy.types.Object, posed: PosedSurface) -> Relocation | None:
-    """Returns the places of those strands or points that have none; None if all have one."""
-    elements = Elements(ob)
-    rows = np.flatnonzero(~elements.has_place)
-    return bound_at_closest(elements, posed, rows) if len(rows) else None
+def disable_deformation_by_blender(ob: bpy.types.Object) -> list[str]:
+    """Disables the modifiers by which Blender itself makes hair follow its surface, because hair
+    would be moved twice, and returns their names.
+    """
+    names = []
+    for modifier in ob.modifiers:
+        is_enabled = modifier.show_viewport or modifier.show_render
+        if is_enabled and modifier.type == "NODES" and _deforms(modifier.node_group):
+            modifier.show_viewport = modifier.show_render = False
+            names.append(modifier.name)
+    return names
+
+
+def _deforms(group: bpy.types.NodeTree | None) -> bool:
+    nodes = group.nodes if group else ()
+    return any(
+        node.bl_idname == _DEFORM_NODE
+        or (node.bl_idname == "GeometryNodeGroup" and _deforms(node.node_tree))
+        for node in nodes
+    )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import bpy
@@ -14,6 +15,7 @@ from ..reading import attributes
 from .roots import Locations
 
 NOWHERE = -1  # the face of elements that have no place on the surface
+_UNTURNED = (1, 0, 0, 0)  # the default rotation
 #: The attributes of each strand or point
 ROOT_KINDS = {
     ids.FACE: "INT",
@@ -25,8 +27,8 @@ ROOT_KINDS = {
 
 @dataclass(frozen=True)
 class Places:
-    """The locations of the elements that have one. Curves that were added later have no rotation
-    at rest, and snapped hair that is bound nowhere has the face NOWHERE.
+    """The locations of the elements that have one. All attributes of curves that were added later
+    have Blender's default values, and snapped hair that is bound nowhere has the face NOWHERE.
     """
 
     count: int
@@ -36,11 +38,21 @@ class Places:
 
     @classmethod
     def read(cls, data: bpy.types.ID) -> Places:
-        face = attributes.read(data, ids.FACE)
-        turned = attributes.read(data, ids.REST_ROTATION).any(axis=1)
-        rows = np.flatnonzero((face >= 0) & turned)
-        uv = attributes.read(data, ids.UV)[rows].astype(np.float64)
-        return cls(len(face), rows, face[rows], uv)
+        return cls.among({name: attributes.read(data, name) for name in ROOT_KINDS})
+
+    @classmethod
+    def among(cls, stored: Mapping[str, np.ndarray]) -> Places:
+        """Returns those of elements for which these attributes are stored."""
+        face, uv = stored[ids.FACE], stored[ids.UV]
+        rotation = stored[ids.REST_ROTATION]
+        is_default = (
+            (face == 0)
+            & ~uv.any(axis=1)
+            & ~stored[ids.REST_ROOT].any(axis=1)
+            & (~rotation.any(axis=1) | (rotation == _UNTURNED).all(axis=1))
+        )
+        rows = np.flatnonzero((face >= 0) & ~is_default)
+        return cls(len(face), rows, face[rows], uv[rows].astype(np.float64))
 
     @classmethod
     def of(cls, new: Locations) -> Places:

@@ -77,10 +77,7 @@ class Relocation:
     @property
     def places(self) -> Places:
         """The locations as they will be."""
-        face, turned = self._value(ids.FACE), self._value(ids.REST_ROTATION).any(axis=1)
-        rows = np.flatnonzero((face >= 0) & turned)
-        uv = self._value(ids.UV)[rows].astype(np.float64)
-        return Places(len(face), rows, face[rows], uv)
+        return Places.among({name: self._value(name) for name in ROOT_KINDS})
 
     def put(self, name: str, rows: np.ndarray, values: np.ndarray | int) -> None:
         """Changes a stored attribute of some elements."""
