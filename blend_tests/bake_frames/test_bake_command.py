@@ -120,6 +120,16 @@ def test_hidden_in_the_viewport_is_baked(waves, tmp_path):
     )
 
 
+@pytest.mark.parametrize("form", FORMATS)
+def test_without_a_current_window(waves, tmp_path, form):
+    """On Blender's command line none of the file's windows is the current one."""
+    with bpy.context.temp_override(window=None):
+        assert bpy.context.window is None
+        assert not bpy.ops.wm.usd_export.poll()
+        assert bake(tmp_path, "Flat", "Limit Hair", options=("--format", form)) == 0
+    assert len(contents(tmp_path)) == 7
+
+
 def test_names_of_files(waves, tmp_path):
     waves.name = "../Face: left"
     assert (

@@ -89,10 +89,10 @@ def test_a_crease_that_came_later(bound, tmp_path, capfd):
 
 
 def test_tables_that_have_been_deleted(bound, tmp_path, capfd):
-    bpy.data.objects.remove(bpy.data.objects["Limit Tiles"])
+    bpy.data.objects.remove(bpy.data.objects["Limit Tiles of Cross"])
     check_refused(tmp_path, capfd, "follows Cross by tables that have been deleted")
 
 
 def test_points_of_the_tables_that_have_been_deleted(bound, tmp_path, capfd):
-    bpy.data.objects.remove(bpy.data.objects["Limit Points"])
+    bpy.data.objects.remove(bpy.data.objects["Limit Points of Cross"])
     check_refused(tmp_path, capfd, "follows Cross by tables that have been deleted")

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import bpy
@@ -27,6 +28,11 @@ def main(argv: Sequence[str]) -> int:
 
     The scene is left at the frame at which it was. Nothing is saved.
     """
+    with _window():
+        return _run(argv)
+
+
+def _run(argv: Sequence[str]) -> int:
     try:
         wanted = arguments.parse(argv)
     except SystemExit as end:  # argparse has printed help, or what is wrong
@@ -45,6 +51,22 @@ def main(argv: Sequence[str]) -> int:
     except native.refusals as error:
         return _refuse(error, BAD_ARGUMENTS)
     return FRAMES_FAILED if bake.run(say) else DONE
+
+
+@contextmanager
+def _window() -> Iterator[None]:
+    """Makes the context have a window, which exporters ask for. On Blender's command line there are
+    the windows of the file, but none is the current one.
+    """
+    context = bpy.context
+    windows = context.window_manager.windows
+    if context.window or not windows:
+        yield
+        return
+    with context.temp_override(
+        window=windows[0], scene=context.scene, view_layer=context.view_layer
+    ):
+        yield
 
 
 def _refuse(error: Exception, code: int) -> int:
