@@ -3,6 +3,7 @@
 
 import bpy
 
+from .. import ids
 from ..errors import RefusalError
 from ..placing.followers import followers_of, is_placed, modifier_of, strays_of, surface_of
 from ..placing.relocation import TYPES
@@ -53,3 +54,18 @@ def to_bind(
             )
         found.setdefault(surface, []).append(ob)
     return found
+
+
+def surfaces_of_selection(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Returns the surfaces among the selected objects that something follows, and those of the
+    selected things that were bound.
+    """
+    found: dict[bpy.types.Object, None] = {}
+    for ob in selected(context):
+        bound = modifier_of(ob) or (is_placed(ob) and ids.TILE in ob.data.attributes)
+        surface = surface_of(ob) if bound else None
+        if surface is None and ob.type == "MESH" and (followers_of(ob) or strays_of(ob)):
+            surface = ob
+        if surface is not None:
+            found[surface] = None
+    return list(found)

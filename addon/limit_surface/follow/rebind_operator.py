@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_rebind."""
+
+import math
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty
+
+from .. import ids, native
+from ..errors import RefusalError
+from ..placing.mending import mended
+from ..placing.rebinding import Rebinding
+from ..tasks.properties import SummaryProperty, draw_summary
+from .subjects import surfaces_of_selection
+
+_NOTHING = "Select a surface or what follows it"
+
+
+class OBJECT_OT_limit_rebind(SummaryProperty, bpy.types.Operator):
+    """Bind everything that follows the selected surface again, after its topology, creases or rules
+    have changed"""
+
+    bl_idname = ids.REBIND
+    bl_label = "Rebind to Limit Surface"
+    bl_options = {"REGISTER", "UNDO"}
+
+    method: EnumProperty(
+        name="Method",
+        description="How the places on the changed surface are found",
+        items=(
+            (
+                "CLOSEST",
+                "Closest Point",
+                "Take the point of the surface that is closest to where the root was at rest",
+                0,
+            ),
+            ("UV", "UV", "Take the point with the UV that is stored with the root", 1),
+            (
+                "FACE",
+                "Face",
+                "Keep the face and the place in it. Use it where creases, rules or positions have "
+                "changed, but not the faces",
+                2,
+            ),
+        ),
+    )
+    distance: FloatProperty(
+        name="Distance",
+        description="Largest distance of the closest point, in world units. Roots that are farther "
+        "from the surface are not bound. 0 means any distance",
+        min=0.0,
+        default=0.0,
+        subtype="DISTANCE",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not native.available():
+            cls.poll_message_set(native.obstacle())
+        elif context.mode != "OBJECT":
+            cls.poll_message_set("Only available in Object Mode")
+        elif not context.selected_objects and context.active_object is None:
+            cls.poll_message_set(_NOTHING)
+        else:
+            return True
+        return False
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
+        try:
+            with mended():
+                return self._rebind(context)
+        except native.refusals as error:
+            self.report({"ERROR"}, str(error))
+        except MemoryError:
+            self.report({"ERROR"}, "There is not enough memory for the tables")
+        return {"CANCELLED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "method")
+        if self.method == "CLOSEST":
+            layout.prop(self, "distance")
+        draw_summary(layout, self.summary)
+
+    def _rebind(self, context: bpy.types.Context) -> set[str]:
+        surfaces = surfaces_of_selection(context)
+        if not surfaces:
+            raise RefusalError(_NOTHING)
+        depsgraph = context.evaluated_depsgraph_get()
+        limit = self.distance or math.inf
+        rebindings = [Rebinding(on, depsgraph, self.method, limit) for on in surfaces]
+        done = [rebinding.write() for rebinding in rebindings]
+        for rebound in done:
+            if rebound.warning:
+                self.report({"WARNING"}, rebound.warning)
+        self.summary = "\n".join(str(rebound) for rebound in done)
+        self.report({"INFO"}, self.summary.replace("\n", "; "))
+        return {"FINISHED"}

@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Binds things anew to a surface whose topology, creases or rules have changed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..reading import attributes, cage, uv_map
+from ..tasks.refused_faces import check_some_left
+from . import following
+from .followers import followers_of, strays_of
+from .newcomers import bound_at_closest, put_places
+from .places import NOWHERE
+from .posed_surface import PosedSurface, transformed
+from .relocation import Elements, Relocation
+from .rotations import quaternions
+from .turns import matrices, shortest
+
+if TYPE_CHECKING:
+    import limitsurf
+
+Method = Literal["CLOSEST", "UV", "FACE"]
+
+# What is turned with a root
+_POINTS = (ids.POSITION, ids.HANDLE_LEFT, ids.HANDLE_RIGHT)
+_DIRECTIONS = (ids.NORMAL, ids.TANGENT)
+
+
+class Found(NamedTuple):
+    """Where roots are on the surface as it is now; the face is NOWHERE where they are not."""
+
+    face: np.ndarray  # (n,)
+    uv: np.ndarray  # (n, 2)
+
+
+@dataclass(frozen=True)
+class Rebound:
+    """What a report says."""
+
+    surface: str
+    names: list[str]
+    distances: np.ndarray  # by which roots moved, in world units
+    lost: int
+    reason: str  # why the lost ones could not be kept
+
+    def __str__(self) -> str:
+        text = f"{len(self.distances):,} roots on {self.surface} are bound again"
+        if len(self.distances):
+            median, largest = np.median(self.distances), self.distances.max()
+            text += f", they moved by {median:.4g} (median), {largest:.4g} at most"
+        return text
+
+    @property
+    def warning(self) -> str:
+        """Names what could not be kept; empty if all was."""
+        if not self.lost:
+            return ""
+        return (
+            f"{self.lost:,} roots on {self.surface} could not be kept, because {self.reason}: they "
+            "stay where they are, and are selected"
+        )
+
+
+class Rebinding:
+    """Binds everything that follows a surface anew. Raises RefusalError where that is impossible;
+    nothing has changed then.
+    """
+
+    def __init__(
+        self,
+        surface: bpy.types.Object,
+        depsgraph: bpy.types.Depsgraph,
+        method: Method,
+        max_distance: float = math.inf,
+    ) -> None:
+        following.check_surface(surface, depsgraph.scene)
+        things = [*followers_of(surface), *strays_of(surface)]
+        for ob in things:
+            following.check_thing(ob, surface)
+        blocks = {ob.data: ob for ob in reversed(things)}
+        with cage.opened(surface, depsgraph) as (found, mesh):
+            posed = PosedSurface(found)
+            check_some_left(posed.in_world, surface.name)
+            maps = _UvMaps(posed, mesh, surface)
+            find: _Finder
+            if method == "CLOSEST":
+                find = _Closest(posed, maps, max_distance)
+            elif method == "UV":
+                find = _ByUv(maps)
+            else:
+                find = _ByFace(posed)
+            self._relocations = [_relocation(ob, posed, find) for ob in blocks.values()]
+        self._surface, self._names = surface.name, [ob.name for ob in things]
+        self._reason = find.reason
+        request = following.Request(surface, depsgraph, things, relocated=self._relocations)
+        self._bindings = request.compute()
+
+    def write(self) -> Rebound:
+        """Changes the file."""
+        self._bindings.write()
+        for relocation in self._relocations:
+            if len(relocation.lost):
+                _select(relocation)
+        return Rebound(
+            self._surface,
+            self._names,
+            np.concatenate([relocation.distances for relocation in self._relocations]),
+            sum(len(relocation.lost) for relocation in self._relocations),
+            self._reason,
+        )
+
+
+class _Finder:
+    """Finds the new locations of elements. `keeps_frame` means that the faces are those of before,
+    so that what is stored about the places at rest holds.
+    """
+
+    reason = ""
+    keeps_frame = False
+
+    def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
+        raise NotImplementedError
+
+
+class _UvMaps:
+    """The surface's UV maps, on which hair on a surface stores where it stands."""
+
+    def __init__(
+        self, posed: PosedSurface, mesh: bpy.types.Mesh, surface: bpy.types.Object
+    ) -> None:
+        self._posed, self._mesh, self._surface = posed, mesh, surface
+
+    def of(self, data: bpy.types.ID) -> limitsurf.SurfaceData:
+        """Returns the map that the hair names, or else the active one."""
+        active = self._surface.data.uv_layers.active
+        name = getattr(data, "surface_uv_map", "") or (active.name if active else "")
+        if not name:
+            raise RefusalError(f"{self._surface.name} has no UV map: choose another method")
+        obstacle = uv_map.obstacle(self._mesh, name)
+        if obstacle:
+            raise RefusalError(f"{self._surface.name}: {obstacle}")
+        found = uv_map.read(self._mesh, name)
+        return self._posed.in_object.face_varying(
+            found.values, found.indices, self._posed.cage.shown_uv_interpolation
+        )
+
+
+class _Closest(_Finder):
+    def __init__(self, posed: PosedSurface, maps: _UvMaps, max_distance: float) -> None:
+        self.posed, self.maps, self.max_distance = posed, maps, max_distance
+        self.reason = f"the surface is farther than {max_distance:.4g} from them"
+
+    def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
+        hits = self.posed.in_world.closest(elements.roots()[rows], self.max_distance)
+        return Found(hits.face, hits.uv)
+
+
+class _ByUv(_Finder):
+    """Takes the UV that Blender stores with hair on a surface."""
+
+    reason = "the UV map does not cover their UVs"
+
+    def __init__(self, maps: _UvMaps) -> None:
+        self._maps = maps
+
+    def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
+        if not _stores_uv(elements):
+            raise RefusalError(
+                f"{elements.ob.name} stores no UVs ({ids.SURFACE_UV}): choose another method"
+            )
+        uv = attributes.read(elements.data, ids.SURFACE_UV)[rows].astype(np.float64)
+        at = self._maps.of(elements.data).locate(uv)
+        return Found(at.face, at.uv)
+
+
+class _ByFace(_Finder):
+    reason = "their faces do not exist any more or have no limit surface"
+    keeps_frame = True
+
+    def __init__(self, posed: PosedSurface) -> None:
+        surface = posed.in_object
+        self._exists = np.ones(surface.face_count, bool)
+        self._exists[np.isin(surface.base_face, list(surface.refused))] = False
+
+    def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
+        face = elements.read(ids.FACE)[rows]
+        there = face < len(self._exists)
+        there[there] = self._exists[face[there]]
+        return Found(np.where(there, face, NOWHERE), elements.read(ids.UV)[rows])
+
+
+def _relocation(ob: bpy.types.Object, posed: PosedSurface, find: _Finder) -> Relocation:
+    elements = Elements(ob)
+    rows = np.flatnonzero(elements.has_place)
+    found = find(elements, rows)
+    kept = found.face != NOWHERE
+    relocation = Relocation(elements, lost=rows[~kept])
+    if find.keeps_frame:
+        face, uv = found.face[kept], found.uv[kept].astype(np.float64)
+        now = posed.places(face, uv, elements.matrix).position
+    else:
+        now = _moved(relocation, posed, rows[kept], found.face[kept], found.uv[kept])
+        if isinstance(find, _Closest):
+            _bind_others(relocation, posed, find.max_distance)
+            _store_uv(relocation, find.maps)
+    relocation.distances = np.linalg.norm(
+        transformed(elements.matrix, now) - elements.roots()[rows[kept]], axis=1
+    )
+    relocation.put(ids.FACE, relocation.lost, NOWHERE)
+    return relocation
+
+
+def _moved(
+    relocation: Relocation,
+    posed: PosedSurface,
+    rows: np.ndarray,
+    face: np.ndarray,
+    uv: np.ndarray,
+) -> np.ndarray:
+    """Moves elements with their roots, and turns them by the smallest angle that turns the normal
+    of before into that of now: on other faces u and v run elsewhere. Returns the new roots.
+    """
+    elements = relocation.elements
+    if getattr(elements.data, "shape_keys", None) and len(rows):
+        raise RefusalError(
+            f"{elements.ob.name} has shape keys, which would stay behind: choose the method Face, "
+            "or apply them"
+        )
+    before = elements.read(ids.REST_ROOT).astype(np.float64)
+    old = matrices(elements.read(ids.REST_ROTATION)[rows].astype(np.float64))
+    frame = put_places(relocation, posed, rows, face, uv)
+    after = before.copy()
+    after[rows] = relocation.values[ids.REST_ROOT][rows]
+    turn = np.tile(np.eye(3), (elements.count, 1, 1))
+    turn[rows] = shortest(old[:, :, 2], frame[:, :, 2])
+    of_point = np.repeat(np.arange(elements.count), elements.sizes)
+    moving = np.isin(of_point, rows)
+    of_point = of_point[moving]
+    for name in _POINTS:
+        if name in elements.data.attributes:
+            points = attributes.read(elements.data, name).astype(np.float64)
+            arm = np.einsum("nij,nj->ni", turn[of_point], points[moving] - before[of_point])
+            points[moving] = after[of_point] + arm
+            relocation.values[name] = points
+    if elements.domain == "POINT":
+        _turn_attributes(relocation, rows, turn[rows])
+    return after[rows]
+
+
+def _turn_attributes(relocation: Relocation, rows: np.ndarray, turn: np.ndarray) -> None:
+    """Turns what points store about their orientation."""
+    data = relocation.data
+    for name in _DIRECTIONS:
+        if name in data.attributes:
+            vectors = attributes.read(data, name)
+            vectors[rows] = np.einsum("nij,nj->ni", turn, vectors[rows].astype(np.float64))
+            relocation.values[name] = vectors
+    if ids.ROTATION in data.attributes:
+        rotation = attributes.read(data, ids.ROTATION)
+        rotation[rows] = quaternions(turn @ matrices(rotation[rows].astype(np.float64)))
+        relocation.values[ids.ROTATION] = rotation
+
+
+def _bind_others(relocation: Relocation, posed: PosedSurface, max_distance: float) -> None:
+    """Binds elements that had no place where they are."""
+    elements = relocation.elements
+    rows = np.flatnonzero(~elements.has_place)
+    if not len(rows):
+        return
+    others = bound_at_closest(elements, posed, rows, max_distance)
+    found = np.setdiff1d(rows, others.lost)
+    for name, values in others.values.items():
+        relocation.put(name, found, values[found])
+    relocation.lost = np.concatenate([relocation.lost, others.lost])
+
+
+def _stores_uv(elements: Elements) -> bool:
+    stored = elements.data.attributes.get(ids.SURFACE_UV)
+    return bool(stored) and (stored.data_type, stored.domain) == ("FLOAT2", elements.domain)
+
+
+def _store_uv(relocation: Relocation, maps: _UvMaps) -> None:
+    """Changes stored UVs to those of the new places."""
+    if not _stores_uv(relocation.elements):
+        return
+    try:
+        on_surface = maps.of(relocation.data)
+    except RefusalError:
+        return  # the map exists no more
+    places = relocation.places
+    uv = attributes.read(relocation.data, ids.SURFACE_UV)
+    uv[places.rows] = on_surface.evaluate(places.face, places.uv).value
+    relocation.values[ids.SURFACE_UV] = uv
+
+
+def _select(relocation: Relocation) -> None:
+    """Selects the elements that have lost their place, and nothing else of their data."""
+    data, elements = relocation.data, relocation.elements
+    chosen = np.zeros(elements.count, bool)
+    chosen[relocation.lost] = True
+    if isinstance(data, bpy.types.Mesh):
+        for collection in (data.edges, data.polygons):
+            collection.foreach_set("select", np.zeros(len(collection), bool))
+        data.vertices.foreach_set("select", chosen)
+        return
+    stored = data.attributes.get(ids.SELECTION)
+    if stored and (stored.data_type != "BOOLEAN" or stored.domain != elements.domain):
+        data.attributes.remove(stored)
+    attributes.write(data, ids.SELECTION, "BOOLEAN", elements.domain, chosen)
+    if elements.domain == "CURVE":
+        data.selection_domain = "CURVE"
