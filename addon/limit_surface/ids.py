@@ -16,6 +16,7 @@ LIMIT_MESH = "object.limit_mesh"
 FOLLOW = "object.limit_follow"
 UNBIND = "object.limit_unbind"
 REBIND = "object.limit_rebind"
+ATTACH = "object.limit_attach"
 
 COMMAND = "limit_surface"  # blender --command limit_surface
 
@@ -63,6 +64,7 @@ CUSTOM_NORMAL = "custom_normal"
 SHARP_EDGE = "sharp_edge"
 
 # Attributes of curves that Blender defines
+CURVE_TYPE = "curve_type"
 HANDLE_LEFT = "handle_left"
 HANDLE_RIGHT = "handle_right"
 SELECTION = ".selection"  # where it is missing, all is selected
@@ -84,10 +86,15 @@ CAPTURE_GROUP = "Limit Capture"
 TILES_GROUP = "Limit Tiles"
 SAMPLE_GROUP = "Sample Limit Surface"
 FOLLOW_HAIR_GROUP = "Limit Hair"
+FOLLOW_BEZIER_GROUP = "Limit Bezier Hair"
 FOLLOW_POINTS_GROUP = "Limit Follow"
 FOLLOW_ORIENTED_GROUP = "Limit Follow Oriented"
+FOLLOW_NORMALS_GROUP = "Limit Follow Normals"
+FOLLOW_CURVE_GROUP = "Limit Curve"
 POINTS_TABLE = "Limit Points"
 TILES_TABLE = "Limit Tiles"
+CURVE_TABLE = "Limit Curve"
+CARRIER = "Limit Carrier"
 PROXY_OBJECT = "Limit Proxy"
 CAGE_POSITION = "cage_position"
 CAGE_COUNT = "cage_count"

@@ -50,13 +50,14 @@ def on_surface(
     subsurf = next((m for m in ob.modifiers if m.type == "SUBSURF"), None)
     boundary = subsurf.boundary_smooth if subsurf else "ALL"
     surface = scenes.surface_without_addon(ob, boundary)
-    at = surface.evaluate(*scenes.locations(data), derivatives=1)
+    face, uv = scenes.locations(data)
+    position, local = surface.evaluate(face, uv).position, surface.frames(face, uv)
     matrix = np.eye(4) if matrix is None else matrix
     linear = matrix[:3, :3]
-    tangent = _unit(at.du @ linear.T)
-    normal = _unit(at.normal @ np.linalg.inv(linear))
+    tangent = _unit(local[:, :, 0] @ linear.T)
+    normal = _unit(local[:, :, 2] @ np.linalg.inv(linear))
     frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=2)
-    return Frames(scenes.transformed(matrix, at.position), frame)
+    return Frames(scenes.transformed(matrix, position), frame)
 
 
 def rest(data: bpy.types.ID) -> Frames:

@@ -6,21 +6,21 @@ from bpy.props import BoolProperty, EnumProperty
 
 from .. import ids, native
 from ..errors import RefusalError
-from ..placing import following, newcomers
+from ..placing import curve_points, following, newcomers
 from ..placing.mending import mended
-from ..placing.relocation import TYPES
 from ..tasks.properties import SummaryProperty, draw_summary
-from .subjects import selected, to_bind
+from .subjects import BINDABLE, selected, to_bind
 
 NOTHING = (
-    "Select hair or points that stand on a limit surface, or hair or points and the mesh that they "
-    "are to follow, which must be active"
+    "Select hair or points that stand on a limit surface, or hair, points or curves and the mesh "
+    "that they are to follow, which must be active"
 )
 
 
 class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
-    """Make the selected hair and points follow the limit surface that they stand on, however the
-    mesh deforms. Those from elsewhere follow the closest points of the active mesh"""
+    """Make the selected hair, points and meshes follow the limit surface that they stand on,
+    however the mesh deforms. Curves, and hair and points from elsewhere, follow the closest points
+    of the active mesh"""
 
     bl_idname = ids.FOLLOW
     bl_label = "Follow Limit Surface"
@@ -54,7 +54,7 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
             cls.poll_message_set(native.obstacle())
         elif context.mode != "OBJECT":
             cls.poll_message_set("Only available in Object Mode")
-        elif not any(ob.type in TYPES for ob in selected(context)):
+        elif not any(ob.type in BINDABLE for ob in selected(context)):
             cls.poll_message_set(NOTHING)
         else:
             return True
@@ -83,13 +83,25 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
             raise RefusalError(NOTHING)
         depsgraph = context.evaluated_depsgraph_get()
         requests = []
-        for on, things in by_surface.items():
+        for on, obs in by_surface.items():
             following.check_surface(on, depsgraph.scene)
+            things, curves = (
+                [ob for ob in obs if (ob.type == "CURVE") == is_curve] for is_curve in (False, True)
+            )
             for ob in things:
                 following.check_thing(ob, on)
+            for ob in curves:
+                curve_points.check(ob, on)
             relocated = newcomers.relocations(things, on, depsgraph)
-            requests.append(following.Request(on, depsgraph, things, self.use_proxy, relocated))
-        lines = [str(made.write()) for made in [request.compute() for request in requests]]
+            request = following.Request(on, depsgraph, things, self.use_proxy, relocated)
+            requests.append((request, things, on, curves))
+        made = [request.compute() for request, things, _on, _curves in requests if things]
+        outcomes = [bindings.write() for bindings in made]
+        for _request, _things, on, curves in requests:
+            for ob in curves:
+                depsgraph = context.evaluated_depsgraph_get()
+                outcomes.append(curve_points.bind(ob, on, depsgraph, self.use_proxy))
+        lines = [str(outcome) for outcome in outcomes]
         self.summary = "\n".join(lines)
         self.report({"INFO"}, "; ".join(lines))
         self._take_over(by_surface)

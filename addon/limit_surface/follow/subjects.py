@@ -8,6 +8,8 @@ from ..errors import RefusalError
 from ..placing.followers import followers_of, is_placed, modifier_of, strays_of, surface_of
 from ..placing.relocation import TYPES
 
+BINDABLE = (*TYPES, "CURVE")
+
 
 def selected(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Returns the selected objects and the active one, each once."""
@@ -34,7 +36,7 @@ def to_bind(
     Raises RefusalError for a thing without a surface.
     """
     active = context.active_object
-    things = [ob for ob in selected(context) if ob.type in TYPES]
+    things = [ob for ob in selected(context) if ob.type in BINDABLE]
     if active is not None and active.type == "MESH" and not is_placed(active):
         things.remove(active)
         things = things or [*followers_of(active), *strays_of(active)]

@@ -13,9 +13,6 @@ from . import cage_attributes
 from .tessellation import Made
 
 _SAME = 1e-4  # components of normals that differ by less count as equal
-# From this version on normals can be stored as vectors; before, they are stored as angles of 16
-# bits.
-_FREE_NORMALS = bpy.app.version >= (4, 5)
 
 
 def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bpy.types.Mesh:
@@ -45,12 +42,6 @@ def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) 
         bpy.data.meshes.remove(mesh)
         raise
     return mesh
-
-
-def store_locations(mesh: bpy.types.Mesh, made: Made) -> None:
-    at = made.tessellation.locations
-    attributes.write(mesh, ids.FACE, "INT", "POINT", at.face)
-    attributes.write(mesh, ids.UV, "FLOAT2", "POINT", at.uv)
 
 
 def copy_object_materials(source: bpy.types.Object, target: bpy.types.Object) -> None:
@@ -88,11 +79,7 @@ def _set_normals(mesh: bpy.types.Mesh, normals: np.ndarray, face_sizes: np.ndarr
     if ids.SHARP_EDGE in mesh.attributes:  # sharp edges of the cage
         part |= attributes.read(mesh, ids.SHARP_EDGE)
     attributes.write(mesh, ids.SHARP_EDGE, "BOOLEAN", "EDGE", part)
-    if _FREE_NORMALS:
-        attributes.write(mesh, ids.CUSTOM_NORMAL, "FLOAT_VECTOR", "CORNER", normals)
-        mesh.update()
-    else:
-        mesh.normals_split_custom_set(normals)
+    new_objects.set_corner_normals(mesh, normals)
 
 
 def _parting(

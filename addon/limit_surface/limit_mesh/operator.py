@@ -4,28 +4,38 @@
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import ids
 from ..errors import RefusalError
-from ..placing import new_objects
+from ..placing import following, new_objects
+from ..placing.binding import Binding
+from ..placing.follow_properties import FollowProperties
+from ..placing.roots import Locations, off_vertices
 from ..reading import cage
-from ..tasks.job import Job, Progress
+from ..tasks.job import Job, Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from ..tasks.properties import LargeCountProperty, draw_summary
 from ..tasks.refused_faces import left_out, reasons
 from ..tasks.watched_operator import WatchedOperator
 from . import blender_mesh, levels, tessellation
 
+_MADE = 0.9  # the part of the progress at which the polygons are made
+
 
 @dataclass(frozen=True)
 class _Result:
     surface: ObjectKey
     made: tessellation.Made
+    binding: Binding | None  # None: no locations are stored
+    bindings: following.Bindings | None  # None: the mesh does not follow the surface
     notes: list[str]
 
 
-class OBJECT_OT_limit_mesh(WatchedOperator, LargeCountProperty, bpy.types.Operator):
+class OBJECT_OT_limit_mesh(
+    WatchedOperator, LargeCountProperty, FollowProperties, bpy.types.Operator
+):
     """Make a mesh whose vertices and normals are exactly those of the active mesh's limit surface,
     for renderers that need polygons"""
 
@@ -112,8 +122,9 @@ class OBJECT_OT_limit_mesh(WatchedOperator, LargeCountProperty, bpy.types.Operat
     )
     store_locations: BoolProperty(
         name="Store Locations",
-        description="Store the location of each vertex on the surface, as attributes limit_face "
-        "and limit_uv",
+        description="Store the location of each vertex on the surface, and the frame there, as "
+        "attributes limit_face, limit_uv, rest_root and rest_rot. A mesh that follows always has "
+        "them",
         default=False,
     )
     hide_original: BoolProperty(
@@ -128,7 +139,7 @@ class OBJECT_OT_limit_mesh(WatchedOperator, LargeCountProperty, bpy.types.Operat
         layout.prop(self, "level_source")
         for name in _SHOWN[self.level_source]:
             layout.prop(self, name)
-        for name in ("exact_normals", "store_locations", "hide_original", "allow_large"):
+        for name in ("exact_normals", "store_locations", "hide_original", "follow", "allow_large"):
             layout.prop(self, name)
         draw_summary(layout, self.summary)
 
@@ -142,9 +153,20 @@ class OBJECT_OT_limit_mesh(WatchedOperator, LargeCountProperty, bpy.types.Operat
         if ob.data.shape_keys:
             notes.append("shape keys are not carried over")
         key, exact_normals, allow_large = ObjectKey.of(ob), self.exact_normals, self.allow_large
+        stored = self.store_locations
+        request = following.request_for(self.follow, ob, depsgraph)
 
         def work(progress: Progress) -> _Result:
-            return _Result(key, source.make(exact_normals, allow_large, progress), notes)
+            made = source.make(exact_normals, allow_large, part_of(progress, 0, _MADE))
+            at = made.tessellation.locations
+            locations = Locations(at.face.astype(np.int32), at.uv.astype(np.float32))
+            if not request and not stored:
+                return _Result(key, made, None, None, notes)
+            if request:
+                locations = Locations(locations.face, off_vertices(locations.uv))
+            binding = Binding.on(made.cage.surface(), locations, part_of(progress, _MADE, 1))
+            bindings = request.compute(locations) if request else None
+            return _Result(key, made, binding, bindings, notes)
 
         return self.watch(context, Job(work), f"Making polygons on {ob.name}")
 
@@ -152,13 +174,15 @@ class OBJECT_OT_limit_mesh(WatchedOperator, LargeCountProperty, bpy.types.Operat
         surface, made = result.surface.find(), result.made
         mesh = blender_mesh.build(made, surface, context.evaluated_depsgraph_get())
         try:
-            if self.store_locations:
-                blender_mesh.store_locations(mesh, made)
+            if result.binding:
+                result.binding.write(mesh, "POINT")
             ob = new_objects.add_on_surface(context, ids.LIMIT_MESH_OBJECT, mesh, surface)
             blender_mesh.copy_object_materials(surface, ob)
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
+        if result.bindings:
+            result.bindings.write(ob)
         if self.hide_original:
             surface.hide_set(True)
             surface.hide_render = True
@@ -199,6 +223,8 @@ class OBJECT_OT_limit_mesh(WatchedOperator, LargeCountProperty, bpy.types.Operat
             refused, faces = made.refused, len(made.cage.face_sizes)
             self.report({"WARNING"}, left_out(len(refused), faces, reasons(refused)))
         notes = [f"{self.summary} of {surface.name}", *made.cage.notes, *result.notes]
+        if result.bindings:
+            notes.append("its vertices follow the surface by nodes")
         self.report({"INFO"}, "; ".join(notes))
 
 

@@ -6,6 +6,10 @@ A point p goes to P + Q (p - rest_root), where P is the place of its root in thi
 rotation from the root's frame at rest to the frame there now.
 """
 
+from __future__ import annotations
+
+from typing import NamedTuple
+
 import bpy
 
 from .. import ids
@@ -17,85 +21,155 @@ from .tree import Socket, Tree, Value
 SURFACE, TILES = "Surface", "Tiles"
 
 
-def _build_hair() -> bpy.types.NodeTree:
-    tree = _new(ids.FOLLOW_HAIR_GROUP, "Hair")
-    geometry, place, turn, fits = _carried(tree, "CURVE")
-    moved = tree.set_position(geometry, True, _moved(tree, tree.position(), place, turn))
-    return tree.finish(Geometry=tree.switch(fits, tree.inputs["Geometry"], moved, "GEOMETRY"))
+class Roots(NamedTuple):
+    """The attributes that bind things to the surface, as fields."""
+
+    tile: Value
+    tile_uv: Value
+    rest: Value
+    rest_rotation: Value
 
 
-def _build_points() -> bpy.types.NodeTree:
-    tree = _new(ids.FOLLOW_POINTS_GROUP, "Points or vertices")
-    geometry, place, turn, fits = _carried(tree, "POINT")
-    moved = tree.set_position(geometry, True, _moved(tree, tree.position(), place, turn))
-    return tree.finish(Geometry=tree.switch(fits, tree.inputs["Geometry"], moved, "GEOMETRY"))
+class Carried(NamedTuple):
+    """Geometry on which the place and the turn of each root are known."""
+
+    geometry: Value
+    rest: Value
+    place: Value
+    turn: Value
+    fits: Value  # whether the tables fit the surface
+
+    def moved(self, tree: Tree, point: Value) -> Value:
+        """Returns where a point goes that is given at rest."""
+        offset = tree.vector("SUBTRACT", point, self.rest)
+        offset = tree.get("FunctionNodeRotateVector", offset, self.turn)
+        return tree.vector("ADD", self.place, offset)
 
 
-def _build_oriented_points() -> bpy.types.NodeTree:
-    tree = _new(ids.FOLLOW_ORIENTED_GROUP, "Points with the attributes normal, tangent, rotation")
-    geometry, place, turn, fits = _carried(tree, "POINT")
-    moved = tree.set_position(geometry, True, _moved(tree, tree.position(), place, turn))
-    for name in (ids.NORMAL, ids.TANGENT):
-        vector = tree.attribute(name, "FLOAT_VECTOR")
-        turned = tree.get("FunctionNodeRotateVector", vector, turn)
-        moved = tree.store(moved, name, turned, "FLOAT_VECTOR")
-    rotation = tree.attribute(ids.ROTATION, "QUATERNION")
-    turned = tree.get("FunctionNodeRotateRotation", rotation, turn, rotation_space="GLOBAL")
-    moved = tree.store(moved, ids.ROTATION, turned, "QUATERNION")
-    return tree.finish(Geometry=tree.switch(fits, tree.inputs["Geometry"], moved, "GEOMETRY"))
-
-
-def _new(name: str, what: str) -> Tree:
+def new_tree(name: str, what: str, *more: Socket) -> Tree:
+    """Begins the group of a modifier that moves such things."""
     return Tree(
         name,
         [
             Socket("Geometry", "Geometry", f"{what} at rest"),
             Socket(SURFACE, "Object", "Mesh to follow, which has the modifier Limit Capture"),
             Socket(TILES, "Object", "Table of tiles of that surface"),
+            *more,
         ],
         [Socket("Geometry", "Geometry", f"{what} on the surface as it is in this frame")],
         is_modifier=True,
     )
 
 
-def _carried(tree: Tree, domain: str) -> tuple[Value, Value, Value, Value]:
-    """Returns the geometry, for each element of the domain its place and its turn, and whether the
-    tables fit the surface. Elements that belong to no tile have been added later, and stay where
-    they are.
+def own_roots(tree: Tree) -> Roots:
+    """Returns the attributes of the things themselves."""
+    return Roots(
+        tree.attribute(ids.TILE, "INT"),
+        tree.attribute(ids.TILE_UV, "FLOAT_VECTOR"),
+        tree.attribute(ids.REST_ROOT, "FLOAT_VECTOR"),
+        tree.attribute(ids.REST_ROTATION, "QUATERNION"),
+    )
+
+
+def carried(tree: Tree, geometry: Value, domain: str, roots: Roots) -> Carried:
+    """Finds the place and the turn of each element of the domain. Elements that belong to no tile
+    have been added later, and stay where they are.
     """
-    tile, rest = tree.attribute(ids.TILE, "INT"), tree.attribute(ids.REST_ROOT, "FLOAT_VECTOR")
     on_surface = tree.group_node(
         SAMPLE.group(),
         Surface=tree.inputs[SURFACE],
         Tiles=tree.inputs[TILES],
-        Tile=tree.math("SUBTRACT", tile, 1.0),
-        Tile_UV=tree.attribute(ids.TILE_UV, "FLOAT_VECTOR"),
+        Tile=tree.math("SUBTRACT", roots.tile, 1.0),
+        Tile_UV=roots.tile_uv,
     )
-    follows = tree.compare("GREATER_THAN", tile, 0)
-    from_rest = tree.get(
-        "FunctionNodeInvertRotation", tree.attribute(ids.REST_ROTATION, "QUATERNION")
-    )
+    follows = tree.compare("GREATER_THAN", roots.tile, 0)
+    from_rest = tree.get("FunctionNodeInvertRotation", roots.rest_rotation)
     turn = tree.get(
         "FunctionNodeRotateRotation", on_surface["Rotation"], from_rest, rotation_space="LOCAL"
     )
     # Without the capture these would be evaluated for each point of a strand.
     captured = tree.capture(
-        tree.inputs["Geometry"],
+        geometry,
         domain,
-        Place=("VECTOR", tree.switch(follows, rest, on_surface["Position"], "VECTOR")),
+        Place=("VECTOR", tree.switch(follows, roots.rest, on_surface["Position"], "VECTOR")),
         Turn=("ROTATION", tree.switch(follows, (0.0, 0.0, 0.0), turn, "ROTATION")),
     )
     fits = on_surface["Fits"]
     tree.warn(tree.negated(fits), "The surface's control mesh has changed: bind again")
-    return captured[0], captured["Place"], captured["Turn"], fits
+    return Carried(captured[0], roots.rest, captured["Place"], captured["Turn"], fits)
 
 
-def _moved(tree: Tree, point: Value, place: Value, turn: Value) -> Value:
-    rest = tree.attribute(ids.REST_ROOT, "FLOAT_VECTOR")
-    offset = tree.get("FunctionNodeRotateVector", tree.vector("SUBTRACT", point, rest), turn)
-    return tree.vector("ADD", place, offset)
+def finished(tree: Tree, on: Carried, moved: Value) -> bpy.types.NodeTree:
+    """Ends the group: what does not fit stays at rest."""
+    return tree.finish(Geometry=tree.switch(on.fits, tree.inputs["Geometry"], moved, "GEOMETRY"))
+
+
+def with_handles(tree: Tree, on: Carried) -> Value:
+    """Returns curves whose points and Bézier handles are moved. Where a point is moved alone, its
+    handles are shifted with it but not turned.
+    """
+    handles = tree.node("GeometryNodeInputCurveHandlePositions").outputs
+    before = tree.capture(
+        on.geometry,
+        "POINT",
+        Left=("VECTOR", on.moved(tree, handles["Left"])),
+        Right=("VECTOR", on.moved(tree, handles["Right"])),
+    )
+    moved = tree.set_position(before[0], True, on.moved(tree, tree.position()))
+    for side in ("Left", "Right"):
+        moved = tree.get(
+            "GeometryNodeSetCurveHandlePositions", moved, True, before[side], mode=side.upper()
+        )
+    return moved
+
+
+def _build_hair() -> bpy.types.NodeTree:
+    tree = new_tree(ids.FOLLOW_HAIR_GROUP, "Hair")
+    on = carried(tree, tree.inputs["Geometry"], "CURVE", own_roots(tree))
+    return finished(tree, on, tree.set_position(on.geometry, True, on.moved(tree, tree.position())))
+
+
+def _build_bezier_hair() -> bpy.types.NodeTree:
+    tree = new_tree(ids.FOLLOW_BEZIER_GROUP, "Hair with Bézier strands")
+    on = carried(tree, tree.inputs["Geometry"], "CURVE", own_roots(tree))
+    return finished(tree, on, with_handles(tree, on))
+
+
+def _points(name: str, what: str) -> tuple[Tree, Carried, Value]:
+    tree = new_tree(name, what)
+    on = carried(tree, tree.inputs["Geometry"], "POINT", own_roots(tree))
+    moved = tree.set_position(on.geometry, True, on.moved(tree, tree.position()))
+    return tree, on, moved
+
+
+def _build_points() -> bpy.types.NodeTree:
+    return finished(*_points(ids.FOLLOW_POINTS_GROUP, "Points or vertices"))
+
+
+def _build_oriented_points() -> bpy.types.NodeTree:
+    what = "Points with the attributes normal, tangent, rotation"
+    tree, on, moved = _points(ids.FOLLOW_ORIENTED_GROUP, what)
+    for name in (ids.NORMAL, ids.TANGENT):
+        vector = tree.attribute(name, "FLOAT_VECTOR")
+        turned = tree.get("FunctionNodeRotateVector", vector, on.turn)
+        moved = tree.store(moved, name, turned, "FLOAT_VECTOR")
+    rotation = tree.attribute(ids.ROTATION, "QUATERNION")
+    turned = tree.get("FunctionNodeRotateRotation", rotation, on.turn, rotation_space="GLOBAL")
+    return finished(tree, on, tree.store(moved, ids.ROTATION, turned, "QUATERNION"))
+
+
+def _build_normals() -> bpy.types.NodeTree:
+    what = "Mesh with custom normals that are vectors"
+    tree, on, moved = _points(ids.FOLLOW_NORMALS_GROUP, what)
+    normal = tree.attribute(ids.CUSTOM_NORMAL, "FLOAT_VECTOR")
+    turned = tree.get("FunctionNodeRotateVector", normal, on.turn)
+    return finished(
+        tree, on, tree.store(moved, ids.CUSTOM_NORMAL, turned, "FLOAT_VECTOR", "CORNER")
+    )
 
 
 FOLLOW_HAIR = Kind(ids.FOLLOW_HAIR_GROUP, 1, _build_hair)
+FOLLOW_BEZIER = Kind(ids.FOLLOW_BEZIER_GROUP, 1, _build_bezier_hair)
 FOLLOW_POINTS = Kind(ids.FOLLOW_POINTS_GROUP, 1, _build_points)
 FOLLOW_ORIENTED = Kind(ids.FOLLOW_ORIENTED_GROUP, 1, _build_oriented_points)
+FOLLOW_NORMALS = Kind(ids.FOLLOW_NORMALS_GROUP, 1, _build_normals)

@@ -1,16 +1,51 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The objects that follow a surface: what they store, and their modifiers."""
+"""The objects that follow a surface: where they store their locations, and their modifiers."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import bpy
+import numpy as np
 
 from .. import ids
-from ..nodes import groups
-from ..nodes.follow import FOLLOW_HAIR, FOLLOW_ORIENTED, FOLLOW_POINTS, SURFACE, TILES
+from ..nodes import follow, groups
+from ..nodes.follow import SURFACE, TILES
+from ..nodes.follow_curve import FOLLOW_CURVE, POINTS
+from ..nodes.groups import Kind
+from ..reading import attributes
 from .places import ROOT_KINDS
 
-_GROUPS = (ids.FOLLOW_HAIR_GROUP, ids.FOLLOW_POINTS_GROUP, ids.FOLLOW_ORIENTED_GROUP)
+_GROUPS = (
+    ids.FOLLOW_HAIR_GROUP,
+    ids.FOLLOW_BEZIER_GROUP,
+    ids.FOLLOW_POINTS_GROUP,
+    ids.FOLLOW_ORIENTED_GROUP,
+    ids.FOLLOW_NORMALS_GROUP,
+    ids.FOLLOW_CURVE_GROUP,
+)
+_BEZIER = 2  # the value of the attribute curve_type for such strands
+
+
+def holder_of(ob: bpy.types.Object) -> bpy.types.ID | None:
+    """Returns the data that stores the locations: the object's own, or for a Curve object, whose
+    data has no attributes, the mesh of its table.
+    """
+    if ob.type in ("CURVES", "MESH", "POINTCLOUD"):
+        return ob.data
+    table = curve_table(ob)
+    return table.data if table else None
+
+
+def holders(objects: Iterable[bpy.types.Object]) -> list[bpy.types.ID]:
+    """Returns the data that stores the objects' locations, each once."""
+    return list(dict.fromkeys(holder for ob in objects if (holder := holder_of(ob)) is not None))
+
+
+def curve_table(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the table of a Curve object that follows a surface."""
+    modifier = next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None)
+    return groups.get_input(modifier, POINTS) if modifier else None
 
 
 def domain_of(ob: bpy.types.Object) -> str:
@@ -19,10 +54,11 @@ def domain_of(ob: bpy.types.Object) -> str:
 
 
 def is_placed(ob: bpy.types.Object) -> bool:
-    """Tells whether the object stores locations on a surface."""
-    if ob.type not in ("CURVES", "MESH", "POINTCLOUD"):
+    """Tells whether locations on a surface are stored for the object."""
+    holder = holder_of(ob)
+    if holder is None:
         return False
-    stored = ob.data.attributes
+    stored = holder.attributes
     return all(
         name in stored and (stored[name].data_type, stored[name].domain) == (kind, domain_of(ob))
         for name, kind in ROOT_KINDS.items()
@@ -83,7 +119,20 @@ def ensure_modifier(
     groups.set_input(modifier, TILES, table)
 
 
-def _kind(ob: bpy.types.Object) -> groups.Kind:
+def _kind(ob: bpy.types.Object) -> Kind:
+    if ob.type == "CURVE":
+        return FOLLOW_CURVE
     if ob.type == "CURVES":
-        return FOLLOW_HAIR
-    return FOLLOW_ORIENTED if ids.ROTATION in ob.data.attributes else FOLLOW_POINTS
+        return follow.FOLLOW_BEZIER if _has_bezier_strands(ob.data) else follow.FOLLOW_HAIR
+    stored = ob.data.attributes
+    if ids.ROTATION in stored:
+        return follow.FOLLOW_ORIENTED
+    if ids.CUSTOM_NORMAL in stored and stored[ids.CUSTOM_NORMAL].data_type == "FLOAT_VECTOR":
+        return follow.FOLLOW_NORMALS
+    return follow.FOLLOW_POINTS
+
+
+def _has_bezier_strands(data: bpy.types.Curves) -> bool:
+    if ids.CURVE_TYPE not in data.attributes:
+        return False
+    return bool(np.any(attributes.read(data, ids.CURVE_TYPE) == _BEZIER))

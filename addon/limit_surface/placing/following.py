@@ -22,7 +22,8 @@ from ..nodes.capture import CAPTURE, topology_sum
 from ..reading import attributes, cage, rules
 from ..tasks.object_keys import ObjectKey
 from . import proxy, tables
-from .followers import ensure_modifier, followers_of, is_placed, surface_of
+from .follow_properties import follows
+from .followers import ensure_modifier, followers_of, holder_of, holders, is_placed, surface_of
 from .places import Places
 from .relocation import Relocation
 from .roots import Locations
@@ -49,6 +50,8 @@ class Request:
     where Blender's data need not be touched, and written. All that follows the surface already is
     bound again with it, because the tables are made for all of it together.
 
+    `without` is a thing that is about to get other locations.
+
     With a proxy the viewport stays fast (see `proxy`); None keeps what there was.
 
     Raises RefusalError for a surface or a thing that cannot be bound; nothing has changed then.
@@ -61,30 +64,30 @@ class Request:
         things: Sequence[bpy.types.Object] = (),
         use_proxy: bool | None = None,
         relocated: Sequence[Relocation] = (),
+        without: bpy.types.Object | None = None,
     ) -> None:
         check_surface(surface, depsgraph.scene)
         for ob in things:
             check_thing(ob, surface)
-        followers = followers_of(surface)
+        followers = [ob for ob in followers_of(surface) if ob != without]
         for ob in followers:
             check_thing(ob, surface)
         self._surface, self._use_proxy = ObjectKey.of(surface), use_proxy
         self._things = [ObjectKey.of(ob) for ob in things]
-        self._old = len({ob.data for ob in followers})
+        self._old = len(holders(followers))
         everything = dict.fromkeys([*followers, *things])
         self._followers = [ObjectKey.of(ob) for ob in everything]
         self._relocated = list(relocated)
         moved = {relocation.data: relocation.places for relocation in relocated}
         for ob in everything:
-            if ob.data not in moved and not is_placed(ob):
+            if holder_of(ob) not in moved and not is_placed(ob):
                 raise RefusalError(f"{ob.name} stores no locations on a limit surface")
-        blocks = dict.fromkeys(ob.data for ob in everything)
-        self._places = [moved.get(data) or Places.read(data) for data in blocks]
+        self._places = [moved.get(data) or Places.read(data) for data in holders(everything)]
         with cage.opened(surface, depsgraph) as (found, mesh):
             edges = attributes.read(mesh, ids.EDGE_VERTICES)
             self._bound = tables.Bound(len(mesh.vertices), topology_sum(edges), signature(found))
         for ob in everything:
-            if ob.data not in moved:
+            if holder_of(ob) not in moved:
                 check_holds(ob, surface, self._bound.signature)
         self._limit = found.surface()
         for place in self._places:
@@ -104,10 +107,9 @@ class Request:
     def write(self, made: Bindings, new: bpy.types.Object | None) -> Outcome:
         surface = self._surface.find()
         followers = [key.find() for key in self._followers]
-        data_blocks = list(dict.fromkeys(ob.data for ob in followers))
         if new is not None:
             followers.append(new)
-            data_blocks.append(new.data)
+        data_blocks = holders(followers)
         moved = {relocation.data for relocation in self._relocated}
         for data, place in zip(data_blocks, made.places, strict=True):
             if data not in moved:
@@ -146,6 +148,15 @@ class Bindings:
         return self.request.write(self, new)
 
 
+def request_for(
+    follow: str, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph
+) -> Request | None:
+    """Returns the binding of new things by the value of the property `follow`, or None if they are
+    not to follow.
+    """
+    return Request(surface, depsgraph) if follows(follow, surface) else None
+
+
 def signature(found: cage.Cage) -> str:
     """Returns two words: one that differs where the faces differ, and one that differs where only
     the rules of subdivision do, creases among them.
@@ -172,7 +183,8 @@ def holds(data: bpy.types.ID, now: str) -> bool:
 
 
 def check_holds(ob: bpy.types.Object, surface: bpy.types.Object, now: str) -> None:
-    if not holds(ob.data, now):
+    holder = holder_of(ob)
+    if holder is not None and not holds(holder, now):
         raise RefusalError(
             f"{ob.name} was bound before the faces of {surface.name} changed: rebind it, or unbind "
             "it first"

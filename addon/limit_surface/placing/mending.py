@@ -10,10 +10,26 @@ import bpy
 
 from ..nodes import groups
 from ..nodes.capture import CAPTURE
-from ..nodes.follow import FOLLOW_HAIR, FOLLOW_ORIENTED, FOLLOW_POINTS
+from ..nodes.follow import (
+    FOLLOW_BEZIER,
+    FOLLOW_HAIR,
+    FOLLOW_NORMALS,
+    FOLLOW_ORIENTED,
+    FOLLOW_POINTS,
+)
+from ..nodes.follow_curve import FOLLOW_CURVE
 from ..nodes.tiles import TILES
 
-_KINDS = (CAPTURE, TILES, FOLLOW_HAIR, FOLLOW_POINTS, FOLLOW_ORIENTED)
+_KINDS = (
+    CAPTURE,
+    TILES,
+    FOLLOW_HAIR,
+    FOLLOW_BEZIER,
+    FOLLOW_POINTS,
+    FOLLOW_ORIENTED,
+    FOLLOW_NORMALS,
+    FOLLOW_CURVE,
+)
 
 
 @contextmanager

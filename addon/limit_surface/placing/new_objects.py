@@ -7,6 +7,10 @@ import numpy as np
 from .. import ids
 from ..reading import attributes, ragged_rows
 
+# From this version on normals can be stored as vectors; before, they are stored as angles of 16
+# bits.
+_FREE_NORMALS = bpy.app.version >= (4, 5)
+
 
 def add_on_surface(
     context: bpy.types.Context, name: str, data: bpy.types.ID, surface: bpy.types.Object
@@ -39,6 +43,15 @@ def add_polygons(
     mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(starts, np.int32))
     mesh.update(calc_edges=True)
     mesh.shade_smooth()
+
+
+def set_corner_normals(mesh: bpy.types.Mesh, normals: np.ndarray) -> None:
+    """Sets the custom normals (n, 3) of all corners."""
+    if _FREE_NORMALS:
+        attributes.write(mesh, ids.CUSTOM_NORMAL, "FLOAT_VECTOR", "CORNER", normals)
+        mesh.update()
+    else:
+        mesh.normals_split_custom_set(normals)
 
 
 def _collection(context: bpy.types.Context) -> bpy.types.Collection:

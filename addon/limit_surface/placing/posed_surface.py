@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..reading import cage
+from .roots import Locations, off_vertices
 from .rotations import WorldSpace
 
 if TYPE_CHECKING:
     import limitsurf
+
+SAME = 1e-6  # as a share of the largest coordinate: Blender's single precision allows no more
 
 
 class Places(NamedTuple):
@@ -42,6 +45,13 @@ class PosedSurface:
         surface = self.in_object
         found = Places(surface.evaluate(face, uv).position, surface.frames(face, uv))
         return seen_from(space, found, self.cage.matrix)
+
+
+def at_closest(posed: PosedSurface, hits: limitsurf.Hits) -> Locations:
+    """Returns locations for things that are bound at these closest places in the world."""
+    is_on_surface = hits.distance <= SAME * np.abs(posed.in_world.positions).max()
+    uv = off_vertices(hits.uv, is_on_surface)
+    return Locations(hits.face.astype(np.int32), uv.astype(np.float32))
 
 
 def seen_from(space: np.ndarray, places: Places, matrix: np.ndarray) -> Places:

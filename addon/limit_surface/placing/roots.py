@@ -26,6 +26,24 @@ class Locations:
         return len(self.face)
 
 
+# The distances from the vertices of their faces that places keep, as shares of a face: things that
+# stand on the surface, and those beside it, which turn about their place.
+_ON, _BESIDE = 2.0**-22, 2.0**-12
+
+
+def off_vertices(uv: np.ndarray, on_surface: np.ndarray | bool = True) -> np.ndarray:
+    """Returns uv (n, 2), where places very close to a vertex of their face are put a little further
+    inside the face. What stands on the surface moves by less than single precision can tell.
+
+    At a vertex the normal may have no limit, and in single precision the frame is lost before it:
+    at a rounded corner du and dv are almost parallel.
+    """
+    distance = np.where(on_surface, _ON, _BESIDE)[..., None]
+    from_side = np.minimum(uv, 1 - uv)
+    near = (from_side < distance).all(axis=1, keepdims=True)
+    return np.where(near, np.where(uv < 0.5, distance, 1 - distance), uv)
+
+
 @dataclass(frozen=True)
 class Roots:
     """The roots of the locations `rows`, evaluated in the surface's own space."""

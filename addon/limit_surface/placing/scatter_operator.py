@@ -18,7 +18,7 @@ from ..tasks.request_size import RequestSize
 from ..tasks.watched_operator import WatchedOperator
 from . import distribution_properties, following, region, roots
 from .distribution import TOO_LOW, Distribution, Scattered
-from .follow_properties import FollowProperties, follows
+from .follow_properties import FollowProperties
 
 # the parts of the progress at which the locations and the things are made
 SCATTERED, MADE = 0.5, 0.9
@@ -218,7 +218,7 @@ class ScatterOperator(
         shown = None
         if self.target != "LIMIT":
             shown = displayed_mesh.read(ob, depsgraph, covered.cage, self.target)
-        binding = following.Request(ob, depsgraph) if follows(self.follow, ob) else None
+        binding = following.request_for(self.follow, ob, depsgraph)
         return Order(ObjectKey.of(ob), covered, distribution, shown, size, binding)
 
     def _report(self, ground: Ground, outcome: following.Outcome | None) -> None:

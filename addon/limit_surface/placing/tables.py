@@ -74,7 +74,7 @@ class PointsTable:
         self.terms[begin:] = term_index.reshape(-1, TERMS_ON_A_VERTEX)
 
     def fill(self, mesh: bpy.types.Mesh) -> None:
-        _fill(mesh, self.position)
+        fill(mesh, self.position)
         attributes.write(mesh, nodes.ROW, "INT", "POINT", self.row)
         for name, values in zip(nodes.TERMS, self.terms.T, strict=True):
             attributes.write(mesh, name, "INT", "POINT", values)
@@ -95,7 +95,7 @@ class TilesTable:
         self.scale[tiles.tile] = tiles.scale
 
     def fill(self, mesh: bpy.types.Mesh) -> None:
-        _fill(mesh, np.zeros((self.anchor.size, 3)))
+        fill(mesh, np.zeros((self.anchor.size, 3)))
         for names, values in ((nodes.CONTROL, self.control), (nodes.BASE, self.base)):
             for name, column in zip(names, values.reshape(-1, 4).T, strict=True):
                 attributes.write(mesh, name, "INT", "POINT", column)
@@ -123,10 +123,10 @@ def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bp
     table = of_surface(surface)
     points = PointsTable(tiles, bound.vertices)
     held = points_of(table) if table else None
-    holder = held or _new_object(ids.POINTS_TABLE, surface)
+    holder = held or new_object(ids.POINTS_TABLE, surface)
     points.fill(holder.data)
     if table is None:
-        table = _new_object(ids.TILES_TABLE, surface)
+        table = new_object(ids.TILES_TABLE, surface)
         groups.add_modifier(table, TILES, Surface=surface)
     modifier = next(groups.modifiers(table, ids.TILES_GROUP))
     for name, value in (
@@ -151,10 +151,38 @@ def remove(table: bpy.types.Object) -> None:
     """Removes both tables from the file."""
     for ob in (points_of(table), table):
         if ob is not None:
-            mesh = ob.data
-            bpy.data.objects.remove(ob)
-            if not mesh.users:
-                bpy.data.meshes.remove(mesh)
+            remove_object(ob)
+
+
+def readers(table: bpy.types.Object) -> list[bpy.types.ID]:
+    """Returns the objects and node groups that refer to the table."""
+    users = bpy.data.user_map(subset=[table])[table]
+    return [user for user in users if user.id_type in ("OBJECT", "NODETREE", "MATERIAL")]
+
+
+def remove_object(table: bpy.types.Object) -> None:
+    """Removes a table from the file, and its mesh if nothing else uses it."""
+    mesh = table.data
+    bpy.data.objects.remove(table)
+    if not mesh.users:
+        bpy.data.meshes.remove(mesh)
+
+
+def new_object(kind: str, whose: bpy.types.Object) -> bpy.types.Object:
+    """Adds a hidden object with an empty mesh, beside the object that it belongs to."""
+    name = f"{kind} of {whose.name}"
+    ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    home = next((c for c in whose.users_collection if c.is_editable), None)
+    (home or bpy.context.scene.collection).objects.link(ob)
+    ob.hide_viewport = ob.hide_render = ob.hide_select = True
+    return ob
+
+
+def fill(mesh: bpy.types.Mesh, positions: np.ndarray) -> None:
+    """Replaces the mesh's elements by vertices at these positions."""
+    mesh.clear_geometry()
+    mesh.vertices.add(len(positions))
+    attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", positions)
 
 
 def _largest(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
@@ -162,18 +190,3 @@ def _largest(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
     row = np.repeat(np.arange(len(sizes)), sizes)
     order = np.lexsort((values, row))
     return order[np.cumsum(sizes)[sizes > 0] - 1]
-
-
-def _fill(mesh: bpy.types.Mesh, positions: np.ndarray) -> None:
-    mesh.clear_geometry()
-    mesh.vertices.add(len(positions))
-    attributes.write(mesh, ids.POSITION, "FLOAT_VECTOR", "POINT", positions)
-
-
-def _new_object(kind: str, surface: bpy.types.Object) -> bpy.types.Object:
-    name = f"{kind} of {surface.name}"
-    ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
-    home = next((c for c in surface.users_collection if c.is_editable), None)
-    (home or bpy.context.scene.collection).objects.link(ob)
-    ob.hide_viewport = ob.hide_render = ob.hide_select = True
-    return ob

@@ -25,7 +25,7 @@ Shape = Literal["SHOWN", "REST"]
 # What the modifiers of following change
 _MOVED = (
     *(ids.POSITION, ids.HANDLE_LEFT, ids.HANDLE_RIGHT),
-    *(ids.NORMAL, ids.TANGENT, ids.ROTATION),
+    *(ids.NORMAL, ids.TANGENT, ids.ROTATION, ids.CUSTOM_NORMAL),
 )
 
 
@@ -72,10 +72,13 @@ class Unbinding:
             modifier = followers.modifier_of(ob)
             surfaces.add(groups.get_input(modifier, SURFACE))
             used.add(groups.get_input(modifier, TILES))
+            own_table = followers.curve_table(ob)
             ob.modifiers.remove(modifier)
+            if own_table and not tables.readers(own_table):
+                tables.remove_object(own_table)
         for frozen in self._frozen:
             frozen.write()
-        for data in dict.fromkeys(ob.data for ob in self._things):
+        for data in followers.holders(self._things):
             if not any(followers.modifier_of(other) for other in _users(data)):
                 _remove_attributes(data)
         _remove_unused(used - {None}, surfaces - {None})
@@ -85,6 +88,11 @@ class Unbinding:
 
 
 def _check_own_data(ob: bpy.types.Object) -> None:
+    if ob.type == "CURVE":
+        raise RefusalError(
+            f"{ob.name} is a Curve object, whose shape in this frame nodes alone know: let it go "
+            "back to rest, or convert it to Curves first"
+        )
     others = [other.name for other in _users(ob.data) if other != ob]
     if others:
         raise RefusalError(
@@ -141,7 +149,9 @@ def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, np
                 copy.modifiers.remove(other)
 
     with cage.evaluated_copy(ob, len(ob.modifiers), depsgraph, leave_alone) as evaluated:
-        names = [name for name in _MOVED if name in ob.data.attributes]
+        stored = ob.data.attributes
+        # Normals that are angles turn with the polygons.
+        names = [n for n in _MOVED if n in stored and stored[n].data_type in attributes.LAYOUTS]
         return {name: attributes.read(evaluated.data, name) for name in names}
 
 
@@ -164,7 +174,7 @@ def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Obj
     read any more.
     """
     for table in used:
-        if table.library is None and not _readers(table):
+        if table.library is None and not tables.readers(table):
             surfaces.add(tables.surface_of(table))
             proxy.update(None, table, False)
             tables.remove(table)
@@ -172,9 +182,3 @@ def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Obj
         if surface.is_editable and tables.of_surface(surface) is None:
             for modifier in list(groups.modifiers(surface, ids.CAPTURE_GROUP)):
                 surface.modifiers.remove(modifier)
-
-
-def _readers(table: bpy.types.Object) -> list[bpy.types.ID]:
-    """Returns the objects and node groups that refer to the table."""
-    users = bpy.data.user_map(subset=[table])[table]
-    return [user for user in users if user.id_type in ("OBJECT", "NODETREE", "MATERIAL")]

@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
+from ..placing import following
 from ..reading.projector import Projector, fitted
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
@@ -31,6 +32,7 @@ class Order:
     two_sided: bool
     offset: float
     create_material: bool
+    binding: following.Request | None  # None: the decal does not follow the surface
 
     def work(self, progress: Progress) -> Made:
         self.world.check_eye(self.projector)
@@ -44,7 +46,8 @@ class Order:
         sag = decal.sag(rays, found)
         placing = part_of(progress, CAST, 1)
         placed = decal_object.PlacedDecal(self.world, found, self.offset, placing)
-        return Made(self, placed, sag)
+        bindings = self.binding.compute(placed.locations) if self.binding else None
+        return Made(self, placed, sag, bindings)
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,7 @@ class Made:
     order: Order
     placed: decal_object.PlacedDecal
     sag: float  # the distance of polygons below the surface, without the offset
+    bindings: following.Bindings | None
 
     @property
     def warning(self) -> str:
@@ -69,14 +73,17 @@ class Made:
         made = decal_object.add(context, ids.DECAL_OBJECT, self.placed, surface)
         if self.order.create_material:
             material.for_decal(made, image, ids.DECAL_UV)
-        return f"{len(self.placed.sizes):,} polygons on {surface.name}"
+        if self.bindings:
+            self.bindings.write(made)
+        text = f"{len(self.placed.sizes):,} polygons on {surface.name}"
+        return f"{text}; they follow it by nodes" if self.bindings else text
 
 
 def order(
     properties: bpy.types.OperatorProperties,
     context: bpy.types.Context,
     world: WorldSurface,
-    surface: ObjectKey,
+    surface: bpy.types.Object,
 ) -> Order:
     image = inputs.image(properties.image)
     size = tuple(image.size)
@@ -84,7 +91,7 @@ def order(
     columns, rows = np.rint(properties.decal_resolution * fitted(size)).clip(1).astype(int).tolist()
     RequestSize("polygons", columns * rows, 1).check(properties.allow_large)
     return Order(
-        surface=surface,
+        surface=ObjectKey.of(surface),
         world=world,
         projector=inputs.projector(properties, context, world, size),
         image=image.name,
@@ -93,4 +100,7 @@ def order(
         two_sided=properties.two_sided,
         offset=properties.decal_offset,
         create_material=properties.create_material,
+        binding=following.request_for(
+            properties.follow, surface, context.evaluated_depsgraph_get()
+        ),
     )

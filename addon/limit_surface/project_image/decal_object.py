@@ -24,14 +24,17 @@ class PlacedDecal:
         self.st, self.sizes, self.vertices = hits.st, decal.sizes, decal.vertices
         # Counter-clockwise in the image is clockwise from outside, seen from a mirrored object.
         self.is_turned = world.is_mirrored
-        locations = roots.Locations(hits.face.astype(np.int32), hits.uv.astype(np.float32))
+        self.locations = locations = roots.Locations(
+            hits.face.astype(np.int32), hits.uv.astype(np.float32)
+        )
         self.binding = Binding(locations)
         self.position, self.normal = (np.empty((len(hits), 3)) for _ in range(2))
+
+        local = world.local
 
         def on(face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             return local.evaluate(face, uv).position, local.frames(face, uv)
 
-        local = world.local
         for part in roots.evaluate(on, locations, progress):
             self.binding.fill(part)
             side = hits.facing[part.rows][:, None]
@@ -60,4 +63,4 @@ def _fill(mesh: bpy.types.Mesh, placed: PlacedDecal) -> None:
     layer = mesh.uv_layers.new(name=ids.DECAL_UV)
     attributes.write(mesh, layer.name, "FLOAT2", "CORNER", placed.st[vertices])
     placed.binding.write(mesh, "POINT")
-    mesh.normals_split_custom_set_from_vertices(placed.normal.astype(np.float32))
+    new_objects.set_corner_normals(mesh, placed.normal.astype(np.float32)[vertices])

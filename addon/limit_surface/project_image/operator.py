@@ -9,7 +9,6 @@ from ..images import texel_places
 from ..images.texture_operator import TextureOperator
 from ..reading import cage
 from ..tasks.job import Job
-from ..tasks.object_keys import ObjectKey
 from ..tasks.refused_faces import left_out
 from . import decal_job, properties, texture_job
 from .world import WorldSurface
@@ -42,7 +41,7 @@ class OBJECT_OT_limit_project_image(
         else:
             found = texel_places.read_cage(ob, depsgraph, self.uv_map)
         world = WorldSurface(found, ob.name)
-        order = MODES[self.mode].order(self.properties, context, world, ObjectKey.of(ob))
+        order = MODES[self.mode].order(self.properties, context, world, ob)
         return self.watch(context, Job(order.work), f"Projecting {self.image}")
 
     def finish(

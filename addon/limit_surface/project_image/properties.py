@@ -13,12 +13,13 @@ from bpy.props import (
 )
 
 from ..images.texture_operator import TextureProperties
+from ..placing.follow_properties import FollowProperties
 
 # Sources that project the image along rays through its pixels.
 ALONG_RAYS = {"CAMERA", "VIEW", "PLANAR"}
 
 
-class ProjectionProperties(TextureProperties):
+class ProjectionProperties(TextureProperties, FollowProperties):
     """Mixin with the properties of the operator."""
 
     source: EnumProperty(
@@ -251,6 +252,7 @@ def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -
     if properties.mode == "DECAL":
         column.prop(properties, "decal_resolution")
         column.prop(properties, "decal_offset")
+        column.prop(properties, "follow")
     else:
         _draw_texture(layout.column(), properties)
     _draw_coverage(layout.column(), properties)

@@ -102,16 +102,16 @@ def order(
     properties: bpy.types.OperatorProperties,
     context: bpy.types.Context,
     world: WorldSurface,
-    surface: ObjectKey,
+    surface: bpy.types.Object,
 ) -> Order:
     if not properties.opacity:
         raise RefusalError("Opacity is 0, so the image would be invisible")
     if properties.create_material:
-        material.check(surface.find())
+        material.check(surface)
     shown = inputs.image(properties.image)
     target = _target(properties)
     return Order(
-        surface=surface,
+        surface=ObjectKey.of(surface),
         world=world,
         uv_map=texel_places.uv_data(world.surface, world.cage, surface.name),
         source=inputs.source(properties, context, world, shown),

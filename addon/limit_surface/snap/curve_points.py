@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..reading import ragged_rows
+from ..reading import ragged_rows, splines
 from .element_points import SnappedPoints
 
 
@@ -28,18 +28,14 @@ class SnappedCurvePoints(SnappedPoints):
         )
 
     def move(self, rows: np.ndarray, moves: np.ndarray) -> None:
-        splines = self.ob.data.splines
-        sizes = np.array([len(_points(spline)) for spline in splines], np.int64)
+        own = self.ob.data.splines
+        sizes = np.array([len(splines.points(spline)) for spline in own], np.int64)
         starts = ragged_rows.starts(sizes)
         first, last = np.searchsorted(rows, starts), np.searchsorted(rows, starts + sizes)
-        for spline, begin, end, start in zip(splines, first, last, starts, strict=True):
+        for spline, begin, end, start in zip(own, first, last, starts, strict=True):
             if begin < end:
                 _move(spline, rows[begin:end] - start, moves[begin:end])
         self.ob.data.update_tag()
-
-
-def _points(spline: bpy.types.Spline) -> bpy.types.bpy_prop_collection:
-    return spline.bezier_points if spline.type == "BEZIER" else spline.points
 
 
 def _names(spline: bpy.types.Spline) -> tuple[str, ...]:
@@ -47,27 +43,20 @@ def _names(spline: bpy.types.Spline) -> tuple[str, ...]:
 
 
 def _read(spline: bpy.types.Spline) -> tuple[np.ndarray, np.ndarray]:
-    points = _points(spline)
+    points = splines.points(spline)
     selected, hidden = np.empty((2, len(points)), bool)
     is_bezier = spline.type == "BEZIER"
     points.foreach_get("select_control_point" if is_bezier else "select", selected)
     points.foreach_get("hide", hidden)
-    return _values(points, "co")[:, :3], selected & ~hidden
+    return splines.values(points, "co")[:, :3], selected & ~hidden
 
 
 def _move(spline: bpy.types.Spline, rows: np.ndarray, moves: np.ndarray) -> None:
-    points = _points(spline)
+    points = splines.points(spline)
     for name in _names(spline):
-        values = _values(points, name)
+        values = splines.values(points, name)
         values[rows, :3] = values[rows, :3].astype(np.float64) + moves
         points.foreach_set(name, values.ravel())
     # If points are assigned one by one, Blender calculates the automatic handles of the whole
     # spline each time.
     points[0].co = points[0].co
-
-
-def _values(points: bpy.types.bpy_prop_collection, name: str) -> np.ndarray:
-    """Returns the coordinates (n, 3), or (n, 4) with weights."""
-    values = np.empty((len(points), len(getattr(points[0], name))), np.float32)
-    points.foreach_get(name, values.ravel())
-    return values

@@ -6,11 +6,9 @@ from typing import Literal
 import bpy
 import numpy as np
 
-from ..placing.posed_surface import Places, PosedSurface, seen_from
+from ..placing.posed_surface import SAME, Places, PosedSurface, seen_from
 from ..reading import cage, displayed_mesh, rules
 from ..tasks.refused_faces import check_some_left
-
-SAME = 1e-6  # as a share of the largest coordinate: Blender's single precision allows no more
 
 
 class TargetSurface:

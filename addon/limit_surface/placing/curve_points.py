@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curve objects that follow a surface: each control point follows the place on the surface that
+was closest to it. The places are on the vertices of a hidden table.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..nodes import groups
+from ..nodes.follow_curve import FOLLOW_CURVE, POINTS
+from ..reading import cage, splines
+from ..tasks.refused_faces import check_some_left
+from . import following, tables
+from .binding import Binding
+from .followers import curve_table
+from .posed_surface import PosedSurface, at_closest, transformed
+from .rotations import WorldSpace
+
+
+def bind(
+    ob: bpy.types.Object,
+    surface: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    use_proxy: bool | None = None,
+) -> following.Outcome:
+    """Makes a Curve object follow, also one that does already: its control points get new places.
+
+    Raises RefusalError where that cannot be; nothing has changed then.
+    """
+    check(ob, surface)
+    request = following.Request(surface, depsgraph, use_proxy=use_proxy, without=ob)
+    points = splines.positions(ob.data)
+    places = _places(ob, points, surface, depsgraph)
+    made = request.compute(places.locations)
+    table = curve_table(ob)
+    if table is None or len(tables.readers(table)) > 1:  # a copy of the curve reads it
+        table = tables.new_object(ids.CURVE_TABLE, ob)
+    tables.fill(table.data, points)
+    places.write(table.data, "POINT")
+    modifier = next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None)
+    if modifier is None:
+        modifier = groups.add_modifier(ob, FOLLOW_CURVE, place=0)
+    groups.set_input(modifier, POINTS, table)
+    return made.write(ob)
+
+
+def check(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
+    """Raises RefusalError for a curve that cannot follow the surface."""
+    following.check_thing(ob, surface)
+    data = ob.data
+    if data.dimensions == "2D":
+        raise RefusalError(f"{ob.name} is a 2D curve, which stays in its plane: make it 3D")
+    if data.bevel_depth or data.extrude or (data.bevel_mode == "OBJECT" and data.bevel_object):
+        raise RefusalError(
+            f"{ob.name} has a bevel or is extruded, so that nodes do not see its control points: "
+            "set Bevel Depth and Extrude to 0, and give it its thickness by the node Curve to Mesh "
+            "in a Geometry Nodes modifier"
+        )
+    if not any(len(splines.points(spline)) for spline in data.splines):
+        raise RefusalError(f"{ob.name} has no control points")
+
+
+def _places(
+    ob: bpy.types.Object,
+    points: np.ndarray,
+    surface: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+) -> Binding:
+    matrix = np.array(ob.matrix_world, np.float64)
+    WorldSpace(matrix)  # refuses a scale of 0
+    posed = PosedSurface(cage.read(surface, depsgraph))
+    check_some_left(posed.in_world, surface.name)
+    hits = posed.in_world.closest(transformed(matrix, points.astype(np.float64)))
+    return Binding.at(posed, at_closest(posed, hits), matrix)

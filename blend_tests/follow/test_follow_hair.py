@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Snapped hair and Bézier hair that follow a deforming surface by Geometry Nodes."""
+
+import bpy
+import follow_truth
+import numpy as np
+import pytest
+import scenes
+import snap_scenes
+from follow_scenes import deforming
+from limit_surface import ids
+from limit_surface.reading import attributes
+
+HANDLES = ("handle_left", "handle_right")
+
+
+def follow(hair: bpy.types.Object) -> None:
+    scenes.activate(hair)
+    assert bpy.ops.object.limit_follow() == {"FINISHED"}
+
+
+def bezier_hair(ob: bpy.types.Object, kind: str) -> bpy.types.Object:
+    """Adds Bézier strands whose handles point to all directions."""
+    hair = scenes.add_hair(ob, per_side=2, points=4, follow="NONE")
+    hair.data.set_types(type="BEZIER")
+    rng = np.random.default_rng(3)
+    positions = attributes.read(hair.data, ids.POSITION)
+    for name in HANDLES:
+        handles = positions + rng.uniform(-0.1, 0.1, positions.shape)
+        attributes.write(hair.data, name, "FLOAT_VECTOR", "POINT", handles)
+    for name in ("handle_type_left", "handle_type_right"):
+        kinds = np.full(len(positions), {"FREE": 0, "ALIGN": 3}[kind])
+        attributes.write(hair.data, name, "INT8", "POINT", kinds)
+    if kind == "ALIGN":
+        left = attributes.read(hair.data, "handle_left")
+        attributes.write(
+            hair.data, "handle_right", "FLOAT_VECTOR", "POINT", 2.5 * positions - 1.5 * left
+        )
+    hair.data.update_tag()
+    return hair
+
+
+def check(ob: bpy.types.Object, hair: bpy.types.Object, names: tuple[str, ...]) -> None:
+    relation = np.linalg.inv(np.array(hair.matrix_world)) @ np.array(ob.matrix_world)
+    now = follow_truth.on_surface(ob, hair.data, relation)
+    count = len(hair.data.curves)
+    scale = max(1, np.abs(relation).max())
+    for name in names:
+        points = attributes.read(hair.data, name).astype(np.float64).reshape(count, -1, 3)
+        expected = follow_truth.moved(points, hair.data, now)
+        error = np.abs(follow_truth.shown(hair, name).reshape(count, -1, 3) - expected).max()
+        assert error < scale * follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
+
+
+@pytest.mark.parametrize("kind", ["FREE", "ALIGN"])
+def test_handles_turn_with_the_surface(kind):
+    ob = deforming("cross")
+    hair = bezier_hair(ob, kind)
+    follow(hair)
+    bpy.context.scene.frame_set(30)
+    check(ob, hair, (ids.POSITION, *HANDLES))
+
+
+@pytest.mark.parametrize("use_handles", [False, True])
+def test_handles_that_blender_has_made_turn_too(use_handles):
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, per_side=2, points=4, follow="NONE")
+    bend(hair)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bpy.ops.curves.curve_type_set(type="BEZIER", use_handles=use_handles) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    follow(hair)
+    bpy.context.scene.frame_set(30)
+    check(ob, hair, (ids.POSITION, *HANDLES))
+
+
+def bend(hair: bpy.types.Object) -> None:
+    bent = scenes.strands(hair) + np.array([[0, 0, 0], [0, 0, 0], [0.1, 0, 0], [0, 0.2, 0]])
+    attributes.write(hair.data, ids.POSITION, "FLOAT_VECTOR", "POINT", bent)
+
+
+def test_strands_that_become_bezier_are_bound_anew():
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, per_side=2, points=4)
+    assert hair.modifiers[0].node_group.name == ids.FOLLOW_HAIR_GROUP
+    hair.data.set_types(type="BEZIER")
+    follow(hair)
+    assert [m.node_group.name for m in hair.modifiers] == [ids.FOLLOW_BEZIER_GROUP]
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_snapped_hair_follows(mirrored):
+    ob = deforming("grid with holes", mirrored)
+    bpy.context.view_layer.update()
+    hair = snap_scenes.add_hair(ob, sizes=[4] * 20)
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_snap(align="NORMAL") == {"FINISHED"}
+    follow(hair)
+    for frame, subframe in ((1, 0.0), (13, 0.5), (30, 0.0)):
+        bpy.context.scene.frame_set(frame, subframe=subframe)
+        check(ob, hair, (ids.POSITION,))
