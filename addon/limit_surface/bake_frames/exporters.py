@@ -3,14 +3,11 @@
 
 Alembic and USD come from Blender's own exporters, which evaluate the object as for a render. They
 write several objects in an order that changes from run to run; with one object in each file, the
-same frame gives the same bytes. One flag of Alembic's polygons is the exception: Blender writes
-`meshtype`, which no program needs, from memory that it has not set.
+same frame gives the same bytes.
 """
 
 from __future__ import annotations
 
-import mmap
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +16,7 @@ from typing import Any
 import bpy
 
 from ..errors import RefusalError
-from . import arrays
+from . import alembic_file, arrays
 
 
 @dataclass(frozen=True)
@@ -64,7 +61,7 @@ def _write_alembic(path: Path, subject: Subject) -> None:
         as_background_job=False,
         evaluation_mode="RENDER",
     )
-    _remove_date(path)
+    alembic_file.normalize(path)
 
 
 def _write_usd(path: Path, subject: Subject) -> None:
@@ -91,20 +88,6 @@ def _export(operator: Callable[..., set[str]], **properties: object) -> None:
         "FINISHED"
     }:
         raise RefusalError("Blender's exporter has written nothing")
-
-
-_DATE = re.compile(rb"_ai_DateWritten=([^;\0]*)")
-_EPOCH = b"Thu Jan  1 00:00:00 1970"
-
-
-def _remove_date(path: Path) -> None:
-    """Puts a fixed date in place of the one at which the archive was written."""
-    with path.open("r+b") as file, mmap.mmap(file.fileno(), 0) as contents:
-        start = contents.rfind(b"_ai_DateWritten=")
-        date = _DATE.match(contents, max(start, 0))
-        if not date:
-            raise RefusalError("Blender's exporter has written an archive without a date")
-        contents[date.start(1) : date.end(1)] = _EPOCH.ljust(len(date[1]))[: len(date[1])]
 
 
 FORMATS = {
