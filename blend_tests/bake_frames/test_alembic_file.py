@@ -14,6 +14,7 @@ from limit_surface.reading import attributes
 
 FLAG = bytes.fromhex("011c00000108") + b"meshtype"
 FALSE = bytes.fromhex("b55cff6ee5ab10468335f878aa2d6251") + b"\x00"
+FLAG_SIZE = 8 + len(FALSE)  # what a value takes that is not stored already
 RUNS = 12
 
 
@@ -63,7 +64,7 @@ def test_the_same_object_gives_the_same_bytes(tmp_path, make):
     assert b"_ai_DateWritten=Thu Jan  1 00:00:00 1970;" in contents
     assert FALSE not in contents
     assert (FLAG in contents) == (ob.type == "MESH")
-    assert len(contents) in originals
+    assert {abs(len(contents) - size) for size in originals} <= {0, FLAG_SIZE}
     assert [file.name for file in tmp_path.iterdir()] == ["a.abc"]
 
 
