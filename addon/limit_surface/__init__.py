@@ -6,6 +6,7 @@ import atexit
 import bpy
 
 from . import (
+    attach,
     bake_displacement,
     bake_frames,
     bake_maps,
@@ -34,6 +35,7 @@ _parts = (
     report,
     curvature,
     follow,
+    attach,
     limit_mesh,
     bake_maps,
     bake_displacement,

@@ -95,6 +95,7 @@ POINTS_TABLE = "Limit Points"
 TILES_TABLE = "Limit Tiles"
 CURVE_TABLE = "Limit Curve"
 CARRIER = "Limit Carrier"
+CARRIER_MARK = "limit_surface_carrier"  # custom property of carriers
 PROXY_OBJECT = "Limit Proxy"
 CAGE_POSITION = "cage_position"
 CAGE_COUNT = "cage_count"

@@ -6,7 +6,7 @@ import follow_truth
 import numpy as np
 import pytest
 import scenes
-from follow_scenes import deforming
+from follow_scenes import check_hair, deforming
 from limit_surface import ids
 from limit_surface.placing.followers import curve_table
 from limit_surface.reading import attributes
@@ -253,3 +253,28 @@ def test_a_curve_goes_back_to_rest():
     assert not made.modifiers
     assert [m.type for m in ob.modifiers] == ["WAVE", "SUBSURF"]
     np.testing.assert_allclose(outline(made), control_points(made)[:, 0], atol=1e-6)
+
+
+def test_curves_are_rebound_at_their_closest_places():
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, per_side=2, follow="NODES")
+    first, second = curve(ob, ("POLY",), "A"), curve(ob, ("BEZIER",), "B")
+    follow(first, ob)
+    follow(second, ob)
+    bpy.context.scene.frame_set(1)
+    for modifier in ob.modifiers:  # another control mesh: the faces of before do not hold
+        modifier.show_viewport = modifier.type != "WAVE"
+    ob.shape_key_clear()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    follow_truth.animate(ob)
+    ob.modifiers.move(len(ob.modifiers) - 1, 0)
+    for each in bpy.context.selected_objects:
+        each.select_set(False)
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    check(first, ob)
+    check(second, ob)
+    check_hair(ob, hair)

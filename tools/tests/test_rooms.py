@@ -17,6 +17,7 @@ ADDON = Path(__file__).resolve().parents[2] / "addon/limit_surface"
 MOST_IN_ROOT = 6
 ROOMS = ("reading", "tasks", "images", "nodes", "placing")
 CAPABILITIES = (
+    "attach",
     "bake_displacement",
     "bake_frames",
     "bake_maps",

@@ -93,14 +93,14 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
             for ob in curves:
                 curve_points.check(ob, on)
             relocated = newcomers.relocations(things, on, depsgraph)
-            request = following.Request(on, depsgraph, things, self.use_proxy, relocated)
+            request = following.Request(
+                on, depsgraph, things, self.use_proxy, relocated, without=curves
+            )
             requests.append((request, things, on, curves))
         made = [request.compute() for request, things, _on, _curves in requests if things]
         outcomes = [bindings.write() for bindings in made]
         for _request, _things, on, curves in requests:
-            for ob in curves:
-                depsgraph = context.evaluated_depsgraph_get()
-                outcomes.append(curve_points.bind(ob, on, depsgraph, self.use_proxy))
+            outcomes += curve_points.bind(curves, on, context, self.use_proxy)
         lines = [str(outcome) for outcome in outcomes]
         self.summary = "\n".join(lines)
         self.report({"INFO"}, "; ".join(lines))

@@ -91,7 +91,7 @@ class OBJECT_OT_limit_rebind(SummaryProperty, bpy.types.Operator):
         depsgraph = context.evaluated_depsgraph_get()
         limit = self.distance or math.inf
         rebindings = [Rebinding(on, depsgraph, self.method, limit) for on in surfaces]
-        done = [rebinding.write() for rebinding in rebindings]
+        done = [rebinding.write(context) for rebinding in rebindings]
         for rebound in done:
             if rebound.warning:
                 self.report({"WARNING"}, rebound.warning)

@@ -100,6 +100,14 @@ def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
     return modifier.get(key) if inputs is None else getattr(inputs, key).value
 
 
+def object_inputs(modifier: bpy.types.NodesModifier) -> Iterator[bpy.types.Object | None]:
+    """Yields the objects that are inputs of a modifier, whatever its group."""
+    for item in modifier.node_group.interface.items_tree if modifier.node_group else ():
+        is_input = item.item_type == "SOCKET" and item.in_out == "INPUT"
+        if is_input and item.socket_type == "NodeSocketObject":
+            yield get_input(modifier, item.name)
+
+
 def _inputs(modifier: bpy.types.NodesModifier) -> Any:
     """Returns the holder of the inputs from Blender 5.2 on; before, the modifier holds them."""
     return getattr(getattr(modifier, "properties", None), "inputs", None)

@@ -5,6 +5,8 @@ was closest to it. The places are on the vertices of a hidden table.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
 import numpy as np
 
@@ -22,17 +24,32 @@ from .rotations import WorldSpace
 
 
 def bind(
-    ob: bpy.types.Object,
+    curves: Sequence[bpy.types.Object],
     surface: bpy.types.Object,
-    depsgraph: bpy.types.Depsgraph,
+    context: bpy.types.Context,
     use_proxy: bool | None = None,
-) -> following.Outcome:
-    """Makes a Curve object follow, also one that does already: its control points get new places.
+) -> list[following.Outcome]:
+    """Makes Curve objects follow, also such that do already: their control points get new places.
 
     Raises RefusalError where that cannot be; nothing has changed then.
     """
-    check(ob, surface)
-    request = following.Request(surface, depsgraph, use_proxy=use_proxy, without=ob)
+    for ob in curves:
+        check(ob, surface)
+    return [
+        _bind(ob, surface, context.evaluated_depsgraph_get(), use_proxy, curves[i:])
+        for i, ob in enumerate(curves)
+    ]
+
+
+def _bind(
+    ob: bpy.types.Object,
+    surface: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    use_proxy: bool | None,
+    waiting: Sequence[bpy.types.Object],
+) -> following.Outcome:
+    """Binds the first of the curves that wait."""
+    request = following.Request(surface, depsgraph, use_proxy=use_proxy, without=waiting)
     points = splines.positions(ob.data)
     places = _places(ob, points, surface, depsgraph)
     made = request.compute(places.locations)

@@ -98,9 +98,9 @@ def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
         ob
         for ob in bpy.data.objects
         if ob.library is None
+        and modifier_of(ob) is None
         and is_placed(ob)
         and ids.TILE in ob.data.attributes
-        and modifier_of(ob) is None
         and surface_of(ob) == surface
     ]
 

@@ -50,7 +50,7 @@ class Request:
     where Blender's data need not be touched, and written. All that follows the surface already is
     bound again with it, because the tables are made for all of it together.
 
-    `without` is a thing that is about to get other locations.
+    `without` are things that are about to get other locations.
 
     With a proxy the viewport stays fast (see `proxy`); None keeps what there was.
 
@@ -64,12 +64,12 @@ class Request:
         things: Sequence[bpy.types.Object] = (),
         use_proxy: bool | None = None,
         relocated: Sequence[Relocation] = (),
-        without: bpy.types.Object | None = None,
+        without: Sequence[bpy.types.Object] = (),
     ) -> None:
         check_surface(surface, depsgraph.scene)
         for ob in things:
             check_thing(ob, surface)
-        followers = [ob for ob in followers_of(surface) if ob != without]
+        followers = [ob for ob in followers_of(surface) if ob not in without]
         for ob in followers:
             check_thing(ob, surface)
         self._surface, self._use_proxy = ObjectKey.of(surface), use_proxy

@@ -14,7 +14,7 @@ from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes, cage, uv_map
 from ..tasks.refused_faces import check_some_left
-from . import following
+from . import curve_points, following
 from .followers import followers_of, strays_of
 from .newcomers import bound_at_closest, put_places
 from .places import NOWHERE
@@ -81,7 +81,12 @@ class Rebinding:
         max_distance: float = math.inf,
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
-        things = [*followers_of(surface), *strays_of(surface)]
+        bound = [*followers_of(surface), *strays_of(surface)]
+        # Curve objects store no places that could be kept: they always get the closest ones.
+        self._curves = [ob for ob in bound if ob.type == "CURVE"]
+        things = [ob for ob in bound if ob.type != "CURVE"]
+        for ob in self._curves:
+            curve_points.check(ob, surface)
         for ob in things:
             following.check_thing(ob, surface)
         blocks = {ob.data: ob for ob in reversed(things)}
@@ -97,21 +102,28 @@ class Rebinding:
             else:
                 find = _ByFace(posed)
             self._relocations = [_relocation(ob, posed, find) for ob in blocks.values()]
-        self._surface, self._names = surface.name, [ob.name for ob in things]
+        self._target = surface
+        self._surface, self._names = surface.name, [ob.name for ob in bound]
         self._reason = find.reason
-        request = following.Request(surface, depsgraph, things, relocated=self._relocations)
-        self._bindings = request.compute()
+        request = following.Request(
+            surface, depsgraph, things, relocated=self._relocations, without=self._curves
+        )
+        self._bindings = request.compute() if things else None
 
-    def write(self) -> Rebound:
+    def write(self, context: bpy.types.Context) -> Rebound:
         """Changes the file."""
-        self._bindings.write()
+        if self._bindings:
+            self._bindings.write()
+        curve_points.bind(self._curves, self._target, context)
         for relocation in self._relocations:
             if len(relocation.lost):
                 _select(relocation)
         return Rebound(
             self._surface,
             self._names,
-            np.concatenate([relocation.distances for relocation in self._relocations]),
+            np.concatenate(
+                [np.empty(0), *(relocation.distances for relocation in self._relocations)]
+            ),
             sum(len(relocation.lost) for relocation in self._relocations),
             self._reason,
         )

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_attach."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from .. import ids, native
+from ..errors import RefusalError
+from ..placing import dependencies, following
+from ..placing.binding import Binding
+from ..placing.followers import modifier_of
+from ..placing.mending import mended
+from ..placing.posed_surface import PosedSurface, at_closest
+from ..reading import cage
+from ..tasks.properties import SummaryProperty, draw_summary
+from ..tasks.refused_faces import check_some_left
+from .carrier import Extension, is_carrier
+from .parenting import attach, parent_matrices
+
+_WORLD = np.eye(4)
+_NOTHING = (
+    "Select the objects to attach, and then the mesh that they are to follow as the active one"
+)
+
+
+class OBJECT_OT_limit_attach(SummaryProperty, bpy.types.Operator):
+    """Attach the selected objects to the active mesh: each follows the point of the limit surface
+    that is closest to it now, however the mesh deforms"""
+
+    bl_idname = ids.ATTACH
+    bl_label = "Attach to Limit Surface"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        surface = context.active_object
+        if not native.available():
+            cls.poll_message_set(native.obstacle())
+        elif context.mode != "OBJECT":
+            cls.poll_message_set("Only available in Object Mode")
+        elif surface is None or surface.type != "MESH" or not _others(context):
+            cls.poll_message_set(_NOTHING)
+        else:
+            return True
+        return False
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
+        try:
+            with mended():
+                return self._attach(context)
+        except native.refusals as error:
+            self.report({"ERROR"}, str(error))
+        except MemoryError:
+            self.report({"ERROR"}, "There is not enough memory for the tables")
+        return {"CANCELLED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        draw_summary(self.layout, self.summary)
+
+    def _attach(self, context: bpy.types.Context) -> set[str]:
+        surface, objects = context.active_object, _others(context)
+        context.view_layer.update()
+        depsgraph = context.evaluated_depsgraph_get()
+        following.check_surface(surface, depsgraph.scene)
+        _check(objects, surface)
+
+        posed = PosedSurface(cage.read(surface, depsgraph))
+        check_some_left(posed.in_world, surface.name)
+        origins = np.array([ob.matrix_world.translation for ob in objects], np.float64)
+        locations = at_closest(posed, posed.in_world.closest(origins))
+        binding = Binding.at(posed, locations, _WORLD)
+        places = posed.places(locations.face, locations.uv.astype(np.float64), _WORLD)
+        size = float(np.abs(posed.in_world.positions).max())
+
+        attached = [i for i, ob in enumerate(objects) if ob.parent]
+        was = np.tile(_WORLD, (len(objects), 1, 1))
+        if attached:
+            held_by = [(objects[i].parent, objects[i].parent_vertices) for i in attached]
+            was[attached] = parent_matrices(context, held_by)
+        new = Extension(surface, depsgraph, binding, places, size)
+        now = parent_matrices(context, [(new.carrier, vertices) for vertices in new.vertices])
+        for ob, vertices, before, after in zip(objects, new.vertices, was, now, strict=True):
+            attach(ob, new.carrier, vertices, before, after)
+        context.view_layer.update()
+        self._report(
+            surface, len(objects), len(attached), np.linalg.norm(origins - places.position, axis=1)
+        )
+        return {"FINISHED"}
+
+    def _report(
+        self, surface: bpy.types.Object, count: int, again: int, distances: np.ndarray
+    ) -> None:
+        are = "object is" if count == 1 else "objects are"
+        self.summary = f"{count:,} {are} attached to {surface.name}"
+        if again:
+            self.summary += f", {again:,} of them anew"
+        self.summary += f", at a distance of up to {distances.max():.4g}"
+        self.report({"INFO"}, self.summary)
+
+
+def _others(context: bpy.types.Context) -> list[bpy.types.Object]:
+    return [ob for ob in context.selected_objects if ob != context.active_object]
+
+
+def _check(objects: list[bpy.types.Object], surface: bpy.types.Object) -> None:
+    """Raises RefusalError for the first object that cannot be attached."""
+    needed = dependencies.needed_by(surface)
+    for ob in objects:
+        if not ob.is_editable:
+            raise RefusalError(
+                f"{ob.name} is linked from another file: make it local, or make a library override"
+            )
+        if modifier_of(ob):
+            raise RefusalError(f"{ob.name} follows a surface by nodes: unbind it first")
+        if ob in needed:
+            raise RefusalError(
+                f"{ob.name} cannot be attached to {surface.name}, which depends on it"
+            )
+        if ob.parent and not (is_carrier(ob.parent) and ob.parent_type == "VERTEX_3"):
+            raise RefusalError(
+                f"{ob.name} has the parent {ob.parent.name}: clear it first (Clear and Keep "
+                "Transformation), or attach the parent"
+            )
