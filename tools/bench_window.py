@@ -23,17 +23,18 @@ from session import BlenderSession, virtual_screen, wait_until  # noqa: E402
 from test_textures import BAKE_MAPS, LONG_BAKE  # noqa: E402
 from test_waiting import ADD_POINTS, MOST  # noqa: E402
 
-ANSWERS = 20  # the number of the window's answers that are measured
+DRAWINGS = 20  # the number of drawings of the window that are measured
 
 
 def measured(blender: BlenderSession) -> list[tuple[str, float, float]]:
     """Returns the name of what is measured, and its median and largest time in seconds."""
     rows = [(f"Dragging, {name}", *summary(times)) for name, times in moves(blender)]
-    waiting, escape = bake(blender)
-    rows.append(("The window's answer while maps are baked", *summary(waiting)))
-    rows.append(("ESC while maps are baked", escape, escape))
+    idle, baking, escape = bake(blender)
+    rows.append(("Drawing the whole window", *summary(idle)))
+    rows.append(("Drawing the whole window while maps are baked", *summary(baking)))
+    rows.append(("ESC until the bake has ended", escape, escape))
     escape = scatter(blender)
-    rows.append(("ESC while points are scattered", escape, escape))
+    rows.append(("ESC until the scattering has ended", escape, escape))
     return rows
 
 
@@ -48,22 +49,28 @@ def moves(blender: BlenderSession) -> list[tuple[str, np.ndarray]]:
     return list(found._asdict().items())
 
 
-def bake(blender: BlenderSession) -> tuple[np.ndarray, float]:
-    """Returns the times of the window's answers, and the time from ESC to the end of all
-    threads.
+def bake(blender: BlenderSession) -> tuple[np.ndarray, np.ndarray, float]:
+    """Returns the times of drawings before and during a bake, and the time from ESC to the end of
+    all its threads.
     """
     blender.new_file()
     blender.call("textured_sheet", 0.35)
     blender.settle()
     threads = blender.call("threads")
-    before = blender.pixels(blender.screenshot("bench_before"))
+    idle = drawings(blender)
+    before = blender.screenshot("bench_before")
     with tempfile.TemporaryDirectory() as folder:
         blender.call("start", BAKE_MAPS, **LONG_BAKE, folder=folder)
         blender.await_dialog(before)
         blender.key("Return")
         await_start(blender)
-        answers = [seconds(lambda: blender.call("redraw")) for _ in range(ANSWERS)]
-        return np.array(answers), seconds(lambda: escape(blender, threads))
+        baking = drawings(blender)
+        return idle, baking, seconds(lambda: escape(blender, threads))
+
+
+def drawings(blender: BlenderSession) -> np.ndarray:
+    """Returns the times of rounds of the main loop in which everything is drawn."""
+    return np.array([seconds(lambda: blender.call("redraw")) for _ in range(DRAWINGS)])
 
 
 def scatter(blender: BlenderSession) -> float:

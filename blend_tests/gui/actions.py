@@ -22,6 +22,13 @@ def redraw() -> None:
         area.tag_redraw()
 
 
+def smooth_lines(on: bool) -> None:
+    """Sets anti-aliasing, with which the viewport is drawn once for each sample: without a graphics
+    card that takes long.
+    """
+    bpy.context.preferences.system.viewport_aa = "8" if on else "OFF"
+
+
 def view() -> tuple[bpy.types.Area, bpy.types.Region]:
     area = next(a for a in bpy.context.window.screen.areas if a.type == "VIEW_3D")
     return area, region(area, "WINDOW")

@@ -13,18 +13,22 @@ import bpy
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "docs")]
+preferences = bpy.context.preferences
 # Both would intercept clicks.
-bpy.context.preferences.view.show_splash = False
-bpy.context.preferences.view.show_tooltips = False
+preferences.view.show_splash = False
+preferences.view.show_tooltips = False
 
 import actions  # noqa: E402
 import texture_actions  # noqa: E402
 
-POLL = 0.01  # seconds
-#: The number of rounds of the main loop, POLL apart, in which an event and everything that follows
-#: from it is handled (a button is lit for 0.02 s before it acts). In the last DRAWN of them
-#: everything is drawn.
-ROUNDS, DRAWN = 8, 2
+actions.smooth_lines(False)
+
+POLL = 0.005  # seconds
+#: The number of rounds of the main loop, at least POLL apart, in which an event and everything that
+#: follows from it is handled. A round reads all events that have come to the window, handles them,
+#: calls `tick`, and draws what has changed. What is drawn anew under the mouse gets a move of the
+#: mouse in the next round, and a button that is used by a key is lit for 0.02 s before it acts.
+ROUNDS = 6
 ACTIONS = {**vars(actions), **vars(texture_actions)}
 
 
@@ -39,8 +43,6 @@ def serve() -> None:
             connection = listener.accept()
         if rounds:
             rounds -= 1
-            if 0 < rounds <= DRAWN:
-                outcome("redraw", (), {})
             if rounds == 0:
                 connection.send((False, None))
         while not rounds and connection.poll():

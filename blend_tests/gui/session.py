@@ -3,19 +3,23 @@
 
 `session.call("name", ...)` runs a function of actions.py or texture_actions.py within Blender;
 mouse and keys are X11's. Nothing here waits for a fixed time: after each input Blender's main loop
-goes round some times, and whatever comes later than that is polled for.
+goes round some times, and whatever comes later than that is polled for. Blender draws what has
+changed; pictures are read from the memory of the screen.
 """
 
 import os
 import re
 import shutil
+import struct
 import subprocess
 import time
+import zlib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from multiprocessing.connection import Client
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -30,25 +34,40 @@ ROW = 20  # the height of a button in pixels
 TAB_STRIP = 22  # the width in pixels of the strip of tabs at the sidebar's right edge
 MOST_ENTRIES = 30  # the largest number of entries in a menu
 CONFIRMATION = (71, 114, 179)  # the color of a dialog's OK button
+XWD_COLOR = 12  # bytes of each entry in the table of colors of X11's format XWD
 ADDON = "bl_ext.user_default.limit_surface"
 
 
+class Screen(NamedTuple):
+    display: str  # X11's name
+    picture: Path  # what it shows, in X11's format XWD
+
+    def pixels(self) -> np.ndarray:
+        """Returns pixels (rows, columns, 3) from 0 to 255."""
+        content = self.picture.read_bytes()
+        header = np.frombuffer(content, ">u4", 25)
+        begin = header[0] + XWD_COLOR * header[19]
+        stored = np.frombuffer(content, np.uint8, 4 * WIDTH * HEIGHT, begin)
+        return stored.reshape(HEIGHT, WIDTH, 4)[:, :, 2::-1]  # blue, green, red and a spare byte
+
+
 @contextmanager
-def virtual_screen() -> Iterator[str]:
+def virtual_screen() -> Iterator[Screen]:
     read, write = os.pipe()
     size = f"{WIDTH}x{HEIGHT}x24"
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write), "-screen", "0", size, "+extension", "GLX"],
-        pass_fds=[write],
-        stderr=subprocess.DEVNULL,
-    )
-    os.close(write)
-    try:
-        with os.fdopen(read) as display:
-            yield f":{display.readline().strip()}"
-    finally:
-        server.terminate()
-        server.wait()
+    with TemporaryDirectory() as folder:
+        server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", size, "-nocursor", "-fbdir", folder],
+            pass_fds=[write],
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(write)
+        try:
+            with os.fdopen(read) as display:
+                yield Screen(f":{display.readline().strip()}", Path(folder, "Xvfb_screen0"))
+        finally:
+            server.terminate()
+            server.wait()
 
 
 def install_extension(user: Path) -> str:
@@ -66,6 +85,20 @@ def install_extension(user: Path) -> str:
     return done.stdout
 
 
+def write_png(path: Path, pixels: np.ndarray) -> None:
+    """Writes pixels (rows, columns, 3) from 0 to 255."""
+
+    def chunk(kind: bytes, content: bytes) -> bytes:
+        checked = kind + content
+        return struct.pack(">I", len(content)) + checked + struct.pack(">I", zlib.crc32(checked))
+
+    height, width, _ = pixels.shape
+    header = struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)
+    rows = np.insert(pixels.reshape(height, -1), 0, 0, axis=1)  # each row begins with its filter
+    parts = [(b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 1)), (b"IEND", b"")]
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunk(*part) for part in parts))
+
+
 def is_near(pixels: np.ndarray, color: Sequence[int]) -> np.ndarray:
     return (np.abs(pixels.astype(int) - color) < 12).all(axis=2)
 
@@ -80,6 +113,11 @@ def wait_until(look: Callable[[], Any], what: str) -> Any:
     return seen
 
 
+def on_screen(x: float, y: float) -> tuple[int, int]:
+    """Returns X11's coordinates for a place counted from the window's lower left, as in Blender."""
+    return round(x), HEIGHT - 1 - round(y)
+
+
 def class_name(operator: str) -> str:
     """Returns the name by which Blender knows the class of an operator in bpy.ops."""
     category, name = operator.split(".")
@@ -87,12 +125,15 @@ def class_name(operator: str) -> str:
 
 
 class BlenderSession:
-    def __init__(self, display: str, user: Path) -> None:
+    def __init__(self, screen: Screen, user: Path) -> None:
+        self._screen = screen
+        # where something was found the last time: it is searched there first
+        self._heights: dict[str, float] = {}
         self.installed = install_extension(user)
         address = user / "socket"
         self._environment = {
             **os.environ,
-            "DISPLAY": display,
+            "DISPLAY": screen.display,
             "LIBGL_ALWAYS_SOFTWARE": "1",
             "BLENDER_USER_RESOURCES": str(user),
             "LIMIT_SURFACE_SOCKET": str(address),
@@ -156,13 +197,13 @@ class BlenderSession:
         self.move(*self.call("view_centre"))
 
     def settle(self) -> None:
-        """Waits until all input has been handled and drawn."""
+        """Waits until all input has been handled, and what it has changed has been drawn."""
         self.call("settle")
 
     # Mouse positions are counted from the window's lower left, as in Blender.
 
     def move(self, x: float, y: float) -> None:
-        self._xdotool("mousemove", round(x), HEIGHT - 1 - round(y))
+        self._xdotool("mousemove", *on_screen(x, y))
         self.settle()
 
     def click(self, x: float, y: float, button: int = 1) -> None:
@@ -170,7 +211,7 @@ class BlenderSession:
         self.press(button)
 
     def press(self, button: int = 1) -> None:
-        self._xdotool("mousedown", button, "sleep", 0.05, "mouseup", button)
+        self._xdotool("mousedown", button, "mouseup", button)
         self.settle()
 
     def drag(self, start: Sequence[float], end: Sequence[float]) -> None:
@@ -198,31 +239,33 @@ class BlenderSession:
         self.call("show_sidebar")
         self.settle()
         bar = self.call("sidebar")
-        for y in range(bar["top"] - 20, bar["bottom"], -20):
+
+        def is_open(y: float) -> bool:
             self.click(bar["right"] - TAB_STRIP / 2, y)
-            if self.call("sidebar")["tab"] == "Limit":
-                return
-        raise AssertionError("no tab Limit in the sidebar")
+            return self.call("sidebar")["tab"] == "Limit"
+
+        self._search("the tab Limit", is_open, bar["top"] - ROW, bar["bottom"], ROW)
 
     def open_panel(self, panel: str) -> float:
-        """Opens a panel in the open tab: the key A above a panel's header, and only there, opens
-        and closes it. Returns a place at or above its buttons.
+        """Opens a closed panel in the open tab by the key A above its header. Returns a place at or
+        above its buttons.
         """
         self.call("count_draws", panel)
         bar = self.call("sidebar")
         x = (bar["left"] + bar["right"] - TAB_STRIP) / 2
-        for y in range(bar["top"] - ROW // 2, bar["bottom"], -ROW // 2):
-            self.move(x, y)
-            for _ in range(2):
-                if self._is_drawn(panel):
-                    return y
-                self.key("a")
-        raise AssertionError(f"no header of {panel} in the sidebar")
 
-    def _is_drawn(self, panel: str) -> bool:
-        before = self.call("draws", panel)
-        self.settle()
-        return self.call("draws", panel) > before
+        def is_opened(y: float) -> bool:
+            self.move(x, y)
+            before = self._screen.pixels()
+            self.key("a")
+            # Another panel is opened or closed again, which may bring this one to the mouse.
+            if not self.call("draws", panel) and not np.array_equal(self._screen.pixels(), before):
+                self.key("a")
+            return self.call("draws", panel) > 0
+
+        return self._search(
+            f"the header of {panel}", is_opened, bar["top"] - ROW / 2, bar["bottom"], ROW / 2
+        )
 
     def find_button(self, command: str, top: float | None = None) -> tuple[float, float]:
         """Returns where in the open tab, or below a given height, the button of an operator is, by
@@ -236,11 +279,13 @@ class BlenderSession:
         """Waits for a dialog and returns the place of its OK button, given the picture before it
         opened.
         """
-        return wait_until(lambda: self._confirmation(before), "a dialog with an OK is open")
+        return wait_until(lambda: self.find_confirmation(before), "a dialog with an OK is open")
 
-    def _confirmation(self, before: np.ndarray) -> tuple[float, float] | None:
-        """Returns the lowest of the places that have become blue."""
-        now = self.pixels(self.screenshot("dialog"))
+    def find_confirmation(self, before: np.ndarray) -> tuple[float, float] | None:
+        """Returns the place of the OK button of the open dialog, if there is one: the lowest of the
+        places that have become blue.
+        """
+        now = self.screenshot("dialog")
         blue = is_near(now, CONFIRMATION) & ~is_near(before, CONFIRMATION)
         rows = np.flatnonzero(blue.sum(axis=1) > ROW)
         if len(rows) == 0:
@@ -279,40 +324,56 @@ class BlenderSession:
         """
         copied_here = re.compile(re.escape(copied) + r"(?!\d)")
         self.call("clear_clipboard")
-        for y in range(round(top), round(bottom), -ROW * 3 // 4):
-            self.move(x, y)
-            self.key("ctrl+c")
-            if copied_here.match(self.call("clipboard")):
-                return x, y
-        raise AssertionError(f"nothing that copies {copied!r} between {top} and {bottom} at {x}")
 
-    def screenshot(self, name: str) -> Path:
-        """Returns a picture of the screen, once nothing moves on it any more."""
-        path = OUT / f"{name}.png"
-        before = b""
+        def is_here(y: float) -> bool:
+            self._xdotool("mousemove", *on_screen(x, y), "key", "ctrl+c")
+            self.settle()
+            return copied_here.match(self.call("clipboard")) is not None
+
+        return x, self._search(f"what copies {copied!r}", is_here, top, bottom, ROW * 3 / 4)
+
+    def _search(
+        self, what: str, is_here: Callable[[float], bool], top: float, bottom: float, step: float
+    ) -> float:
+        """Returns the height at which something is found, searching downwards. Where it was found
+        the last time is looked at first.
+        """
+        heights = np.arange(top, bottom, -step).tolist()
+        last = self._heights.get(what)
+        if last is not None and bottom < last <= top:
+            heights.insert(0, last)
+        for y in heights:
+            if is_here(y):
+                self._heights[what] = y
+                return y
+        raise AssertionError(f"{what} is not between the heights {top} and {bottom}")
+
+    def screenshot(self, name: str) -> np.ndarray:
+        """Returns the pixels (rows, columns, 3) of the screen, from 0 to 255, once everything has
+        been drawn and nothing moves any more.
+        """
+        self.call("redraw")
+        pixels = self._still()
+        write_png(OUT / f"{name}.png", pixels)
+        return pixels
+
+    def _still(self) -> np.ndarray:
+        """Returns what the screen shows, once nothing moves on it any more."""
+        shown = None
 
         def is_still() -> bool:
-            nonlocal before
+            nonlocal shown
             self.settle()
-            self.picture(path)
-            shown, before = before, self.pixels(path).tobytes()
-            return shown == before
+            before, shown = shown, self._screen.pixels()
+            return np.array_equal(before, shown)
 
-        wait_until(is_still, f"the screen is still for {path.name}")
-        return path
+        wait_until(is_still, "the screen is still")
+        return shown
 
-    def picture(self, path: Path) -> None:
-        """Returns a picture of the screen as it is."""
-        self._run("import", "-window", "root", path)
-
-    def pixels(self, picture: Path) -> np.ndarray:
-        """Returns pixels (rows, columns, 3) from 0 to 255."""
-        command = ["convert", picture, "-depth", "8", "rgb:-"]
-        raw = subprocess.run(command, capture_output=True, check=True, timeout=LIMIT).stdout
-        return np.frombuffer(raw, np.uint8).reshape(HEIGHT, WIDTH, 3)
+    def picture(self, name: str) -> None:
+        """Writes a picture of the screen as it is."""
+        write_png(OUT / f"{name}.png", self._screen.pixels())
 
     def _xdotool(self, *words: object) -> None:
-        self._run("xdotool", *map(str, words))
-
-    def _run(self, *command: object) -> None:
+        command = ("xdotool", *map(str, words))
         subprocess.run(command, env=self._environment, check=True, timeout=LIMIT)
