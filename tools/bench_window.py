@@ -69,8 +69,7 @@ def bake(blender: BlenderSession) -> tuple[np.ndarray, np.ndarray, float]:
 
 
 def drawings(blender: BlenderSession) -> np.ndarray:
-    """Returns the times of rounds of the main loop in which everything is drawn."""
-    return np.array([seconds(lambda: blender.call("redraw")) for _ in range(DRAWINGS)])
+    return np.array([blender.call("time_of_drawing") for _ in range(DRAWINGS)])
 
 
 def scatter(blender: BlenderSession) -> float:

@@ -22,6 +22,13 @@ def redraw() -> None:
         area.tag_redraw()
 
 
+def time_of_drawing() -> float:
+    """Draws the whole window and returns the seconds that this took."""
+    start = time.perf_counter()
+    bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+    return time.perf_counter() - start
+
+
 def smooth_lines(on: bool) -> None:
     """Sets anti-aliasing, with which the viewport is drawn once for each sample: without a graphics
     card that takes long.
