@@ -22,6 +22,7 @@ from . import (
     snap_modal,
     ui,
 )
+from .follow import stale
 from .images import pixel_undo
 from .placing import live_count
 
@@ -57,6 +58,7 @@ def register() -> None:
     snap.attach_settings()
     live_count.attach_handlers()
     pixel_undo.attach_handlers()
+    stale.attach_handlers()
     bake_frames.attach_command()
     ui.append_menus()
     if _is_module:
@@ -67,6 +69,7 @@ def unregister() -> None:
     atexit.unregister(unregister)
     ui.remove_menus()
     bake_frames.detach_command()
+    stale.detach_handlers()
     pixel_undo.detach_handlers()
     live_count.detach_handlers()
     snap.detach_settings()

@@ -169,6 +169,33 @@ def test_another_number_of_points_stays_at_rest_until_it_is_bound_anew():
     check(made, ob)
 
 
+@pytest.mark.parametrize("method", ["CLOSEST", "UV", "FACE"])
+def test_it_is_bound_again_after_a_change(method):
+    ob = deforming("grid with holes")
+    made = curve(ob)
+    follow(made, ob)
+    before = control_points(made)
+    if method == "FACE":
+        ob.modifiers["Subdivision"].boundary_smooth = "PRESERVE_CORNERS"
+    else:
+        mirror = ob.modifiers.new("Mirror", "MIRROR")
+        ob.modifiers.move(ob.modifiers.find(mirror.name), 0)
+    scenes.activate(made)
+    assert bpy.ops.object.limit_rebind(method=method) == {"FINISHED"}
+    np.testing.assert_array_equal(control_points(made), before)
+    check(made, ob)
+
+
+def test_added_control_points_are_bound_with_the_others():
+    ob = deforming("cross")
+    made = curve(ob, ("POLY",))
+    follow(made, ob)
+    made.data.splines[0].points.add(1)
+    scenes.activate(made)
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    check(made, ob)
+
+
 def test_it_plays_after_a_reload(tmp_path):
     ob = deforming("cross")
     follow(curve(ob), ob)

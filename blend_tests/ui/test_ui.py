@@ -63,6 +63,7 @@ def test_menu_offers_the_operators():
     offered = [call.args[0] for call in layout.operator.call_args_list]
     first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.SNAP_MODAL, ids.REPORT_OPERATOR]
     first.append(ids.ATTACH)
+    first += [ids.FOLLOW, ids.REBIND, ids.UNBIND]
     textures = drawn(bpy.types.VIEW3D_PT_limit_textures).column()
     assert textures.enabled is True
     then = [call.args[0] for call in textures.operator.call_args_list]

@@ -3,9 +3,15 @@
 
 import bpy
 
-from .. import ids
 from ..errors import RefusalError
-from ..placing.followers import followers_of, is_placed, modifier_of, strays_of, surface_of
+from ..placing.followers import (
+    followers_of,
+    is_placed,
+    modifier_of,
+    strays_of,
+    surface_of,
+    was_bound,
+)
 from ..placing.relocation import TYPES
 
 BINDABLE = (*TYPES, "CURVE")
@@ -64,8 +70,7 @@ def surfaces_of_selection(context: bpy.types.Context) -> list[bpy.types.Object]:
     """
     found: dict[bpy.types.Object, None] = {}
     for ob in selected(context):
-        bound = modifier_of(ob) or (is_placed(ob) and ids.TILE in ob.data.attributes)
-        surface = surface_of(ob) if bound else None
+        surface = surface_of(ob) if was_bound(ob) else None
         if surface is None and ob.type == "MESH" and (followers_of(ob) or strays_of(ob)):
             surface = ob
         if surface is not None:

@@ -31,7 +31,7 @@ class Kind(NamedTuple):
         return (
             group is not None
             and group.get(ids.GROUP_MARK) == self.mark
-            and all(n.node_tree for n in group.nodes if n.bl_idname == "GeometryNodeGroup")
+            and not has_lost_a_group(group)
         )
 
     def group(self) -> bpy.types.NodeTree:
@@ -42,6 +42,11 @@ class Kind(NamedTuple):
         group = self.build()
         group[ids.GROUP_MARK] = self.mark
         return group
+
+
+def has_lost_a_group(group: bpy.types.NodeTree) -> bool:
+    """Tells whether a group within it was deleted."""
+    return any(n.bl_idname == "GeometryNodeGroup" and not n.node_tree for n in group.nodes)
 
 
 def is_of(group: bpy.types.NodeTree | None, name: str) -> bool:

@@ -60,6 +60,9 @@ def _build() -> bpy.types.NodeTree:
             )
         )
     )
+    # without the table of points all tiles would lie at the origin
+    count = tree.get("GeometryNodeAttributeDomainSize", points, component="MESH")
+    fits = tree.both(fits, tree.compare("GREATER_THAN", count, tree.inputs["Cage Count"]))
     return tree.finish(Geometry=tree.store(table, ids.CAGE_FITS, fits, "INT"))
 
 

@@ -81,6 +81,12 @@ def check(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
         raise RefusalError(f"{ob.name} has no control points")
 
 
+def has_others(ob: bpy.types.Object) -> bool:
+    """Tells whether the number of control points is not that of before."""
+    table = curve_table(ob)
+    return table is None or len(table.data.vertices) != len(splines.positions(ob.data))
+
+
 def _places(
     ob: bpy.types.Object,
     points: np.ndarray,

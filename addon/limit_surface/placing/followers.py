@@ -99,10 +99,17 @@ def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
         for ob in bpy.data.objects
         if ob.library is None
         and modifier_of(ob) is None
-        and is_placed(ob)
-        and ids.TILE in ob.data.attributes
+        and was_bound(ob)
         and surface_of(ob) == surface
     ]
+
+
+def was_bound(ob: bpy.types.Object) -> bool:
+    """Tells whether the object follows a surface, or did and has lost its modifier."""
+    if modifier_of(ob):
+        return True
+    holder = holder_of(ob)
+    return holder is not None and is_placed(ob) and ids.TILE in holder.attributes
 
 
 def ensure_modifier(

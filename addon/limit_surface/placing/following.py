@@ -197,6 +197,7 @@ def ensure_capture(surface: bpy.types.Object) -> None:
     modifier = next(groups.modifiers(surface, ids.CAPTURE_GROUP), None)
     if modifier is None:
         modifier = groups.add_modifier(surface, CAPTURE)
+    modifier.show_viewport = modifier.show_render = True
     here = surface.modifiers.find(modifier.name)
     there = surface.modifiers.find(subsurf.name) if subsurf else len(surface.modifiers)
     wanted = there - 1 if here < there else there

@@ -50,7 +50,12 @@ def mended() -> Iterator[None]:
 
 
 def is_broken(ob: bpy.types.Object) -> bool:
-    return any(True for kind in _KINDS for _modifier in groups.without_group(ob, kind.name))
+    """Tells whether one of these modifiers has lost its group, or its group one within it."""
+    return any(True for kind in _KINDS for _modifier in groups.without_group(ob, kind.name)) or any(
+        groups.has_lost_a_group(modifier.node_group)
+        for kind in _KINDS
+        for modifier in groups.modifiers(ob, kind.name)
+    )
 
 
 def _broken() -> Iterator[tuple[bpy.types.NodesModifier, groups.Kind]]:

@@ -46,7 +46,7 @@ def bound_at_closest(
     elements: Elements, posed: PosedSurface, rows: np.ndarray, max_distance: float = math.inf
 ) -> Relocation:
     """Binds some elements where they are. Those beyond the distance (world units) are lost."""
-    hits = posed.in_world.closest(elements.roots()[rows], max_distance)
+    hits = posed.in_world.closest(elements.first_points()[rows], max_distance)
     found = hits.face >= 0
     relocation = Relocation(elements, lost=rows[~found], distances=np.zeros(int(found.sum())))
     put_places(relocation, posed, rows[found], hits.face[found], hits.uv[found])

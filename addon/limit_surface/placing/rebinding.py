@@ -15,7 +15,7 @@ from ..errors import RefusalError
 from ..reading import attributes, cage, uv_map
 from ..tasks.refused_faces import check_some_left
 from . import curve_points, following
-from .followers import followers_of, strays_of
+from .followers import followers_of, holder_of, strays_of
 from .newcomers import bound_at_closest, put_places
 from .places import NOWHERE
 from .posed_surface import PosedSurface, transformed
@@ -82,14 +82,14 @@ class Rebinding:
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
         bound = [*followers_of(surface), *strays_of(surface)]
-        # Curve objects store no places that could be kept: they always get the closest ones.
-        self._curves = [ob for ob in bound if ob.type == "CURVE"]
-        things = [ob for ob in bound if ob.type != "CURVE"]
+        # For control points that were added there are no places that could be kept.
+        self._curves = [ob for ob in bound if ob.type == "CURVE" and curve_points.has_others(ob)]
+        things = [ob for ob in bound if ob not in self._curves]
         for ob in self._curves:
             curve_points.check(ob, surface)
         for ob in things:
             following.check_thing(ob, surface)
-        blocks = {ob.data: ob for ob in reversed(things)}
+        blocks = {holder_of(ob): ob for ob in reversed(things)}
         with cage.opened(surface, depsgraph) as (found, mesh):
             posed = PosedSurface(found)
             check_some_left(posed.in_world, surface.name)
@@ -116,7 +116,7 @@ class Rebinding:
             self._bindings.write()
         curve_points.bind(self._curves, self._target, context)
         for relocation in self._relocations:
-            if len(relocation.lost):
+            if len(relocation.lost) and relocation.elements.ob.type != "CURVE":
                 _select(relocation)
         return Rebound(
             self._surface,
@@ -211,6 +211,8 @@ class _ByFace(_Finder):
 def _relocation(ob: bpy.types.Object, posed: PosedSurface, find: _Finder) -> Relocation:
     elements = Elements(ob)
     rows = np.flatnonzero(elements.has_place)
+    if ob.type == "CURVE" and not find.keeps_frame:
+        return _curve_relocation(elements, posed)
     found = find(elements, rows)
     kept = found.face != NOWHERE
     relocation = Relocation(elements, lost=rows[~kept])
@@ -226,6 +228,15 @@ def _relocation(ob: bpy.types.Object, posed: PosedSurface, find: _Finder) -> Rel
         transformed(elements.matrix, now) - elements.roots()[rows[kept]], axis=1
     )
     relocation.put(ids.FACE, relocation.lost, NOWHERE)
+    return relocation
+
+
+def _curve_relocation(elements: Elements, posed: PosedSurface) -> Relocation:
+    """Binds the control points of a Curve object where they are, as new ones are bound."""
+    rows, before = np.arange(elements.count), elements.roots()
+    relocation = bound_at_closest(elements, posed, rows)
+    after = transformed(elements.matrix, relocation.values[ids.REST_ROOT].astype(np.float64))
+    relocation.distances = np.linalg.norm(after - before, axis=1)
     return relocation
 
 

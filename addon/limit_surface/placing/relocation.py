@@ -10,8 +10,8 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
-from ..reading import attributes, ragged_rows
-from .followers import domain_of, is_placed
+from ..reading import attributes, ragged_rows, splines
+from .followers import domain_of, holder_of, is_placed
 from .places import NOWHERE, ROOT_KINDS, Places
 from .posed_surface import transformed
 
@@ -23,14 +23,18 @@ class Elements:
     """The strands or points of an object, and what it stores about their places."""
 
     def __init__(self, ob: bpy.types.Object) -> None:
-        if ob.type not in TYPES:
+        holder = holder_of(ob)
+        if holder is None:
             raise RefusalError(f"{ob.name} is neither hair, nor points, nor a mesh")
-        self.ob, self.data, self.domain = ob, ob.data, domain_of(ob)
-        attributes.check_names(ob, ROOT_KINDS, self.domain)
+        self.ob, self.data, self.domain = ob, holder, domain_of(ob)
+        if ob.type in TYPES:
+            attributes.check_names(ob, ROOT_KINDS, self.domain)
         self.matrix = np.array(ob.matrix_world, np.float64)
-        if ids.POSITION not in ob.data.attributes:
+        if ids.POSITION not in holder.attributes:
             raise RefusalError(f"{ob.name} has no points")
-        self._points = attributes.read(ob.data, ids.POSITION).astype(np.float64)
+        is_curve = ob.type == "CURVE"  # its table has the points as they were when it was bound
+        points = splines.positions(ob.data) if is_curve else attributes.read(holder, ids.POSITION)
+        self._points = points.astype(np.float64)
         self.sizes = np.ones(len(self._points), np.int64)
         if ob.type == "CURVES":
             self.sizes = np.empty(len(ob.data.curves), np.int32)
@@ -40,7 +44,7 @@ class Elements:
             raise RefusalError(f"{ob.name} has no points")
         self.has_place = np.zeros(self.count, bool)
         if is_placed(ob):
-            self.has_place[Places.read(ob.data).rows] = True
+            self.has_place[Places.read(holder).rows] = True
 
     def read(self, name: str) -> np.ndarray:
         """Returns a stored attribute of the places; zeros, or no face, where there is none yet."""
@@ -50,13 +54,16 @@ class Elements:
         shape = (self.count,) if kind.width == 1 else (self.count, kind.width)
         return np.full(shape, _NOTHING[name], kind.dtype)
 
+    def first_points(self) -> np.ndarray:
+        """Returns the first points of strands, or the points themselves, in the world (n, 3)."""
+        return transformed(self.matrix, self._points[ragged_rows.starts(self.sizes)])
+
     def roots(self) -> np.ndarray:
         """Returns the roots in the world (n, 3): those at rest, or where an element has no place,
         the first point of the strand, or the point itself.
         """
-        first = self._points[ragged_rows.starts(self.sizes)]
-        at_rest = self.read(ids.REST_ROOT).astype(np.float64)
-        return transformed(self.matrix, np.where(self.has_place[:, None], at_rest, first))
+        at_rest = transformed(self.matrix, self.read(ids.REST_ROOT).astype(np.float64))
+        return np.where(self.has_place[:, None], at_rest, self.first_points())
 
 
 @dataclass

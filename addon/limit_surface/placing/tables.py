@@ -122,7 +122,7 @@ def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bp
     """Makes the tables of a surface, or makes them anew, and returns the table of tiles."""
     table = of_surface(surface)
     points = PointsTable(tiles, bound.vertices)
-    held = points_of(table) if table else None
+    held = points_of(table) if table else _unread_points(surface)
     holder = held or new_object(ids.POINTS_TABLE, surface)
     points.fill(holder.data)
     if table is None:
@@ -142,9 +142,27 @@ def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bp
 
 
 def points_of(table: bpy.types.Object) -> bpy.types.Object | None:
-    """Returns the table of points that a table of tiles reads."""
-    modifier = next(groups.modifiers(table, ids.TILES_GROUP))
-    return groups.get_input(modifier, "Points")
+    """Returns the table of points that a table of tiles reads, if there is one."""
+    modifier = next(groups.modifiers(table, ids.TILES_GROUP), None)
+    return groups.get_input(modifier, "Points") if modifier else None
+
+
+def size_in_bytes(table: bpy.types.Object) -> int:
+    """Returns how much both tables hold."""
+    return sum(
+        attributes.size_in_bytes(attribute)
+        for ob in (table, points_of(table))
+        if ob is not None
+        for attribute in ob.data.attributes
+    )
+
+
+def _unread_points(surface: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the table of points that is left of a surface whose table of tiles was deleted."""
+    ob = bpy.data.objects.get((_name(ids.POINTS_TABLE, surface), None))
+    if ob is None or ob.type != "MESH" or nodes.ROW not in ob.data.attributes:
+        return None
+    return None if any(points_of(other) == ob for other in bpy.data.objects) else ob
 
 
 def remove(table: bpy.types.Object) -> None:
@@ -170,12 +188,16 @@ def remove_object(table: bpy.types.Object) -> None:
 
 def new_object(kind: str, whose: bpy.types.Object) -> bpy.types.Object:
     """Adds a hidden object with an empty mesh, beside the object that it belongs to."""
-    name = f"{kind} of {whose.name}"
+    name = _name(kind, whose)
     ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     home = next((c for c in whose.users_collection if c.is_editable), None)
     (home or bpy.context.scene.collection).objects.link(ob)
     ob.hide_viewport = ob.hide_render = ob.hide_select = True
     return ob
+
+
+def _name(kind: str, whose: bpy.types.Object) -> str:
+    return f"{kind} of {whose.name}"
 
 
 def fill(mesh: bpy.types.Mesh, positions: np.ndarray) -> None:

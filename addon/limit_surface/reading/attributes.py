@@ -57,6 +57,11 @@ def read(data: bpy.types.ID, name: str) -> np.ndarray:
     return values if layout.width == 1 else values.reshape(-1, layout.width)
 
 
+def size_in_bytes(attribute: bpy.types.Attribute) -> int:
+    layout = LAYOUTS[attribute.data_type]
+    return len(attribute.data) * layout.width * np.dtype(layout.dtype).itemsize
+
+
 def check_names(ob: bpy.types.Object, kinds: Mapping[str, str], domain: str) -> None:
     """Raises RefusalError where one of these names, under which attributes of these types are to be
     written, belongs to a vertex group or to an attribute of another type or domain.

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The state of what follows a surface: how much follows it, and what has gone wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import bpy
+
+from .. import ids
+from ..nodes import groups
+from ..nodes.follow import TILES
+from ..reading import rules
+from . import following, mending, tables
+from .followers import (
+    followers_of,
+    holder_of,
+    holders,
+    modifier_of,
+    strays_of,
+    surface_of,
+    was_bound,
+)
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """Something that has gone wrong, and the operator that puts it right."""
+
+    text: str
+    remedy: str
+
+
+@dataclass(frozen=True)
+class State:
+    surface: bpy.types.Object
+    followers: list[bpy.types.Object]
+    strays: list[bpy.types.Object]  # they were bound, and have lost their modifier
+
+    @classmethod
+    def of(cls, ob: bpy.types.Object | None) -> State | None:
+        """Returns the state of the surface that the object is or follows; None where nothing
+        follows.
+        """
+        if ob is None:
+            return None
+        surface = (surface_of(ob) if was_bound(ob) else None) or ob
+        state = cls(surface, followers_of(surface), strays_of(surface))
+        return state if state.followers or state.strays else None
+
+    @property
+    def places(self) -> int:
+        """The number of strands and points that follow."""
+        stored = [data.attributes for data in holders(self.followers)]
+        return sum(len(of[ids.TILE].data) for of in stored if ids.TILE in of)
+
+    @property
+    def table_bytes(self) -> int:
+        table = tables.of_surface(self.surface)
+        return tables.size_in_bytes(table) if table else 0
+
+    def troubles(self, signature: str | None) -> list[Trouble]:
+        """Returns what has gone wrong. The signature is that of the surface as it is now; without
+        it, only what can be seen without an evaluation is named.
+        """
+        return [*self._broken(), *(self._stale(signature) if signature else ())]
+
+    def _broken(self) -> Iterator[Trouble]:
+        for ob in (self.surface, *self.followers, *_tables_of(self.followers)):
+            if mending.is_broken(ob):
+                yield Trouble(f"A node group of {ob.name} was deleted", ids.FOLLOW)
+        for ob in self.strays:
+            yield Trouble(f"{ob.name} has lost the modifier by which it followed", ids.FOLLOW)
+        for ob in self.followers:
+            table = groups.get_input(modifier_of(ob), TILES)
+            of = tables.surface_of(table) if table else None
+            if table is None or tables.points_of(table) is None:
+                yield Trouble(f"The tables that {ob.name} reads were deleted", ids.FOLLOW)
+            elif of is not None and of != self.surface:
+                yield Trouble(f"{ob.name} reads the tables of {of.name}", ids.FOLLOW)
+        obstacle = _capture_obstacle(self.surface)
+        if obstacle:
+            text = f"{self.surface.name}: the modifier {ids.CAPTURE_GROUP} {obstacle}"
+            yield Trouble(text, ids.FOLLOW)
+
+    def _stale(self, signature: str) -> Iterator[Trouble]:
+        name = self.surface.name
+        stale = [
+            ob
+            for ob in self.followers
+            if (holder := holder_of(ob)) is not None and not following.holds(holder, signature)
+        ]
+        for ob in stale:
+            yield Trouble(f"The faces of {name} have changed since {ob.name} was bound", ids.REBIND)
+        table = tables.of_surface(self.surface)
+        if not stale and table is not None and table.get(ids.SIGNATURE) != signature:
+            yield Trouble(
+                f"The creases or rules of {name} have changed since its tables were made",
+                ids.REBIND,
+            )
+
+
+def surfaces() -> list[bpy.types.Object]:
+    """Returns all surfaces that the file's own objects follow, or have followed."""
+    found: dict[bpy.types.Object, None] = {}
+    for ob in bpy.data.objects:
+        state = State.of(ob) if ob.library is None and was_bound(ob) else None
+        if state:
+            found[state.surface] = None
+    return list(found)
+
+
+def _tables_of(followers: list[bpy.types.Object]) -> list[bpy.types.Object]:
+    read = dict.fromkeys(groups.get_input(modifier_of(ob), TILES) for ob in followers)
+    return [table for table in read if table is not None]
+
+
+def _capture_obstacle(surface: bpy.types.Object) -> str:
+    """Returns why the surface does not hand on its control mesh, or None."""
+    capture = next(groups.modifiers(surface, ids.CAPTURE_GROUP), None)
+    if capture is None:
+        return "was deleted"
+    if not (capture.show_viewport and capture.show_render):
+        return "is disabled"
+    subsurf = rules.find_subsurf(surface)
+    if subsurf is None:
+        return ""
+    here, there = (surface.modifiers.find(m.name) for m in (capture, subsurf))
+    if here > there or any(m.show_viewport for m in surface.modifiers[here + 1 : there]):
+        return "does not stand directly before the subdivision"
+    return ""

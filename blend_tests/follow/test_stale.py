@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bindings that are stale or broken: they are seen, named in the sidebar, and mended."""
+
+from types import SimpleNamespace
+from unittest.mock import MagicMock
+
+import bpy
+import follow_truth
+import numpy as np
+import pytest
+import scenes
+from follow_scenes import check_hair, deforming, follow
+from limit_surface import ids
+from limit_surface.follow import stale
+from limit_surface.follow.panel import VIEW3D_PT_limit_follow
+from limit_surface.placing.follow_state import State
+
+
+def look(ob: bpy.types.Object) -> list[tuple[str, str]]:
+    """Returns the troubles that the panel shows once the timer has looked."""
+    state = State.of(ob)
+    assert state is not None
+    stale.troubles(bpy.context, state)
+    assert bpy.app.timers.is_registered(stale._look) or stale._signatures
+    stale._look()
+    return [(trouble.text, trouble.remedy) for trouble in stale.troubles(bpy.context, state)]
+
+
+def followed() -> tuple[bpy.types.Object, bpy.types.Object]:
+    ob = deforming("grid with holes")
+    return ob, scenes.add_hair(ob, follow="NODES")
+
+
+def table(kind: str) -> bpy.types.Object:
+    return bpy.data.objects[f"{kind} of Holes"]
+
+
+def remove_capture(ob: bpy.types.Object) -> None:
+    ob.modifiers.remove(ob.modifiers[ids.CAPTURE_GROUP])
+
+
+def move_capture(ob: bpy.types.Object) -> None:
+    ob.modifiers.move(ob.modifiers.find(ids.CAPTURE_GROUP), 0)
+
+
+def disable_capture(ob: bpy.types.Object) -> None:
+    ob.modifiers[ids.CAPTURE_GROUP].show_viewport = False
+
+
+BREAKS = {
+    "tiles": (
+        lambda _ob, _hair: bpy.data.objects.remove(table(ids.TILES_TABLE)),
+        "The tables that Limit Hair reads were deleted",
+    ),
+    "points": (
+        lambda _ob, _hair: bpy.data.objects.remove(table(ids.POINTS_TABLE)),
+        "The tables that Limit Hair reads were deleted",
+    ),
+    "modifier": (
+        lambda _ob, hair: hair.modifiers.clear(),
+        "Limit Hair has lost the modifier by which it followed",
+    ),
+    "group": (
+        lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.FOLLOW_HAIR_GROUP]),
+        "Limit Hair has lost the modifier by which it followed",
+    ),
+    "group within": (
+        lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.SAMPLE_GROUP]),
+        "A node group of Limit Hair was deleted",
+    ),
+    "group of tables": (
+        lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.TILES_GROUP]),
+        "A node group of Limit Tiles of Holes was deleted",
+    ),
+    "group of the surface": (
+        lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.CAPTURE_GROUP]),
+        "A node group of Holes was deleted",
+    ),
+    "capture": (
+        lambda ob, _hair: remove_capture(ob),
+        "Holes: the modifier Limit Capture was deleted",
+    ),
+    "place of capture": (
+        lambda ob, _hair: move_capture(ob),
+        "Holes: the modifier Limit Capture does not stand directly before the subdivision",
+    ),
+    "disabled capture": (
+        lambda ob, _hair: disable_capture(ob),
+        "Holes: the modifier Limit Capture is disabled",
+    ),
+}
+
+
+@pytest.mark.parametrize("by", ["surface", "hair"])
+@pytest.mark.parametrize("what", BREAKS)
+def test_what_was_deleted_by_hand_is_restored_by_one_button(what, by):
+    ob, hair = followed()
+    spoil, told = BREAKS[what]
+    assert look(ob) == []
+    contents = {kind: len(names) for kind, names in scenes.file_contents().items()}
+    rest = scenes.strands(hair)
+    spoil(ob, hair)
+    bpy.context.scene.frame_set(30)
+    if what != "place of capture":
+        np.testing.assert_allclose(follow_truth.shown_strands(hair), rest, atol=1e-6)
+    assert (told, ids.FOLLOW) in look(ob)
+    bpy.ops.object.select_all(action="DESELECT")
+    follow(ob if by == "surface" else hair)
+    assert look(ob) == []
+    bpy.context.scene.frame_set(17)
+    check_hair(ob, hair)
+    now = {kind: len(names) for kind, names in scenes.file_contents().items()}
+    more = {kind: n - contents[kind] for kind, n in now.items() if n > contents[kind]}
+    # what lost its use is not saved: the mesh of a deleted table, a group that lost another one
+    assert more == {"tiles": {"meshes": 1}, "points": {"meshes": 1}}.get(what, {}) or (
+        more == {"node_groups": 1} and what == "group within"
+    )
+
+
+def test_a_duplicate_of_surface_and_hair_reads_tables_of_its_own_once_it_is_bound():
+    ob, hair = followed()
+    bpy.ops.object.select_all(action="DESELECT")
+    for thing in (ob, hair):
+        thing.select_set(True)
+    scenes.activate(ob)
+    bpy.ops.object.duplicate()
+    twin_hair = next(o for o in bpy.context.selected_objects if o.type == "CURVES")
+    twin = next(o for o in bpy.context.selected_objects if o.type == "MESH")
+    assert look(twin) == [(f"{twin_hair.name} reads the tables of Holes", ids.FOLLOW)]
+    bpy.ops.object.select_all(action="DESELECT")
+    follow(twin)
+    assert look(twin) == look(ob) == []
+    twin.data.shape_keys.animation_data_clear()
+    twin.data.shape_keys.key_blocks["Bent"].value = 0.5
+    bpy.context.scene.frame_set(30)
+    check_hair(ob, hair)
+    check_hair(twin, twin_hair)
+
+
+def test_changed_faces_and_rules_are_named():
+    ob, _hair = followed()
+    ob.modifiers["Subdivision"].boundary_smooth = "PRESERVE_CORNERS"
+    bpy.context.view_layer.update()
+    rules = "The creases or rules of Holes have changed since its tables were made"
+    assert look(ob) == [(rules, ids.REBIND)]
+    scenes.activate(ob)
+    bpy.ops.object.limit_rebind(method="FACE")
+    assert look(ob) == []
+    mirror = ob.modifiers.new("Mirror", "MIRROR")
+    ob.modifiers.move(ob.modifiers.find(mirror.name), 0)
+    bpy.context.view_layer.update()
+    faces = "The faces of Holes have changed since Limit Hair was bound"
+    assert look(ob) == [(faces, ids.REBIND)]
+    bpy.ops.object.limit_rebind()
+    assert look(ob) == []
+
+
+def test_stale_bindings_are_seen_when_a_file_is_loaded(tmp_path, capfd):
+    ob, _hair = followed()
+    path = str(tmp_path / "a.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert "Limit Surface:" not in capfd.readouterr().out
+    ob = bpy.data.objects["Holes"]
+    ob.modifiers["Subdivision"].boundary_smooth = "PRESERVE_CORNERS"
+    bpy.data.objects.remove(table(ids.POINTS_TABLE))
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    lines = capfd.readouterr().out.splitlines()
+    assert [line for line in lines if line.startswith("Limit Surface:")] == [
+        "Limit Surface: The tables that Limit Hair reads were deleted",
+        "Limit Surface: The creases or rules of Holes have changed since its tables were made",
+    ]
+
+
+def test_nothing_is_read_while_the_panel_is_drawn(monkeypatch):
+    ob, _hair = followed()
+    state = State.of(ob)
+    stale._forget()
+
+    def fail(*_arguments):
+        pytest.fail("The control mesh was read")
+
+    monkeypatch.setattr(stale.cage, "read", fail)
+    assert stale.troubles(bpy.context, state) == []
+    assert bpy.app.timers.is_registered(stale._look)
+    bpy.app.timers.unregister(stale._look)
+
+
+def test_the_state_counts():
+    ob, hair = followed()
+    points = scenes.add_points(ob, follow="NODES")
+    for thing in (ob, hair, points):
+        state = State.of(thing)
+        assert state.surface == ob
+        assert set(state.followers) == {hair, points}
+        assert state.places == len(hair.data.curves) + len(points.data.vertices)
+        rows = len(table(ids.POINTS_TABLE).data.vertices)
+        tiles = len(table(ids.TILES_TABLE).data.vertices)
+        assert state.table_bytes >= rows * 28 + tiles * 44
+        assert state.table_bytes < rows * 40 + tiles * 80
+    assert State.of(scenes.cross()) is None
+    assert State.of(None) is None
+
+
+def panel(ob: bpy.types.Object) -> tuple[str, list[str]]:
+    """Returns the text of the panel, and the operators that it offers."""
+    scenes.activate(ob)
+    layout = MagicMock()
+    for maker in (layout.column, layout.row, layout.box):
+        maker.return_value = layout
+    VIEW3D_PT_limit_follow.draw(SimpleNamespace(layout=layout), bpy.context)
+    lines = [call.kwargs["text"] for call in layout.label.call_args_list]
+    return " ".join(lines), [call.args[0] for call in layout.operator.call_args_list]
+
+
+def test_the_panel_names_what_follows_and_what_is_wrong():
+    buttons = [ids.FOLLOW, ids.REBIND, ids.UNBIND]
+    assert panel(scenes.cross()) == ("Nothing follows the active object", buttons)
+    ob, hair = followed()
+    look(ob)
+    text, offered = panel(hair)
+    assert text.startswith("Holes 1 object follows it by nodes 288 strands and points Tables: ")
+    assert text.endswith(" kB")
+    assert offered == buttons
+    ob.modifiers["Subdivision"].boundary_smooth = "PRESERVE_CORNERS"
+    bpy.context.view_layer.update()
+    look(ob)
+    text, offered = panel(ob)
+    assert text.endswith("The creases or rules of Holes have changed since its tables were made")
+    assert offered == [ids.REBIND, *buttons]
