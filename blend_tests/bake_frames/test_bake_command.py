@@ -109,15 +109,35 @@ def test_files_that_exist_are_left_as_they_are(waves, tmp_path, capfd):
     assert contents(tmp_path).keys() == whole.keys()
 
 
-def test_hidden_in_the_viewport_is_baked(waves, tmp_path):
-    hair = bpy.data.objects["Limit Hair"]
-    expected = shown(hair, 1)
+def hide_object(hair):
     hair.hide_viewport = True
-    assert bake(tmp_path, "Limit Hair", frames="1") == 0
-    hair.hide_viewport = False
-    np.testing.assert_allclose(
-        read_back(tmp_path / "Limit Hair.0001.abc", "CURVES"), expected, rtol=0, atol=2e-6
-    )
+
+
+def hide_by_its_eye(hair):
+    hair.hide_set(True)
+
+
+def hide_its_collection(hair):
+    collection = bpy.data.collections.new("Hidden")
+    bpy.context.scene.collection.children.link(collection)
+    bpy.context.scene.collection.objects.unlink(hair)
+    collection.objects.link(hair)
+    bpy.context.view_layer.layer_collection.children["Hidden"].exclude = True
+
+
+@pytest.mark.parametrize("hide", [hide_object, hide_by_its_eye, hide_its_collection])
+@pytest.mark.parametrize("form", FORMATS)
+def test_hidden_in_the_viewport_is_baked(waves, tmp_path, form, hide):
+    hair = bpy.data.objects["Limit Hair"]
+    expected = shown(hair, 3)
+    bpy.context.scene.frame_set(1)
+    hide(hair)
+    was = hair.hide_viewport, hair.visible_get()
+    assert not hair.visible_get()
+    assert bake(tmp_path, "Limit Hair", frames="2-3", options=("--format", form)) == 0
+    assert (hair.hide_viewport, hair.visible_get()) == was
+    found = read_back(tmp_path / f"Limit Hair.0003{FORMATS[form]}", "CURVES")
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-6)
 
 
 @pytest.mark.parametrize("form", FORMATS)
@@ -194,7 +214,12 @@ def test_objects_that_cannot_be_baked(waves, tmp_path, capfd):
     bpy.data.objects["Limit Hair"].name = "FLAT"
     assert bake(tmp_path, "Flat", "FLAT") == command.BAD_ARGUMENTS
     assert "the same file flat" in capfd.readouterr().err
+    bpy.ops.object.camera_add()
+    assert bake(tmp_path, "Camera", options=("--format", "npz")) == command.BAD_ARGUMENTS
+    message = "Camera is of the type Camera, which files of numpy cannot hold"
+    assert message in capfd.readouterr().err
     assert not contents(tmp_path)
+    assert bake(tmp_path, "Camera") == 0
 
 
 def test_a_folder_that_cannot_be_written(waves, tmp_path, capfd):
@@ -225,12 +250,24 @@ def test_a_file_system_without_links(waves, tmp_path, monkeypatch):
     assert contents(tmp_path).keys() == {"Flat.0001.abc", "Flat.0002.abc", "bake.json"}
 
 
-def test_stale_binding(waves, tmp_path, capfd):
+def change_topology(sheet):
     mesh = bpy.data.meshes.new("Fewer")
     mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
-    waves.data = mesh
+    sheet.data = mesh
+
+
+def test_hair_that_was_bound_to_another_topology(waves, tmp_path, capfd):
+    change_topology(waves)
     assert bake(tmp_path, "Limit Hair") == command.STALE_BINDING
-    message = "60 of the 64 roots of Limit Hair are bound to faces that Flat does not have"
+    assert "Limit Hair was bound before the faces of Flat changed" in capfd.readouterr().err
+    assert not contents(tmp_path)
+
+
+def test_hair_that_does_not_follow_on_faces_that_are_gone(waves, tmp_path, capfd):
+    hair = scenes.add_hair(waves, per_side=2, follow="NONE")
+    change_topology(waves)
+    assert bake(tmp_path, hair.name) == command.STALE_BINDING
+    message = f"60 of the 64 roots of {hair.name} are bound to faces that Flat does not have"
     assert message in capfd.readouterr().err
     assert not contents(tmp_path)
 

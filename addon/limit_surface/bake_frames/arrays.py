@@ -9,8 +9,9 @@ import bpy
 import numpy as np
 
 from .. import ids
-from ..errors import RefusalError
 from ..reading import attributes
+
+TYPES = frozenset({"MESH", "CURVES", "POINTCLOUD"})
 
 # attributes that are written where an object has them
 _CARRIED = ("radius", ids.FACE, ids.UV, ids.NORMAL, ids.TANGENT, ids.ROTATION)
@@ -26,10 +27,6 @@ def write(path: Path, ob: bpy.types.Object) -> None:
 
 def _arrays(evaluated: bpy.types.Object) -> dict[str, np.ndarray]:
     data = evaluated.data
-    if evaluated.type not in ("MESH", "CURVES", "POINTCLOUD"):
-        raise RefusalError(
-            f"{evaluated.name} is neither a mesh nor hair nor points, which npz can hold"
-        )
     found = {
         "matrix_world": np.array(evaluated.matrix_world, np.float32),
         ids.POSITION: attributes.read(data, ids.POSITION),

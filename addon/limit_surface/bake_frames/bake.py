@@ -105,8 +105,12 @@ def _find(arguments: Arguments, scene: bpy.types.Scene) -> list[bpy.types.Object
         if len(same) > 1:
             raise RefusalError(f"{len(same)} objects are named {name}, from several files")
         (ob,) = same
-        if ob.type == "VOLUME":
-            raise RefusalError(f"{name} is a volume, which cannot be baked")
+        types = arguments.format.types
+        if ob.type == "VOLUME" or (types and ob.type not in types):
+            kind = ob.bl_rna.properties["type"].enum_items[ob.type].name
+            raise RefusalError(
+                f"{name} is of the type {kind}, which files of {arguments.format.name} cannot hold"
+            )
         if arguments.format.as_rendered and ob.hide_render and not _is_animated(ob):
             raise RefusalError(f"{name} is disabled in renders: its files would be empty")
         found.append(ob)
@@ -134,15 +138,26 @@ def _kept_frame(scene: bpy.types.Scene) -> Iterator[None]:
 def _subjects(
     scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]
 ) -> Iterator[list[Subject]]:
+    """Yields the objects, each in a collection of its own, and shown in the viewport: neither
+    handlers nor numpy would see it otherwise as it is in a frame.
+    """
     subjects = []
+    hidden = [ob for ob in objects if ob.hide_viewport]
+    behind = [ob for ob in objects if ob.name in bpy.context.view_layer.objects and ob.hide_get()]
     try:
         for ob in objects:
             collection = bpy.data.collections.new(ids.BAKE_COLLECTION)
             subjects.append(Subject(ob, collection))
             collection.objects.link(ob)
             scene.collection.children.link(collection)
+            ob.hide_viewport = False
+            ob.hide_set(False)
         yield subjects
     finally:
+        for ob in hidden:
+            ob.hide_viewport = True
+        for ob in behind:
+            ob.hide_set(True)
         for subject in subjects:
             bpy.data.collections.remove(subject.collection)
 

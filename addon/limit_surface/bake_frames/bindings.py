@@ -18,18 +18,23 @@ def check(objects: Sequence[bpy.types.Object]) -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     cages: dict[bpy.types.Object, cage.Cage] = {}
     for ob in objects:
-        surface = followers.surface_of(ob) if followers.is_placed(ob) else None
-        if surface is None:
+        holder = followers.holder_of(ob)
+        surface = followers.surface_of(ob)
+        if holder is None or surface is None or not followers.is_placed(ob):
             continue
         if surface not in cages:
             cages[surface] = cage.read(surface, depsgraph)
-        _check_faces(ob, surface, cages[surface])
-        _check_tables(ob, surface, cages[surface])
+        now = following.signature(cages[surface])
+        following.check_holds(ob, surface, now)
+        _check_faces(ob, holder, surface, cages[surface].ptex_face_count)
+        _check_tables(ob, surface, now)
 
 
-def _check_faces(ob: bpy.types.Object, surface: bpy.types.Object, found: cage.Cage) -> None:
-    face = attributes.read(ob.data, ids.FACE)
-    strays = int((face >= found.ptex_face_count).sum())
+def _check_faces(
+    ob: bpy.types.Object, holder: bpy.types.ID, surface: bpy.types.Object, count: int
+) -> None:
+    face = attributes.read(holder, ids.FACE)
+    strays = int((face >= count).sum())
     if strays:
         raise RefusalError(
             f"{strays:,} of the {len(face):,} roots of {ob.name} are bound to faces that "
@@ -37,7 +42,7 @@ def _check_faces(ob: bpy.types.Object, surface: bpy.types.Object, found: cage.Ca
         )
 
 
-def _check_tables(ob: bpy.types.Object, surface: bpy.types.Object, found: cage.Cage) -> None:
+def _check_tables(ob: bpy.types.Object, surface: bpy.types.Object, now: str) -> None:
     modifier = followers.modifier_of(ob)
     if modifier is None:
         return
@@ -46,8 +51,8 @@ def _check_tables(ob: bpy.types.Object, surface: bpy.types.Object, found: cage.C
         raise RefusalError(
             f"{ob.name} follows {surface.name} by tables that have been deleted: bind it again"
         )
-    if table.get(ids.SIGNATURE) != following.signature(found):
+    if table.get(ids.SIGNATURE) != now:
         raise RefusalError(
             f"the topology, the creases or the rules of {surface.name} have changed since "
-            f"{ob.name} was bound to it: bind it again"
+            f"{ob.name} was bound to it: rebind it"
         )

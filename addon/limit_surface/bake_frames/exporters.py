@@ -36,6 +36,7 @@ class Format:
     write: Callable[[Path, Subject], None]
     build_option: str  # what Blender must have been built with
     as_rendered: bool  # whether settings for renders count, and not those of the viewport
+    types: frozenset[str] = frozenset()  # the types of objects that it can hold; empty: all
 
     def check(self) -> None:
         """Raises RefusalError where this Blender cannot write the format."""
@@ -90,9 +91,20 @@ def _export(operator: Callable[..., set[str]], **properties: object) -> None:
         raise RefusalError("Blender's exporter has written nothing")
 
 
+def _write_arrays(path: Path, subject: Subject) -> None:
+    arrays.write(path, subject.ob)
+
+
 FORMATS = {
     "abc": Format("Alembic", ".abc", _write_alembic, "alembic", True),
     "usd": Format("USD", ".usd", _write_usd, "usd", True),
     "usda": Format("USD", ".usda", _write_usd, "usd", True),
-    "npz": Format("numpy", ".npz", lambda path, subject: arrays.write(path, subject.ob), "", False),
+    "npz": Format(
+        "numpy",
+        ".npz",
+        lambda path, subject: arrays.write(path, subject.ob),
+        "",
+        False,
+        arrays.TYPES,
+    ),
 }
