@@ -59,6 +59,7 @@ def register() -> None:
     live_count.attach_handlers()
     pixel_undo.attach_handlers()
     stale.attach_handlers()
+    follow.attach_handlers()
     bake_frames.attach_command()
     ui.append_menus()
     if _is_module:
@@ -69,6 +70,7 @@ def unregister() -> None:
     atexit.unregister(unregister)
     ui.remove_menus()
     bake_frames.detach_command()
+    follow.detach_handlers()
     stale.detach_handlers()
     pixel_undo.detach_handlers()
     live_count.detach_handlers()

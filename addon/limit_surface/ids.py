@@ -91,6 +91,7 @@ FOLLOW_POINTS_GROUP = "Limit Follow"
 FOLLOW_ORIENTED_GROUP = "Limit Follow Oriented"
 FOLLOW_NORMALS_GROUP = "Limit Follow Normals"
 FOLLOW_CURVE_GROUP = "Limit Curve"
+FOLLOW_LIVE_GROUP = "Limit Live"
 POINTS_TABLE = "Limit Points"
 TILES_TABLE = "Limit Tiles"
 CURVE_TABLE = "Limit Curve"
@@ -100,10 +101,18 @@ PROXY_OBJECT = "Limit Proxy"
 CAGE_POSITION = "cage_position"
 CAGE_COUNT = "cage_count"
 CAGE_TOPOLOGY = "cage_topology"
+CAGE_EDGE_CREASES = "cage_edge_creases"
+CAGE_VERTEX_CREASES = "cage_vertex_creases"
 CAGE_FITS = "cage_fits"
 TILE_MATRIX = "limit_matrix"
 TILE = "limit_tile"  # the tile of a curve or point, counted from 1; 0 for what does not follow
 TILE_UV = "tile_uv"
+
+# What follows live: the property of scenes that switches it off, and attributes of the things
+LIVE = "limit_live"
+LIVE_REST = "limit_rest"  # the points at rest; with _ and a name: other attributes at rest
+LIVE_FINGERPRINT = "limit_fingerprint"  # of the points as they were written
+LIVE_WRITTEN = "limit_written"  # custom property of the data: the frame and the matrix of that
 
 CAGE_SCENE = ".limit_cage"
 BAKE_COLLECTION = ".limit_bake"

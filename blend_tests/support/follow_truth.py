@@ -6,6 +6,7 @@ evaluates without the extension.
 from typing import NamedTuple
 
 import bpy
+import limitsurf
 import numpy as np
 import scenes
 from limit_surface import ids
@@ -42,14 +43,17 @@ def diagonal(ob: bpy.types.Object) -> float:
 
 
 def on_surface(
-    ob: bpy.types.Object, data: bpy.types.ID, matrix: np.ndarray | None = None
+    ob: bpy.types.Object,
+    data: bpy.types.ID,
+    matrix: np.ndarray | None = None,
+    surface: limitsurf.LimitSurface | None = None,
 ) -> Frames:
     """Returns the frames at the locations that `data` stores, on the surface as it is now, in the
-    space that the matrix leads to.
+    space that the matrix leads to. Creases need a `surface` that has them.
     """
     subsurf = next((m for m in ob.modifiers if m.type == "SUBSURF"), None)
     boundary = subsurf.boundary_smooth if subsurf else "ALL"
-    surface = scenes.surface_without_addon(ob, boundary)
+    surface = surface or scenes.surface_without_addon(ob, boundary)
     face, uv = scenes.locations(data)
     position, local = surface.evaluate(face, uv).position, surface.frames(face, uv)
     matrix = np.eye(4) if matrix is None else matrix
@@ -61,14 +65,19 @@ def on_surface(
 
 
 def rest(data: bpy.types.ID) -> Frames:
-    w, x, y, z = attributes.read(data, ids.REST_ROTATION).astype(np.float64).T
+    root = attributes.read(data, ids.REST_ROOT).astype(np.float64)
+    return Frames(root, matrices(attributes.read(data, ids.REST_ROTATION)))
+
+
+def matrices(quaternions: np.ndarray) -> np.ndarray:
+    """Returns unit quaternions (n, 4), w x y z, as matrices (n, 3, 3)."""
+    w, x, y, z = quaternions.astype(np.float64).T
     entries = [
         *(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
         *(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
         *(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     ]
-    root = attributes.read(data, ids.REST_ROOT).astype(np.float64)
-    return Frames(root, np.stack(entries, axis=1).reshape(-1, 3, 3))
+    return np.stack(entries, axis=1).reshape(-1, 3, 3)
 
 
 def moved(points: np.ndarray, data: bpy.types.ID, now: Frames) -> np.ndarray:

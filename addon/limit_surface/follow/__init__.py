@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Things that stay on the limit surface of a mesh that deforms."""
 
+from .handlers import attach_handlers, detach_handlers
 from .operator import OBJECT_OT_limit_follow
 from .panel import VIEW3D_PT_limit_follow
 from .rebind_operator import OBJECT_OT_limit_rebind
@@ -12,3 +13,5 @@ classes = (
     OBJECT_OT_limit_rebind,
     VIEW3D_PT_limit_follow,
 )
+
+__all__ = ["attach_handlers", "classes", "detach_handlers"]

@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, EnumProperty
 
 from .. import ids, native
 from ..errors import RefusalError
-from ..placing import curve_points, following, newcomers
+from ..placing import curve_points, following, live_binding, newcomers
 from ..placing.mending import mended
 from ..tasks.properties import SummaryProperty, draw_summary
 from .subjects import BINDABLE, selected, to_bind
@@ -35,6 +35,13 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
                 "Nodes",
                 "Geometry Nodes move them. Files play everywhere, also without this extension",
                 0,
+            ),
+            (
+                "LIVE",
+                "Live",
+                "This extension moves them in each frame. It is faster for very many strands, and "
+                "follows creases and topology that change",
+                1,
             ),
         ),
     )
@@ -82,6 +89,19 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
         if not by_surface:
             raise RefusalError(NOTHING)
         depsgraph = context.evaluated_depsgraph_get()
+        bind = self._live if self.mode == "LIVE" else self._by_nodes
+        lines = bind(context, by_surface, depsgraph)
+        self.summary = "\n".join(lines)
+        self.report({"INFO"}, "; ".join(lines))
+        self._take_over(by_surface)
+        return {"FINISHED"}
+
+    def _by_nodes(
+        self,
+        context: bpy.types.Context,
+        by_surface: dict[bpy.types.Object, list[bpy.types.Object]],
+        depsgraph: bpy.types.Depsgraph,
+    ) -> list[str]:
         requests = []
         for on, obs in by_surface.items():
             following.check_surface(on, depsgraph.scene)
@@ -98,14 +118,21 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
             )
             requests.append((request, things, on, curves))
         made = [request.compute() for request, things, _on, _curves in requests if things]
+        for ob in [ob for obs in by_surface.values() for ob in obs]:
+            live_binding.end(ob, depsgraph)
         outcomes = [bindings.write() for bindings in made]
         for _request, _things, on, curves in requests:
             outcomes += curve_points.bind(curves, on, context, self.use_proxy)
-        lines = [str(outcome) for outcome in outcomes]
-        self.summary = "\n".join(lines)
-        self.report({"INFO"}, "; ".join(lines))
-        self._take_over(by_surface)
-        return {"FINISHED"}
+        return [str(outcome) for outcome in outcomes]
+
+    def _live(
+        self,
+        context: bpy.types.Context,
+        by_surface: dict[bpy.types.Object, list[bpy.types.Object]],
+        depsgraph: bpy.types.Depsgraph,
+    ) -> list[str]:
+        requests = [live_binding.LiveRequest(on, depsgraph, obs) for on, obs in by_surface.items()]
+        return [str(request.write(context)) for request in requests]
 
     def _take_over(self, by_surface: dict[bpy.types.Object, list[bpy.types.Object]]) -> None:
         """Makes the surface known to hair, and ends what else moves it."""

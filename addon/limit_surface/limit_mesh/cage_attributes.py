@@ -34,6 +34,8 @@ _OWN = (
     ids.CAGE_POSITION,
     ids.CAGE_COUNT,
     ids.CAGE_TOPOLOGY,
+    ids.CAGE_EDGE_CREASES,
+    ids.CAGE_VERTEX_CREASES,
 )
 # Rows are evaluated in parts of this size, so that progress is shown and memory stays small.
 _PART = 1 << 18

@@ -2,7 +2,8 @@
 """The group *Limit Capture*: hands the control mesh on to what follows the surface.
 
 Its modifier stands directly before the Subdivision Surface modifier. That keeps the control mesh's
-vertices first, and hands on what is stored on them unchanged.
+vertices first, and hands on what is stored on them unchanged. Checksums tell whether the topology
+or the creases have changed.
 """
 
 import bpy
@@ -10,11 +11,13 @@ import numpy as np
 
 from .. import ids
 from .groups import Kind
-from .tree import Socket, Tree
+from .tree import Socket, Tree, Value
 
 # The product of two remainders is exact in single precision, in which nodes calculate. Sums of its
 # remainders are below 2^31 for a million edges.
 _PRIME, _SMALL_PRIME = 4093, 2039
+# Whole numbers up to this are exact as well.
+_CREASE_STEPS = 1 << 23
 
 
 def topology_sum(edges: np.ndarray) -> int:
@@ -35,17 +38,33 @@ def _build() -> bpy.types.NodeTree:
     mesh = tree.inputs["Geometry"]
     count = tree.get("GeometryNodeAttributeDomainSize", mesh, component="MESH")
     ends = tree.node("GeometryNodeInputMeshEdgeVertices").outputs
-    first, second = (
-        tree.math("MODULO", tree.math("ADD", ends[k], 1.0), float(_PRIME)) for k in range(2)
-    )
-    summed = tree.node("GeometryNodeAccumulateField", data_type="INT", domain="EDGE")
+    first, second = (tree.math("ADD", ends[k], 1.0) for k in range(2))
+    here = tree.math("ADD", tree.index(), 1.0)
+    kept = tree.store(mesh, ids.CAGE_POSITION, tree.position(), "FLOAT_VECTOR")
+    kept = tree.store(kept, ids.CAGE_COUNT, count, "INT")
+    for name, domain, a, b in (
+        (ids.CAGE_TOPOLOGY, "EDGE", first, second),
+        (ids.CAGE_EDGE_CREASES, "EDGE", here, _whole(tree, ids.EDGE_CREASE)),
+        (ids.CAGE_VERTEX_CREASES, "POINT", here, _whole(tree, ids.VERTEX_CREASE)),
+    ):
+        kept = tree.store(kept, name, _summed(tree, mesh, domain, a, b), "INT")
+    return tree.finish(Geometry=kept)
+
+
+def _summed(tree: Tree, mesh: Value, domain: str, a: Value, b: Value) -> Value:
+    """Returns the sum, over all elements of the mesh, of a product of two whole numbers."""
+    first, second = (tree.math("MODULO", value, float(_PRIME)) for value in (a, b))
+    summed = tree.node("GeometryNodeAccumulateField", data_type="INT", domain=domain)
     product = tree.math("MODULO", tree.math("MULTIPLY", first, second), float(_SMALL_PRIME))
     tree.set(next(s for s in summed.inputs if s.enabled), product)
     total = next(s for s in summed.outputs if s.enabled and s.name == "Total")
-    topology = tree.sample(mesh, total, 0, "INT", "EDGE")
-    kept = tree.store(mesh, ids.CAGE_POSITION, tree.position(), "FLOAT_VECTOR")
-    kept = tree.store(kept, ids.CAGE_COUNT, count, "INT")
-    return tree.finish(Geometry=tree.store(kept, ids.CAGE_TOPOLOGY, topology, "INT"))
+    return tree.sample(mesh, total, 0, "INT", domain)
+
+
+def _whole(tree: Tree, crease: str) -> Value:
+    """Returns creases, from 0 to 1, as whole numbers."""
+    creases = tree.attribute(crease, "FLOAT")
+    return tree.math("FLOOR", tree.math("MULTIPLY", creases, float(_CREASE_STEPS)))
 
 
 CAPTURE = Kind(ids.CAPTURE_GROUP, 1, _build)

@@ -70,11 +70,16 @@ def modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:
     return next((m for name in _GROUPS for m in groups.modifiers(ob, name)), None)
 
 
+def live_modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:
+    """Returns the modifier that marks an object which follows a surface live, if it does."""
+    return next(groups.modifiers(ob, ids.FOLLOW_LIVE_GROUP), None)
+
+
 def surface_of(ob: bpy.types.Object) -> bpy.types.Object | None:
     """Returns the surface on which the object's things stand: that which it follows, hair's own
     surface, or a parent that is a mesh.
     """
-    modifier = modifier_of(ob)
+    modifier = modifier_of(ob) or live_modifier_of(ob)
     if modifier and groups.get_input(modifier, SURFACE):
         return groups.get_input(modifier, SURFACE)
     if ob.type == "CURVES" and ob.data.surface:

@@ -51,10 +51,10 @@ result: a contiguous float32 array, which may be the input itself; without it a 
 a call is interrupted, some rows of `out` are written and others are not.
 
 `matrix` (4, 4) leads from the surface's space to that of the strands; its last row is (0, 0, 0, 1).
-None: they are the same. P is carried as a point; F is made of the carried du, the normal along the cross
-product of the carried du and dv, and normal x tangent. So F is a rotation whatever the matrix is, and
-where the matrix mirrors, the normal is turned over. Where du or the normal has no limit or vanishes, F
-is made of the columns of frames() in the same way.
+None: they are the same. P is carried as a point; F is made of the carried du, the normal of the carried
+surface (on the side to which the surface's normal is carried) and normal x tangent. So F is a rotation
+whatever the matrix is, and strands stay outside where the matrix mirrors. Where du or the normal has no
+limit or vanishes, F is made in the same way of the columns of frames().
 
 All methods raise ValueError for arrays of other shapes and for matrices that are not finite, and
 TypeError for an `out` of another kind.

@@ -60,7 +60,7 @@ class Hair:
         frames = self.surface.frames(self.face, self.uv)
         linear = matrix[:3, :3]
         tangent = unit(frames[:, :, 0] @ linear.T)
-        normal = unit(np.cross(tangent, frames[:, :, 1] @ linear.T))
+        normal = unit(frames[:, :, 2] @ np.linalg.inv(linear))
         carried = np.stack([tangent, np.cross(normal, tangent), normal], 2)
         position = self.surface.evaluate(self.face, self.uv).position @ linear.T + matrix[:3, 3]
         with np.errstate(invalid="ignore"):

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -51,7 +52,7 @@ struct Roots {
     for (Eigen::Index row = 0; row < e.position.rows(); ++row) {
       const Frame on_surface = Eigen::Map<const Frame>(frames.data() + 9 * row);
       const Vector3 tangent = (linear * on_surface.col(0)).normalized(),
-                    normal = tangent.cross(linear * on_surface.col(1)).normalized();
+                    normal = (linear.inverse().transpose() * on_surface.col(2)).normalized();
       Frame carried;
       carried << tangent, normal.cross(tangent), normal;
       frame.push_back(carried);

@@ -33,7 +33,7 @@ RootPose RootFinder::operator()(const TileLocation& at) {
       dv_square < kLargeSquare && normal_square > kSafeSine * kSafeSine * du_square * dv_square &&
       normal_square > kSmallSquare) {
     root.frame[0] = (1 / std::sqrt(du_square)) * du;
-    root.frame[2] = (1 / std::sqrt(normal_square)) * normal;
+    root.frame[2] = (side_ / std::sqrt(normal_square)) * normal;
     root.frame[1] = cross(root.frame[2], root.frame[0]);
   } else {
     setFrame(at, jet, root.frame);
@@ -55,9 +55,9 @@ void RootFinder::setFrame(const TileLocation& at, const Jet& jet, Padded out[3])
   Eigen::Matrix3d linear;
   linear << vector(map_[0]), vector(map_[1]), vector(map_[2]);
   const Vector3 tangent = linear * on_surface.col(0), across = linear * on_surface.col(1);
-  const Vector3 normal = unitNormal(tangent, across);
+  const Vector3 normal = side_ * unitNormal(tangent, across);
   const Eigen::Matrix3d result =
-      frame(tangent, across, normal.allFinite() ? normal : Vector3(Vector3::Zero()));
+      frame(tangent, side_ * across, normal.allFinite() ? normal : Vector3(Vector3::Zero()));
   for (int column = 0; column < 3; ++column) {
     out[column] = Padded(result(0, column), result(1, column), result(2, column), 0);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/pose.h"
@@ -24,6 +25,7 @@ class RootFinder {
     for (int column = 0; column < 4; ++column) {
       map_[column] = Padded(map(0, column), map(1, column), map(2, column), 0);
     }
+    side_ = map.topLeftCorner<3, 3>().determinant() < 0 ? -1 : 1;
   }
 
   RootPose operator()(const TileLocation& at);
@@ -45,6 +47,7 @@ class RootFinder {
   const Pose& pose_;
   TileEvaluator evaluator_;
   Padded map_[4];  // the columns
+  double side_;    // of the carried normal, seen along the cross product of the carried du and dv
 };
 
 }  // namespace limitsurf

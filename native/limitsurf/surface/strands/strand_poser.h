@@ -38,10 +38,10 @@ constexpr double kStrandError = 4e-11;
 ///   P + F R^-1 (p - r).
 ///
 /// r and R are given in the space of the strands. `to_strands` leads from the surface's space to
-/// it: P is carried as a point, and F is made of the carried du, the normal along the cross product
-/// of the carried du and dv, and normal x tangent. F is thus a rotation whatever the matrix is;
-/// where a matrix mirrors, the normal is turned over. Where du or the normal has no limit or
-/// vanishes, F is made in the same way of the columns of frames().
+/// it: P is carried as a point, and F is made of the carried du, the normal of the carried surface
+/// (on the side to which the surface's normal is carried) and normal x tangent. F is thus a
+/// rotation whatever the matrix is, and strands stay outside where a matrix mirrors. Where du or
+/// the normal has no limit or vanishes, F is made in the same way of the columns of frames().
 ///
 /// What depends on the locations alone is prepared once. The surface may be posed between the
 /// calls. It is referred to and must live on. Strands whose neighbours in the batch lie on the same

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The handlers by which things follow live, and the property of scenes that switches them off."""
+
+import threading
+
+import bpy
+from bpy.props import BoolProperty
+
+from .. import ids, native
+from ..placing import live
+from ..reading import cage
+
+# While a render engine asks for frames in a thread of its own, artists may change the scene.
+_lock = threading.RLock()
+
+
+def _has_work(scene: bpy.types.Scene) -> bool:
+    return native.available() and not cage.is_busy() and live.is_enabled(scene)
+
+
+@bpy.app.handlers.persistent
+def _pose_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    if _has_work(scene):
+        with _lock:
+            live.pose_all(depsgraph)
+
+
+@bpy.app.handlers.persistent
+def _pose_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    if _has_work(scene) and _lock.acquire(blocking=False):
+        try:
+            live.pose_changed(depsgraph)
+        finally:
+            _lock.release()
+
+
+@bpy.app.handlers.persistent
+def _forget(*_arguments: object) -> None:
+    with _lock:
+        live.forget()
+
+
+def _switched(_scene: bpy.types.Scene, context: bpy.types.Context) -> None:
+    _forget()
+    if context.scene == _scene and live.is_enabled(_scene):
+        _pose_frame(_scene, context.evaluated_depsgraph_get())
+
+
+_HANDLERS = (
+    (bpy.app.handlers.frame_change_post, _pose_frame),
+    (bpy.app.handlers.depsgraph_update_post, _pose_change),
+    (bpy.app.handlers.undo_post, _forget),
+    (bpy.app.handlers.redo_post, _forget),
+    (bpy.app.handlers.load_post, _forget),
+)
+
+
+def attach_handlers() -> None:
+    setattr(
+        bpy.types.Scene,
+        ids.LIVE,
+        BoolProperty(
+            name="Live Following",
+            description="Move hair and points that follow a limit surface live. While this is off, "
+            "they stay where they are",
+            default=True,
+            update=_switched,
+        ),
+    )
+    for handlers, handler in _HANDLERS:
+        handlers.append(handler)
+
+
+def detach_handlers() -> None:
+    for handlers, handler in _HANDLERS:
+        handlers.remove(handler)
+    delattr(bpy.types.Scene, ids.LIVE)
+    live.forget()

@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All that follows surfaces live: in each frame, and after each change, it is posed by the library.
+
+Nothing that is kept here from frame to frame has an influence on the result: it only saves time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..nodes import groups
+from ..nodes.follow import SURFACE
+from ..tasks.object_keys import ObjectKey
+from . import live_surface, live_thing
+from .live_surface import LiveSurface
+from .live_thing import LiveThing
+
+_surfaces: dict[ObjectKey, LiveSurface] = {}
+_things: dict[tuple[str, str, str | None], LiveThing] = {}  # by type, name and library
+#: The reasons why objects do not follow at present
+_troubles: dict[ObjectKey, str] = {}
+
+
+def forget() -> None:
+    """Is called when other data may have the same names: after undo, and for another file."""
+    _surfaces.clear()
+    _things.clear()
+    _troubles.clear()
+
+
+def trouble(ob: bpy.types.Object) -> str:
+    """Returns the reason why the object does not follow at present, or None."""
+    return _troubles.get(ObjectKey.of(ob), "")
+
+
+def is_enabled(scene: bpy.types.Scene) -> bool:
+    return getattr(scene, ids.LIVE, True)
+
+
+def surface_of(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the surface that an object follows live, if it does."""
+    modifier = next(groups.modifiers(ob, ids.FOLLOW_LIVE_GROUP), None)
+    surface = groups.get_input(modifier, SURFACE) if modifier else None
+    return surface if surface is not None and surface.type == "MESH" else None
+
+
+def followers_in(
+    depsgraph: bpy.types.Depsgraph,
+) -> dict[bpy.types.Object, list[bpy.types.Object]]:
+    """Returns all that follows live and is evaluated by the depsgraph, by surface; of objects that
+    share their data, one.
+    """
+    found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
+    seen: set[bpy.types.ID] = set()
+    if not any(groups.is_of(group, ids.FOLLOW_LIVE_GROUP) for group in bpy.data.node_groups):
+        return found
+    for ob in bpy.data.objects:
+        if ob.type not in ("CURVES", "MESH", "POINTCLOUD") or ob.data in seen:
+            continue
+        surface = surface_of(ob)
+        if surface is None:
+            continue
+        missing = live_thing.missing(ob.data)
+        if missing:
+            _refuse(
+                [ob], f"{ob.data.name} has no attribute {missing} any more: let it follow again"
+            )
+            continue
+        if ob.evaluated_get(depsgraph).is_evaluated and not (
+            ob.type == "MESH" and ob.mode == "EDIT"
+        ):
+            seen.add(ob.data)
+            found.setdefault(surface, []).append(ob)
+    return found
+
+
+def pose_all(depsgraph: bpy.types.Depsgraph) -> None:
+    """Poses everything for the depsgraph's frame."""
+    for surface, things in followers_in(depsgraph).items():
+        _pose(surface, things, depsgraph)
+
+
+def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
+    """Poses what is not in its place any more after a change, and takes up edits."""
+    followers = followers_in(depsgraph)
+    if not followers:
+        return
+    changed = {
+        update.id.original
+        for update in depsgraph.updates
+        if update.is_updated_geometry or update.is_updated_transform
+    }
+    frame = depsgraph.scene.frame_float
+    for surface, things in followers.items():
+        known = _surfaces.get(ObjectKey.of(surface))
+        if (
+            known is None
+            or surface in changed
+            or any(not _is_posed(t, known, frame) for t in things)
+        ):
+            _pose(surface, things, depsgraph)
+            continue
+        for ob in things:
+            if ob in changed and not _same_place(ob, surface, depsgraph):
+                _pose(surface, things, depsgraph)
+                break
+        else:
+            edited = [ob for ob in things if ob in changed or ob.data in changed]
+            _take_up_edits(surface, edited, depsgraph)
+
+
+def take_up_edits(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+    """Makes sure that the shape at rest is that of the points as they are now. Raises CageError or
+    MeshError where there is no surface.
+    """
+    surface = surface_of(ob)
+    if surface is not None:
+        on = _surface(surface, depsgraph)
+        _take_up(ob, surface, on, depsgraph)
+
+
+def start(ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+    """Takes the points of the object for those at rest. Raises CageError, MeshError or
+    LocationError where the points do not belong to the surface.
+    """
+    live_thing.start(ob.data, _surface(surface, depsgraph).limit)
+
+
+def _surface(surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> LiveSurface:
+    key = ObjectKey.of(surface)
+    known = _surfaces.get(key)
+    if known is None:
+        known = LiveSurface()
+        known.read(surface, depsgraph)
+        _surfaces[key] = known
+    return known
+
+
+def _thing(ob: bpy.types.Object) -> LiveThing:
+    data = ob.data
+    library = data.library.filepath if data.library else None
+    return _things.setdefault((data.id_type, data.name, library), LiveThing())
+
+
+def _pose(
+    surface: bpy.types.Object,
+    things: Sequence[bpy.types.Object],
+    depsgraph: bpy.types.Depsgraph,
+) -> None:
+    """Takes up edits in the pose for which they were made, and then poses all things."""
+    try:
+        on = _surface(surface, depsgraph)
+    except live_surface.errors as error:
+        _refuse(things, str(error))
+        return
+    good = list(_each(things, lambda ob: _take_up(ob, surface, on, depsgraph)))
+    try:
+        on.read(surface, depsgraph)
+    except live_surface.errors as error:
+        _surfaces.pop(ObjectKey.of(surface), None)
+        _refuse(things, str(error))
+        return
+    frame = depsgraph.scene.frame_float
+
+    def pose(ob: bpy.types.Object) -> None:
+        thing = _thing(ob)
+        thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame)
+        thing.version = on.version
+
+    for _ in _each(good, pose):
+        pass
+
+
+def _take_up_edits(
+    surface: bpy.types.Object,
+    things: Sequence[bpy.types.Object],
+    depsgraph: bpy.types.Depsgraph,
+) -> None:
+    on = _surfaces[ObjectKey.of(surface)]
+    for _ in _each(things, lambda ob: _take_up(ob, surface, on, depsgraph)):
+        pass
+
+
+def _take_up(
+    ob: bpy.types.Object,
+    surface: bpy.types.Object,
+    on: LiveSurface,
+    depsgraph: bpy.types.Depsgraph,
+) -> None:
+    thing, written = _thing(ob), live_thing.written(ob.data)
+    edited = thing.edits(ob.data, on.limit)
+    if edited is None:
+        return
+    limit = on.limit
+    if written is None:
+        matrix = _matrix(ob, surface, depsgraph)
+    else:
+        matrix = written.matrix
+        # the surface may have another pose now than when the points were written
+        if thing.version != on.version and written.frame != depsgraph.scene.frame_float:
+            limit = live_surface.surface_at(surface, depsgraph, written.frame)
+    thing.take_up(ob.data, edited, limit, matrix)
+
+
+def _each(
+    things: Sequence[bpy.types.Object], work: Callable[[bpy.types.Object], None]
+) -> Iterator[bpy.types.Object]:
+    """Yields the things for which the work succeeds, and keeps the reason for the others."""
+    for ob in things:
+        try:
+            work(ob)
+        except (*live_surface.errors, ValueError, MemoryError) as error:
+            _refuse([ob], str(error) or "There is not enough memory")
+        else:
+            _troubles.pop(ObjectKey.of(ob), None)
+            yield ob
+
+
+def _refuse(things: Sequence[bpy.types.Object], reason: str) -> None:
+    for ob in things:
+        _troubles[ObjectKey.of(ob)] = reason
+
+
+def _matrix(
+    ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph
+) -> np.ndarray:
+    """Returns the matrix from the surface's space to that of the thing."""
+    here, there = (
+        np.array(each.evaluated_get(depsgraph).matrix_world, np.float64) for each in (ob, surface)
+    )
+    if np.array_equal(here, there):
+        return np.eye(4)
+    try:
+        relation: np.ndarray = np.linalg.inv(here) @ there
+    except np.linalg.LinAlgError:
+        raise ValueError(f"{ob.name} has a scale of 0 along an axis") from None
+    relation[3] = 0, 0, 0, 1
+    return relation
+
+
+def _is_posed(ob: bpy.types.Object, on: LiveSurface, frame: float) -> bool:
+    written = live_thing.written(ob.data)
+    return written is not None and written.frame == frame and _thing(ob).version == on.version
+
+
+def _same_place(
+    ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph
+) -> bool:
+    written = live_thing.written(ob.data)
+    try:
+        return written is not None and np.array_equal(
+            written.matrix, _matrix(ob, surface, depsgraph)
+        )
+    except ValueError:
+        return False

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Has things follow a surface live, or ends that. Nothing moves by it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+
+from .. import ids
+from ..errors import RefusalError
+from ..nodes import groups
+from ..nodes.follow import SURFACE
+from ..nodes.live import FOLLOW_LIVE
+from ..reading import cage
+from . import followers, following, live, live_thing, newcomers
+from .unbinding import Unbinding
+
+
+@dataclass(frozen=True)
+class LiveOutcome:
+    surface: str
+    followers: int  # the number of strands and points
+
+    def __str__(self) -> str:
+        return f"{self.followers:,} places follow {self.surface} live"
+
+
+class LiveRequest:
+    """What makes things follow one surface live. Raises RefusalError, MeshError or LocationError
+    for those that cannot; nothing has changed then.
+    """
+
+    def __init__(
+        self,
+        surface: bpy.types.Object,
+        depsgraph: bpy.types.Depsgraph,
+        things: Sequence[bpy.types.Object],
+    ) -> None:
+        following.check_surface(surface, depsgraph.scene)
+        found = cage.read(surface, depsgraph)
+        self._signature, limit = following.signature(found), found.surface()
+        for ob in things:
+            following.check_thing(ob, surface)
+            _check_kind(ob)
+        self._relocations = newcomers.relocations(things, surface, depsgraph)
+        relocated = {relocation.data for relocation in self._relocations}
+        for ob in things:
+            if ob.data not in relocated:
+                following.check_holds(ob, surface, self._signature)
+                live_thing.check(ob.data, limit)
+        self._surface, self._things = surface, list(things)
+        self._by_nodes = [ob for ob in things if followers.modifier_of(ob)]
+        self._unbinding = Unbinding(self._by_nodes, depsgraph, "REST")
+
+    def write(self, context: bpy.types.Context) -> LiveOutcome:
+        places = {ob: ob.modifiers.find(followers.modifier_of(ob).name) for ob in self._by_nodes}
+        for ob in self._things:
+            if followers.live_modifier_of(ob) and not live_thing.missing(ob.data):
+                live.take_up_edits(ob, context.evaluated_depsgraph_get())
+        for relocation in self._relocations:
+            relocation.write()
+        if self._by_nodes:
+            self._unbinding.write()
+        following.ensure_capture(self._surface)
+        for ob in self._things:
+            modifier = followers.live_modifier_of(ob)
+            if modifier is None:
+                modifier = groups.add_modifier(ob, FOLLOW_LIVE, place=places.get(ob, 0))
+            groups.set_input(modifier, SURFACE, self._surface)
+            ob.data[ids.SIGNATURE] = self._signature
+        depsgraph = context.evaluated_depsgraph_get()
+        for ob in self._things:
+            if live_thing.missing(ob.data):
+                live.start(ob, self._surface, depsgraph)
+        live.pose_all(depsgraph)
+        count = sum(len(ob.data.attributes[ids.FACE].data) for ob in self._things)
+        return LiveOutcome(self._surface.name, count)
+
+
+def _check_kind(ob: bpy.types.Object) -> None:
+    if ob.type == "CURVE":
+        raise RefusalError(f"{ob.name} is a Curve object, which can follow by nodes only")
+    if ob.data.users > 1:
+        raise RefusalError(
+            f"{ob.name} shares its data with other objects: make it a single user first"
+        )
+    stored = ob.data.attributes.get(ids.CUSTOM_NORMAL)
+    if stored and stored.data_type == "FLOAT_VECTOR":
+        raise RefusalError(f"{ob.name} has normals of its own, which can follow by nodes only")
+    if getattr(ob.data, "shape_keys", None):
+        raise RefusalError(f"{ob.name} has shape keys, which can follow by nodes only")
+
+
+def end(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+    """Ends that the object follows live. Its points are then at rest."""
+    modifier = followers.live_modifier_of(ob)
+    if modifier is None:
+        return
+    if not live_thing.missing(ob.data):
+        live.take_up_edits(ob, depsgraph)
+        live_thing.stop(ob.data)
+    ob.modifiers.remove(modifier)

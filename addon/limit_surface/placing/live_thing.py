@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hair or points that the extension itself moves with a surface.
+
+`position` holds the points where they are now, which is what artists see and comb; `limit_rest`
+holds them at rest, `limit_fingerprint` a number for each strand that tells whether somebody has
+changed its points since they were written, and the custom property `limit_written` the frame and
+the matrix of that moment. All of it belongs to the data: it survives saving, undo, deleted strands
+and linking. What is shown in a frame depends on the shape at rest and on the frame alone.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..reading import attributes
+from .places import NOWHERE
+
+if TYPE_CHECKING:
+    import limitsurf
+
+#: Attributes that hold points, of which the position is the first; vectors; and rotations
+_POINTS = (ids.POSITION, ids.HANDLE_LEFT, ids.HANDLE_RIGHT)
+_VECTORS = (ids.NORMAL, ids.TANGENT)
+_CURVE_TYPES = ("CATMULL_ROM", "POLY", "BEZIER", "NURBS")  # by Blender's number
+_BINDING = (ids.FACE, ids.UV, ids.REST_ROOT, ids.REST_ROTATION)
+
+
+class Written(NamedTuple):
+    """When and where the points were written."""
+
+    frame: float
+    matrix: np.ndarray  # (4, 4) from the surface's space to that of the thing
+
+
+def rest_name(name: str) -> str:
+    """Returns the name of the attribute that holds another one at rest."""
+    return ids.LIVE_REST if name == ids.POSITION else f"{ids.LIVE_REST}_{name}"
+
+
+def moved_names(data: bpy.types.ID) -> list[str]:
+    """Returns the names of the attributes that follow the surface."""
+    kinds = dict.fromkeys(_POINTS, "FLOAT_VECTOR")
+    if not isinstance(data, bpy.types.Curves):
+        kinds |= dict.fromkeys(_VECTORS, "FLOAT_VECTOR") | {ids.ROTATION: "QUATERNION"}
+    stored = data.attributes
+    return [
+        name
+        for name, kind in kinds.items()
+        if name in stored and (stored[name].data_type, stored[name].domain) == (kind, "POINT")
+    ]
+
+
+def start(data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
+    """Takes the data's points for those at rest."""
+    for name in moved_names(data):
+        attribute = data.attributes[name]
+        values = attributes.read(data, name)
+        attributes.write(data, rest_name(name), attribute.data_type, attribute.domain, values)
+    if ids.LIVE_WRITTEN in data:
+        del data[ids.LIVE_WRITTEN]
+    LiveThing().mark(data, limit)
+
+
+def check(data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
+    """Raises LocationError, MeshError or ValueError where the data is not bound to the surface."""
+    LiveThing().check(data, limit)
+
+
+def stop(data: bpy.types.ID) -> None:
+    """Puts the data's points where they are at rest. Edits must have been taken up before."""
+    for name in moved_names(data):
+        if rest_name(name) in data.attributes:
+            _write(data, name, attributes.read(data, rest_name(name)))
+            data.attributes.remove(data.attributes[rest_name(name)])
+    if ids.LIVE_FINGERPRINT in data.attributes:
+        data.attributes.remove(data.attributes[ids.LIVE_FINGERPRINT])
+    if ids.LIVE_WRITTEN in data:
+        del data[ids.LIVE_WRITTEN]
+    _tag(data)
+
+
+def missing(data: bpy.types.ID) -> str:
+    """Returns the name of an attribute without which the data cannot follow, or None."""
+    needed = (ids.LIVE_REST, ids.LIVE_FINGERPRINT, *_BINDING)
+    return next((name for name in needed if name not in data.attributes), "")
+
+
+def written(data: bpy.types.ID) -> Written | None:
+    stored = data.get(ids.LIVE_WRITTEN)
+    if stored is None or len(stored) != 17:
+        return None
+    numbers = np.array(stored, np.float64)
+    return Written(float(numbers[0]), numbers[1:].reshape(4, 4))
+
+
+class LiveThing:
+    """What is prepared for one data-block, and kept from frame to frame."""
+
+    def __init__(self) -> None:
+        self.version = -1  # the surface's version for which the points were written
+        self._limit: limitsurf.LimitSurface | None = None
+        self._binding: dict[str, np.ndarray] = {}
+        self._poser: limitsurf.StrandPoser | None = None
+        self._buffers: dict[str, np.ndarray] = {}
+
+    def check(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
+        self._poser_on(data, limit)
+
+    def edits(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> np.ndarray | None:
+        """Returns which strands somebody has changed since they were written; None for none."""
+        self._leave_new_ones(data)
+        prints = self._read(data, ids.LIVE_FINGERPRINT)
+        edited: np.ndarray = self._fingerprints(data, limit) != prints
+        return edited if edited.any() else None
+
+    def _leave_new_ones(self, data: bpy.types.ID) -> None:
+        """Strands that were added since the last time have no fingerprint, and belong to no place
+        of the surface, whatever their other attributes say.
+        """
+        is_new = self._read(data, ids.LIVE_FINGERPRINT) == 0
+        if is_new.any():
+            rotation = attributes.read(data, ids.REST_ROTATION)
+            rotation[is_new] = 0
+            _write(data, ids.REST_ROTATION, rotation)
+
+    def take_up(
+        self,
+        data: bpy.types.ID,
+        edited: np.ndarray,
+        limit: limitsurf.LimitSurface,
+        matrix: np.ndarray,
+    ) -> None:
+        """Changes the shape at rest of edited strands, so that they are posed to where they are
+        now, on the surface in the pose for which they were written.
+        """
+        poser = self._poser_on(data, limit)
+        for name in _points_of(data):
+            rest = self._read(data, rest_name(name))
+            poser.unpose(self._read(data, name), matrix, rest, only=edited)
+            _write(data, rest_name(name), rest)
+        self.mark(data, limit)
+
+    def mark(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
+        """Takes the points for those that were written."""
+        prints = self._fingerprints(data, limit)
+        attributes.write(data, ids.LIVE_FINGERPRINT, "INT", _domain(data), prints)
+
+    def pose(
+        self, data: bpy.types.ID, limit: limitsurf.LimitSurface, matrix: np.ndarray, frame: float
+    ) -> bool:
+        """Moves everything to where it is on the surface in its pose, and returns whether anything
+        changed.
+        """
+        poser = self._poser_on(data, limit)
+        how = dict.fromkeys(_POINTS, poser.pose) | dict.fromkeys(_VECTORS, poser.pose_vectors)
+        how[ids.ROTATION] = poser.pose_rotations
+        has_moved = False
+        for name in moved_names(data):
+            if rest_name(name) not in data.attributes:
+                continue  # it was added later
+            rest = self._read(data, rest_name(name))
+            posed = how[name](rest, matrix, self._buffer(f"new {name}", rest.shape))
+            if not _same_bits(posed, self._read(data, name)):
+                _write(data, name, posed)
+                has_moved = True
+        if has_moved:
+            self.mark(data, limit)
+            _tag(data)
+        now = np.array([frame, *matrix.ravel()])
+        if not np.array_equal(data.get(ids.LIVE_WRITTEN, ()), now):
+            data[ids.LIVE_WRITTEN] = now.tolist()
+        return has_moved
+
+    def _fingerprints(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> np.ndarray:
+        """Returns numbers that change with every bit of a strand's points and handles."""
+        poser, total = self._poser_on(data, limit), np.int32(0)
+        for name in _points_of(data):
+            total = total ^ poser.fingerprints(self._read(data, name))
+        return np.where(total == 0, np.int32(1), total)
+
+    def _poser_on(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> limitsurf.StrandPoser:
+        """Returns what poses the strands as they are bound now."""
+        binding = {name: attributes.read(data, name) for name in _BINDING}
+        binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
+        if isinstance(data, bpy.types.Curves):
+            offsets = np.empty(len(data.curves) + 1, np.int32)
+            data.curve_offset_data.foreach_get("value", offsets)
+            binding["offsets"] = offsets
+        if (
+            self._poser is None
+            or limit is not self._limit
+            or binding.keys() != self._binding.keys()
+            or not all(_same_bits(binding[key], kept) for key, kept in self._binding.items())
+        ):
+            self._poser = limit.strand_poser(
+                binding[ids.FACE],
+                binding[ids.UV].astype(np.float64),
+                binding[ids.REST_ROOT],
+                binding[ids.REST_ROTATION],
+                binding.get("offsets"),
+            )
+            self._limit, self._binding = limit, binding
+        return self._poser
+
+    def _read(self, data: bpy.types.ID, name: str) -> np.ndarray:
+        """Returns the attribute's values, in memory that is used again for the next frame."""
+        attribute = data.attributes[name]
+        layout = attributes.LAYOUTS[attribute.data_type]
+        count = len(attribute.data)
+        shape = (count,) if layout.width == 1 else (count, layout.width)
+        values = self._buffer(name, shape, layout.dtype)
+        attribute.data.foreach_get(layout.key, values.reshape(-1))
+        return values
+
+    def _buffer(self, name: str, shape: tuple[int, ...], kind: type = np.float32) -> np.ndarray:
+        buffer = self._buffers.get(name)
+        if buffer is None or buffer.shape != shape or buffer.dtype != kind:
+            buffer = self._buffers[name] = np.empty(shape, kind)
+        return buffer
+
+
+def _points_of(data: bpy.types.ID) -> list[str]:
+    return [n for n in _POINTS if n in data.attributes and rest_name(n) in data.attributes]
+
+
+def _domain(data: bpy.types.ID) -> str:
+    return data.attributes[ids.FACE].domain
+
+
+def _same_bits(a: np.ndarray, b: np.ndarray) -> bool:
+    return a.shape == b.shape and np.array_equal(a.view(np.int32), b.view(np.int32))
+
+
+def _write(data: bpy.types.ID, name: str, values: np.ndarray) -> None:
+    if isinstance(data, bpy.types.Mesh) and name == ids.POSITION:
+        # unlike the attribute, it has Blender calculate the bounding box anew
+        data.vertices.foreach_set("co", values.reshape(-1))
+    else:
+        attribute = data.attributes[name]
+        attributes.write(data, name, attribute.data_type, attribute.domain, values)
+
+
+def _tag(data: bpy.types.ID) -> None:
+    """Has Blender evaluate the data again, with its bounding box."""
+    if isinstance(data, bpy.types.Mesh):
+        data.update()
+    elif hasattr(data, "set_types") and len(data.curves):
+        stored = data.attributes.get(ids.CURVE_TYPE)
+        data.set_types(type=_CURVE_TYPES[stored.data[0].value if stored else 0], indices=[0])
+    data.update_tag()

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces that deform, hair that follows them live, and what it should look like."""
+
+import bpy
+import follow_truth
+import limitsurf
+import numpy as np
+import scenes
+from limit_surface import ids
+from limit_surface.reading import attributes, cage
+from mathutils import Euler, Matrix
+
+FRAMES = ((1, 0.0), (13, 0.5), (30, 0.0))
+
+
+def deforming(scene: str, mirrored: bool = False) -> bpy.types.Object:
+    ob = scenes.SCENES[scene]()
+    follow_truth.animate(ob)
+    scenes.add_subsurf(ob)
+    turned = Matrix.Translation((0.3, -0.2, 0.5)) @ Euler((0.3, 0.5, -0.7)).to_matrix().to_4x4()
+    ob.matrix_world = turned @ Matrix.Diagonal((-1.2 if mirrored else 1.2, 1.2, 0.8, 1))
+    return ob
+
+
+def with_armature(scene: str) -> bpy.types.Object:
+    """Adds a surface that one of two bones bends and another holds."""
+    ob = scenes.SCENES[scene]()
+    armature = bpy.data.armatures.new("Rig")
+    rig = bpy.data.objects.new("Rig", armature)
+    bpy.context.collection.objects.link(rig)
+    scenes.activate(rig)
+    bpy.ops.object.mode_set(mode="EDIT")
+    for name, x in (("Left", 0.0), ("Right", 5.0)):
+        bone = armature.edit_bones.new(name)
+        bone.head, bone.tail = (x, 0, -1), (x, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    positions = attributes.read(ob.data, ids.POSITION)
+    for name, weight in (("Left", 1 - positions[:, 0] / 5), ("Right", positions[:, 0] / 5)):
+        group = ob.vertex_groups.new(name=name)
+        for vertex, value in enumerate(weight):
+            group.add([vertex], float(value), "REPLACE")
+    ob.modifiers.new("Armature", "ARMATURE").object = rig
+    bone = rig.pose.bones["Left"]
+    bone.rotation_mode = "XYZ"
+    for frame, angle in ((1, 0.0), (30, 0.9)):
+        bone.rotation_euler = (0, angle, 0)
+        bone.keyframe_insert("rotation_euler", frame=frame)
+    scenes.add_subsurf(ob)
+    return ob
+
+
+def animate_creases(ob: bpy.types.Object) -> None:
+    """Adds nodes that make all edges sharper from frame 1 to 30."""
+    group = bpy.data.node_groups.new("Creases", "GeometryNodeTree")
+    group.is_modifier = True
+    for in_out in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
+    begin, end = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    store = group.nodes.new("GeometryNodeStoreNamedAttribute")
+    store.data_type, store.domain = "FLOAT", "EDGE"
+    store.inputs["Name"].default_value = ids.EDGE_CREASE
+    time = group.nodes.new("GeometryNodeInputSceneTime")
+    share = group.nodes.new("ShaderNodeMath")
+    share.operation = "DIVIDE"
+    share.inputs[1].default_value = 40
+    group.links.new(time.outputs["Frame"], share.inputs[0])
+    group.links.new(
+        share.outputs[0], next(s for s in store.inputs if s.name == "Value" and s.enabled)
+    )
+    group.links.new(begin.outputs[0], store.inputs["Geometry"])
+    group.links.new(store.outputs[0], end.inputs[0])
+    ob.modifiers.new("Creases", "NODES").node_group = group
+
+
+def follow(*things: bpy.types.Object, mode: str = "LIVE") -> None:
+    for thing in things:
+        for ob in bpy.context.selected_objects:
+            ob.select_set(False)
+        thing.select_set(True)
+        scenes.activate(thing)
+        assert bpy.ops.object.limit_follow(mode=mode) == {"FINISHED"}
+
+
+def relation(ob: bpy.types.Object, thing: bpy.types.Object) -> np.ndarray:
+    """Returns the matrix from the surface's space to that of the thing."""
+    return np.linalg.inv(np.array(thing.matrix_world)) @ np.array(ob.matrix_world)
+
+
+def rest(hair: bpy.types.Object) -> np.ndarray:
+    """Returns the strands at rest (strands, points, 3)."""
+    return attributes.read(hair.data, ids.LIVE_REST).reshape(len(hair.data.curves), -1, 3)
+
+
+def creased_surface(ob: bpy.types.Object) -> limitsurf.LimitSurface:
+    """Returns the limit surface of the mesh before its subdivision, with the creases of edges."""
+    subsurf = next(m for m in ob.modifiers if m.type == "SUBSURF")
+    subsurf.show_viewport = False
+    mesh = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    creases = attributes.read(mesh, ids.EDGE_CREASE)
+    edges = attributes.read(mesh, ids.EDGE_VERTICES)
+    sharpness = 10 * creases.astype(np.float64) ** 2
+    corners = np.flatnonzero(np.bincount(edges.ravel()) == 2)  # Blender's rule for these
+    lowest = [sharpness[(edges == corner).any(axis=1)].min() for corner in corners]
+    cage = limitsurf.ControlMesh.from_faces(
+        attributes.read(mesh, ids.POSITION).astype(np.float64),
+        [list(polygon.vertices) for polygon in mesh.polygons],
+        edge_sharpness=(edges, sharpness),
+        vertex_sharpness=(corners, lowest),
+    )
+    subsurf.show_viewport = True
+    return limitsurf.LimitSurface(cage)
+
+
+def check_hair(
+    ob: bpy.types.Object, hair: bpy.types.Object, surface: limitsurf.LimitSurface | None = None
+) -> None:
+    now = follow_truth.on_surface(ob, hair.data, relation(ob, hair), surface)
+    expected = follow_truth.moved(rest(hair), hair.data, now)
+    error = np.abs(follow_truth.shown_strands(hair) - expected).max()
+    assert error < follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
+
+
+def limit_of(hair: bpy.types.Object) -> limitsurf.LimitSurface:
+    """Returns the limit surface of the hair's surface in this frame."""
+    return cage.read(hair.data.surface, bpy.context.evaluated_depsgraph_get()).surface()
