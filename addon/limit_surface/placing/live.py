@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
 from ..tasks.object_keys import ObjectKey
@@ -213,7 +214,7 @@ def _each(
     for ob in things:
         try:
             work(ob)
-        except (*live_surface.errors, ValueError, MemoryError) as error:
+        except (RefusalError, *live_surface.errors, ValueError, MemoryError) as error:
             _refuse([ob], str(error) or "There is not enough memory")
         else:
             _troubles.pop(ObjectKey.of(ob), None)

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from .. import ids
-from ..reading import attributes
+from ..reading import attributes, linked_attributes
 from .places import NOWHERE
 
 if TYPE_CHECKING:
@@ -147,7 +148,9 @@ class LiveThing:
     def mark(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
         """Takes the points for those that were written."""
         prints = self._fingerprints(data, limit)
-        attributes.write(data, ids.LIVE_FINGERPRINT, "INT", _domain(data), prints)
+        if ids.LIVE_FINGERPRINT not in data.attributes:
+            data.attributes.new(ids.LIVE_FINGERPRINT, "INT", _domain(data))
+        _write(data, ids.LIVE_FINGERPRINT, prints)
 
     def pose(
         self, data: bpy.types.ID, limit: limitsurf.LimitSurface, matrix: np.ndarray, frame: float
@@ -168,8 +171,8 @@ class LiveThing:
                 _write(data, name, posed)
                 has_moved = True
         if has_moved:
-            self.mark(data, limit)
             _tag(data)
+            self.mark(data, limit)
         now = np.array([frame, *matrix.ravel()])
         if not np.array_equal(data.get(ids.LIVE_WRITTEN, ()), now):
             data[ids.LIVE_WRITTEN] = now.tolist()
@@ -236,7 +239,9 @@ def _same_bits(a: np.ndarray, b: np.ndarray) -> bool:
 
 
 def _write(data: bpy.types.ID, name: str, values: np.ndarray) -> None:
-    if isinstance(data, bpy.types.Mesh) and name == ids.POSITION:
+    if data.library or data.override_library:
+        linked_attributes.write(data, name, values)
+    elif isinstance(data, bpy.types.Mesh) and name == ids.POSITION:
         # unlike the attribute, it has Blender calculate the bounding box anew
         data.vertices.foreach_set("co", values.reshape(-1))
     else:
@@ -247,6 +252,8 @@ def _write(data: bpy.types.ID, name: str, values: np.ndarray) -> None:
 def _tag(data: bpy.types.ID) -> None:
     """Has Blender evaluate the data again, with its bounding box."""
     if isinstance(data, bpy.types.Mesh):
+        if data.library or data.override_library:
+            data.transform(Matrix())
         data.update()
     elif hasattr(data, "set_types") and len(data.curves):
         stored = data.attributes.get(ids.CURVE_TYPE)
