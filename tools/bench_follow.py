@@ -97,6 +97,10 @@ def by_nodes(_hair: bpy.types.Object) -> None:
     bpy.ops.object.limit_follow(mode="NODES")
 
 
+def live(_hair: bpy.types.Object) -> None:
+    bpy.ops.object.limit_follow(mode="LIVE")
+
+
 def by_blender(hair: bpy.types.Object) -> None:
     deform_by_blender(hair.data.surface, hair)
 
@@ -105,6 +109,7 @@ WAYS: dict[str, Callable[[bpy.types.Object], None]] = {
     "nothing": lambda _hair: None,
     "Deform Curves on Surface": by_blender,
     "nodes": by_nodes,
+    "live": live,
 }
 
 

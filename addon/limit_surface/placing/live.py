@@ -214,7 +214,7 @@ def _each(
     for ob in things:
         try:
             work(ob)
-        except (RefusalError, *live_surface.errors, ValueError, MemoryError) as error:
+        except (RefusalError, ValueError, MemoryError) as error:
             _refuse([ob], str(error) or "There is not enough memory")
         else:
             _troubles.pop(ObjectKey.of(ob), None)

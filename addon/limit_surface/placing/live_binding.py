@@ -55,7 +55,11 @@ class LiveRequest:
         self._unbinding = Unbinding(self._by_nodes, depsgraph, "REST")
 
     def write(self, context: bpy.types.Context) -> LiveOutcome:
-        places = {ob: ob.modifiers.find(followers.modifier_of(ob).name) for ob in self._by_nodes}
+        places = {
+            ob: ob.modifiers.find(modifier.name)
+            for ob in self._by_nodes
+            if (modifier := followers.modifier_of(ob))
+        }
         for ob in self._things:
             if followers.live_modifier_of(ob) and not live_thing.missing(ob.data):
                 live.take_up_edits(ob, context.evaluated_depsgraph_get())

@@ -34,8 +34,9 @@ class _Captured(NamedTuple):
 class LiveSurface:
     """`version` counts the poses. Raises CageError and MeshError where there is no surface."""
 
+    limit: limitsurf.LimitSurface  # there is one once it has been read
+
     def __init__(self) -> None:
-        self.limit: limitsurf.LimitSurface | None = None
         self.version = 0
         self._checksums: tuple[object, ...] | None = None
 
@@ -43,7 +44,7 @@ class LiveSurface:
         """Takes the pose of the depsgraph's frame."""
         captured = _captured(ob, depsgraph)
         self.version += 1
-        if captured is None or self.limit is None or captured.checksums != self._checksums:
+        if captured is None or captured.checksums != self._checksums:
             self._checksums = None
             self.limit = cage.read(ob, depsgraph).surface()
         if captured is None:

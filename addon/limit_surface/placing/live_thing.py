@@ -10,6 +10,7 @@ and linking. What is shown in a frame depends on the shape at rest and on the fr
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
@@ -159,8 +160,8 @@ class LiveThing:
         changed.
         """
         poser = self._poser_on(data, limit)
-        how = dict.fromkeys(_POINTS, poser.pose) | dict.fromkeys(_VECTORS, poser.pose_vectors)
-        how[ids.ROTATION] = poser.pose_rotations
+        how: dict[str, Callable[..., np.ndarray]] = {ids.ROTATION: poser.pose_rotations}
+        how |= dict.fromkeys(_POINTS, poser.pose) | dict.fromkeys(_VECTORS, poser.pose_vectors)
         has_moved = False
         for name in moved_names(data):
             if rest_name(name) not in data.attributes:
@@ -180,7 +181,8 @@ class LiveThing:
 
     def _fingerprints(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> np.ndarray:
         """Returns numbers that change with every bit of a strand's points and handles."""
-        poser, total = self._poser_on(data, limit), np.int32(0)
+        poser = self._poser_on(data, limit)
+        total: np.ndarray = np.zeros(len(poser), np.int32)
         for name in _points_of(data):
             total = total ^ poser.fingerprints(self._read(data, name))
         return np.where(total == 0, np.int32(1), total)

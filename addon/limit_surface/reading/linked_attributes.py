@@ -29,8 +29,8 @@ def write(data: bpy.types.ID, name: str, values: np.ndarray) -> None:
     # Looking an element up makes sure that no copy of the data shares the memory.
     first, last = elements[0].as_pointer(), elements[count - 1].as_pointer()
     width = layout.width * values.itemsize
-    held = np.frombuffer(ctypes.string_at(first, width), layout.dtype)
-    shown = np.ravel(np.array(getattr(elements[0], layout.key), layout.dtype))
+    held: np.ndarray = np.frombuffer(ctypes.string_at(first, width), layout.dtype)
+    shown: np.ndarray = np.ravel(np.array(getattr(elements[0], layout.key), layout.dtype))
     if last - first != (count - 1) * width or not np.array_equal(held, shown, equal_nan=True):
         raise RefusalError(f"{data.name} is linked, and its attribute {name} cannot be written")
     ctypes.memmove(first, values.ctypes.data, values.nbytes)
