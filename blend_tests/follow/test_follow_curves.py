@@ -305,3 +305,20 @@ def test_curves_are_rebound_at_their_closest_places():
     check(first, ob)
     check(second, ob)
     check_hair(ob, hair)
+
+
+def test_a_curve_that_follows_is_bound_at_its_new_places_when_it_is_snapped():
+    ob = deforming("cross")
+    made = curve(ob, ("POLY",))
+    follow(made, ob)
+    bpy.context.scene.limit_surface.target = ob
+    ob.select_set(False)
+    scenes.activate(made)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.curve.select_all(action="SELECT")
+    assert bpy.ops.object.limit_snap() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    relation = np.linalg.inv(np.array(made.matrix_world)) @ np.array(ob.matrix_world)
+    places = follow_truth.on_surface(ob, curve_table(made).data, relation)
+    np.testing.assert_allclose(control_points(made)[:, 0], places.position, atol=1e-5)
+    check(made, ob)

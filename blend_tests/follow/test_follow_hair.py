@@ -99,3 +99,30 @@ def test_snapped_hair_follows(mirrored):
     for frame, subframe in ((1, 0.0), (13, 0.5), (30, 0.0)):
         bpy.context.scene.frame_set(frame, subframe=subframe)
         check(ob, hair, (ids.POSITION,))
+
+
+@pytest.mark.parametrize("to_another", [False, True])
+def test_hair_that_follows_is_bound_at_its_new_places_when_it_is_snapped(to_another):
+    ob = deforming("grid with holes")
+    bpy.context.view_layer.update()
+    hair = snap_scenes.add_hair(ob, sizes=[4] * 20)
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_snap() == {"FINISHED"}
+    follow(hair)
+    if to_another:
+        hair.location.x += 0.4
+        ob = deforming("cross")
+    attributes.write(
+        hair.data,
+        ids.POSITION,
+        "FLOAT_VECTOR",
+        "POINT",
+        attributes.read(hair.data, ids.POSITION) + np.float32([0.3, 0.1, 0.2]),
+    )
+    bpy.context.view_layer.update()
+    hair.select_set(True)
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_snap() == {"FINISHED"}
+    for frame in (1, 30):
+        bpy.context.scene.frame_set(frame)
+        check(ob, hair, (ids.POSITION,))

@@ -5,6 +5,7 @@ Mouse and keys are tested in blend_tests/gui.
 """
 
 import bpy
+import follow_scenes
 import numpy as np
 import pytest
 import scenes
@@ -166,3 +167,16 @@ def test_nothing_is_left_in_the_file(target):
     drag()
     assert scenes.file_contents() == before
     assert ob.name == "Pin"
+
+
+def test_a_strand_that_follows_is_bound_at_its_new_place():
+    ob = follow_scenes.deforming("grid with holes")
+    hair = scenes.add_hair(ob, per_side=2, follow="NODES")
+    bpy.context.scene.limit_surface.target = ob
+    scenes.activate(hair)
+    moved = bpy.ops.view3d.limit_snap_modal("EXEC_DEFAULT", element=3, face=1, uv=(0.3, 0.6))
+    assert moved == {"FINISHED"}
+    assert hair.data.attributes["limit_face"].data[3].value == 1
+    for frame in (1, 30):
+        bpy.context.scene.frame_set(frame)
+        follow_scenes.check_hair(ob, hair)

@@ -235,5 +235,5 @@ def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
 def check_editable(ob: bpy.types.Object) -> None:
     if not ob.is_editable or not ob.data.is_editable:
         raise RefusalError(f"{ob.name} is linked from another file: make it local first")
-    if ob.mode == "EDIT":
+    if ob.mode == "EDIT" and ob.type == "MESH":  # other types have no data of their own there
         raise RefusalError(f"{ob.name} is in Edit Mode: leave it first")

@@ -24,6 +24,7 @@ SHORTEST = 2e-6  # Blender removes bones whose length is at most half of this
 class SnappedBones:
     noun = "bones"
     stores_location = False
+    follower = None
 
     def __init__(self, ob: bpy.types.Object) -> None:
         self._matrix = np.array(ob.matrix_world, np.float64)

@@ -28,6 +28,10 @@ class SnappedPoints(ABC):
         self._rows = np.flatnonzero(selected)
         self._points = transformed(self._matrix, points[self._rows].astype(np.float64))
 
+    @property
+    def follower(self) -> bpy.types.Object | None:
+        return self.ob if self.ob.type == "CURVE" else None
+
     @abstractmethod
     def read(self) -> tuple[np.ndarray, np.ndarray]:
         """Returns all points (n, 3), and whether each is selected (n,)."""

@@ -37,6 +37,10 @@ class SnappedHair:
         self._chosen = np.flatnonzero(chosen)
         self._binding = HairBinding(ob.data, surface, is_whole=bool(chosen.all()))
 
+    @property
+    def follower(self) -> bpy.types.Object:
+        return self._ob
+
     def elements(self) -> Elements:
         strands, _rows = self._strands(self._chosen)
         axes = unit(self._matrix[:3, :3].T).T

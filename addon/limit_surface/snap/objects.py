@@ -17,6 +17,7 @@ _NOTHING_BETWEEN = ("OBJECT", "ARMATURE", "LATTICE")
 class SnappedObjects:
     noun = "objects"
     stores_location = False
+    follower = None
 
     def __init__(self, objects: list[bpy.types.Object]) -> None:
         self._objects = objects

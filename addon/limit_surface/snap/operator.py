@@ -11,6 +11,7 @@ from ..tasks.job import part_of
 from ..tasks.progress import progress_bar
 from ..tasks.properties import SummaryProperty, draw_summary
 from .aim import Aim, View
+from .binding_again import bind_again
 from .choices import Choices, Outcome, merged
 from .properties import PlacingProperties
 from .selection import HAIR_MODES, MODES, check_target, find_target, gather
@@ -187,6 +188,13 @@ class OBJECT_OT_limit_snap(PlacingProperties, SummaryProperty, bpy.types.Operato
             outcome = part.place(placement, choices) if placed else Outcome(part.noun)
             outcome.failures += placement.failures
             outcomes.append(outcome)
+        followers = [
+            part.follower
+            for part, placement in zip(parts, placements, strict=True)
+            if part.follower and len(placement.rows)
+        ]
+        for warning in bind_again(followers, target, context):
+            self.report({"WARNING"}, warning)
         return self._report(surface, context.evaluated_depsgraph_get(), merged(outcomes))
 
     def _aim(self, context: bpy.types.Context) -> Aim:

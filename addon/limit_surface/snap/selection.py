@@ -35,6 +35,10 @@ class Snapped(Protocol):
     noun: str  # in the plural
     stores_location: bool
 
+    @property
+    def follower(self) -> bpy.types.Object | None:
+        """What may follow a surface by nodes"""
+
     def elements(self) -> Elements: ...
     def place(self, placement: Placement, choices: Choices) -> Outcome: ...
 

@@ -7,6 +7,7 @@ from bpy.props import FloatVectorProperty, IntProperty
 
 from .. import ids, native
 from ..errors import RefusalError
+from ..snap.binding_again import bind_again
 from ..snap.properties import ALIGNMENTS, HAIR, PlacingProperties
 from ..snap.surface import TargetSurface
 from . import ray
@@ -93,6 +94,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             drag.confirm()
         except native.refusals as error:
             return self._refuse(error)
+        self._bind_again(subject, context)
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -156,7 +158,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         elif self._drag is None or not is_press:
             pass
         elif kind in {"RET", "NUMPAD_ENTER"}:
-            return self._confirm()
+            return self._confirm(context)
         elif kind in WHEEL:
             self._typed = TypedNumber()
             self.offset += WHEEL[kind] * self._step * (FINE if event.shift else 1)
@@ -182,7 +184,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         at = (event.mouse_x, event.mouse_y)
         if event.value == "PRESS":
             if self._drag is not None:
-                return self._confirm()
+                return self._confirm(context)
             self._follow(context, event)
             if self._hovered is not None:
                 self._take(self._hovered)
@@ -191,7 +193,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             dragged = np.hypot(*np.subtract(at, self._pressed_at)) > CLICK
             self._pressed_at = None
             if dragged:
-                return self._confirm()
+                return self._confirm(context)
         self._show_state(context)
         return {"RUNNING_MODAL"}
 
@@ -256,7 +258,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         self.offset = self._typed.value if self._typed else self._offset_before_typing
         self._put()
 
-    def _confirm(self) -> set[str]:
+    def _confirm(self, context: bpy.types.Context) -> set[str]:
         drag = self._drag
         assert drag is not None
         if drag.place is None:
@@ -265,8 +267,14 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             )
             return {"CANCELLED"}
         drag.confirm()
+        self._bind_again(self._subject, context)
         self.face, self.uv = self._glide.face, self._glide.uv
         return {"FINISHED"}
+
+    def _bind_again(self, subject: Subject, context: bpy.types.Context) -> None:
+        if subject.kind == "STRAND":
+            for warning in bind_again([subject.ob], subject.target, context):
+                self.report({"WARNING"}, warning)
 
     def _restore(self) -> None:
         if self._drag is not None:
