@@ -259,7 +259,8 @@ def change_topology(sheet):
 def test_hair_that_was_bound_to_another_topology(waves, tmp_path, capfd):
     change_topology(waves)
     assert bake(tmp_path, "Limit Hair") == command.STALE_BINDING
-    assert "Limit Hair was bound before the faces of Flat changed" in capfd.readouterr().err
+    message = "The faces of Flat have changed since Limit Hair was bound; object.limit_rebind"
+    assert message in capfd.readouterr().err
     assert not contents(tmp_path)
 
 

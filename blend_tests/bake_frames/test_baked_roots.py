@@ -83,16 +83,24 @@ def check_refused(tmp_path, capfd, reason):
 def test_a_crease_that_came_later(bound, tmp_path, capfd):
     crease = bound.data.edge_creases_ensure()
     crease.data[3].value = 0.5
-    check_refused(
-        tmp_path, capfd, "the creases or the rules of Cross have changed since Limit Hair"
-    )
+    check_refused(tmp_path, capfd, "The creases or rules of Cross have changed since its tables")
 
 
 def test_tables_that_have_been_deleted(bound, tmp_path, capfd):
     bpy.data.objects.remove(bpy.data.objects["Limit Tiles of Cross"])
-    check_refused(tmp_path, capfd, "follows Cross by tables that have been deleted")
+    check_refused(tmp_path, capfd, "tables that Limit Hair reads were deleted; object.limit_follow")
 
 
 def test_points_of_the_tables_that_have_been_deleted(bound, tmp_path, capfd):
     bpy.data.objects.remove(bpy.data.objects["Limit Points of Cross"])
-    check_refused(tmp_path, capfd, "follows Cross by tables that have been deleted")
+    check_refused(tmp_path, capfd, "tables that Limit Hair reads were deleted; object.limit_follow")
+
+
+def test_a_modifier_that_has_been_deleted(bound, tmp_path, capfd):
+    bpy.data.objects["Limit Hair"].modifiers.clear()
+    check_refused(tmp_path, capfd, "Limit Hair has lost the modifier by which it followed")
+
+
+def test_a_surface_that_hands_nothing_on(bound, tmp_path, capfd):
+    bound.modifiers["Limit Capture"].show_render = False
+    check_refused(tmp_path, capfd, "the modifier Limit Capture is disabled")
