@@ -230,13 +230,16 @@ def attribute(name: str, attribute: str, index: int) -> object:
 
 
 def large_sheet(side: int) -> int:
-    """A wavy sheet of side x side faces that fills the view, active; the number of its faces."""
+    """A wavy sheet of side x side faces that fills the view, active; the number of its faces. Only
+    its bounds are drawn: without a graphics card each drawing of so many faces takes a second.
+    """
     y, x = np.mgrid[: side + 1, : side + 1].reshape(2, -1) * (8 / side) - 4
     faces = grids.grid_faces(side, side)
     bpy.data.batch_remove(bpy.data.objects)
     mesh = bpy.data.meshes.new("Sheet")
     mesh.from_pydata(np.stack([x, y, 0.2 * np.sin(3 * x) * np.cos(2 * y)], 1), [], faces.tolist())
     ob = bpy.data.objects.new("Sheet", mesh)
+    ob.display_type = "BOUNDS"
     bpy.context.scene.collection.objects.link(ob)
     activate(ob)
     return len(mesh.polygons)

@@ -270,17 +270,17 @@ def test_what_is_locked_stays(blender, sheet, seen):
 
 def test_what_is_drawn(blender, sheet, seen):
     """This test also makes the picture of docs/snap_modal.md."""
-    blender.call("smooth_lines", True)
     blender.call("smooth_sheet")
     blender.call("pin")
     blender.call("start_drag", align="NORMAL")
     blender.move(*seen(3.4, 2.4))
     blender.wheel(1)
+    blender.call("smooth_lines", True)
     drawn = blender.screenshot("snap_modal")
+    blender.call("smooth_lines", False)
     assert all(count(drawn, colour) > 50 for colour in DRAWN)
     blender.key("Escape")
     assert not blender.call("running")
-    blender.call("smooth_lines", False)
     left = blender.screenshot("snap_modal_ended")
     assert all(count(left, colour) == 0 for colour in DRAWN)
 
