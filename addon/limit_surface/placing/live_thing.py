@@ -108,6 +108,7 @@ class LiveThing:
         self._binding: dict[str, np.ndarray] = {}
         self._poser: limitsurf.StrandPoser | None = None
         self._buffers: dict[str, np.ndarray] = {}
+        self._is_current = False  # the binding was read since the last pose
 
     def check(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
         self._poser_on(data, limit)
@@ -116,7 +117,8 @@ class LiveThing:
         """Returns which strands somebody has changed since they were written; None for none."""
         self._leave_new_ones(data)
         prints = self._read(data, ids.LIVE_FINGERPRINT)
-        edited: np.ndarray = self._fingerprints(data, limit) != prints
+        edited: np.ndarray = self._fingerprints(data, self._poser_on(data, limit)) != prints
+        self._is_current = True
         return edited if edited.any() else None
 
     def _leave_new_ones(self, data: bpy.types.ID) -> None:
@@ -144,11 +146,14 @@ class LiveThing:
             rest = self._read(data, rest_name(name))
             poser.unpose(self._read(data, name), matrix, rest, only=edited)
             _write(data, rest_name(name), rest)
-        self.mark(data, limit)
+        self._mark(data, poser)
 
     def mark(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
         """Takes the points for those that were written."""
-        prints = self._fingerprints(data, limit)
+        self._mark(data, self._poser_on(data, limit))
+
+    def _mark(self, data: bpy.types.ID, poser: limitsurf.StrandPoser) -> None:
+        prints = self._fingerprints(data, poser)
         if ids.LIVE_FINGERPRINT not in data.attributes:
             data.attributes.new(ids.LIVE_FINGERPRINT, "INT", _domain(data))
         _write(data, ids.LIVE_FINGERPRINT, prints)
@@ -159,7 +164,11 @@ class LiveThing:
         """Moves everything to where it is on the surface in its pose, and returns whether anything
         changed.
         """
-        poser = self._poser_on(data, limit)
+        if not (self._is_current and self._poser and limit is self._limit):
+            self._poser_on(data, limit)
+        self._is_current = False
+        poser = self._poser
+        assert poser is not None
         how: dict[str, Callable[..., np.ndarray]] = {ids.ROTATION: poser.pose_rotations}
         how |= dict.fromkeys(_POINTS, poser.pose) | dict.fromkeys(_VECTORS, poser.pose_vectors)
         has_moved = False
@@ -173,15 +182,14 @@ class LiveThing:
                 has_moved = True
         if has_moved:
             _tag(data)
-            self.mark(data, limit)
+            self._mark(data, poser)
         now = np.array([frame, *matrix.ravel()])
         if not np.array_equal(data.get(ids.LIVE_WRITTEN, ()), now):
             data[ids.LIVE_WRITTEN] = now.tolist()
         return has_moved
 
-    def _fingerprints(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> np.ndarray:
+    def _fingerprints(self, data: bpy.types.ID, poser: limitsurf.StrandPoser) -> np.ndarray:
         """Returns numbers that change with every bit of a strand's points and handles."""
-        poser = self._poser_on(data, limit)
         total: np.ndarray = np.zeros(len(poser), np.int32)
         for name in _points_of(data):
             total = total ^ poser.fingerprints(self._read(data, name))
