@@ -6,7 +6,9 @@ import textwrap
 import bpy
 
 from .. import ids, native
+from ..placing import live
 from ..placing.follow_state import State, Trouble
+from ..placing.followers import live_followers_of
 from . import stale
 
 _WIDTH = 36  # characters on a line of the sidebar
@@ -23,9 +25,10 @@ class VIEW3D_PT_limit_follow(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         state = State.of(context.active_object)
-        if state is None:
+        is_live = _draw_live(layout, context)
+        if state is None and not is_live:
             layout.label(text="Nothing follows the active object", icon="INFO")
-        else:
+        elif state is not None:
             _draw_state(layout, state)
             for trouble in stale.troubles(context, state):
                 _draw_trouble(layout, trouble)
@@ -33,6 +36,29 @@ class VIEW3D_PT_limit_follow(bpy.types.Panel):
         column.enabled = native.available()
         for operator in (ids.FOLLOW, ids.REBIND, ids.UNBIND):
             column.operator(operator)
+
+
+def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
+    """Draws what concerns live following, and returns whether the active object follows live, or
+    something follows it live.
+    """
+    ob = context.active_object
+    surface = live.surface_of(ob) if ob is not None else None
+    things = live_followers_of(ob) if ob is not None and surface is None else []
+    if surface is None and not things:
+        return False
+    column = layout.column(align=True)
+    if surface is not None:
+        column.label(text=f"It follows {surface.name} live", icon="OBJECT_DATA")
+        things = [ob]
+    else:
+        noun = "object follows" if len(things) == 1 else "objects follow"
+        column.label(text=f"{len(things):,} {noun} it live", icon="OBJECT_DATA")
+    column.prop(context.scene, ids.LIVE)
+    for thing in things:
+        if live.trouble(thing):
+            _draw_alert(layout.box(), live.trouble(thing))
+    return True
 
 
 def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
@@ -47,13 +73,17 @@ def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
 
 def _draw_trouble(layout: bpy.types.UILayout, trouble: Trouble) -> None:
     box = layout.box()
-    column = box.column(align=True)
-    column.alert = True
-    for i, line in enumerate(textwrap.wrap(trouble.text, _WIDTH)):
-        column.label(text=line, icon="BLANK1" if i else "ERROR")
+    _draw_alert(box, trouble.text)
     row = box.row()
     row.enabled = native.available()
     row.operator(trouble.remedy)
+
+
+def _draw_alert(layout: bpy.types.UILayout, text: str) -> None:
+    column = layout.column(align=True)
+    column.alert = True
+    for i, line in enumerate(textwrap.wrap(text, _WIDTH)):
+        column.label(text=line, icon="BLANK1" if i else "ERROR")
 
 
 def _size(count: int) -> str:

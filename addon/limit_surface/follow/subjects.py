@@ -7,6 +7,8 @@ from ..errors import RefusalError
 from ..placing.followers import (
     followers_of,
     is_placed,
+    live_followers_of,
+    live_modifier_of,
     modifier_of,
     strays_of,
     surface_of,
@@ -27,10 +29,10 @@ def chosen_followers(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Returns the selected objects that follow a surface, or where there are none, all that follow
     the active mesh.
     """
-    found = [ob for ob in selected(context) if modifier_of(ob)]
+    found = [ob for ob in selected(context) if modifier_of(ob) or live_modifier_of(ob)]
     active = context.active_object
     if not found and active is not None and active.type == "MESH":
-        found = followers_of(active)
+        found = [*followers_of(active), *live_followers_of(active)]
     return found
 
 

@@ -5,6 +5,8 @@ import bpy
 from bpy.props import EnumProperty
 
 from .. import ids, native
+from ..placing.followers import live_modifier_of
+from ..placing.live_unbinding import LiveUnbinding
 from ..placing.unbinding import Unbinding
 from ..tasks.properties import SummaryProperty, draw_summary
 from .subjects import chosen_followers
@@ -43,7 +45,15 @@ class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
         self.summary = ""
         try:
             depsgraph = context.evaluated_depsgraph_get()
-            self.summary = Unbinding(chosen_followers(context), depsgraph, self.shape).write()
+            things = chosen_followers(context)
+            live = [ob for ob in things if live_modifier_of(ob)]
+            by_nodes = [ob for ob in things if ob not in live]
+            unbindings: list[Unbinding | LiveUnbinding] = []
+            if by_nodes:
+                unbindings.append(Unbinding(by_nodes, depsgraph, self.shape))
+            if live:
+                unbindings.append(LiveUnbinding(live, depsgraph, self.shape))
+            self.summary = "\n".join([unbinding.write() for unbinding in unbindings])
         except native.refusals as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

@@ -97,6 +97,16 @@ def followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     return found
 
 
+def live_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns the file's own objects that follow a surface live."""
+    found = []
+    for ob in bpy.data.objects:
+        modifier = live_modifier_of(ob) if ob.library is None else None
+        if modifier and groups.get_input(modifier, SURFACE) == surface:
+            found.append(ob)
+    return found
+
+
 def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that were bound to a surface and have lost their modifier."""
     return [

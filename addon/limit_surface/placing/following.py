@@ -23,7 +23,15 @@ from ..reading import attributes, cage, rules
 from ..tasks.object_keys import ObjectKey
 from . import proxy, tables
 from .follow_properties import follows
-from .followers import ensure_modifier, followers_of, holder_of, holders, is_placed, surface_of
+from .followers import (
+    ensure_modifier,
+    followers_of,
+    holder_of,
+    holders,
+    is_placed,
+    live_followers_of,
+    surface_of,
+)
 from .places import Places
 from .relocation import Relocation
 from .roots import Locations
@@ -203,6 +211,17 @@ def ensure_capture(surface: bpy.types.Object) -> None:
     wanted = there - 1 if here < there else there
     if here != wanted:
         surface.modifiers.move(here, wanted)
+
+
+def remove_unused_capture(surface: bpy.types.Object) -> None:
+    """Removes *Limit Capture* from a surface that nothing follows any more."""
+    if (
+        surface.is_editable
+        and tables.of_surface(surface) is None
+        and not live_followers_of(surface)
+    ):
+        for modifier in list(groups.modifiers(surface, ids.CAPTURE_GROUP)):
+            surface.modifiers.remove(modifier)
 
 
 def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:

@@ -77,9 +77,15 @@ def stop(data: bpy.types.ID) -> None:
     for name in moved_names(data):
         if rest_name(name) in data.attributes:
             _write(data, name, attributes.read(data, rest_name(name)))
-            data.attributes.remove(data.attributes[rest_name(name)])
-    if ids.LIVE_FINGERPRINT in data.attributes:
-        data.attributes.remove(data.attributes[ids.LIVE_FINGERPRINT])
+    leave(data)
+
+
+def leave(data: bpy.types.ID) -> None:
+    """Leaves the data's points where they are, and forgets those at rest."""
+    own = [ids.LIVE_FINGERPRINT, *(rest_name(name) for name in (*_POINTS, *_VECTORS, ids.ROTATION))]
+    for name in own:
+        if name in data.attributes:
+            data.attributes.remove(data.attributes[name])
     if ids.LIVE_WRITTEN in data:
         del data[ids.LIVE_WRITTEN]
     _tag(data)

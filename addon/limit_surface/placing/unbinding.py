@@ -179,6 +179,4 @@ def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Obj
             proxy.update(None, table, False)
             tables.remove(table)
     for surface in surfaces - {None}:
-        if surface.is_editable and tables.of_surface(surface) is None:
-            for modifier in list(groups.modifiers(surface, ids.CAPTURE_GROUP)):
-                surface.modifiers.remove(modifier)
+        following.remove_unused_capture(surface)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Things that cease to follow live, and strands that begin to."""
+
+import bpy
+import live_scenes
+import numpy as np
+import pytest
+import scenes
+from limit_surface import ids
+from limit_surface.reading import attributes
+from live_scenes import check_hair, deforming, follow
+
+
+@pytest.fixture
+def hair() -> bpy.types.Object:
+    made = scenes.add_hair(deforming("cross"), points=4, follow="NONE")
+    follow(made)
+    bpy.context.scene.frame_set(20)
+    return made
+
+
+def is_bare(hair: bpy.types.Object) -> bool:
+    names = set(hair.data.attributes.keys())
+    left = [name for name in names if name.startswith((ids.LIVE_REST, ids.LIVE_FINGERPRINT))]
+    return not (left or hair.modifiers or ids.LIVE_WRITTEN in hair.data)
+
+
+def test_hair_stays_where_it_is_shown(hair):
+    shown = scenes.strands(hair).copy()
+    assert bpy.ops.object.limit_unbind(shape="SHOWN") == {"FINISHED"}
+    assert is_bare(hair)
+    np.testing.assert_array_equal(scenes.strands(hair), shown)
+    assert ids.CAPTURE_GROUP not in bpy.data.objects["Cross"].modifiers
+    bpy.context.scene.frame_set(3)
+    np.testing.assert_array_equal(scenes.strands(hair), shown)
+    bpy.context.scene.frame_set(20)
+    follow(hair)  # nothing moves when it is bound again
+    np.testing.assert_allclose(scenes.strands(hair), shown, atol=1e-5)
+    bpy.context.scene.frame_set(9)
+    check_hair(bpy.data.objects["Cross"], hair)
+
+
+def test_hair_goes_back_to_rest(hair):
+    rest = live_scenes.rest(hair).copy()
+    assert bpy.ops.object.limit_unbind(shape="REST") == {"FINISHED"}
+    assert is_bare(hair)
+    np.testing.assert_array_equal(scenes.strands(hair), rest)
+
+
+def test_the_capture_stays_for_those_that_follow_still(hair):
+    ob = bpy.data.objects["Cross"]
+    by_nodes = scenes.add_hair(ob, follow="NONE", seed=3)
+    follow(by_nodes, mode="NODES")
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    assert ids.CAPTURE_GROUP in ob.modifiers
+    bpy.context.scene.frame_set(4)
+    check_hair(ob, hair)
+
+
+def test_strands_that_were_added_are_bound_when_it_is_asked_for(hair):
+    ob = bpy.data.objects["Cross"]
+    hair.data.add_curves([4, 4])
+    points = scenes.strands(hair).copy()
+    points[-2:] = points[:2] + [0.01, 0.02, 0.03]
+    attributes.write(hair.data, ids.POSITION, "FLOAT_VECTOR", "POINT", points)
+    hair.data.update_tag()
+    follow(hair)
+    np.testing.assert_allclose(scenes.strands(hair), points, atol=1e-5)
+    bpy.context.scene.frame_set(2)
+    assert np.abs(scenes.strands(hair)[-2:] - points[-2:]).max() > 0.01
+    check_hair(ob, hair)
+
+
+def test_hair_from_elsewhere_follows():
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, follow="NONE", points=4)
+    for name in (ids.FACE, ids.UV, ids.REST_ROOT, ids.REST_ROTATION):
+        hair.data.attributes.remove(hair.data.attributes[name])
+    before = scenes.strands(hair).copy()
+    follow(hair)
+    np.testing.assert_allclose(scenes.strands(hair), before, atol=1e-5)
+    bpy.context.scene.frame_set(25)
+    check_hair(ob, hair)
+    assert np.abs(scenes.strands(hair) - before).max() > 0.05
