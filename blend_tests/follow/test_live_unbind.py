@@ -82,3 +82,26 @@ def test_hair_from_elsewhere_follows():
     bpy.context.scene.frame_set(25)
     check_hair(ob, hair)
     assert np.abs(scenes.strands(hair) - before).max() > 0.05
+
+
+@pytest.mark.parametrize("target", ["LIMIT", "VIEWPORT"])
+def test_new_hair_and_points_follow_at_once(target):
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, follow="LIVE", target=target)
+    points = scenes.add_points(ob, follow="LIVE")
+    bpy.context.scene.frame_set(25)
+    check_hair(ob, hair)
+    now = live_scenes.follow_truth.on_surface(ob, points.data)
+    shown = live_scenes.follow_truth.shown(points, ids.POSITION)
+    assert np.abs(shown - now.position).max() < 1e-5
+
+
+def test_a_surface_in_another_scene_is_refused_before_anything_is_made():
+    ob = deforming("cross")
+    other = bpy.data.scenes.new("Other")
+    other.collection.objects.link(ob)
+    bpy.context.scene.collection.objects.unlink(ob)
+    objects = len(bpy.data.objects)
+    with pytest.raises(RuntimeError):
+        bpy.ops.object.limit_hair_add(follow="LIVE")
+    assert len(bpy.data.objects) == objects

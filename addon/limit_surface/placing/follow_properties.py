@@ -12,38 +12,51 @@ from ..reading import rules
 _DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}
 
 
+_AUTO = (
+    "AUTO",
+    "Automatic",
+    "Follow by nodes if shape keys, modifiers before the subdivision, an armature or animation can "
+    "deform the mesh. Otherwise do not follow",
+    0,
+)
+_NODES = (
+    "NODES",
+    "Nodes",
+    "Follow by Geometry Nodes, which work in every Blender, also without this extension",
+    1,
+)
+_NONE = ("NONE", "None", "Stay where the surface is now", 2)
+_LIVE = (
+    "LIVE",
+    "Live",
+    "Follow by this extension itself, which moves the object in each frame. It is faster for very "
+    "many strands, and follows creases that are animated",
+    3,
+)
+_DESCRIPTION = "How the new object follows the surface when its mesh deforms"
+
+
 class FollowProperties:
-    """Mixin with the property `follow`."""
+    """Mixin with the property `follow`, for objects that cannot follow live."""
 
     follow: EnumProperty(
-        name="Follow",
-        description="How the new object follows the surface when its mesh deforms",
-        items=(
-            (
-                "AUTO",
-                "Automatic",
-                "Follow by nodes if shape keys, modifiers before the subdivision, an armature or "
-                "animation can deform the mesh. Otherwise do not follow",
-                0,
-            ),
-            (
-                "NODES",
-                "Nodes",
-                "Follow by Geometry Nodes, which work in every Blender, also without this "
-                "extension",
-                1,
-            ),
-            ("NONE", "None", "Stay where the surface is now", 2),
-        ),
-        default="AUTO",
+        name="Follow", description=_DESCRIPTION, items=(_AUTO, _NODES, _NONE), default="AUTO"
+    )
+
+
+class FollowOrLiveProperties:
+    """Mixin with the property `follow`, for hair and points."""
+
+    follow: EnumProperty(
+        name="Follow", description=_DESCRIPTION, items=(_AUTO, _NODES, _LIVE, _NONE), default="AUTO"
     )
 
 
 def follows(follow: str, surface: bpy.types.Object) -> bool:
-    """Tells whether things on a surface are to follow it, by the property's value."""
+    """Tells whether things on a surface are to follow it by nodes, by the property's value."""
     if follow == "AUTO":
         return surface.is_editable and can_deform(surface)
-    return follow != "NONE"
+    return follow == "NODES"
 
 
 def can_deform(surface: bpy.types.Object) -> bool:

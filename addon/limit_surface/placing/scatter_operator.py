@@ -16,9 +16,9 @@ from ..tasks.properties import LargeCountProperty, draw_summary
 from ..tasks.refused_faces import left_out, reasons
 from ..tasks.request_size import RequestSize
 from ..tasks.watched_operator import WatchedOperator
-from . import distribution_properties, following, region, roots
+from . import distribution_properties, following, live_binding, region, roots
 from .distribution import TOO_LOW, Distribution, Scattered
-from .follow_properties import FollowProperties
+from .follow_properties import FollowOrLiveProperties
 
 # the parts of the progress at which the locations and the things are made
 SCATTERED, MADE = 0.5, 0.9
@@ -68,7 +68,8 @@ class Order:
     distribution: Distribution
     shown: displayed_mesh.DisplayedMesh | None
     size: RequestSize
-    binding: following.Request | None  # None: things do not follow the surface
+    binding: following.Request | None  # None: things do not follow the surface by nodes
+    is_live: bool  # whether they follow it live
 
     def ground(self, progress: Progress) -> Ground:
         scattered = self.distribution.scatter(self.region, progress)
@@ -80,11 +81,9 @@ class Order:
         """Returns what makes the things follow. They follow the limit surface, so that their
         distance from it is kept where they stand on displayed polygons.
         """
-        if self.binding is None:
-            return None
-        if self.shown:
+        if self.shown and (self.binding or self.is_live):
             things.binding.put_roots_on(self.region.surface)
-        return self.binding.compute(ground.locations)
+        return self.binding.compute(ground.locations) if self.binding else None
 
 
 @dataclass(frozen=True)
@@ -99,7 +98,7 @@ class ScatterOperator(
     WatchedOperator,
     LargeCountProperty,
     distribution_properties.DistributionProperties,
-    FollowProperties,
+    FollowOrLiveProperties,
 ):
     """Mixin for operators that scatter things: distributions, confirmation, binding and reports.
 
@@ -140,8 +139,17 @@ class ScatterOperator(
         return self._begin(context, self._order(context))
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
-        ob = self.add(context, made.surface.find(), made.things)
-        self._report(made.ground, made.bindings.write(ob) if made.bindings else None)
+        surface = made.surface.find()
+        ob = self.add(context, surface, made.things)
+        how = ""
+        if made.bindings:
+            made.bindings.write(ob)
+            how = "by nodes"
+        elif self.follow == "LIVE":
+            depsgraph = context.evaluated_depsgraph_get()
+            live_binding.LiveRequest(surface, depsgraph, [ob]).write(context)
+            how = "live"
+        self._report(made.ground, how)
         return {"FINISHED"}
 
     def maker(self, found: cage.Cage) -> Any:
@@ -218,10 +226,13 @@ class ScatterOperator(
         shown = None
         if self.target != "LIMIT":
             shown = displayed_mesh.read(ob, depsgraph, covered.cage, self.target)
+        is_live = self.follow == "LIVE"
+        if is_live:
+            following.check_surface(ob, depsgraph.scene)
         binding = following.request_for(self.follow, ob, depsgraph)
-        return Order(ObjectKey.of(ob), covered, distribution, shown, size, binding)
+        return Order(ObjectKey.of(ob), covered, distribution, shown, size, binding, is_live)
 
-    def _report(self, ground: Ground, outcome: following.Outcome | None) -> None:
+    def _report(self, ground: Ground, how: str) -> None:
         found, refused = ground.cage, ground.region.refused
         faces = ground.region.face_count
         self.summary = f"{len(ground.locations):,} {self.noun} on {faces:,} faces"
@@ -231,8 +242,8 @@ class ScatterOperator(
             warning = left_out(len(refused), len(found.face_sizes), reasons(refused))
             self.report({"WARNING"}, warning)
         notes = [f"{self.summary} of {self.surface}", *found.notes]
-        if outcome:
-            notes.append("they follow it by nodes")
+        if how:
+            notes.append(f"they follow it {how}")
         if found.without_uv_map:
             notes.append(f"UVs were not stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))
