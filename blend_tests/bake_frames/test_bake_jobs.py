@@ -2,11 +2,12 @@
 """Jobs that bake the same file at the same time."""
 
 import bpy
+import live_scenes
 import pytest
 import scenes
 from bakes import contents, start
 
-NAMES = ("Flat", "Limit Hair", "Limit Points")
+NAMES = ("Flat", "Limit Hair", "Limit Points", "Live")
 
 
 @pytest.fixture
@@ -16,6 +17,9 @@ def file(tmp_path):
     scenes.add_subsurf(sheet)
     scenes.add_hair(sheet, per_side=3)
     scenes.add_points(sheet, per_side=3)
+    live = scenes.add_hair(sheet, per_side=2, follow="NONE")
+    live.name = "Live"
+    live_scenes.follow(live)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     return tmp_path / "shot.blend"
 

@@ -3,6 +3,7 @@
 
 import bpy
 import follow_truth
+import live_scenes
 import numpy as np
 import pytest
 import scenes
@@ -51,6 +52,59 @@ def test_roots_are_on_the_limit_surface_in_each_frame(tmp_path, scene, form):
             error = np.abs(read_back(path, kind)[::step] - expected[thing]).max()
             assert error < follow_truth.POSITION_BOUND * size, (frame, thing.name)
     assert np.abs(first - roots_in_world(ob, hair, 12)).max() > 0.1
+
+
+@pytest.mark.parametrize("form", SUFFIXES)
+def test_live_roots_are_on_the_limit_surface_in_each_frame(tmp_path, form):
+    ob = deforming("mixed polygons")
+    hair = scenes.add_hair(ob, per_side=3, points=3, follow="NONE")
+    points = scenes.add_points(ob, per_side=3, follow="NONE")
+    live_scenes.follow(hair, points)
+    hair.hide_viewport = True
+    options = ("--format", form)
+    assert bake(tmp_path, hair.name, points.name, frames="1-5", options=options) == 0
+    hair.hide_viewport = False
+    bound = 2 * follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
+    for frame in range(1, 6):
+        for thing, kind, step in ((hair, "CURVES", 3), (points, "MESH", 1)):
+            path = tmp_path / f"{thing.name}.{frame:04}{SUFFIXES[form]}"
+            error = read_back(path, kind)[::step] - roots_in_world(ob, thing, frame)
+            assert np.abs(error).max() < bound, (frame, thing.name)
+
+
+@pytest.fixture
+def live_hair():
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, per_side=2, follow="NONE")
+    live_scenes.follow(hair)
+    return hair
+
+
+def test_live_following_that_is_switched_off(live_hair, tmp_path, capfd):
+    bpy.context.scene.limit_live = False
+    check_refused(tmp_path, capfd, "Limit Hair follows live, which is switched off in Scene")
+
+
+def test_live_hair_that_cannot_be_posed(live_hair, tmp_path, capfd):
+    live_hair.data.attributes.remove(live_hair.data.attributes["limit_uv"])
+    check_refused(tmp_path, capfd, "has no attribute limit_uv any more")
+
+
+def test_live_hair_that_cannot_be_posed_in_some_frames(live_hair, tmp_path, capfd):
+    ob = bpy.data.objects["Cross"]
+    ob.modifiers.new("Fewer faces", "MASK").vertex_group = ob.vertex_groups.new(name="None").name
+    ob.modifiers.move(ob.modifiers.find("Fewer faces"), 0)
+    for frame, on in ((1, False), (4, True), (5, False)):
+        for shown in ("show_viewport", "show_render"):
+            setattr(ob.modifiers["Fewer faces"], shown, on)
+            ob.modifiers["Fewer faces"].keyframe_insert(shown, frame=frame)
+    assert bake(tmp_path, "Limit Hair", frames="3-5") == command.FRAMES_FAILED
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "Limit Hair.0003.abc",
+        "Limit Hair.0005.abc",
+        "bake.json",
+    }
+    assert "1 failed; Limit Hair.0004.abc: Cross has no faces" in capfd.readouterr().out
 
 
 def test_hair_with_a_transform_of_its_own(tmp_path):

@@ -14,6 +14,7 @@ import bpy
 
 from .. import ids, native
 from ..errors import RefusalError
+from . import bindings
 from .arguments import Arguments
 from .exporters import Subject
 from .frame_files import FrameFiles, file_name
@@ -82,6 +83,7 @@ class Bake:
                 self._scene.frame_set(frame)
                 is_shown = True
             try:
+                bindings.check_live(subject.ob, self._scene)
                 with self._files.written(path) as partial:
                     self._arguments.format.write(partial, subject)
             except _TROUBLE as error:

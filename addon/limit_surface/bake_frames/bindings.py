@@ -7,7 +7,7 @@ import bpy
 
 from .. import ids
 from ..errors import RefusalError
-from ..placing import followers, following
+from ..placing import followers, following, live
 from ..placing.follow_state import State
 from ..reading import attributes, cage
 
@@ -17,6 +17,7 @@ def check(objects: Sequence[bpy.types.Object]) -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     cages: dict[bpy.types.Object, cage.Cage] = {}
     for ob in objects:
+        check_live(ob, depsgraph.scene)
         surface = followers.surface_of(ob) if followers.is_placed(ob) else None
         if surface is None:
             continue
@@ -24,6 +25,17 @@ def check(objects: Sequence[bpy.types.Object]) -> None:
             cages[surface] = cage.read(surface, depsgraph)
         _check_following(ob, surface, following.signature(cages[surface]))
         _check_faces(ob, surface, cages[surface].ptex_face_count)
+
+
+def check_live(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Raises RefusalError if the object follows by handlers that could not pose it."""
+    if followers.live_modifier_of(ob) is None:
+        return
+    if not live.is_enabled(scene):
+        raise RefusalError(f"{ob.name} follows live, which is switched off in {scene.name}")
+    reason = live.trouble(ob)
+    if reason:
+        raise RefusalError(reason)
 
 
 def _check_following(ob: bpy.types.Object, surface: bpy.types.Object, signature: str) -> None:
