@@ -50,7 +50,7 @@ class InterruptionPoint {
 inline void checkThreads(int threads) {
   if (threads < 0) {
     throw std::invalid_argument("threads is " + std::to_string(threads) +
-                                "; 0 means all cores, n at most n");
+                                "; expected 0 (all cores) or the largest number of cores to use");
   }
 }
 

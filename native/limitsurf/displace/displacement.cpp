@@ -28,7 +28,7 @@ struct PointsAndNormals {
 };
 
 /// Positions and normals of the base. Normals are unit vectors everywhere.
-PointsAndNormals pointsAndNormals(const LimitSurface& base, Span<Location> at, int threads) {
+PointsAndNormals pointsAndNormals(const LimitSurface& base, const LocationBatch& at, int threads) {
   Evaluation here = base.evaluate(at, Derivatives::first, true, threads);
   completeNormals(base, at, here.normal, threads);
   return {std::move(here.position), std::move(here.normal)};
@@ -37,7 +37,7 @@ PointsAndNormals pointsAndNormals(const LimitSurface& base, Span<Location> at, i
 }  // namespace
 
 Points vectorDisplacement(const LimitSurface& base, const LimitSurface& target,
-                          const SubdividedFaces& faces, Span<Location> at, int threads) {
+                          const SubdividedFaces& faces, const LocationBatch& at, int threads) {
   const LocationBatch on_base = base.checkLocations(at);
   return target.evaluate(faces.locate(at, threads), Derivatives::none, false, threads).position -
          base.evaluate(on_base, Derivatives::none, false, threads).position;
@@ -65,7 +65,7 @@ Points outOfFrames(const Points& components, const FrameRows& frames) {
   return result;
 }
 
-Points displaced(const LimitSurface& base, Span<Location> at, const Points& components,
+Points displaced(const LimitSurface& base, const LocationBatch& at, const Points& components,
                  const FrameRows& frames, int threads) {
   requireAsMany(static_cast<Eigen::Index>(at.size()), "locations", components.rows(), "vectors");
   const Points positions = base.evaluate(at, Derivatives::none, false, threads).position;
@@ -73,7 +73,7 @@ Points displaced(const LimitSurface& base, Span<Location> at, const Points& comp
 }
 
 Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch& target,
-                                   Span<Location> at, const ScalarDisplacementOptions& options,
+                                   const LocationBatch& at, const ScalarDisplacementOptions& options,
                                    int threads) {
   const PointsAndNormals here = pointsAndNormals(base, at, threads);
   const auto distances = [&](double sign) -> Eigen::VectorXd {
@@ -97,7 +97,7 @@ Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch
   return result;
 }
 
-Points displacedAlongNormals(const LimitSurface& base, Span<Location> at,
+Points displacedAlongNormals(const LimitSurface& base, const LocationBatch& at,
                              const Eigen::VectorXd& distances, int threads) {
   requireAsMany(static_cast<Eigen::Index>(at.size()), "locations", distances.size(), "distances");
   const PointsAndNormals here = pointsAndNormals(base, at, threads);

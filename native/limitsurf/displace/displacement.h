@@ -27,13 +27,15 @@ constexpr double kDisplacementError = 3e-13;
 /// the target has no limit surface, the MeshError names the target's face. Cost: two evaluations a
 /// location.
 Points vectorDisplacement(const LimitSurface& base, const LimitSurface& target,
-                          const SubdividedFaces& faces, Span<Location> at, int threads = 0);
+                          const SubdividedFaces& faces, const LocationBatch& at, int threads = 0);
 
-/// Converts vectors to their components along the tangent, the normal and the bitangent of a frame
-/// each, and back. Blender's Vector Displacement node reads red, green and blue in this order. The
-/// two functions are inverse to each other for orthonormal frames. Throw std::invalid_argument if
-/// the numbers of rows differ.
+/// Each vector's components along the tangent, the normal and the bitangent of the frame in the same
+/// row. Blender's Vector Displacement node reads them from red, green and blue in this order. Throws
+/// std::invalid_argument if the numbers of rows differ.
 Points intoFrames(const Points& vectors, const FrameRows& frames);
+
+/// The vectors that have these components: the inverse of intoFrames() for orthonormal frames. Throws
+/// as that does.
 Points outOfFrames(const Points& components, const FrameRows& frames);
 
 struct ScalarDisplacementOptions {
@@ -44,7 +46,7 @@ struct ScalarDisplacementOptions {
 /// Moves the base's points by vectors. It is the inverse of vectorDisplacement(). `components` has
 /// a row for each location. `frames` has as many rows, and the vectors are given by their
 /// components in them; or it has none, and the vectors are given in space.
-Points displaced(const LimitSurface& base, Span<Location> at, const Points& components,
+Points displaced(const LimitSurface& base, const LocationBatch& at, const Points& components,
                  const FrameRows& frames, int threads = 0);
 
 /// The distance of another surface, of any structure, along the base's exact normal: the line
@@ -57,12 +59,12 @@ Points displaced(const LimitSurface& base, Span<Location> at, const Points& comp
 /// between normal and target, plus the error of the base's position. Throws as
 /// LimitSurface::evaluate(), and std::invalid_argument for a max_distance that is NaN or negative.
 Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch& target,
-                                   Span<Location> at, const ScalarDisplacementOptions& options = {},
+                                   const LocationBatch& at, const ScalarDisplacementOptions& options = {},
                                    int threads = 0);
 
-/// The base's points moved by these distances along its normals, the inverse of
+/// Moves each of the base's points along its normal by its distance. It is the inverse of
 /// scalarDisplacement().
-Points displacedAlongNormals(const LimitSurface& base, Span<Location> at,
+Points displacedAlongNormals(const LimitSurface& base, const LocationBatch& at,
                              const Eigen::VectorXd& distances, int threads = 0);
 
 }  // namespace limitsurf

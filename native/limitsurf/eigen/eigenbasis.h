@@ -121,13 +121,17 @@ class Eigenbasis {
   void controlGrid(int face, int steps, int ring_steps, const Points& coefficients,
                    const Eigen::Array4d outer_points[], Eigen::Array4d grid[]) const;
 
-  /// Weights of the functionals after `steps` >= 1 steps, on the ring's modes and the outer points.
+  /// The weights of the ring's modes and of the outer points in the functionals of `window` (values
+  /// and derivatives), after `steps` >= 1 steps. `mode_weights` gets a row for each functional and a
+  /// column for each mode, `outer_weights` a column for each outer point.
   ///
-  /// Derivatives are with respect to the face's own (u, v), so that first derivatives carry 2^steps
-  /// and second ones 4^steps; of the latter, 2^(steps - 1) is left to the caller, because it may
-  /// overflow.
-  /// `ring_steps`: by how many steps the ring's coefficients are older than the outer points.
-  /// `mode_weights` gets one row per functional and one column per mode.
+  /// Derivatives are with respect to the face's own (u, v). Each step halves (u, v), so that first
+  /// derivatives have the factor 2^steps and second ones 4^steps. The weights of second derivatives
+  /// have only the factor 2^(steps + 1): the caller multiplies by the remaining 2^(steps - 1), which
+  /// may overflow.
+  ///
+  /// The ring's coefficients belong to the level `ring_steps` subdivisions before that of the outer
+  /// points.
   /// Cost: O(faces).
   void weights(int face, int steps, int ring_steps, const GridWindow& window,
                Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& outer_weights) const;

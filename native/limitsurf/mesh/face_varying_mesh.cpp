@@ -250,8 +250,9 @@ class Builder {
     }
     if (sharpness != left) {
       refuseAround(vertex,
-                   "the sharpness of the edges on one side of a seam of values decays to a "
-                   "fraction to which no sharpness of the other side decays");
+                   "a value at a seam has to stay a corner for as long as the edges on the other "
+                   "side of the seam are sharp, and no sharpness in single precision lasts exactly "
+                   "as long");
     }
     return result;
   }

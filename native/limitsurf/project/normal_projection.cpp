@@ -95,7 +95,8 @@ class NormalRays {
 
 /// The first derivatives of the source and its map at locations.
 struct SourcePlaces {
-  SourcePlaces(const LimitSurface& source, const SurfaceData& map, Span<Location> at, int threads)
+  SourcePlaces(const LimitSurface& source, const SurfaceData& map, const LocationBatch& at,
+               int threads)
       : on_source(source.evaluate(at, Derivatives::first, false, threads)),
         on_map(map.evaluate(at, Derivatives::first, threads)) {}
 
@@ -134,7 +135,7 @@ void checkProjectAlongNormals(const LimitSurface& surface, const SurfaceData& ma
 }
 
 Projection projectAlongNormals(const LimitSurface& surface, const SurfaceData& map,
-                               Span<Location> at, const LimitSurface& source,
+                               const LocationBatch& at, const LimitSurface& source,
                                const SurfaceData& source_map, const SurfaceSearch& source_search,
                                const Eigen::Vector2d& texel, const NormalProjectOptions& options,
                                int threads) {

@@ -64,10 +64,10 @@ void checkProject(const LimitSurface& surface, const SurfaceData& map,
   Projector(matrix, surface);
   invertibleLinearPart(options.world, "world");
   if (!(options.facing_start >= 0 && options.facing_start <= options.facing_end)) {
-    refuse("facing's start", options.facing_start, "an angle from 0 to facing's end");
+    refuse("facing[0]", options.facing_start, "an angle from 0 to facing[1]");
   }
   if (!(options.facing_end <= kPi<double>)) {
-    refuse("facing's end", options.facing_end, "an angle up to pi");
+    refuse("facing[1]", options.facing_end, "an angle up to pi");
   }
   if (options.samples != 1 && options.samples != 4 && options.samples != 16) {
     throw std::invalid_argument("samples is " + std::to_string(options.samples) +
@@ -80,11 +80,11 @@ void checkProject(const LimitSurface& surface, const SurfaceData& map,
     refuse("soft_edge", options.soft_edge, "0 to 0.5");
   }
   if (options.depth && !(options.depth->near < options.depth->far)) {
-    refuse("depth's near", options.depth->near, "less than far");
+    refuse("depth[0]", options.depth->near, "less than depth[1]");
   }
 }
 
-Projection project(const LimitSurface& surface, const SurfaceData& map, Span<Location> at,
+Projection project(const LimitSurface& surface, const SurfaceData& map, const LocationBatch& at,
                    const Eigen::Matrix4d& matrix, const Eigen::Vector2d& texel,
                    const SurfaceSearch* occluder, const ProjectOptions& options, int threads) {
   checkThreads(threads);

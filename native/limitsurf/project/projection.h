@@ -72,7 +72,7 @@ constexpr double kRayBias = 1e-9;
 /// range, and for a map that has other than two columns or other faces; otherwise as
 /// LimitSurface::evaluate(). Cost: an evaluation of surface and map, and a ray for each sample that
 /// may be visible.
-Projection project(const LimitSurface& surface, const SurfaceData& map, Span<Location> at,
+Projection project(const LimitSurface& surface, const SurfaceData& map, const LocationBatch& at,
                    const Eigen::Matrix4d& matrix, const Eigen::Vector2d& texel,
                    const SurfaceSearch* occluder, const ProjectOptions& options = {},
                    int threads = 0);
@@ -104,7 +104,7 @@ struct NormalProjectOptions {
 /// Throws as project(), and for a max_distance that is NaN or below 0. Cost: an evaluation, and a
 /// ray in each direction.
 Projection projectAlongNormals(const LimitSurface& surface, const SurfaceData& map,
-                               Span<Location> at, const LimitSurface& source,
+                               const LocationBatch& at, const LimitSurface& source,
                                const SurfaceData& source_map, const SurfaceSearch& source_search,
                                const Eigen::Vector2d& texel,
                                const NormalProjectOptions& options = {}, int threads = 0);

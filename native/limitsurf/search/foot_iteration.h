@@ -10,8 +10,8 @@ namespace limitsurf {
 /// Newton's iteration with an active set of the square's sides. `patch` must have no anchor: its
 /// points are relative to the origin. The iteration starts and ends at (s, t).
 ///
-/// Returns whether it arrived at a point from which no direction leads down, or none so far that
-/// the squared distance, if it is convex, could fall by more than `slack`.
+/// Returns whether a minimum was reached: if the squared distance is convex, then it is nowhere on
+/// the square less by more than `slack`.
 bool minimizeDistance(const BezierPatch& patch, const ParameterSquare& square, double slack,
                       double& s, double& t);
 

@@ -31,8 +31,9 @@ constexpr double kSearchError = 1e-12;
 
 struct ClosestOptions {
   double max_distance = std::numeric_limits<double>::infinity();
-  /// No rows, or a direction for each point: then only feet count whose normal is within
-  /// `max_angle` of it. A foot is a local minimum of the distance on the smooth sheet it lies on;
+  /// No rows, or a direction for each point. With directions, a result is a point of the surface
+  /// whose normal makes an angle of at most `max_angle` with the direction, and at which the
+  /// distance has a local minimum. The minimum is one among the points of the same smooth sheet;
   /// boundaries and infinitely sharp edges end a sheet.
   Points facing;
   double max_angle = 1.5707963267948966;  ///< radians, 0 to pi

@@ -47,7 +47,7 @@ void LimitSurface::setPositions(const Points& positions, int threads) {
   data_->pose.set(positions, threads);
 }
 
-LocationBatch LimitSurface::checkLocations(Span<Location> at) const {
+LocationBatch LimitSurface::checkLocations(const LocationBatch& at) const {
   return data_->tiles->checked(at);
 }
 

@@ -142,7 +142,7 @@ class LimitSurface {
   /// Checks a batch, and throws as evaluate() does. Pass the result instead of the locations to
   /// members that are called for several parts of one batch, or one after the other: they do not
   /// check it again.
-  LocationBatch checkLocations(Span<Location> at) const;
+  LocationBatch checkLocations(const LocationBatch& at) const;
 
   // Evaluation.
 

@@ -43,13 +43,14 @@ void checkMap(const LimitSurface& surface, const SurfaceData& map, const char* n
 }
 
 MapDerivatives evaluateWithMap(const LimitSurface& surface, const SurfaceData& map,
-                               Span<Location> at, Derivatives order, int threads) {
-  return {surface.evaluate(at, order, true, threads),
-          map.evaluate(at, Derivatives::first, threads)};
+                               const LocationBatch& at, Derivatives order, int threads) {
+  const LocationBatch checked = surface.checkLocations(at);
+  return {surface.evaluate(checked, order, true, threads),
+          map.evaluate(checked, Derivatives::first, threads)};
 }
 
 MapDerivatives directionalDerivatives(const LimitSurface& surface, const SurfaceData& uv_map,
-                                      Span<Location> at, int threads) {
+                                      const LocationBatch& at, int threads) {
   checkMap(surface, uv_map, "uv_map");
   MapDerivatives out = evaluateWithMap(surface, uv_map, at, Derivatives::first, threads);
   std::vector<Eigen::Index> flat;

@@ -32,7 +32,7 @@ struct MapDerivatives {
 /// First derivatives of the map, and those of the surface up to `order`, as
 /// LimitSurface::evaluate() and SurfaceData::evaluate() give them. Throws what these throw.
 MapDerivatives evaluateWithMap(const LimitSurface& surface, const SurfaceData& map,
-                               Span<Location> at, Derivatives order, int threads);
+                               const LocationBatch& at, Derivatives order, int threads);
 
 /// At a vertex where the surface or the map is irregular, or where the first derivatives of one of
 /// them vanish, derivatives are taken at this distance inside the face, along its diagonal. On the
@@ -44,6 +44,6 @@ constexpr double kSeenFrom = 0x1p-20;
 /// they are at irregular vertices), with unit normals at the location itself (complete_normals.h).
 /// Throws what checkMap() and LimitSurface::evaluate() throw.
 MapDerivatives directionalDerivatives(const LimitSurface& surface, const SurfaceData& uv_map,
-                                      Span<Location> at, int threads);
+                                      const LocationBatch& at, int threads);
 
 }  // namespace limitsurf

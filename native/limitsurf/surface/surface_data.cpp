@@ -117,7 +117,7 @@ void SurfaceData::setValues(const DataRows& values, int threads) {
   data_->set(values, threads);
 }
 
-LocationBatch SurfaceData::checkLocations(Span<Location> at) const {
+LocationBatch SurfaceData::checkLocations(const LocationBatch& at) const {
   return data_->tiles->checked(at);
 }
 

@@ -42,7 +42,7 @@ class SurfaceData {
   void setValues(const DataRows& values, int threads = 0);
 
   /// Checks a batch, as LimitSurface::checkLocations() does.
-  LocationBatch checkLocations(Span<Location> at) const;
+  LocationBatch checkLocations(const LocationBatch& at) const;
 
   /// Data and derivatives with respect to the face's own (u, v), with the error bounds of
   /// LimitSurface::evaluate(), relative to the diagonal of the values' bounding box.

@@ -33,7 +33,7 @@ Vector3 alongU(const MapDerivatives& d, Eigen::Index row, double sign) {
 
 Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> tangentFrames(const LimitSurface& surface,
                                                                         const SurfaceData& uv_map,
-                                                                        Span<Location> at,
+                                                                        const LocationBatch& at,
                                                                         int threads) {
   const MapDerivatives d = directionalDerivatives(surface, uv_map, at, threads);
   Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> out(at.size(), 9);

@@ -33,7 +33,7 @@ constexpr double kTangentError = 1e-11;
 /// each location. Any number of threads gives the same bits.
 Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> tangentFrames(const LimitSurface& surface,
                                                                         const SurfaceData& uv_map,
-                                                                        Span<Location> at,
+                                                                        const LocationBatch& at,
                                                                         int threads = 0);
 
 }  // namespace limitsurf

@@ -80,7 +80,7 @@ bool InsideNumbers::contains(const GridPoint& inside) const {
 GradedFace::GradedFace(const FaceDivision& division)
     : division_(division),
       smallest_side_(kGridSide >> division.finestSquareLevel()),
-      cell_corners_(division) {
+      quad_corners_(division) {
   const int side = kGridSide >> division_.squareLevel();
   for (int square = 0; square < division_.squareCount(); ++square) {
     for (int j = 0; j < kGridSide; j += side) {
@@ -89,21 +89,21 @@ GradedFace::GradedFace(const FaceDivision& division)
       }
     }
   }
-  for (const auto& [square, size, i, j] : cells_) {
+  for (const auto& [square, size, i, j] : quads_) {
     for (const GridPoint& corner :
          {GridPoint{square, i, j}, GridPoint{square, i + size, j},
           GridPoint{square, i + size, j + size}, GridPoint{square, i, j + size}}) {
       const FacePlace place = division_.place(corner);
       if (place.kind == FacePlace::kInside) {
-        int& number = cell_corners_[place.inside];
+        int& number = quad_corners_[place.inside];
         inside_point_count_ += number == InsideNumbers::kNone;
         number = 0;
       }
     }
   }
   std::vector<GridPoint> around;
-  for (const Cell& cell : cells_) {
-    outline(cell, around);
+  for (const Quad& quad : quads_) {
+    outline(quad, around);
     const bool is_quad = around.size() == 4;
     polygon_count_ += is_quad ? 1 : around.size();
     corner_count_ += is_quad ? 4 : 3 * around.size();
@@ -115,34 +115,34 @@ int GradedFace::segment(int edge) const {
   return (division_.isQuad() ? kGridSide : 2 * kGridSide) >> division_.edge_levels[edge];
 }
 
-void GradedFace::split(const Cell& cell) {
-  if (!isSplit(cell)) {
-    cells_.push_back(cell);
+void GradedFace::split(const Quad& quad) {
+  if (!isSplit(quad)) {
+    quads_.push_back(quad);
     return;
   }
-  const int half = cell.side / 2;
-  for (const int j : {cell.j, cell.j + half}) {
-    for (const int i : {cell.i, cell.i + half}) {
-      split({cell.square, half, i, j});
+  const int half = quad.side / 2;
+  for (const int j : {quad.j, quad.j + half}) {
+    for (const int i : {quad.i, quad.i + half}) {
+      split({quad.square, half, i, j});
     }
   }
 }
 
-bool GradedFace::isSplit(const Cell& cell) const {
-  const int before = (cell.square + division_.size - 1) % division_.size;
+bool GradedFace::isSplit(const Quad& quad) const {
+  const int before = (quad.square + division_.size - 1) % division_.size;
   bool finer = false;
   const auto allows = [&](bool touches, int edge) {
     if (!touches) {
       return true;
     }
-    finer = finer || segment(edge) < cell.side;
-    return segment(edge) < cell.side;
+    finer = finer || segment(edge) < quad.side;
+    return segment(edge) < quad.side;
   };
-  const bool right = cell.i + cell.side == kGridSide, top = cell.j + cell.side == kGridSide;
+  const bool right = quad.i + quad.side == kGridSide, top = quad.j + quad.side == kGridSide;
   const bool allowed =
       division_.isQuad()
-          ? allows(cell.j == 0, 0) && allows(right, 1) && allows(top, 2) && allows(cell.i == 0, 3)
-          : allows(cell.j == 0, cell.square) && allows(cell.i == 0, before);
+          ? allows(quad.j == 0, 0) && allows(right, 1) && allows(top, 2) && allows(quad.i == 0, 3)
+          : allows(quad.j == 0, quad.square) && allows(quad.i == 0, before);
   return allowed && finer;
 }
 
@@ -151,7 +151,7 @@ bool GradedFace::exists(const GridPoint& point) const {
   if (place.kind == FacePlace::kEdge) {
     return place.step % ((2 * kGridSide) >> division_.edge_levels[place.element]) == 0;
   }
-  return place.kind == FacePlace::kVertex || cell_corners_.contains(place.inside);
+  return place.kind == FacePlace::kVertex || quad_corners_.contains(place.inside);
 }
 
 void GradedFace::addHanging(const GridPoint& from, const GridPoint& to,
@@ -167,8 +167,8 @@ void GradedFace::addHanging(const GridPoint& from, const GridPoint& to,
   addHanging(middle, to, around);
 }
 
-void GradedFace::outline(const Cell& cell, std::vector<GridPoint>& around) const {
-  const auto [square, side, i, j] = cell;
+void GradedFace::outline(const Quad& quad, std::vector<GridPoint>& around) const {
+  const auto [square, side, i, j] = quad;
   const GridPoint corners[4] = {
       {square, i, j}, {square, i + side, j}, {square, i + side, j + side}, {square, i, j + side}};
   around.clear();

@@ -29,9 +29,9 @@ struct FacePlace {
   GridPoint inside;  ///< inside the face: the place on one of the squares
 };
 
-/// The division of one face of the control mesh: into squares with 2^level cells a side, and with
+/// The division of one face of the control mesh: into squares with 2^level quads a side, and with
 /// 2^edge_levels[e] segments along edge e. A quad is one square; any other face has a square at
-/// each corner, with half as many cells a side. No edge is coarser than the face.
+/// each corner, with half as many quads a side. No edge is coarser than the face.
 struct FaceDivision {
   int size = 4;
   int level = 0;
@@ -39,10 +39,10 @@ struct FaceDivision {
 
   bool isQuad() const { return size == 4; }
   int squareCount() const { return isQuad() ? 1 : size; }
-  /// The level of the squares, each of which has 2^squareLevel() cells a side.
+  /// The level of the squares, each of which has 2^squareLevel() quads a side.
   int squareLevel() const { return isQuad() ? level : level - 1; }
   bool isUniform() const;
-  /// The level of the smallest cells, counted as squareLevel().
+  /// The level of the smallest quads, counted as squareLevel().
   int finestSquareLevel() const;
   FacePlace place(const GridPoint& point) const;
 };
@@ -69,10 +69,10 @@ class InsideNumbers {
 
 /// The polygons, quads and triangles, of a face some of whose edges are finer than the face itself.
 ///
-/// A cell at an edge is split into four until it has the level of the edge, so that the sizes of
-/// cells grow gradually from the edge to the face's own level. A cell with vertices of smaller
+/// A quad at an edge is split into four until it has the level of the edge, so that the sizes of
+/// quads grow gradually from the edge to the face's own level. A quad with vertices of smaller
 /// neighbours on its sides becomes triangles around its centre. At a corner where edges of
-/// different levels meet, a cell cannot be split without adding a point to the coarser edge: it
+/// different levels meet, a quad cannot be split without adding a point to the coarser edge: it
 /// becomes such triangles too, and they are thin if the levels differ by more than two.
 class GradedFace {
  public:
@@ -87,14 +87,14 @@ class GradedFace {
   template <typename Body>
   void forEachPolygon(const Body& body) const {
     std::vector<GridPoint> around;
-    for (const Cell& cell : cells_) {
-      outline(cell, around);
+    for (const Quad& quad : quads_) {
+      outline(quad, around);
       if (around.size() == 4) {
         body(Span<GridPoint>(around));
         continue;
       }
-      const int half = cell.side / 2;
-      const GridPoint centre{cell.square, cell.i + half, cell.j + half};
+      const int half = quad.side / 2;
+      const GridPoint centre{quad.square, quad.i + half, quad.j + half};
       for (std::size_t k = 0; k < around.size(); ++k) {
         const GridPoint triangle[3] = {around[k], around[(k + 1) % around.size()], centre};
         body(Span<GridPoint>(triangle, 3));
@@ -103,22 +103,22 @@ class GradedFace {
   }
 
  private:
-  struct Cell {
+  struct Quad {
     int square, side, i, j;
   };
 
-  void split(const Cell& cell);
-  bool isSplit(const Cell& cell) const;
+  void split(const Quad& quad);
+  bool isSplit(const Quad& quad) const;
   bool exists(const GridPoint& point) const;
-  void outline(const Cell& cell, std::vector<GridPoint>& around) const;
+  void outline(const Quad& quad, std::vector<GridPoint>& around) const;
   void addHanging(const GridPoint& from, const GridPoint& to, std::vector<GridPoint>& around) const;
   /// The length of the segments along an edge, where the side of a square is kGridSide.
   int segment(int edge) const;
 
   const FaceDivision division_;
   const int smallest_side_;
-  std::vector<Cell> cells_;
-  InsideNumbers cell_corners_;
+  std::vector<Quad> quads_;
+  InsideNumbers quad_corners_;
   std::size_t polygon_count_ = 0, corner_count_ = 0, inside_point_count_ = 0;
 };
 

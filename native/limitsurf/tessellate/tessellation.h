@@ -53,7 +53,7 @@ Tessellation tessellate(const LimitSurface& surface, int levels,
                         const TessellationOptions& options = {});
 
 /// The same with a level for each face of the mesh; the levels of refused faces are ignored. An
-/// edge has 2^level segments for the largest level of its faces. On a coarser face the cells become
+/// edge has 2^level segments for the largest level of its faces. On a coarser face the quads become
 /// smaller towards such an edge, and some of them become triangles around their centre (see
 /// GradedFace). No vertex lies on the side of another polygon, and the polygons of a face cover it
 /// once, with its orientation.

@@ -82,7 +82,8 @@ class Squares {
   int count(int face) const { return isQuad(face) ? 1 : mesh_.faceSize(face); }
   int first(int face) const { return first_[face]; }
   int leastLevel(int face) const { return isQuad(face) ? 0 : 1; }
-  int cells(int face, int level) const { return 1 << (isQuad(face) ? level : level - 1); }
+  /// The number of quads along a side of the face's squares.
+  int quads(int face, int level) const { return 1 << (isQuad(face) ? level : level - 1); }
 
   /// For each side of a square, counter-clockwise from (0, 0), whether it is a kink.
   std::array<bool, 4> kinks(int face, int square) const {
@@ -148,9 +149,9 @@ class Samples {
   Evaluation at_;
 };
 
-/// The deviation between the surface and a cell's polygon, cut along either diagonal. The cell
-/// begins at the sample (i0, j0).
-double cellDeviation(const Samples& at, int i0, int j0, int size) {
+/// The deviation between the surface and a quad of the tessellation, cut along either diagonal. The
+/// quad begins at the sample (i0, j0).
+double quadDeviation(const Samples& at, int i0, int j0, int size) {
   const Vector3 p00 = at.position(i0, j0), p10 = at.position(i0 + size, j0),
                 p01 = at.position(i0, j0 + size), p11 = at.position(i0 + size, j0 + size);
   double largest = 0;
@@ -198,14 +199,14 @@ double sideDeviation(const Samples& at, int number, int size) {
 
 /// The largest deviation of a face at a level.
 double deviation(const LimitSurface& surface, const Squares& squares, int face, int level) {
-  const int cells = squares.cells(face, level);
-  const int size = std::max(2, kDeviationSamples / cells);
+  const int quads = squares.quads(face, level);
+  const int size = std::max(2, kDeviationSamples / quads);
   double largest = 0;
   for (int square = 0; square < squares.count(face); ++square) {
-    const Samples at(surface, squares.first(face) + square, cells * size, true);
+    const Samples at(surface, squares.first(face) + square, quads * size, true);
     for (int j = 0; j < at.side(); j += size) {
       for (int i = 0; i < at.side(); i += size) {
-        largest = std::max(largest, cellDeviation(at, i, j, size));
+        largest = std::max(largest, quadDeviation(at, i, j, size));
       }
     }
     const std::array<bool, 4> kinks = squares.kinks(face, square);
@@ -234,7 +235,7 @@ double seenLength(const PictureView& view, const Vector3& from, const Vector3& t
   return (a.head<2>() / a.w() - b.head<2>() / b.w()).norm();
 }
 
-/// The longest side of the cells in which lengths are measured.
+/// The largest distance between neighbouring samples of a face.
 double longestStep(const LimitSurface& surface, const Squares& squares, int face,
                    const PictureView* view) {
   double longest = 0;
@@ -321,10 +322,10 @@ FaceLevels levelsOfLength(const LimitSurface& surface, double length, const Pict
     const int face = faces[i];
     const double whole = kLengthSamples * longestStep(surface, squares, face, view);
     int& level = result.levels[face];
-    while (level < options.most && whole / squares.cells(face, level) > length) {
+    while (level < options.most && whole / squares.quads(face, level) > length) {
       ++level;
     }
-    result.measure[face] = whole / squares.cells(face, level);
+    result.measure[face] = whole / squares.quads(face, level);
   });
   squares.grade(result.levels);
   return result;

@@ -25,7 +25,7 @@ double largestStretch(const Vector3& x, const Vector3& y) {
 }  // namespace
 
 MapDistortion mapDistortion(const LimitSurface& surface, const SurfaceData& uv_map,
-                            Span<Location> at, int threads) {
+                            const LocationBatch& at, int threads) {
   const MapDerivatives d = directionalDerivatives(surface, uv_map, at, threads);
   const auto rows = static_cast<Eigen::Index>(at.size());
   MapDistortion out{Eigen::VectorXd(rows), Eigen::VectorXd(rows), Eigen::VectorXd(rows)};

@@ -29,6 +29,6 @@ constexpr double kDistortionError = 1e-11;
 ///
 /// Throws as tangentFrames(). Cost: two evaluations a location.
 MapDistortion mapDistortion(const LimitSurface& surface, const SurfaceData& uv_map,
-                            Span<Location> at, int threads = 0);
+                            const LocationBatch& at, int threads = 0);
 
 }  // namespace limitsurf

@@ -96,7 +96,7 @@ void checkTexel(const Eigen::Vector2d& texel) {
   }
 }
 
-TexelPlaces texelPlaces(const LimitSurface& surface, const SurfaceData& map, Span<Location> at,
+TexelPlaces texelPlaces(const LimitSurface& surface, const SurfaceData& map, const LocationBatch& at,
                         const Eigen::Vector2d& texel, bool normal_steps, int threads) {
   const auto rows = static_cast<Eigen::Index>(at.size());
   TexelPlaces places;

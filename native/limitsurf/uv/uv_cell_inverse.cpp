@@ -16,40 +16,20 @@ void toPowers(Point2* p, int stride) {
   p[3 * stride] = (d - a) + 3 * (b - c);
 }
 
-}  // namespace
+/// The control points of the derivatives of a bicubic patch.
+struct DerivativePoints {
+  explicit DerivativePoints(const Point2* p) {
+    for (int i = 0; i < 12; ++i) {
+      const int begin = i / 3 * 4 + i % 3;
+      ds[i] = 3 * (p[begin + 1] - p[begin]);
+      dt[i] = 3 * (p[i + 4] - p[i]);
+      mean_s += ds[i] / 12;
+      mean_t += dt[i] / 12;
+    }
+  }
 
-bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
-  const Point2* p = cell.points;
-  Point2 ds[12], dt[12];
-  Point2 mean_s = Point2::Zero(), mean_t = Point2::Zero();
-  for (int i = 0; i < 12; ++i) {
-    const int s = i / 3 * 4 + i % 3;
-    ds[i] = 3 * (p[s + 1] - p[s]);
-    dt[i] = 3 * (p[i + 4] - p[i]);
-    mean_s += ds[i] / 12;
-    mean_t += dt[i] / 12;
-  }
-  const double determinant = cross(mean_s, mean_t);
-  if (determinant == 0) {
-    return false;
-  }
-  m_s_ = Point2(mean_t[1], -mean_s[1]) / determinant;
-  m_t_ = Point2(-mean_t[0], mean_s[0]) / determinant;
-  // The entries of M J - 1, bounded row by row.
-  Point2 from_s = Point2::Zero(), from_t = Point2::Zero();
-  for (int i = 0; i < 12; ++i) {
-    from_s = from_s.max((ds[i][0] * m_s_ + ds[i][1] * m_t_ - Point2(1, 0)).abs());
-    from_t = from_t.max((dt[i][0] * m_s_ + dt[i][1] * m_t_ - Point2(0, 1)).abs());
-  }
-  const double variation = (from_s + from_t).maxCoeff();
-  if (!(variation <= kMostVariation)) {
-    return false;
-  }
-  tolerance_ = tolerance;
-  const double newton = 2 * variation / (1 - variation);
-  contraction_ = newton / (1 - newton);
-  Point2 second = Point2::Zero();  // bounds |ss| + 2 |st| + |tt|
-  {
+  /// A bound on |ss| + 2 |st| + |tt|, from the control points of the second derivatives.
+  Point2 secondBound() const {
     Point2 ss = Point2::Zero(), st = Point2::Zero(), tt = Point2::Zero();
     for (int row = 0; row < 4; ++row) {
       for (int i = 0; i < 2; ++i) {
@@ -62,22 +42,60 @@ bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
         st = st.max((ds[3 * (row + 1) + i] - ds[3 * row + i]).abs());
       }
     }
-    second = 2 * ss + 6 * st + 2 * tt;
+    return 2 * ss + 6 * st + 2 * tt;
   }
+
+  Point2 ds[12], dt[12];  ///< four rows of three, and three rows of four
+  Point2 mean_s = Point2::Zero(), mean_t = Point2::Zero();
+};
+
+}  // namespace
+
+bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
+  const DerivativePoints derivatives(cell.points);
+  const double determinant = cross(derivatives.mean_s, derivatives.mean_t);
+  if (determinant == 0) {
+    return false;
+  }
+  m_s_ = Point2(derivatives.mean_t[1], -derivatives.mean_s[1]) / determinant;
+  m_t_ = Point2(-derivatives.mean_t[0], derivatives.mean_s[0]) / determinant;
+  const double variation = variationOf(derivatives.ds, derivatives.dt);
+  if (!(variation <= kMostVariation)) {
+    return false;
+  }
+  const double newton = 2 * variation / (1 - variation);
+  contraction_ = newton / (1 - newton);
+  setTolerance(tolerance, derivatives.secondBound());
+  setPowers(cell.points);
+  return true;
+}
+
+double CellInverse::variationOf(const Point2 ds[12], const Point2 dt[12]) const {
+  Point2 from_s = Point2::Zero(), from_t = Point2::Zero();  // the entries of M J - 1, by columns
+  for (int i = 0; i < 12; ++i) {
+    from_s = from_s.max((ds[i][0] * m_s_ + ds[i][1] * m_t_ - Point2(1, 0)).abs());
+    from_t = from_t.max((dt[i][0] * m_s_ + dt[i][1] * m_t_ - Point2(0, 1)).abs());
+  }
+  return (from_s + from_t).maxCoeff();
+}
+
+void CellInverse::setTolerance(const Point2& tolerance, const Point2& second) {
+  tolerance_ = tolerance;
   // Newton's error is half the second derivative times the squared step; a quarter of the tolerance
   // is allowed for it.
   curvature_ = 2 * (second / tolerance).maxCoeff();
   const double m_norm = (m_s_.abs() * tolerance[0] + m_t_.abs() * tolerance[1]).maxCoeff();
   border_width_ = 8 * m_norm;
+}
 
-  std::copy(p, p + 16, c_);
+void CellInverse::setPowers(const Point2* points) {
+  std::copy(points, points + 16, c_);
   for (int i = 0; i < 4; ++i) {
     toPowers(c_ + 4 * i, 1);
   }
   for (int i = 0; i < 4; ++i) {
     toPowers(c_ + i, 4);
   }
-  return true;
 }
 
 Point2 CellInverse::guess(const Point2& target) const {

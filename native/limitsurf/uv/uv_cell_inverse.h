@@ -45,6 +45,12 @@ class CellInverse {
   static constexpr double kMostVariation = 1. / 8;
   static constexpr int kMostSteps = 32;
 
+  /// q, from the control points of the derivatives along s and t; needs M.
+  double variationOf(const Point2 ds[12], const Point2 dt[12]) const;
+  /// Sets what depends on the tolerance; `second` bounds the second derivatives. Needs M.
+  void setTolerance(const Point2& tolerance, const Point2& second);
+  /// Sets the coefficients of powers from the cell's Bezier points.
+  void setPowers(const Point2* points);
   void evaluate(const Point2& x, const Point2& target, Point2& rest, Point2& ds, Point2& dt) const;
 
   Point2 c_[16];      // coefficients of powers of s and t about the middle: [4 t + s]

@@ -149,12 +149,11 @@ py::tuple state(const ControlMesh& mesh) {
                         text(o.triangles, kTriangles), text(o.scheme, kSchemes), arrayOf(o.holes));
 }
 
-}  // namespace
+using MeshClass = py::class_<BoundMesh, std::shared_ptr<BoundMesh>>;
 
-void bindControlMesh(py::module_& module) {
+void bindConstructors(MeshClass& type) {
   using namespace py::literals;
-  py::class_<BoundMesh, std::shared_ptr<BoundMesh>>(module, "ControlMesh", kControlMeshDoc)
-      .def(py::init([](const py::object& positions, const py::object& face_sizes,
+  type.def(py::init([](const py::object& positions, const py::object& face_sizes,
                        const py::object& face_vertices, const py::object& edge_sharpness,
                        const py::object& vertex_sharpness, const std::string& boundary,
                        const std::string& creasing, const std::string& triangles,
@@ -179,8 +178,11 @@ void bindControlMesh(py::module_& module) {
           },
           "positions"_a, "faces"_a, "edge_sharpness"_a = py::none(),
           "vertex_sharpness"_a = py::none(), "boundary"_a = "smooth", "creasing"_a = "uniform",
-          "triangles"_a = "catmark", "scheme"_a = "catmark", "holes"_a = py::none(), kFromFacesDoc)
-      .def_property_readonly(
+          "triangles"_a = "catmark", "scheme"_a = "catmark", "holes"_a = py::none(), kFromFacesDoc);
+}
+
+void bindArrays(MeshClass& type) {
+  type.def_property_readonly(
           "positions", [](const BoundMesh& mesh) { return pointArray(mesh.positions()); },
           "(V, 3) float64: a copy of the positions.")
       .def_property_readonly(
@@ -188,8 +190,11 @@ void bindControlMesh(py::module_& module) {
           "(F,) int32: the number of vertices of each face.")
       .def_property_readonly(
           "face_vertices", [](const BoundMesh& mesh) { return arrayOf(mesh.faceVertices()); },
-          "int32: the vertex indices of all faces, one face after the other.")
-      .def_property_readonly(
+          "int32: the vertex indices of all faces, one face after the other.");
+}
+
+void bindOptions(MeshClass& type) {
+  type.def_property_readonly(
           "boundary",
           [](const BoundMesh& mesh) { return text(mesh.options().boundary, kBoundaries); },
           "The boundary rule, 'smooth' or 'corners'.")
@@ -212,24 +217,33 @@ void bindControlMesh(py::module_& module) {
           "The given sharpness of vertices: vertices (n,) int64 and values (n,) float64.")
       .def_property_readonly(
           "holes", [](const BoundMesh& mesh) { return arrayOf(mesh.options().holes); },
-          "int64: the faces that are holes and have no surface.")
-      .def("__repr__",
-           [](const BoundMesh& mesh) {
-             return "ControlMesh(" + std::to_string(mesh.vertexCount()) + " vertices, " +
-                    std::to_string(mesh.faceCount()) + " faces, boundary='" +
-                    text(mesh.options().boundary, kBoundaries) + "')";
-           })
-      .def(py::pickle([](const BoundMesh& mesh) { return state(mesh); },
-                      [](const py::tuple& s) {
-                        if (s.size() != 10) {
-                          throw py::value_error("no state of a ControlMesh");
-                        }
-                        return makeMesh(
-                            s[0], s[1], s[2],
-                            meshOptions(s[3], s[4], py::cast<std::string>(s[5]),
-                                        py::cast<std::string>(s[6]), py::cast<std::string>(s[7]),
-                                        py::cast<std::string>(s[8]), s[9]));
-                      }));
+          "int64: the faces that are holes and have no surface.");
+}
+
+std::shared_ptr<BoundMesh> meshOfState(const py::tuple& s) {
+  if (s.size() != 10) {
+    throw py::value_error("no state of a ControlMesh");
+  }
+  return makeMesh(s[0], s[1], s[2],
+                  meshOptions(s[3], s[4], py::cast<std::string>(s[5]), py::cast<std::string>(s[6]),
+                              py::cast<std::string>(s[7]), py::cast<std::string>(s[8]), s[9]));
+}
+
+std::string description(const BoundMesh& mesh) {
+  return "ControlMesh(" + std::to_string(mesh.vertexCount()) + " vertices, " +
+         std::to_string(mesh.faceCount()) + " faces, boundary='" +
+         text(mesh.options().boundary, kBoundaries) + "')";
+}
+
+}  // namespace
+
+void bindControlMesh(py::module_& module) {
+  MeshClass type(module, "ControlMesh", kControlMeshDoc);
+  bindConstructors(type);
+  bindArrays(type);
+  bindOptions(type);
+  type.def("__repr__", &description)
+      .def(py::pickle([](const BoundMesh& mesh) { return state(mesh); }, &meshOfState));
 }
 
 }  // namespace limitsurf::python

@@ -85,10 +85,10 @@ FrameRows framesOf(const py::object& frames, std::size_t rows) {
 
 /// Calls body(first row, locations) for one part after the other, without the GIL.
 template <typename Body>
-void inParts(const Locations& at, const ProgressReport& report, const Body& body) {
+void inParts(const CheckedLocations& at, const ProgressReport& report, const Body& body) {
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
     const std::size_t count = std::min(kRowsPerPart, at.size() - begin);
-    body(begin, Span<Location>(at).subspan(begin, count));
+    body(begin, at.part(begin, count));
     report(static_cast<double>(begin + count) / static_cast<double>(at.size()));
   }
 }
@@ -114,7 +114,7 @@ py::object vectorDisplacement(const SharedSurface& base, const SharedSurface& ta
     const HeldPoses held(base, target);
     const InterruptionPoint point = interruptible();
     const SubdividedFaces faces(*base.mesh, *target.mesh);
-    inParts(at, report, [&](std::size_t begin, Span<Location> some) {
+    inParts(at, report, [&](std::size_t begin, const LocationBatch& some) {
       Points vectors =
           limitsurf::vectorDisplacement(base.surface(), target.surface(), faces, some, threads);
       if (all_frames.rows() > 0) {
@@ -143,7 +143,7 @@ py::object scalarDisplacement(const SharedSurface& base, const SharedSurface& ta
     const HeldPoses held(base, target);
     const InterruptionPoint point = interruptible();
     const SurfaceSearch& search = target.search.get(target.surface(), threads);
-    inParts(at, report, [&](std::size_t begin, Span<Location> some) {
+    inParts(at, report, [&](std::size_t begin, const LocationBatch& some) {
       const Eigen::VectorXd distances =
           limitsurf::scalarDisplacement(base.surface(), search, some, options, threads);
       output.put(begin, distances.data(), some.size());

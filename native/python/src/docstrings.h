@@ -85,7 +85,7 @@ uv : (n, 2) array of float in [0, 1]
 derivatives : 0, 1 or 2
     The highest order of derivatives that is wanted.
 threads : int
-    0 means all cores, n at most n.
+    0 uses all cores, any other number at most so many.
 dtype : float64 or float32
     The type of the results. Everything is computed in float64.
 

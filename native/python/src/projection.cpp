@@ -53,13 +53,13 @@ class ProjectionArrays {
 /// Writes body(locations) of one part after the other into the arrays, without the GIL. The lock
 /// that `lock` returns is not held while the progress is reported.
 template <typename Lock, typename Body>
-void projectInParts(const Locations& at, const ProgressReport& report, ProjectionArrays& arrays,
+void projectInParts(const CheckedLocations& at, const ProgressReport& report, ProjectionArrays& arrays,
                     const Lock& lock, const Body& body) {
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
     const std::size_t count = std::min(kRowsPerPart, at.size() - begin);
     {
       const auto held = lock();
-      arrays.put(begin, body(Span<Location>(at).subspan(begin, count)));
+      arrays.put(begin, body(at.part(begin, count)));
     }
     report(static_cast<double>(begin + count) / static_cast<double>(at.size()));
   }
@@ -97,7 +97,7 @@ py::object project(const SharedSurface& shared, const SharedData& uv_map, const 
         occlusion ? &shared.search.get(shared.surface(), threads) : nullptr;
     projectInParts(
         at, report, arrays, [&] { return std::shared_lock<std::shared_mutex>(uv_map.mutex); },
-        [&](Span<Location> part) {
+        [&](const LocationBatch& part) {
           return limitsurf::project(shared.surface(), map, part, projector, size, occluder, options,
                                     threads);
         });
@@ -147,7 +147,7 @@ py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv
     const SurfaceSearch& search = source.search.get(source.surface(), threads);
     projectInParts(
         at, report, arrays, [&] { return HeldMaps(uv_map, source_map); },
-        [&](Span<Location> part) {
+        [&](const LocationBatch& part) {
           return limitsurf::projectAlongNormals(shared.surface(), map, part, source.surface(),
                                                 other_map, search, size, options, threads);
         });

@@ -425,12 +425,12 @@ BAD_OPTIONS = {
     "world is not affine": {"world": np.diag([1, 1, 1, 2.0])},
     "texel has the size 0": {"texel": (0, 1)},
     "texel has the size nan": {"texel": (1, np.nan)},
-    "facing's start": {"facing": (1, 0.5)},
-    "facing's end": {"facing": (1, 4)},
+    r"facing\[0\] is 1": {"facing": (1, 0.5)},
+    r"facing\[1\] is 4": {"facing": (1, 4)},
     "samples is 3": {"samples": 3},
     "bias is -1": {"bias": -1},
     "soft_edge is 0.6": {"soft_edge": 0.6},
-    "depth's near": {"depth": (1, -1)},
+    r"depth\[0\] is 1": {"depth": (1, -1)},
     "threads is -1": {"threads": -1},
 }  # fmt: skip
 
