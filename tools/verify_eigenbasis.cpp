@@ -130,7 +130,8 @@ test::Cage fanAround(const Ring& ring) {
   const int vertex = cage.faces[0][0];
   if (ring.rule() == VertexRule::corner) {
     test::sharpenVertex(cage, vertex, INFINITY);
-  } else if (ring.kind == RingKind::dart) {  // sharp up to the boundary, so that only its inner end is a dart
+  } else if (ring.kind ==
+             RingKind::dart) {  // sharp up to the boundary, so that only its inner end is a dart
     const int middle = cage.faces[0][1];
     test::sharpenEdge(cage, vertex, middle, INFINITY);
     test::sharpenEdge(cage, middle, cage.faces[1][1], INFINITY);

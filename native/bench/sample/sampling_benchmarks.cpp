@@ -8,11 +8,12 @@
 #include <string>
 #include <unordered_map>
 
-#include "bench/support/cages.h"
-#include "bench/support/random.h"
+#include "bench/support/mesh_arrays.h"
 #include "limitsurf/sample/area.h"
 #include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/tessellate/tessellation.h"
+#include "support/cages/benchmark_cages.h"
+#include "support/random.h"
 
 namespace limitsurf::bench {
 namespace {
@@ -20,12 +21,12 @@ namespace {
 constexpr int kPeerLevel = 4;
 
 struct ScatterCage {
-  explicit ScatterCage(Cage made)
+  explicit ScatterCage(MeshArrays made)
       : cage(std::move(made)), surface(cage.controlMesh()), sampler(surface) {}
   /// The radius of that much blue noise.
   double radius(int count) const { return std::sqrt(0.7 * surfaceArea(surface) / count); }
 
-  Cage cage;
+  MeshArrays cage;
   LimitSurface surface;
   AreaSampler sampler;
 };
@@ -45,12 +46,12 @@ class TriangleSampler {
     }
   }
 
-  Vector3 point(Random& random) const {
-    const double at = sums_.back() * random.unit();
+  Vector3 point(test::BenchmarkRandom& random) const {
+    const double at = sums_.back() * random.uniform();
     const std::size_t triangle =
         static_cast<std::size_t>(std::lower_bound(sums_.begin(), sums_.end(), at) - sums_.begin());
     const std::size_t quad = triangle / 2, half = triangle % 2;
-    const double root = std::sqrt(random.unit()), part = random.unit();
+    const double root = std::sqrt(random.uniform()), part = random.uniform();
     return (1 - root) * corner(quad, 0) + root * (1 - part) * corner(quad, 1 + half) +
            root * part * corner(quad, 2 + half);
   }
@@ -135,7 +136,7 @@ Group uniformGroup(const std::string& row, const Shared& cage, int count) {
                            false});
   group.columns.push_back({"triangles", [=](benchmark::State& state) {
                              const TriangleSampler triangles(cage->surface);
-                             Random random(1);
+                             test::BenchmarkRandom random(1);
                              Points points(count, 3);
                              for (auto _ : state) {
                                for (Eigen::Index i = 0; i < points.rows(); ++i) {
@@ -186,10 +187,10 @@ Group blueNoiseGroup(const std::string& row, const Shared& cage, int count) {
 
 std::vector<Group> samplingGroups(int count) {
   std::vector<Group> groups;
-  const std::pair<std::string, Cage> cages[] = {{"mixed-10k-faces", largeCage(100)},
-                                                {"every class", everyClassCage()},
-                                                {"multi-EV", crossesCage()},
-                                                {"n-gon", polygonsCage()}};
+  const std::pair<std::string, MeshArrays> cages[] = {{"mixed-10k-faces", test::largeCage(100)},
+                                                      {"every class", test::everyClassCage()},
+                                                      {"multi-EV", test::crossesCage()},
+                                                      {"n-gon", test::polygonsCage()}};
   for (const auto& [name, cage] : cages) {
     const auto shared = std::make_shared<const ScatterCage>(cage);
     const std::string row = name + "/" + std::to_string(cage.ptexFaceCount());

@@ -11,15 +11,16 @@
 #include <memory>
 #include <vector>
 
-#include "bench/support/cages.h"
 #include "bench/support/embree_peer.h"
+#include "bench/support/mesh_arrays.h"
 #include "bench/support/process_cost.h"
-#include "bench/support/random.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/sample/area.h"
 #include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/tessellate/tessellation.h"
+#include "support/cages/benchmark_cages.h"
+#include "support/random.h"
 
 namespace limitsurf::bench {
 namespace {
@@ -46,7 +47,7 @@ struct Seconds {
 };
 
 /// Prints a row for each structure that is made before the first search.
-bool measureSetUp(const Cage& cage) {
+bool measureSetUp(const MeshArrays& cage) {
   std::unique_ptr<LimitSurface> surface;
   Tessellation mesh;
   const auto with_surface = [&] { surface = std::make_unique<LimitSurface>(cage.controlMesh()); };
@@ -93,18 +94,18 @@ struct Queries {
   Points directions;  ///< those of rays, of length 1; no rows for closest points
 };
 
-Vector3 randomDirection(Random& random) {
-  const double z = random.between(-1, 1), angle = random.between(-kPi<double>, kPi<double>);
+Vector3 randomDirection(test::BenchmarkRandom& random) {
+  const double z = random.uniform(-1, 1), angle = random.uniform(-kPi<double>, kPi<double>);
   const double radius = std::sqrt(1 - z * z);
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
 /// Points at a random distance from the surface, `reach` at most.
 Queries pointsNear(const char* name, const Points& on_surface, double reach) {
-  Random random(1);
+  test::BenchmarkRandom random(1);
   Queries queries{name, on_surface, {}};
   for (Eigen::Index i = 0; i < on_surface.rows(); ++i) {
-    const double distance = random.between(0, reach);
+    const double distance = random.uniform(0, reach);
     queries.origins.row(i) += distance * randomDirection(random).transpose();
   }
   return queries;
@@ -112,8 +113,8 @@ Queries pointsNear(const char* name, const Points& on_surface, double reach) {
 
 /// Rays towards places of the surface; a ray may meet other places before.
 Queries raysTo(const char* name, const Points& on_surface, double distance,
-               const std::function<Vector3(Random&)>& direction) {
-  Random random(2);
+               const std::function<Vector3(test::BenchmarkRandom&)>& direction) {
+  test::BenchmarkRandom random(2);
   Queries queries{name, on_surface, Points(on_surface.rows(), 3)};
   for (Eigen::Index i = 0; i < on_surface.rows(); ++i) {
     queries.directions.row(i) = direction(random).transpose();
@@ -190,7 +191,7 @@ void timeScattering(const AreaSampler& sampler, int count, double area) {
 }  // namespace
 
 int measureSearches(int count) {
-  const Cage cage = largeCage(kSide);
+  const MeshArrays cage = test::largeCage(kSide);
   const double diagonal = cage.diagonal();
   std::printf("%d quads, open; all threads; median of %d\n\n", cage.faceCount(), kRepetitions);
   if (!measureSetUp(cage)) return 1;
@@ -211,9 +212,9 @@ int measureSearches(int count) {
           diagonal);
   compare(pointsNear("closest, to 5 % of a face's width", on_surface, 0.05 * face_width), search,
           peer, diagonal);
-  compare(
-      raysTo("rays, from above", on_surface, diagonal, [](Random&) { return Vector3(0, 0, -1); }),
-      search, peer, diagonal);
+  compare(raysTo("rays, from above", on_surface, diagonal,
+                 [](test::BenchmarkRandom&) { return Vector3(0, 0, -1); }),
+          search, peer, diagonal);
   compare(raysTo("rays, from all sides", on_surface, diagonal, randomDirection), search, peer,
           diagonal);
   timeScattering(sampler, count, surfaceArea(surface));

@@ -22,7 +22,7 @@ double difference(const Points& a, const Points& b, double scale) {
 
 }  // namespace
 
-double largestDifference(const Cage& cage, const LimitSurface& ours, const BfrPeer& bfr,
+double largestDifference(const MeshArrays& cage, const LimitSurface& ours, const BfrPeer& bfr,
                          Span<Location> at) {
   std::vector<Location> chosen;
   std::copy_if(at.begin(), at.end(), std::back_inserter(chosen),

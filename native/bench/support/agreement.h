@@ -17,7 +17,7 @@ constexpr double kAgreement = 1e-7;
 
 /// The largest difference between LimitSurface and Bfr level 10 in positions and all derivatives,
 /// at locations farther than 2^-8 from the corners of faces, since Bfr approximates closer to EVs.
-double largestDifference(const Cage& cage, const LimitSurface& ours, const BfrPeer& bfr,
+double largestDifference(const MeshArrays& cage, const LimitSurface& ours, const BfrPeer& bfr,
                          Span<Location> at);
 
 /// Prints a difference. allAgreed() tells whether all were below kAgreement.

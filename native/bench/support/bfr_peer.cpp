@@ -9,7 +9,7 @@ namespace limitsurf::bench {
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 
-TopologyPointer farTopology(const Cage& cage) {
+TopologyPointer farTopology(const MeshArrays& cage) {
   const std::vector<int> sizes(cage.face_sizes.begin(), cage.face_sizes.end());
   const std::vector<int> vertices(cage.face_vertices.begin(), cage.face_vertices.end());
   Far::TopologyDescriptor descriptor;
@@ -18,11 +18,11 @@ TopologyPointer farTopology(const Cage& cage) {
   descriptor.numVertsPerFace = sizes.data();
   descriptor.vertIndicesPerFace = vertices.data();
   std::vector<int> sharp_edges;
-  for (const auto& [a, b] : cage.edge_sharpness.edges) {
+  for (const auto& [a, b] : cage.options.edge_sharpness.edges) {
     sharp_edges.insert(sharp_edges.end(), {static_cast<int>(a), static_cast<int>(b)});
   }
-  const std::vector<float> sharpness(cage.edge_sharpness.values.begin(),
-                                     cage.edge_sharpness.values.end());
+  const std::vector<float> sharpness(cage.options.edge_sharpness.values.begin(),
+                                     cage.options.edge_sharpness.values.end());
   descriptor.numCreases = static_cast<int>(sharpness.size());
   descriptor.creaseVertexIndexPairs = sharp_edges.data();
   descriptor.creaseWeights = sharpness.data();
@@ -32,7 +32,8 @@ TopologyPointer farTopology(const Cage& cage) {
   return TopologyPointer(Maker::Create(descriptor, Maker::Options(Sdc::SCHEME_CATMARK, rules)));
 }
 
-BfrPeer::BfrPeer(const Cage& cage, const Far::TopologyRefiner& topology, int level, Cache* cache)
+BfrPeer::BfrPeer(const MeshArrays& cage, const Far::TopologyRefiner& topology, int level,
+                 Cache* cache)
     : level_(level) {
   Factory::Options options;
   options.SetApproxLevelSmooth(level).SetApproxLevelSharp(level);

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "bench/support/cages.h"
+#include "bench/support/mesh_arrays.h"
 #include "limitsurf/surface/limit_surface.h"
 
 namespace limitsurf::bench {
@@ -16,7 +16,7 @@ namespace limitsurf::bench {
 using TopologyPointer = std::unique_ptr<OpenSubdiv::Far::TopologyRefiner>;
 
 /// OpenSubdiv's topology of a cage, boundaries and corners smooth.
-TopologyPointer farTopology(const Cage& cage);
+TopologyPointer farTopology(const MeshArrays& cage);
 
 /// Approximation levels of Bfr: its default, and one that comes close to limitsurf's accuracy.
 constexpr int kBfrLevels[] = {2, 10};
@@ -35,7 +35,7 @@ class BfrPeer {
   };
 
   /// `cache`, if given, keeps Bfr's results for topologies from one instance to the next.
-  BfrPeer(const Cage& cage, const OpenSubdiv::Far::TopologyRefiner& topology, int level,
+  BfrPeer(const MeshArrays& cage, const OpenSubdiv::Far::TopologyRefiner& topology, int level,
           Cache* cache = nullptr);
 
   /// Recomputes the patch points of these faces of the cage.

@@ -15,7 +15,7 @@ VertexClass classify(int faces, int edges) {
 }
 
 /// The number of edges at each vertex.
-std::vector<int> edgeCounts(const Cage& cage) {
+std::vector<int> edgeCounts(const MeshArrays& cage) {
   // The edges of a vertex are the outgoing edges of its faces, and those incoming edges that are
   // not outgoing edges of another face.
   std::vector<std::vector<std::int64_t>> out(cage.positions.rows()), in(cage.positions.rows());
@@ -43,7 +43,7 @@ std::vector<int> edgeCounts(const Cage& cage) {
 
 }  // namespace
 
-std::vector<ClassifiedFace> classifyFaces(const Cage& cage) {
+std::vector<ClassifiedFace> classifyFaces(const MeshArrays& cage) {
   std::vector<int> face_counts(cage.positions.rows(), 0);
   std::vector<char> at_polygon(cage.positions.rows(), false);
   std::size_t first = 0;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bench/support/cages.h"
+#include "bench/support/mesh_arrays.h"
 
 namespace limitsurf::bench {
 
@@ -24,7 +24,7 @@ struct ClassifiedFace {
 };
 
 /// The classes of all Ptex faces.
-std::vector<ClassifiedFace> classifyFaces(const Cage& cage);
+std::vector<ClassifiedFace> classifyFaces(const MeshArrays& cage);
 
 /// The Ptex faces of one class.
 std::vector<int> facesOf(const std::vector<ClassifiedFace>& faces, FaceClass face_class);

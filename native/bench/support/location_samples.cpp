@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "bench/support/random.h"
+#include "support/random.h"
 
 namespace limitsurf::bench {
 namespace {
@@ -19,11 +19,11 @@ int perFace(const std::vector<int>& faces, int count) {
 }  // namespace
 
 std::vector<Location> uniformSamples(const std::vector<int>& faces, int count) {
-  Random random(kSeed);
+  test::BenchmarkRandom random(kSeed);
   std::vector<Location> samples;
   for (const int face : faces) {
     for (int k = perFace(faces, count); k > 0; --k) {
-      const double u = random.unit(), v = random.unit();
+      const double u = random.uniform(), v = random.uniform();
       samples.push_back({face, u, v});
     }
   }
@@ -32,13 +32,13 @@ std::vector<Location> uniformSamples(const std::vector<int>& faces, int count) {
 
 std::vector<Location> samplesNearEvs(const std::vector<ClassifiedFace>& classified,
                                      const std::vector<int>& faces, int count) {
-  Random random(kSeed);
+  test::BenchmarkRandom random(kSeed);
   std::vector<Location> samples;
   for (const int face : faces) {
     for (int k = perFace(faces, count); k > 0; --k) {
-      const double distance = std::exp2(-random.between(5, 12));
-      double s = distance, t = distance * random.unit();
-      if (random.unit() < 0.5) std::swap(s, t);
+      const double distance = std::exp2(-random.uniform(5, 12));
+      double s = distance, t = distance * random.uniform();
+      if (random.uniform() < 0.5) std::swap(s, t);
       samples.push_back(fromCorner(face, classified[face].ev_corner, s, t));
     }
   }
@@ -46,7 +46,7 @@ std::vector<Location> samplesNearEvs(const std::vector<ClassifiedFace>& classifi
 }
 
 std::vector<Location> shuffled(std::vector<Location> samples) {
-  Random(kSeed + 1).shuffle(samples);
+  test::BenchmarkRandom(kSeed + 1).shuffle(samples);
   return samples;
 }
 

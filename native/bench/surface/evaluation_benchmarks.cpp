@@ -8,9 +8,10 @@
 
 #include "bench/support/agreement.h"
 #include "bench/support/bfr_peer.h"
-#include "bench/support/cages.h"
 #include "bench/support/face_classes.h"
 #include "bench/support/location_samples.h"
+#include "bench/support/mesh_arrays.h"
+#include "support/cages/benchmark_cages.h"
 
 namespace limitsurf::bench {
 namespace {
@@ -18,9 +19,9 @@ namespace {
 /// A cage that all libraries open when it is first needed.
 class OpenCage {
  public:
-  explicit OpenCage(Cage (*make)()) : make_(make) {}
+  explicit OpenCage(test::Cage (*make)()) : make_(make) {}
 
-  const Cage& cage() { return open().cage; }
+  const MeshArrays& cage() { return open().cage; }
   const LimitSurface& ours() { return open().ours; }
   const BfrPeer& bfr(int level) {
     return level == kBfrLevels[0] ? open().bfr_low : open().bfr_high;
@@ -29,14 +30,14 @@ class OpenCage {
 
  private:
   struct Opened {
-    explicit Opened(Cage made)
+    explicit Opened(MeshArrays made)
         : cage(std::move(made)),
           ours(cage.controlMesh()),
           topology(farTopology(cage)),
           bfr_low(cage, *topology, kBfrLevels[0]),
           bfr_high(cage, *topology, kBfrLevels[1]),
           classified(classifyFaces(cage)) {}
-    Cage cage;
+    MeshArrays cage;
     LimitSurface ours;
     TopologyPointer topology;
     BfrPeer bfr_low, bfr_high;
@@ -47,7 +48,7 @@ class OpenCage {
     return *opened_;
   }
 
-  Cage (*make_)();
+  test::Cage (*make_)();
   std::unique_ptr<Opened> opened_;
 };
 
@@ -147,10 +148,10 @@ void addGroup(std::vector<Group>& groups, const std::string& row, std::shared_pt
 }  // namespace
 
 std::vector<Group> evaluationGroups(int sample_count) {
-  const auto every_class = std::make_shared<OpenCage>(everyClassCage);
-  const auto crosses = std::make_shared<OpenCage>(crossesCage);
-  const auto polygons = std::make_shared<OpenCage>(polygonsCage);
-  const auto mixed = std::make_shared<OpenCage>(+[] { return largeCage(144); });
+  const auto every_class = std::make_shared<OpenCage>(test::everyClassCage);
+  const auto crosses = std::make_shared<OpenCage>(test::crossesCage);
+  const auto polygons = std::make_shared<OpenCage>(test::polygonsCage);
+  const auto mixed = std::make_shared<OpenCage>(+[] { return test::largeCage(144); });
   struct Row {
     std::string name;
     std::shared_ptr<OpenCage> cage;

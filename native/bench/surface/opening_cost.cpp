@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "bench/support/bfr_peer.h"
-#include "bench/support/cages.h"
 #include "bench/support/face_classes.h"
+#include "bench/support/mesh_arrays.h"
 #include "bench/support/process_cost.h"
+#include "support/cages/benchmark_cages.h"
 
 namespace limitsurf::bench {
 namespace {
@@ -22,7 +23,7 @@ struct FarAdaptive {
   std::shared_ptr<const OpenSubdiv::Far::PatchTable> patches;
 };
 
-FarAdaptive openFarAdaptive(const Cage& cage, bool with_patches = false) {
+FarAdaptive openFarAdaptive(const MeshArrays& cage, bool with_patches = false) {
   namespace Far = OpenSubdiv::Far;
   constexpr int kLevel = 6;
   FarAdaptive result;
@@ -39,7 +40,7 @@ FarAdaptive openFarAdaptive(const Cage& cage, bool with_patches = false) {
 }
 
 /// Prints a row for each library.
-int measureOpening(const Cage& cage) {
+int measureOpening(const MeshArrays& cage) {
   struct Row {
     const char* name;
     Opening open;
@@ -93,7 +94,7 @@ int measureOpening(const Cage& cage) {
 }  // namespace
 
 int measureLargeMesh(int side) {
-  const Cage cage = largeCage(side);
+  const MeshArrays cage = test::largeCage(side);
   const std::vector<ClassifiedFace> classified = classifyFaces(cage);
   const std::size_t regular = facesOf(classified, FaceClass::regular).size();
   std::printf("%d quads, %.2f %% of them irregular; all threads; median of 3\n\n", cage.faceCount(),
@@ -102,7 +103,7 @@ int measureLargeMesh(int side) {
 }
 
 int measureSemiSharpMesh(int side) {
-  const Cage cage = semiSharpCage(side);
+  const MeshArrays cage = test::semiSharpCage(side);
   std::printf("%d quads, every edge of sharpness 0.5 to 4; all threads; median of 3\n\n",
               cage.faceCount());
   return measureOpening(cage);

@@ -6,14 +6,15 @@
 #include <string>
 
 #include "bench/support/bfr_peer.h"
-#include "bench/support/cages.h"
 #include "bench/support/face_classes.h"
+#include "bench/support/mesh_arrays.h"
+#include "support/cages/benchmark_cages.h"
 
 namespace limitsurf::bench {
 namespace {
 
 struct SetupCage {
-  explicit SetupCage(Cage made) : cage(std::move(made)) {
+  explicit SetupCage(MeshArrays made) : cage(std::move(made)) {
     const std::vector<ClassifiedFace> classified = classifyFaces(cage);
     std::size_t ptex_face = 0;
     for (int face = 0; face < cage.faceCount(); ++face) {
@@ -27,7 +28,7 @@ struct SetupCage {
     other_positions = cage.positions;
     other_positions.col(2) *= 1.25;
   }
-  Cage cage;
+  MeshArrays cage;
   std::vector<int> irregular_base_faces;
   std::size_t irregular_count = 0;  ///< the number of irregular Ptex faces
   Points other_positions;
@@ -87,11 +88,11 @@ void poseBfr(benchmark::State& state, const SetupCage& setup, int level) {
 }  // namespace
 
 std::vector<Group> setupGroups() {
-  const std::pair<std::string, Cage> cages[] = {
-      {"regular", torusCage()},           {"interior-EV", interiorEvCage()},
-      {"boundary-EV", boundaryEvCage()},  {"corner", cornersCage()},
-      {"multi-EV", crossesCage()},        {"n-gon", polygonsCage()},
-      {"mixed-20k-faces", largeCage(144)}};
+  const std::pair<std::string, MeshArrays> cages[] = {
+      {"regular", test::torusCage()},           {"interior-EV", test::interiorEvCage()},
+      {"boundary-EV", test::boundaryEvCage()},  {"corner", test::cornersCage()},
+      {"multi-EV", test::crossesCage()},        {"n-gon", test::polygonsCage()},
+      {"mixed-20k-faces", test::largeCage(144)}};
   std::vector<Group> groups;
   for (const auto& [name, cage] : cages) {
     const auto setup = std::make_shared<const SetupCage>(cage);

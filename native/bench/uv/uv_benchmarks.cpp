@@ -12,10 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "bench/support/cages.h"
+#include "bench/support/mesh_arrays.h"
 #include "bench/support/process_cost.h"
-#include "bench/support/random.h"
 #include "limitsurf/uv/uv_map.h"
+#include "support/cages/benchmark_cages.h"
+#include "support/cages/meshes.h"
+#include "support/random.h"
 
 namespace limitsurf::bench {
 namespace {
@@ -49,10 +51,10 @@ struct MapCase {
   SurfaceData map;
 };
 
-std::vector<std::int64_t> corners(const Cage& cage) { return cage.face_vertices; }
+std::vector<std::int64_t> corners(const MeshArrays& cage) { return cage.face_vertices; }
 
 /// A map that projects the cage from above: one island that fills most of the image.
-MapCase whole(const std::string& name, const Cage& cage, Interpolation interpolation) {
+MapCase whole(const std::string& name, const MeshArrays& cage, Interpolation interpolation) {
   DataRows values = cage.positions.leftCols(2);
   const Eigen::RowVector2d low = values.colwise().minCoeff(), high = values.colwise().maxCoeff();
   values = (values.rowwise() - low).array().rowwise() / (high - low).array();
@@ -63,7 +65,7 @@ MapCase whole(const std::string& name, const Cage& cage, Interpolation interpola
 }
 
 /// A map on which every face is an island of its own, all of the same size, with gaps between them.
-MapCase islands(const std::string& name, const Cage& cage) {
+MapCase islands(const std::string& name, const MeshArrays& cage) {
   const int side = static_cast<int>(std::ceil(std::sqrt(cage.faceCount())));
   DataRows values(4 * cage.faceCount(), 2);
   std::vector<std::int64_t> rows;
@@ -79,15 +81,6 @@ MapCase islands(const std::string& name, const Cage& cage) {
   LimitSurface surface(cage.controlMesh());
   SurfaceData map = surface.faceVarying(values, rows, Interpolation::boundaries);
   return {name, std::move(surface), std::move(map)};
-}
-
-Cage oneQuad() {
-  Cage cage;
-  cage.positions.resize(4, 3);
-  cage.positions << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
-  cage.face_sizes = {4};
-  cage.face_vertices = {0, 1, 2, 3};
-  return cage;
 }
 
 /// The usual method: triangles between exact points of the map, with linear coordinates in each.
@@ -208,10 +201,10 @@ void measure(const MapCase& of, int side) {
     peer = nullptr;
     peer = std::make_unique<TriangleRaster>(of.map, side);
   });
-  Random random(1);
+  test::BenchmarkRandom random(1);
   PlanePoints points(kLookups, 2);
   for (Eigen::Index row = 0; row < points.rows(); ++row)
-    points.row(row) << random.unit(), random.unit();
+    points.row(row) << random.uniform(), random.uniform();
   const Time locating = timeOf([&] { map.locate(points); });
   const Errors errors = errorsOf(of.map, side, texels, *peer);
   std::printf(
@@ -231,11 +224,12 @@ int measureUvMaps(int side) {
       "| triangles | error | of triangles | texels they miss / have too many |\n"
       "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
       tbb::info::default_concurrency(), kRepetitions);
-  measure(whole("10,000 faces, one island, smooth", largeCage(100), Interpolation::none), side);
-  measure(whole("the same, linear", largeCage(100), Interpolation::all), side);
-  measure(islands("10,000 islands", largeCage(100)), side);
-  measure(whole("one quad", oneQuad(), Interpolation::boundaries), side);
-  measure(whole("1,000,000 faces", largeCage(1000), Interpolation::none), side / 4);
+  measure(whole("10,000 faces, one island, smooth", test::largeCage(100), Interpolation::none),
+          side);
+  measure(whole("the same, linear", test::largeCage(100), Interpolation::all), side);
+  measure(islands("10,000 islands", test::largeCage(100)), side);
+  measure(whole("one quad", test::grid(1, 1), Interpolation::boundaries), side);
+  measure(whole("1,000,000 faces", test::largeCage(1000), Interpolation::none), side / 4);
   return 0;
 }
 

@@ -73,8 +73,8 @@ Points displaced(const LimitSurface& base, const LocationBatch& at, const Points
 }
 
 Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch& target,
-                                   const LocationBatch& at, const ScalarDisplacementOptions& options,
-                                   int threads) {
+                                   const LocationBatch& at,
+                                   const ScalarDisplacementOptions& options, int threads) {
   const PointsAndNormals here = pointsAndNormals(base, at, threads);
   const auto distances = [&](double sign) -> Eigen::VectorXd {
     return target.rayCast(here.position, sign * here.normal, options.max_distance, threads)

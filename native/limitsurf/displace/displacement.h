@@ -29,13 +29,13 @@ constexpr double kDisplacementError = 3e-13;
 Points vectorDisplacement(const LimitSurface& base, const LimitSurface& target,
                           const SubdividedFaces& faces, const LocationBatch& at, int threads = 0);
 
-/// Each vector's components along the tangent, the normal and the bitangent of the frame in the same
-/// row. Blender's Vector Displacement node reads them from red, green and blue in this order. Throws
-/// std::invalid_argument if the numbers of rows differ.
+/// Each vector's components along the tangent, the normal and the bitangent of the frame in the
+/// same row. Blender's Vector Displacement node reads them from red, green and blue in this order.
+/// Throws std::invalid_argument if the numbers of rows differ.
 Points intoFrames(const Points& vectors, const FrameRows& frames);
 
-/// The vectors that have these components: the inverse of intoFrames() for orthonormal frames. Throws
-/// as that does.
+/// The vectors that have these components: the inverse of intoFrames() for orthonormal frames.
+/// Throws as that does.
 Points outOfFrames(const Points& components, const FrameRows& frames);
 
 struct ScalarDisplacementOptions {
@@ -59,8 +59,8 @@ Points displaced(const LimitSurface& base, const LocationBatch& at, const Points
 /// between normal and target, plus the error of the base's position. Throws as
 /// LimitSurface::evaluate(), and std::invalid_argument for a max_distance that is NaN or negative.
 Eigen::VectorXd scalarDisplacement(const LimitSurface& base, const SurfaceSearch& target,
-                                   const LocationBatch& at, const ScalarDisplacementOptions& options = {},
-                                   int threads = 0);
+                                   const LocationBatch& at,
+                                   const ScalarDisplacementOptions& options = {}, int threads = 0);
 
 /// Moves each of the base's points along its normal by its distance. It is the inverse of
 /// scalarDisplacement().

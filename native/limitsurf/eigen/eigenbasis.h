@@ -122,13 +122,13 @@ class Eigenbasis {
                    const Eigen::Array4d outer_points[], Eigen::Array4d grid[]) const;
 
   /// The weights of the ring's modes and of the outer points in the functionals of `window` (values
-  /// and derivatives), after `steps` >= 1 steps. `mode_weights` gets a row for each functional and a
-  /// column for each mode, `outer_weights` a column for each outer point.
+  /// and derivatives), after `steps` >= 1 steps. `mode_weights` gets a row for each functional and
+  /// a column for each mode, `outer_weights` a column for each outer point.
   ///
   /// Derivatives are with respect to the face's own (u, v). Each step halves (u, v), so that first
   /// derivatives have the factor 2^steps and second ones 4^steps. The weights of second derivatives
-  /// have only the factor 2^(steps + 1): the caller multiplies by the remaining 2^(steps - 1), which
-  /// may overflow.
+  /// have only the factor 2^(steps + 1): the caller multiplies by the remaining 2^(steps - 1),
+  /// which may overflow.
   ///
   /// The ring's coefficients belong to the level `ring_steps` subdivisions before that of the outer
   /// points.

@@ -12,9 +12,9 @@ namespace limitsurf {
 /// A level for each face of a mesh, and what was measured to find it.
 struct FaceLevels {
   std::vector<int> levels;  ///< 0 for faces without a surface
-  /// The deviation or length of the face's polygons, NaN for faces without a surface. It is measured
-  /// at the level that the face itself needs: where a neighbour raised the level, `levels` is
-  /// higher.
+  /// The deviation or length of the face's polygons, NaN for faces without a surface. It is
+  /// measured at the level that the face itself needs: where a neighbour raised the level, `levels`
+  /// is higher.
   Eigen::VectorXd measure;
 };
 

@@ -96,8 +96,9 @@ void checkTexel(const Eigen::Vector2d& texel) {
   }
 }
 
-TexelPlaces texelPlaces(const LimitSurface& surface, const SurfaceData& map, const LocationBatch& at,
-                        const Eigen::Vector2d& texel, bool normal_steps, int threads) {
+TexelPlaces texelPlaces(const LimitSurface& surface, const SurfaceData& map,
+                        const LocationBatch& at, const Eigen::Vector2d& texel, bool normal_steps,
+                        int threads) {
   const auto rows = static_cast<Eigen::Index>(at.size());
   TexelPlaces places;
   for (Points* steps : {&places.along_x, &places.along_y}) {

@@ -26,8 +26,9 @@ struct TexelPlaces {
 
 /// `texel` is the size of a texel in units of the map. Steps of the normal are computed only with
 /// `normal_steps`.
-TexelPlaces texelPlaces(const LimitSurface& surface, const SurfaceData& map, const LocationBatch& at,
-                        const Eigen::Vector2d& texel, bool normal_steps, int threads);
+TexelPlaces texelPlaces(const LimitSurface& surface, const SurfaceData& map,
+                        const LocationBatch& at, const Eigen::Vector2d& texel, bool normal_steps,
+                        int threads);
 
 /// Throws std::invalid_argument for a size that is not finite and above 0.
 void checkTexel(const Eigen::Vector2d& texel);

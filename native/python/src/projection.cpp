@@ -53,8 +53,8 @@ class ProjectionArrays {
 /// Writes body(locations) of one part after the other into the arrays, without the GIL. The lock
 /// that `lock` returns is not held while the progress is reported.
 template <typename Lock, typename Body>
-void projectInParts(const CheckedLocations& at, const ProgressReport& report, ProjectionArrays& arrays,
-                    const Lock& lock, const Body& body) {
+void projectInParts(const CheckedLocations& at, const ProgressReport& report,
+                    ProjectionArrays& arrays, const Lock& lock, const Body& body) {
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
     const std::size_t count = std::min(kRowsPerPart, at.size() - begin);
     {

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "support/cages/uv_images.h"
+#include "support/truth/uv_images.h"
 
 namespace limitsurf::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <complex>
 #include <cstdio>
 
-#include "support/cages/uv_images.h"
 #include "support/throws.h"
+#include "support/truth/uv_images.h"
 
 namespace limitsurf::test {
 namespace {

@@ -4,44 +4,35 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <utility>
 
 #include "limitsurf/pi.h"
+#include "support/cages/cage_builder.h"
 #include "support/random.h"
 
 namespace limitsurf::test {
-namespace {
-
-Points points(const std::vector<Vector3>& rows) {
-  Points result(rows.size(), 3);
-  for (std::size_t i = 0; i < rows.size(); ++i) result.row(i) = rows[i];
-  return result;
-}
-
-/// Drops vertices that no face uses.
 Cage compacted(const Cage& cage) {
-  Cage result;
-  result.options = cage.options;
+  CageBuilder builder;
   std::map<int, int> kept;
-  std::vector<Vector3> rows;
-  for (const std::vector<int>& face : cage.faces) {
-    result.faces.emplace_back();
-    for (int vertex : face) {
-      const auto [found, is_new] = kept.emplace(vertex, static_cast<int>(rows.size()));
-      if (is_new) rows.push_back(cage.positions.row(vertex));
-      result.faces.back().push_back(found->second);
+  for (std::vector<int> face : cage.faces) {
+    for (int& vertex : face) {
+      const auto [found, is_new] = kept.try_emplace(vertex, -1);
+      if (is_new) found->second = builder.addVertex(cage.positions.row(vertex));
+      vertex = found->second;
     }
+    builder.addFace(std::move(face));
   }
-  result.positions = points(rows);
+  Cage result = builder.build();
+  result.options = cage.options;
   return result;
 }
-
-}  // namespace
 
 Cage fan(int faces, bool closed, std::uint64_t seed) {
   // Sector i spans the directions i and i + 1; (a, b) are steps along these, up to two.
   Random random(seed);
   std::map<std::vector<int>, int> index;
-  std::vector<Vector3> rows;
+  CageBuilder builder;
   const double turn =
       closed ? 2 * kPi<double> : std::min(1.7 * kPi<double>, 0.5 * kPi<double> * faces);
   const auto vertex = [&](int sector, int a, int b) {
@@ -51,28 +42,26 @@ Cage fan(int faces, bool closed, std::uint64_t seed) {
       b = 0;
     }
     if (a == 0) sector = 0;
-    const auto [found, is_new] = index.emplace(std::vector<int>{sector, a, b}, rows.size());
+    const auto [found, is_new] = index.try_emplace(std::vector<int>{sector, a, b}, -1);
     if (is_new) {
       const auto direction = [&](int i) {
         const double angle = turn * i / faces;
         return Vector3(std::cos(angle), std::sin(angle), 0);
       };
       const Vector3 regular = a * direction(sector) + b * direction(sector + 1);
-      rows.push_back(regular + random.vector(0.15));
+      found->second = builder.addVertex(regular + random.vector(0.15));
     }
     return found->second;
   };
-  Cage cage;
   for (int sector = 0; sector < faces; ++sector) {
     for (int b = 0; b < 2; ++b) {
       for (int a = 0; a < 2; ++a) {
-        cage.faces.push_back({vertex(sector, a, b), vertex(sector, a + 1, b),
-                              vertex(sector, a + 1, b + 1), vertex(sector, a, b + 1)});
+        builder.addFace({vertex(sector, a, b), vertex(sector, a + 1, b),
+                         vertex(sector, a + 1, b + 1), vertex(sector, a, b + 1)});
       }
     }
   }
-  cage.positions = points(rows);
-  return cage;
+  return builder.build();
 }
 
 Cage pole(int triangles) {
@@ -89,27 +78,38 @@ Cage pole(int triangles) {
 
 Cage ngon(int sides, std::uint64_t seed) {
   Random random(seed);
-  Cage cage;
-  std::vector<Vector3> rows;
+  CageBuilder builder;
   for (double radius : {1.0, 2.0}) {
     for (int i = 0; i < sides; ++i) {
       const double angle = 2 * kPi<double> * i / sides;
-      rows.push_back(radius * Vector3(std::cos(angle), std::sin(angle), 0) + random.vector(0.1));
+      builder.addVertex(radius * Vector3(std::cos(angle), std::sin(angle), 0) + random.vector(0.1));
     }
   }
-  cage.faces.emplace_back();
-  for (int i = 0; i < sides; ++i) cage.faces[0].push_back(i);
+  std::vector<int> polygon(sides);
+  std::iota(polygon.begin(), polygon.end(), 0);
+  builder.addFace(polygon);
   for (int i = 0; i < sides; ++i) {
     const int next = (i + 1) % sides;
-    cage.faces.push_back({i, sides + i, sides + next, next});
+    builder.addFace({i, sides + i, sides + next, next});
   }
-  cage.positions = points(rows);
-  return cage;
+  return builder.build();
 }
 
 Cage grid(int columns, int rows) { return gridWithHoles(columns, rows, {}); }
 
 Cage gridWithHoles(int columns, int rows, const std::vector<int>& holes) {
+  Cage cage = fullGrid(columns, rows);
+  std::vector<std::vector<int>> kept;
+  for (std::size_t i = 0; i < cage.faces.size(); ++i) {
+    if (std::count(holes.begin(), holes.end(), static_cast<int>(i)) == 0) {
+      kept.push_back(cage.faces[i]);
+    }
+  }
+  cage.faces = std::move(kept);
+  return compacted(cage);
+}
+
+Cage fullGrid(int columns, int rows) {
   Cage cage;
   cage.positions.resize((columns + 1) * (rows + 1), 3);
   for (int j = 0; j <= rows; ++j) {
@@ -117,12 +117,11 @@ Cage gridWithHoles(int columns, int rows, const std::vector<int>& holes) {
   }
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
-      if (std::count(holes.begin(), holes.end(), i + columns * j) != 0) continue;
       const int a = j * (columns + 1) + i, b = a + columns + 1;
       cage.faces.push_back({a, a + 1, b + 1, b});
     }
   }
-  return compacted(cage);
+  return cage;
 }
 
 Cage cross() {
@@ -245,6 +244,11 @@ Cage mixture(std::uint64_t seed) {
 Cage perturbed(Cage cage, double size, std::uint64_t seed) {
   Random random(seed);
   for (int i = 0; i < cage.vertexCount(); ++i) cage.positions.row(i) += random.vector(size);
+  return cage;
+}
+
+Cage placed(Cage cage, double factor, const Vector3& offset) {
+  cage.positions = (factor * cage.positions).rowwise() + offset.transpose();
   return cage;
 }
 

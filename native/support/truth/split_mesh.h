@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "support/cages/cage.h"
-#include "support/cages/sharp_topology.h"
+#include "support/truth/sharp_topology.h"
 
 namespace limitsurf::test {
 

@@ -14,20 +14,7 @@ using Faces = std::vector<std::vector<int>>;
 constexpr int kSide = 4;
 
 /// kSide x kSide squares; vertex i + 5 j lies at (i, j, 0).
-Cage lattice() {
-  Cage cage;
-  cage.positions.resize((kSide + 1) * (kSide + 1), 3);
-  for (int j = 0; j <= kSide; ++j) {
-    for (int i = 0; i <= kSide; ++i) cage.positions.row(i + (kSide + 1) * j) << i, j, 0;
-  }
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const int a = i + (kSide + 1) * j, b = a + kSide + 1;
-      cage.faces.push_back({a, a + 1, b + 1, b});
-    }
-  }
-  return cage;
-}
+Cage lattice() { return fullGrid(kSide, kSide); }
 
 int add(Cage& cage, const Vector3& position) {
   cage.positions.conservativeResize(cage.positions.rows() + 1, 3);

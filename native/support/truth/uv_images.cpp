@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/cages/uv_images.h"
+#include "support/truth/uv_images.h"
 
 namespace limitsurf::test {
 

@@ -112,4 +112,11 @@ int cornerAt(const Location& location) {
   return -1;
 }
 
+bool isOnBorder(const CornerPoints& corners, const Location& at) {
+  const auto within = [](double x) { return x > 0 && x < 1; };
+  if (within(at.u) == within(at.v)) return false;
+  const int side = at.v == 0 ? 0 : at.u == 1 ? 1 : at.v == 1 ? 2 : 3;
+  return corners.at(at.face, side).sharp_next;
+}
+
 }  // namespace limitsurf::test

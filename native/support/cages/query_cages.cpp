@@ -167,16 +167,4 @@ std::vector<Location> searchedLocations(const LimitSurface& surface, int count, 
   return at;
 }
 
-bool isOnBorder(const CornerPoints& corners, const Location& at) {
-  const auto within = [](double x) { return x > 0 && x < 1; };
-  if (within(at.u) == within(at.v)) return false;
-  const int side = at.v == 0 ? 0 : at.u == 1 ? 1 : at.v == 1 ? 2 : 3;
-  return corners.at(at.face, side).sharp_next;
-}
-
-Cage placed(Cage cage, double factor, const Vector3& offset) {
-  cage.positions = (factor * cage.positions).rowwise() + offset.transpose();
-  return cage;
-}
-
 }  // namespace limitsurf::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/cages/spline_grid.h"
+#include "support/truth/spline_grid.h"
 
 #include <algorithm>
 

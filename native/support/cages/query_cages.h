@@ -3,7 +3,6 @@
 
 #include "support/cages/strange_meshes.h"
 #include "support/random.h"
-#include "support/truth/corner_points.h"
 
 namespace limitsurf::test {
 
@@ -21,12 +20,5 @@ NamedCages degenerateCages();
 /// `count` locations on faces that have a surface: anywhere, on sides, at corners and within 2^-5
 /// to 2^-40 of these.
 std::vector<Location> searchedLocations(const LimitSurface& surface, int count, Random& random);
-
-/// Whether the location lies on a side of its face, but not at a corner, and the side is a boundary
-/// or an infinitely sharp edge. Not valid for the bilinear scheme.
-bool isOnBorder(const CornerPoints& corners, const Location& at);
-
-/// The cage with all coordinates multiplied by `factor` and moved by `offset`.
-Cage placed(Cage cage, double factor, const Vector3& offset = Vector3::Zero());
 
 }  // namespace limitsurf::test

@@ -1,34 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include "support/cages/cage.h"
 
-#include "limitsurf/mesh/control_mesh.h"
-#include "limitsurf/types.h"
+namespace limitsurf::test {
 
-namespace limitsurf::bench {
-
-/// A control mesh as arrays, from which each library makes its own.
-struct Cage {
-  Points positions;
-  std::vector<std::int64_t> face_sizes;
-  std::vector<std::int64_t> face_vertices;
-  EdgeSharpness edge_sharpness;
-
-  int faceCount() const { return static_cast<int>(face_sizes.size()); }
-  int ptexFaceCount() const;
-  /// The diagonal of the bounding box.
-  double diagonal() const;
-  ControlMesh controlMesh() const {
-    MeshOptions options;
-    options.edge_sharpness = edge_sharpness;
-    return ControlMesh(positions, face_sizes, face_vertices, options);
-  }
-};
-
-// The meshes below are open unless said otherwise. Their heights are random, but the same in every
-// call.
+// The meshes of the benchmarks. They are open unless said otherwise. Their heights are random, but
+// the same in every call.
 
 /// 1232 quads of every class: a 12x12 grid cut to a plus (four concave, eight convex corners), open
 /// fans of boundary valence 4 to 7, closed fans of valence 3, 5 and 6, with 6x6 quads a sector.
@@ -60,4 +38,4 @@ Cage largeCage(int side);
 /// side x side quads. Every edge is semi-sharp, with a random sharpness from 0.5 to 4.
 Cage semiSharpCage(int side);
 
-}  // namespace limitsurf::bench
+}  // namespace limitsurf::test

@@ -45,4 +45,8 @@ class CornerPoints {
 /// The number of the corner at which the location is exactly, or -1.
 int cornerAt(const Location& location);
 
+/// Whether the location lies on a side of its face, but not at a corner, and the side is a boundary
+/// or an infinitely sharp edge. Not valid for the bilinear scheme.
+bool isOnBorder(const CornerPoints& corners, const Location& at);
+
 }  // namespace limitsurf::test

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limitsurf/types.h"
-#include "support/cages/sharp_topology.h"
+#include "support/truth/sharp_topology.h"
 
 namespace limitsurf::test {
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "support/cages/spline_grid.h"
 #include "support/truth/local_refinement.h"
+#include "support/truth/spline_grid.h"
 #include "support/truth/split_mesh.h"
 
 namespace limitsurf::test {

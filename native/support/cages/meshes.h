@@ -22,10 +22,13 @@ Cage pole(int triangles);
 /// all its vertices.
 Cage ngon(int sides, std::uint64_t seed);
 
-/// columns x rows unit squares in the plane z = 0.
+/// columns x rows unit squares in the plane z = 0. Vertices are numbered in the order in which the
+/// faces use them.
 Cage grid(int columns, int rows);
 /// The grid without some of its squares, given by column + columns * row.
 Cage gridWithHoles(int columns, int rows, const std::vector<int>& holes);
+/// The same squares with vertex i + (columns + 1) * j at (i, j, 0).
+Cage fullGrid(int columns, int rows);
 /// The cross of Lacewell & Burley's figure 1: five quads, twelve extraordinary boundary vertices.
 Cage cross();
 Cage cube();
@@ -43,6 +46,13 @@ Cage mixture(std::uint64_t seed);
 
 /// Moves every vertex at random by at most `size` along each axis.
 Cage perturbed(Cage cage, double size, std::uint64_t seed);
+
+/// The cage with all coordinates multiplied by `factor` and moved by `offset`.
+Cage placed(Cage cage, double factor, const Vector3& offset = Vector3::Zero());
+
+/// The cage without the vertices that no face uses. The others are numbered in the order in which
+/// the faces use them. Must not have sharp edges or vertices.
+Cage compacted(const Cage& cage);
 
 /// The same surface with every face's vertices in the opposite order.
 Cage reversed(Cage cage);

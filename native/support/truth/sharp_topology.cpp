@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/cages/sharp_topology.h"
+#include "support/truth/sharp_topology.h"
 
 #include <algorithm>
 #include <stdexcept>
