@@ -119,7 +119,7 @@ def test_blue_noise_of_a_count(surface, count):
 
 def test_blue_noise_of_a_radius_is_maximal(surface):
     surface = bent(surface)
-    radius = np.sqrt(0.7 * surface.area() / 800)
+    radius = np.sqrt(0.7 * surface.area() / 400)
     noise = surface.scatter_blue_noise(radius=radius)
     assert noise.radius == radius
     assert distances(surface, noise, radius) >= 1
@@ -250,7 +250,7 @@ class TestErrors:
 
     def test_progress(self, cube, call):
         told = []
-        self.scatter(cube, call, count=200_000, progress=told.append)
+        self.scatter(cube, call, count=60_000, progress=told.append)
         assert len(told) > 1
         assert told[-1] == 1
         assert all(0 <= a <= b <= 1 for a, b in zip(told, told[1:], strict=False))
@@ -260,7 +260,7 @@ class TestErrors:
                 raise RuntimeError("enough")
 
         with pytest.raises(RuntimeError, match="enough"):
-            self.scatter(cube, call, count=200_000, progress=stop)
+            self.scatter(cube, call, count=60_000, progress=stop)
 
 
 def test_blue_noise_takes_a_count_or_a_radius(cube):

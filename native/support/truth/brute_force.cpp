@@ -10,6 +10,9 @@ namespace {
 
 using Long = LongRay::Vector;
 
+/// The last step of a refinement whose result only has to be recognised.
+constexpr double kFewDigits = 0x1p-26;
+
 Long toLong(const Vector3& v) { return v.cast<long double>(); }
 
 /// Newton's step towards the least distance, or Gauss and Newton's; {0, 0} where there is none.
@@ -105,18 +108,25 @@ BruteForce::Foot BruteForce::nearest(const Vector3& point, int most_starts,
   if (starts.size() > static_cast<std::size_t>(most_starts)) starts.resize(most_starts);
   Foot best{std::numeric_limits<long double>::infinity(), {}};
   for (const Start& start : starts) {
-    const Foot foot = refined(point, start.at, 0.5 / per_side_);
+    Foot foot{start.distance, start.at};
+    if (accepts) {
+      // Most starts lead to feet that are not accepted, and few digits tell so.
+      foot = refined(point, foot.at, 0.5 / per_side_, kFewDigits);
+      if (!accepts(foot.at)) continue;
+    }
+    foot = refined(point, foot.at, 0.5 / per_side_, 0x1p-53);
     if (foot.distance < best.distance && (!accepts || accepts(foot.at))) best = foot;
   }
   return best;
 }
 
-BruteForce::Foot BruteForce::refined(const Vector3& point, Location at, double step) const {
+BruteForce::Foot BruteForce::refined(const Vector3& point, Location at, double step,
+                                     double smallest) const {
   // The best of the eight neighbours and of two steps of Newton's, as long as that leads down.
   Foot best{distanceBetween(
                 surface_.evaluate({&at, 1}, Derivatives::none, false, 1).position.row(0), point),
             at};
-  for (int round = 0; round < 400 && step > 0x1p-53; ++round) {
+  for (int round = 0; round < 400 && step > smallest; ++round) {
     const Evaluation here = surface_.evaluate({&best.at, 1}, Derivatives::second, false, 1);
     const Vector3 offset = Vector3(here.position.row(0)) - point;
     std::vector<Location> next;

@@ -56,7 +56,8 @@ class BruteForce {
  private:
   Foot nearest(const Vector3& point, int most_starts,
                const std::function<bool(const Location&)>& accepts) const;
-  Foot refined(const Vector3& point, Location at, double step) const;
+  /// The local minimum that is found from a location, by steps from `step` down to `smallest`.
+  Foot refined(const Vector3& point, Location at, double step, double smallest) const;
   Location at(std::size_t face, int i, int j) const;
   std::size_t index(std::size_t face, int i, int j) const;
 

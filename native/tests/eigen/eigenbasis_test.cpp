@@ -79,16 +79,16 @@ void compareWithRingMatrix(const Ring& ring) {
 
 TEST(Eigenbasis, FactorisesTheRingMatrix) {
   for (RingKind kind : kKinds) {
-    for (int faces = 1; faces <= 40; ++faces) {
+    for (int faces = 1; faces <= 24; ++faces) {
       if (exists({kind, faces})) compareWithRingMatrix({kind, faces});
     }
-    for (int faces : {63, 64, 65, 66, 100, 101, 102}) compareWithRingMatrix({kind, faces});
+    for (int faces : {33, 48}) compareWithRingMatrix({kind, faces});
   }
 }
 
 TEST(SlowEigenbasis, FactorisesTheRingMatrix) {
   for (RingKind kind : kKinds) {
-    for (int faces = 41; faces <= 100; ++faces) compareWithRingMatrix({kind, faces});
+    for (int faces = 25; faces <= 102; ++faces) compareWithRingMatrix({kind, faces});
     for (int faces : {125, 150, 169, 183, 198, 200}) compareWithRingMatrix({kind, faces});
   }
 }
@@ -391,7 +391,7 @@ void compareTiles(RingKind kind, const std::vector<int>& face_counts) {
 }
 
 TEST(Eigenbasis, ReachesSubdividedTiles) {
-  for (RingKind kind : kKinds) compareTiles(kind, {1, 2, 3, 4, 5, 6, 7, 8, 10, 16, 20, 33, 34});
+  for (RingKind kind : kKinds) compareTiles(kind, {1, 2, 3, 4, 5, 6, 7, 8, 10, 17, 22});
 }
 
 TEST(SlowEigenbasis, ReachesSubdividedTiles) {

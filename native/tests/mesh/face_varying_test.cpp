@@ -215,16 +215,16 @@ Tally compareAll(Creasing creasing, int edges_per_sharp, int rounds) {
 }
 
 TEST(FaceVarying, RefinesAsOpenSubdivOnSmoothMeshes) {
-  EXPECT_EQ(compareAll(Creasing::uniform, 0, 3).refused, 0);
+  EXPECT_EQ(compareAll(Creasing::uniform, 0, 1).refused, 0);
 }
 
 TEST(FaceVarying, RefinesAsOpenSubdivBesideUniformCreases) {
-  const Tally tally = compareAll(Creasing::uniform, 3, 4);
+  const Tally tally = compareAll(Creasing::uniform, 3, 2);
   EXPECT_LE(tally.refused, tally.compared / 100);
 }
 
 TEST(FaceVarying, RefinesAsOpenSubdivBesideChaikinCreases) {
-  const Tally tally = compareAll(Creasing::chaikin, 6, 3);
+  const Tally tally = compareAll(Creasing::chaikin, 6, 2);
   EXPECT_LT(tally.refused, tally.compared / 2);
 }
 
@@ -353,7 +353,7 @@ TEST(FaceVarying, RefusesFacesWhoseDecayNoMeshOfItsOwnHas) {
                       Interpolation::corners_plus1);
   EXPECT_EQ(derived.refused.size(), 36u) << "all within two rings";
   for (const auto& [refused, reason] : derived.refused) {
-    EXPECT_NE(reason.find("vertex 0, the sharpness"), std::string::npos) << reason;
+    EXPECT_NE(reason.find("vertex 0, a value at a seam"), std::string::npos) << reason;
   }
 }
 

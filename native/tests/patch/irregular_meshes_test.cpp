@@ -13,7 +13,7 @@ namespace limitsurf::test {
 namespace {
 
 void compareUnderAllRules(const std::string& name, Cage cage, const std::vector<int>& levels,
-                          Accuracy& all) {
+                          Accuracy& all, int count = 2) {
   Random random(7);
   const bool has_triangles = std::any_of(cage.faces.begin(), cage.faces.end(),
                                          [](const auto& face) { return face.size() == 3; });
@@ -22,7 +22,7 @@ void compareUnderAllRules(const std::string& name, Cage cage, const std::vector<
       if (triangles == Triangles::smooth && !has_triangles) continue;
       cage.options.boundary = boundary;
       cage.options.triangles = triangles;
-      compareWithSubdivision(name, cage, everywhere(cage, levels, 2, random), all);
+      compareWithSubdivision(name, cage, everywhere(cage, levels, count, random), all);
     }
   }
 }
@@ -63,15 +63,15 @@ TEST(IrregularMeshes, PolygonsAgreeWithSubdivision) {
   std::printf("%s", all.details().c_str());
 }
 
-void compareMixtures(int first_seed, int count, const std::vector<int>& levels) {
+void compareMixtures(int first_seed, int count, const std::vector<int>& levels, int places) {
   Accuracy all("mixtures", 1);
   for (int seed = first_seed; seed < first_seed + count; ++seed) {
-    compareUnderAllRules("mixture " + std::to_string(seed), mixture(seed), levels, all);
+    compareUnderAllRules("mixture " + std::to_string(seed), mixture(seed), levels, all, places);
   }
   std::printf("%s", all.details().c_str());
 }
 
-TEST(IrregularMeshes, MixturesAgreeWithSubdivision) { compareMixtures(1, 2, {11, 40}); }
+TEST(IrregularMeshes, MixturesAgreeWithSubdivision) { compareMixtures(1, 2, {40}, 1); }
 
 TEST(SlowIrregularMeshes, PolygonsAgreeWithSubdivision) {
   Accuracy all("polygons", 1);
@@ -83,7 +83,7 @@ TEST(SlowIrregularMeshes, PolygonsAgreeWithSubdivision) {
 }
 
 TEST(SlowIrregularMeshes, MixturesAgreeWithSubdivision) {
-  compareMixtures(100, 5, {1, 2, 4, 8, 16, 28, 40});
+  compareMixtures(100, 5, {1, 2, 4, 8, 16, 28, 40}, 2);
 }
 
 }  // namespace

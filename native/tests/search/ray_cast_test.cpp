@@ -233,13 +233,13 @@ TEST(RayCast, FindsThePointsItIsSentThrough) {
   }
 }
 
-TEST(RayCast, FindsPointsAtGrazingAngles) {
+void expectPointsAtGrazingAngles(int count) {
   Random random(3);
   for (const auto& [name, cage] : queryCages()) {
     const LimitSurface surface = limitSurface(cage);
     const SurfaceSearch search(surface);
     const double unit = diagonalOf(surface);
-    const std::vector<Location> at = searchedLocations(surface, 20, random);
+    const std::vector<Location> at = searchedLocations(surface, count, random);
     const Evaluation e = surface.evaluate(at, Derivatives::first, true);
     Rays rays;
     std::vector<std::size_t> points;
@@ -277,6 +277,10 @@ TEST(RayCast, FindsPointsAtGrazingAngles) {
     }
   }
 }
+
+TEST(RayCast, FindsPointsAtGrazingAngles) { expectPointsAtGrazingAngles(8); }
+
+TEST(SlowRayCast, FindsPointsAtGrazingAngles) { expectPointsAtGrazingAngles(100); }
 
 TEST(RayCast, MissesWhatItPasses) {
   // Rays outside a convex surface, along its tangent planes, and rays beside open boundaries.

@@ -65,8 +65,8 @@ void compare(const std::string& name, const Cage& cage, bool mirrored, double& w
   Random random(4);
   std::vector<Location> at;
   for (int face = 0; face < static_cast<int>(ptexFaces(cage).size()); ++face) {
-    at += anywhere(face, 4, random);
-    at += shells(face, 0, {3, 12});
+    at += anywhere(face, 2, random);
+    at += shells(face, 0, {3 + face % 10});
   }
   const auto frames = tangentFrames(surface, map, at);
   const MapDistortion distortion = mapDistortion(surface, map, at);

@@ -19,7 +19,9 @@
 namespace limitsurf::test {
 namespace {
 
-TEST(DeepSubdivision, AgreesWithGoldenValues) {
+/// Compares one in `step` of the values of a mesh, and all where there are few.
+void compareWithGoldenValues(int step) {
+  constexpr int kFew = 100;
   Accuracy all("deep subdivision", 1);
   for (const std::string& name : goldenNames()) {
     const Golden golden = readGolden(name);
@@ -32,7 +34,7 @@ TEST(DeepSubdivision, AgreesWithGoldenValues) {
     for (int i = 0; i < static_cast<int>(golden.at.size()); ++i) {
       const CornerPoint* corner = corners.at(golden.at[i]);
       if (corner != nullptr && !corner->regular()) continue;
-      if (i % 2 != 0 && golden.at.size() > 300) continue;  // to save time
+      if (i % step != 0 && golden.at.size() > kFew) continue;
       accuracy.check(golden.at[i], deep.evaluate(golden.at[i]), truthOf(golden, i));
     }
     all.merge(accuracy);
@@ -42,6 +44,10 @@ TEST(DeepSubdivision, AgreesWithGoldenValues) {
     EXPECT_LE(all.worst(q), 4e-16) << kQuantityNames[q];  // both are rounded once
   }
 }
+
+TEST(DeepSubdivision, AgreesWithGoldenValues) { compareWithGoldenValues(6); }
+
+TEST(SlowDeepSubdivision, AgreesWithGoldenValues) { compareWithGoldenValues(1); }
 
 TEST(DeepSubdivision, FindsLimitsOfIrregularVertices) {
   Accuracy all("irregular vertices", 1);
@@ -74,14 +80,15 @@ TEST(DeepSubdivision, FindsLimitsOfIrregularVertices) {
   for (int q = 0; q < kNormal; ++q) EXPECT_LE(all.worst(q), 4e-16) << kQuantityNames[q];
 }
 
-/// Holds the witness against OpenSubdiv's uniform refinement and limit masks where these are right.
-void compareWithFar(const std::string& name, const Cage& cage, double& worst) {
+/// Holds the witness against OpenSubdiv's uniform refinement and limit masks where these are right:
+/// at all corners of faces, and at one in `step` of the other points.
+void compareWithFar(const std::string& name, const Cage& cage, int step, double& worst) {
   DeepSubdivision deep(cage);
   const CornerPoints corners(cage);
   const FarLimit far = farLimit(cage, 4);
   for (int i = 0; i < static_cast<int>(far.at.size()); ++i) {
     const CornerPoint* corner = corners.at(far.at[i]);
-    if (corner == nullptr && i % 17 != 0) continue;  // to save time
+    if (corner == nullptr && i % step != 0) continue;
     if (corner != nullptr && corner->rule == Rule::dart) continue;
     if (corner != nullptr && corner->rule == Rule::smooth && corner->faces == 2) continue;
     const Vector3 truth = corner != nullptr
@@ -94,26 +101,30 @@ void compareWithFar(const std::string& name, const Cage& cage, double& worst) {
   }
 }
 
-TEST(DeepSubdivision, AgreesWithOpenSubdivOnNonManifoldMeshes) {
+void compareNonManifoldMeshes(int step) {
   double worst = 0;
   NamedCages cages = nonManifoldCages();
   cages.emplace_back("cone on a crease", coneOnACrease());
   for (auto& [name, cage] : cages) {
     for (const Boundary boundary : {Boundary::smooth, Boundary::corners}) {
       cage.options.boundary = boundary;
-      compareWithFar(name, cage, worst);
+      compareWithFar(name, cage, step, worst);
     }
   }
   std::printf("  worst %.2e\n", worst);
 }
 
-TEST(DeepSubdivision, AgreesWithOpenSubdivOnSharpMeshes) {
+TEST(DeepSubdivision, AgreesWithOpenSubdivOnNonManifoldMeshes) { compareNonManifoldMeshes(67); }
+
+TEST(SlowDeepSubdivision, AgreesWithOpenSubdivOnNonManifoldMeshes) { compareNonManifoldMeshes(17); }
+
+void compareSharpMeshes(int mixtures, int step) {
   // Sharpness that has decayed after four levels, also under Chaikin's rule, and that this never
   // takes from above 1 to 0, where OpenSubdiv extrapolates.
   double worst = 0;
   Random random(5);
   NamedCages cages = nonManifoldCages();
-  for (int seed = 1; seed <= 10; ++seed) {
+  for (int seed = 1; seed <= mixtures; ++seed) {
     cages.emplace_back("mixture " + std::to_string(seed), mixture(seed));
   }
   for (auto& [name, plain] : cages) {
@@ -123,11 +134,15 @@ TEST(DeepSubdivision, AgreesWithOpenSubdivOnSharpMeshes) {
       cage.options.creasing = creasing;
       const std::vector<double> uniform_values = {0.3, 1, 1.5, 2.75, 3, 4, INFINITY};
       sharpenAtRandom(cage, random, 3, 5, uniform ? uniform_values : std::vector{0.5, 0.75, 10.0});
-      compareWithFar(name + (uniform ? ", uniform" : ", chaikin"), cage, worst);
+      compareWithFar(name + (uniform ? ", uniform" : ", chaikin"), cage, step, worst);
     }
   }
   std::printf("  worst %.2e\n", worst);
 }
+
+TEST(DeepSubdivision, AgreesWithOpenSubdivOnSharpMeshes) { compareSharpMeshes(4, 67); }
+
+TEST(SlowDeepSubdivision, AgreesWithOpenSubdivOnSharpMeshes) { compareSharpMeshes(10, 17); }
 
 }  // namespace
 }  // namespace limitsurf::test
