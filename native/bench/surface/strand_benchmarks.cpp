@@ -5,9 +5,10 @@
 #include <numeric>
 #include <string>
 
-#include "bench/support/cages.h"
 #include "bench/support/location_samples.h"
+#include "bench/support/mesh_arrays.h"
 #include "limitsurf/surface/strands/strand_poser.h"
+#include "support/cages/benchmark_cages.h"
 
 namespace limitsurf::bench {
 namespace {
@@ -20,7 +21,7 @@ class Hair {
   Hair(int count, bool is_random) : count_(count), is_random_(is_random) {}
 
   struct Made {
-    Made(int count, bool is_random) : surface(largeCage(100).controlMesh()) {
+    Made(int count, bool is_random) : surface(MeshArrays(test::largeCage(100)).controlMesh()) {
       std::vector<int> faces(static_cast<std::size_t>(surface.faceCount()));
       std::iota(faces.begin(), faces.end(), 0);
       at = uniformSamples(faces, count);

@@ -315,7 +315,7 @@ int compareFacing(int per_side, int step, std::size_t cage_step) {
   Random random(7);
   int elsewhere = 0;
   const NamedCages cages = queryCages();
-  for (std::size_t number = 0; number < cages.size(); number += cage_step) {
+  for (std::size_t number = cage_step / 2; number < cages.size(); number += cage_step) {
     const auto& [name, cage] = cages[number];
     const LimitSurface surface = limitSurface(cage);
     const SurfaceSearch search(surface);
