@@ -170,12 +170,13 @@ bool eyeIsInside(const SharedSurface& shared, const py::object& matrix, int thre
 void bindProjection(py::class_<SharedSurface>& type) {
   using namespace py::literals;
   const ProjectOptions defaults;
+  const DepthRange depth = defaults.depth.value_or(DepthRange());
   type.def("project", &project, "uv_map"_a, "face"_a, "uv"_a, "matrix"_a, "texel"_a, py::kw_only(),
            "facing"_a = std::pair(defaults.facing_start, defaults.facing_end),
            "two_sided"_a = defaults.two_sided, "occlusion"_a = true, "samples"_a = defaults.samples,
            "bias"_a = py::none(), "soft_edge"_a = defaults.soft_edge, "frame"_a = defaults.frame,
-           "depth"_a = std::pair(defaults.depth->near, defaults.depth->far), "world"_a = py::none(),
-           "threads"_a = 0, "progress"_a = py::none(), kProjectDoc)
+           "depth"_a = std::pair(depth.near, depth.far), "world"_a = py::none(), "threads"_a = 0,
+           "progress"_a = py::none(), kProjectDoc)
       .def("project_along_normals", &projectAlongNormals, "uv_map"_a, "face"_a, "uv"_a, "source"_a,
            "source_map"_a, "texel"_a, py::kw_only(),
            "max_distance"_a = std::numeric_limits<double>::infinity(), "direction"_a = "both",
