@@ -18,6 +18,7 @@ from . import (
     preferences,
     project_image,
     report,
+    sampling,
     snap,
     snap_modal,
     ui,
@@ -37,6 +38,7 @@ _parts = (
     curvature,
     follow,
     attach,
+    sampling,
     limit_mesh,
     bake_maps,
     bake_displacement,
@@ -61,6 +63,7 @@ def register() -> None:
     stale.attach_handlers()
     follow.attach_handlers()
     bake_frames.attach_command()
+    sampling.attach_library()
     ui.append_menus()
     if _is_module:
         atexit.register(unregister)
@@ -69,6 +72,7 @@ def register() -> None:
 def unregister() -> None:
     atexit.unregister(unregister)
     ui.remove_menus()
+    sampling.detach_library()
     bake_frames.detach_command()
     follow.detach_handlers()
     stale.detach_handlers()

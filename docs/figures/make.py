@@ -83,6 +83,7 @@ FIGURES = {
     "projection": Figure("projection", "a projected checker, and filtered look-ups"),
     "query_rays": Figure("queries", "a picture of 614,400 rays, and its outline", "make_rays"),
     "query_section": Figure("queries", "closest points and hits of rays", "make_sections"),
+    "sample_node": Figure("sample_node", "the node Sample Limit Surface", in_blender=True),
     "scatter_points": Figure("scatter", "points of the three distributions", "make_points"),
     "scatter_spectra": Figure("scatter", "spectra of the three distributions", "make_spectra"),
     "uv_locations": Figure("uv", "a UV map inverted, texel by texel"),

@@ -28,6 +28,7 @@ CAPABILITIES = (
     "points",
     "project_image",
     "report",
+    "sampling",
     "snap",
     "snap_modal",
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The group *Sample Limit Surface*: position and frame of the limit surface at places in tiles."""
+"""The group *Sample Limit Tile*: position and frame of the limit surface at places in tiles."""
 
 import bpy
 
@@ -12,25 +12,27 @@ from .tree import Socket, Tree, Value
 # face would be too short to have a direction in single precision.
 _MAGNIFIED = 4096.0
 
+OUTPUTS = (
+    Socket("Position", "Vector", "Point on the limit surface"),
+    Socket("Normal", "Vector", "Unit vector that points outward"),
+    Socket("Tangent", "Vector", "Unit vector along growing u"),
+    Socket("Rotation", "Rotation", "Turns X to the tangent and Z to the normal"),
+    Socket("du", "Vector", "Derivative by u of the face"),
+    Socket("dv", "Vector", "Derivative by v of the face"),
+    Socket("Fits", "Bool", "Whether the table of tiles fits the control mesh"),
+)
+
 
 def _build() -> bpy.types.NodeTree:
     tree = Tree(
-        ids.SAMPLE_GROUP,
+        ids.SAMPLE_TILE_GROUP,
         [
             Socket("Surface", "Object", "Mesh with the modifier Limit Capture"),
             Socket("Tiles", "Object", "Table of tiles of that surface"),
             Socket("Tile", "Int", "Tile, counted from 0"),
             Socket("Tile UV", "Vector", "Place in the tile, each coordinate from 0 to 1"),
         ],
-        [
-            Socket("Position", "Vector", "Point on the limit surface"),
-            Socket("Normal", "Vector", "Unit vector that points outward"),
-            Socket("Tangent", "Vector", "Unit vector along growing u"),
-            Socket("Rotation", "Rotation", "Turns X to the tangent and Z to the normal"),
-            Socket("du", "Vector", "Derivative by u of the face"),
-            Socket("dv", "Vector", "Derivative by v of the face"),
-            Socket("Fits", "Bool", "Whether the table of tiles fits the control mesh"),
-        ],
+        list(OUTPUTS),
     )
     table = tree.object_info(tree.inputs["Tiles"])["Geometry"]
     first = tree.math("MULTIPLY", tree.inputs["Tile"], float(tiles.ROWS_OF_A_TILE))
@@ -107,4 +109,4 @@ def _handedness(tree: Tree, matrix: Value) -> Value:
     return tree.math("SIGN", volume)
 
 
-SAMPLE = Kind(ids.SAMPLE_GROUP, 1, _build)
+SAMPLE = Kind(ids.SAMPLE_TILE_GROUP, 1, _build)

@@ -140,6 +140,24 @@ class Tree:
     ) -> bpy.types.NodeSocket:
         return self.get("GeometryNodeSetPosition", geometry, selection, position)
 
+    def repeat(
+        self, iterations: Value, **items: tuple[str, Value]
+    ) -> tuple[Outputs, Outputs, Outputs]:
+        """Adds a Repeat Zone. Items are given as (type of socket, first value). Returns their
+        values at the beginning of an iteration, the inputs for those at its end, and the last
+        values.
+        """
+        begin = self.node("GeometryNodeRepeatInput")
+        end = self.node("GeometryNodeRepeatOutput")
+        begin.pair_with_output(end)
+        end.repeat_items.clear()
+        for name, (kind, _) in items.items():
+            end.repeat_items.new(kind, name)
+        self.set(begin.inputs["Iterations"], iterations)
+        for name, (_, value) in items.items():
+            self.set(begin.inputs[name], value)
+        return begin.outputs, end.inputs, end.outputs
+
     def math(self, operation: str, *arguments: Value) -> bpy.types.NodeSocket:
         return self.get("ShaderNodeMath", *arguments, operation=operation)
 

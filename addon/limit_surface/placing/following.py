@@ -92,8 +92,7 @@ class Request:
                 raise RefusalError(f"{ob.name} stores no locations on a limit surface")
         self._places = [moved.get(data) or Places.read(data) for data in holders(everything)]
         with cage.opened(surface, depsgraph) as (found, mesh):
-            edges = attributes.read(mesh, ids.EDGE_VERTICES)
-            self._bound = tables.Bound(len(mesh.vertices), topology_sum(edges), signature(found))
+            self._bound = bound_to(found, mesh)
         for ob in everything:
             if holder_of(ob) not in moved:
                 check_holds(ob, surface, self._bound.signature)
@@ -165,6 +164,11 @@ def request_for(
     return Request(surface, depsgraph) if follows(follow, surface) else None
 
 
+def bound_to(found: cage.Cage, mesh: bpy.types.Mesh) -> tables.Bound:
+    edges = attributes.read(mesh, ids.EDGE_VERTICES)
+    return tables.Bound(len(mesh.vertices), topology_sum(edges), signature(found))
+
+
 def signature(found: cage.Cage) -> str:
     """Returns two words: one that differs where the faces differ, and one that differs where only
     the rules of subdivision do, creases among them.
@@ -217,7 +221,7 @@ def remove_unused_capture(surface: bpy.types.Object) -> None:
     """Removes *Limit Capture* from a surface that nothing follows any more."""
     if (
         surface.is_editable
-        and tables.of_surface(surface) is None
+        and not tables.all_of_surface(surface)
         and not live_followers_of(surface)
     ):
         for modifier in list(groups.modifiers(surface, ids.CAPTURE_GROUP)):

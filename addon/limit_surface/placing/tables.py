@@ -83,7 +83,8 @@ class PointsTable:
 class TilesTable:
     """The vertices of *Limit Tiles* as arrays."""
 
-    def __init__(self, tiles: limitsurf.Tiles, origin: int) -> None:
+    def __init__(self, tiles: limitsurf.Tiles, origin: int, least: int = 0) -> None:
+        """Takes the point that is the origin. There are at least so many vertices."""
         count = len(tiles.tile_points)
         # by rows: x counts along u, and a row runs along v
         self.control = np.swapaxes(tiles.tile_points.reshape(-1, 4, 4), 1, 2)
@@ -91,25 +92,38 @@ class TilesTable:
         self.base[:, 0] = tiles.tile_base[:, None]
         self.anchor = np.full((count, 4), origin)
         self.anchor[:, 0] = tiles.tile_anchor
+        self.least = least
         self.scale = np.zeros((count, 2))
         self.scale[tiles.tile] = tiles.scale
 
     def fill(self, mesh: bpy.types.Mesh) -> None:
-        fill(mesh, np.zeros((self.anchor.size, 3)))
+        rows = max(self.anchor.size, self.least)
+        fill(mesh, np.zeros((rows, 3)))
         for names, values in ((nodes.CONTROL, self.control), (nodes.BASE, self.base)):
             for name, column in zip(names, values.reshape(-1, 4).T, strict=True):
-                attributes.write(mesh, name, "INT", "POINT", column)
-        attributes.write(mesh, nodes.ANCHOR, "INT", "POINT", self.anchor)
+                attributes.write(mesh, name, "INT", "POINT", padded(column, rows))
+        anchor = padded(self.anchor.ravel(), rows)
+        attributes.write(mesh, nodes.ANCHOR, "INT", "POINT", anchor)
         scale = np.repeat(self.scale, nodes.ROWS_OF_A_TILE, axis=0)
-        attributes.write(mesh, nodes.SCALE, "FLOAT2", "POINT", scale)
+        attributes.write(mesh, nodes.SCALE, "FLOAT2", "POINT", padded(scale, rows))
+
+
+def padded(values: np.ndarray, rows: int) -> np.ndarray:
+    """Returns the values with zeros after them, so many rows in all."""
+    missing = rows - len(values)
+    return np.concatenate([values, np.zeros((missing, *values.shape[1:]), values.dtype)])
 
 
 def of_surface(surface: bpy.types.Object) -> bpy.types.Object | None:
-    """Returns the file's own table of tiles of a surface, if there is one."""
-    for ob in bpy.data.objects:
-        if ob.library is None and surface_of(ob) == surface:
-            return ob
-    return None
+    """Returns the file's own table of the tiles that followers of a surface use, if there is
+    one.
+    """
+    return next((ob for ob in all_of_surface(surface) if ids.ALL_TILES_MARK not in ob), None)
+
+
+def all_of_surface(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns all of the file's own tables of tiles of a surface."""
+    return [ob for ob in bpy.data.objects if ob.library is None and surface_of(ob) == surface]
 
 
 def surface_of(table: bpy.types.Object) -> bpy.types.Object | None:
@@ -125,8 +139,21 @@ def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bp
     held = points_of(table) if table else _unread_points(surface)
     holder = held or new_object(ids.POINTS_TABLE, surface)
     points.fill(holder.data)
-    if table is None:
-        table = new_object(ids.TILES_TABLE, surface)
+    table = table or new_object(ids.TILES_TABLE, surface)
+    connect(table, holder, surface, points, bound)
+    TilesTable(tiles, points.origin).fill(table.data)
+    return table
+
+
+def connect(
+    table: bpy.types.Object,
+    holder: bpy.types.Object,
+    surface: bpy.types.Object,
+    points: PointsTable,
+    bound: Bound,
+) -> None:
+    """Makes a table of tiles read its surface and the holder of its points."""
+    if not any(groups.modifiers(table, ids.TILES_GROUP)):
         groups.add_modifier(table, TILES, Surface=surface)
     modifier = next(groups.modifiers(table, ids.TILES_GROUP))
     for name, value in (
@@ -136,9 +163,7 @@ def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bp
         ("Refined Points", points.refined),
     ):
         groups.set_input(modifier, name, value)
-    TilesTable(tiles, points.origin).fill(table.data)
     table[ids.SIGNATURE] = bound.signature
-    return table
 
 
 def points_of(table: bpy.types.Object) -> bpy.types.Object | None:

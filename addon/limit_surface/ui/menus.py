@@ -18,6 +18,7 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
         self.layout.operator(ids.SNAP_MODAL, icon="VIEW_PAN")
         self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
         self.layout.operator(ids.ATTACH, icon="LINKED")
+        self.layout.operator(ids.SAMPLE_TABLES, icon="NODETREE")
         self.layout.separator()
         self.layout.operator(ids.FOLLOW, icon="MOD_SIMPLEDEFORM")
         self.layout.operator(ids.REBIND, icon="FILE_REFRESH")
@@ -42,10 +43,17 @@ def _draw_in_snap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.operator(ids.SNAP_MODAL)
 
 
+def _draw_in_add_node(self: bpy.types.Menu, context: bpy.types.Context) -> None:
+    if context.space_data.tree_type == "GeometryNodeTree":
+        self.layout.separator()
+        self.layout.operator(ids.SAMPLE_ADD)
+
+
 _ENTRIES = (
     (bpy.types.VIEW3D_MT_curve_add, _draw_in_add_curve),
     (bpy.types.VIEW3D_MT_object, _draw_in_object),
     (bpy.types.VIEW3D_MT_snap, _draw_in_snap),
+    (bpy.types.NODE_MT_add, _draw_in_add_node),
     (bpy.types.VIEW3D_MT_edit_curves, _draw_in_snap),
     (bpy.types.VIEW3D_MT_sculpt_curves, _draw_in_snap),
 )

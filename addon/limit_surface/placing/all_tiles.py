@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables of all tiles of a surface, for users' own node trees, and a mesh of its faces."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..nodes import locate
+from ..nodes.tiles import ROWS_OF_A_TILE
+from ..reading import attributes, cage
+from ..tasks.refused_faces import check_some_left
+from . import following, new_objects, quadtree, tables
+
+
+class AllTiles:
+    """The tables of one surface. Raises RefusalError for a surface that cannot have them; nothing
+    has changed then.
+    """
+
+    def __init__(
+        self, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph, depth: int, levels: int
+    ) -> None:
+        following.check_surface(surface, depsgraph.scene)
+        self._surface, self._depth = surface, depth
+        with cage.opened(surface, depsgraph) as (found, mesh):
+            self._bound = following.bound_to(found, mesh)
+        limit = found.surface()
+        check_some_left(limit, surface.name)
+        self.tree = quadtree.build(limit, depth)
+        self._face_count = limit.face_count
+        faces = np.flatnonzero(self.tree.child[: limit.face_count] != quadtree.NO_TILE)
+        side = 2**levels
+        self._face, self._uv = _grids(faces, side)
+        self._positions = limit.evaluate(self._face, self._uv).position
+        self._corners = _quads(len(faces), side)
+        self._face_of_quad = np.repeat(faces, side * side)
+
+    def write(self) -> bpy.types.Object:
+        """Makes the tables, or makes them anew, and returns the table of tiles."""
+        surface = self._surface
+        following.ensure_capture(surface)
+        table = of_surface(surface)
+        points = tables.PointsTable(self.tree.tiles, self._bound.vertices)
+        holder = tables.points_of(table) if table else None
+        holder = holder or tables.new_object(ids.ALL_POINTS_TABLE, surface)
+        points.fill(holder.data)
+        table = table or tables.new_object(ids.ALL_TILES_TABLE, surface)
+        table[ids.ALL_TILES_MARK] = self._depth
+        tables.connect(table, holder, surface, points, self._bound)
+        self._fill(table.data, points.origin)
+        self._write_faces()
+        return table
+
+    def _fill(self, mesh: bpy.types.Mesh, origin: int) -> None:
+        tree = self.tree
+        tables.TilesTable(tree.tiles, origin, len(tree.child)).fill(mesh)
+        rows = len(mesh.vertices)
+        begin = np.repeat(tree.origin, ROWS_OF_A_TILE, axis=0)
+        for name, kind, values in (
+            (locate.CHILD, "INT", tree.child),
+            (locate.ORIGIN, "FLOAT2", begin),
+            (locate.LEVELS, "INT", np.full(rows, tree.levels)),
+            (locate.FACES, "INT", np.full(rows, self._face_count)),
+        ):
+            attributes.write(mesh, name, kind, "POINT", tables.padded(values, rows))
+
+    def _write_faces(self) -> None:
+        ob = faces_of(self._surface) or tables.new_object(ids.FACES_TABLE, self._surface)
+        ob.parent = self._surface  # shares its transform
+        ob[ids.FACES_MARK] = True
+        mesh = ob.data
+        mesh.clear_geometry()
+        corners = self._corners.ravel()
+        new_objects.add_polygons(mesh, self._positions, np.full(len(self._corners), 4), corners)
+        attributes.write(mesh, ids.FACE, "INT", "FACE", self._face_of_quad)
+        attributes.write(mesh, ids.UV, "FLOAT2", "CORNER", self._uv[corners])
+
+
+def of_surface(surface: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the file's own table of all tiles of a surface, if there is one."""
+    found = tables.all_of_surface(surface)
+    return next((ob for ob in found if ids.ALL_TILES_MARK in ob), None)
+
+
+def faces_of(surface: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the mesh of a surface's faces, if there is one."""
+    return next((ob for ob in surface.children if ids.FACES_MARK in ob), None)
+
+
+def _grids(faces: np.ndarray, side: int) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the places of a grid of side x side quads on each face."""
+    v, u = np.mgrid[: side + 1, : side + 1].reshape(2, -1) / side
+    uv = np.stack([u, v], axis=1)
+    return np.repeat(faces, len(uv)), np.tile(uv, (len(faces), 1))
+
+
+def _quads(count: int, side: int) -> np.ndarray:
+    """Returns the vertices (n, 4) of the quads of so many grids."""
+    v, u = np.mgrid[:side, :side].reshape(2, -1)
+    first = v * (side + 1) + u
+    quad = np.stack([first, first + 1, first + side + 2, first + side + 1], axis=1)
+    grid = (side + 1) ** 2 * np.arange(count)
+    return (grid[:, None, None] + quad).reshape(-1, 4)

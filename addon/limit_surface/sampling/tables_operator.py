@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_sample_tables."""
+
+import bpy
+from bpy.props import IntProperty
+
+from .. import ids, native
+from ..placing.all_tiles import AllTiles
+from ..placing.mending import mended
+from ..tasks import polling
+from ..tasks.properties import SummaryProperty, draw_summary
+
+
+class OBJECT_OT_limit_sample_tables(SummaryProperty, bpy.types.Operator):
+    """Make the tables by which the node group Sample Limit Surface samples the active mesh, or make
+    them anew after a change of its topology, creases or rules"""
+
+    bl_idname = ids.SAMPLE_TABLES
+    bl_label = "Tables for Sample Limit Surface"
+    bl_options = {"REGISTER", "UNDO"}
+
+    depth: IntProperty(
+        name="Depth",
+        description="Places are exact up to a distance of 2^-Depth of a face from irregular "
+        "vertices. Places closer to such a vertex are put at that distance",
+        default=16,
+        min=1,
+        max=24,
+    )
+    levels: IntProperty(
+        name="Levels",
+        description="Number of subdivisions of the mesh Limit Faces, on which points can be "
+        "distributed. More levels distribute points more evenly on curved faces",
+        default=2,
+        min=0,
+        max=6,
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return polling.mesh_in_object_mode(cls, context, context.active_object)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
+        surface = context.active_object
+        try:
+            with mended():
+                depsgraph = context.evaluated_depsgraph_get()
+                made = AllTiles(surface, depsgraph, self.depth, self.levels)
+                made.write()
+        except native.refusals as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        except MemoryError:
+            self.report({"ERROR"}, "There is not enough memory for the tables")
+            return {"CANCELLED"}
+        self.summary = f"{len(made.tree.tiles.tile_points):,} tiles of {surface.name}"
+        self.report({"INFO"}, self.summary)
+        return {"FINISHED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        self.layout.use_property_split = True
+        self.layout.prop(self, "depth")
+        self.layout.prop(self, "levels")
+        draw_summary(self.layout, self.summary)
