@@ -16,7 +16,10 @@ run_sanitized() {
   local tree=$ROOT/build/$preset
   export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1
   export UBSAN_OPTIONS=print_stacktrace=1
-  export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$ROOT/tools/sanitize/thread.supp
+  # The suppressions name functions of TBB: ThreadSanitizer needs a long history to know the stack of
+  # the earlier one of two accesses.
+  TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:history_size=7
+  export TSAN_OPTIONS=$TSAN_OPTIONS:suppressions=$ROOT/tools/sanitize/thread.supp
 
   part "C++ build" build_sanitized "$preset" || return 0
   part "C++ tests" run_ctest "$tree" || true
