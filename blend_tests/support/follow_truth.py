@@ -11,6 +11,7 @@ import numpy as np
 import scenes
 from limit_surface import ids
 from limit_surface.reading import attributes
+from mathutils import Matrix
 
 #: Positions in single precision, as a share of the diagonal of the surface's bounding box
 POSITION_BOUND = 2e-6
@@ -62,6 +63,11 @@ def on_surface(
     normal = _unit(local[:, :, 2] @ np.linalg.inv(linear))
     frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=2)
     return Frames(scenes.transformed(matrix, position), frame)
+
+
+def quaternions(frame: np.ndarray) -> np.ndarray:
+    """Returns rotation matrices (n, 3, 3) as quaternions, w x y z, by Blender's own conversion."""
+    return np.array([Matrix(matrix).to_quaternion() for matrix in frame])
 
 
 def rest(data: bpy.types.ID) -> Frames:

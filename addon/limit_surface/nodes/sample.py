@@ -41,9 +41,13 @@ def _build() -> bpy.types.NodeTree:
     # from the surface's space to that of the object whose modifier this is
     matrix = tree.object_info(tree.inputs["Surface"], "RELATIVE")["Transform"]
     du, dv = (tree.mapped_direction(derivative, matrix) for derivative in (du, dv))
-    normal = tree.scaled(tree.vector("CROSS_PRODUCT", du, dv), _handedness(tree, matrix))
+    # Next to a vertex with two faces both derivatives become so short that their product would have
+    # no direction in single precision.
+    along_u, along_v = (tree.vector("NORMALIZE", derivative) for derivative in (du, dv))
+    normal = tree.vector("CROSS_PRODUCT", along_u, along_v)
+    normal = tree.scaled(normal, _handedness(tree, matrix))
     rotation = tree.get(
-        "FunctionNodeAxesToRotation", normal, du, primary_axis="Z", secondary_axis="X"
+        "FunctionNodeAxesToRotation", normal, along_u, primary_axis="Z", secondary_axis="X"
     )
     scale = tree.components(
         tree.sample(table, tree.attribute(tiles.SCALE, "FLOAT_VECTOR"), first, "FLOAT_VECTOR")
@@ -52,7 +56,7 @@ def _build() -> bpy.types.NodeTree:
     return tree.finish(
         Position=tree.mapped_point(position, matrix),
         Normal=tree.vector("NORMALIZE", normal),
-        Tangent=tree.vector("NORMALIZE", du),
+        Tangent=along_u,
         Rotation=rotation,
         du=tree.scaled(du, tree.math("DIVIDE", scale[0], _MAGNIFIED)),
         dv=tree.scaled(dv, tree.math("DIVIDE", scale[1], _MAGNIFIED)),
