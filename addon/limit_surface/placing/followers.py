@@ -114,6 +114,7 @@ def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
         for ob in bpy.data.objects
         if ob.library is None
         and modifier_of(ob) is None
+        and live_modifier_of(ob) is None
         and was_bound(ob)
         and surface_of(ob) == surface
     ]
