@@ -11,6 +11,7 @@ from session import LIMIT, install_extension
 MAKE_SHOT = """
 import bpy
 cube = bpy.data.objects["Cube"]
+cube.modifiers.new("Wave", "WAVE")
 cube.modifiers.new("Subdivision", "SUBSURF")
 bpy.context.view_layer.objects.active = cube
 bpy.ops.object.limit_hair_add(per_side=2)
@@ -54,12 +55,14 @@ def test_frames_are_baked(user, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
     lines = [line for line in done.stdout.splitlines() if line.startswith("limit_surface: frame")]
     assert [line.split()[2] for line in lines] == ["1", "3", "5"]
-    heights = []
+    heights, roots = [], []
     for frame in (1, 3, 5):
         with np.load(tmp_path / f"Limit Hair.{frame:04}.npz") as arrays:
             assert arrays["limit_face"].shape == (FACES * 2**2,)
             heights.append(arrays["matrix_world"][2, 3])
+            roots.append(arrays["position"][arrays["curve_offsets"][:-1]])
     np.testing.assert_allclose(heights, [0, 1, 2], atol=1e-6)
+    assert np.abs(roots[1] - roots[0]).max() > 1e-3  # the hair follows the wave
     again = bake(user, tmp_path, "--frames", "1-5", "--step", "2", "--format", "npz")
     assert again.returncode == 0
     assert "6 existed" in again.stdout
