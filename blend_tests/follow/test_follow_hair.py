@@ -19,10 +19,17 @@ def follow(hair: bpy.types.Object) -> None:
     assert bpy.ops.object.limit_follow() == {"FINISHED"}
 
 
+def make_bezier(hair: bpy.types.Object, use_handles: bool = False) -> None:
+    scenes.activate(hair)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bpy.ops.curves.curve_type_set(type="BEZIER", use_handles=use_handles) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 def bezier_hair(ob: bpy.types.Object, kind: str) -> bpy.types.Object:
     """Adds Bézier strands whose handles point to all directions."""
     hair = scenes.add_hair(ob, per_side=2, points=4, follow="NONE")
-    hair.data.set_types(type="BEZIER")
+    make_bezier(hair)
     rng = np.random.default_rng(3)
     positions = attributes.read(hair.data, ids.POSITION)
     for name in HANDLES:
@@ -66,9 +73,7 @@ def test_handles_that_blender_has_made_turn_too(use_handles):
     ob = deforming("cross")
     hair = scenes.add_hair(ob, per_side=2, points=4, follow="NONE")
     bend(hair)
-    bpy.ops.object.mode_set(mode="EDIT")
-    assert bpy.ops.curves.curve_type_set(type="BEZIER", use_handles=use_handles) == {"FINISHED"}
-    bpy.ops.object.mode_set(mode="OBJECT")
+    make_bezier(hair, use_handles)
     follow(hair)
     bpy.context.scene.frame_set(30)
     check(ob, hair, (ids.POSITION, *HANDLES))
@@ -83,7 +88,7 @@ def test_strands_that_become_bezier_are_bound_anew():
     ob = deforming("cross")
     hair = scenes.add_hair(ob, per_side=2, points=4)
     assert hair.modifiers[0].node_group.name == ids.FOLLOW_HAIR_GROUP
-    hair.data.set_types(type="BEZIER")
+    make_bezier(hair)
     follow(hair)
     assert [m.node_group.name for m in hair.modifiers] == [ids.FOLLOW_BEZIER_GROUP]
 

@@ -78,6 +78,8 @@ def check(ob: bpy.types.Object, made: bpy.types.Object) -> None:
         assert np.abs(follow_truth.shown(made, ids.POSITION) - expected).max() < bound
         turned = np.einsum("nij,nj->ni", now.frame[corners], normals)
         error = np.abs(shown_normals(made) - turned).max(axis=1)
+        if bpy.app.version < (4, 5):  # normals are angles there, and turn with the polygons
+            continue
         assert error[~is_corner & has_normal].max() < NORMAL_BOUND
         assert error[has_normal].max() < CORNER_NORMAL_BOUND
 

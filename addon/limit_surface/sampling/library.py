@@ -10,6 +10,8 @@ import bpy
 from .. import ids
 
 FOLDER = Path(__file__).resolve().parents[1] / "assets"
+# Groups of their own in each file, for every version of Blender; the names differ from 5.0 on
+_METHODS = ("APPEND_REUSE", "APPEND")
 FILE = FOLDER / "limit_surface.blend"
 
 
@@ -17,7 +19,8 @@ def attach_library() -> None:
     if _own() is None:
         libraries = bpy.context.preferences.filepaths.asset_libraries
         library = libraries.new(name=ids.ASSET_LIBRARY, directory=str(FOLDER))
-        library.import_method = "APPEND_REUSE"
+        methods = library.bl_rna.properties["import_method"].enum_items
+        library.import_method = next(name for name in _METHODS if name in methods)
 
 
 def detach_library() -> None:
