@@ -10,8 +10,8 @@ import bpy
 from .. import ids
 
 FOLDER = Path(__file__).resolve().parents[1] / "assets"
-# Groups of their own in each file, for every version of Blender; the names differ from 5.0 on
-_METHODS = ("APPEND_REUSE", "APPEND")
+# Each file gets the groups as its own. From 5.0 on the reuse of what is there is another setting.
+_METHOD = "APPEND" if bpy.app.version >= (5, 0) else "APPEND_REUSE"
 FILE = FOLDER / "limit_surface.blend"
 
 
@@ -19,8 +19,7 @@ def attach_library() -> None:
     if _own() is None:
         libraries = bpy.context.preferences.filepaths.asset_libraries
         library = libraries.new(name=ids.ASSET_LIBRARY, directory=str(FOLDER))
-        methods = library.bl_rna.properties["import_method"].enum_items
-        library.import_method = next(name for name in _METHODS if name in methods)
+        library.import_method = _METHOD
 
 
 def detach_library() -> None:
