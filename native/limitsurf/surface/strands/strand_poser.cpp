@@ -66,29 +66,43 @@ float* rowOf(RowsOut<Rows>& rows, std::int64_t row) {
   return rows.data() + rows.cols() * row;
 }
 
-Padded padded(const float* p) { return {p[0], p[1], p[2], 0}; }
+/// A vector of three plain numbers: Padded vectors that are made of single numbers have to pass
+/// through memory, which takes twice the time.
+struct Triple {
+  double x, y, z;
 
-void store(const Padded& p, float* to) {
-  to[0] = static_cast<float>(p[0]);
-  to[1] = static_cast<float>(p[1]);
-  to[2] = static_cast<float>(p[2]);
+  Triple(double a, double b, double c) : x(a), y(b), z(c) {}
+  explicit Triple(const Padded& v) : x(v[0]), y(v[1]), z(v[2]) {}
+  explicit Triple(const float* p) : x(p[0]), y(p[1]), z(p[2]) {}
+
+  Triple operator+(const Triple& other) const { return {x + other.x, y + other.y, z + other.z}; }
+  Triple operator-(const Triple& other) const { return {x - other.x, y - other.y, z - other.z}; }
+  void store(float* to) const {
+    to[0] = static_cast<float>(x);
+    to[1] = static_cast<float>(y);
+    to[2] = static_cast<float>(z);
+  }
+};
+
+Triple operator*(double factor, const Triple& v) {
+  return {factor * v.x, factor * v.y, factor * v.z};
 }
 
-/// A rigid motion: x goes to `to` + turn (x - from).
+/// A rigid motion: p goes to `to` + turn (p - from).
 struct Motion {
-  Padded turn[3];  // the columns
-  Padded from, to;
+  Triple turn[3];  // the columns
+  Triple from, to;
 
-  Padded turned(const Padded& v) const { return v[0] * turn[0] + v[1] * turn[1] + v[2] * turn[2]; }
-  void move(const float* point, float* out) const { store(to + turned(padded(point) - from), out); }
+  Triple turned(const Triple& v) const { return v.x * turn[0] + v.y * turn[1] + v.z * turn[2]; }
+  void move(const float* point, float* out) const {
+    (to + turned(Triple(point) - from)).store(out);
+  }
   Motion inverse() const {
-    Motion result;
-    for (int i = 0; i < 3; ++i) {
-      result.turn[i] = Padded(turn[0][i], turn[1][i], turn[2][i], 0);
-    }
-    result.from = to;
-    result.to = from;
-    return result;
+    return {{{turn[0].x, turn[1].x, turn[2].x},
+             {turn[0].y, turn[1].y, turn[2].y},
+             {turn[0].z, turn[1].z, turn[2].z}},
+            to,
+            from};
   }
 };
 
@@ -101,14 +115,11 @@ Motion motionOf(const float* rest_root, const float* rest_rotation, const RootPo
       {1 - twice * (y * y + z * z), twice * (x * y - w * z), twice * (x * z + w * y)},
       {twice * (x * y + w * z), 1 - twice * (x * x + z * z), twice * (y * z - w * x)},
       {twice * (x * z - w * y), twice * (y * z + w * x), 1 - twice * (x * x + y * y)}};
-  Motion motion;
-  for (int i = 0; i < 3; ++i) {
-    motion.turn[i] =
-        root.frame[0] * rest[i][0] + root.frame[1] * rest[i][1] + root.frame[2] * rest[i][2];
-  }
-  motion.from = padded(rest_root);
-  motion.to = root.position;
-  return motion;
+  const auto column = [&](int i) {
+    return rest[i][0] * Triple(root.frame[0]) + rest[i][1] * Triple(root.frame[1]) +
+           rest[i][2] * Triple(root.frame[2]);
+  };
+  return {{column(0), column(1), column(2)}, Triple(rest_root), Triple(root.position)};
 }
 
 /// A 64-bit word mixed into a hash, after the finaliser of SplitMix64.
@@ -323,7 +334,7 @@ void StrandPoser::poseVectors(const RowsIn<FloatPoints>& rest_vectors, RowsOut<F
   data_->forEachPoint(
       to_strands, threads,
       [&](std::int64_t i, const Motion& motion) {
-        store(motion.turned(padded(rowOf(rest_vectors, i))), rowOf(posed, i));
+        motion.turned(Triple(rowOf(rest_vectors, i))).store(rowOf(posed, i));
       },
       [&](std::int64_t i) { posed.row(i) = rest_vectors.row(i); });
 }
@@ -343,7 +354,8 @@ void StrandPoser::poseRotations(const RowsIn<FloatRotations>& rest_rotations,
         }
         Eigen::Matrix3d turn;
         for (int column = 0; column < 3; ++column) {
-          turn.col(column) = motion.turn[column].head<3>();
+          const Triple& v = motion.turn[column];
+          turn.col(column) = Vector3(v.x, v.y, v.z);
         }
         Eigen::Quaterniond result =
             Eigen::Quaterniond(turn) * Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
