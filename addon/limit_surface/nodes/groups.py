@@ -49,10 +49,15 @@ def has_lost_a_group(group: bpy.types.NodeTree) -> bool:
     return any(n.bl_idname == "GeometryNodeGroup" and not n.node_tree for n in group.nodes)
 
 
+def name_of(group: bpy.types.NodeTree | None) -> str:
+    """Returns the name of one of our groups, whatever its version, or None for any other group."""
+    mark = group.get(ids.GROUP_MARK, "") if group is not None else ""
+    return mark.rpartition(" ")[0] if isinstance(mark, str) else ""
+
+
 def is_of(group: bpy.types.NodeTree | None, name: str) -> bool:
     """Tells whether it is one of our groups of that name, whatever its version."""
-    mark = group.get(ids.GROUP_MARK, "") if group is not None else ""
-    return isinstance(mark, str) and mark.rpartition(" ")[0] == name
+    return name_of(group) == name
 
 
 def modifiers(ob: bpy.types.Object, name: str) -> Iterator[bpy.types.NodesModifier]:

@@ -33,7 +33,7 @@ def holder_of(ob: bpy.types.Object) -> bpy.types.ID | None:
     """
     if ob.type in ("CURVES", "MESH", "POINTCLOUD"):
         return ob.data
-    table = curve_table(ob)
+    table = curve_table(ob) if ob.type == "CURVE" else None
     return table.data if table else None
 
 
@@ -67,7 +67,11 @@ def is_placed(ob: bpy.types.Object) -> bool:
 
 def modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:
     """Returns the modifier by which the object follows a surface, if it does."""
-    return next((m for name in _GROUPS for m in groups.modifiers(ob, name)), None)
+    # one pass over the modifiers: panels ask it of every object in the file
+    for modifier in ob.modifiers:
+        if modifier.type == "NODES" and groups.name_of(modifier.node_group) in _GROUPS:
+            return modifier
+    return None
 
 
 def live_modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:
@@ -113,19 +117,22 @@ def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
         ob
         for ob in bpy.data.objects
         if ob.library is None
+        and _has_tiles(ob)
+        and is_placed(ob)
         and modifier_of(ob) is None
         and live_modifier_of(ob) is None
-        and was_bound(ob)
         and surface_of(ob) == surface
     ]
 
 
 def was_bound(ob: bpy.types.Object) -> bool:
     """Tells whether the object follows a surface, or did and has lost its modifier."""
-    if modifier_of(ob):
-        return True
+    return bool(modifier_of(ob)) or (_has_tiles(ob) and is_placed(ob))
+
+
+def _has_tiles(ob: bpy.types.Object) -> bool:
     holder = holder_of(ob)
-    return holder is not None and is_placed(ob) and ids.TILE in holder.attributes
+    return holder is not None and ids.TILE in holder.attributes
 
 
 def ensure_modifier(
