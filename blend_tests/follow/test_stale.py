@@ -65,7 +65,7 @@ BREAKS = {
         "Limit Hair has lost the modifier by which it followed",
     ),
     "group within": (
-        lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.SAMPLE_GROUP]),
+        lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.SAMPLE_TILE_GROUP]),
         "A node group of Limit Hair was deleted",
     ),
     "group of tables": (
