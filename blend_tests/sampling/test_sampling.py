@@ -243,8 +243,8 @@ def contents(path: Path) -> dict[str, tuple]:
             ],
             Counter(node.bl_idname for node in group.nodes),
             Counter(
-                (link.from_node.bl_idname, link.from_socket.identifier, link.to_node.bl_idname,
-                 link.to_socket.identifier)
+                (link.from_node.bl_idname, link.from_socket.name, link.to_node.bl_idname,
+                 link.to_socket.name)
                 for link in group.links
             ),
         )
