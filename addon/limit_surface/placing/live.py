@@ -57,9 +57,14 @@ def followers_in(
     """
     found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
     seen: set[bpy.types.ID] = set()
-    if not any(groups.is_of(group, ids.FOLLOW_LIVE_GROUP) for group in bpy.data.node_groups):
+    marks = {g for g in bpy.data.node_groups if groups.is_of(g, ids.FOLLOW_LIVE_GROUP)}
+    if not marks:
         return found
     for ob in bpy.data.objects:
+        # this is asked for each object in each frame, so that the quick question comes first
+        modifiers = ob.modifiers
+        if not modifiers or not any(m.type == "NODES" and m.node_group in marks for m in modifiers):
+            continue
         if ob.type not in ("CURVES", "MESH", "POINTCLOUD") or ob.data in seen:
             continue
         surface = surface_of(ob)
