@@ -158,7 +158,11 @@ def test_a_refused_decal_leaves_the_file_as_it_was():
     assert scenes.file_contents() == contents
 
 
-@pytest.mark.parametrize("make", [decal, limit_mesh])
+def rough_mesh(ob: bpy.types.Object) -> bpy.types.Object:
+    return limit_mesh(ob, exact_normals=False)
+
+
+@pytest.mark.parametrize("make", [decal, limit_mesh, rough_mesh])
 def test_unbound_meshes_keep_positions_and_normals(make):
     ob = deforming("cross")
     ob.matrix_world.identity()

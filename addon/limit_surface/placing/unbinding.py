@@ -40,6 +40,8 @@ class _Frozen:
         for name, values in self.values.items():
             attribute = self.data.attributes[name]
             attributes.write(self.data, name, attribute.data_type, attribute.domain, values)
+        if isinstance(self.data, bpy.types.Mesh):
+            self.data.update()  # its normals, which depend on the positions
         self.data.update_tag()
 
 
