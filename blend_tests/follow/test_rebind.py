@@ -11,6 +11,8 @@ import pytest
 import scenes
 from follow_scenes import check_hair, deforming
 from limit_surface import ids
+from limit_surface.nodes import groups
+from limit_surface.nodes.live import FOLLOW_LIVE
 from limit_surface.reading import attributes
 
 
@@ -207,6 +209,20 @@ def test_new_faces_have_to_be_rebound():
     scenes.add_points(ob, follow="NODES")
 
 
+def test_hair_that_does_not_follow_is_bound_to_its_changed_surface():
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, tilt=(0.4, 0.2), follow="NODES")
+    before = scenes.strands(hair)
+    scenes.activate(hair)
+    bpy.ops.object.limit_unbind(shape="REST")
+    renumber_faces(ob.data)
+    rebind(hair)
+    np.testing.assert_allclose(scenes.strands(hair), before, atol=1e-5)
+    for frame in (1, 30):
+        bpy.context.scene.frame_set(frame)
+        check_hair(ob, hair)
+
+
 def test_undo_gives_everything_back():
     ob = deforming("grid with holes")
     hair = scenes.add_hair(ob, follow="NODES")
@@ -235,6 +251,10 @@ def refused(match: str, ob: bpy.types.Object, **properties: object) -> None:
 def test_refusals():
     ob = deforming("grid with holes")
     refused("Select a surface or what follows it", ob)
+    live = scenes.add_hair(ob, follow="NONE")
+    groups.add_modifier(live, FOLLOW_LIVE, Surface=ob)
+    refused(f"{live.name} follows live: unbind it at rest", live)
+    bpy.data.objects.remove(live)
     hair = scenes.add_hair(ob, follow="NODES")
     refused("stores no UVs", hair, method="UV")
     scenes.add_uv_map(ob, lambda p: p[:, :2])

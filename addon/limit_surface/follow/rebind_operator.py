@@ -11,7 +11,7 @@ from ..errors import RefusalError
 from ..placing.mending import mended
 from ..placing.rebinding import Rebinding
 from ..tasks.properties import SummaryProperty, draw_summary
-from .subjects import surfaces_of_selection
+from .subjects import to_rebind
 
 _NOTHING = "Select a surface or what follows it"
 
@@ -85,12 +85,15 @@ class OBJECT_OT_limit_rebind(SummaryProperty, bpy.types.Operator):
         draw_summary(layout, self.summary)
 
     def _rebind(self, context: bpy.types.Context) -> set[str]:
-        surfaces = surfaces_of_selection(context)
-        if not surfaces:
+        by_surface = to_rebind(context)
+        if not by_surface:
             raise RefusalError(_NOTHING)
         depsgraph = context.evaluated_depsgraph_get()
         limit = self.distance or math.inf
-        rebindings = [Rebinding(on, depsgraph, self.method, limit) for on in surfaces]
+        rebindings = [
+            Rebinding(on, depsgraph, things, self.method, limit)
+            for on, things in by_surface.items()
+        ]
         done = [rebinding.write(context) for rebinding in rebindings]
         for rebound in done:
             if rebound.warning:

@@ -12,7 +12,6 @@ from ..placing.followers import (
     modifier_of,
     strays_of,
     surface_of,
-    was_bound,
 )
 from ..placing.relocation import TYPES
 
@@ -66,15 +65,21 @@ def to_bind(
     return found
 
 
-def surfaces_of_selection(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Returns the surfaces among the selected objects that something follows, and those of the
-    selected things that were bound.
+def to_rebind(
+    context: bpy.types.Context,
+) -> dict[bpy.types.Object, list[bpy.types.Object]]:
+    """Returns the surfaces among the selected objects that something follows, and those on which
+    the selected things stand, with these things. Raises RefusalError for what follows live.
     """
-    found: dict[bpy.types.Object, None] = {}
+    found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
     for ob in selected(context):
-        surface = surface_of(ob) if was_bound(ob) else None
-        if surface is None and ob.type == "MESH" and (followers_of(ob) or strays_of(ob)):
-            surface = ob
+        if live_modifier_of(ob):
+            raise RefusalError(
+                f"{ob.name} follows live: unbind it at rest, rebind it, and let it follow again"
+            )
+        surface = surface_of(ob) if modifier_of(ob) or is_placed(ob) else None
         if surface is not None:
-            found[surface] = None
-    return list(found)
+            found.setdefault(surface, []).append(ob)
+        elif ob.type == "MESH" and (followers_of(ob) or strays_of(ob)):
+            found.setdefault(ob, [])
+    return found

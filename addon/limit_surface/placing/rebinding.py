@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -69,27 +70,28 @@ class Rebound:
 
 
 class Rebinding:
-    """Binds everything that follows a surface anew. Raises RefusalError where that is impossible;
-    nothing has changed then.
+    """Binds everything that follows a surface anew, and other things that stand on it. Raises
+    RefusalError where that is impossible; nothing has changed then.
     """
 
     def __init__(
         self,
         surface: bpy.types.Object,
         depsgraph: bpy.types.Depsgraph,
+        things: Sequence[bpy.types.Object],
         method: Method,
         max_distance: float = math.inf,
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
-        bound = [*followers_of(surface), *strays_of(surface)]
+        bound = list(dict.fromkeys([*followers_of(surface), *strays_of(surface), *things]))
         # For control points that were added there are no places that could be kept.
         self._curves = [ob for ob in bound if ob.type == "CURVE" and curve_points.has_others(ob)]
-        things = [ob for ob in bound if ob not in self._curves]
+        kept = [ob for ob in bound if ob not in self._curves]
         for ob in self._curves:
             curve_points.check(ob, surface)
-        for ob in things:
+        for ob in kept:
             following.check_thing(ob, surface)
-        blocks = {holder_of(ob): ob for ob in reversed(things)}
+        blocks = {holder_of(ob): ob for ob in reversed(kept)}
         with cage.opened(surface, depsgraph) as (found, mesh):
             posed = PosedSurface(found)
             check_some_left(posed.in_world, surface.name)
@@ -106,9 +108,9 @@ class Rebinding:
         self._surface, self._names = surface.name, [ob.name for ob in bound]
         self._reason = find.reason
         request = following.Request(
-            surface, depsgraph, things, relocated=self._relocations, without=self._curves
+            surface, depsgraph, kept, relocated=self._relocations, without=self._curves
         )
-        self._bindings = request.compute() if things else None
+        self._bindings = request.compute() if kept else None
 
     def write(self, context: bpy.types.Context) -> Rebound:
         """Changes the file."""
