@@ -143,7 +143,7 @@ def test_depth_bounds_the_error_at_irregular_vertices(depth):
     face, uv = np.asarray(at.face), np.asarray(at.uv)
     error = np.abs(seen(probes(ob, face, uv), "Position") - surface.evaluate(face, uv).position)
     assert error.max() < 16 * 2.0**-depth + follow_truth.POSITION_BOUND * 8
-    # one face of a tile away nothing is lost
+    # beyond that distance nothing is lost
     inside = np.clip(uv, 2.0**-depth, 1 - 2.0**-depth).astype(np.float32)
     exact = surface.evaluate(face, inside.astype(np.float64)).position
     assert np.abs(seen(probes(ob, face, inside), "Position") - exact).max() < 2e-5
