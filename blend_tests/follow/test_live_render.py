@@ -16,7 +16,7 @@ WORLD = 4.0  # the width of the picture in the scene
 
 def bar() -> tuple[bpy.types.Object, bpy.types.Object]:
     """Adds a sheet that moves by 1 in each frame along x, by a shape key, and live hair on it: one
-    thick strand in its middle.
+    thick strand, which the camera looks at.
     """
     ob = scenes.flat_grid(4)
     positions = attributes.read(ob.data, ids.POSITION) - [2, 2, 0]
@@ -25,16 +25,12 @@ def bar() -> tuple[bpy.types.Object, bpy.types.Object]:
     key = ob.shape_key_add(name="Moved", from_mix=False)
     key.slider_min, key.slider_max = -10, 10
     key.data.foreach_set("co", (positions + [1, 0, 0]).astype(np.float32).ravel())
-    for frame in (-4, 6):
-        key.value = frame - 1
-        key.keyframe_insert("value", frame=frame)
-    for layer in ob.data.shape_keys.animation_data.action.fcurves:
-        for point in layer.keyframe_points:
-            point.interpolation = "LINEAR"
+    key.driver_add("value").driver.expression = "frame - 1"
+    bpy.context.scene.frame_set(1)
     scenes.add_subsurf(ob)
-    hair = scenes.add_hair(ob, per_side=1, length=0.5, points=4, radius=0.12, follow="NONE")
-    keep = np.linalg.norm(scenes.strands(hair)[:, 0, :2] - [0.5, 0.5], axis=1).argmin()
-    hair.data.remove_curves(indices=[i for i in range(len(hair.data.curves)) if i != keep])
+    shape = {"length": 0.5, "points": 4, "radius": 0.12}
+    hair = scenes.add_hair(ob, distribution="UNIFORM", count=1, follow="NONE", **shape)
+    bpy.context.scene.camera.location.x = float(scenes.strands(hair)[0, 0, 0]) + 0.5
     follow(hair)
     ob.hide_render = True
     return ob, hair
@@ -70,7 +66,8 @@ def coverage(path) -> np.ndarray:
 
 
 def middle(alpha: np.ndarray) -> float:
-    x = (np.arange(SIDE) + 0.5) / SIDE * WORLD + 0.5 - WORLD / 2
+    x = (np.arange(SIDE) + 0.5) / SIDE * WORLD - WORLD / 2
+    x += bpy.context.scene.camera.location.x
     return float(np.average(x, weights=alpha))
 
 

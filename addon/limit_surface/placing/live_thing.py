@@ -271,7 +271,11 @@ def _tag(data: bpy.types.ID) -> None:
         if data.library or data.override_library:
             data.transform(Matrix())
         data.update()
-    elif hasattr(data, "set_types") and len(data.curves):
+    elif not isinstance(data, bpy.types.Curves) or not len(data.curves):
+        pass
+    elif not hasattr(data, "set_types"):  # before Blender 4.3
+        data.add_curves([])
+    else:
         stored = data.attributes.get(ids.CURVE_TYPE)
         data.set_types(type=_CURVE_TYPES[stored.data[0].value if stored else 0], indices=[0])
     data.update_tag()
