@@ -96,6 +96,11 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
         self._take_over(by_surface)
         return {"FINISHED"}
 
+    @property
+    def _proxy(self) -> bool | None:
+        """None, which keeps what there is, unless the property has been set."""
+        return self.use_proxy if self.properties.is_property_set("use_proxy") else None
+
     def _by_nodes(
         self,
         context: bpy.types.Context,
@@ -114,7 +119,7 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
                 curve_points.check(ob, on)
             relocated = newcomers.relocations(things, on, depsgraph)
             request = following.Request(
-                on, depsgraph, things, self.use_proxy, relocated, without=curves
+                on, depsgraph, things, self._proxy, relocated, without=curves
             )
             requests.append((request, things, on, curves))
         made = [request.compute() for request, things, _on, _curves in requests if things]
@@ -122,7 +127,7 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
             live_binding.end(ob, depsgraph)
         outcomes = [bindings.write() for bindings in made]
         for _request, _things, on, curves in requests:
-            outcomes += curve_points.bind(curves, on, context, self.use_proxy)
+            outcomes += curve_points.bind(curves, on, context, self._proxy)
         return [str(outcome) for outcome in outcomes]
 
     def _live(

@@ -13,9 +13,10 @@ from .. import ids
 from .groups import Kind
 from .tree import Socket, Tree, Value
 
-# The product of two remainders is exact in single precision, in which nodes calculate. Sums of its
-# remainders are below 2^31 for a million edges.
-_PRIME, _SMALL_PRIME = 4093, 2039
+# The product of two remainders is exact in single precision, in which nodes calculate. Sums of the
+# products' remainders are below 2^31 for a million edges. Two pairs of divisors tell all numbers of
+# vertices below 4093 * 4079 from each other.
+_DIVISORS = ((4093, 1021), (4079, 1019))
 # Whole numbers up to this are exact as well.
 _CREASE_STEPS = 1 << 23
 
@@ -24,8 +25,12 @@ def topology_sum(edges: np.ndarray) -> int:
     """Returns a checksum of edges (e, 2), given by their vertices: the one that the group
     calculates. It is different if the vertices' order differs.
     """
-    first, second = ((edges.astype(np.int64) + 1) % _PRIME).T
-    return int(np.sum(first * second % _SMALL_PRIME).astype(np.int32))
+    first, second = (edges.astype(np.int64) + 1).T
+    products = (
+        (first % divisor) * (second % divisor) % small_divisor
+        for divisor, small_divisor in _DIVISORS
+    )
+    return int(np.sum(sum(products)).astype(np.int32))
 
 
 def _build() -> bpy.types.NodeTree:
@@ -53,10 +58,13 @@ def _build() -> bpy.types.NodeTree:
 
 def _summed(tree: Tree, mesh: Value, domain: str, a: Value, b: Value) -> Value:
     """Returns the sum, over all elements of the mesh, of a product of two whole numbers."""
-    first, second = (tree.math("MODULO", value, float(_PRIME)) for value in (a, b))
+    products = []
+    for divisor, small_divisor in _DIVISORS:
+        first, second = (tree.math("MODULO", value, float(divisor)) for value in (a, b))
+        product = tree.math("MULTIPLY", first, second)
+        products.append(tree.math("MODULO", product, float(small_divisor)))
     summed = tree.node("GeometryNodeAccumulateField", data_type="INT", domain=domain)
-    product = tree.math("MODULO", tree.math("MULTIPLY", first, second), float(_SMALL_PRIME))
-    tree.set(next(s for s in summed.inputs if s.enabled), product)
+    tree.set(next(s for s in summed.inputs if s.enabled), tree.math("ADD", *products))
     total = next(s for s in summed.outputs if s.enabled and s.name == "Total")
     return tree.sample(mesh, total, 0, "INT", domain)
 

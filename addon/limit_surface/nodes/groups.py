@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import bpy
 
 from .. import ids
+from ..errors import RefusalError
 
 
 class Kind(NamedTuple):
@@ -105,9 +106,23 @@ def set_input(modifier: bpy.types.NodesModifier, name: str, value: Any) -> None:
 
 
 def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
+    """Returns the value of an input, or None if the group has no input of that name."""
     key = _identifier(modifier, name)
+    if not key:
+        return None
     inputs = _inputs(modifier)
     return modifier.get(key) if inputs is None else getattr(inputs, key).value
+
+
+def check_inputs(modifier: bpy.types.NodesModifier, *names: str) -> None:
+    """Raises RefusalError if somebody has removed or renamed an input of the group."""
+    for name in names:
+        if not _identifier(modifier, name):
+            raise RefusalError(
+                f"The node group {modifier.node_group.name} has been changed: it has no input "
+                f"{name} any more. Give the input this name again, or delete the group and run "
+                "Follow Limit Surface"
+            )
 
 
 def object_inputs(modifier: bpy.types.NodesModifier) -> Iterator[bpy.types.Object | None]:
@@ -124,8 +139,7 @@ def _inputs(modifier: bpy.types.NodesModifier) -> Any:
 
 
 def _identifier(modifier: bpy.types.NodesModifier, name: str) -> str:
-    return next(
-        item.identifier
-        for item in modifier.node_group.interface.items_tree
-        if item.item_type == "SOCKET" and item.in_out == "INPUT" and item.name == name
-    )
+    for item in modifier.node_group.interface.items_tree:
+        if item.item_type == "SOCKET" and item.in_out == "INPUT" and item.name == name:
+            return item.identifier
+    return ""

@@ -12,6 +12,8 @@ from .tree import Socket, Tree, Value
 # face would be too short to have a direction in single precision.
 _MAGNIFIED = 4096.0
 
+_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
 OUTPUTS = (
     Socket("Position", "Vector", "Point on the limit surface"),
     Socket("Normal", "Vector", "Unit vector that points outward"),
@@ -39,7 +41,7 @@ def _build() -> bpy.types.NodeTree:
     position, du, dv = _in_tile(tree, table, first)
 
     # from the surface's space to that of the object whose modifier this is
-    matrix = tree.object_info(tree.inputs["Surface"], "RELATIVE")["Transform"]
+    matrix = _relation(tree)
     du, dv = (tree.mapped_direction(derivative, matrix) for derivative in (du, dv))
     # Next to a vertex with two faces both derivatives become so short that their product would have
     # no direction in single precision.
@@ -101,12 +103,35 @@ def _in_tile(tree: Tree, table: Value, first: Value) -> tuple[Value, Value, Valu
     return position, by_u, by_v
 
 
+def _relation(tree: Tree) -> Value:
+    """Returns the matrix from the surface's space to that of the object whose modifier this is.
+    Where both have the same transform it is exactly the identity: far from the world's origin,
+    Blender's own relative matrix has lost digits.
+    """
+    surface = tree.inputs["Surface"]
+    relative = tree.object_info(surface, "RELATIVE")["Transform"]
+    own = tree.object_info(tree.get("GeometryNodeSelfObject"))["Transform"]
+    theirs = tree.object_info(surface)["Transform"]
+    same: Value = True
+    for axis in _AXES:
+        same = tree.both(
+            same, _are_equal(tree, *(tree.mapped_direction(axis, m) for m in (own, theirs)))
+        )
+    origins = (tree.mapped_point((0.0, 0.0, 0.0), m) for m in (own, theirs))
+    same = tree.both(same, _are_equal(tree, *origins))
+    identity = tree.matrix(*_AXES, (0.0, 0.0, 0.0))
+    return tree.switch(same, relative, identity, "MATRIX")
+
+
+def _are_equal(tree: Tree, a: Value, b: Value) -> Value:
+    """Tells whether two vectors have the same components."""
+    difference = tree.node("ShaderNodeVectorMath", a, b, operation="DISTANCE").outputs["Value"]
+    return tree.negated(tree.math("GREATER_THAN", difference, 0.0))
+
+
 def _handedness(tree: Tree, matrix: Value) -> Value:
     """Returns 1, or -1 for a matrix that mirrors."""
-    x, y, z = (
-        tree.mapped_direction(axis, matrix)
-        for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    )
+    x, y, z = (tree.mapped_direction(axis, matrix) for axis in _AXES)
     volume = tree.node(
         "ShaderNodeVectorMath", tree.vector("CROSS_PRODUCT", x, y), z, operation="DOT_PRODUCT"
     ).outputs["Value"]

@@ -124,9 +124,11 @@ def _capture_obstacle(surface: bpy.types.Object) -> str:
     if not (capture.show_viewport and capture.show_render):
         return "is disabled"
     subsurf = rules.find_subsurf(surface)
+    here = surface.modifiers.find(capture.name)
     if subsurf is None:
-        return ""
-    here, there = (surface.modifiers.find(m.name) for m in (capture, subsurf))
+        later = [m for m in surface.modifiers[here + 1 :] if m.show_viewport or m.show_render]
+        return "does not stand at the end, as it has to without a subdivision" if later else ""
+    there = surface.modifiers.find(subsurf.name)
     if here > there or any(m.show_viewport for m in surface.modifiers[here + 1 : there]):
         return "does not stand directly before the subdivision"
     return ""

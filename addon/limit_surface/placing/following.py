@@ -19,6 +19,7 @@ from .. import ids
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.capture import CAPTURE, topology_sum
+from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, rules
 from ..tasks.object_keys import ObjectKey
 from . import proxy, tables
@@ -30,6 +31,7 @@ from .followers import (
     holders,
     is_placed,
     live_followers_of,
+    modifier_of,
     surface_of,
 )
 from .places import Places
@@ -240,14 +242,29 @@ def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:
         raise RefusalError(f"{surface.name} is not in the scene {scene.name}")
     if surface.mode == "EDIT":
         raise RefusalError(f"{surface.name} is in Edit Mode: leave it first")
+    shown, rendered = rules.shown_subsurf(surface), rules.rendered_subsurf(surface)
+    if shown and rendered and shown != rendered:
+        raise RefusalError(
+            f"{surface.name} is subdivided first by {shown.name} in the viewport, but by "
+            f"{rendered.name} in renders: enable each of them in both, or in neither"
+        )
 
 
 def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     check_editable(ob)
+    modifier = modifier_of(ob)
+    if modifier is not None:
+        groups.check_inputs(modifier, SURFACE, TILES)
     # a mesh that stores no locations may have any mesh as its parent
     theirs = surface_of(ob) if is_placed(ob) or ob.type == "CURVES" else None
     if theirs not in (None, surface):
         raise RefusalError(f"{ob.name} belongs to {theirs.name}, not to {surface.name}")
+    for other in bpy.data.objects if ob.data.users > 1 else ():
+        if other.data == ob.data and surface_of(other) not in (None, surface):
+            raise RefusalError(
+                f"{ob.name} shares its data with {other.name}, which stands on another surface: "
+                "make it a single-user copy first"
+            )
     carrier: bpy.types.Object | None = surface
     while carrier:
         if carrier == ob:

@@ -12,9 +12,10 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..errors import RefusalError
 from ..reading import cage
 from ..tasks.refused_faces import check_some_left
-from .posed_surface import PosedSurface
+from .posed_surface import PosedSurface, at_closest
 from .relocation import Elements, Relocation
 from .rotations import quaternions
 
@@ -46,10 +47,15 @@ def bound_at_closest(
     elements: Elements, posed: PosedSurface, rows: np.ndarray, max_distance: float = math.inf
 ) -> Relocation:
     """Binds some elements where they are. Those beyond the distance (world units) are lost."""
-    hits = posed.in_world.closest(elements.first_points()[rows], max_distance)
+    points = elements.first_points()[rows]
+    lost_row = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(lost_row):
+        raise RefusalError(f"Point {rows[lost_row[0]]} has a coordinate that is not a number")
+    hits = posed.in_world.closest(points, max_distance)
     found = hits.face >= 0
     relocation = Relocation(elements, lost=rows[~found], distances=np.zeros(int(found.sum())))
-    put_places(relocation, posed, rows[found], hits.face[found], hits.uv[found])
+    at = at_closest(posed, hits)
+    put_places(relocation, posed, rows[found], at.face[found], at.uv[found])
     return relocation
 
 

@@ -123,7 +123,14 @@ def of_surface(surface: bpy.types.Object) -> bpy.types.Object | None:
 
 def all_of_surface(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns all of the file's own tables of tiles of a surface."""
-    return [ob for ob in bpy.data.objects if ob.library is None and surface_of(ob) == surface]
+    return [ob for ob in bpy.data.objects if _is_own(ob) and surface_of(ob) == surface]
+
+
+def _is_own(ob: bpy.types.Object) -> bool:
+    """Tells whether the object and its data belong to this file. The data of library overrides do
+    not.
+    """
+    return ob.library is None and ob.data is not None and ob.data.library is None
 
 
 def surface_of(table: bpy.types.Object) -> bpy.types.Object | None:
@@ -137,6 +144,8 @@ def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bp
     table = of_surface(surface)
     points = PointsTable(tiles, bound.vertices)
     held = points_of(table) if table else _unread_points(surface)
+    if held is not None and not _is_own(held):
+        held = None
     holder = held or new_object(ids.POINTS_TABLE, surface)
     points.fill(holder.data)
     table = table or new_object(ids.TILES_TABLE, surface)

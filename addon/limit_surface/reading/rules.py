@@ -56,9 +56,19 @@ class Rules:
 
 def find_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
     """Returns the modifier whose rules the limit surface follows: the first one that is enabled in
-    the viewport.
+    the viewport, or where there is none, the first that is enabled in renders.
     """
+    return shown_subsurf(ob) or rendered_subsurf(ob)
+
+
+def shown_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
+    """Returns the first Subdivision Surface modifier that is enabled in the viewport."""
     return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_viewport), None)
+
+
+def rendered_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
+    """Returns the first Subdivision Surface modifier that is enabled in renders."""
+    return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_render), None)
 
 
 def shown_uv_interpolation(ob: bpy.types.Object, scene: bpy.types.Scene) -> Interpolation:
