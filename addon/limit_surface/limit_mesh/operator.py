@@ -224,7 +224,7 @@ class OBJECT_OT_limit_mesh(
             self.report({"WARNING"}, left_out(len(refused), faces, reasons(refused)))
         notes = [f"{self.summary} of {surface.name}", *made.cage.notes, *result.notes]
         if result.bindings:
-            notes.append("its vertices follow the surface by nodes")
+            notes.append("its vertices follow the surface by Geometry Nodes")
         self.report({"INFO"}, "; ".join(notes))
 
 

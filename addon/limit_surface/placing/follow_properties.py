@@ -55,8 +55,15 @@ class FollowOrLiveProperties:
 def follows(follow: str, surface: bpy.types.Object) -> bool:
     """Tells whether things on a surface are to follow it by nodes, by the property's value."""
     if follow == "AUTO":
-        return surface.is_editable and can_deform(surface)
+        return can_deform(surface) and not why_not_automatic(surface)
     return follow == "NODES"
+
+
+def why_not_automatic(surface: bpy.types.Object) -> str:
+    """Returns why things do not follow by themselves although the surface can deform, or None."""
+    if not surface.is_editable:
+        return f"{surface.name} is linked from another file"
+    return rules.why_ambiguous(surface)
 
 
 def can_deform(surface: bpy.types.Object) -> bool:

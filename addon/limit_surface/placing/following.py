@@ -242,12 +242,9 @@ def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:
         raise RefusalError(f"{surface.name} is not in the scene {scene.name}")
     if surface.mode == "EDIT":
         raise RefusalError(f"{surface.name} is in Edit Mode: leave it first")
-    shown, rendered = rules.shown_subsurf(surface), rules.rendered_subsurf(surface)
-    if shown and rendered and shown != rendered:
-        raise RefusalError(
-            f"{surface.name} is subdivided first by {shown.name} in the viewport, but by "
-            f"{rendered.name} in renders: enable each of them in both, or in neither"
-        )
+    ambiguous = rules.why_ambiguous(surface)
+    if ambiguous:
+        raise RefusalError(ambiguous)
 
 
 def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:

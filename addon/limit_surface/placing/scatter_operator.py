@@ -18,7 +18,7 @@ from ..tasks.request_size import RequestSize
 from ..tasks.watched_operator import WatchedOperator
 from . import distribution_properties, following, live_binding, region, roots
 from .distribution import TOO_LOW, Distribution, Scattered
-from .follow_properties import FollowOrLiveProperties
+from .follow_properties import FollowOrLiveProperties, can_deform, why_not_automatic
 
 # the parts of the progress at which the locations and the things are made
 SCATTERED, MADE = 0.5, 0.9
@@ -119,6 +119,7 @@ class ScatterOperator(
 
     bl_options = {"REGISTER", "UNDO"}
     noun = ""
+    _why_not_following = ""
 
     @property
     def too_large(self) -> str:
@@ -144,7 +145,7 @@ class ScatterOperator(
         how = ""
         if made.bindings:
             made.bindings.write(ob)
-            how = "by nodes"
+            how = "by Geometry Nodes"
         elif self.follow == "LIVE":
             depsgraph = context.evaluated_depsgraph_get()
             live_binding.LiveRequest(surface, depsgraph, [ob]).write(context)
@@ -230,6 +231,8 @@ class ScatterOperator(
         if is_live:
             following.check_surface(ob, depsgraph.scene)
         binding = following.request_for(self.follow, ob, depsgraph)
+        stays = self.follow == "AUTO" and can_deform(ob)
+        self._why_not_following = why_not_automatic(ob) if stays else ""
         return Order(ObjectKey.of(ob), covered, distribution, shown, size, binding, is_live)
 
     def _report(self, ground: Ground, how: str) -> None:
@@ -243,7 +246,9 @@ class ScatterOperator(
             self.report({"WARNING"}, warning)
         notes = [f"{self.summary} of {self.surface}", *found.notes]
         if how:
-            notes.append(f"they follow it {how}")
+            notes.append(f"they follow the surface {how}")
+        elif self._why_not_following:
+            notes.append(f"they do not follow the surface: {self._why_not_following}")
         if found.without_uv_map:
             notes.append(f"UVs were not stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))

@@ -76,7 +76,7 @@ class Made:
         if self.bindings:
             self.bindings.write(made)
         text = f"{len(self.placed.sizes):,} polygons on {surface.name}"
-        return f"{text}; they follow it by nodes" if self.bindings else text
+        return f"{text}; they follow the surface by Geometry Nodes" if self.bindings else text
 
 
 def order(

@@ -71,6 +71,17 @@ def rendered_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
     return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_render), None)
 
 
+def why_ambiguous(ob: bpy.types.Object) -> str:
+    """Returns why the viewport and renders have different limit surfaces, or None."""
+    shown, rendered = shown_subsurf(ob), rendered_subsurf(ob)
+    if not (shown and rendered) or shown == rendered:
+        return ""
+    return (
+        f"{ob.name} is subdivided first by {shown.name} in the viewport, but by {rendered.name} in "
+        "renders: enable each of them in both, or in neither"
+    )
+
+
 def shown_uv_interpolation(ob: bpy.types.Object, scene: bpy.types.Scene) -> Interpolation:
     """Returns the UV interpolation of the mesh that the viewport shows: UV maps are smooth only
     where it is subdivided.
