@@ -293,3 +293,40 @@ def test_help(capfd):
     out = capfd.readouterr().out
     assert "exit codes:" in out
     assert all(f"--{name}" in out for name in ("frames", "step", "objects", "output", "format"))
+
+
+def test_a_frame_in_which_hair_is_at_rest(waves, tmp_path, capfd):
+    """The faces change in frame 2, where a modifier is switched on."""
+    scenes.activate(bpy.data.objects["Limit Hair"])
+    bpy.ops.object.limit_follow()
+    triangulate = waves.modifiers.new("Triangulate", "TRIANGULATE")
+    waves.modifiers.move(waves.modifiers.find(triangulate.name), 0)
+    for frame, is_on in ((1, False), (2, True), (3, False)):
+        triangulate.show_viewport = is_on
+        triangulate.keyframe_insert("show_viewport", frame=frame)
+    assert bake(tmp_path, "Limit Hair", options=("--format", "npz")) == 1
+    assert "Limit Hair is at rest in frame 2" in capfd.readouterr().out
+    assert {"Limit Hair.0001.npz", "Limit Hair.0003.npz", "bake.json"} == contents(tmp_path).keys()
+
+
+def test_a_follower_that_is_switched_off(waves, tmp_path, capfd):
+    hair = bpy.data.objects["Limit Hair"]
+    scenes.activate(hair)
+    bpy.ops.object.limit_follow()
+    hair.modifiers[0].show_render = False
+    assert bake(tmp_path, "Limit Hair") == 3
+    assert "its modifier Limit Hair is disabled" in capfd.readouterr().err
+
+
+def test_an_attached_object_without_its_tables(waves, tmp_path, capfd):
+    button = scenes.add_mesh("Button", [(0.5, 0.5, 0.1), (1, 0.5, 0.1), (0, 1, 0.2)], [(0, 1, 2)])
+    bpy.ops.object.select_all(action="DESELECT")
+    button.select_set(True)
+    scenes.activate(waves)
+    assert bpy.ops.object.limit_attach() == {"FINISHED"}
+    assert bake(tmp_path / "whole", "Button") == 0
+    for ob in list(bpy.data.objects):
+        if ob.name.startswith(ids.TILES_TABLE):
+            bpy.data.objects.remove(ob)
+    assert bake(tmp_path / "broken", "Button") == 3
+    assert "were deleted" in capfd.readouterr().err

@@ -83,7 +83,7 @@ class Bake:
                 self._scene.frame_set(frame)
                 is_shown = True
             try:
-                bindings.check_live(subject.ob, self._scene)
+                bindings.check_frame(subject.ob, self._scene)
                 with self._files.written(path) as partial:
                     self._arguments.format.write(partial, subject)
             except _TROUBLE as error:
