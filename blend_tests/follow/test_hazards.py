@@ -147,3 +147,12 @@ def test_points_without_coordinates_are_refused():
     scenes.activate(ob)
     with pytest.raises(RuntimeError, match="Point 1 has a coordinate that is not a number"):
         bpy.ops.object.limit_follow()
+
+
+def test_a_mesh_that_an_armature_deforms_as_well_is_told(capfd):
+    ob = deforming_cross()
+    points = scenes.add_mesh("Points", [(0, 0, 2)], [])
+    points.modifiers.new("Bones", "ARMATURE")
+    scenes.activate(ob)
+    bpy.ops.object.limit_follow()
+    assert "its modifier Bones deforms it as well" in capfd.readouterr().out

@@ -50,11 +50,11 @@ def disable_capture(ob: bpy.types.Object) -> None:
 BREAKS = {
     "tiles": (
         lambda _ob, _hair: bpy.data.objects.remove(table(ids.TILES_TABLE)),
-        "The tables that Limit Hair reads were deleted",
+        "The hidden tables that Limit Hair reads were deleted",
     ),
     "points": (
         lambda _ob, _hair: bpy.data.objects.remove(table(ids.POINTS_TABLE)),
-        "The tables that Limit Hair reads were deleted",
+        "The hidden tables that Limit Hair reads were deleted",
     ),
     "modifier": (
         lambda _ob, hair: hair.modifiers.clear(),
@@ -66,15 +66,15 @@ BREAKS = {
     ),
     "group within": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.SAMPLE_TILE_GROUP]),
-        "A node group of Limit Hair was deleted",
+        "Limit Hair has lost a node group",
     ),
     "group of tables": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.TILES_GROUP]),
-        "A node group of Limit Tiles of Holes was deleted",
+        "Limit Tiles of Holes has lost a node group",
     ),
     "group of the surface": (
         lambda _ob, _hair: bpy.data.node_groups.remove(bpy.data.node_groups[ids.CAPTURE_GROUP]),
-        "A node group of Holes was deleted",
+        "Holes has lost a node group",
     ),
     "capture": (
         lambda ob, _hair: remove_capture(ob),
@@ -168,7 +168,7 @@ def test_stale_bindings_are_seen_when_a_file_is_loaded(tmp_path, capfd):
     bpy.ops.wm.open_mainfile(filepath=path)
     lines = capfd.readouterr().out.splitlines()
     assert [line for line in lines if line.startswith("Limit Surface:")] == [
-        "Limit Surface: The tables that Limit Hair reads were deleted",
+        "Limit Surface: The hidden tables that Limit Hair reads were deleted",
         "Limit Surface: The creases or rules of Holes have changed since its tables were made",
     ]
 

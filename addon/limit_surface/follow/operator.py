@@ -145,6 +145,12 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
             for ob in things:
                 if ob.type == "CURVES" and ob.data.surface is None:
                     ob.data.surface = surface
+                for name in newcomers.other_deformers(ob):
+                    self.report(
+                        {"WARNING"},
+                        f"{ob.name}: its modifier {name} deforms it as well. Disable that modifier "
+                        "if it moves the object with the same surface",
+                    )
                 for name in newcomers.disable_deformation_by_blender(ob):
                     self.report(
                         {"WARNING"},

@@ -95,7 +95,9 @@ def carried(tree: Tree, geometry: Value, domain: str, roots: Roots) -> Carried:
         Turn=("ROTATION", tree.switch(follows, (0.0, 0.0, 0.0), turn, "ROTATION")),
     )
     fits = on_surface["Fits"]
-    tree.warn(tree.negated(fits), "The surface's control mesh has changed: bind again")
+    tree.warn(
+        tree.negated(fits), "The surface's control mesh has changed: run Rebind to Limit Surface"
+    )
     return Carried(captured[0], roots.rest, captured["Place"], captured["Turn"], fits)
 
 

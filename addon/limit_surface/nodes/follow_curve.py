@@ -29,7 +29,10 @@ def _build() -> bpy.types.NodeTree:
         tree.get("GeometryNodeAttributeDomainSize", geometry, component="CURVE"),
         tree.get("GeometryNodeAttributeDomainSize", table, component="MESH"),
     )
-    tree.warn(tree.negated(is_same), "The number of control points has changed: bind again")
+    tree.warn(
+        tree.negated(is_same),
+        "The number of control points has changed: run Rebind to Limit Surface",
+    )
     on = on._replace(fits=tree.both(on.fits, is_same))
     return finished(tree, on, with_handles(tree, on))
 

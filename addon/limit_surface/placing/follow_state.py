@@ -69,14 +69,14 @@ class State:
     def _broken(self) -> Iterator[Trouble]:
         for ob in (self.surface, *self.followers, *_tables_of(self.followers)):
             if mending.is_broken(ob):
-                yield Trouble(f"A node group of {ob.name} was deleted", ids.FOLLOW)
+                yield Trouble(f"{ob.name} has lost a node group", ids.FOLLOW)
         for ob in self.strays:
             yield Trouble(f"{ob.name} has lost the modifier by which it followed", ids.FOLLOW)
         for ob in self.followers:
             table = groups.get_input(modifier_of(ob), TILES)
             of = tables.surface_of(table) if table else None
             if table is None or tables.points_of(table) is None:
-                yield Trouble(f"The tables that {ob.name} reads were deleted", ids.FOLLOW)
+                yield Trouble(f"The hidden tables that {ob.name} reads were deleted", ids.FOLLOW)
             elif of is not None and of != self.surface:
                 yield Trouble(f"{ob.name} reads the tables of {of.name}", ids.FOLLOW)
         obstacle = _capture_obstacle(self.surface)

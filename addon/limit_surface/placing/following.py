@@ -51,8 +51,17 @@ class Outcome:
     resting: int  # the number of those without a place on the surface, which stay where they are
 
     def __str__(self) -> str:
-        text = f"{self.followers:,} places follow {self.surface} by nodes"
-        return f"{text}, {self.resting:,} stay at rest" if self.resting else text
+        if not self.followers and not self.resting:
+            return f"What follows {self.surface} was bound again"
+        text = f"{counted(self.followers)} {self.surface} by Geometry Nodes"
+        return f"{text}; left at rest: {self.resting:,}" if self.resting else text
+
+
+def counted(followers: int) -> str:
+    """Returns the beginning of a sentence about so many strands and points."""
+    if followers == 1:
+        return "1 strand or point follows"
+    return f"{followers:,} strands and points follow"
 
 
 class Request:

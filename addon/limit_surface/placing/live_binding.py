@@ -24,7 +24,7 @@ class LiveOutcome:
     followers: int  # the number of strands and points
 
     def __str__(self) -> str:
-        return f"{self.followers:,} places follow {self.surface} live"
+        return f"{following.counted(self.followers)} {self.surface} live"
 
 
 class LiveRequest:

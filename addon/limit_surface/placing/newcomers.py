@@ -19,6 +19,7 @@ from .posed_surface import PosedSurface, at_closest
 from .relocation import Elements, Relocation
 from .rotations import quaternions
 
+_DEFORMERS = {"ARMATURE", "CURVE", "HOOK", "LATTICE", "MESH_DEFORM", "SURFACE_DEFORM"}
 _DEFORM_NODE = "GeometryNodeDeformCurvesOnSurface"
 
 
@@ -87,6 +88,17 @@ def disable_deformation_by_blender(ob: bpy.types.Object) -> list[str]:
             modifier.show_viewport = modifier.show_render = False
             names.append(modifier.name)
     return names
+
+
+def other_deformers(ob: bpy.types.Object) -> list[str]:
+    """Returns the names of a mesh's enabled modifiers that may move it together with the surface,
+    so that its vertices would be moved twice.
+    """
+    return [
+        modifier.name
+        for modifier in ob.modifiers
+        if modifier.type in _DEFORMERS and (modifier.show_viewport or modifier.show_render)
+    ]
 
 
 def _deforms(group: bpy.types.NodeTree | None) -> bool:
