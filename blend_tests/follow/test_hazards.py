@@ -156,3 +156,23 @@ def test_a_mesh_that_an_armature_deforms_as_well_is_told(capfd):
     scenes.activate(ob)
     bpy.ops.object.limit_follow()
     assert "its modifier Bones deforms it as well" in capfd.readouterr().out
+
+
+def test_one_refused_thing_leaves_all_others_as_they_were():
+    ob = deforming_cross()
+    hair = scenes.add_hair(ob, follow="NONE")
+    data = bpy.data.curves.new("Flat", "CURVE")
+    data.dimensions = "3D"
+    data.splines.new("POLY").points.add(3)
+    flat = bpy.data.objects.new("Flat", data)
+    bpy.context.collection.objects.link(flat)
+    flat.scale.z = 0
+    for thing in (hair, flat, ob):
+        thing.select_set(True)
+    scenes.activate(ob)
+    before = scenes.file_contents()
+    with pytest.raises(RuntimeError, match="scale of 0"):
+        bpy.ops.object.limit_follow()
+    assert scenes.file_contents() == before
+    assert not hair.modifiers
+    assert ids.TILE not in hair.data.attributes

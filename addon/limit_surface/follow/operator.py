@@ -115,19 +115,18 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
             )
             for ob in things:
                 following.check_thing(ob, on)
-            for ob in curves:
-                curve_points.check(ob, on)
+            bound_curves = curve_points.CurveRequest(curves, on, depsgraph, self._proxy)
             relocated = newcomers.relocations(things, on, depsgraph)
             request = following.Request(
                 on, depsgraph, things, self._proxy, relocated, without=curves
             )
-            requests.append((request, things, on, curves))
-        made = [request.compute() for request, things, _on, _curves in requests if things]
+            requests.append((request, things, bound_curves))
+        made = [request.compute() for request, things, _curves in requests if things]
         for ob in [ob for obs in by_surface.values() for ob in obs]:
             live_binding.end(ob, depsgraph)
         outcomes = [bindings.write() for bindings in made]
-        for _request, _things, on, curves in requests:
-            outcomes += curve_points.bind(curves, on, context, self._proxy)
+        for _request, _things, bound_curves in requests:
+            outcomes += bound_curves.write(context)
         return [str(outcome) for outcome in outcomes]
 
     def _live(

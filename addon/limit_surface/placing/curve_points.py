@@ -23,46 +23,63 @@ from .posed_surface import PosedSurface, at_closest, transformed
 from .rotations import WorldSpace
 
 
-def bind(
-    curves: Sequence[bpy.types.Object],
-    surface: bpy.types.Object,
-    context: bpy.types.Context,
-    use_proxy: bool | None = None,
-) -> list[following.Outcome]:
-    """Makes Curve objects follow, also such that do already: their control points get new places.
+class CurveRequest:
+    """The binding of Curve objects to one surface, also of such that follow it already: their
+    control points get new places.
 
     Raises RefusalError where that cannot be; nothing has changed then.
     """
-    for ob in curves:
-        check(ob, surface)
-    return [
-        _bind(ob, surface, context.evaluated_depsgraph_get(), use_proxy, curves[i:])
-        for i, ob in enumerate(curves)
-    ]
+
+    def __init__(
+        self,
+        curves: Sequence[bpy.types.Object],
+        surface: bpy.types.Object,
+        depsgraph: bpy.types.Depsgraph,
+        use_proxy: bool | None = None,
+    ) -> None:
+        self._curves, self._surface, self._use_proxy = list(curves), surface, use_proxy
+        for ob in curves:
+            check(ob, surface)
+        if not curves:
+            return
+        # what else follows the surface may refuse, before the curves have changed
+        following.Request(surface, depsgraph, without=curves)
+        posed = PosedSurface(cage.read(surface, depsgraph))
+        check_some_left(posed.in_world, surface.name)
+        self._points = [splines.positions(ob.data) for ob in curves]
+        self._places = [
+            _places(ob, points, posed) for ob, points in zip(curves, self._points, strict=True)
+        ]
+
+    def write(self, context: bpy.types.Context) -> list[following.Outcome]:
+        if not self._curves:
+            return []
+        for ob, points, places in zip(self._curves, self._points, self._places, strict=True):
+            _store(ob, points, places)
+        depsgraph = context.evaluated_depsgraph_get()
+        request = following.Request(self._surface, depsgraph, self._curves, self._use_proxy)
+        return [request.compute().write()]
 
 
-def _bind(
-    ob: bpy.types.Object,
-    surface: bpy.types.Object,
-    depsgraph: bpy.types.Depsgraph,
-    use_proxy: bool | None,
-    waiting: Sequence[bpy.types.Object],
-) -> following.Outcome:
-    """Binds the first of the curves that wait."""
-    request = following.Request(surface, depsgraph, use_proxy=use_proxy, without=waiting)
-    points = splines.positions(ob.data)
-    places = _places(ob, points, surface, depsgraph)
-    made = request.compute(places.locations)
+def bind(
+    curves: Sequence[bpy.types.Object], surface: bpy.types.Object, context: bpy.types.Context
+) -> list[following.Outcome]:
+    """Makes Curve objects follow at once. Raises what CurveRequest raises."""
+    return CurveRequest(curves, surface, context.evaluated_depsgraph_get()).write(context)
+
+
+def _store(ob: bpy.types.Object, points: np.ndarray, places: Binding) -> None:
+    """Writes the places of a curve into its table, which is made if it has none of its own."""
     table = curve_table(ob)
     if table is None or len(tables.readers(table)) > 1:  # a copy of the curve reads it
         table = tables.new_object(ids.CURVE_TABLE, ob)
     tables.fill(table.data, points)
     places.write(table.data, "POINT")
+    table.data.pop(ids.SIGNATURE, None)  # that of the places before
     modifier = next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None)
     if modifier is None:
         modifier = groups.add_modifier(ob, FOLLOW_CURVE, place=0)
     groups.set_input(modifier, POINTS, table)
-    return made.write(ob)
 
 
 def check(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
@@ -87,15 +104,8 @@ def has_others(ob: bpy.types.Object) -> bool:
     return table is None or len(table.data.vertices) != len(splines.positions(ob.data))
 
 
-def _places(
-    ob: bpy.types.Object,
-    points: np.ndarray,
-    surface: bpy.types.Object,
-    depsgraph: bpy.types.Depsgraph,
-) -> Binding:
+def _places(ob: bpy.types.Object, points: np.ndarray, posed: PosedSurface) -> Binding:
     matrix = np.array(ob.matrix_world, np.float64)
     WorldSpace(matrix)  # refuses a scale of 0
-    posed = PosedSurface(cage.read(surface, depsgraph))
-    check_some_left(posed.in_world, surface.name)
     hits = posed.in_world.closest(transformed(matrix, points.astype(np.float64)))
     return Binding.at(posed, at_closest(posed, hits), matrix)
