@@ -54,8 +54,9 @@ std::vector<double> faceSizes(const LimitSurface& surface, const std::vector<boo
   std::vector<Location> at;
   for (std::size_t face = 0; face < has_surface.size(); ++face) {
     for (int i = 0; has_surface[face] && i < kSide * kSide; ++i) {
-      at.push_back({static_cast<int>(face), static_cast<double>(i % kSide) / kSteps,
-                    static_cast<double>(i / kSide) / kSteps});
+      const int row = i / kSide, column = i % kSide;
+      at.push_back({static_cast<int>(face), static_cast<double>(column) / kSteps,
+                    static_cast<double>(row) / kSteps});
     }
   }
   const Points points = surface.evaluate(at, Derivatives::none, false, threads).position;
