@@ -176,3 +176,14 @@ def test_one_refused_thing_leaves_all_others_as_they_were():
     assert scenes.file_contents() == before
     assert not hair.modifiers
     assert ids.TILE not in hair.data.attributes
+
+
+def test_what_deleted_hair_leaves_behind_can_be_removed():
+    ob = deforming_cross()
+    before = {o.name for o in bpy.data.objects}
+    hair = scenes.add_hair(ob, follow="NODES")
+    bpy.data.objects.remove(hair)
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    assert {o.name for o in bpy.data.objects} == before
+    assert [m.type for m in ob.modifiers] == ["WAVE", "SUBSURF"]

@@ -7,14 +7,14 @@ from bpy.props import EnumProperty
 from .. import ids, native
 from ..placing.followers import live_modifier_of
 from ..placing.live_unbinding import LiveUnbinding
-from ..placing.unbinding import Unbinding
+from ..placing.unbinding import Unbinding, leftovers_of, remove_leftovers
 from ..tasks.properties import SummaryProperty, draw_summary
 from .subjects import chosen_followers
 
 
 class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
-    """Make the selected hair and points follow their limit surface no longer, or everything that
-    follows the active mesh"""
+    """Stop the selected hair and points from following. If only the surface is selected, stop
+    everything that follows it"""
 
     bl_idname = ids.UNBIND
     bl_label = "Unbind from Limit Surface"
@@ -35,7 +35,7 @@ class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
             cls.poll_message_set(native.obstacle())
         elif context.mode != "OBJECT":
             cls.poll_message_set("Only available in Object Mode")
-        elif not chosen_followers(context):
+        elif not chosen_followers(context) and not _leftovers(context):
             cls.poll_message_set("Select hair or points that follow a limit surface")
         else:
             return True
@@ -48,6 +48,10 @@ class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
             things = chosen_followers(context)
             live = [ob for ob in things if live_modifier_of(ob)]
             by_nodes = [ob for ob in things if ob not in live]
+            if not things:
+                self.summary = remove_leftovers(context.active_object)
+                self.report({"INFO"}, self.summary)
+                return {"FINISHED"}
             unbindings: list[Unbinding | LiveUnbinding] = []
             if by_nodes:
                 unbindings.append(Unbinding(by_nodes, depsgraph, self.shape))
@@ -64,3 +68,9 @@ class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
         self.layout.use_property_split = True
         self.layout.prop(self, "shape")
         draw_summary(self.layout, self.summary)
+
+
+def _leftovers(context: bpy.types.Context) -> bool:
+    """Tells whether the active mesh has tables that nothing reads any more."""
+    active = context.active_object
+    return active is not None and active.type == "MESH" and bool(leftovers_of(active))

@@ -171,6 +171,17 @@ def _remove_attributes(data: bpy.types.ID) -> None:
     data.update_tag()
 
 
+def leftovers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns the tables of a surface that nothing reads: what followed it has been deleted."""
+    return [table for table in tables.all_of_surface(surface) if not tables.readers(table)]
+
+
+def remove_leftovers(surface: bpy.types.Object) -> str:
+    """Removes those tables, and returns a sentence for the report."""
+    _remove_unused(leftovers_of(surface), {surface})
+    return f"Nothing follows {surface.name}: its hidden tables were removed"
+
+
 def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Object]) -> None:
     """Removes tables that nothing reads any more, and *Limit Capture* from surfaces that no tables
     read any more.
