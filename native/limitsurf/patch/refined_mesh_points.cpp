@@ -23,6 +23,7 @@ int RefinedMesh::point(int vertex) {
 
 int RefinedMesh::facePoint(int face) {
   std::vector<int> sources;
+  sources.reserve(static_cast<std::size_t>(parent_.faceSize(face)));
   for (int corner = 0; corner < parent_.faceSize(face); ++corner) {
     sources.push_back(parent_.point(parent_.vertex({face, corner})));
   }

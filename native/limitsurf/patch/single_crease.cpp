@@ -60,7 +60,8 @@ void foldLast(CubicWeights& w) {
 }  // namespace
 
 SingleCrease::SingleCrease(float sharpness) {
-  for (; sharpness >= 1; sharpness -= 1) {
+  while (sharpness >= 1) {
+    sharpness -= 1;
     size_ /= 2;
   }
   remainder_ = sharpness;

@@ -68,7 +68,8 @@ void Visibility::evaluateSamples(Span<Location> at, const TexelPlaces& places,
     const Location& middle = at[static_cast<std::size_t>(row)];
     const auto steps = places.parameters.row(row);
     for (int i = 0; i < side * side; ++i) {
-      const double x = (i % side + 0.5) / side - 0.5, y = (i / side + 0.5) / side - 0.5;
+      const int column = i % side, row_of_samples = i / side;
+      const double x = (column + 0.5) / side - 0.5, y = (row_of_samples + 0.5) / side - 0.5;
       samples.push_back({middle.face, std::clamp(middle.u + x * steps[0] + y * steps[1], 0., 1.),
                          std::clamp(middle.v + x * steps[2] + y * steps[3], 0., 1.)});
     }

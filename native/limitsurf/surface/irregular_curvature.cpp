@@ -93,7 +93,8 @@ std::vector<PrincipalCurvatures> IrregularCurvature::around(const std::vector<in
     parallelFor(places.size(), kPlacesPerTask, threads, [&](std::size_t from, std::size_t to) {
       TileEvaluator evaluator(table_, pose_);
       for (std::size_t i = from; i < to; ++i) {
-        places[i] = place(evaluator, tiles[i / kPlacesPerFace], i % kPlacesPerFace);
+        places[i] =
+            place(evaluator, tiles[i / kPlacesPerFace], static_cast<int>(i % kPlacesPerFace));
       }
     });
     parallelFor(end - begin, kMeansPerTask, threads, [&](std::size_t from, std::size_t to) {

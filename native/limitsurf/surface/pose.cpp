@@ -135,7 +135,8 @@ void Pose::setRing(int ring_index) {
   const Padded vertex = points_[ring.points[0]];
   Points points(ring.points.size(), 3);
   for (std::size_t i = 0; i < ring.points.size(); ++i) {
-    points.row(i) = difference(ring.points[i], ring.points[0]).head<3>().transpose();
+    points.row(static_cast<Eigen::Index>(i)) =
+        difference(ring.points[i], ring.points[0]).head<3>().transpose();
   }
   ring.basis->project(points, pose.coefficients);
   const Vector3 to_limit = pose.coefficients.row(0);

@@ -38,12 +38,13 @@ double jacobianAtCorner(const BezierPatch& patch) {
   return cross(ds, dt);
 }
 
+/// Returns the map itself, so that a constructor can check it before its first member is made.
 const SurfaceData& checked(const SurfaceData& map) {
   if (map.columns() != 2) {
     throw std::invalid_argument("the data have " + std::to_string(map.columns()) +
                                 " columns; a UV map has 2");
   }
-  return map;
+  return map;  // NOLINT(bugprone-return-const-ref-from-parameter): the caller's own argument
 }
 
 }  // namespace

@@ -37,7 +37,9 @@ auto withMap(const SharedData& shared, int threads, const Use& use) {
 /// consists of several becomes a row.
 template <typename Shown, typename T>
 py::array_t<Shown> taken(std::vector<T>&& from) {
-  constexpr auto kColumns = static_cast<py::ssize_t>(sizeof(T) / sizeof(Shown));
+  // T may be Shown itself
+  constexpr auto kColumns =
+      static_cast<py::ssize_t>(sizeof(T) / sizeof(Shown));  // NOLINT(bugprone-sizeof-expression)
   auto owned = std::make_unique<std::vector<T>>(std::move(from));
   const auto rows = static_cast<py::ssize_t>(owned->size());
   const auto* data = reinterpret_cast<const Shown*>(owned->data());
