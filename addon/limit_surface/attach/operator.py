@@ -6,15 +6,16 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .. import ids, native
+from .. import ids
 from ..errors import RefusalError
 from ..placing import dependencies, following
 from ..placing.binding import Binding
+from ..placing.binding_operator import BindingOperator
 from ..placing.followers import modifier_of
-from ..placing.mending import mended
 from ..placing.posed_surface import PosedSurface, at_closest
 from ..reading import cage
-from ..tasks.properties import SummaryProperty, draw_summary
+from ..tasks import polling
+from ..tasks.properties import draw_summary
 from ..tasks.refused_faces import check_some_left
 from .carrier import Extension, is_carrier
 from .parenting import attach, parent_matrices
@@ -25,7 +26,7 @@ _NOTHING = (
 )
 
 
-class OBJECT_OT_limit_attach(SummaryProperty, bpy.types.Operator):
+class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
     """Attach the selected objects to the active mesh: each follows the point of the limit surface
     that is closest to it now, however the mesh deforms"""
 
@@ -36,31 +37,17 @@ class OBJECT_OT_limit_attach(SummaryProperty, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         surface = context.active_object
-        if not native.available():
-            cls.poll_message_set(native.obstacle())
-        elif context.mode != "OBJECT":
-            cls.poll_message_set("Only available in Object Mode")
-        elif surface is None or surface.type != "MESH" or not _others(context):
-            cls.poll_message_set(_NOTHING)
-        else:
-            return True
-        return False
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        self.summary = ""
-        try:
-            with mended():
-                return self._attach(context)
-        except native.refusals as error:
-            self.report({"ERROR"}, str(error))
-        except MemoryError:
-            self.report({"ERROR"}, "There is not enough memory for the tables")
-        return {"CANCELLED"}
+        return polling.in_object_mode(
+            cls,
+            context,
+            lambda: surface is not None and surface.type == "MESH" and bool(_others(context)),
+            _NOTHING,
+        )
 
     def draw(self, _context: bpy.types.Context) -> None:
         draw_summary(self.layout, self.summary)
 
-    def _attach(self, context: bpy.types.Context) -> set[str]:
+    def bind(self, context: bpy.types.Context) -> set[str]:
         surface, objects = context.active_object, _others(context)
         context.view_layer.update()
         depsgraph = context.evaluated_depsgraph_get()

@@ -4,11 +4,12 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
-from .. import ids, native
+from .. import ids
 from ..errors import RefusalError
 from ..placing import curve_points, following, live_binding, newcomers
-from ..placing.mending import mended
-from ..tasks.properties import SummaryProperty, draw_summary
+from ..placing.binding_operator import BindingOperator
+from ..tasks import polling
+from ..tasks.properties import draw_summary
 from .subjects import BINDABLE, selected, to_bind
 
 NOTHING = (
@@ -17,7 +18,7 @@ NOTHING = (
 )
 
 
-class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
+class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
     """Make the selected hair, points and meshes follow the limit surface that they stand on,
     however the mesh deforms. Curves, and hair and points from elsewhere, follow the closest points
     of the active mesh"""
@@ -57,26 +58,9 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not native.available():
-            cls.poll_message_set(native.obstacle())
-        elif context.mode != "OBJECT":
-            cls.poll_message_set("Only available in Object Mode")
-        elif not any(ob.type in BINDABLE for ob in selected(context)):
-            cls.poll_message_set(NOTHING)
-        else:
-            return True
-        return False
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        self.summary = ""
-        try:
-            with mended():
-                return self._bind(context)
-        except native.refusals as error:
-            self.report({"ERROR"}, str(error))
-        except MemoryError:
-            self.report({"ERROR"}, "There is not enough memory for the tables")
-        return {"CANCELLED"}
+        return polling.in_object_mode(
+            cls, context, lambda: any(ob.type in BINDABLE for ob in selected(context)), NOTHING
+        )
 
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
@@ -84,7 +68,7 @@ class OBJECT_OT_limit_follow(SummaryProperty, bpy.types.Operator):
         self.layout.prop(self, "use_proxy")
         draw_summary(self.layout, self.summary)
 
-    def _bind(self, context: bpy.types.Context) -> set[str]:
+    def bind(self, context: bpy.types.Context) -> set[str]:
         by_surface = to_bind(context)
         if not by_surface:
             raise RefusalError(NOTHING)

@@ -6,17 +6,18 @@ import math
 import bpy
 from bpy.props import EnumProperty, FloatProperty
 
-from .. import ids, native
+from .. import ids
 from ..errors import RefusalError
-from ..placing.mending import mended
+from ..placing.binding_operator import BindingOperator
 from ..placing.rebinding import Rebinding
-from ..tasks.properties import SummaryProperty, draw_summary
+from ..tasks import polling
+from ..tasks.properties import draw_summary
 from .subjects import to_rebind
 
 _NOTHING = "Select a surface or what follows it"
 
 
-class OBJECT_OT_limit_rebind(SummaryProperty, bpy.types.Operator):
+class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
     """Bind everything that follows the selected surface again, after its topology, creases or rules
     have changed"""
 
@@ -55,26 +56,9 @@ class OBJECT_OT_limit_rebind(SummaryProperty, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not native.available():
-            cls.poll_message_set(native.obstacle())
-        elif context.mode != "OBJECT":
-            cls.poll_message_set("Only available in Object Mode")
-        elif not context.selected_objects and context.active_object is None:
-            cls.poll_message_set(_NOTHING)
-        else:
-            return True
-        return False
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        self.summary = ""
-        try:
-            with mended():
-                return self._rebind(context)
-        except native.refusals as error:
-            self.report({"ERROR"}, str(error))
-        except MemoryError:
-            self.report({"ERROR"}, "There is not enough memory for the tables")
-        return {"CANCELLED"}
+        return polling.in_object_mode(
+            cls, context, lambda: bool(context.selected_objects or context.active_object), _NOTHING
+        )
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
@@ -84,7 +68,7 @@ class OBJECT_OT_limit_rebind(SummaryProperty, bpy.types.Operator):
             layout.prop(self, "distance")
         draw_summary(layout, self.summary)
 
-    def _rebind(self, context: bpy.types.Context) -> set[str]:
+    def bind(self, context: bpy.types.Context) -> set[str]:
         by_surface = to_rebind(context)
         if not by_surface:
             raise RefusalError(_NOTHING)

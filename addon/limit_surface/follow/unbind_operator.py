@@ -8,6 +8,7 @@ from .. import ids, native
 from ..placing.followers import live_modifier_of
 from ..placing.live_unbinding import LiveUnbinding
 from ..placing.unbinding import Unbinding, leftovers_of, remove_leftovers
+from ..tasks import polling
 from ..tasks.properties import SummaryProperty, draw_summary
 from .subjects import chosen_followers
 
@@ -31,15 +32,12 @@ class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not native.available():
-            cls.poll_message_set(native.obstacle())
-        elif context.mode != "OBJECT":
-            cls.poll_message_set("Only available in Object Mode")
-        elif not chosen_followers(context) and not _leftovers(context):
-            cls.poll_message_set("Select hair or points that follow a limit surface")
-        else:
-            return True
-        return False
+        return polling.in_object_mode(
+            cls,
+            context,
+            lambda: bool(chosen_followers(context)) or _leftovers(context),
+            "Select hair or points that follow a limit surface",
+        )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""

@@ -4,14 +4,14 @@
 import bpy
 from bpy.props import IntProperty
 
-from .. import ids, native
+from .. import ids
 from ..placing.all_tiles import AllTiles
-from ..placing.mending import mended
+from ..placing.binding_operator import BindingOperator
 from ..tasks import polling
-from ..tasks.properties import SummaryProperty, draw_summary
+from ..tasks.properties import draw_summary
 
 
-class OBJECT_OT_limit_sample_tables(SummaryProperty, bpy.types.Operator):
+class OBJECT_OT_limit_sample_tables(BindingOperator, bpy.types.Operator):
     """Make the tables by which the node group Sample Limit Surface samples the active mesh, or make
     them anew after a change of its topology, creases or rules"""
 
@@ -40,20 +40,10 @@ class OBJECT_OT_limit_sample_tables(SummaryProperty, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return polling.mesh_in_object_mode(cls, context, context.active_object)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        self.summary = ""
+    def bind(self, context: bpy.types.Context) -> set[str]:
         surface = context.active_object
-        try:
-            with mended():
-                depsgraph = context.evaluated_depsgraph_get()
-                made = AllTiles(surface, depsgraph, self.depth, self.levels)
-                made.write()
-        except native.refusals as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        except MemoryError:
-            self.report({"ERROR"}, "There is not enough memory for the tables")
-            return {"CANCELLED"}
+        made = AllTiles(surface, context.evaluated_depsgraph_get(), self.depth, self.levels)
+        made.write()
         self.summary = f"{len(made.tree.tiles.tile_points):,} tiles of {surface.name}"
         self.report({"INFO"}, self.summary)
         return {"FINISHED"}
