@@ -9,21 +9,11 @@ import follow_truth
 import numpy as np
 import pytest
 import scenes
-from follow_scenes import check_hair, deforming, follow
+from follow_scenes import check_hair, deforming, follow, look
 from limit_surface import ids
 from limit_surface.follow import stale
 from limit_surface.follow.panel import VIEW3D_PT_limit_follow
 from limit_surface.placing.follow_state import State
-
-
-def look(ob: bpy.types.Object) -> list[tuple[str, str]]:
-    """Returns the troubles that the panel shows once the timer has looked."""
-    state = State.of(ob)
-    assert state is not None
-    stale.troubles(bpy.context, state)
-    assert bpy.app.timers.is_registered(stale._look) or stale._signatures
-    stale._look()
-    return [(trouble.text, trouble.remedy) for trouble in stale.troubles(bpy.context, state)]
 
 
 def followed() -> tuple[bpy.types.Object, bpy.types.Object]:

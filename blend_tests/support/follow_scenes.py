@@ -5,6 +5,8 @@ import bpy
 import follow_truth
 import numpy as np
 import scenes
+from limit_surface.follow import stale
+from limit_surface.placing.follow_state import State
 from mathutils import Euler, Matrix
 
 
@@ -29,3 +31,13 @@ def check_hair(ob: bpy.types.Object, hair: bpy.types.Object) -> None:
     expected = follow_truth.moved(scenes.strands(hair), hair.data, now)
     error = np.abs(follow_truth.shown_strands(hair) - expected).max()
     assert error < follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
+
+
+def look(ob: bpy.types.Object) -> list[tuple[str, str]]:
+    """Returns the troubles that the panel shows once the timer has looked."""
+    state = State.of(ob)
+    assert state is not None
+    stale.troubles(bpy.context, state)
+    assert bpy.app.timers.is_registered(stale._look) or stale._signatures
+    stale._look()
+    return [(trouble.text, trouble.remedy) for trouble in stale.troubles(bpy.context, state)]

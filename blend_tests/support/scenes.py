@@ -135,7 +135,7 @@ def on_base_mesh(ob: bpy.types.Object, face: np.ndarray, uv: np.ndarray) -> np.n
 
 def surface_without_addon(ob: bpy.types.Object, boundary: str = "ALL") -> limitsurf.LimitSurface:
     """Returns the limit surface of the mesh that Blender shows once all Subdivision modifiers are
-    disabled.
+    disabled, with the creases of that mesh.
     """
     subsurfs = [m for m in ob.modifiers if m.type == "SUBSURF"]
     shown = [m.show_viewport for m in ob.modifiers]
@@ -144,10 +144,37 @@ def surface_without_addon(ob: bpy.types.Object, boundary: str = "ALL") -> limits
     mesh = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     faces = [list(polygon.vertices) for polygon in mesh.polygons]
     positions = np.array([vertex.co for vertex in mesh.vertices], np.float64)
+    edges = np.array([edge.vertices for edge in mesh.edges]).reshape(-1, 2)
+    edge_sharpness, vertex_sharpness = _sharpness(mesh, edges)
     for modifier, was in zip(ob.modifiers, shown, strict=True):
         modifier.show_viewport = was
-    cage = limitsurf.ControlMesh.from_faces(positions, faces, boundary=BOUNDARIES[boundary])
+    cage = limitsurf.ControlMesh.from_faces(
+        positions,
+        faces,
+        edge_sharpness=(edges, edge_sharpness),
+        vertex_sharpness=(np.arange(len(positions)), vertex_sharpness),
+        boundary=BOUNDARIES[boundary],
+    )
     return limitsurf.LimitSurface(cage)
+
+
+def _sharpness(mesh: bpy.types.Mesh, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the sharpness of edges and vertices by Blender's rules: a crease c means 10 c^2, and
+    a vertex at which two edges meet gets the smaller sharpness of these in addition to its own.
+    """
+    edge, vertex = (
+        10.0 * attributes.read(mesh, name).astype(np.float64) ** 2
+        if name in mesh.attributes
+        else np.zeros(count)
+        for name, count in (
+            ("crease_edge", len(mesh.edges)),
+            ("crease_vert", len(mesh.vertices)),
+        )
+    )
+    for corner in np.flatnonzero(np.bincount(edges.ravel(), minlength=len(vertex)) == 2):
+        least = edge[(edges == corner).any(axis=1)].min()
+        vertex[corner] = min(10, vertex[corner] + least)
+    return edge, vertex
 
 
 def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:

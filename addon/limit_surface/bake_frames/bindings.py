@@ -69,7 +69,8 @@ def _check_nodes(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
     if ids.CAGE_FITS in shown and not shown[ids.CAGE_FITS].data[0].value:
         raise RefusalError(
             f"{ob.name} is at rest in frame {scene.frame_current}: the control mesh of its surface "
-            "has other faces or another order of vertices there than when it was bound"
+            "has other faces, other creases or another order of vertices there than when it was "
+            "bound"
         )
 
 

@@ -25,12 +25,26 @@ def topology_sum(edges: np.ndarray) -> int:
     """Returns a checksum of edges (e, 2), given by their vertices: the one that the group
     calculates. It is different if the vertices' order differs.
     """
-    first, second = (edges.astype(np.int64) + 1).T
-    products = (
-        (first % divisor) * (second % divisor) % small_divisor
-        for divisor, small_divisor in _DIVISORS
-    )
-    return int(np.sum(sum(products)).astype(np.int32))
+    first, second = (edges.astype(np.float64) + 1).T
+    return _sum(first, second)
+
+
+def crease_sum(creases: np.ndarray) -> int:
+    """Returns a checksum of the creases of all edges or all vertices, in their order: the one that
+    the group calculates.
+    """
+    return _sum(1.0 + np.arange(len(creases)), np.floor(creases.astype(np.float64) * _CREASE_STEPS))
+
+
+def _sum(first: np.ndarray, second: np.ndarray) -> int:
+    """Returns the checksum of pairs of whole numbers. Remainders have the sign of the number, as
+    those of the nodes do.
+    """
+    total: np.ndarray = np.zeros(len(first))
+    for divisor, small_divisor in _DIVISORS:
+        product = np.fmod(first, divisor) * np.fmod(second, divisor)
+        total += np.fmod(product, small_divisor)
+    return int(total.astype(np.int64).sum().astype(np.int32))
 
 
 def _build() -> bpy.types.NodeTree:

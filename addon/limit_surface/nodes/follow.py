@@ -96,7 +96,9 @@ def carried(tree: Tree, geometry: Value, domain: str, roots: Roots) -> Carried:
     )
     fits = on_surface["Fits"]
     tree.warn(
-        tree.negated(fits), "The surface's control mesh has changed: run Rebind to Limit Surface"
+        tree.negated(fits),
+        "The faces or creases of the surface have changed: run Rebind to Limit Surface. Creases "
+        "that are animated need the mode Live of Follow Limit Surface",
     )
     return Carried(captured[0], roots.rest, captured["Place"], captured["Turn"], fits)
 
@@ -170,8 +172,8 @@ def _build_normals() -> bpy.types.NodeTree:
     )
 
 
-FOLLOW_HAIR = Kind(ids.FOLLOW_HAIR_GROUP, 1, _build_hair)
-FOLLOW_BEZIER = Kind(ids.FOLLOW_BEZIER_GROUP, 1, _build_bezier_hair)
-FOLLOW_POINTS = Kind(ids.FOLLOW_POINTS_GROUP, 1, _build_points)
-FOLLOW_ORIENTED = Kind(ids.FOLLOW_ORIENTED_GROUP, 1, _build_oriented_points)
-FOLLOW_NORMALS = Kind(ids.FOLLOW_NORMALS_GROUP, 1, _build_normals)
+FOLLOW_HAIR = Kind(ids.FOLLOW_HAIR_GROUP, 2, _build_hair)
+FOLLOW_BEZIER = Kind(ids.FOLLOW_BEZIER_GROUP, 2, _build_bezier_hair)
+FOLLOW_POINTS = Kind(ids.FOLLOW_POINTS_GROUP, 2, _build_points)
+FOLLOW_ORIENTED = Kind(ids.FOLLOW_ORIENTED_GROUP, 2, _build_oriented_points)
+FOLLOW_NORMALS = Kind(ids.FOLLOW_NORMALS_GROUP, 2, _build_normals)

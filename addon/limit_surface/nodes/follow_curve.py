@@ -49,4 +49,4 @@ def _roots(tree: Tree, table: Value) -> Roots:
     )
 
 
-FOLLOW_CURVE = Kind(ids.FOLLOW_CURVE_GROUP, 1, _build)
+FOLLOW_CURVE = Kind(ids.FOLLOW_CURVE_GROUP, 2, _build)

@@ -28,6 +28,8 @@ SCALE = "tile_scale"  # factors that turn derivatives by the place in the tile i
 
 ROWS_OF_A_TILE = 4
 
+GUARDS_CREASES = "Guard Creases"  # the name of an input, which tables of older versions lack
+
 
 def _build() -> bpy.types.NodeTree:
     tree = Tree(
@@ -41,6 +43,9 @@ def _build() -> bpy.types.NodeTree:
             Socket("Refined Points", "Int", "Number of points that are sums over vertices"),
             Socket("Use Proxy", "Bool", "Read the proxy instead of the surface in the viewport"),
             Socket("Proxy", "Object", "Copy of the surface that ends at Limit Capture"),
+            Socket(GUARDS_CREASES, "Bool", "Whether the surface depends on creases"),
+            Socket("Cage Edge Creases", "Int", "Checksum of the creases of edges"),
+            Socket("Cage Vertex Creases", "Int", "Checksum of the creases of vertices"),
         ],
         [Socket("Geometry", "Geometry", "Table of tiles, with this frame's matrices")],
         is_modifier=True,
@@ -51,15 +56,22 @@ def _build() -> bpy.types.NodeTree:
     points = _placed_points(tree, cage)
     matrix = _row_matrix(tree, points)
     table = tree.store(tree.inputs["Geometry"], ids.TILE_MATRIX, matrix, "FLOAT4X4")
-    fits = tree.both(
-        *(
-            tree.compare("EQUAL", tree.sample(cage, tree.attribute(name, "INT"), 0, "INT"), bound)
-            for name, bound in (
-                (ids.CAGE_COUNT, tree.inputs["Cage Count"]),
-                (ids.CAGE_TOPOLOGY, tree.inputs["Cage Topology"]),
-            )
+    same_count, same_topology, same_edge_creases, same_vertex_creases = (
+        tree.compare(
+            "EQUAL", tree.sample(cage, tree.attribute(name, "INT"), 0, "INT"), tree.inputs[bound]
+        )
+        for name, bound in (
+            (ids.CAGE_COUNT, "Cage Count"),
+            (ids.CAGE_TOPOLOGY, "Cage Topology"),
+            (ids.CAGE_EDGE_CREASES, "Cage Edge Creases"),
+            (ids.CAGE_VERTEX_CREASES, "Cage Vertex Creases"),
         )
     )
+    same_creases = tree.either(
+        tree.both(same_edge_creases, same_vertex_creases),
+        tree.negated(tree.inputs[GUARDS_CREASES]),
+    )
+    fits = tree.both(tree.both(same_count, same_topology), same_creases)
     # without the table of points all tiles would lie at the origin
     count = tree.get("GeometryNodeAttributeDomainSize", points, component="MESH")
     fits = tree.both(fits, tree.compare("GREATER_THAN", count, tree.inputs["Cage Count"]))
@@ -118,4 +130,4 @@ def _row_matrix(tree: Tree, points: Value) -> Value:
     )
 
 
-TILES = Kind(ids.TILES_GROUP, 1, _build)
+TILES = Kind(ids.TILES_GROUP, 2, _build)

@@ -167,6 +167,9 @@ class Tree:
     def both(self, a: Value, b: Value) -> bpy.types.NodeSocket:
         return self.get("FunctionNodeBooleanMath", a, b, operation="AND")
 
+    def either(self, a: Value, b: Value) -> bpy.types.NodeSocket:
+        return self.get("FunctionNodeBooleanMath", a, b, operation="OR")
+
     def negated(self, a: Value) -> bpy.types.NodeSocket:
         return self.get("FunctionNodeBooleanMath", a, operation="NOT")
 

@@ -95,10 +95,13 @@ class State:
             yield Trouble(f"The faces of {name} have changed since {ob.name} was bound", ids.REBIND)
         table = tables.of_surface(self.surface)
         if not stale and table is not None and table.get(ids.SIGNATURE) != signature:
-            yield Trouble(
-                f"The creases or rules of {name} have changed since its tables were made",
-                ids.REBIND,
-            )
+            text = f"The creases or rules of {name} have changed since its tables were made"
+            if tables.points_of(table) is not None and not tables.fits(table):
+                text += (
+                    ". What follows it stands at rest until then. Creases that are animated need "
+                    "the mode Live"
+                )
+            yield Trouble(text, ids.REBIND)
 
 
 def surfaces() -> list[bpy.types.Object]:

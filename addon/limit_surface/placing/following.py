@@ -18,7 +18,7 @@ import numpy as np
 from .. import ids
 from ..errors import RefusalError
 from ..nodes import groups
-from ..nodes.capture import CAPTURE, topology_sum
+from ..nodes.capture import CAPTURE, crease_sum, topology_sum
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, rules
 from ..tasks.object_keys import ObjectKey
@@ -177,7 +177,30 @@ def request_for(
 
 def bound_to(found: cage.Cage, mesh: bpy.types.Mesh) -> tables.Bound:
     edges = attributes.read(mesh, ids.EDGE_VERTICES)
-    return tables.Bound(len(mesh.vertices), topology_sum(edges), signature(found))
+    return tables.Bound(
+        len(mesh.vertices), topology_sum(edges), _crease_sums(found, mesh), signature(found)
+    )
+
+
+def _crease_sums(found: cage.Cage, mesh: bpy.types.Mesh) -> tuple[int, int] | None:
+    """Returns checksums of the creases of edges and vertices. It is None where the surface does not
+    depend on creases, or nodes could round them to other numbers than numpy does.
+    """
+    if not found.rules.use_creases or found.rules.scheme == "bilinear":
+        return None
+    sums = []
+    for name, domain, count in (
+        (ids.EDGE_CREASE, "EDGE", len(mesh.edges)),
+        (ids.VERTEX_CREASE, "POINT", len(mesh.vertices)),
+    ):
+        stored = mesh.attributes.get(name)
+        if stored and (stored.data_type, stored.domain) != ("FLOAT", domain):
+            return None
+        creases = attributes.read(mesh, name) if stored else np.zeros(count)
+        if not np.isfinite(creases).all():
+            return None
+        sums.append(crease_sum(creases))
+    return sums[0], sums[1]
 
 
 def signature(found: cage.Cage) -> str:

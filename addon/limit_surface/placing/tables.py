@@ -33,6 +33,8 @@ class Bound:
 
     vertices: int
     topology: int  # nodes.capture.topology_sum
+    #: nodes.capture.crease_sum of edges and of vertices; None where creases cannot be guarded
+    creases: tuple[int, int] | None
     signature: str  # of the topology and the rules of subdivision
 
 
@@ -162,13 +164,20 @@ def connect(
     bound: Bound,
 ) -> None:
     """Makes a table of tiles read its surface and the holder of its points."""
-    if not any(groups.modifiers(table, ids.TILES_GROUP)):
-        groups.add_modifier(table, TILES, Surface=surface)
-    modifier = next(groups.modifiers(table, ids.TILES_GROUP))
+    modifier = next(groups.modifiers(table, ids.TILES_GROUP), None)
+    if modifier is None:
+        modifier = groups.add_modifier(table, TILES)
+    elif not TILES.matches(modifier.node_group):
+        modifier.node_group = TILES.group()
+    edge_creases, vertex_creases = bound.creases or (0, 0)
     for name, value in (
+        ("Surface", surface),
         ("Points", holder),
         ("Cage Count", bound.vertices),
         ("Cage Topology", bound.topology),
+        (nodes.GUARDS_CREASES, bound.creases is not None),
+        ("Cage Edge Creases", edge_creases),
+        ("Cage Vertex Creases", vertex_creases),
         ("Refined Points", points.refined),
     ):
         groups.set_input(modifier, name, value)
@@ -179,6 +188,15 @@ def points_of(table: bpy.types.Object) -> bpy.types.Object | None:
     """Returns the table of points that a table of tiles reads, if there is one."""
     modifier = next(groups.modifiers(table, ids.TILES_GROUP), None)
     return groups.get_input(modifier, "Points") if modifier else None
+
+
+def fits(table: bpy.types.Object) -> bool:
+    """Tells whether the nodes have found, when they were evaluated last, that the table fits its
+    surface.
+    """
+    depsgraph = bpy.context.view_layer.depsgraph
+    shown = table.evaluated_get(depsgraph).data.attributes.get(ids.CAGE_FITS)
+    return shown is None or bool(shown.data[0].value)
 
 
 def size_in_bytes(table: bpy.types.Object) -> int:
