@@ -114,7 +114,7 @@ class LiveThing:
         self._binding: dict[str, np.ndarray] = {}
         self._poser: limitsurf.StrandPoser | None = None
         self._buffers: dict[str, np.ndarray] = {}
-        self._is_current = False  # the binding was read since the last pose
+        self._is_current = False  # binding and points were read since the last pose
 
     def check(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
         self._poser_on(data, limit)
@@ -170,28 +170,45 @@ class LiveThing:
         """Moves everything to where it is on the surface in its pose, and returns whether anything
         changed.
         """
-        if not (self._is_current and self._poser and limit is self._limit):
+        is_current = self._is_current and limit is self._limit
+        if not is_current:
             self._poser_on(data, limit)
         self._is_current = False
         poser = self._poser
         assert poser is not None
+        has_moved = self._pose_vectors(data, poser, matrix)
+        prints = np.zeros(len(poser), np.int32)
+        for name in _points_of(data):
+            points = self._buffers[name] if is_current else self._read(data, name)
+            rest = self._read(data, rest_name(name))
+            has_changed, own = poser.repose(rest, points, matrix)
+            prints ^= own
+            if has_changed:
+                _write(data, name, points)
+                has_moved = True
+        if has_moved:
+            _tag(data)
+            _write(data, ids.LIVE_FINGERPRINT, _without_zero(prints))
+        now = np.array([frame, *matrix.ravel()])
+        if not np.array_equal(data.get(ids.LIVE_WRITTEN, ()), now):
+            data[ids.LIVE_WRITTEN] = now.tolist()
+        return has_moved
+
+    def _pose_vectors(
+        self, data: bpy.types.ID, poser: limitsurf.StrandPoser, matrix: np.ndarray
+    ) -> bool:
+        """Turns normals, tangents and rotations, and returns whether anything changed."""
         how: dict[str, Callable[..., np.ndarray]] = {ids.ROTATION: poser.pose_rotations}
-        how |= dict.fromkeys(_POINTS, poser.pose) | dict.fromkeys(_VECTORS, poser.pose_vectors)
+        how |= dict.fromkeys(_VECTORS, poser.pose_vectors)
         has_moved = False
         for name in moved_names(data):
-            if rest_name(name) not in data.attributes:
+            if name not in how or rest_name(name) not in data.attributes:
                 continue  # it was added later
             rest = self._read(data, rest_name(name))
             posed = how[name](rest, matrix, self._buffer(f"new {name}", rest.shape))
             if not _same_bits(posed, self._read(data, name)):
                 _write(data, name, posed)
                 has_moved = True
-        if has_moved:
-            _tag(data)
-            self._mark(data, poser)
-        now = np.array([frame, *matrix.ravel()])
-        if not np.array_equal(data.get(ids.LIVE_WRITTEN, ()), now):
-            data[ids.LIVE_WRITTEN] = now.tolist()
         return has_moved
 
     def _fingerprints(self, data: bpy.types.ID, poser: limitsurf.StrandPoser) -> np.ndarray:
@@ -199,7 +216,7 @@ class LiveThing:
         total: np.ndarray = np.zeros(len(poser), np.int32)
         for name in _points_of(data):
             total = total ^ poser.fingerprints(self._read(data, name))
-        return np.where(total == 0, np.int32(1), total)
+        return _without_zero(total)
 
     def _poser_on(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> limitsurf.StrandPoser:
         """Returns what poses the strands as they are bound now."""
@@ -240,6 +257,11 @@ class LiveThing:
         if buffer is None or buffer.shape != shape or buffer.dtype != kind:
             buffer = self._buffers[name] = np.empty(shape, kind)
         return buffer
+
+
+def _without_zero(prints: np.ndarray) -> np.ndarray:
+    """Returns the fingerprints of strands; 0 is that of a strand that was never written."""
+    return np.where(prints == 0, np.int32(1), prints)
 
 
 def _points_of(data: bpy.types.ID) -> list[str]:

@@ -165,6 +165,14 @@ class StrandPoser(metaclass=_BoundType):
         *,
         threads: int = 0,
     ) -> NDArray[np.float32]: ...
+    def repose(
+        self,
+        rest_points: ArrayLike,
+        points: NDArray[np.float32],
+        matrix: ArrayLike | None = None,
+        *,
+        threads: int = 0,
+    ) -> tuple[bool, NDArray[np.int32]]: ...
     def unpose(
         self,
         points: ArrayLike,

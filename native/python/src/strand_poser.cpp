@@ -69,6 +69,14 @@ derivatives=1 for each strand, and some nanoseconds for each point. The number o
 bits.
 )";
 
+constexpr char kReposeDoc[] =
+    R"((bool, (n,) int32): moves points that hold an earlier pose to where pose() has them now, in place.
+
+Returns whether a bit of any point changed, and fingerprints() of the new points. `points` is a
+contiguous float32 array, (points, 3). It takes one pass over the points where pose(), a comparison and
+fingerprints() take three. Error and cost: as pose().
+)";
+
 constexpr char kUnposeDoc[] =
     R"((points, 3) float32: the rest shape of points on the surface as it is now posed, the inverse of pose().
 
@@ -162,19 +170,19 @@ FloatRotations rotationsOf(const py::object& object) {
 
 /// The array that receives the result: `out`, or a new one.
 template <int Columns>
-Floats resultArray(const py::object& out, py::ssize_t rows) {
+Floats resultArray(const py::object& out, const std::string& name, py::ssize_t rows) {
   if (out.is_none()) {
     return Floats(std::vector<py::ssize_t>{rows, Columns});
   }
   if (!py::isinstance<Floats>(out)) {
-    throw py::type_error("out is no contiguous array of float32");
+    throw py::type_error(name + " is no contiguous array of float32");
   }
   Floats array = py::reinterpret_borrow<Floats>(out);
   if (!array.writeable()) {
-    throw py::type_error("out is read-only");
+    throw py::type_error(name + " is read-only");
   }
   if (array.ndim() != 2 || array.shape(0) != rows || array.shape(1) != Columns) {
-    throw py::value_error("out has shape " + shapeText(array) + "; expected (" +
+    throw py::value_error(name + " has shape " + shapeText(array) + "; expected (" +
                           std::to_string(rows) + ", " + std::to_string(Columns) + ")");
   }
   return array;
@@ -183,11 +191,12 @@ Floats resultArray(const py::object& out, py::ssize_t rows) {
 /// Calls body(input, output, matrix) without the GIL, while the surface keeps its pose.
 template <int Columns, typename Body>
 py::object posed(const BoundStrandPoser& self, const py::object& object, const char* name,
-                 const py::object& matrix, const py::object& out, int threads, const Body& body) {
+                 const py::object& matrix, const py::object& out, const char* out_name, int threads,
+                 const Body& body) {
   checkThreads(threads);
   const Floats from = rowsOf<Columns>(object, name);
   const Eigen::Matrix4d map = matrixOrNone(matrix, "matrix");
-  Floats to = resultArray<Columns>(out, self.poser().pointCount());
+  Floats to = resultArray<Columns>(out, out_name, self.poser().pointCount());
   const Eigen::Map<const Rows<Columns>> input = viewOf<Columns>(from);
   RowsMap<Columns> output(to.mutable_data(), to.shape(0), Columns);
   {
@@ -201,10 +210,23 @@ py::object posed(const BoundStrandPoser& self, const py::object& object, const c
 
 py::object pose(const BoundStrandPoser& self, const py::object& rest_points,
                 const py::object& matrix, const py::object& out, int threads) {
-  return posed<3>(self, rest_points, "rest_points", matrix, out, threads,
+  return posed<3>(self, rest_points, "rest_points", matrix, out, "out", threads,
                   [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
                     self.poser().pose(from, to, map, threads);
                   });
+}
+
+py::tuple repose(const BoundStrandPoser& self, const py::object& rest_points,
+                 const py::object& points, const py::object& matrix, int threads) {
+  if (points.is_none()) {
+    throw py::type_error("points is no contiguous array of float32");
+  }
+  StrandPoser::Reposed result;
+  posed<3>(self, rest_points, "rest_points", matrix, points, "points", threads,
+           [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
+             result = self.poser().repose(from, to, map, threads);
+           });
+  return py::make_tuple(result.has_changed, arrayOf(result.fingerprints));
 }
 
 py::object unpose(const BoundStrandPoser& self, const py::object& points, const py::object& matrix,
@@ -225,7 +247,7 @@ py::object unpose(const BoundStrandPoser& self, const py::object& points, const 
     const auto bools = py::cast<py::array_t<bool, py::array::c_style>>(array);
     flags.assign(bools.data(), bools.data() + bools.size());
   }
-  return posed<3>(self, points, "points", matrix, out, threads,
+  return posed<3>(self, points, "points", matrix, out, "out", threads,
                   [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
                     self.poser().unpose(from, to, map, flags, threads);
                   });
@@ -233,7 +255,7 @@ py::object unpose(const BoundStrandPoser& self, const py::object& points, const 
 
 py::object poseVectors(const BoundStrandPoser& self, const py::object& rest_vectors,
                        const py::object& matrix, const py::object& out, int threads) {
-  return posed<3>(self, rest_vectors, "rest_vectors", matrix, out, threads,
+  return posed<3>(self, rest_vectors, "rest_vectors", matrix, out, "out", threads,
                   [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
                     self.poser().poseVectors(from, to, map, threads);
                   });
@@ -241,7 +263,7 @@ py::object poseVectors(const BoundStrandPoser& self, const py::object& rest_vect
 
 py::object poseRotations(const BoundStrandPoser& self, const py::object& rest_rotations,
                          const py::object& matrix, const py::object& out, int threads) {
-  return posed<4>(self, rest_rotations, "rest_rotations", matrix, out, threads,
+  return posed<4>(self, rest_rotations, "rest_rotations", matrix, out, "out", threads,
                   [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {
                     self.poser().poseRotations(from, to, map, threads);
                   });
@@ -301,6 +323,8 @@ void bindStrandPoser(py::module_& module) {
           "The number of points of all strands.")
       .def("pose", &pose, "rest_points"_a, "matrix"_a = none, "out"_a = none, py::kw_only(),
            "threads"_a = 0, kPoseDoc)
+      .def("repose", &repose, "rest_points"_a, "points"_a, "matrix"_a = none, py::kw_only(),
+           "threads"_a = 0, kReposeDoc)
       .def("unpose", &unpose, "points"_a, "matrix"_a = none, "out"_a = none, py::kw_only(),
            "only"_a = none, "threads"_a = 0, kUnposeDoc)
       .def("pose_vectors", &poseVectors, "rest_vectors"_a, "matrix"_a = none, "out"_a = none,

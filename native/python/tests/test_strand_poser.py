@@ -145,6 +145,16 @@ def test_results_may_replace_the_input(hair):
     np.testing.assert_array_equal(given, expected)
 
 
+def test_reposing_moves_points_in_place_and_tells_whether_they_changed(hair):
+    poser, points = hair.poser(), hair.points.copy()
+    posed = poser.pose(hair.points, MATRICES["mirrored"])
+    for expected in (True, False):
+        has_changed, numbers = poser.repose(hair.points, points, MATRICES["mirrored"])
+        assert has_changed is expected
+        np.testing.assert_array_equal(points, posed)
+        np.testing.assert_array_equal(numbers, poser.fingerprints(posed))
+
+
 def test_the_number_of_threads_gives_the_same_bits():
     hair = Hair(40_000)
     poser = hair.poser()

@@ -180,6 +180,34 @@ TEST(StrandPoser, AtRestNothingMoves) {
   EXPECT_LE((posed - strands.points).cwiseAbs().maxCoeff(), 2e-6);
 }
 
+TEST(StrandPoser, ReposingIsPosingInPlace) {
+  const Cage cage = cross();
+  const LimitSurface surface = limitSurface(cage);
+  const Strands strands(locationsOn(cage, 1), 8);
+  const StrandPoser poser = strands.on(surface);
+  const Eigen::Matrix4d map = stretched();
+  FloatPoints posed(strands.points.rows(), 3), points = strands.points;
+  poser.pose(strands.points, posed, map);
+  for (const bool is_first : {true, false}) {
+    const StrandPoser::Reposed reposed = poser.repose(strands.points, points, map);
+    EXPECT_EQ(reposed.has_changed, is_first);
+    EXPECT_EQ(points, posed);
+    EXPECT_EQ(reposed.fingerprints, poser.fingerprints(posed));
+  }
+
+  // One bit of a bound strand is a change, and so is one of a strand that is not bound.
+  int edited[2] = {0, 0};
+  for (std::size_t row = 0; row < strands.at.size(); ++row) {
+    const std::int64_t last = strands.offsets[row + 1] - 1;
+    if (strands.offsets[row] > last) continue;
+    points(last, 1) = std::nextafter(points(last, 1), 100.F);
+    EXPECT_TRUE(poser.repose(strands.points, points, map, 1).has_changed) << "strand " << row;
+    EXPECT_EQ(points, posed) << "strand " << row;
+    ++edited[strands.isBound(row)];
+  }
+  EXPECT_GT(std::min(edited[0], edited[1]), 3);
+}
+
 TEST(StrandPoser, UnposeIsTheInverse) {
   const Cage cage = mixture(4);
   const LimitSurface surface = limitSurface(cage);
@@ -381,6 +409,8 @@ TEST(StrandPoser, BadInputIsNamed) {
   expectThrow<Invalid>([&] { poser.pose(three, two); }, {"posed", "2 rows", "3"});
   expectThrow<Invalid>([&] { poser.unpose(two, three); }, {"posed", "2 rows", "3"});
   expectThrow<Invalid>([&] { poser.fingerprints(two); }, {"points", "2 rows", "3"});
+  expectThrow<Invalid>([&] { poser.repose(two, three); }, {"rest_points", "2 rows", "3"});
+  expectThrow<Invalid>([&] { poser.repose(three, two); }, {"points", "2 rows", "3"});
   expectThrow<Invalid>([&] { poser.unpose(three, three, Eigen::Matrix4d::Identity(), {1, 0}); },
                        {"only", "2 rows", "3"});
   Eigen::Matrix4d map = Eigen::Matrix4d::Identity();

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -122,6 +123,12 @@ Motion motionOf(const float* rest_root, const float* rest_rotation, const RootPo
   return {{column(0), column(1), column(2)}, Triple(rest_root), Triple(root.position)};
 }
 
+std::uint32_t bitsOf(float value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
 /// A 64-bit word mixed into a hash, after the finaliser of SplitMix64.
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
   hash = (hash ^ word) * 0xbf58476d1ce4e5b9u;
@@ -178,12 +185,23 @@ struct StrandPoser::Data {
   /// Calls body(row, motion) for each bound strand, in parallel.
   template <typename Body>
   void forEachBound(const Eigen::Matrix4d& to_strands, int threads, const Body& body) const {
+    forEachBound(to_strands, threads, body, [](std::size_t) {});
+  }
+
+  /// The same, and calls after(row) for it when the strands of its task are done. (What was written
+  /// a moment ago is read slowly in other pieces than it was written in.)
+  template <typename Body, typename After>
+  void forEachBound(const Eigen::Matrix4d& to_strands, int threads, const Body& body,
+                    const After& after) const {
     parallelFor(bound.size(), kRowsPerTask, threads, [&](std::size_t first, std::size_t last) {
       RootFinder root(surface.table, surface.pose, to_strands);
       for (std::size_t i = first; i < last; ++i) {
         const Strand& strand = bound[i];
         body(static_cast<std::size_t>(strand.row),
              motionOf(strand.root, strand.rotation, root(strand.place)));
+      }
+      for (std::size_t i = first; i < last; ++i) {
+        after(static_cast<std::size_t>(bound[i].row));
       }
     });
   }
@@ -295,6 +313,52 @@ void StrandPoser::pose(const RowsIn<FloatPoints>& rest_points, RowsOut<FloatPoin
         motion.move(rowOf(rest_points, i), rowOf(posed, i));
       },
       [&](std::int64_t i) { posed.row(i) = rest_points.row(i); });
+}
+
+StrandPoser::Reposed StrandPoser::repose(const RowsIn<FloatPoints>& rest_points,
+                                         RowsOut<FloatPoints> points,
+                                         const Eigen::Matrix4d& to_strands, int threads) const {
+  checkThreads(threads);
+  checkMap(to_strands);
+  checkRows("rest_points", rest_points.rows(), pointCount());
+  checkRows("points", points.rows(), pointCount());
+  const Data& data = *data_;
+  std::atomic<bool> has_changed{false};
+  Reposed result;
+  result.fingerprints.resize(data.count);
+  // Bits of the strand's points that change.
+  const auto renew = [&](std::size_t row, const auto& move) {
+    std::uint32_t changes = 0;
+    for (std::int64_t i = data.begin(row), end = data.begin(row + 1); i < end; ++i) {
+      float moved[3], *point = rowOf(points, i);
+      move(rowOf(rest_points, i), moved);
+      for (int axis = 0; axis < 3; ++axis) {
+        changes |= bitsOf(point[axis]) ^ bitsOf(moved[axis]);
+        point[axis] = moved[axis];
+      }
+    }
+    if (changes != 0) {
+      has_changed.store(true, std::memory_order_relaxed);
+    }
+  };
+  const auto print = [&](std::size_t row) {
+    const std::int64_t begin = data.begin(row), end = data.begin(row + 1);
+    result.fingerprints[row] =
+        fingerprint(points.data() + 3 * begin, static_cast<std::size_t>(end - begin));
+  };
+  data.forEachBound(
+      to_strands, threads,
+      [&](std::size_t row, const Motion& motion) {
+        renew(row, [&](const float* rest, float* out) { motion.move(rest, out); });
+      },
+      print);
+  for (const int unbound_row : data.unbound) {
+    const auto row = static_cast<std::size_t>(unbound_row);
+    renew(row, [](const float* rest, float* out) { std::copy_n(rest, 3, out); });
+    print(row);
+  }
+  result.has_changed = has_changed;
+  return result;
 }
 
 void StrandPoser::unpose(const RowsIn<FloatPoints>& posed, RowsOut<FloatPoints> rest_points,

@@ -84,6 +84,18 @@ class StrandPoser {
   void pose(const RowsIn<FloatPoints>& rest_points, RowsOut<FloatPoints> posed,
             const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(), int threads = 0) const;
 
+  /// What repose() tells about the points that it moved.
+  struct Reposed {
+    bool has_changed;                        // a bit of a point is not as it was before
+    std::vector<std::int32_t> fingerprints;  // those of the new points
+  };
+
+  /// pose() and fingerprints() in one pass over points that hold an earlier pose. An application
+  /// that stores the points can thus tell whether it has to store them again.
+  Reposed repose(const RowsIn<FloatPoints>& rest_points, RowsOut<FloatPoints> points,
+                 const Eigen::Matrix4d& to_strands = Eigen::Matrix4d::Identity(),
+                 int threads = 0) const;
+
   /// The inverse: the rest shape of points that lie on the surface as it is posed. With `only`, one
   /// flag per strand, points of other strands are not written.
   void unpose(const RowsIn<FloatPoints>& posed, RowsOut<FloatPoints> rest_points,
