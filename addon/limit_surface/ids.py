@@ -18,6 +18,7 @@ UNBIND = "object.limit_unbind"
 REBIND = "object.limit_rebind"
 ATTACH = "object.limit_attach"
 SAMPLE_TABLES = "object.limit_sample_tables"
+SAMPLE_REMOVE = "object.limit_sample_remove"
 SAMPLE_ADD = "node.limit_sample_add"
 
 COMMAND = "limit_surface"  # blender --command limit_surface
@@ -102,7 +103,7 @@ ALL_POINTS_TABLE = "Limit All Points"
 ALL_TILES_TABLE = "Limit All Tiles"
 FACES_TABLE = "Limit Faces"
 ALL_TILES_MARK = "limit_surface_depth"  # custom property of tables of all tiles: their depth
-FACES_MARK = "limit_surface_faces"  # custom property of meshes of a surface's faces
+FACES_MARK = "limit_surface_faces"  # custom property of meshes of a surface's faces: their levels
 ASSET_LIBRARY = "Limit Surface"
 CURVE_TABLE = "Limit Curve"
 CARRIER = "Limit Carrier"

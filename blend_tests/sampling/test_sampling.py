@@ -303,5 +303,5 @@ def test_refusals():
 
 
 def test_table_lists_the_properties_and_their_defaults():
-    section = pages.text("sampling").split("## `object.limit_sample_tables`")[1]
+    section = pages.text("sampling").split("## `object.limit_sample_")[1]
     pages.check_properties(section, "limit_sample_tables")

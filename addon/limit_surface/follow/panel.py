@@ -64,11 +64,14 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
 def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
     column = layout.column(align=True)
     column.label(text=state.surface.name, icon="OBJECT_DATA")
-    objects = len(state.followers)
-    noun = "object follows" if objects == 1 else "objects follow"
-    column.label(text=f"{objects:,} {noun} it by nodes")
-    column.label(text=f"{state.places:,} strands and points")
-    column.label(text=f"Tables: {_size(state.table_bytes)}")
+    if state.followers or state.strays:
+        objects = len(state.followers)
+        noun = "object follows" if objects == 1 else "objects follow"
+        column.label(text=f"{objects:,} {noun} it by nodes")
+        column.label(text=f"{state.places:,} strands and points")
+        column.label(text=f"Tables: {_size(state.table_bytes)}")
+    if state.samples is not None:
+        column.label(text=f"Tables for sampling: {_size(state.sample_bytes)}")
 
 
 def _draw_trouble(layout: bpy.types.UILayout, trouble: Trouble) -> None:

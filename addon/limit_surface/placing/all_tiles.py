@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import bpy
 import numpy as np
 
 from .. import ids
+from ..errors import RefusalError
 from ..nodes import locate
 from ..nodes.tiles import ROWS_OF_A_TILE
 from ..reading import attributes, cage
@@ -23,7 +26,7 @@ class AllTiles:
         self, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph, depth: int, levels: int
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
-        self._surface, self._depth = surface, depth
+        self._surface, self._depth, self._levels = surface, depth, levels
         with cage.opened(surface, depsgraph) as (found, mesh):
             self._bound = following.bound_to(found, mesh)
         limit = found.surface()
@@ -69,13 +72,44 @@ class AllTiles:
     def _write_faces(self) -> None:
         ob = faces_of(self._surface) or tables.new_object(ids.FACES_TABLE, self._surface)
         ob.parent = self._surface  # shares its transform
-        ob[ids.FACES_MARK] = True
+        ob[ids.FACES_MARK] = self._levels
         mesh = ob.data
         mesh.clear_geometry()
         corners = self._corners.ravel()
         new_objects.add_polygons(mesh, self._positions, np.full(len(self._corners), 4), corners)
         attributes.write(mesh, ids.FACE, "INT", "FACE", self._face_of_quad)
         attributes.write(mesh, ids.UV, "FLOAT2", "CORNER", self._uv[corners])
+
+
+class Settings(NamedTuple):
+    """How the tables of a surface were made. None stands for what is not known."""
+
+    depth: int | None
+    levels: int | None
+
+
+def settings_of(surface: bpy.types.Object) -> Settings:
+    table, faces = of_surface(surface), faces_of(surface)
+    levels = faces[ids.FACES_MARK] if faces else None
+    # the first version of the extension stored True
+    is_known = levels is not None and not isinstance(levels, bool)
+    return Settings(table[ids.ALL_TILES_MARK] if table else None, levels if is_known else None)
+
+
+def remove(surface: bpy.types.Object) -> list[str]:
+    """Removes the tables of all tiles of a surface and the mesh of its faces, and returns the names
+    of what has read them. Raises RefusalError where there are none.
+    """
+    table, faces = of_surface(surface), faces_of(surface)
+    if table is None and faces is None:
+        raise RefusalError(f"{surface.name} has no tables for {ids.SAMPLE_GROUP}")
+    readers = {reader.name for ob in (table, faces) if ob for reader in tables.readers(ob)}
+    if table is not None:
+        tables.remove(table)
+    if faces is not None:
+        tables.remove_object(faces)
+    following.remove_unused_capture(surface)
+    return sorted(readers)
 
 
 def of_surface(surface: bpy.types.Object) -> bpy.types.Object | None:

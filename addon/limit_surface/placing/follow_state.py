@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The state of what follows a surface: how much follows it, and what has gone wrong."""
+"""The state of what reads a surface: how much follows it, whether it has tables for users' own node
+trees, and what has gone wrong.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ from .. import ids
 from ..nodes import groups
 from ..nodes.follow import TILES
 from ..reading import rules
-from . import following, mending, tables
+from . import all_tiles, following, mending, tables
 from .followers import (
     followers_of,
     holder_of,
@@ -37,17 +39,19 @@ class State:
     surface: bpy.types.Object
     followers: list[bpy.types.Object]
     strays: list[bpy.types.Object]  # they were bound, and have lost their modifier
+    samples: bpy.types.Object | None = None  # the table of all tiles
 
     @classmethod
     def of(cls, ob: bpy.types.Object | None) -> State | None:
         """Returns the state of the surface that the object is or follows; None where nothing
-        follows.
+        follows and there are no tables of all tiles. These count for the surface alone.
         """
         if ob is None:
             return None
         surface = (surface_of(ob) if was_bound(ob) else None) or ob
-        state = cls(surface, followers_of(surface), strays_of(surface))
-        return state if state.followers or state.strays else None
+        samples = all_tiles.of_surface(surface) if surface == ob else None
+        state = cls(surface, followers_of(surface), strays_of(surface), samples)
+        return state if state.followers or state.strays or samples else None
 
     @property
     def places(self) -> int:
@@ -60,6 +64,10 @@ class State:
         table = tables.of_surface(self.surface)
         return tables.size_in_bytes(table) if table else 0
 
+    @property
+    def sample_bytes(self) -> int:
+        return tables.size_in_bytes(self.samples) if self.samples else 0
+
     def troubles(self, signature: str | None) -> list[Trouble]:
         """Returns what has gone wrong. The signature is that of the surface as it is now; without
         it, only what can be seen without an evaluation is named.
@@ -67,9 +75,10 @@ class State:
         return [*self._broken(), *(self._stale(signature) if signature else ())]
 
     def _broken(self) -> Iterator[Trouble]:
+        remedy = ids.FOLLOW if self.followers or self.strays else ids.SAMPLE_TABLES
         for ob in (self.surface, *self.followers, *_tables_of(self.followers)):
             if mending.is_broken(ob):
-                yield Trouble(f"{ob.name} has lost a node group", ids.FOLLOW)
+                yield Trouble(f"{ob.name} has lost a node group", remedy)
         for ob in self.strays:
             yield Trouble(f"{ob.name} has lost the modifier by which it followed", ids.FOLLOW)
         for ob in self.followers:
@@ -82,7 +91,13 @@ class State:
         obstacle = _capture_obstacle(self.surface)
         if obstacle:
             text = f"{self.surface.name}: the modifier {ids.CAPTURE_GROUP} {obstacle}"
-            yield Trouble(text, ids.FOLLOW)
+            yield Trouble(text, remedy)
+        if self.samples is not None:
+            if mending.is_broken(self.samples):
+                yield Trouble(f"{self.samples.name} has lost a node group", ids.SAMPLE_TABLES)
+            if tables.points_of(self.samples) is None:
+                text = f"The hidden table of points that {self.samples.name} reads was deleted"
+                yield Trouble(text, ids.SAMPLE_TABLES)
 
     def _stale(self, signature: str) -> Iterator[Trouble]:
         name = self.surface.name
@@ -102,15 +117,28 @@ class State:
                     "the mode Live"
                 )
             yield Trouble(text, ids.REBIND)
+        samples = self.samples
+        if samples is not None and samples.get(ids.SIGNATURE) != signature:
+            text = (
+                f"The faces, creases or rules of {name} have changed since its tables for "
+                f"{ids.SAMPLE_GROUP} were made"
+            )
+            yield Trouble(text, ids.SAMPLE_TABLES)
 
 
 def surfaces() -> list[bpy.types.Object]:
-    """Returns all surfaces that the file's own objects follow, or have followed."""
+    """Returns all surfaces that the file's own objects follow, or have followed, and those that the
+    file's own tables of all tiles belong to.
+    """
     found: dict[bpy.types.Object, None] = {}
     for ob in bpy.data.objects:
-        state = State.of(ob) if ob.library is None and was_bound(ob) else None
-        if state:
-            found[state.surface] = None
+        if ob.library is not None:
+            continue
+        surface = tables.surface_of(ob) if ids.ALL_TILES_MARK in ob else None
+        state = State.of(ob) if was_bound(ob) else None
+        for each in (surface, state.surface if state else None):
+            if each is not None:
+                found[each] = None
     return list(found)
 
 

@@ -172,8 +172,14 @@ def _remove_attributes(data: bpy.types.ID) -> None:
 
 
 def leftovers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
-    """Returns the tables of a surface that nothing reads: what followed it has been deleted."""
-    return [table for table in tables.all_of_surface(surface) if not tables.readers(table)]
+    """Returns the tables of a surface that nothing reads: what followed it has been deleted. Those
+    of all tiles are not among them, because users have made these on their own.
+    """
+    return [
+        table
+        for table in tables.all_of_surface(surface)
+        if ids.ALL_TILES_MARK not in table and not tables.readers(table)
+    ]
 
 
 def remove_leftovers(surface: bpy.types.Object) -> str:

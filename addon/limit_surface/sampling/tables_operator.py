@@ -5,7 +5,7 @@ import bpy
 from bpy.props import IntProperty
 
 from .. import ids
-from ..placing.all_tiles import AllTiles
+from ..placing.all_tiles import AllTiles, settings_of
 from ..placing.binding_operator import BindingOperator
 from ..tasks import polling
 from ..tasks.properties import draw_summary
@@ -13,7 +13,8 @@ from ..tasks.properties import draw_summary
 
 class OBJECT_OT_limit_sample_tables(BindingOperator, bpy.types.Operator):
     """Make the tables by which the node group Sample Limit Surface samples the active mesh, or make
-    them anew after a change of its topology, creases or rules"""
+    them anew after a change of its topology, creases or rules. Unless Depth and Levels are set,
+    they stay as they were"""
 
     bl_idname = ids.SAMPLE_TABLES
     bl_label = "Tables for Sample Limit Surface"
@@ -40,8 +41,22 @@ class OBJECT_OT_limit_sample_tables(BindingOperator, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return polling.mesh_in_object_mode(cls, context, context.active_object)
 
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        self._keep_settings(context.active_object)
+        return self.execute(context)
+
+    def _keep_settings(self, surface: bpy.types.Object) -> None:
+        """Takes the settings of the tables that are there."""
+        was = settings_of(surface)
+        if was.depth is not None:
+            self.depth = was.depth
+        if was.levels is not None:
+            self.levels = was.levels
+
     def bind(self, context: bpy.types.Context) -> set[str]:
         surface = context.active_object
+        if not any(self.properties.is_property_set(name) for name in ("depth", "levels")):
+            self._keep_settings(surface)
         made = AllTiles(surface, context.evaluated_depsgraph_get(), self.depth, self.levels)
         made.write()
         self.summary = f"{len(made.tree.tiles.tile_points):,} tiles of {surface.name}"

@@ -19,6 +19,7 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
         self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
         self.layout.operator(ids.ATTACH, icon="LINKED")
         self.layout.operator(ids.SAMPLE_TABLES, icon="NODETREE")
+        self.layout.operator(ids.SAMPLE_REMOVE, icon="TRASH")
         self.layout.separator()
         self.layout.operator(ids.FOLLOW, icon="MOD_SIMPLEDEFORM")
         self.layout.operator(ids.REBIND, icon="FILE_REFRESH")

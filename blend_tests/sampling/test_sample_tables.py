@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables for Sample Limit Surface: they are seen when they are stale, made anew and removed."""
+
+import bpy
+import numpy as np
+import pytest
+import scenes
+from follow_scenes import check_hair, deforming, look
+from limit_surface import ids
+from limit_surface.follow import stale
+from limit_surface.placing import all_tiles
+from limit_surface.placing.follow_state import State, surfaces
+from limit_surface.reading import attributes
+
+STALE = (
+    "The faces, creases or rules of Holes have changed since its tables for Sample Limit Surface "
+    "were made"
+)
+
+
+def sampled(**properties: int) -> bpy.types.Object:
+    ob = deforming("grid with holes")
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_sample_tables(**properties) == {"FINISHED"}
+    return ob
+
+
+def remove(ob: bpy.types.Object) -> None:
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_sample_remove() == {"FINISHED"}
+
+
+def change_faces(ob: bpy.types.Object) -> None:
+    mirror = ob.modifiers.new("Mirror", "MIRROR")
+    ob.modifiers.move(ob.modifiers.find(mirror.name), 0)
+
+
+def change_creases(ob: bpy.types.Object) -> None:
+    values = np.full(len(ob.data.edges), 0.5, np.float32)
+    attributes.write(ob.data, ids.EDGE_CREASE, "FLOAT", "EDGE", values)
+    ob.data.update_tag()
+
+
+def change_rules(ob: bpy.types.Object) -> None:
+    ob.modifiers["Subdivision"].boundary_smooth = "PRESERVE_CORNERS"
+
+
+@pytest.mark.parametrize("change", [change_faces, change_creases, change_rules])
+def test_stale_tables_are_named_and_made_anew(change):
+    ob = sampled(depth=4)
+    assert look(ob) == []
+    change(ob)
+    bpy.context.view_layer.update()
+    assert look(ob) == [(STALE, ids.SAMPLE_TABLES)]
+    bpy.ops.object.limit_sample_tables()
+    assert look(ob) == []
+
+
+def test_broken_tables_are_named_and_mended():
+    ob = sampled(depth=4)
+    table = all_tiles.of_surface(ob)
+    bpy.data.objects.remove(bpy.data.objects[f"{ids.ALL_POINTS_TABLE} of Holes"])
+    told = f"The hidden table of points that {table.name} reads was deleted"
+    assert look(ob) == [(told, ids.SAMPLE_TABLES)]
+    bpy.ops.object.limit_sample_tables()
+    assert look(ob) == []
+    bpy.data.node_groups.remove(bpy.data.node_groups[ids.TILES_GROUP])
+    assert State.of(ob) is None  # nothing tells whose table it is any more
+    bpy.ops.object.limit_sample_tables()
+    ob.modifiers.remove(ob.modifiers[ids.CAPTURE_GROUP])
+    assert look(ob) == [("Holes: the modifier Limit Capture was deleted", ids.SAMPLE_TABLES)]
+    bpy.ops.object.limit_sample_tables()
+    assert look(ob) == []
+
+
+def test_tables_of_followers_and_of_all_tiles_are_told_apart():
+    ob = sampled(depth=4)
+    hair = scenes.add_hair(ob, follow="NODES")
+    change_rules(ob)
+    bpy.context.view_layer.update()
+    texts = [text for text, _remedy in look(ob)]
+    assert texts[-1] == STALE
+    assert len(texts) == 2
+    assert [text for text, _remedy in look(hair)] == texts[:1]
+    scenes.activate(ob)
+    bpy.ops.object.limit_sample_tables()
+    assert [text for text, _remedy in look(ob)] == texts[:1]
+
+
+def test_stale_tables_are_seen_when_a_file_is_loaded(tmp_path, capfd):
+    ob = sampled(depth=4)
+    change_rules(ob)
+    path = str(tmp_path / "a.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    capfd.readouterr()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    lines = capfd.readouterr().out.splitlines()
+    assert [x for x in lines if x.startswith("Limit Surface:")] == [f"Limit Surface: {STALE}"]
+    assert surfaces() == [bpy.data.objects["Holes"]]
+    stale._forget()
+
+
+def test_settings_stay_unless_they_are_given():
+    ob = sampled(depth=5, levels=1)
+    assert all_tiles.settings_of(ob) == (5, 1)
+    bpy.ops.object.limit_sample_tables()
+    assert all_tiles.settings_of(ob) == (5, 1)
+    bpy.ops.object.limit_sample_tables("INVOKE_DEFAULT")
+    assert all_tiles.settings_of(ob) == (5, 1)
+    bpy.ops.object.limit_sample_tables(depth=6, levels=0)
+    assert all_tiles.settings_of(ob) == (6, 0)
+    all_tiles.faces_of(ob)[ids.FACES_MARK] = True  # a file of the first version
+    assert all_tiles.settings_of(ob) == (6, None)
+
+
+def test_tables_are_removed():
+    ob = deforming("grid with holes")
+    before = scenes.file_contents()
+    scenes.activate(ob)
+    bpy.ops.object.limit_sample_tables(depth=4)
+    remove(ob)
+    now = scenes.file_contents()
+    assert {kind for kind in now if now[kind] != before[kind]} == {"node_groups"}
+    assert [m.type for m in ob.modifiers] == ["WAVE", "SUBSURF"]
+    assert State.of(ob) is None
+
+
+def test_what_follows_keeps_its_tables():
+    ob = sampled(depth=4)
+    hair = scenes.add_hair(ob, follow="NODES")
+    remove(ob)
+    bpy.context.scene.frame_set(30)
+    check_hair(ob, hair)
+
+
+def test_tables_that_users_made_outlive_those_of_followers():
+    ob = sampled(depth=4)
+    hair = scenes.add_hair(ob, follow="NODES")
+    bpy.data.objects.remove(hair)
+    bpy.ops.object.select_all(action="DESELECT")
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    assert all_tiles.of_surface(ob) is not None
+    assert f"{ids.TILES_TABLE} of Holes" not in bpy.data.objects
+
+
+def test_readers_are_named(capfd):
+    ob = sampled(depth=4)
+    tree = bpy.data.node_groups.new("Pebbles", "GeometryNodeTree")
+    node = tree.nodes.new("GeometryNodeObjectInfo")
+    node.inputs["Object"].default_value = all_tiles.of_surface(ob)
+    remove(ob)
+    assert "have none now: Pebbles" in capfd.readouterr().out
+
+
+def test_a_mesh_without_tables_is_refused():
+    scenes.activate(scenes.cross())
+    with pytest.raises(RuntimeError, match="Cross has no tables for Sample Limit Surface"):
+        bpy.ops.object.limit_sample_remove()
