@@ -11,8 +11,6 @@ import pytest
 import scenes
 from follow_scenes import check_hair, deforming
 from limit_surface import ids
-from limit_surface.nodes import groups
-from limit_surface.nodes.live import FOLLOW_LIVE
 from limit_surface.reading import attributes
 
 
@@ -251,10 +249,6 @@ def refused(match: str, ob: bpy.types.Object, **properties: object) -> None:
 def test_refusals():
     ob = deforming("grid with holes")
     refused("Select a surface or what follows it", ob)
-    live = scenes.add_hair(ob, follow="NONE")
-    groups.add_modifier(live, FOLLOW_LIVE, Surface=ob)
-    refused(f"{live.name} follows live: unbind it at rest", live)
-    bpy.data.objects.remove(live)
     hair = scenes.add_hair(ob, follow="NODES")
     refused("stores no UVs", hair, method="UV")
     scenes.add_uv_map(ob, lambda p: p[:, :2])

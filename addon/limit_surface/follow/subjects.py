@@ -69,17 +69,13 @@ def to_rebind(
     context: bpy.types.Context,
 ) -> dict[bpy.types.Object, list[bpy.types.Object]]:
     """Returns the surfaces among the selected objects that something follows, and those on which
-    the selected things stand, with these things. Raises RefusalError for what follows live.
+    the selected things stand, with these things.
     """
     found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
     for ob in selected(context):
-        if live_modifier_of(ob):
-            raise RefusalError(
-                f"{ob.name} follows live: unbind it at rest, rebind it, and let it follow again"
-            )
         surface = surface_of(ob) if modifier_of(ob) or is_placed(ob) else None
         if surface is not None:
             found.setdefault(surface, []).append(ob)
-        elif ob.type == "MESH" and (followers_of(ob) or strays_of(ob)):
+        elif ob.type == "MESH" and (followers_of(ob) or live_followers_of(ob) or strays_of(ob)):
             found.setdefault(ob, [])
     return found

@@ -129,6 +129,14 @@ def take_up_edits(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
         _take_up(ob, surface, on, depsgraph)
 
 
+def read_anew(surface: bpy.types.Object) -> None:
+    """Makes sure that the surface is read as a whole for the next pose. The checksums that tell
+    whether it has changed do not see another order of its faces, which matters once something is
+    bound to them.
+    """
+    _surfaces.pop(ObjectKey.of(surface), None)
+
+
 def start(ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """Takes the points of the object for those at rest. Raises CageError, MeshError or
     LocationError where the points do not belong to the surface.

@@ -14,7 +14,7 @@ from ..nodes import groups
 from ..nodes.follow import SURFACE
 from ..nodes.live import FOLLOW_LIVE
 from ..reading import cage
-from . import followers, following, live, live_thing, newcomers
+from . import followers, following, live, live_surface, live_thing, newcomers
 from .unbinding import Unbinding
 
 
@@ -68,6 +68,7 @@ class LiveRequest:
         if self._by_nodes:
             self._unbinding.write()
         following.ensure_capture(self._surface)
+        live.read_anew(self._surface)
         for ob in self._things:
             modifier = followers.live_modifier_of(ob)
             if modifier is None:
@@ -95,6 +96,39 @@ def _check_kind(ob: bpy.types.Object) -> None:
         raise RefusalError(f"{ob.name} has normals of its own, which can follow by nodes only")
     if getattr(ob.data, "shape_keys", None):
         raise RefusalError(f"{ob.name} has shape keys, which can follow by nodes only")
+
+
+def prepare_rebinding(things: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> None:
+    """Takes up edits of things that are about to get other places. Raises RefusalError for one that
+    has lost its shape at rest.
+    """
+    for ob in things:
+        lacking = live_thing.missing(ob.data)
+        if lacking:
+            raise RefusalError(f"{ob.data.name} has no attribute {lacking}: let it follow again")
+    for ob in things:
+        try:
+            live.take_up_edits(ob, depsgraph)
+        except live_surface.errors:
+            continue  # its faces do not exist any more, so that it has not been posed since
+
+
+def finish_rebinding(
+    things: Sequence[bpy.types.Object],
+    surface: bpy.types.Object,
+    signature: str,
+    context: bpy.types.Context,
+) -> None:
+    """Poses things that have got other places on a surface with this signature."""
+    if not things:
+        return
+    following.ensure_capture(surface)
+    live.read_anew(surface)
+    for ob in things:
+        ob.data[ids.SIGNATURE] = signature
+    depsgraph = context.evaluated_depsgraph_get()
+    if live.is_enabled(depsgraph.scene):
+        live.pose_all(depsgraph)
 
 
 def end(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:

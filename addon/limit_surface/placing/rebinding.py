@@ -15,8 +15,14 @@ from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes, cage, uv_map
 from ..tasks.refused_faces import check_some_left
-from . import curve_points, following
-from .followers import followers_of, holder_of, strays_of
+from . import curve_points, following, live_binding
+from .followers import (
+    followers_of,
+    holder_of,
+    live_followers_of,
+    live_modifier_of,
+    strays_of,
+)
 from .newcomers import bound_at_closest, put_places
 from .places import NOWHERE
 from .posed_surface import PosedSurface, transformed
@@ -83,7 +89,8 @@ class Rebinding:
         max_distance: float = math.inf,
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
-        bound = list(dict.fromkeys([*followers_of(surface), *strays_of(surface), *things]))
+        following_now = [*followers_of(surface), *live_followers_of(surface), *strays_of(surface)]
+        bound = list(dict.fromkeys([*following_now, *things]))
         # For control points that were added there are no places that could be kept.
         self._curves = [ob for ob in bound if ob.type == "CURVE" and curve_points.has_others(ob)]
         kept = [ob for ob in bound if ob not in self._curves]
@@ -91,6 +98,8 @@ class Rebinding:
             curve_points.check(ob, surface)
         for ob in kept:
             following.check_thing(ob, surface)
+        self._live = [ob for ob in kept if live_modifier_of(ob)]
+        live_binding.prepare_rebinding(self._live, depsgraph)
         blocks = {holder_of(ob): ob for ob in reversed(kept)}
         with cage.opened(surface, depsgraph) as (found, mesh):
             posed = PosedSurface(found)
@@ -104,18 +113,25 @@ class Rebinding:
             else:
                 find = _ByFace(posed)
             self._relocations = [_relocation(ob, posed, find) for ob in blocks.values()]
+            self._signature = following.signature(found)
         self._target = surface
         self._surface, self._names = surface.name, [ob.name for ob in bound]
         self._reason = find.reason
+        by_nodes = [ob for ob in kept if ob not in self._live]
+        self._relocations_of_live = [r for r in self._relocations if r.elements.ob in self._live]
+        others = [r for r in self._relocations if r not in self._relocations_of_live]
         request = following.Request(
-            surface, depsgraph, kept, relocated=self._relocations, without=self._curves
+            surface, depsgraph, by_nodes, relocated=others, without=self._curves
         )
-        self._bindings = request.compute() if kept else None
+        self._bindings = request.compute() if by_nodes else None
 
     def write(self, context: bpy.types.Context) -> Rebound:
         """Changes the file."""
         if self._bindings:
             self._bindings.write()
+        for relocation in self._relocations_of_live:
+            relocation.write()
+        live_binding.finish_rebinding(self._live, self._target, self._signature, context)
         curve_points.bind(self._curves, self._target, context)
         for relocation in self._relocations:
             if len(relocation.lost) and relocation.elements.ob.type != "CURVE":
@@ -211,7 +227,7 @@ class _ByFace(_Finder):
 
 
 def _relocation(ob: bpy.types.Object, posed: PosedSurface, find: _Finder) -> Relocation:
-    elements = Elements(ob)
+    elements = Elements(ob, at_rest=True)
     rows = np.flatnonzero(elements.has_place)
     if ob.type == "CURVE" and not find.keeps_frame:
         return _curve_relocation(elements, posed)
@@ -269,11 +285,11 @@ def _moved(
     moving = np.isin(of_point, rows)
     of_point = of_point[moving]
     for name in _POINTS:
-        if name in elements.data.attributes:
-            points = attributes.read(elements.data, name).astype(np.float64)
+        if elements.rest_name(name) in elements.data.attributes:
+            points = elements.read_shape(name).astype(np.float64)
             arm = np.einsum("nij,nj->ni", turn[of_point], points[moving] - before[of_point])
             points[moving] = after[of_point] + arm
-            relocation.values[name] = points
+            relocation.values[elements.rest_name(name)] = points
     if elements.domain == "POINT":
         _turn_attributes(relocation, rows, turn[rows])
     return after[rows]
@@ -281,16 +297,17 @@ def _moved(
 
 def _turn_attributes(relocation: Relocation, rows: np.ndarray, turn: np.ndarray) -> None:
     """Turns what points store about their orientation."""
-    data = relocation.data
+    elements = relocation.elements
+    stored = relocation.data.attributes
     for name in _DIRECTIONS:
-        if name in data.attributes:
-            vectors = attributes.read(data, name)
+        if elements.rest_name(name) in stored:
+            vectors = elements.read_shape(name)
             vectors[rows] = np.einsum("nij,nj->ni", turn, vectors[rows].astype(np.float64))
-            relocation.values[name] = vectors
-    if ids.ROTATION in data.attributes:
-        rotation = attributes.read(data, ids.ROTATION)
+            relocation.values[elements.rest_name(name)] = vectors
+    if elements.rest_name(ids.ROTATION) in stored:
+        rotation = elements.read_shape(ids.ROTATION)
         rotation[rows] = quaternions(turn @ matrices(rotation[rows].astype(np.float64)))
-        relocation.values[ids.ROTATION] = rotation
+        relocation.values[elements.rest_name(ids.ROTATION)] = rotation
 
 
 def _bind_others(relocation: Relocation, posed: PosedSurface, max_distance: float) -> None:

@@ -11,7 +11,8 @@ import numpy as np
 from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes, ragged_rows, splines
-from .followers import domain_of, holder_of, is_placed
+from . import live_thing
+from .followers import domain_of, holder_of, is_placed, live_modifier_of
 from .places import NOWHERE, ROOT_KINDS, Places
 from .posed_surface import transformed
 
@@ -20,9 +21,11 @@ _NOTHING = {ids.FACE: NOWHERE, ids.UV: 0.0, ids.REST_ROOT: 0.0, ids.REST_ROTATIO
 
 
 class Elements:
-    """The strands or points of an object, and what it stores about their places."""
+    """The strands or points of an object, and what it stores about their places. What follows live
+    is shown in its place of this frame; `at_rest` takes its shape at rest instead.
+    """
 
-    def __init__(self, ob: bpy.types.Object) -> None:
+    def __init__(self, ob: bpy.types.Object, at_rest: bool = False) -> None:
         holder = holder_of(ob)
         if holder is None:
             raise RefusalError(f"{ob.name} is neither hair, nor points, nor a mesh")
@@ -30,10 +33,11 @@ class Elements:
         if ob.type in TYPES:
             attributes.check_names(ob, ROOT_KINDS, self.domain)
         self.matrix = np.array(ob.matrix_world, np.float64)
+        self._stores_rest = at_rest and live_modifier_of(ob) is not None
         if ids.POSITION not in holder.attributes:
             raise RefusalError(f"{ob.name} has no points")
         is_curve = ob.type == "CURVE"  # its table has the points as they were when it was bound
-        points = splines.positions(ob.data) if is_curve else attributes.read(holder, ids.POSITION)
+        points = splines.positions(ob.data) if is_curve else self.read_shape(ids.POSITION)
         self._points = points.astype(np.float64)
         self.sizes = np.ones(len(self._points), np.int64)
         if ob.type == "CURVES":
@@ -53,6 +57,15 @@ class Elements:
         kind = attributes.LAYOUTS[ROOT_KINDS[name]]
         shape = (self.count,) if kind.width == 1 else (self.count, kind.width)
         return np.full(shape, _NOTHING[name], kind.dtype)
+
+    def rest_name(self, name: str) -> str:
+        """Returns the name of the attribute that holds another one in the shape of these
+        elements.
+        """
+        return live_thing.rest_name(name) if self._stores_rest else name
+
+    def read_shape(self, name: str) -> np.ndarray:
+        return attributes.read(self.data, self.rest_name(name))
 
     def first_points(self) -> np.ndarray:
         """Returns the first points of strands, or the points themselves, in the world (n, 3)."""
