@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/prefetch.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/strands/root_pose.h"
 
@@ -19,6 +20,18 @@ namespace {
 
 /// Strands that make one task where their points are only read.
 constexpr std::size_t kStrandsPerTask = 4096;
+
+/// The tiles of strands in random order are spread over the memory: each is fetched while so many
+/// strands before it are posed, which takes as long as the memory needs to answer.
+constexpr std::size_t kPrefetched = 6;
+
+void prefetchTile(const TileTable& table, TileRef tile) {
+  if (tile.kind == TileRef::kBSpline) {
+    prefetch(table.bsplines[tile.index]);
+  } else if (tile.kind == TileRef::kRing) {
+    prefetch(table.ring_tiles[tile.index]);
+  }
+}
 
 std::string rowText(const float* row, int count) {
   std::ostringstream text;
@@ -197,6 +210,9 @@ struct StrandPoser::Data {
       RootFinder root(surface.table, surface.pose, to_strands);
       for (std::size_t i = first; i < last; ++i) {
         const Strand& strand = bound[i];
+        if (i + kPrefetched < last) {
+          prefetchTile(surface.table, bound[i + kPrefetched].place.tile);
+        }
         body(static_cast<std::size_t>(strand.row),
              motionOf(strand.root, strand.rotation, root(strand.place)));
       }
