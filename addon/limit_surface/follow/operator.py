@@ -94,6 +94,7 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         requests = []
         for on, obs in by_surface.items():
             following.check_surface(on, depsgraph.scene)
+            obs = live_binding.with_live_sharers(obs)
             things, curves = (
                 [ob for ob in obs if (ob.type == "CURVE") == is_curve] for is_curve in (False, True)
             )

@@ -91,6 +91,13 @@ def surface_of(ob: bpy.types.Object) -> bpy.types.Object | None:
     return ob.parent if ob.parent and ob.parent.type == "MESH" else None
 
 
+def sharers(ob: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns the other objects that have the same data."""
+    if ob.data is None or ob.data.users < 2:
+        return []
+    return [other for other in bpy.data.objects if other.data == ob.data and other != ob]
+
+
 def followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that follow a surface by nodes."""
     found = []

@@ -17,6 +17,7 @@ from ..nodes import groups
 from ..nodes.follow import SURFACE
 from ..tasks.object_keys import ObjectKey
 from . import live_surface, live_thing
+from .followers import sharers
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
 
@@ -111,7 +112,8 @@ def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
             _pose(surface, things, depsgraph)
             continue
         for ob in things:
-            if ob in changed and not _same_place(ob, surface, depsgraph):
+            has_changed = ob in changed or not changed.isdisjoint(sharers(ob))
+            if has_changed and not _same_place(ob, surface, depsgraph):
                 _pose(surface, things, depsgraph)
                 break
         else:
@@ -135,6 +137,29 @@ def read_anew(surface: bpy.types.Object) -> None:
     bound to them.
     """
     _surfaces.pop(ObjectKey.of(surface), None)
+
+
+def check_sharers(
+    ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph
+) -> None:
+    """Raises RefusalError where the data has another user whose points would have to be elsewhere
+    in the data: the points are written once for all users.
+    """
+    others = [o for o in sharers(ob) if o.evaluated_get(depsgraph).is_evaluated]
+    if not others:
+        return
+    own = _matrix(ob, surface, depsgraph)
+    for other in others:
+        if surface_of(other) not in (None, surface):
+            reason = f"follows {surface_of(other).name}"
+        elif not np.allclose(_matrix(other, surface, depsgraph), own, atol=1e-6):
+            reason = f"has another transform relative to {surface.name}"
+        else:
+            continue
+        raise RefusalError(
+            f"{ob.name} shares its data with {other.name}, which {reason}: make one of them a "
+            "single-user copy, or let them follow by nodes"
+        )
 
 
 def start(ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
@@ -181,6 +206,7 @@ def _pose(
     frame = depsgraph.scene.frame_float
 
     def pose(ob: bpy.types.Object) -> None:
+        check_sharers(ob, surface, depsgraph)
         thing = _thing(ob)
         thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame)
         thing.version = on.version
@@ -266,8 +292,9 @@ def _same_place(
 ) -> bool:
     written = live_thing.written(ob.data)
     try:
+        check_sharers(ob, surface, depsgraph)
         return written is not None and np.array_equal(
             written.matrix, _matrix(ob, surface, depsgraph)
         )
-    except ValueError:
+    except (RefusalError, ValueError):
         return False

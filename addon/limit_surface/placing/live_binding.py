@@ -39,11 +39,13 @@ class LiveRequest:
         things: Sequence[bpy.types.Object],
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
+        things = with_sharers(things)
         found = cage.read(surface, depsgraph)
         self._signature, limit = following.signature(found), found.surface()
         for ob in things:
             following.check_thing(ob, surface)
             _check_kind(ob)
+            live.check_sharers(ob, surface, depsgraph)
         self._relocations = newcomers.relocations(things, surface, depsgraph)
         relocated = {relocation.data for relocation in self._relocations}
         for ob in things:
@@ -80,17 +82,14 @@ class LiveRequest:
             if live_thing.missing(ob.data):
                 live.start(ob, self._surface, depsgraph)
         live.pose_all(depsgraph)
-        count = sum(len(ob.data.attributes[ids.FACE].data) for ob in self._things)
+        blocks = followers.holders(self._things)
+        count = sum(len(data.attributes[ids.FACE].data) for data in blocks)
         return LiveOutcome(self._surface.name, count)
 
 
 def _check_kind(ob: bpy.types.Object) -> None:
     if ob.type == "CURVE":
         raise RefusalError(f"{ob.name} is a Curve object, which can follow by nodes only")
-    if ob.data.users > 1:
-        raise RefusalError(
-            f"{ob.name} shares its data with other objects: make it a single user first"
-        )
     stored = ob.data.attributes.get(ids.CUSTOM_NORMAL)
     if stored and stored.data_type == "FLOAT_VECTOR":
         raise RefusalError(f"{ob.name} has normals of its own, which can follow by nodes only")
@@ -131,12 +130,30 @@ def finish_rebinding(
         live.pose_all(depsgraph)
 
 
+def with_sharers(things: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Returns the things and the other users of their data: all of these follow live, or none."""
+    found = dict.fromkeys(things)
+    for ob in things:
+        found.update(dict.fromkeys(followers.sharers(ob)))
+    return list(found)
+
+
+def with_live_sharers(things: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Returns the things, and the other users of the data of those that follow live."""
+    live_ones = [ob for ob in things if followers.live_modifier_of(ob)]
+    return list(dict.fromkeys([*things, *with_sharers(live_ones)]))
+
+
 def end(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
-    """Ends that the object follows live. Its points are then at rest."""
-    modifier = followers.live_modifier_of(ob)
-    if modifier is None:
+    """Ends that the object, and all others that share its data, follow live. Their points are then
+    at rest.
+    """
+    if followers.live_modifier_of(ob) is None:
         return
     if not live_thing.missing(ob.data):
         live.take_up_edits(ob, depsgraph)
         live_thing.stop(ob.data)
-    ob.modifiers.remove(modifier)
+    for user in with_sharers([ob]):
+        modifier = followers.live_modifier_of(user)
+        if modifier is not None:
+            user.modifiers.remove(modifier)

@@ -28,6 +28,7 @@ class LiveUnbinding:
         depsgraph: bpy.types.Depsgraph,
         shape: Literal["SHOWN", "REST"],
     ) -> None:
+        things = live_binding.with_sharers(things)
         for ob in things:
             following.check_editable(ob)
         self._things, self._depsgraph, self._shape = list(things), depsgraph, shape
@@ -45,7 +46,9 @@ class LiveUnbinding:
                 continue
             self._bind_here(ob, self._posed[surface])
             live_thing.leave(ob.data)
-            ob.modifiers.remove(followers.live_modifier_of(ob))
+            modifier = followers.live_modifier_of(ob)
+            if modifier is not None:
+                ob.modifiers.remove(modifier)
         for surface in self._posed:
             following.remove_unused_capture(surface)
         names = ", ".join(ob.name for ob in self._things)
