@@ -40,7 +40,7 @@ run_sanitized_pytest() {
   local package=$2/package preload=
   rm -rf "$package"
   cmake --install "$2" --component python --prefix "$package" >/dev/null
-  cp native/python/limitsurf/*.py "$package/limitsurf"
+  cp native/python/limitsurf/{*.py,*.pyi,py.typed} "$package/limitsurf"
   if [[ $1 == address ]]; then
     preload="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so)"
     export ASAN_OPTIONS=detect_leaks=0 # Python ends without freeing all of its own objects
