@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decals and limit meshes that follow a deforming surface by Geometry Nodes."""
+"""Decals and limit meshes that follow a deforming surface."""
 
+import bmesh
 import bpy
 import follow_truth
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import scenes
 from follow_scenes import deforming
 from limit_surface import ids
-from limit_surface.placing.followers import modifier_of
+from limit_surface.placing.followers import live_modifier_of, modifier_of
 from limit_surface.reading import attributes
 
 FRAMES = ((1, 0.0), (13, 0.5), (30, 0.0))
@@ -65,7 +66,8 @@ def has_normals(ob: bpy.types.Object, made: bpy.types.Object) -> np.ndarray:
 
 
 def check(ob: bpy.types.Object, made: bpy.types.Object) -> None:
-    positions = attributes.read(made.data, ids.POSITION).astype(np.float64)[:, None]
+    at_rest = ids.LIVE_REST if live_modifier_of(made) else ids.POSITION
+    positions = attributes.read(made.data, at_rest).astype(np.float64)[:, None]
     bound = follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
     corners = attributes.read(made.data, ids.CORNER_VERTEX)
     is_corner, has_normal = almost_parallel(ob, made)[corners], has_normals(ob, made)[corners]
@@ -113,6 +115,81 @@ def test_a_limit_mesh_is_the_one_of_each_frame():
     expected = attributes.read(anew.data, ids.POSITION)
     bound = follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
     assert np.abs(moved - expected).max() < bound
+
+
+def make_live(made: bpy.types.Object) -> None:
+    for ob in bpy.context.selected_objects:
+        ob.select_set(False)
+    scenes.activate(made)
+    made.select_set(True)
+    assert bpy.ops.object.limit_follow(mode="LIVE") == {"FINISHED"}
+    assert modifier_of(made) is None
+    assert live_modifier_of(made)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("scene", scenes.SCENES)
+def test_limit_meshes_follow_live(scene, mirrored):
+    ob = deforming(scene, mirrored)
+    made = limit_mesh(ob)
+    make_live(made)
+    check(ob, made)
+
+
+def test_decals_follow_live():
+    ob = deforming("grid with holes")
+    ob.matrix_world.identity()
+    made = decal(ob, decal_offset=0.02, follow="NONE")
+    make_live(made)
+    check(ob, made)
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 5), reason="normals are angles there")
+def test_normals_go_back_to_rest_or_stay():
+    ob = deforming("cross")
+    made = limit_mesh(ob)
+    rest = attributes.read(made.data, ids.CUSTOM_NORMAL)
+    make_live(made)
+    bpy.context.scene.frame_set(30)
+    shown = attributes.read(made.data, ids.CUSTOM_NORMAL)
+    assert np.abs(shown - rest).max() > 0.1
+    bpy.ops.ed.undo_push(message="live")
+    assert bpy.ops.object.limit_unbind(shape="SHOWN") == {"FINISHED"}
+    np.testing.assert_array_equal(attributes.read(made.data, ids.CUSTOM_NORMAL), shown)
+    assert not [a.name for a in made.data.attributes if a.name.startswith(ids.LIVE_REST)]
+    make_live(made)
+    bpy.context.scene.frame_set(1)
+    np.testing.assert_allclose(attributes.read(made.data, ids.CUSTOM_NORMAL), rest, atol=2e-4)
+    bpy.context.scene.frame_set(30)
+    assert bpy.ops.object.limit_unbind(shape="REST") == {"FINISHED"}
+    np.testing.assert_allclose(attributes.read(made.data, ids.CUSTOM_NORMAL), shown, atol=1e-6)
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 5), reason="normals are angles there")
+def test_faces_of_the_mesh_itself_may_change_while_it_follows_live():
+    ob = deforming("grid with holes")
+    ob.matrix_world.identity()
+    made = limit_mesh(ob)
+    make_live(made)
+    bpy.context.scene.frame_set(30)
+    edited = bmesh.new()
+    edited.from_mesh(made.data)
+    edited.faces.ensure_lookup_table()
+    bmesh.ops.delete(edited, geom=edited.faces[:20], context="FACES_ONLY")
+    edited.to_mesh(made.data)
+    edited.free()
+    bpy.context.scene.frame_set(1)
+    check(ob, made)
+
+
+def test_what_cannot_follow_live_is_refused():
+    ob = deforming("cross")
+    made = limit_mesh(ob)
+    made.shape_key_add(name="Basis")
+    scenes.activate(made)
+    with pytest.raises(RuntimeError, match="has shape keys. Live following cannot move these"):
+        bpy.ops.object.limit_follow(mode="LIVE")
+    assert follows(made)
 
 
 @pytest.mark.parametrize("make", [decal, limit_mesh])

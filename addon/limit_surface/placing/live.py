@@ -150,8 +150,9 @@ def check_sharers(
         return
     own = _matrix(ob, surface, depsgraph)
     for other in others:
-        if surface_of(other) not in (None, surface):
-            reason = f"follows {surface_of(other).name}"
+        theirs = surface_of(other)
+        if theirs is not None and theirs != surface:
+            reason = f"follows {theirs.name}"
         elif not np.allclose(_matrix(other, surface, depsgraph), own, atol=1e-6):
             reason = f"has another transform relative to {surface.name}"
         else:

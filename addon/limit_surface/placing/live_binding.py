@@ -89,12 +89,21 @@ class LiveRequest:
 
 def _check_kind(ob: bpy.types.Object) -> None:
     if ob.type == "CURVE":
-        raise RefusalError(f"{ob.name} is a Curve object, which can follow by nodes only")
+        raise RefusalError(
+            f"{ob.name} is a Curve object, whose data cannot hold a shape at rest: let it follow "
+            "by nodes, or convert it to Curves"
+        )
     stored = ob.data.attributes.get(ids.CUSTOM_NORMAL)
-    if stored and stored.data_type == "FLOAT_VECTOR":
-        raise RefusalError(f"{ob.name} has normals of its own, which can follow by nodes only")
+    if stored and stored.data_type == "FLOAT_VECTOR" and stored.domain != "CORNER":
+        raise RefusalError(
+            f"{ob.name} has custom normals that are not stored at the corners of its faces. Live "
+            "following cannot turn these: let it follow by nodes"
+        )
     if getattr(ob.data, "shape_keys", None):
-        raise RefusalError(f"{ob.name} has shape keys, which can follow by nodes only")
+        raise RefusalError(
+            f"{ob.name} has shape keys. Live following cannot move these: let it follow by nodes, "
+            "or apply the shape keys"
+        )
 
 
 def prepare_rebinding(things: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> None:

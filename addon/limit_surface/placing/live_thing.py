@@ -45,14 +45,17 @@ def rest_name(name: str) -> str:
 
 def moved_names(data: bpy.types.ID) -> list[str]:
     """Returns the names of the attributes that follow the surface."""
-    kinds = dict.fromkeys(_POINTS, "FLOAT_VECTOR")
+    kinds = dict.fromkeys(_POINTS, ("FLOAT_VECTOR", "POINT"))
     if not isinstance(data, bpy.types.Curves):
-        kinds |= dict.fromkeys(_VECTORS, "FLOAT_VECTOR") | {ids.ROTATION: "QUATERNION"}
+        kinds |= dict.fromkeys(_VECTORS, ("FLOAT_VECTOR", "POINT"))
+        kinds |= {ids.ROTATION: ("QUATERNION", "POINT")}
+    if isinstance(data, bpy.types.Mesh):
+        kinds |= {ids.CUSTOM_NORMAL: ("FLOAT_VECTOR", "CORNER")}
     stored = data.attributes
     return [
         name
         for name, kind in kinds.items()
-        if name in stored and (stored[name].data_type, stored[name].domain) == (kind, "POINT")
+        if name in stored and (stored[name].data_type, stored[name].domain) == kind
     ]
 
 
@@ -82,8 +85,8 @@ def stop(data: bpy.types.ID) -> None:
 
 def leave(data: bpy.types.ID) -> None:
     """Leaves the data's points where they are, and forgets those at rest."""
-    own = [ids.LIVE_FINGERPRINT, *(rest_name(name) for name in (*_POINTS, *_VECTORS, ids.ROTATION))]
-    for name in own:
+    followed = (*_POINTS, *_VECTORS, ids.ROTATION, ids.CUSTOM_NORMAL)
+    for name in (ids.LIVE_FINGERPRINT, *(rest_name(name) for name in followed)):
         if name in data.attributes:
             data.attributes.remove(data.attributes[name])
     if ids.LIVE_WRITTEN in data:
@@ -113,6 +116,7 @@ class LiveThing:
         self._limit: limitsurf.LimitSurface | None = None
         self._binding: dict[str, np.ndarray] = {}
         self._poser: limitsurf.StrandPoser | None = None
+        self._corners: _Corners | None = None
         self._buffers: dict[str, np.ndarray] = {}
         self._is_current = False  # binding and points were read since the last pose
 
@@ -200,6 +204,8 @@ class LiveThing:
         """Turns normals, tangents and rotations, and returns whether anything changed."""
         how: dict[str, Callable[..., np.ndarray]] = {ids.ROTATION: poser.pose_rotations}
         how |= dict.fromkeys(_VECTORS, poser.pose_vectors)
+        if ids.CUSTOM_NORMAL in data.attributes and isinstance(data, bpy.types.Mesh):
+            how[ids.CUSTOM_NORMAL] = self._corners_of(data).pose_vectors
         has_moved = False
         for name in moved_names(data):
             if name not in how or rest_name(name) not in data.attributes:
@@ -232,15 +238,17 @@ class LiveThing:
             or binding.keys() != self._binding.keys()
             or not all(_same_bits(binding[key], kept) for key, kept in self._binding.items())
         ):
-            self._poser = limit.strand_poser(
-                binding[ids.FACE],
-                binding[ids.UV].astype(np.float64),
-                binding[ids.REST_ROOT],
-                binding[ids.REST_ROTATION],
-                binding.get("offsets"),
-            )
-            self._limit, self._binding = limit, binding
+            self._poser = _poser(limit, binding, binding.get("offsets"))
+            self._limit, self._binding, self._corners = limit, binding, None
         return self._poser
+
+    def _corners_of(self, mesh: bpy.types.Mesh) -> _Corners:
+        """Returns what turns vectors at the corners of polygons, on the surface of the poser."""
+        vertex = attributes.read(mesh, ids.CORNER_VERTEX)
+        if self._corners is None or not np.array_equal(self._corners.vertex, vertex):
+            assert self._limit is not None
+            self._corners = _Corners(vertex, self._binding, self._limit)
+        return self._corners
 
     def _read(self, data: bpy.types.ID, name: str) -> np.ndarray:
         """Returns the attribute's values, in memory that is used again for the next frame."""
@@ -257,6 +265,36 @@ class LiveThing:
         if buffer is None or buffer.shape != shape or buffer.dtype != kind:
             buffer = self._buffers[name] = np.empty(shape, kind)
         return buffer
+
+
+class _Corners:
+    """Turns vectors at the corners of polygons as their vertices turn. To the poser the corners of
+    a vertex are the points of a strand.
+    """
+
+    def __init__(
+        self, vertex: np.ndarray, binding: dict[str, np.ndarray], limit: limitsurf.LimitSurface
+    ) -> None:
+        self.vertex = vertex
+        self._order = np.argsort(vertex, kind="stable")
+        count = np.bincount(vertex, minlength=len(binding[ids.FACE]))
+        self._poser = _poser(limit, binding, np.concatenate([[0], np.cumsum(count)]))
+
+    def pose_vectors(self, rest: np.ndarray, matrix: np.ndarray, out: np.ndarray) -> np.ndarray:
+        out[self._order] = self._poser.pose_vectors(rest[self._order], matrix)
+        return out
+
+
+def _poser(
+    limit: limitsurf.LimitSurface, binding: dict[str, np.ndarray], offsets: np.ndarray | None
+) -> limitsurf.StrandPoser:
+    return limit.strand_poser(
+        binding[ids.FACE],
+        binding[ids.UV].astype(np.float64),
+        binding[ids.REST_ROOT],
+        binding[ids.REST_ROTATION],
+        offsets,
+    )
 
 
 def _without_zero(prints: np.ndarray) -> np.ndarray:
