@@ -76,11 +76,13 @@ build_cpp() {
   cmake --build "build/$2" --parallel "$JOBS"
 }
 
+# run_ctest TREE OPTIONS...
 run_ctest() {
   local tree=$1 selection=(-LE slow)
+  shift
   $slow && selection=()
   ctest --test-dir "$tree" --output-on-failure --no-tests=error --parallel "$JOBS" \
-    "${selection[@]}" --output-junit "$results/C++ tests.xml" >"$results/ctest.log" ||
+    "${selection[@]}" "$@" --output-junit "$results/C++ tests.xml" >"$results/ctest.log" ||
     { grep -v ' Passed ' "$results/ctest.log" && return 1; }
   tail -n 5 "$results/ctest.log"
 }
