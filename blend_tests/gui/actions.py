@@ -178,6 +178,16 @@ def loose_vertices() -> None:
     bpy.ops.object.mode_set(mode="EDIT")
 
 
+def subdivide(name: str) -> None:
+    """Adds a modifier without which users are asked before anything is placed."""
+    bpy.data.objects[name].modifiers.new("Subdivision", "SUBSURF")
+    remember()
+
+
+def modifiers(name: str) -> list[str]:
+    return [modifier.name for modifier in bpy.data.objects[name].modifiers]
+
+
 def remember() -> None:
     """Pushes an undo step after a script's change, as users' steps do."""
     bpy.ops.ed.undo_push(message="Before")

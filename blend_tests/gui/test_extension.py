@@ -15,6 +15,7 @@ def test_installed_with_its_native_module(blender):
 
 
 def test_hair_by_a_click_and_ctrl_z(blender):
+    blender.call("subdivide", "Cube")
     blender.open_tab()
     blender.click(*blender.find_button(ADD_HAIR))
     blender.await_end(ADD_HAIR)
@@ -29,6 +30,7 @@ def test_hair_by_a_click_and_ctrl_z(blender):
 
 
 def test_redo_panel_makes_it_anew(blender):
+    blender.call("subdivide", "Cube")
     blender.open_tab()
     blender.click(*blender.find_button(ADD_HAIR))
     blender.await_end(ADD_HAIR)

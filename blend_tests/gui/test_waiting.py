@@ -18,6 +18,7 @@ MOST = 3_000_000  # the largest number made without confirmation, which takes ab
 def scatter(blender):
     """Returns a function that starts to scatter so many points by a click."""
     blender.call("set_next", ADD_POINTS, distribution="BLUE_NOISE", amount="COUNT", count=300)
+    blender.call("subdivide", "Cube")
     blender.open_tab()
     button = blender.find_button(ADD_POINTS)
 

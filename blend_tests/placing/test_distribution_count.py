@@ -44,7 +44,8 @@ def drawn(panel):
 
 
 def shown_count(panel):
-    return drawn(panel).label.call_args.kwargs["text"]
+    lines = [call.kwargs["text"] for call in drawn(panel).column().label.call_args_list]
+    return " ".join(lines)
 
 
 def answered(panel):

@@ -6,8 +6,6 @@ Python that has them is called instead.
 """
 
 import threading
-from types import SimpleNamespace
-from unittest.mock import MagicMock
 
 import bpy
 import numpy as np
@@ -19,46 +17,15 @@ from limit_surface.placing import scatter_operator
 from limit_surface.reading import attributes
 from limit_surface.tasks import watched_operator
 from limit_surface.tasks.job import Job, part_of
+from stand_ins import OPERATORS, event, stand_in, window_context
 from waiting import LIMIT, wait_for
 
-OPERATORS = {"hair": "limit_hair_add", "points": "limit_points_add"}
 
-
-def stand_in(name, **chosen):
-    kind = getattr(bpy.ops.object, OPERATORS[name]).get_rna_type()
-    operator = getattr(bpy.types, kind.identifier)
-    own = ("maker", "add", "noun", "bl_label", "elements_per_location", "check_properties")
-    cls = type(
-        "StandIn", (scatter_operator.ScatterOperator,), {n: getattr(operator, n) for n in own}
-    )
-    made = cls()
-    for prop in kind.properties:
-        if prop.identifier != "rna_type":
-            value = prop.default_array[:] if getattr(prop, "is_array", False) else None
-            if value is None:
-                is_flag = prop.type == "ENUM" and prop.is_enum_flag
-                value = set() if is_flag else prop.default
-            setattr(made, prop.identifier, chosen.get(prop.identifier, value))
-    made.is_property_set = chosen.__contains__
-    made.properties = made
-    made.report = MagicMock()
-    return made
-
-
-def window_context():
-    """Returns a context as a user has it, with a window manager and a workspace that only record
-    calls.
-    """
-    context = MagicMock(wraps=bpy.context)
-    for name in ("active_object", "scene", "view_layer", "selected_objects", "space_data"):
-        setattr(context, name, getattr(bpy.context, name))
-    context.window_manager, context.workspace = MagicMock(), MagicMock()
-    context.window = MagicMock()
-    return context
-
-
-def event(kind, value="PRESS"):
-    return SimpleNamespace(type=kind, value=value)
+def subdivided_cross():
+    """Adds a mesh about whose modifier nobody is asked."""
+    ob = scenes.cross()
+    scenes.add_subsurf(ob)
+    return ob
 
 
 @pytest.fixture
@@ -79,7 +46,7 @@ def slowly(monkeypatch):
 
 @pytest.mark.parametrize("name", OPERATORS)
 def test_long_work_is_waited_for(name, slowly):
-    scenes.cross()
+    subdivided_cross()
     operator, context = stand_in(name, per_side=4), window_context()
     before = scenes.file_contents()
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}
@@ -106,7 +73,7 @@ def test_long_work_is_waited_for(name, slowly):
 
 @pytest.mark.parametrize("name", OPERATORS)
 def test_esc_leaves_nothing(name, slowly):
-    scenes.cross()
+    subdivided_cross()
     before, active = scenes.file_contents(), bpy.context.active_object
     operator, context = stand_in(name), window_context()
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}
@@ -124,7 +91,7 @@ def test_esc_leaves_nothing(name, slowly):
 
 
 def test_a_new_file_while_somebody_waits(slowly):
-    scenes.cross()
+    subdivided_cross()
     operator, context = stand_in("hair"), window_context()
     operator.invoke(context, None)
     job = operator._job
@@ -136,7 +103,7 @@ def test_a_new_file_while_somebody_waits(slowly):
 
 
 def test_the_surface_is_gone_meanwhile(slowly):
-    ob = scenes.cross()
+    ob = subdivided_cross()
     operator, context = stand_in("hair", per_side=3), window_context()
     operator.invoke(context, None)
     bpy.data.objects.remove(ob)
@@ -149,7 +116,7 @@ def test_the_surface_is_gone_meanwhile(slowly):
 
 def failed(monkeypatch, error):
     """Returns an operator whose work ends in an error, and its context."""
-    scenes.cross()
+    subdivided_cross()
 
     def fail(*_arguments):
         raise error
@@ -175,7 +142,7 @@ def test_memory_that_runs_out_in_the_thread(monkeypatch):
 
 
 def test_more_than_blender_holds_is_refused_even_if_large_counts_are_allowed():
-    scenes.cross()
+    subdivided_cross()
     before = scenes.file_contents()
     chosen = {"distribution": "UNIFORM", "count": 2**31 - 1, "points": 5, "allow_large": True}
     operator = stand_in("hair", **chosen)
@@ -192,7 +159,7 @@ def test_mistakes_in_the_thread_keep_their_traceback(monkeypatch):
 
 def test_short_work_is_not_waited_for(monkeypatch):
     monkeypatch.setattr(watched_operator, "PATIENCE", LIMIT)
-    scenes.cross()
+    subdivided_cross()
     operator, context = stand_in("hair", per_side=3), window_context()
     assert operator.invoke(context, None) == {"FINISHED"}
     context.window_manager.modal_handler_add.assert_not_called()
@@ -202,7 +169,7 @@ def test_short_work_is_not_waited_for(monkeypatch):
 
 def test_scripts_wait_without_events(slowly):
     slowly.set()
-    scenes.cross()
+    subdivided_cross()
     operator, context = stand_in("hair", per_side=3), window_context()
     assert operator.execute(context) == {"FINISHED"}
     context.window_manager.modal_handler_add.assert_not_called()
@@ -210,7 +177,7 @@ def test_scripts_wait_without_events(slowly):
 
 
 def test_large_counts_are_asked_about_first(slowly):
-    scenes.cross()
+    subdivided_cross()
     operator, context = stand_in("hair", per_side=1000), window_context()
     operator.invoke(context, None)
     confirm = context.window_manager.invoke_confirm
@@ -224,7 +191,7 @@ def test_large_counts_are_asked_about_first(slowly):
 
 
 def test_estimates_are_called_so_when_asking():
-    scenes.cross()
+    subdivided_cross()
     operator = stand_in("hair", distribution="BLUE_NOISE", amount="DISTANCE", distance=5e-4)
     context = window_context()
     operator.invoke(context, None)

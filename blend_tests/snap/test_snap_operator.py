@@ -257,7 +257,9 @@ def test_panel_chooses_the_target():
     layout = MagicMock()
     bpy.types.VIEW3D_PT_limit_snap.draw(SimpleNamespace(layout=layout), bpy.context)
     layout.prop.assert_called_once_with(bpy.context.scene.limit_surface, "target")
-    assert layout.label.call_args.kwargs["text"] == f"Target now: active mesh {target.name}"
+    assert (
+        layout.column().label.call_args.kwargs["text"] == f"Target now: active mesh {target.name}"
+    )
     assert ids.SNAP in [call.args[0] for call in layout.column().operator.call_args_list]
 
 

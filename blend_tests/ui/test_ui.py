@@ -37,7 +37,7 @@ def test_panel_offers_the_operators():
 
 def test_panel_shows_whose_rules_count():
     ob = scenes.cross()
-    assert "Rules: Subdivision's defaults" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
+    assert "No Subdivision Surface" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
     subsurf = scenes.add_subsurf(ob)
     layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
     assert "Subdivision" in labels(layout)
@@ -46,6 +46,49 @@ def test_panel_shows_whose_rules_count():
     layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
     assert shown_rules(layout, subsurf) == []
     assert "Simple: bilinear faces" in labels(layout.column())
+
+
+def test_panel_tells_whether_the_limit_is_shown():
+    ob = scenes.cross()
+    layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
+    assert "Cross" in labels(layout)
+    assert "Control mesh, not its limit" in labels(layout.row())
+    assert layout.row().alert is True
+    assert layout.row().operator.call_args.args == (ids.SHOW,)
+    bpy.ops.object.limit_show()
+    layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
+    assert "Level 3, on the limit" in labels(layout.row())
+    assert layout.row().alert is False
+    assert not layout.row().operator.called
+    bpy.context.view_layer.objects.active = None
+    assert "No active mesh" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
+    bpy.context.view_layer.objects.active = ob
+
+
+def test_panel_tells_what_is_bound():
+    ob = scenes.cross()
+    assert "Nothing follows it" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
+    hair = scenes.add_hair(ob, follow="NODES")
+    assert "1 object follows it" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
+    assert "Cross" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))  # though the hair is active
+    scenes.add_points(ob, follow="LIVE")
+    layout = drawn(bpy.types.VIEW3D_PT_limit_surface)
+    assert "2 objects follow it" in labels(layout)
+    assert "Cross" in labels(layout)
+    assert not drawn(bpy.types.VIEW3D_PT_limit_follow, "draw_header_preset").row.called
+    hair.modifiers.clear()
+    row = drawn(bpy.types.VIEW3D_PT_limit_follow, "draw_header_preset").row()
+    assert not row.label.called  # the active object follows live, and all is well there
+    scenes.activate(ob)
+    row = drawn(bpy.types.VIEW3D_PT_limit_follow, "draw_header_preset").row()
+    assert labels(row) == ["1 problem"]
+    assert row.alert is True
+
+
+def test_panel_asks_no_objects_where_nothing_can_follow(monkeypatch):
+    scenes.cross()
+    monkeypatch.setattr(limit_surface.ui.panel, "followers_of", lambda _surface: 1 / 0)
+    assert "Nothing follows it" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
 
 
 def shown_rules(layout, subsurf):
@@ -61,8 +104,8 @@ def test_preferences_show_the_version():
 def test_menu_offers_the_operators():
     layout = drawn(bpy.types.VIEW3D_MT_object_limit_surface)
     offered = [call.args[0] for call in layout.operator.call_args_list]
-    first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.SNAP_MODAL, ids.REPORT_OPERATOR]
-    first += [ids.ATTACH, ids.SAMPLE_TABLES, ids.SAMPLE_REMOVE]
+    first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.SNAP_MODAL, ids.SHOW]
+    first += [ids.REPORT_OPERATOR, ids.ATTACH, ids.SAMPLE_TABLES, ids.SAMPLE_REMOVE]
     first += [ids.FOLLOW, ids.REBIND, ids.UNBIND]
     textures = drawn(bpy.types.VIEW3D_PT_limit_textures).column()
     assert textures.enabled is True
@@ -93,10 +136,15 @@ def shown_in_redo_panel(**chosen):
     last = bpy.types.OBJECT_OT_limit_hair_add
     names = properties_of(ids.HAIR_ADD).keys()
     values = {name: chosen.get(name, "") for name in names}
-    self = MagicMock(summary="80 strands on 5 faces", properties=SimpleNamespace(**values))
+    self = MagicMock(
+        summary="80 strands on 5 faces",
+        properties=SimpleNamespace(**values),
+        _question="",
+        add_subsurf=False,
+    )
     self.draw_own = lambda layout: last.draw_own(self, layout)
     last.draw(self, bpy.context)
-    assert "80 strands on 5 faces" in labels(self.layout)
+    assert "80 strands on 5 faces" in labels(self.layout.column())
     laid_out = self.layout.prop.call_args_list + self.layout.column().prop.call_args_list
     return {call.args[1] for call in laid_out + self.layout.prop_search.call_args_list}
 

@@ -15,7 +15,7 @@ import pytest
 
 ADDON = Path(__file__).resolve().parents[2] / "addon/limit_surface"
 MOST_IN_ROOT = 6
-ROOMS = ("reading", "tasks", "images", "nodes", "placing")
+ROOMS = ("reading", "subsurf", "tasks", "images", "nodes", "placing")
 CAPABILITIES = (
     "attach",
     "bake_displacement",

@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part of the sidebar tab about what follows the active surface."""
 
-import textwrap
-
 import bpy
 
 from .. import ids, native
 from ..placing import live
 from ..placing.follow_state import State, Trouble
-from ..placing.followers import live_followers_of
+from ..placing.followers import anything_follows, live_followers_of
+from ..tasks import wrapped_text
 from . import stale
-
-_WIDTH = 36  # characters on a line of the sidebar
 
 
 class VIEW3D_PT_limit_follow(bpy.types.Panel):
@@ -21,6 +18,20 @@ class VIEW3D_PT_limit_follow(bpy.types.Panel):
     bl_region_type = "UI"
     bl_category = ids.TAB
     bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Draws in the header, which is seen while the panel is closed, whether something is
+        wrong.
+        """
+        if not anything_follows():
+            return
+        state, things = State.of(context.active_object), _live_things(context.active_object)
+        wrong = len(stale.troubles(context, state)) if state else 0
+        wrong += sum(bool(live.trouble(ob)) for ob in things)
+        if wrong:
+            row = self.layout.row()
+            row.alert = True
+            row.label(text="1 problem" if wrong == 1 else f"{wrong} problems", icon="ERROR")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -43,22 +54,28 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
     something follows it live.
     """
     ob = context.active_object
-    surface = live.surface_of(ob) if ob is not None else None
-    things = live_followers_of(ob) if ob is not None and surface is None else []
-    if surface is None and not things:
+    things = _live_things(ob)
+    if not things:
         return False
     column = layout.column(align=True)
+    surface = live.surface_of(ob) if things == [ob] else None
     if surface is not None:
         column.label(text=f"It follows {surface.name} live", icon="OBJECT_DATA")
-        things = [ob]
     else:
         noun = "object follows" if len(things) == 1 else "objects follow"
         column.label(text=f"{len(things):,} {noun} it live", icon="OBJECT_DATA")
     column.prop(context.scene, ids.LIVE)
     for thing in things:
         if live.trouble(thing):
-            _draw_alert(layout.box(), live.trouble(thing))
+            wrapped_text.draw_alert(layout.box(), live.trouble(thing))
     return True
+
+
+def _live_things(ob: bpy.types.Object | None) -> list[bpy.types.Object]:
+    """Returns the object itself if it follows a surface live, or what follows it live."""
+    if ob is None:
+        return []
+    return [ob] if live.surface_of(ob) is not None else live_followers_of(ob)
 
 
 def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
@@ -76,17 +93,10 @@ def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
 
 def _draw_trouble(layout: bpy.types.UILayout, trouble: Trouble) -> None:
     box = layout.box()
-    _draw_alert(box, trouble.text)
+    wrapped_text.draw_alert(box, trouble.text)
     row = box.row()
     row.enabled = native.available()
     row.operator(trouble.remedy)
-
-
-def _draw_alert(layout: bpy.types.UILayout, text: str) -> None:
-    column = layout.column(align=True)
-    column.alert = True
-    for i, line in enumerate(textwrap.wrap(text, _WIDTH)):
-        column.label(text=line, icon="BLANK1" if i else "ERROR")
 
 
 def _size(count: int) -> str:

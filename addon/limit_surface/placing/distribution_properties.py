@@ -13,6 +13,7 @@ from bpy.props import (
 from ..errors import RefusalError
 from .density import DensityChoice
 from .distribution import Distribution
+from .followers import ground_of
 from .mask import MaskChoice
 
 _MOST_SLOTS = 31  # the number of choices that one property can hold
@@ -289,8 +290,7 @@ def surface_object(
     """Returns the mesh that is covered. After the operator has run, the new object that covers it
     is active.
     """
-    ob = bpy.data.objects.get(properties.surface) or context.active_object
-    return ob if ob and ob.type == "MESH" else None
+    return ground_of(bpy.data.objects.get(properties.surface) or context.active_object)
 
 
 def draw(

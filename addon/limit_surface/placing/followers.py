@@ -98,6 +98,18 @@ def sharers(ob: bpy.types.Object) -> list[bpy.types.Object]:
     return [other for other in bpy.data.objects if other.data == ob.data and other != ob]
 
 
+def ground_of(ob: bpy.types.Object | None) -> bpy.types.Object | None:
+    """Returns the mesh that the object is, or on which it stands where it is hair or points."""
+    if ob is None or not (ob.type == "CURVES" or _is_points(ob)):
+        return ob if ob is not None and ob.type == "MESH" else None
+    surface = surface_of(ob)
+    return surface if surface is not None and surface.type == "MESH" else None
+
+
+def _is_points(ob: bpy.types.Object) -> bool:
+    return ob.type == "MESH" and not ob.data.polygons and is_placed(ob)
+
+
 def followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that follow a surface by nodes."""
     found = []
@@ -116,6 +128,14 @@ def live_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
         if modifier and groups.get_input(modifier, SURFACE) == surface:
             found.append(ob)
     return found
+
+
+def anything_follows() -> bool:
+    """Tells whether the file has a node group by which something follows a surface. It is far
+    quicker than a look at all objects, so panels ask it first.
+    """
+    names = (*_GROUPS, ids.FOLLOW_LIVE_GROUP)
+    return any(groups.name_of(group) in names for group in bpy.data.node_groups)
 
 
 def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:

@@ -20,6 +20,7 @@ from ..tasks.object_keys import ObjectKey
 from . import distribution_properties, region
 from .density import DensityChoice
 from .distribution import Distribution
+from .followers import ground_of
 from .mask import MaskChoice
 
 # seconds until the timer looks at a new question, or again at an answer that is not ready
@@ -117,7 +118,7 @@ def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, nou
     if context.screen and context.screen.is_animation_playing:
         return "Not counted during playback"
     question = Question(
-        ObjectKey.of(context.active_object),
+        ObjectKey.of(ground_of(context.active_object)),
         distribution_properties.density_choice(settings),
         distribution_properties.mask_choice(settings),
     )

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..reading import cage, displayed_mesh
+from ..subsurf import setup
 from ..tasks import polling
 from ..tasks.job import Job, Progress, part_of
 from ..tasks.object_keys import ObjectKey
@@ -16,9 +17,10 @@ from ..tasks.properties import LargeCountProperty, draw_summary
 from ..tasks.refused_faces import left_out, reasons
 from ..tasks.request_size import RequestSize
 from ..tasks.watched_operator import WatchedOperator
-from . import distribution_properties, following, live_binding, region, roots
+from . import distribution_properties, following, live_binding, region, roots, subsurf_offer
 from .distribution import TOO_LOW, Distribution, Scattered
 from .follow_properties import FollowOrLiveProperties, can_deform, why_not_automatic
+from .followers import ground_of
 
 # the parts of the progress at which the locations and the things are made
 SCATTERED, MADE = 0.5, 0.9
@@ -92,6 +94,7 @@ class Made:
     ground: Ground
     things: Any  # what the function from the operator's `maker` returns
     bindings: following.Bindings | None
+    hidden_by: float | None  # how far the displayed mesh is from a surface that it does not show
 
 
 class ScatterOperator(
@@ -99,6 +102,7 @@ class ScatterOperator(
     LargeCountProperty,
     distribution_properties.DistributionProperties,
     FollowOrLiveProperties,
+    subsurf_offer.AddSubsurfProperty,
 ):
     """Mixin for operators that scatter things: distributions, confirmation, binding and reports.
 
@@ -107,7 +111,8 @@ class ScatterOperator(
 
     1. in `invoke` or `start`, `check_properties`: the subclass refuses contradictory properties;
     2. `_order`: ScatterOperator reads the region and the distribution from Blender;
-    3. in `invoke`, `_ask`: ScatterOperator has users confirm what is very large;
+    3. in `invoke`, `_ask`: ScatterOperator has users confirm what is very large, and offers to add
+       a Subdivision Surface modifier where there is none;
     4. `maker`: the subclass gives the function that makes its arrays;
     5. in the job, `Order.ground`, the function from step 4, and `Order.bound` for things that
        follow the surface: none of them touches Blender's data;
@@ -120,6 +125,7 @@ class ScatterOperator(
     bl_options = {"REGISTER", "UNDO"}
     noun = ""
     _why_not_following = ""
+    _question = ""  # the size of what will be made, while a dialog offers a modifier
 
     @property
     def too_large(self) -> str:
@@ -131,16 +137,19 @@ class ScatterOperator(
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.mesh_in_object_mode(cls, context, _surface_object(context))
+        return polling.mesh_in_object_mode(cls, context, ground_of(context.active_object))
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         return self._guarded(self._ask, context, event)
 
     def start(self, context: bpy.types.Context) -> set[str]:
+        self._question = ""
         return self._begin(context, self._order(context))
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
+        if self._adds_subsurf(surface):
+            setup.add(surface, made.ground.cage.face_sizes)
         ob = self.add(context, surface, made.things)
         how = ""
         if made.bindings:
@@ -150,7 +159,7 @@ class ScatterOperator(
             depsgraph = context.evaluated_depsgraph_get()
             live_binding.LiveRequest(surface, depsgraph, [ob]).write(context)
             how = "live"
-        self._report(made.ground, how)
+        self._report(made, how)
         return {"FINISHED"}
 
     def maker(self, found: cage.Cage) -> Any:
@@ -173,10 +182,16 @@ class ScatterOperator(
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        if self._question:
+            subsurf_offer.draw_question(layout, self, self._question)
+            return
         layout.use_property_split = True
         distribution_properties.draw(layout, self.properties, context)
         self.draw_own(layout)
         layout.prop(self, "follow")
+        ob = distribution_properties.surface_object(self.properties, context)
+        if self.add_subsurf or (ob is not None and setup.lacks_subsurf(ob)):
+            layout.prop(self, "add_subsurf")
         layout.prop(self, "allow_large")
         draw_summary(layout, self.summary)
 
@@ -185,10 +200,17 @@ class ScatterOperator(
 
     def _ask(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Opens a dialog in which the user confirms a very large number, unless that is allowed
-        already.
+        already, or chooses whether the surface gets a modifier that shows it.
         """
         order = self._order(context)
         self._someone_waits = True
+        if self._may_offer(order.surface.find()):
+            order.size.check(allow_large=True)  # what can never be made is refused at once
+            self.add_subsurf = True
+            self.surface, self._question = order.surface.name, order.size.how_many
+            if order.size.is_large:
+                self.allow_large, self._question = True, str(order.size)
+            return subsurf_offer.open_dialog(context, self)
         if order.size.is_large and not self.allow_large:
             # the dialog asks for this consent; if the user declines it, nothing is run
             self.allow_large = True
@@ -206,13 +228,31 @@ class ScatterOperator(
         def work(progress: Progress) -> Made:
             ground = order.ground(part_of(progress, 0, SCATTERED))
             things = make(ground, part_of(progress, SCATTERED, MADE))
-            return Made(order.surface, ground, things, order.bound(ground, things))
+            bindings = order.bound(ground, things)
+            is_hidden = not order.region.cage.rules.subsurf and ground.shown is None
+            gap = subsurf_offer.gap(order.region) if is_hidden else None
+            return Made(order.surface, ground, things, bindings, gap)
 
         return self.watch(context, Job(work), f"Making {order.size.how_many}")
 
+    def _adds_subsurf(self, ob: bpy.types.Object) -> bool:
+        return self.add_subsurf and setup.lacks_subsurf(ob)
+
+    def _may_offer(self, ob: bpy.types.Object) -> bool:
+        """Tells whether the user is to be asked about a modifier for this surface."""
+        is_settled = self.properties.is_property_set("add_subsurf") or self.target != "LIMIT"
+        return setup.lacks_subsurf(ob) and ob.is_editable and not is_settled
+
     def _order(self, context: bpy.types.Context) -> Order:
         self.check_properties()
-        ob, depsgraph = _surface_object(context), context.evaluated_depsgraph_get()
+        ob, depsgraph = ground_of(context.active_object), context.evaluated_depsgraph_get()
+        if not self._adds_subsurf(ob):
+            return self._read(ob, depsgraph)
+        setup.check_editable(ob)
+        with setup.added(ob, cage.read(ob, depsgraph).face_sizes):
+            return self._read(ob, depsgraph)
+
+    def _read(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Order:
         distribution = distribution_properties.distribution(self.properties)
         covered = region.read(
             ob,
@@ -235,7 +275,8 @@ class ScatterOperator(
         self._why_not_following = why_not_automatic(ob) if stays else ""
         return Order(ObjectKey.of(ob), covered, distribution, shown, size, binding, is_live)
 
-    def _report(self, ground: Ground, how: str) -> None:
+    def _report(self, made: Made, how: str) -> None:
+        ground = made.ground
         found, refused = ground.cage, ground.region.refused
         faces = ground.region.face_count
         self.summary = f"{len(ground.locations):,} {self.noun} on {faces:,} faces"
@@ -252,14 +293,7 @@ class ScatterOperator(
         if found.without_uv_map:
             notes.append(f"UVs were not stored: {found.without_uv_map}")
         self.report({"INFO"}, "; ".join(notes))
-
-
-def _surface_object(context: bpy.types.Context) -> bpy.types.Object | None:
-    """Returns the active mesh, or the mesh of the active hair. After the operator has run, the new
-    hair is active, and Blender calls `poll` before it undoes the operator and runs it with other
-    settings.
-    """
-    ob = context.active_object
-    if ob is not None and ob.type == "CURVES":
-        ob = ob.data.surface
-    return ob if ob is not None and ob.type == "MESH" else None
+        if made.hidden_by is not None:
+            # the last report is the one that the status bar shows
+            self.report({"WARNING"}, subsurf_offer.warning(self.surface, made.hidden_by, self.noun))
+            self.summary += f"\n{subsurf_offer.short_warning(made.hidden_by)}"

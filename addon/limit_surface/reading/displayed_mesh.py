@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Literal
+from typing import Literal, Protocol
 
 import bpy
 import numpy as np
@@ -25,6 +25,14 @@ from . import attributes, cage, rules, subdivided_mesh
 from .triangulation import TriangulatedQuads
 
 Kind = Literal["VIEWPORT", "RENDER"] | int
+
+
+class ModifierSetup(Protocol):
+    """Settings of the Subdivision Surface modifier that an object does not have yet."""
+
+    def apply(self, ob: bpy.types.Object) -> bpy.types.SubsurfModifier: ...
+    def holds(self, subsurf: bpy.types.SubsurfModifier) -> bool: ...
+
 
 _CALLED = {"VIEWPORT": "the mesh that the viewport shows", "RENDER": "the mesh that a render shows"}
 
@@ -72,6 +80,33 @@ def read(
     """
     with opened(ob, depsgraph, kind) as (mesh, level, whose):
         return _read_mesh(whose, mesh, found, level)
+
+
+def read_as_set_up(
+    ob: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    found: cage.Cage,
+    setup: ModifierSetup,
+) -> DisplayedMesh:
+    """Reads the mesh that the viewport will show once the modifier is set up, for a cage that was
+    read before. The object itself is left as it is.
+    """
+    subsurf = rules.find_subsurf(ob)
+    cut = ob.modifiers.find(subsurf.name) + 1 if subsurf else len(ob.modifiers)
+
+    def adjust(copy: bpy.types.Object, scene: bpy.types.Scene) -> None:
+        _carry_simplify(depsgraph.scene, scene, "VIEWPORT")
+        setup.apply(copy)
+
+    with cage.evaluated_copy(ob, cut, depsgraph, adjust) as evaluated:
+        modifier = evaluated.modifiers[-1]
+        if not setup.holds(modifier):
+            raise DisplayedError(
+                f"{ob.name}: the settings of {modifier.name} are animated or driven, so that they "
+                "cannot be changed"
+            )
+        level = _level(modifier, depsgraph.scene, "VIEWPORT")
+        return _read_mesh(f"{ob.name}: {_CALLED['VIEWPORT']}", evaluated.data, found, level)
 
 
 @contextmanager

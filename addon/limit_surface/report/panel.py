@@ -17,9 +17,10 @@ class VIEW3D_PT_limit_report(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        row = layout.row()
-        row.enabled = native.available()
-        row.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
+        column = layout.column()
+        column.enabled = native.available()
+        column.operator(ids.SHOW, icon="HIDE_OFF")
+        column.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
         ob = context.active_object
         if ob is None or ids.REPORT not in ob:
             return

@@ -4,6 +4,7 @@
 import bpy
 
 from .. import ids, native
+from ..tasks import wrapped_text
 from .selection import find_target
 
 
@@ -22,10 +23,8 @@ class VIEW3D_PT_limit_snap(bpy.types.Panel):
         if context.mode == "OBJECT":
             target = find_target(context)
             name = target.name if target is not None and target.type == "MESH" else ""
-            layout.label(
-                text=f"Target now: active mesh {name}" if name else "No active mesh",
-                icon="INFO",
-            )
+            text = f"Target now: active mesh {name}" if name else "No active mesh"
+            wrapped_text.draw(layout, text, "INFO")
         column = layout.column()
         column.enabled = native.available()
         column.operator(ids.SNAP, icon="SNAP_ON")

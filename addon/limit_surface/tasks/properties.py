@@ -4,6 +4,8 @@
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
+from . import wrapped_text
+
 
 class SummaryProperty:
     """Mixin with the summary that redo panels and dialogs show."""
@@ -28,6 +30,8 @@ class LargeCountProperty:
 
 
 def draw_summary(layout: bpy.types.UILayout, summary: str) -> None:
-    """Draws what an operator has done, line by line, in redo panels and dialogs."""
+    """Draws what an operator has done, in redo panels and dialogs. Each line of the summary begins
+    a new line, and takes as many as it needs.
+    """
     for line in summary.splitlines():
-        layout.label(text=line, icon="INFO")
+        wrapped_text.draw(layout, line, "INFO")

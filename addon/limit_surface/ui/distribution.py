@@ -9,6 +9,8 @@ import bpy
 
 from .. import ids, native
 from ..placing import distribution_properties, live_count
+from ..placing.followers import ground_of
+from ..tasks import wrapped_text
 
 
 class _DistributionPanel:
@@ -25,17 +27,15 @@ class _DistributionPanel:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        ob = context.active_object
-        return (
-            native.available() and ob and ob.type == "MESH" and context.mode == "OBJECT"
-        ) or False
+        is_here = native.available() and context.mode == "OBJECT"
+        return is_here and ground_of(context.active_object) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         settings = context.window_manager.operator_properties_last(self.operator)
         distribution_properties.draw(layout, settings, context)
-        layout.label(text=live_count.text(context, settings, self.noun), icon="INFO")
+        wrapped_text.draw(layout, live_count.text(context, settings, self.noun), "INFO")
         layout.operator(self.operator)
 
 

@@ -16,6 +16,7 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
         self.layout.operator(ids.POINTS_ADD, icon="POINTCLOUD_DATA")
         self.layout.operator(ids.SNAP, icon="SNAP_ON")
         self.layout.operator(ids.SNAP_MODAL, icon="VIEW_PAN")
+        self.layout.operator(ids.SHOW, icon="HIDE_OFF")
         self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
         self.layout.operator(ids.ATTACH, icon="LINKED")
         self.layout.operator(ids.SAMPLE_TABLES, icon="NODETREE")
