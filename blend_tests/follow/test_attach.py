@@ -8,7 +8,7 @@ import pytest
 import scenes
 from follow_scenes import deforming
 from limit_surface import ids
-from limit_surface.placing.followers import modifier_of
+from limit_surface.placing.followers import live_modifier_of, modifier_of
 from limit_surface.reading import attributes
 from mathutils import Euler, Matrix
 
@@ -165,7 +165,7 @@ def test_animated_and_constrained_objects_keep_their_own_motion():
 
 
 @pytest.mark.parametrize("to_another", [False, True])
-def test_attached_objects_can_be_attached_anew(to_another):
+def test_attached_objects_can_be_attached_anew(to_another, capfd):
     ob = deforming("cross")
     objects = props(ob, 3)
     attach(ob, objects)
@@ -176,6 +176,9 @@ def test_attached_objects_can_be_attached_anew(to_another):
         target = scenes.flat_grid(3)
         follow_truth.animate(target)
     attach(target, objects)
+    told = capfd.readouterr().out
+    assert f"3 objects are attached to {target.name}. The largest distance from the" in told
+    assert told.endswith("3 objects were attached already and got new places\n")
     assert np.abs(matrices(objects) - before).max() < AXES_BOUND
     assert len(carriers()) == 1 + to_another
     if not to_another:
@@ -250,23 +253,24 @@ def give_parent(ob: bpy.types.Object, child: bpy.types.Object) -> None:
     child.parent = add_object("Mother", None, np.eye(4))
 
 
-def bind_hair(ob: bpy.types.Object, child: bpy.types.Object) -> None:
-    hair = scenes.add_hair(ob, follow="NODES")
+def bind_hair(ob: bpy.types.Object, child: bpy.types.Object, mode: str = "NODES") -> None:
+    hair = scenes.add_hair(ob, follow=mode)
     hair.parent = None
     child.name, hair.name = "Other", "Prop 0"
-    assert modifier_of(hair)
+    assert modifier_of(hair) or live_modifier_of(hair)
 
 
 @pytest.mark.parametrize(
     ("prepare", "message"),
     [
-        (rig, "Prop 0 cannot be attached to Cross, which depends on it"),
-        (hook, "which depends on it"),
-        (drive, "which depends on it"),
-        (read_by_nodes, "which depends on it"),
-        (constrain_indirectly, "which depends on it"),
+        (rig, "Prop 0 cannot be attached to Cross, because Cross depends on Prop 0"),
+        (hook, "because Cross depends on Prop 0"),
+        (drive, "because Cross depends on Prop 0"),
+        (read_by_nodes, "because Cross depends on Prop 0"),
+        (constrain_indirectly, "because Cross depends on Prop 0"),
         (give_parent, "Prop 0 has the parent Mother: clear it first"),
-        (bind_hair, "Prop 0 follows a surface by nodes: unbind it first"),
+        (lambda ob, child: bind_hair(ob, child, "LIVE"), "Prop 0 follows a surface by itself"),
+        (bind_hair, "Prop 0 follows a surface by itself: unbind it first"),
     ],
 )
 def test_refusals_leave_everything_as_it_was(prepare, message):

@@ -250,7 +250,7 @@ def test_refusals():
     ob = deforming("grid with holes")
     refused("Select a surface or what follows it", ob)
     hair = scenes.add_hair(ob, follow="NODES")
-    refused("stores no UVs", hair, method="UV")
+    refused("does not store the UVs of its roots", hair, method="UV")
     scenes.add_uv_map(ob, lambda p: p[:, :2])
     attributes.write(
         hair.data, ids.SURFACE_UV, "FLOAT2", "CURVE", np.zeros((len(hair.data.curves), 2))

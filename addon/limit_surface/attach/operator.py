@@ -11,7 +11,7 @@ from ..errors import RefusalError
 from ..placing import dependencies, following
 from ..placing.binding import Binding
 from ..placing.binding_operator import BindingOperator
-from ..placing.followers import modifier_of
+from ..placing.followers import live_modifier_of, modifier_of
 from ..placing.posed_surface import PosedSurface, at_closest
 from ..reading import cage
 from ..tasks import polling
@@ -81,10 +81,14 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
         self, surface: bpy.types.Object, count: int, again: int, distances: np.ndarray
     ) -> None:
         are = "object is" if count == 1 else "objects are"
-        self.summary = f"{count:,} {are} attached to {surface.name}"
+        sentences = [
+            f"{count:,} {are} attached to {surface.name}",
+            f"The largest distance from the limit surface is {distances.max():.4g}",
+        ]
         if again:
-            self.summary += f", {again:,} of them anew"
-        self.summary += f", at a distance of up to {distances.max():.4g}"
+            were = "object was" if again == 1 else "objects were"
+            sentences.append(f"{again:,} {were} attached already and got new places")
+        self.summary = ". ".join(sentences)
         self.report({"INFO"}, self.summary)
 
 
@@ -100,11 +104,14 @@ def _check(objects: list[bpy.types.Object], surface: bpy.types.Object) -> None:
             raise RefusalError(
                 f"{ob.name} is linked from another file: make it local, or make a library override"
             )
-        if modifier_of(ob):
-            raise RefusalError(f"{ob.name} follows a surface by nodes: unbind it first")
+        if modifier_of(ob) or live_modifier_of(ob):
+            raise RefusalError(
+                f"{ob.name} follows a surface by itself: unbind it first, or do not attach it"
+            )
         if ob in needed:
             raise RefusalError(
-                f"{ob.name} cannot be attached to {surface.name}, which depends on it"
+                f"{ob.name} cannot be attached to {surface.name}, because {surface.name} depends "
+                f"on {ob.name}: by a parent, a modifier, a constraint or a driver"
             )
         if ob.parent and not (is_carrier(ob.parent) and ob.parent_type == "VERTEX_3"):
             raise RefusalError(

@@ -172,7 +172,10 @@ class _UvMaps:
         active = self._surface.data.uv_layers.active
         name = getattr(data, "surface_uv_map", "") or (active.name if active else "")
         if not name:
-            raise RefusalError(f"{self._surface.name} has no UV map: choose another method")
+            raise RefusalError(
+                f"{self._surface.name} has no UV map, which the method UV needs. Choose another "
+                "method, or add a UV map"
+            )
         obstacle = uv_map.obstacle(self._mesh, name)
         if obstacle:
             raise RefusalError(f"{self._surface.name}: {obstacle}")
@@ -203,7 +206,8 @@ class _ByUv(_Finder):
     def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
         if not _stores_uv(elements):
             raise RefusalError(
-                f"{elements.ob.name} stores no UVs ({ids.SURFACE_UV}): choose another method"
+                f"{elements.ob.name} does not store the UVs of its roots (the attribute "
+                f"{ids.SURFACE_UV} is missing), which the method UV needs. Choose another method"
             )
         uv = attributes.read(elements.data, ids.SURFACE_UV)[rows].astype(np.float64)
         at = self._maps.of(elements.data).locate(uv)
