@@ -243,6 +243,46 @@ def read_by_nodes(ob: bpy.types.Object, child: bpy.types.Object) -> None:
     modifier["Socket_1"] = child
 
 
+def collected(child: bpy.types.Object) -> bpy.types.Collection:
+    """Returns a collection that holds the object in another one."""
+    outer, inner = (bpy.data.collections.new(name) for name in ("Outer", "Inner"))
+    outer.children.link(inner)
+    inner.objects.link(child)
+    return outer
+
+
+def cut_by_collection(ob: bpy.types.Object, child: bpy.types.Object) -> None:
+    boolean = ob.modifiers.new("Boolean", "BOOLEAN")
+    boolean.operand_type, boolean.collection = "COLLECTION", collected(child)
+
+
+def read_collection_by_nodes(ob: bpy.types.Object, child: bpy.types.Object) -> None:
+    group = bpy.data.node_groups.new("Own", "GeometryNodeTree")
+    for kind in ("Geometry", "Collection"):
+        group.interface.new_socket(kind, in_out="INPUT", socket_type=f"NodeSocket{kind}")
+    modifier = ob.modifiers.new("Own", "NODES")
+    modifier.node_group = group
+    modifier["Socket_1"] = collected(child)
+
+
+def name_within_nodes(ob: bpy.types.Object, child: bpy.types.Object) -> None:
+    outer, inner = (bpy.data.node_groups.new(n, "GeometryNodeTree") for n in ("Outer", "Inner"))
+    inner.nodes.new("GeometryNodeObjectInfo").inputs["Object"].default_value = child
+    outer.nodes.new("GeometryNodeGroup").node_tree = inner
+    ob.modifiers.new("Own", "NODES").node_group = outer
+
+
+def constrain_bone(ob: bpy.types.Object, child: bpy.types.Object) -> None:
+    data = bpy.data.armatures.new("Bones")
+    bones = add_object("Bones", data, np.eye(4))
+    scenes.activate(bones)
+    bpy.ops.object.mode_set(mode="EDIT")
+    data.edit_bones.new("Bone").tail = (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bones.pose.bones["Bone"].constraints.new("COPY_LOCATION").target = child
+    ob.modifiers.new("Armature", "ARMATURE").object = bones
+
+
 def constrain_indirectly(ob: bpy.types.Object, child: bpy.types.Object) -> None:
     between = add_object("Between", None, np.eye(4))
     between.constraints.new("COPY_LOCATION").target = child
@@ -267,6 +307,10 @@ def bind_hair(ob: bpy.types.Object, child: bpy.types.Object, mode: str = "NODES"
         (hook, "because Cross depends on Prop 0"),
         (drive, "because Cross depends on Prop 0"),
         (read_by_nodes, "because Cross depends on Prop 0"),
+        (cut_by_collection, "because Cross depends on Prop 0"),
+        (read_collection_by_nodes, "because Cross depends on Prop 0"),
+        (name_within_nodes, "because Cross depends on Prop 0"),
+        (constrain_bone, "because Cross depends on Prop 0"),
         (constrain_indirectly, "because Cross depends on Prop 0"),
         (give_parent, "Prop 0 has the parent Mother: clear it first"),
         (lambda ob, child: bind_hair(ob, child, "LIVE"), "Prop 0 follows a surface by itself"),

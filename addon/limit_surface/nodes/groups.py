@@ -125,12 +125,26 @@ def check_inputs(modifier: bpy.types.NodesModifier, *names: str) -> None:
             )
 
 
-def object_inputs(modifier: bpy.types.NodesModifier) -> Iterator[bpy.types.Object | None]:
-    """Yields the objects that are inputs of a modifier, whatever its group."""
+def inputs_of(modifier: bpy.types.NodesModifier) -> Iterator[Any]:
+    """Yields the values of a modifier's inputs, whatever its group."""
     for item in modifier.node_group.interface.items_tree if modifier.node_group else ():
         is_input = item.item_type == "SOCKET" and item.in_out == "INPUT"
-        if is_input and item.socket_type == "NodeSocketObject":
+        if is_input and item.socket_type != "NodeSocketGeometry":
             yield get_input(modifier, item.name)
+
+
+def values_in(group: bpy.types.NodeTree | None) -> Iterator[Any]:
+    """Yields the values of sockets within a group, and in groups within it."""
+    waiting, seen = [group], {None}
+    while waiting:
+        tree = waiting.pop()
+        if tree in seen:
+            continue
+        seen.add(tree)
+        for node in tree.nodes:
+            waiting.append(getattr(node, "node_tree", None))
+            for socket in node.inputs:
+                yield getattr(socket, "default_value", None)
 
 
 def _inputs(modifier: bpy.types.NodesModifier) -> Any:
