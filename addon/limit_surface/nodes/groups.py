@@ -135,10 +135,10 @@ def inputs_of(modifier: bpy.types.NodesModifier) -> Iterator[Any]:
 
 def values_in(group: bpy.types.NodeTree | None) -> Iterator[Any]:
     """Yields the values of sockets within a group, and in groups within it."""
-    waiting, seen = [group], {None}
+    waiting, seen = [group], set()
     while waiting:
         tree = waiting.pop()
-        if tree in seen:
+        if tree is None or tree in seen:
             continue
         seen.add(tree)
         for node in tree.nodes:

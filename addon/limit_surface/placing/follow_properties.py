@@ -52,6 +52,18 @@ class FollowOrLiveProperties:
     )
 
 
+class FollowSnappedProperties:
+    """Mixin with the property `follow`, for things that are there already."""
+
+    follow: EnumProperty(
+        name="Follow",
+        description="How snapped hair follows the surface from now on when its mesh deforms. Hair "
+        "that follows already goes on as it does",
+        items=(_AUTO, _NODES, _LIVE, _NONE),
+        default="AUTO",
+    )
+
+
 def follows(follow: str, surface: bpy.types.Object) -> bool:
     """Tells whether things on a surface are to follow it by nodes, by the property's value."""
     if follow == "AUTO":

@@ -7,6 +7,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 
 from .. import ids, native
 from ..errors import RefusalError
+from ..placing.follow_properties import FollowSnappedProperties
 from ..tasks.job import part_of
 from ..tasks.progress import progress_bar
 from ..tasks.properties import SummaryProperty, draw_summary
@@ -18,7 +19,9 @@ from .selection import HAIR_MODES, MODES, check_target, find_target, gather
 from .surface import TargetSurface
 
 
-class OBJECT_OT_limit_snap(PlacingProperties, SummaryProperty, bpy.types.Operator):
+class OBJECT_OT_limit_snap(
+    PlacingProperties, FollowSnappedProperties, SummaryProperty, bpy.types.Operator
+):
     """Snap to the exact limit surface: selected objects and hair to that of the active mesh, or
     outside Object Mode the selected elements to that of the target in the sidebar tab Limit"""
 
@@ -161,6 +164,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, SummaryProperty, bpy.types.Operato
             row = layout.row()
             row.active = self.hair != "STRAND"
             row.prop(self, "keep_length")
+            layout.prop(self, "follow")
         layout.prop(self, "target")
         draw_summary(layout, self.summary)
 
@@ -193,7 +197,7 @@ class OBJECT_OT_limit_snap(PlacingProperties, SummaryProperty, bpy.types.Operato
             for part, placement in zip(parts, placements, strict=True)
             if part.follower and len(placement.rows)
         ]
-        for warning in bind_again(followers, target, context):
+        for warning in bind_again(followers, target, context, self.follow):
             self.report({"WARNING"}, warning)
         return self._report(surface, context.evaluated_depsgraph_get(), merged(outcomes))
 
