@@ -135,7 +135,7 @@ def shown_in_redo_panel(**chosen):
     """Returns the names of the properties that are shown with these choices."""
     last = bpy.types.OBJECT_OT_limit_hair_add
     names = properties_of(ids.HAIR_ADD).keys()
-    values = {name: chosen.get(name, "") for name in names}
+    values = {name: "NONE" if name.endswith("_source") else "" for name in names} | chosen
     self = MagicMock(
         summary="80 strands on 5 faces",
         properties=SimpleNamespace(**values),
@@ -158,9 +158,13 @@ def test_redo_panel_shows_every_property_where_it_counts():
     assert {"per_side", "seed", "target", "length", "points", "allow_large"} <= jittered
     assert not {"amount", "count", "density", "distance", "image"} & jittered
     every = set(jittered)
-    for name in ("density_source", "faces"):
+    assert not {"uv_map", "length_range", "tilt_image"} & jittered
+    steered = [f"{name}_source" for name in ("density", "length", "radius", "tilt", "random")]
+    for name in (*steered, "faces"):
         for choice in choices(name):
-            every |= shown_in_redo_panel(**distribution | {name: choice})
+            shown = shown_in_redo_panel(**distribution | {name: choice})
+            assert ({"uv_map", "extension"} <= shown) == (choice == "IMAGE")
+            every |= shown
     for amount in choices("amount"):
         shown = shown_in_redo_panel(
             **distribution | {"distribution": "BLUE_NOISE", "amount": amount}

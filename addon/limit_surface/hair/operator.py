@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operator object.limit_hair_add."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import bpy
@@ -11,24 +11,27 @@ from bpy.props import FloatProperty, FloatVectorProperty, IntProperty
 from .. import ids
 from ..placing import roots
 from ..placing.binding import Binding
+from ..placing.distribution_properties import DENSITY, surface_object
 from ..placing.new_objects import add_on_surface
 from ..placing.rotations import WorldSpace
 from ..placing.scatter_operator import Ground, ScatterOperator
 from ..reading import attributes, cage
+from ..sources.source_mesh import Choice
 from ..tasks.job import Progress
-from .strands import Shape
+from . import steering
+from .strands import Shape, StrandMaker
 
 
 @dataclass(frozen=True)
 class Strands:
     binding: Binding
     position: np.ndarray  # (strands, points, 3) float32
-    radius: float
+    radius: np.ndarray  # (strands,) float32
     surface_uv: np.ndarray | None
     uv_map: str
 
 
-class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
+class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy.types.Operator):
     """Grow hair on the active mesh's limit surface: each root lies exactly on the smooth surface
     that its subdivisions converge to"""
 
@@ -84,24 +87,40 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
     def elements_per_location(self) -> int:
         return self.points
 
+    def sources(self) -> Mapping[str, Choice]:
+        return steering.choices(self.properties)
+
     def draw_own(self, layout: bpy.types.UILayout) -> None:
-        for name in ("length", "points", "tilt", "random", "radius"):
-            layout.prop(self, name)
+        surface = surface_object(self.properties, bpy.context)
+        steering.draw(layout, self.properties, surface)
+        steering.draw_image_place(layout, self.properties, surface, DENSITY.source)
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Strands]:
         space = WorldSpace(found.matrix)
-        shape = Shape(self.length, self.points, tuple(self.tilt), self.random)
+        length, points, tilt = self.length, self.points, np.array(self.tilt)
+        random, random_length = self.random, self.random_length
         seed, radius = self.seed, self.radius / space.mean_scale
         uv_map = found.uv_map.name if found.uv_map else ""
 
         def make(ground: Ground, progress: Progress) -> Strands:
-            rng = np.random.default_rng(seed)
+            steered, maker = steering.Steering(ground.region), StrandMaker(space, seed)
             binding = Binding(ground.locations)
-            position = np.empty((len(ground.locations), shape.points, 3), np.float32)
+            position = np.empty((len(ground.locations), points, 3), np.float32)
+            radii = np.empty(len(ground.locations), np.float32)
             for part in roots.evaluate(ground.evaluate, ground.locations, progress):
                 binding.fill(part)
-                position[part.rows] = shape.strands(part.position, part.frame, space, rng)
-            return Strands(binding, position, radius, ground.surface_uv(), uv_map)
+                factors = steered.factors(ground.locations, part.rows)
+                shape = Shape(
+                    length=length * factors["length"],
+                    points=points,
+                    lean=tilt * factors["tilt"],
+                    random=random * factors["random"],
+                    random_length=(random_length * factors["random"]).clip(max=1),
+                )
+                frame = space.frames(part.frame)
+                position[part.rows] = maker.strands(part.position, frame, shape)
+                radii[part.rows] = radius * factors["radius"][:, 0]
+            return Strands(binding, position, radii, ground.surface_uv(), uv_map)
 
         return make
 
@@ -113,8 +132,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, bpy.types.Operator):
         try:
             curves.add_curves([points] * count)
             curves.points.foreach_set("position", made.position.ravel())
-            radius = np.full(count * points, made.radius)
-            attributes.write(curves, "radius", "FLOAT", "POINT", radius)
+            attributes.write(curves, "radius", "FLOAT", "POINT", made.radius.repeat(points))
             made.binding.write(curves, "CURVE")
             curves.surface = surface
             if made.surface_uv is not None:

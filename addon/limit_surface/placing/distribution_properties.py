@@ -11,6 +11,8 @@ from bpy.props import (
 )
 
 from ..errors import RefusalError
+from ..sources import value_properties
+from ..sources.value_properties import SourceNames
 from .density import DensityChoice
 from .distribution import Distribution
 from .followers import ground_of
@@ -32,7 +34,27 @@ def _material_slots(
     return _slot_items
 
 
-class DistributionProperties:
+DENSITY = SourceNames(
+    subject="",
+    label="Density",
+    source="density_source",
+    vertex_group="vertex_group",
+    image="image",
+    attribute="attribute",
+    channel="channel",
+    range="density_range",
+    color_attribute="color_attribute",
+    invert="invert",
+)
+
+
+class DensityProperties(value_properties.ImagePlaceProperties):
+    """Mixin with the properties that choose the source of a density."""
+
+    __annotations__ = DENSITY.properties("the density", "Density")  # noqa: RUF012
+
+
+class DistributionProperties(DensityProperties):
     """Mixin with the properties of operators that distribute things."""
 
     distribution: EnumProperty(
@@ -125,71 +147,13 @@ class DistributionProperties:
         default=0,
         min=0,
     )
-    density_source: EnumProperty(
-        name="Density From",
-        description="Source of a density that makes some parts denser than others",
-        items=(
-            ("NONE", "None", "Use the same density everywhere", "", 0),
-            (
-                "VERTEX_GROUP",
-                "Vertex Group",
-                "Use the weights of a vertex group",
-                "GROUP_VERTEX",
-                1,
-            ),
-            ("IMAGE", "Image", "Use an image that is placed by a UV map", "IMAGE_DATA", 2),
-            (
-                "COLOR_ATTRIBUTE",
-                "Color Attribute",
-                "Use the colors of vertices or face corners",
-                "GROUP_VCOL",
-                3,
-            ),
-        ),
-        default="NONE",
-    )
-    vertex_group: StringProperty(
-        name="Vertex Group",
-        description="Name of the vertex group whose weights are the density",
-    )
-    image: StringProperty(
-        name="Image",
-        description="Name of the image that holds the density",
-    )
-    uv_map: StringProperty(
-        name="UV Map",
-        description="Name of the UV map that places the image. If empty, the active UV map is used",
-    )
     color_attribute: StringProperty(
         name="Color Attribute",
-        description="Name of the color attribute that holds the density",
-    )
-    channel: EnumProperty(
-        name="Channel",
-        description="Channel of the colors that is used as the density. The numbers in images are "
-        "used without color conversion; color attributes are linear",
-        items=(
-            ("LUMINANCE", "Luminance", "0.2126 red + 0.7152 green + 0.0722 blue", "", 0),
-            ("RED", "Red", "", "", 1),
-            ("GREEN", "Green", "", "", 2),
-            ("BLUE", "Blue", "", "", 3),
-            ("ALPHA", "Alpha", "", "", 4),
-        ),
-        default="LUMINANCE",
-    )
-    extension: EnumProperty(
-        name="Extension",
-        description="Density outside the borders of the image",
-        items=(
-            ("REPEAT", "Repeat", "Repeat the image", "", 0),
-            ("EXTEND", "Extend", "Extend the pixels at the image's border", "", 1),
-            ("CLIP", "Clip", "Use the density 0", "", 2),
-        ),
-        default="REPEAT",
+        description="Name of the color attribute that steers the density",
     )
     invert: BoolProperty(
         name="Invert",
-        description="Use 1 minus the density of the source",
+        description="Use 1 minus the number that the source gives",
         default=False,
     )
     material_slots: EnumProperty(
@@ -274,9 +238,7 @@ def _amount(properties: bpy.types.OperatorProperties) -> str:
 
 
 def density_choice(properties: bpy.types.OperatorProperties) -> DensityChoice:
-    names = ("vertex_group", "image", "uv_map", "color_attribute", "channel", "extension", "invert")
-    source = properties.density_source
-    return DensityChoice(source, **{name: getattr(properties, name) for name in names})
+    return DensityChoice(DENSITY.choice(properties))
 
 
 def mask_choice(properties: bpy.types.OperatorProperties) -> MaskChoice:
@@ -306,31 +268,10 @@ def draw(
         layout.prop(properties, properties.amount.lower())
     layout.prop(properties, "seed")
     ob = surface_object(properties, context)
-    _draw_density(layout, properties, ob)
+    DENSITY.draw(layout, properties, ob)
+    value_properties.draw_image_place(layout, properties, ob, [DENSITY.source])
     _draw_mask(layout, properties, ob)
     layout.prop(properties, "target")
-
-
-def _draw_density(
-    layout: bpy.types.UILayout,
-    properties: bpy.types.OperatorProperties,
-    ob: bpy.types.Object | None,
-) -> None:
-    layout.prop(properties, "density_source")
-    source = properties.density_source
-    if source == "NONE":
-        return
-    if source == "VERTEX_GROUP":
-        _search(layout, properties, "vertex_group", ob, "vertex_groups")
-    elif source == "IMAGE":
-        _search(layout, properties, "image", bpy.data, "images")
-        _search(layout, properties, "uv_map", ob and ob.data, "uv_layers")
-        layout.prop(properties, "extension")
-    else:
-        _search(layout, properties, "color_attribute", ob and ob.data, "color_attributes")
-    if source != "VERTEX_GROUP":
-        layout.prop(properties, "channel")
-    layout.prop(properties, "invert")
 
 
 def _draw_mask(
@@ -342,17 +283,4 @@ def _draw_mask(
         layout.column().prop(properties, "material_slots")
     layout.prop(properties, "faces")
     if properties.faces == "ATTRIBUTE":
-        _search(layout, properties, "face_attribute", ob and ob.data, "attributes")
-
-
-def _search(
-    layout: bpy.types.UILayout,
-    properties: bpy.types.OperatorProperties,
-    name: str,
-    owner: bpy.types.bpy_struct | None,
-    collection: str,
-) -> None:
-    if owner:
-        layout.prop_search(properties, name, owner, collection)
-    else:
-        layout.prop(properties, name)
+        value_properties.search(layout, properties, "face_attribute", ob and ob.data, "attributes")

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
+from typing import Any
 
 import bpy
 import numpy as np
@@ -14,6 +16,8 @@ import numpy as np
 from .. import native
 from ..errors import RefusalError
 from ..reading import cage, subdivided_mesh, vertex_weights
+from ..sources import source_mesh
+from ..sources.source_mesh import Choice, SourceMesh
 from ..tasks.refused_faces import reasons
 from .density import Density, DensityChoice, DensityMap
 from .mask import MaskChoice
@@ -36,8 +40,15 @@ class Region:
     the region is made.
     """
 
-    def __init__(self, found: cage.Cage, bare: np.ndarray, density_map: DensityMap | None) -> None:
+    def __init__(
+        self,
+        found: cage.Cage,
+        bare: np.ndarray,
+        density_map: DensityMap | None,
+        sources: Mapping[str, Any],
+    ) -> None:
         self.cage = found
+        self.sources = sources  # what the choices have read, by their names
         self.bare = frozenset(bare.tolist())  # faces
         mesh = found.with_holes(bare) if len(bare) else found.mesh
         self.surface = native.limitsurf.LimitSurface(mesh)
@@ -98,17 +109,22 @@ def read(
     depsgraph: bpy.types.Depsgraph,
     density: DensityChoice,
     mask: MaskChoice,
+    sources: Mapping[str, Choice] = MappingProxyType({}),
 ) -> Region:
-    """Reads the region. Raises RefusalError where there is nothing to cover, or a choice has no
-    meaning here.
+    """Reads the region, and what else is chosen. Raises RefusalError where there is nothing to
+    cover, or a choice has no meaning here.
     """
+    groups = source_mesh.wanted_vertex_groups(ob, [density, *sources.values()])
     with (
-        vertex_weights.kept(density.wanted_vertex_groups(ob)) as keep,
+        vertex_weights.kept(groups) as keep,
         cage.opened(ob, depsgraph, keep) as (found, mesh),
     ):
         bare = mask.uncovered(mesh, ob.name)
-        density_map = density.read(mesh, found, ob)
-    covered = Region(found, bare, density_map)
+        weights = source_mesh.read_weights(mesh, groups)
+        read_from = SourceMesh(ob, mesh, found, depsgraph, weights)
+        density_map = density.read(read_from)
+        known = {name: choice.read(read_from) for name, choice in sources.items()}
+    covered = Region(found, bare, density_map, known)
     if not covered.face_count:
         raise RefusalError(f"No face has a limit surface: {reasons(covered.refused)}")
     return covered

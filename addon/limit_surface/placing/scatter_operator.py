@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The parts that the operators share which scatter things over a limit surface."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..reading import cage, displayed_mesh
+from ..sources.source_mesh import Choice
 from ..subsurf import setup
 from ..tasks import polling
 from ..tasks.job import Job, Progress, part_of
@@ -177,6 +179,12 @@ class ScatterOperator(
         """Returns the number of vertices or curve points that are made for one location."""
         return 1
 
+    def sources(self) -> Mapping[str, Choice]:
+        """Returns what else is to be read from the mesh, by names under which `Region.sources`
+        holds it.
+        """
+        return {}
+
     def check_properties(self) -> None:
         """Raises RefusalError for properties that contradict each other."""
 
@@ -259,6 +267,7 @@ class ScatterOperator(
             depsgraph,
             distribution_properties.density_choice(self.properties),
             distribution_properties.mask_choice(self.properties),
+            self.sources(),
         )
         expected = distribution.expected(covered)
         size = RequestSize(
