@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 import pages
+import pytest
 from limit_surface import ids
-from scenes import locations
+from scenes import locations, strands
 
 PAGE = pages.text("distribution").split("\n## In Python\n")[0]
 
@@ -15,9 +16,12 @@ def test_examples_run():
     for example in pages.examples(PAGE):
         exec(example, known)
         made.append(bpy.context.active_object)
-    hair, points = made
+    hair, steered, points = made
     assert len(hair.data.curves) > 500
     assert ids.REST_ROOT in hair.data.attributes
+    lengths = np.linalg.norm(strands(steered)[:, -1] - strands(steered)[:, 0], axis=1)
+    assert lengths.min() == pytest.approx(0.06, rel=0.05)
+    assert lengths.max() == pytest.approx(0.2, rel=1e-4)
     assert len(points.data.vertices) == 500
     assert not (np.unique(locations(points.data)[0]) % 2).any()
 

@@ -250,11 +250,11 @@ def test_sources_that_cannot_be_used(match, prefix):
 
 
 def test_an_attribute_that_modifiers_remove():
-    ob = scenes.flat_grid(2)
+    ob = scenes.cross()
     chosen = of_attribute(ob)
     ob.modifiers.new("Remesh", "REMESH").mode = "BLOCKS"
     check_hair_refused(
-        "Length: Flat: the modifiers remove the attribute where", **steered("length", chosen, 0, 1)
+        "Length: Cross: the modifiers remove the attribute where", **steered("length", chosen, 0, 1)
     )
 
 

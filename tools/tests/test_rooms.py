@@ -15,11 +15,7 @@ import pytest
 
 ADDON = Path(__file__).resolve().parents[2] / "addon/limit_surface"
 MOST_IN_ROOT = 6
-<<<<<<< HEAD
-ROOMS = ("reading", "subsurf", "tasks", "images", "nodes", "placing")
-=======
-ROOMS = ("reading", "tasks", "images", "nodes", "sources", "placing")
->>>>>>> 29afa42 (Vertex groups, images and attributes steer length, radius, tilt and random of strands, with a range)
+ROOMS = ("reading", "subsurf", "tasks", "images", "nodes", "sources", "placing")
 CAPABILITIES = (
     "attach",
     "bake_displacement",

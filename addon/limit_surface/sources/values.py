@@ -104,7 +104,7 @@ class ValueChoice:
         column = values.astype(np.float64)[:, None]
         return ValueMap(column, indices, rules.LINEAR, None, self.low, self.high)
 
-    def _of_vertex_group(self, mesh: SourceMesh) -> tuple[np.ndarray, np.ndarray]:
+    def _of_vertex_group(self, mesh: SourceMesh) -> tuple[np.ndarray, np.ndarray | None]:
         values = mesh.weights[self.vertex_group]
         if values is None:
             raise RefusalError(
