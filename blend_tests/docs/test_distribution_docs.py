@@ -16,18 +16,23 @@ def test_examples_run():
     for example in pages.examples(PAGE):
         exec(example, known)
         made.append(bpy.context.active_object)
-    hair, steered, points = made
+    hair, steered, combed, points = made
     assert len(hair.data.curves) > 500
     assert ids.REST_ROOT in hair.data.attributes
     lengths = np.linalg.norm(strands(steered)[:, -1] - strands(steered)[:, 0], axis=1)
     assert lengths.min() == pytest.approx(0.06, rel=0.05)
     assert lengths.max() == pytest.approx(0.2, rel=1e-4)
+    points_of = strands(combed)
+    (x, y, _), lean = points_of[:, 0].T, (points_of[:, -1] - points_of[:, 0])[:, :2]
+    sideways = np.stack([-y, x], axis=1)
+    turn = np.einsum("ni,ni->n", lean, sideways)
+    assert (turn > 0.99 * np.linalg.norm(lean, axis=1) * np.linalg.norm(sideways, axis=1)).all()
     assert len(points.data.vertices) == 500
     assert not (np.unique(locations(points.data)[0]) % 2).any()
 
 
 def test_every_choice_is_named():
     properties = bpy.ops.object.limit_hair_add.get_rna_type().properties
-    for name in ("amount", "density_source", "faces", "target"):
+    for name in ("amount", "density_source", "flow_source", "faces", "target"):
         for choice in properties[name].enum_items.keys()[1:]:
             assert f"`{choice}`" in PAGE, choice

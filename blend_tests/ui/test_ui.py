@@ -159,7 +159,9 @@ def test_redo_panel_shows_every_property_where_it_counts():
     assert not {"amount", "count", "density", "distance", "image"} & jittered
     every = set(jittered)
     assert not {"uv_map", "length_range", "tilt_image"} & jittered
-    steered = [f"{name}_source" for name in ("density", "length", "radius", "tilt", "random")]
+    steered = [
+        f"{name}_source" for name in ("density", "length", "radius", "tilt", "random", "flow")
+    ]
     for name in (*steered, "faces"):
         for choice in choices(name):
             shown = shown_in_redo_panel(**distribution | {name: choice})

@@ -99,6 +99,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
         space = WorldSpace(found.matrix)
         length, points, tilt = self.length, self.points, np.array(self.tilt)
         random, random_length = self.random, self.random_length
+        flow_angle = self.flow_angle
         seed, radius = self.seed, self.radius / space.mean_scale
         uv_map = found.uv_map.name if found.uv_map else ""
 
@@ -109,15 +110,16 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
             radii = np.empty(len(ground.locations), np.float32)
             for part in roots.evaluate(ground.evaluate, ground.locations, progress):
                 binding.fill(part)
+                frame = space.frames(part.frame)
                 factors = steered.factors(ground.locations, part.rows)
+                flow = steered.flow(ground.locations, part.rows, frame)
                 shape = Shape(
                     length=length * factors["length"],
                     points=points,
-                    lean=tilt * factors["tilt"],
+                    lean=tilt * factors["tilt"] + flow_angle * flow,
                     random=random * factors["random"],
                     random_length=(random_length * factors["random"]).clip(max=1),
                 )
-                frame = space.frames(part.frame)
                 position[part.rows] = maker.strands(part.position, frame, shape)
                 radii[part.rows] = radius * factors["radius"][:, 0]
             return Strands(binding, position, radii, ground.surface_uv(), uv_map)

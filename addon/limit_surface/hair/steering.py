@@ -11,7 +11,8 @@ from bpy.props import FloatProperty
 
 from ..placing.region import Region
 from ..placing.roots import Locations
-from ..sources import value_properties
+from ..sources import flow_properties, value_properties
+from ..sources.flow import Directions
 from ..sources.source_mesh import Choice
 from ..sources.value_properties import SourceNames
 from ..sources.values import Values
@@ -30,7 +31,10 @@ _LAID_OUT = (
 )
 
 
-class SteeringProperties:
+FLOW = "flow"
+
+
+class SteeringProperties(flow_properties.FlowProperties):
     """Mixin with a source and a range for each property of strands that can be steered."""
 
     __annotations__ = {  # noqa: RUF012
@@ -58,6 +62,8 @@ class Steering:
             for name in STEERED
             if region.sources.get(name) is not None
         }
+        flow = region.sources.get(FLOW)
+        self._flow: Directions | None = flow and flow.on(region.cage)
 
     def factors(self, locations: Locations, rows: slice) -> dict[str, np.ndarray]:
         """Returns factors (n, 1) by what they steer. All but those of the tilt are at least 0."""
@@ -69,9 +75,19 @@ class Steering:
                 found[name] = np.maximum(found[name], 0)
         return found
 
+    def flow(self, locations: Locations, rows: slice, frame: np.ndarray) -> np.ndarray:
+        """Returns the flow (n, 2), as it is seen in the first two columns of frames in the
+        world.
+        """
+        if self._flow is None:
+            return np.zeros((1, 2))
+        face, uv = locations.face[rows], locations.uv[rows].astype(np.float64)
+        return np.einsum("nij,ni->nj", frame[:, :, :2], self._flow(face, uv))
+
 
 def choices(properties: bpy.types.OperatorProperties) -> Mapping[str, Choice]:
-    return {name: source.choice(properties) for name, source in STEERED.items()}
+    values = {name: source.choice(properties) for name, source in STEERED.items()}
+    return {**values, FLOW: flow_properties.choice(properties)}
 
 
 def draw(
@@ -85,6 +101,7 @@ def draw(
             layout.prop(properties, name)
         if source:
             source.draw(layout, properties, ob)
+    flow_properties.draw(layout, properties, ob)
 
 
 def draw_image_place(
@@ -94,5 +111,5 @@ def draw_image_place(
     drawn_already: str,
 ) -> None:
     if getattr(properties, drawn_already) != "IMAGE":
-        sources = [source.source for source in STEERED.values()]
+        sources = [flow_properties.SOURCE, *(source.source for source in STEERED.values())]
         value_properties.draw_image_place(layout, properties, ob, sources)
