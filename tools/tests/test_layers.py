@@ -22,6 +22,7 @@ LAYERS = (
     "tessellate",
     "search",
     "sample",
+    "curves",
     "uv",
     "image",
     "project",

@@ -10,6 +10,7 @@ open boundaries.
 
 from ._limitsurf import (
     ControlMesh,
+    EdgeCurves,
     FilteredImage,
     LimitSurface,
     LocationError,
@@ -27,6 +28,7 @@ from ._limitsurf import (
     out_of_shading_frames,
 )
 from ._results import (
+    AlongCurves,
     BlueNoise,
     Curvature,
     DataEvaluation,
@@ -46,10 +48,12 @@ from ._results import (
 )
 
 __all__ = [
+    "AlongCurves",
     "BlueNoise",
     "ControlMesh",
     "Curvature",
     "DataEvaluation",
+    "EdgeCurves",
     "Evaluation",
     "FaceLevels",
     "FilteredImage",
@@ -82,6 +86,7 @@ __all__ = [
 
 for _public in (
     ControlMesh,
+    EdgeCurves,
     FilteredImage,
     LimitSurface,
     LocationError,

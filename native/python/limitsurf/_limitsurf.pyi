@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._results import (
+    AlongCurves,
     BlueNoise,
     Curvature,
     DataEvaluation,
@@ -150,6 +151,32 @@ class SubdividedFaces(metaclass=_BoundType):
     def order(self) -> Literal["blender", "opensubdiv"]: ...
     def locate(self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0) -> Locations: ...
 
+class EdgeCurves(metaclass=_BoundType):
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...  # surfaces make them
+    def __len__(self) -> int: ...
+    @property
+    def lengths(self) -> NDArray[np.float64]: ...
+    @property
+    def closed(self) -> NDArray[np.bool_]: ...
+    @property
+    def offsets(self) -> NDArray[np.int64]: ...
+    @property
+    def edges(self) -> NDArray[np.int32]: ...
+    @property
+    def faces(self) -> NDArray[np.int32]: ...
+    @property
+    def edge_lengths(self) -> NDArray[np.float64]: ...
+    @property
+    def left_out(self) -> int: ...
+    def at(
+        self,
+        curve: ArrayLike,
+        arc: ArrayLike,
+        side: Literal["left", "right"] = "left",
+        *,
+        threads: int = 0,
+    ) -> AlongCurves: ...
+
 class StrandPoser(metaclass=_BoundType):
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...  # surfaces make them
     def __len__(self) -> int: ...
@@ -288,6 +315,22 @@ class LimitSurface(metaclass=_BoundType):
         *,
         threads: int = 0,
     ) -> Tiles: ...
+    def edge_curves(
+        self, edges: Literal["boundary", "creases"] | ArrayLike = "boundary", *, threads: int = 0
+    ) -> EdgeCurves: ...
+    def scatter_along(
+        self,
+        curves: EdgeCurves,
+        count: int | None = None,
+        spacing: float | None = None,
+        jitter: float = 0.0,
+        seed: int = 0,
+        *,
+        phase: float | None = None,
+        side: Literal["left", "right"] = "left",
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> AlongCurves: ...
     def strand_poser(
         self,
         face: ArrayLike,

@@ -110,6 +110,20 @@ class BlueNoise(Locations):
 
 
 @dataclass(frozen=True, eq=False)
+class AlongCurves(Locations):
+    """Locations along curves: the curve's number (n,), the arc length from its start (n,), and unit
+    vectors (n, 3) in the surface's tangent plane, along the curve and away from the location's
+    face."""
+
+    __slots__ = ("arc", "curve", "outward", "tangent")
+
+    curve: NDArray[np.int32]
+    arc: NDArray[np.float64]
+    tangent: NDArray[np.float64]
+    outward: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
 class MapLocations(Locations):
     """Locations of points of a UV map; where it does not cover a point, face is -1 and uv NaN."""
 

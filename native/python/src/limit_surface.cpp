@@ -9,6 +9,7 @@
 #include "batches.h"
 #include "displacement.h"
 #include "docstrings.h"
+#include "edge_curves.h"
 #include "projection.h"
 #include "shared_surface.h"
 #include "strand_poser.h"
@@ -139,6 +140,7 @@ void bindLimitSurface(py::module_& module) {
   bindDataMakers(type);
   bindSurfaceTiles(type);
   bindStrandPoserMaker(type);
+  bindEdgeCurveMakers(type);
   bindTangentFrames(type);
   bindTessellation(type);
   bindSearch(type);

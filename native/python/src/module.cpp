@@ -3,6 +3,7 @@
 
 #include "control_mesh.h"
 #include "displacement.h"
+#include "edge_curves.h"
 #include "images.h"
 #include "limit_surface.h"
 #include "limitsurf/error.h"
@@ -30,5 +31,6 @@ PYBIND11_MODULE(_limitsurf, module) {
   limitsurf::python::bindSubdividedFaces(module);
   limitsurf::python::bindPtexLayout(module);
   limitsurf::python::bindStrandPoser(module);
+  limitsurf::python::bindEdgeCurves(module);
   limitsurf::python::bindLimitSurface(module);
 }

@@ -33,7 +33,7 @@ def is_property(node):
 FUNCTIONS = {
     name: node
     for name, node in functions()
-    if name not in ("SurfaceData.__init__", "StrandPoser.__init__")  # nobody can call them
+    if name not in ("EdgeCurves.__init__", "SurfaceData.__init__", "StrandPoser.__init__")  # nobody can call them
 }
 
 

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+
+/// The class EdgeCurves.
+void bindEdgeCurves(py::module_& module);
+/// LimitSurface.edge_curves() and LimitSurface.scatter_along()
+void bindEdgeCurveMakers(py::class_<SharedSurface>& type);
+
+}  // namespace limitsurf::python

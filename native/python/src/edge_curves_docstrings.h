@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace limitsurf::python {
+
+constexpr const char* kEdgeCurvesDoc =
+    R"(Limit curves of chains of edges, measured by their true arc length (LimitSurface.edge_curves()).
+
+len() is the number of curves. Curves are in the order of their first edges, as faces use these. A curve
+runs in the direction in which the first face of its first edge runs around, so that this face is on its
+left, and a closed curve begins with that edge: curves of boundaries have the surface on their left. The
+curves are those of the surface's pose when they were made. They cannot be pickled.
+)";
+
+constexpr const char* kEdgeCurvesMakerDoc =
+    R"(The limit curves of edges of the control mesh, linked to chains: EdgeCurves.
+
+Parameters
+----------
+edges : 'boundary', 'creases', or (E, 2) array of int
+    'boundary': the edges of exactly one face. 'creases': the edges of two faces with a sharpness above
+    0, those of three and more faces, and those of faces of opposite winding. Otherwise the two vertices
+    of each edge, in any order; an edge that is given twice counts once.
+threads : int
+    0 uses all cores.
+
+A curve goes on through vertices at which exactly two of the edges meet, and ends at all others. Edges
+whose faces all have no limit surface are left out. Lengths have a relative error of at most 1e-9, also at
+extraordinary vertices.
+
+Raises MeshError for an unknown word, and naming the first row that is no edge of the mesh; TypeError for
+an array of another kind. Cost: O(faces log faces), about 0.1 s for 100,000 faces, and some microseconds
+for each edge.
+)";
+
+constexpr const char* kEdgeCurvesAtDoc =
+    R"(The points at arc lengths along curves: AlongCurves (.face, .uv, .curve, .arc, .tangent, .outward).
+
+Parameters
+----------
+curve : (n,) array of int, or one int
+    Numbers of curves.
+arc : (n,) array of float
+    Arc lengths from the start of each curve, from 0 to its length, in units of the mesh.
+side : 'left' or 'right'
+    The side of the curves whose faces the locations are on. Where no face with a surface is on that side,
+    they are on the other one.
+threads : int
+    0 uses all cores.
+
+Raises ValueError for a number that is no curve and for an arc length out of range, naming the row, and if
+the surface has been posed since the curves were made. The arc length of a location differs from the one
+asked for by at most 1e-12 of the curve's length. Cost: about 1 microsecond a row.
+)";
+
+constexpr const char* kScatterAlongDoc =
+    R"(Locations evenly along curves, by their true arc length: AlongCurves.
+
+Parameters
+----------
+curves : EdgeCurves
+    Curves of this surface, in its present pose.
+count : int, optional
+    The number of locations on all curves together. It is divided in proportion to their lengths.
+spacing : float, optional
+    The arc length between neighbours. On each curve it is rounded so that it divides the curve's length;
+    a curve that is shorter than half of it gets one location. Exactly one of count and spacing must be
+    given.
+jitter : float
+    The part of the spacing by which locations are moved at random along the curve, 0 to 1: by half of it
+    at most to each side.
+seed : int
+    0 to 2^64 - 1. A seed gives the same locations on every machine and with any number of threads.
+phase : float, optional
+    Where the first location lies, as a part of the spacing, 0 to 1. By default it is drawn for each curve
+    and row. At an open curve's ends locations that jitter moves beyond are reflected.
+side : 'left' or 'right'
+    The side of the curves whose faces the locations are on. Where no face with a surface is on that side,
+    they are on the other one.
+threads : int
+    0 uses all cores.
+progress : function, optional
+    It is called from time to time with the part of the work that is done, 0 to 1. An exception that it
+    raises ends the call.
+
+Returns AlongCurves, curve by curve and along each of them: .face (n,) int32 and .uv (n, 2); .curve (n,)
+int32; .arc (n,), the arc length from the curve's start; .tangent and .outward (n, 3), unit vectors in the
+surface's tangent plane, along the curve and perpendicular to it, away from the location's face.
+
+Raises ValueError for values out of range, for a count above 0 on curves without length, and if the
+surface has been posed since the curves were made. Cost: about 1 microsecond a location.
+)";
+
+}  // namespace limitsurf::python
