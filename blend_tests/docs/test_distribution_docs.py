@@ -16,7 +16,8 @@ def test_examples_run():
     for example in pages.examples(PAGE):
         exec(example, known)
         made.append(bpy.context.active_object)
-    hair, steered, combed, points = made
+    hair, lashes, steered, combed, points = made
+    assert len(lashes.data.curves) == 400
     assert len(hair.data.curves) > 500
     assert ids.REST_ROOT in hair.data.attributes
     lengths = np.linalg.norm(strands(steered)[:, -1] - strands(steered)[:, 0], axis=1)
@@ -33,6 +34,7 @@ def test_examples_run():
 
 def test_every_choice_is_named():
     properties = bpy.ops.object.limit_hair_add.get_rna_type().properties
-    for name in ("amount", "density_source", "flow_source", "faces", "target"):
+    names = ("amount", "density_source", "flow_source", "faces", "target", "border", "direction")
+    for name in names:
         for choice in properties[name].enum_items.keys()[1:]:
             assert f"`{choice}`" in PAGE, choice

@@ -173,6 +173,13 @@ def test_redo_panel_shows_every_property_where_it_counts():
         )
         assert {"count", "density", "distance"} & shown == {amount.lower()}
         every |= shown
+    assert not {"border", "direction", "flow"} & every
+    along = shown_in_redo_panel(**distribution | {"distribution": "BORDER", "amount": "COUNT"})
+    assert {"border", "border_jitter", "direction", "flow", "count"} <= along
+    assert "lift" not in along
+    every |= shown_in_redo_panel(
+        **distribution | {"distribution": "BORDER", "amount": "COUNT", "direction": "OUTWARDS"}
+    )
     assert every == set(properties_of(ids.HAIR_ADD).keys()) - {"rna_type", "summary", "surface"}
 
 

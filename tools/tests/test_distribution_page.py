@@ -12,13 +12,16 @@ PAGE = Path(__file__).parents[2] / "docs/distribution.md"
 def test_example(sheet):
     known = {"positions": sheet["positions"] / 3, "faces": sheet["faces"]}
     section = PAGE.read_text().split("\n## In Python\n")[1]
-    (example,) = re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
+    example, along = re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
     counts = []
     for line in example.splitlines():
         exec(line, known)
         if line.startswith("at ="):
             counts.append(len(known["at"]))
     assert counts[:2] == [100_000, 20_000]
+    exec(along, known)
+    assert len(known["lashes"]) == 400
+    assert len(known["half_way"]) == 1
     points = known["roots"].position
     assert len(points) == counts[2] > 2000
     apart = np.linalg.norm(points[:1000, None] - points[None], axis=2)

@@ -110,7 +110,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
             radii = np.empty(len(ground.locations), np.float32)
             for part in roots.evaluate(ground.evaluate, ground.locations, progress):
                 binding.fill(part)
-                frame = space.frames(part.frame)
+                frame = ground.world_frames(part, space)
                 factors = steered.factors(ground.locations, part.rows)
                 flow = steered.flow(ground.locations, part.rows, frame)
                 shape = Shape(

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..tasks.job import Progress
+from .border import Amount, BorderDirections, BorderLayout, Turn
 from .region import Region
 from .roots import Locations
 
@@ -33,18 +34,22 @@ class Expected:
 @dataclass(frozen=True)
 class Scattered:
     locations: Locations
-    distance: float | None  # the distance in the world that they keep from each other
+    distance: float | None = None  # the distance in the world that they keep from each other
+    directions: BorderDirections | None = None  # for things along borders
+    curves: int = 0  # the number of borders
 
 
 @dataclass(frozen=True)
 class Distribution:
-    kind: str  # JITTERED, UNIFORM or BLUE_NOISE
+    kind: str  # JITTERED, UNIFORM, BLUE_NOISE or BORDER
     amount: str  # COUNT, DENSITY or DISTANCE
     per_side: int
     count: int
     density: float  # locations on each square unit in the world
     distance: float  # in world units
     seed: int
+    border: BorderLayout  # for BORDER, as is `turn`
+    turn: Turn
 
     def expected(self, region: Region) -> Expected:
         if self.kind == "JITTERED":
@@ -52,6 +57,8 @@ class Distribution:
             if region.density is None:
                 return Expected(cells, True)
             return Expected(round(cells * region.sums.weight), False)
+        if self.kind == "BORDER":
+            return self._expected_along(region)
         if self.amount == "COUNT":
             return Expected(self.count, True)
         if self.amount == "DENSITY":
@@ -67,7 +74,9 @@ class Distribution:
         there lies exactly where its stored location says.
         """
         if self.kind == "JITTERED":
-            return Scattered(self._jittered(region), None)
+            return Scattered(self._jittered(region))
+        if self.kind == "BORDER":
+            return self._along_border(region, progress)
         count = None if self.amount == "DISTANCE" else self.expected(region).count
         if count == 0:
             raise RefusalError(TOO_LOW if region.sums.largest else NOWHERE)
@@ -82,7 +91,7 @@ class Distribution:
                 if self.kind == "UNIFORM":
                     assert count is not None
                     found = region.surface.scatter_uniform(count, **common)
-                    return Scattered(_rounded(found), None)
+                    return Scattered(_rounded(found))
                 radius = self.distance if count is None else None
                 apart = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
                 return Scattered(_rounded(apart), float(apart.radius))
@@ -101,11 +110,41 @@ class Distribution:
         density gives.
         """
         at = _rounded(region.surface.scatter_jittered(self.per_side, self.seed))
-        if region.density is None:
-            return at
-        density = region.density(at.face, at.uv.astype(np.float64))
-        stays = np.random.default_rng(self.seed).random(len(at)) < density
+        stays = self._staying(region, at)
         return Locations(at.face[stays], at.uv[stays])
+
+    def _staying(self, region: Region, at: Locations) -> np.ndarray:
+        """Returns which locations are kept, each with the probability that the density gives."""
+        if region.density is None:
+            return np.ones(len(at), bool)
+        density = region.density(at.face, at.uv.astype(np.float64))
+        return np.random.default_rng(self.seed).random(len(at)) < density
+
+    def _expected_along(self, region: Region) -> Expected:
+        if self.amount == "DENSITY":
+            raise RefusalError("A border has no area: give a count or a distance")
+        sums = region.border_sums
+        if self.amount == "COUNT":
+            return Expected(round(self.count * sums.weight), region.density is None)
+        return Expected(max(round(sums.length / self.distance * sums.weight), 1), False)
+
+    def _along_border(self, region: Region, progress: Progress) -> Scattered:
+        by_count = self.amount == "COUNT"
+        amount = Amount(count=self.count) if by_count else Amount(spacing=self.distance)
+        try:
+            with region.in_world():
+                curves = region.edge_curves()
+                found = self.border.scatter(region.surface, curves, amount, self.seed, progress)
+        except ValueError as error:
+            raise RefusalError(f"{str(error)[0].upper()}{str(error)[1:]}") from error
+        at = _rounded(found)
+        stays = self._staying(region, at)
+        directions = BorderDirections(found.outward, found.tangent, self.turn)
+        return Scattered(
+            Locations(at.face[stays], at.uv[stays]),
+            directions=directions.at(stays),
+            curves=len(curves),
+        )
 
 
 def _rounded(found: limitsurf.Locations) -> Locations:

@@ -13,6 +13,7 @@ from bpy.props import (
 from ..errors import RefusalError
 from ..sources import value_properties
 from ..sources.value_properties import SourceNames
+from . import border_properties
 from .density import DensityChoice
 from .distribution import Distribution
 from .followers import ground_of
@@ -54,7 +55,7 @@ class DensityProperties(value_properties.ImagePlaceProperties):
     __annotations__ = DENSITY.properties("the density", "Density")  # noqa: RUF012
 
 
-class DistributionProperties(DensityProperties):
+class DistributionProperties(DensityProperties, border_properties.BorderProperties):
     """Mixin with the properties of operators that distribute things."""
 
     distribution: EnumProperty(
@@ -83,6 +84,13 @@ class DistributionProperties(DensityProperties):
                 "",
                 2,
             ),
+            (
+                "BORDER",
+                "Border",
+                "Place them evenly along boundaries, creases or other edges",
+                "",
+                3,
+            ),
         ),
         default="JITTERED",
     )
@@ -97,15 +105,22 @@ class DistributionProperties(DensityProperties):
     )
     amount: EnumProperty(
         name="Amount",
-        description="Setting that determines the number, for Uniform and Blue Noise. Scripts can "
+        description="Setting that determines the number, for all but Jittered. Scripts can "
         "leave it out and set one of count, density and distance",
         items=(
             ("COUNT", "Count", "Make the given number", "", 0),
-            ("DENSITY", "Density", "Make the given number for each square unit of area", "", 1),
+            (
+                "DENSITY",
+                "Density",
+                "Make the given number for each square unit of area, for Uniform and Blue Noise",
+                "",
+                1,
+            ),
             (
                 "DISTANCE",
                 "Distance",
-                "Make as many as fit at the given distance from each other, for Blue Noise",
+                "Make as many as fit at the given distance from each other, for Blue Noise and "
+                "Border",
                 "",
                 2,
             ),
@@ -133,7 +148,7 @@ class DistributionProperties(DensityProperties):
         name="Distance",
         description="Minimum distance between any two in world space. Where a density source is "
         "below its maximum, the distance is larger, so that the number is proportional to the "
-        "density",
+        "density. For Border, the length of the border between neighbors",
         default=0.05,
         min=1e-6,
         soft_min=1e-3,
@@ -222,6 +237,8 @@ def distribution(properties: bpy.types.OperatorProperties) -> Distribution:
     return Distribution(
         kind=properties.distribution,
         amount=_amount(properties),
+        border=border_properties.layout_of(properties),
+        turn=border_properties.turn_of(properties),
         **{name: getattr(properties, name) for name in numbers},
     )
 
@@ -266,6 +283,8 @@ def draw(
     else:
         layout.prop(properties, "amount")
         layout.prop(properties, properties.amount.lower())
+    if properties.distribution == "BORDER":
+        border_properties.draw(layout, properties)
     layout.prop(properties, "seed")
     ob = surface_object(properties, context)
     DENSITY.draw(layout, properties, ob)

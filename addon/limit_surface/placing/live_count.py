@@ -17,7 +17,8 @@ from ..errors import RefusalError
 from ..reading import cage
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
-from . import distribution_properties, region
+from . import border_properties, distribution_properties, region
+from .border import BorderChoice
 from .density import DensityChoice
 from .distribution import Distribution
 from .followers import ground_of
@@ -34,10 +35,12 @@ class Question:
     surface: ObjectKey
     density: DensityChoice
     mask: MaskChoice
+    border: BorderChoice | None
 
     def read(self) -> region.Region:
         ob = self.surface.find()
-        return region.read(ob, bpy.context.evaluated_depsgraph_get(), self.density, self.mask)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return region.read(ob, depsgraph, self.density, self.mask, border=self.border)
 
 
 class LiveCount:
@@ -102,7 +105,7 @@ class LiveCount:
 
 def _add_up(found: region.Region) -> Job:
     def work(_progress: Progress) -> region.Region:
-        found.sums  # noqa: B018 - asked for here, kept there
+        found.measure()
         return found
 
     job = Job(work)
@@ -121,6 +124,7 @@ def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, nou
         ObjectKey.of(ground_of(context.active_object)),
         distribution_properties.density_choice(settings),
         distribution_properties.mask_choice(settings),
+        border_properties.choice(settings),
     )
     try:
         count = _counts.setdefault(noun, LiveCount())

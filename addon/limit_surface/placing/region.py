@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
@@ -19,11 +19,16 @@ from ..reading import cage, subdivided_mesh, vertex_weights
 from ..sources import source_mesh
 from ..sources.source_mesh import Choice, SourceMesh
 from ..tasks.refused_faces import reasons
+from .border import BorderChoice, Edges
 from .density import Density, DensityChoice, DensityMap
 from .mask import MaskChoice
 
+if TYPE_CHECKING:
+    import limitsurf
+
 SAMPLES = 1 << 20  # the largest number of samples, roughly, for sums over the surface
 MOST_PER_SIDE = 16  # samples on each face
+BORDER_SAMPLES = 4096
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,14 @@ class Sums:
     weight: float  # the mean of the density over the faces' (u, v)
     weighted_area: float
     largest: float  # density
+
+
+@dataclass(frozen=True)
+class BorderSums:
+    """Sums along the borders that are covered, in the world."""
+
+    length: float
+    weight: float  # the mean of the density, 1 at most
 
 
 class Region:
@@ -46,9 +59,11 @@ class Region:
         bare: np.ndarray,
         density_map: DensityMap | None,
         sources: Mapping[str, Any],
+        border: Border | None,
     ) -> None:
         self.cage = found
         self.sources = sources  # what the choices have read, by their names
+        self._border = border
         self.bare = frozenset(bare.tolist())  # faces
         mesh = found.with_holes(bare) if len(bare) else found.mesh
         self.surface = native.limitsurf.LimitSurface(mesh)
@@ -103,6 +118,39 @@ class Region:
         area = np.linalg.norm(across, axis=1) / per_side**2
         return Sums(weight.clip(max=1).mean(), float(weight @ area), weight.max())
 
+    def edge_curves(self) -> limitsurf.EdgeCurves:
+        """Returns the curves of the border as the surface is now posed. Raises RefusalError where
+        there are none.
+        """
+        assert self._border is not None
+        curves = self.surface.edge_curves(self._border.edges)
+        if not len(curves):
+            raise RefusalError(self._border.missing)
+        return curves
+
+    @cached_property
+    def border_sums(self) -> BorderSums:
+        with self.in_world():
+            curves = self.edge_curves()
+            at = self.surface.scatter_along(curves, count=BORDER_SAMPLES)
+        weight = np.ones(1) if self.density is None else self.density(at.face, at.uv)
+        return BorderSums(float(curves.lengths.sum()), float(weight.clip(max=1).mean()))
+
+    def measure(self) -> None:
+        """Calculates the sums now. They are kept."""
+        if self._border is None:
+            self.sums  # noqa: B018 - asked for here, kept there
+        else:
+            self.border_sums  # noqa: B018
+
+
+@dataclass(frozen=True)
+class Border:
+    """The edges along which things are placed, and what to say where there are none."""
+
+    edges: Edges
+    missing: str
+
 
 def read(
     ob: bpy.types.Object,
@@ -110,6 +158,7 @@ def read(
     density: DensityChoice,
     mask: MaskChoice,
     sources: Mapping[str, Choice] = MappingProxyType({}),
+    border: BorderChoice | None = None,
 ) -> Region:
     """Reads the region, and what else is chosen. Raises RefusalError where there is nothing to
     cover, or a choice has no meaning here.
@@ -124,7 +173,8 @@ def read(
         read_from = SourceMesh(ob, mesh, found, depsgraph, weights)
         density_map = density.read(read_from)
         known = {name: choice.read(read_from) for name, choice in sources.items()}
-    covered = Region(found, bare, density_map, known)
+        chosen = Border(border.read(mesh, ob.name), border.missing(ob.name)) if border else None
+    covered = Region(found, bare, density_map, known, chosen)
     if not covered.face_count:
         raise RefusalError(f"No face has a limit surface: {reasons(covered.refused)}")
     return covered

@@ -19,10 +19,20 @@ from ..tasks.properties import LargeCountProperty, draw_summary
 from ..tasks.refused_faces import left_out, reasons
 from ..tasks.request_size import RequestSize
 from ..tasks.watched_operator import WatchedOperator
-from . import distribution_properties, following, live_binding, region, roots, subsurf_offer
+from . import (
+    border_properties,
+    distribution_properties,
+    following,
+    live_binding,
+    region,
+    roots,
+    subsurf_offer,
+)
+from .border import borders
 from .distribution import TOO_LOW, Distribution, Scattered
 from .follow_properties import FollowOrLiveProperties, can_deform, why_not_automatic
 from .followers import ground_of
+from .rotations import WorldSpace
 
 # the parts of the progress at which the locations and the things are made
 SCATTERED, MADE = 0.5, 0.9
@@ -48,6 +58,19 @@ class Ground:
         surface = self.region.surface
         on = self.shown.positions(face, uv) if self.shown else surface.evaluate(face, uv).position
         return on, surface.frames(face, uv)
+
+    def world_frames(self, part: roots.Roots, space: WorldSpace) -> np.ndarray:
+        """Returns frames (n, 3, 3) in the world whose last column is the direction of a thing."""
+        frame = space.frames(part.frame)
+        directions = self.scattered.directions
+        return directions.in_world(part.rows, frame[:, :, 2]) if directions else frame
+
+    def frames(self, part: roots.Roots, space: WorldSpace) -> np.ndarray:
+        """Returns the same in the surface's own space, where they are rotations."""
+        directions = self.scattered.directions
+        if directions is None:
+            return part.frame
+        return directions.in_surface_space(part.rows, part.frame[:, :, 2], space)
 
     def surface_uv(self) -> np.ndarray | None:
         """Returns the locations on the UV map of the mesh that the viewport shows. Where that mesh
@@ -268,6 +291,7 @@ class ScatterOperator(
             distribution_properties.density_choice(self.properties),
             distribution_properties.mask_choice(self.properties),
             self.sources(),
+            border_properties.choice(self.properties),
         )
         expected = distribution.expected(covered)
         size = RequestSize(
@@ -289,6 +313,9 @@ class ScatterOperator(
         found, refused = ground.cage, ground.region.refused
         faces = ground.region.face_count
         self.summary = f"{len(ground.locations):,} {self.noun} on {faces:,} faces"
+        if ground.scattered.curves:
+            self.summary = f"{len(ground.locations):,} {self.noun} along "
+            self.summary += borders(ground.scattered.curves)
         if ground.scattered.distance is not None:
             self.summary += f", at least {ground.scattered.distance:.4g} apart"
         if refused:

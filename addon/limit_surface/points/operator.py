@@ -14,6 +14,7 @@ from ..nodes.instances import put_instances
 from ..placing import roots
 from ..placing.binding import Binding
 from ..placing.new_objects import add_on_surface
+from ..placing.rotations import WorldSpace, quaternions
 from ..placing.scatter_operator import Ground, ScatterOperator
 from ..reading import attributes, cage
 from ..tasks.job import Progress
@@ -24,6 +25,7 @@ class Points:
     binding: Binding
     normal: np.ndarray  # (n, 3) float32
     tangent: np.ndarray
+    rotation: np.ndarray  # (n, 4) float32
 
 
 class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
@@ -37,7 +39,8 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
     instance: StringProperty(
         name="Instance",
         description="Name of an object to put on each point, with its Z axis along the surface "
-        "normal and its X axis along growing u",
+        "normal and its X axis along growing u. Along a border, its Z axis has the chosen "
+        "direction and its Y axis runs along the border",
     )
 
     def check_properties(self) -> None:
@@ -47,16 +50,21 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
     def draw_own(self, layout: bpy.types.UILayout) -> None:
         layout.prop_search(self, "instance", bpy.data, "objects")
 
-    def maker(self, _found: cage.Cage) -> Callable[[Ground, Progress], Points]:
+    def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Points]:
+        space = WorldSpace(found.matrix)
+
         def make(ground: Ground, progress: Progress) -> Points:
             count = len(ground.locations)
             binding = Binding(ground.locations)
             normal, tangent = (np.empty((count, 3), np.float32) for _ in range(2))
+            rotation = np.empty((count, 4), np.float32)
             for part in roots.evaluate(ground.evaluate, ground.locations, progress):
                 binding.fill(part)
-                tangent[part.rows] = part.frame[:, :, 0]
-                normal[part.rows] = part.frame[:, :, 2]
-            return Points(binding, normal, tangent)
+                frame = ground.frames(part, space)
+                tangent[part.rows] = frame[:, :, 0]
+                normal[part.rows] = frame[:, :, 2]
+                rotation[part.rows] = quaternions(frame)
+            return Points(binding, normal, tangent, rotation)
 
         return make
 
@@ -70,7 +78,7 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
             made.binding.write(mesh, "POINT")
             attributes.write(mesh, ids.NORMAL, "FLOAT_VECTOR", "POINT", made.normal)
             attributes.write(mesh, ids.TANGENT, "FLOAT_VECTOR", "POINT", made.tangent)
-            attributes.write(mesh, ids.ROTATION, "QUATERNION", "POINT", made.binding.rotation)
+            attributes.write(mesh, ids.ROTATION, "QUATERNION", "POINT", made.rotation)
             mesh.update()
             ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, surface)
             if self.instance:

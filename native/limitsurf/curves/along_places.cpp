@@ -24,8 +24,8 @@ void checkShare(double value, const char* name) {
 
 void checkNumber(double count) {
   if (count > static_cast<double>(kMostLocations)) {
-    throw std::invalid_argument(text("there would be ", count, " locations; the limit is ",
-                                     kMostLocations));
+    throw std::invalid_argument(
+        text("there would be ", count, " locations; the limit is ", kMostLocations));
   }
 }
 
@@ -83,7 +83,8 @@ std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptio
       return std::vector<std::int64_t>(lengths.size(), 0);
     }
     if (!(total > 0)) {
-      throw std::invalid_argument(text("count is ", *options.count, ", but the curves have no length"));
+      throw std::invalid_argument(
+          text("count is ", *options.count, ", but the curves have no length"));
     }
     return shares(*options.count, lengths, total);
   }
@@ -99,8 +100,8 @@ std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptio
 AlongPlaces alongPlaces(const EdgeCurves& curves, const std::vector<std::int64_t>& counts,
                         const AlongOptions& options, int row) {
   AlongPlaces result;
-  const auto all = static_cast<std::size_t>(
-      std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
+  const auto all =
+      static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
   result.curve.reserve(all);
   result.arc.reserve(all);
   const std::uint64_t key = mixed(mixed(options.seed) ^ mixed(static_cast<std::uint64_t>(row)));

@@ -11,8 +11,8 @@ namespace limitsurf {
 struct CurveCubic {
   using Point = BezierPatch::Point;
 
-  Point anchor;     ///< near the curve, so that the points keep the digits of short parts
-  Point points[4];  ///< Bezier control points less the anchor
+  Point anchor;       ///< near the curve, so that the points keep the digits of short parts
+  Point points[4];    ///< Bezier control points less the anchor
   double begin, end;  ///< the fractions of the edge between which it runs
 
   /// The same curve, run through in the opposite direction.

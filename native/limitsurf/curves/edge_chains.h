@@ -23,8 +23,8 @@ struct EdgeChains {
 
   std::vector<std::int64_t> offsets = {0};  ///< of each chain in `edges`, and the end
   std::vector<Edge> edges;
-  std::vector<bool> closed;      ///< per chain
-  std::int64_t left_out = 0;     ///< the number of chosen edges without a surface
+  std::vector<bool> closed;   ///< per chain
+  std::int64_t left_out = 0;  ///< the number of chosen edges without a surface
 
   int count() const { return static_cast<int>(closed.size()); }
 };

@@ -120,7 +120,9 @@ EdgeCurves::Data::Data(const LimitSurface& surface, EdgeChains found, int thread
     for (const CurveSide side : {CurveSide::left, CurveSide::right}) {
       const MeshEdges::Use& use = side == CurveSide::left ? edge.left : edge.right;
       // Where no face is on a side, any face stands for it: it is not asked for.
-      const MeshEdges::Use& some = use.face >= 0 ? use : edge.left.face >= 0 ? edge.left : edge.right;
+      const MeshEdges::Use& some = use.face >= 0         ? use
+                                   : edge.left.face >= 0 ? edge.left
+                                                         : edge.right;
       (side == CurveSide::left ? left : right)
           .emplace_back(mesh, first_ptex[static_cast<std::size_t>(some.face)], some);
     }
@@ -153,13 +155,13 @@ EdgeCurves::Data::EdgeParts EdgeCurves::Data::parts(const LimitSurface& surface,
 }
 
 EdgeCurves::EdgeCurves(const LimitSurface& surface, EdgeChoice choice, int threads)
-    : data_(std::make_unique<Data>(
-          surface, edgeChains(surface, MeshEdges(surface.mesh()), choice), threads)) {}
+    : data_(std::make_unique<Data>(surface, edgeChains(surface, MeshEdges(surface.mesh()), choice),
+                                   threads)) {}
 
 EdgeCurves::EdgeCurves(const LimitSurface& surface,
                        const std::vector<std::pair<std::int64_t, std::int64_t>>& edges, int threads)
-    : data_(std::make_unique<Data>(
-          surface, edgeChains(surface, MeshEdges(surface.mesh()), edges), threads)) {}
+    : data_(std::make_unique<Data>(surface, edgeChains(surface, MeshEdges(surface.mesh()), edges),
+                                   threads)) {}
 
 EdgeCurves::~EdgeCurves() = default;
 EdgeCurves::EdgeCurves(EdgeCurves&&) noexcept = default;
@@ -188,8 +190,9 @@ double EdgeCurves::edgeLength(std::int64_t edge) const {
 }
 
 EdgeCurves::Point EdgeCurves::at(int curve, double arc, CurveSide side) const {
-  const auto first = data_->leaves.begin() +
-                     static_cast<std::ptrdiff_t>(data_->first_leaf[static_cast<std::size_t>(curve)]);
+  const auto first =
+      data_->leaves.begin() +
+      static_cast<std::ptrdiff_t>(data_->first_leaf[static_cast<std::size_t>(curve)]);
   const auto last =
       data_->leaves.begin() +
       static_cast<std::ptrdiff_t>(data_->first_leaf[static_cast<std::size_t>(curve) + 1]);
@@ -224,8 +227,8 @@ EdgeCurves::Point EdgeCurves::at(int curve, double arc, CurveSide side) const {
   const bool on_left = side == CurveSide::left ? has_left : !has_right;
   result.side = on_left ? CurveSide::left : CurveSide::right;
   const auto edge = static_cast<std::size_t>(result.edge);
-  result.at = on_left ? data_->left[edge].at(result.fraction)
-                      : data_->right[edge].at(1 - result.fraction);
+  result.at =
+      on_left ? data_->left[edge].at(result.fraction) : data_->right[edge].at(1 - result.fraction);
   result.position = cubic.position(t);
   result.tangent = direction(cubic, t);
   return result;

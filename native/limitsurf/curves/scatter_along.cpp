@@ -85,8 +85,8 @@ AlongCurves pointsAlong(const LimitSurface& surface, const EdgeCurves& curves,
   result.arc = arc;
   for (std::size_t row = 0; row < curve.size(); ++row) {
     if (curve[row] < 0 || curve[row] >= curves.count()) {
-      throw std::invalid_argument(text("row ", row, ": there is no curve ", curve[row],
-                                       "; there are ", curves.count()));
+      throw std::invalid_argument(
+          text("row ", row, ": there is no curve ", curve[row], "; there are ", curves.count()));
     }
     result.curve.push_back(static_cast<int>(curve[row]));
     const double length = curves.length(result.curve.back());

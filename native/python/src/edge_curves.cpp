@@ -23,9 +23,7 @@ namespace {
 /// Curves, and the pose of which they were made. Python keeps the surface alive as long as this.
 struct BoundEdgeCurves : ZeroedMemory {
   BoundEdgeCurves(const SharedSurface& of, EdgeCurves made)
-      : surface_(&of),
-        pose_(of.pose()),
-        curves_(std::make_unique<EdgeCurves>(std::move(made))) {}
+      : surface_(&of), pose_(of.pose()), curves_(std::make_unique<EdgeCurves>(std::move(made))) {}
 
   const EdgeCurves& curves() const {
     if (!curves_) {
@@ -80,18 +78,18 @@ std::unique_ptr<BoundEdgeCurves> makeCurves(const SharedSurface& shared, const p
   std::optional<EdgeChoice> chosen;
   std::vector<std::pair<std::int64_t, std::int64_t>> given;
   if (py::isinstance<py::str>(edges)) {
-    chosen = choice<EdgeChoice>(
-        edges.cast<std::string>(), "edges",
-        {{"boundary", EdgeChoice::boundary}, {"creases", EdgeChoice::creases}});
+    chosen =
+        choice<EdgeChoice>(edges.cast<std::string>(), "edges",
+                           {{"boundary", EdgeChoice::boundary}, {"creases", EdgeChoice::creases}});
   } else {
     given = edgesOf(edges);
   }
   const py::gil_scoped_release release;
   const HeldPose held(shared);
   const InterruptionPoint point = interruptible();
-  return std::make_unique<BoundEdgeCurves>(
-      shared, chosen ? EdgeCurves(shared.surface(), *chosen, threads)
-                     : EdgeCurves(shared.surface(), given, threads));
+  return std::make_unique<BoundEdgeCurves>(shared,
+                                           chosen ? EdgeCurves(shared.surface(), *chosen, threads)
+                                                  : EdgeCurves(shared.surface(), given, threads));
 }
 
 py::object along(const AlongCurves& found) {

@@ -30,11 +30,8 @@ def is_property(node):
     return any(isinstance(d, ast.Name) and d.id == "property" for d in node.decorator_list)
 
 
-FUNCTIONS = {
-    name: node
-    for name, node in functions()
-    if name not in ("EdgeCurves.__init__", "SurfaceData.__init__", "StrandPoser.__init__")  # nobody can call them
-}
+UNCALLABLE = ("EdgeCurves.__init__", "StrandPoser.__init__", "SurfaceData.__init__")
+FUNCTIONS = {name: node for name, node in functions() if name not in UNCALLABLE}
 
 
 def native(name):

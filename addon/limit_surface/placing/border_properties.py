@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The properties of things that are placed along borders, and their layout."""
+
+import math
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty
+
+from .border import BorderChoice, BorderLayout, Turn
+
+
+class BorderProperties:
+    """Mixin with the properties of the distribution along borders."""
+
+    border: EnumProperty(
+        name="Border",
+        description="Edges along which things are placed, for Border",
+        items=(
+            (
+                "BOUNDARY",
+                "Boundary",
+                "Use the open boundaries of the mesh: edges that belong to one face",
+                "",
+                0,
+            ),
+            ("CREASES", "Creases", "Use edges between faces with a crease above 0", "", 1),
+            ("SHARP", "Sharp", "Use edges that are marked sharp", "", 2),
+            ("SELECTED", "Selected", "Use the edges that were selected in Edit Mode", "", 3),
+        ),
+        default="BOUNDARY",
+    )
+    border_jitter: FloatProperty(
+        name="Jitter",
+        description="Part of the distance between neighbors by which each is moved along the "
+        "border at random: by half of it at most to each side",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    other_side: BoolProperty(
+        name="Other Side",
+        description="Use the faces on the other side of edges that lie between two faces",
+        default=False,
+    )
+    direction: EnumProperty(
+        name="Direction",
+        description="Direction of things along a border",
+        items=(
+            ("NORMAL", "Normal", "Point along the surface's normal", "", 0),
+            (
+                "OUTWARDS",
+                "Outwards",
+                "Point away from the faces that they stand on, tangentially to the surface",
+                "",
+                1,
+            ),
+        ),
+        default="NORMAL",
+    )
+    lift: FloatProperty(
+        name="Lift",
+        description="Angle by which things that point outwards are lifted towards the surface's "
+        "normal: at 90 degrees they point along the normal",
+        default=0.0,
+        min=-math.pi / 2,
+        max=math.pi / 2,
+        unit="ROTATION",
+    )
+    flow: FloatProperty(
+        name="Flow",
+        description="Angle by which things lean in the direction of the border. Negative angles "
+        "lean the opposite way",
+        default=0.0,
+        min=-math.pi / 2,
+        max=math.pi / 2,
+        unit="ROTATION",
+    )
+
+
+def choice(properties: bpy.types.OperatorProperties) -> BorderChoice | None:
+    """Returns the choice of edges, or None for other distributions."""
+    return BorderChoice(properties.border) if properties.distribution == "BORDER" else None
+
+
+def layout_of(properties: bpy.types.OperatorProperties) -> BorderLayout:
+    return BorderLayout(properties.border_jitter, "right" if properties.other_side else "left")
+
+
+def turn_of(properties: bpy.types.OperatorProperties) -> Turn:
+    is_outwards = properties.direction == "OUTWARDS"
+    return Turn(math.pi / 2 - properties.lift if is_outwards else 0.0, properties.flow)
+
+
+def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
+    layout.prop(properties, "border")
+    layout.prop(properties, "border_jitter", slider=True)
+    layout.prop(properties, "other_side")
+    layout.prop(properties, "direction")
+    if properties.direction == "OUTWARDS":
+        layout.prop(properties, "lift")
+    layout.prop(properties, "flow")

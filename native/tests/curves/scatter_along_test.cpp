@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Locations along curves: numbers, distances, randomness and directions.
+#include "limitsurf/curves/scatter_along.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <stdexcept>
+
+#include "support/cages/meshes.h"
+
+namespace limitsurf::test {
+namespace {
+
+AlongOptions byCount(std::int64_t count) {
+  AlongOptions options;
+  options.count = count;
+  return options;
+}
+
+std::vector<double> arcsOf(const AlongCurves& along, int curve) {
+  std::vector<double> arcs;
+  for (std::size_t i = 0; i < along.arc.size(); ++i) {
+    if (along.curve[i] == curve) {
+      arcs.push_back(along.arc[i]);
+    }
+  }
+  return arcs;
+}
+
+TEST(ScatterAlong, NeighboursAreEquallyFarApart) {
+  const LimitSurface surface = limitSurface(perturbed(gridWithHoles(6, 5, {8, 21}), 0.2, 2));
+  const EdgeCurves curves(surface, EdgeChoice::boundary);
+  const AlongCurves along = scatterAlong(surface, curves, byCount(100));
+  ASSERT_EQ(along.at.size(), 100u);
+  double total = 0;
+  for (int curve = 0; curve < curves.count(); ++curve) {
+    total += curves.length(curve);
+  }
+  for (int curve = 0; curve < curves.count(); ++curve) {
+    const std::vector<double> arcs = arcsOf(along, curve);
+    const double length = curves.length(curve), gap = length / static_cast<double>(arcs.size());
+    EXPECT_LT(std::abs(static_cast<double>(arcs.size()) - 100 * length / total), 1);
+    for (std::size_t i = 1; i < arcs.size(); ++i) {
+      EXPECT_NEAR(arcs[i] - arcs[i - 1], gap, 1e-12 * length);
+    }
+    EXPECT_LT(arcs.front(), gap);
+  }
+}
+
+TEST(ScatterAlong, SpacingDividesEachCurve) {
+  const LimitSurface surface = limitSurface(fullGrid(4, 4));
+  const EdgeCurves curves(surface, {{6, 7}, {7, 8}, {16, 17}});
+  AlongOptions options;
+  options.spacing = 0.3;
+  const AlongCurves along = scatterAlong(surface, curves, options);
+  for (int curve = 0; curve < curves.count(); ++curve) {
+    EXPECT_EQ(static_cast<double>(arcsOf(along, curve).size()),
+              std::round(curves.length(curve) / 0.3));
+  }
+}
+
+TEST(ScatterAlong, JitterStaysWithinItsBounds) {
+  const LimitSurface surface = limitSurface(cross());
+  const EdgeCurves curves(surface, EdgeChoice::boundary);
+  AlongOptions even = byCount(2000), uneven = even;
+  uneven.jitter = 0.6;
+  const AlongCurves a = scatterAlong(surface, curves, even);
+  const AlongCurves b = scatterAlong(surface, curves, uneven);
+  const double length = curves.length(0), gap = length / 2000;
+  double sum = 0, most = 0;
+  for (std::size_t i = 0; i < a.arc.size(); ++i) {
+    const double moved = std::remainder(b.arc[i] - a.arc[i], length) / gap;
+    sum += moved;
+    most = std::max(most, std::abs(moved));
+  }
+  EXPECT_LE(most, 0.3 + 1e-9);
+  EXPECT_GT(most, 0.29);
+  EXPECT_LT(std::abs(sum) / 2000, 4 * 0.6 / std::sqrt(12. * 2000));
+}
+
+TEST(ScatterAlong, OpenCurvesKeepTheirLocations) {
+  const LimitSurface surface = limitSurface(fullGrid(3, 3));
+  const EdgeCurves curves(surface, {{4, 5}, {5, 6}});
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    AlongOptions options = byCount(4);
+    options.jitter = 1;
+    options.seed = seed;
+    const std::vector<double> arcs = arcsOf(scatterAlong(surface, curves, options), 0);
+    for (std::size_t i = 0; i < arcs.size(); ++i) {
+      EXPECT_GE(arcs[i], i == 0 ? 0 : arcs[i - 1]);
+      EXPECT_LE(arcs[i], curves.length(0));
+    }
+  }
+}
+
+TEST(ScatterAlong, DirectionsAreTangentialAndOrthonormal) {
+  const LimitSurface surface = limitSurface(mixture(7));
+  const EdgeCurves curves(surface, EdgeChoice::boundary);
+  const AlongCurves along = scatterAlong(surface, curves, byCount(300));
+  const auto frames = surface.frames(along.at);
+  const Evaluation here = surface.evaluate(along.at, Derivatives::first);
+  for (Eigen::Index i = 0; i < 300; ++i) {
+    const Vector3 normal(frames(i, 2), frames(i, 5), frames(i, 8));
+    const Vector3 tangent = along.tangent.row(i), outward = along.outward.row(i);
+    EXPECT_NEAR(tangent.norm(), 1, 1e-12);
+    EXPECT_NEAR(outward.norm(), 1, 1e-12);
+    EXPECT_LT(std::abs(tangent.dot(normal)) + std::abs(outward.dot(normal)), 1e-12);
+    EXPECT_LT(std::abs(tangent.dot(outward)), 1e-12);
+    // Inwards u or v grows or shrinks; the derivative into the face points against outward.
+    const Location& at = along.at[static_cast<std::size_t>(i)];
+    const Vector3 du = here.du.row(i), dv = here.dv.row(i);
+    const Vector3 into = at.v == 0 ? dv : at.u == 1 ? Vector3(-du) : at.v == 1 ? Vector3(-dv) : du;
+    EXPECT_LT(into.dot(outward), 0) << describe(at);
+  }
+}
+
+TEST(ScatterAlong, DependsOnTheSeedAlone) {
+  const LimitSurface surface = limitSurface(mixture(3));
+  const EdgeCurves curves(surface, EdgeChoice::boundary);
+  AlongOptions options = byCount(1000);
+  options.jitter = 0.5;
+  options.seed = 7;
+  const AlongCurves one = scatterAlong(surface, curves, options, 1);
+  const AlongCurves many = scatterAlong(surface, curves, options, 3);
+  EXPECT_EQ(one.arc, many.arc);
+  EXPECT_EQ(one.tangent, many.tangent);
+  EXPECT_EQ(one.outward, many.outward);
+  options.seed = 8;
+  EXPECT_NE(one.arc, scatterAlong(surface, curves, options).arc);
+}
+
+TEST(ScatterAlong, RefusesWhatHasNoMeaning) {
+  const LimitSurface surface = limitSurface(cross()), closed = limitSurface(cube());
+  const EdgeCurves curves(surface, EdgeChoice::boundary);
+  const EdgeCurves none(closed, EdgeChoice::boundary);
+  const auto refuses = [&](const AlongOptions& options) {
+    EXPECT_THROW(scatterAlong(surface, curves, options), std::invalid_argument);
+  };
+  refuses({});
+  refuses(byCount(-1));
+  AlongOptions options = byCount(5);
+  options.spacing = 1;
+  refuses(options);
+  options = byCount(5);
+  options.jitter = 1.5;
+  refuses(options);
+  options = byCount(5);
+  options.phase = std::nan("");
+  refuses(options);
+  options = {};
+  options.spacing = 0;
+  refuses(options);
+  options.spacing = 1e-300;
+  refuses(options);
+  EXPECT_THROW(scatterAlong(closed, none, byCount(1)), std::invalid_argument);
+  EXPECT_TRUE(scatterAlong(closed, none, byCount(0)).at.empty());
+  EXPECT_THROW(pointsAlong(surface, curves, {1}, {0}), std::invalid_argument);
+  EXPECT_THROW(pointsAlong(surface, curves, {0}, {-1e-9}), std::invalid_argument);
+  EXPECT_THROW(pointsAlong(surface, curves, {0}, {curves.length(0) * 1.001}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace limitsurf::test
