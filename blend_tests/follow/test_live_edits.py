@@ -84,6 +84,35 @@ def test_combing_a_posed_bone_changes_nothing_else(hair):
     np.testing.assert_allclose(scenes.strands(hair), combed, atol=BOUND)
 
 
+@pytest.mark.parametrize("is_updated_first", [False, True])
+def test_scripts_may_change_the_binding_and_the_shape_at_rest(hair, is_updated_first):
+    """What is kept from frame to frame is read again once a script tags the data."""
+    go_to(10)
+    rotation = attributes.read(hair.data, ids.REST_ROTATION)
+    rotation[3] = 0  # the strand stands at rest
+    attributes.write(hair.data, ids.REST_ROTATION, "QUATERNION", "CURVE", rotation)
+    hair.data.update_tag()
+    if is_updated_first:
+        bpy.context.view_layer.update()
+    go_to(20)
+    rest = live_scenes.rest(hair)
+    np.testing.assert_array_equal(scenes.strands(hair)[3], rest[3])
+
+    rest = rest.copy()
+    rest[3] += 1
+    rest[5, 1:] = rest[5, :1] + 2 * (rest[5, 1:] - rest[5, :1])
+    before = scenes.strands(hair)[5].copy()
+    attributes.write(hair.data, ids.LIVE_REST, "FLOAT_VECTOR", "POINT", rest)
+    hair.data.update_tag()
+    if is_updated_first:
+        bpy.context.view_layer.update()
+    go_to(21)
+    go_to(20)
+    np.testing.assert_array_equal(scenes.strands(hair)[3], rest[3])
+    longer = before[:1] + 2 * (before - before[:1])
+    np.testing.assert_allclose(scenes.strands(hair)[5], longer, atol=BOUND)
+
+
 def test_strands_that_are_added_later_stay(hair):
     go_to(15)
     count = len(hair.data.curves)

@@ -87,7 +87,9 @@ def followers_in(
 
 def pose_all(depsgraph: bpy.types.Depsgraph) -> None:
     """Poses everything for the depsgraph's frame."""
-    for surface, things in followers_in(depsgraph).items():
+    followers = followers_in(depsgraph)
+    _read_changed_ones_anew(followers, depsgraph)
+    for surface, things in followers.items():
         _pose(surface, things, depsgraph)
 
 
@@ -96,6 +98,7 @@ def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
     followers = followers_in(depsgraph)
     if not followers:
         return
+    _read_changed_ones_anew(followers, depsgraph)
     changed = {
         update.id.original
         for update in depsgraph.updates
@@ -121,6 +124,16 @@ def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
             _take_up_edits(surface, edited, depsgraph)
 
 
+def _read_changed_ones_anew(
+    followers: dict[bpy.types.Object, list[bpy.types.Object]], depsgraph: bpy.types.Depsgraph
+) -> None:
+    changed = {update.id.original for update in depsgraph.updates}
+    for things in followers.values():
+        for ob in things:
+            if ob.data in changed:
+                _thing(ob).read_anew()
+
+
 def take_up_edits(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """Makes sure that the shape at rest is that of the points as they are now. Raises CageError or
     MeshError where there is no surface.
@@ -128,6 +141,7 @@ def take_up_edits(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     surface = surface_of(ob)
     if surface is not None:
         on = _surface(surface, depsgraph)
+        _thing(ob).read_anew()
         _take_up(ob, surface, on, depsgraph)
 
 
@@ -168,6 +182,7 @@ def start(ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.
     LocationError where the points do not belong to the surface.
     """
     live_thing.start(ob.data, _surface(surface, depsgraph).limit)
+    _thing(ob).read_anew()
 
 
 def _surface(surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> LiveSurface:

@@ -97,7 +97,8 @@ def leave(data: bpy.types.ID) -> None:
 def missing(data: bpy.types.ID) -> str:
     """Returns the name of an attribute without which the data cannot follow, or None."""
     needed = (ids.LIVE_REST, ids.LIVE_FINGERPRINT, *_BINDING)
-    return next((name for name in needed if name not in data.attributes), "")
+    there = data.attributes.keys()
+    return next((name for name in needed if name not in there), "")
 
 
 def written(data: bpy.types.ID) -> Written | None:
@@ -109,7 +110,13 @@ def written(data: bpy.types.ID) -> Written | None:
 
 
 class LiveThing:
-    """What is prepared for one data-block, and kept from frame to frame."""
+    """What is prepared for one data-block, and kept from frame to frame.
+
+    Blender copies an attribute when it is looked up for the first time in a frame, even if it is
+    only read. So what is bound, and the shape at rest, are read again only when Blender says that
+    the data-block has changed (`read_anew`), or when its attributes, the number of its elements or
+    the stored fingerprints are not those of before. Points are read in each frame.
+    """
 
     def __init__(self) -> None:
         self.version = -1  # the surface's version for which the points were written
@@ -118,24 +125,33 @@ class LiveThing:
         self._poser: limitsurf.StrandPoser | None = None
         self._corners: _Corners | None = None
         self._buffers: dict[str, np.ndarray] = {}
-        self._is_current = False  # binding and points were read since the last pose
+        self._is_current = False  # points were read since the last pose
+        self._source: tuple[object, ...] | None = None  # what the binding was read from
+        self._rests: set[str] = set()  # attributes at rest that the buffers hold
+        self._prints = np.empty(0, np.int32)  # the fingerprints that were written last
+
+    def read_anew(self) -> None:
+        """Is called when somebody may have changed the data-block."""
+        self._source = None
 
     def check(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
         self._poser_on(data, limit)
 
     def edits(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> np.ndarray | None:
         """Returns which strands somebody has changed since they were written; None for none."""
-        self._leave_new_ones(data)
         prints = self._read(data, ids.LIVE_FINGERPRINT)
+        if not _same_bits(prints, self._prints):
+            self.read_anew()
+            self._prints = prints.copy()
+            self._leave_new_ones(data, prints == 0)
         edited: np.ndarray = self._fingerprints(data, self._poser_on(data, limit)) != prints
         self._is_current = True
         return edited if edited.any() else None
 
-    def _leave_new_ones(self, data: bpy.types.ID) -> None:
+    def _leave_new_ones(self, data: bpy.types.ID, is_new: np.ndarray) -> None:
         """Strands that were added since the last time have no fingerprint, and belong to no place
         of the surface, whatever their other attributes say.
         """
-        is_new = self._read(data, ids.LIVE_FINGERPRINT) == 0
         if is_new.any():
             rotation = attributes.read(data, ids.REST_ROTATION)
             rotation[is_new] = 0
@@ -153,7 +169,7 @@ class LiveThing:
         """
         poser = self._poser_on(data, limit)
         for name in _points_of(data):
-            rest = self._read(data, rest_name(name))
+            rest = self._at_rest(data, name)
             poser.unpose(self._read(data, name), matrix, rest, only=edited)
             _write(data, rest_name(name), rest)
         self._mark(data, poser)
@@ -166,7 +182,11 @@ class LiveThing:
         prints = self._fingerprints(data, poser)
         if ids.LIVE_FINGERPRINT not in data.attributes:
             data.attributes.new(ids.LIVE_FINGERPRINT, "INT", _domain(data))
+        self._write_prints(data, prints)
+
+    def _write_prints(self, data: bpy.types.ID, prints: np.ndarray) -> None:
         _write(data, ids.LIVE_FINGERPRINT, prints)
+        self._prints = prints
 
     def pose(
         self, data: bpy.types.ID, limit: limitsurf.LimitSurface, matrix: np.ndarray, frame: float
@@ -184,7 +204,7 @@ class LiveThing:
         prints = np.zeros(len(poser), np.int32)
         for name in _points_of(data):
             points = self._buffers[name] if is_current else self._read(data, name)
-            rest = self._read(data, rest_name(name))
+            rest = self._at_rest(data, name)
             has_changed, own = poser.repose(rest, points, matrix)
             prints ^= own
             if has_changed:
@@ -192,7 +212,7 @@ class LiveThing:
                 has_moved = True
         if has_moved:
             _tag(data)
-            _write(data, ids.LIVE_FINGERPRINT, _without_zero(prints))
+            self._write_prints(data, _without_zero(prints))
         now = np.array([frame, *matrix.ravel()])
         if not np.array_equal(data.get(ids.LIVE_WRITTEN, ()), now):
             data[ids.LIVE_WRITTEN] = now.tolist()
@@ -207,10 +227,11 @@ class LiveThing:
         if ids.CUSTOM_NORMAL in data.attributes and isinstance(data, bpy.types.Mesh):
             how[ids.CUSTOM_NORMAL] = self._corners_of(data).pose_vectors
         has_moved = False
+        there = data.attributes.keys()
         for name in moved_names(data):
-            if name not in how or rest_name(name) not in data.attributes:
+            if name not in how or rest_name(name) not in there:
                 continue  # it was added later
-            rest = self._read(data, rest_name(name))
+            rest = self._at_rest(data, name)
             posed = how[name](rest, matrix, self._buffer(f"new {name}", rest.shape))
             if not _same_bits(posed, self._read(data, name)):
                 _write(data, name, posed)
@@ -226,6 +247,9 @@ class LiveThing:
 
     def _poser_on(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> limitsurf.StrandPoser:
         """Returns what poses the strands as they are bound now."""
+        if self._poser and limit is self._limit and self._source == _source(data):
+            return self._poser
+        self._rests.clear()
         binding = {name: attributes.read(data, name) for name in _BINDING}
         binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
         if isinstance(data, bpy.types.Curves):
@@ -240,6 +264,7 @@ class LiveThing:
         ):
             self._poser = _poser(limit, binding, binding.get("offsets"))
             self._limit, self._binding, self._corners = limit, binding, None
+        self._source = _source(data)
         return self._poser
 
     def _corners_of(self, mesh: bpy.types.Mesh) -> _Corners:
@@ -249,6 +274,14 @@ class LiveThing:
             assert self._limit is not None
             self._corners = _Corners(vertex, self._binding, self._limit)
         return self._corners
+
+    def _at_rest(self, data: bpy.types.ID, name: str) -> np.ndarray:
+        """Returns the attribute's values at rest, for the binding that was read last."""
+        at_rest = rest_name(name)
+        if at_rest not in self._rests:
+            self._read(data, at_rest)
+            self._rests.add(at_rest)
+        return self._buffers[at_rest]
 
     def _read(self, data: bpy.types.ID, name: str) -> np.ndarray:
         """Returns the attribute's values, in memory that is used again for the next frame."""
@@ -303,7 +336,15 @@ def _without_zero(prints: np.ndarray) -> np.ndarray:
 
 
 def _points_of(data: bpy.types.ID) -> list[str]:
-    return [n for n in _POINTS if n in data.attributes and rest_name(n) in data.attributes]
+    there = data.attributes.keys()
+    return [name for name in _POINTS if name in there and rest_name(name) in there]
+
+
+def _source(data: bpy.types.ID) -> tuple[object, ...]:
+    """Returns what tells a data-block from another one that takes its place."""
+    kinds = {bpy.types.Curves: "curves", bpy.types.Mesh: "vertices"}
+    elements = getattr(data, kinds.get(type(data), "points"))
+    return data.as_pointer(), len(elements), *data.attributes.keys()
 
 
 def _domain(data: bpy.types.ID) -> str:
