@@ -33,16 +33,23 @@ fail() {
   exit 1
 }
 
+# Blender as a module exists for one version of Python: 3.11 for Blender 4.2 to 5.0, 3.13 for later
+# ones.
 find_python() {
-  local candidate
-  for candidate in python3.11 python3 /usr/bin/python3.11; do
-    if "$candidate" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null; then
+  local blender=$1 wanted=3.11 major minor candidate
+  IFS=. read -r major minor _ <<<"$blender"
+  if ((major > 5 || (major == 5 && minor > 0))); then
+    wanted=3.13
+  fi
+  for candidate in "python$wanted" python3 "/usr/bin/python$wanted"; do
+    if "$candidate" -c "import sys; sys.exit('%d.%d' % sys.version_info[:2] != '$wanted')" \
+      2>/dev/null; then
       PYTHON=$("$candidate" -c 'import sys; print(sys._base_executable)') # no virtual environment's
       return
     fi
   done
-  fail "Python 3.11 is needed (Blender 4.2 to 5.0 as a module exists for no other): none found." \
-    "On Debian 12: apt-get install python3. Elsewhere: put a python3.11 on PATH."
+  fail "Python $wanted is needed (Blender $blender as a module exists for no other): none found." \
+    "Debian 12 has 3.11: apt-get install python3. Otherwise put a python$wanted on PATH."
 }
 
 install_apt_packages() {
@@ -144,7 +151,7 @@ set_up() {
   local blender=${1:-$DEFAULT_BLENDER}
   VENV=$ROOT/.venv
   [[ $blender == "$DEFAULT_BLENDER" ]] || VENV=$ROOT/.venv-$blender
-  find_python
+  find_python "$blender"
   mkdir -p "$ROOT/build"
   (
     flock 9 # two scripts at once would spoil each other's environment
