@@ -8,6 +8,7 @@ import pytest
 import scenes
 from follow_scenes import deforming
 from limit_surface import ids
+from limit_surface.nodes import groups
 from limit_surface.placing.followers import live_modifier_of, modifier_of
 from limit_surface.reading import attributes
 from mathutils import Euler, Matrix
@@ -240,7 +241,7 @@ def read_by_nodes(ob: bpy.types.Object, child: bpy.types.Object) -> None:
         group.interface.new_socket(kind, in_out="INPUT", socket_type=f"NodeSocket{kind}")
     modifier = ob.modifiers.new("Own", "NODES")
     modifier.node_group = group
-    modifier["Socket_1"] = child
+    groups.set_input(modifier, "Object", child)
 
 
 def collected(child: bpy.types.Object) -> bpy.types.Collection:
@@ -262,7 +263,7 @@ def read_collection_by_nodes(ob: bpy.types.Object, child: bpy.types.Object) -> N
         group.interface.new_socket(kind, in_out="INPUT", socket_type=f"NodeSocket{kind}")
     modifier = ob.modifiers.new("Own", "NODES")
     modifier.node_group = group
-    modifier["Socket_1"] = collected(child)
+    groups.set_input(modifier, "Collection", collected(child))
 
 
 def name_within_nodes(ob: bpy.types.Object, child: bpy.types.Object) -> None:

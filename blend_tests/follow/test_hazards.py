@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
+from limit_surface.nodes import groups
 from limit_surface.placing.follow_state import State
 from limit_surface.reading import attributes
 from mathutils import Euler, Matrix
@@ -76,7 +77,7 @@ def test_data_of_two_surfaces_are_refused():
     bpy.context.collection.objects.link(twin)
     twin.parent = other
     for modifier in twin.modifiers:
-        modifier[modifier.node_group.interface.items_tree["Surface"].identifier] = other
+        groups.set_input(modifier, "Surface", other)
     scenes.activate(twin)
     for selected in bpy.context.selected_objects:
         selected.select_set(False)

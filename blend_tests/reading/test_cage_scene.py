@@ -138,8 +138,7 @@ def rich_scene():
 
 
 def users():
-    kinds = (p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION")
-    ids_ = (i for kind in kinds for i in getattr(bpy.data, kind) if isinstance(i, bpy.types.ID))
+    ids_ = (i for kind in scenes.kinds() for i in getattr(bpy.data, kind) if isinstance(i, bpy.types.ID))
     return {repr(i): (i.users, i.use_fake_user) for i in ids_}
 
 

@@ -183,5 +183,10 @@ def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 def file_contents() -> dict[str, list[str]]:
     """Returns the names of everything in the file, by type."""
-    kinds = (p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION")
-    return {kind: sorted(item.name_full for item in getattr(bpy.data, kind)) for kind in kinds}
+    return {kind: sorted(item.name_full for item in getattr(bpy.data, kind)) for kind in kinds()}
+
+
+def kinds() -> list[str]:
+    """Returns the names of the collections of bpy.data, each for one type of data-blocks."""
+    found = [p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION"]
+    return [kind for kind in found if kind != "all_ids"]  # since Blender 5.1 one for all types
