@@ -17,7 +17,7 @@ from follow_scenes import deforming
 from limit_surface import ids
 from limit_surface.nodes.sample_surface import SAMPLE_SURFACE
 from limit_surface.nodes.tree import Socket, Tree
-from limit_surface.placing import all_tiles, quadtree
+from limit_surface.placing import all_tiles
 from limit_surface.reading import attributes
 from limit_surface.sampling import library
 from processes import ROOT
@@ -118,7 +118,7 @@ def test_places_may_be_given_by_tile():
     make_tables(ob, depth=16)
     bpy.context.scene.frame_set(1)
     face, uv = everywhere(ob, 500)
-    tree = quadtree.build(scenes.surface_without_addon(ob), 16)
+    tree = scenes.surface_without_addon(ob).tile_quadtree(16)
     # the table's own tiles: found as the nodes find them
     node, rest = face.copy(), uv.astype(np.float64)
     for _ in range(tree.levels):

@@ -14,7 +14,9 @@ from ..nodes import locate
 from ..nodes.tiles import ROWS_OF_A_TILE
 from ..reading import attributes, cage
 from ..tasks.refused_faces import check_some_left
-from . import following, new_objects, quadtree, tables
+from . import following, new_objects, tables
+
+_NO_TILE = -(1 << 23)  # what quadtrees hold for faces that have no limit surface
 
 
 class AllTiles:
@@ -31,9 +33,9 @@ class AllTiles:
             self._bound = following.bound_to(found, mesh)
         limit = found.surface()
         check_some_left(limit, surface.name)
-        self.tree = quadtree.build(limit, depth)
+        self.tree = limit.tile_quadtree(depth)
         self._face_count = limit.face_count
-        faces = np.flatnonzero(self.tree.child[: limit.face_count] != quadtree.NO_TILE)
+        faces = np.flatnonzero(self.tree.child[: limit.face_count] != _NO_TILE)
         side = 2**levels
         self._face, self._uv = _grids(faces, side)
         self._positions = limit.evaluate(self._face, self._uv).position

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..errors import RefusalError
 from ..reading import attributes, cage, uv_map
 from ..tasks.refused_faces import check_some_left
@@ -28,7 +28,6 @@ from .places import NOWHERE
 from .posed_surface import PosedSurface, transformed
 from .relocation import Elements, Relocation
 from .rotations import quaternions
-from .turns import matrices, shortest
 
 if TYPE_CHECKING:
     import limitsurf
@@ -279,20 +278,21 @@ def _moved(
             "or apply them"
         )
     before = elements.read(ids.REST_ROOT).astype(np.float64)
-    old = matrices(elements.read(ids.REST_ROTATION)[rows].astype(np.float64))
+    old = native.limitsurf.rotation_matrices(elements.read(ids.REST_ROTATION)[rows])
     frame = put_places(relocation, posed, rows, face, uv)
     after = before.copy()
     after[rows] = relocation.values[ids.REST_ROOT][rows]
     turn = np.tile(np.eye(3), (elements.count, 1, 1))
-    turn[rows] = shortest(old[:, :, 2], frame[:, :, 2])
-    of_point = np.repeat(np.arange(elements.count), elements.sizes)
-    moving = np.isin(of_point, rows)
-    of_point = of_point[moving]
+    turn[rows] = native.limitsurf.shortest_turns(old[:, :, 2], frame[:, :, 2])
+    offsets = np.concatenate([[0], np.cumsum(elements.sizes)])
+    is_moving = np.zeros(elements.count, bool)
+    is_moving[rows] = True
+    moving = np.repeat(is_moving, elements.sizes)
     for name in _POINTS:
         if elements.rest_name(name) in elements.data.attributes:
             points = elements.read_shape(name).astype(np.float64)
-            arm = np.einsum("nij,nj->ni", turn[of_point], points[moving] - before[of_point])
-            points[moving] = after[of_point] + arm
+            moved = native.limitsurf.move_strands(points, offsets, before, after, turn)
+            points[moving] = moved[moving]
             relocation.values[elements.rest_name(name)] = points
     if elements.domain == "POINT":
         _turn_attributes(relocation, rows, turn[rows])
@@ -306,11 +306,12 @@ def _turn_attributes(relocation: Relocation, rows: np.ndarray, turn: np.ndarray)
     for name in _DIRECTIONS:
         if elements.rest_name(name) in stored:
             vectors = elements.read_shape(name)
-            vectors[rows] = np.einsum("nij,nj->ni", turn, vectors[rows].astype(np.float64))
+            origin = np.zeros((len(rows), 3))
+            vectors[rows] = native.limitsurf.move_strands(vectors[rows], None, origin, origin, turn)
             relocation.values[elements.rest_name(name)] = vectors
     if elements.rest_name(ids.ROTATION) in stored:
         rotation = elements.read_shape(ids.ROTATION)
-        rotation[rows] = quaternions(turn @ matrices(rotation[rows].astype(np.float64)))
+        rotation[rows] = quaternions(turn @ native.limitsurf.rotation_matrices(rotation[rows]))
         relocation.values[elements.rest_name(ids.ROTATION)] = rotation
 
 

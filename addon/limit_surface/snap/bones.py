@@ -12,9 +12,9 @@ from collections.abc import Iterable
 import bpy
 import numpy as np
 
+from .. import native
 from ..placing.posed_surface import transformed
 from ..placing.rotations import WorldSpace, unit
-from ..placing.turns import shortest
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 
@@ -89,7 +89,7 @@ def _aligned(axes: np.ndarray, frame: np.ndarray, align: str) -> tuple[np.ndarra
     """Returns the bones' Y along the normal, and their Z."""
     if align == "NORMAL_DU":
         return frame[:, :, 2], -frame[:, :, 1]
-    turn = shortest(axes[:, :, 1], frame[:, :, 2])
+    turn = native.limitsurf.shortest_turns(axes[:, :, 1], frame[:, :, 2])
     return frame[:, :, 2], np.einsum("nij,nj->ni", turn, axes[:, :, 2])
 
 

@@ -4,10 +4,9 @@
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..placing.posed_surface import transformed
 from ..placing.rotations import WorldSpace, unit
-from ..placing.turns import shortest
 from ..reading import attributes, ragged_rows
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
@@ -84,7 +83,7 @@ class SnappedHair:
         """Returns rotations (m, 3, 3) in world space."""
         if align == "NONE":
             return np.broadcast_to(np.eye(3), (len(curves), 3, 3))
-        turn = shortest(strands.directions(), placement.frame[:, :, 2])
+        turn = native.limitsurf.shortest_turns(strands.directions(), placement.frame[:, :, 2])
         if align == "NORMAL_DU":
             bound, rest = self._binding.rest_frames(curves)
             place = self._binding.places(placement.face, placement.uv, self._matrix)

@@ -4,11 +4,10 @@
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..errors import RefusalError
 from ..placing.posed_surface import Places
 from ..placing.rotations import quaternions
-from ..placing.turns import matrices
 from ..reading import attributes
 from .surface import TargetSurface
 
@@ -52,7 +51,7 @@ class HairBinding:
             return np.zeros(len(curves), bool), np.tile(np.eye(3), (len(curves), 1, 1))
         rotation = attributes.read(self._data, ids.REST_ROTATION)[curves].astype(np.float64)
         bound = attributes.read(self._data, ids.FACE)[curves] != NOWHERE
-        return bound, matrices(rotation)
+        return bound, native.limitsurf.rotation_matrices(rotation)
 
     def write(
         self, curves: np.ndarray, face: np.ndarray, uv: np.ndarray, space: np.ndarray

@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from .. import native
 from ..placing.rotations import unit
-from ..placing.turns import shortest
 
 # Tolerances for Blender's matrices in single precision: a share of the largest coordinate, and an
 # angle
@@ -65,7 +65,8 @@ class ObjectMove:
         """
         normal = unit(frame[:, 2])
         if self._align == "NORMAL":
-            return shortest((sign[2] * rotation[:, 2])[None], normal[None])[0] @ rotation
+            z = sign[2] * rotation[:, 2]
+            return native.limitsurf.shortest_turns(z[None], normal[None])[0] @ rotation
         z = sign[2] * normal
         x = sign[0] * unit(frame[:, 0] - (frame[:, 0] @ normal) * normal)
         return np.stack([x, np.cross(z, x), z], axis=1)

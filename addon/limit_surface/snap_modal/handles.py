@@ -10,11 +10,10 @@ import bmesh
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..errors import RefusalError
 from ..placing.posed_surface import Places, transformed
 from ..placing.rotations import WorldSpace
-from ..placing.turns import shortest
 from ..snap.hair_binding import HairBinding
 from ..snap.object_move import ObjectMove
 from ..snap.strands import Strands
@@ -146,7 +145,7 @@ class DraggedStrand:
             if bound.all():
                 new = self._bound_place(place).frame
                 return self._space.frames(new) @ np.swapaxes(self._space.frames(rest), 1, 2)
-        return shortest(self._strand.directions(), place.frame[None, :, 2])
+        return native.limitsurf.shortest_turns(self._strand.directions(), place.frame[None, :, 2])
 
     def _root(self, place: Place) -> np.ndarray:
         """Returns the point where the stored location says, to the last bit, plus the offset."""

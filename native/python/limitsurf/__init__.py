@@ -25,7 +25,10 @@ from ._limitsurf import (
     box_sides,
     box_weights,
     into_shading_frames,
+    move_strands,
     out_of_shading_frames,
+    rotation_matrices,
+    shortest_turns,
 )
 from ._results import (
     AlongCurves,
@@ -44,6 +47,7 @@ from ._results import (
     Stencils,
     Tessellation,
     Texels,
+    TileQuadtree,
     Tiles,
 )
 
@@ -74,6 +78,7 @@ __all__ = [
     "SurfaceData",
     "Tessellation",
     "Texels",
+    "TileQuadtree",
     "Tiles",
     "__version__",
     "bilinear",
@@ -81,7 +86,10 @@ __all__ = [
     "box_sides",
     "box_weights",
     "into_shading_frames",
+    "move_strands",
     "out_of_shading_frames",
+    "rotation_matrices",
+    "shortest_turns",
 ]
 
 for _public in (

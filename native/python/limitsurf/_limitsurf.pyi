@@ -22,6 +22,7 @@ from ._results import (
     Stencils,
     Tessellation,
     Texels,
+    TileQuadtree,
     Tiles,
 )
 
@@ -331,6 +332,7 @@ class LimitSurface(metaclass=_BoundType):
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> AlongCurves: ...
+    def tile_quadtree(self, max_depth: int | None = None, *, threads: int = 0) -> TileQuadtree: ...
     def strand_poser(
         self,
         face: ArrayLike,
@@ -505,6 +507,15 @@ class LimitSurface(metaclass=_BoundType):
     def area(self, *, threads: int = 0) -> float: ...
     def bounds(self, *, threads: int = 0) -> NDArray[np.float64]: ...
 
+def shortest_turns(source: ArrayLike, target: ArrayLike) -> NDArray[np.float64]: ...
+def rotation_matrices(quaternions: ArrayLike) -> NDArray[np.float64]: ...
+def move_strands(
+    points: ArrayLike,
+    offsets: ArrayLike | None,
+    roots: ArrayLike,
+    new_roots: ArrayLike,
+    turns: ArrayLike,
+) -> NDArray[np.float64]: ...
 def into_shading_frames(
     vectors: ArrayLike, normals: ArrayLike, tangents: ArrayLike, signs: ArrayLike
 ) -> NDArray[np.float64]: ...

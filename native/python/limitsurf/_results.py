@@ -90,6 +90,16 @@ class Tiles:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class TileQuadtree:
+    """All tiles of a surface, and the quadtrees that lead there (LimitSurface.tile_quadtree())."""
+
+    child: NDArray[np.int32]
+    tiles: Tiles
+    origin: NDArray[np.float64]
+    levels: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Locations:
     """Locations on a surface: Ptex face ids (n,) and parameters (n, 2)."""
 

@@ -9,6 +9,7 @@
 #include "limitsurf/error.h"
 #include "ptex_layout.h"
 #include "strand_poser.h"
+#include "strand_turns.h"
 #include "surface_data.h"
 #include "tangent_frames.h"
 
@@ -32,5 +33,6 @@ PYBIND11_MODULE(_limitsurf, module) {
   limitsurf::python::bindPtexLayout(module);
   limitsurf::python::bindStrandPoser(module);
   limitsurf::python::bindEdgeCurves(module);
+  limitsurf::python::bindStrandTurns(module);
   limitsurf::python::bindLimitSurface(module);
 }

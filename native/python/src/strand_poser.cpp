@@ -291,15 +291,7 @@ std::unique_ptr<BoundStrandPoser> makePoser(const SharedSurface& shared, const p
   const Locations at = locationsOf(surface.faceCount(), face, uv, FaceCheck::size);
   const Floats roots = rowsOf<3>(rest_roots, "rest_roots");
   const FloatRotations rotations = rotationsOf(rest_rotations);
-  std::vector<std::int64_t> starts;
-  if (!offsets.is_none()) {
-    const Integers array = integers<std::invalid_argument>(offsets, "offsets");
-    requireVector<std::invalid_argument>(array, "offsets");
-    if (array.size() == 0) {
-      throw py::value_error("offsets is empty; expected n + 1 numbers for n strands");
-    }
-    starts.assign(array.data(), array.data() + array.size());
-  }
+  const std::vector<std::int64_t> starts = strandOffsets(offsets);
   const Eigen::Map<const Rows<3>> root_rows = viewOf<3>(roots);
   const py::gil_scoped_release release;
   const HeldPose held(shared);
@@ -309,6 +301,18 @@ std::unique_ptr<BoundStrandPoser> makePoser(const SharedSurface& shared, const p
 }
 
 }  // namespace
+
+std::vector<std::int64_t> strandOffsets(const py::object& offsets) {
+  if (offsets.is_none()) {
+    return {};
+  }
+  const Integers array = integers<std::invalid_argument>(offsets, "offsets");
+  requireVector<std::invalid_argument>(array, "offsets");
+  if (array.size() == 0) {
+    throw py::value_error("offsets is empty; expected n + 1 numbers for n strands");
+  }
+  return {array.data(), array.data() + array.size()};
+}
 
 void bindStrandPoser(py::module_& module) {
   using namespace py::literals;

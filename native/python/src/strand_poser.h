@@ -3,10 +3,15 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "shared_surface.h"
 
 namespace limitsurf::python {
 
+/// The first points of strands, from an argument `offsets`; empty for None.
+std::vector<std::int64_t> strandOffsets(const py::object& offsets);
 /// The class StrandPoser.
 void bindStrandPoser(py::module_& module);
 /// LimitSurface.strand_poser()

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "batches.h"
+#include "limitsurf/surface/tiles/tile_quadtree.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -76,6 +77,13 @@ py::array_t<bool> flags(const std::vector<char>& values) {
   return array;
 }
 
+py::object tilesResult(const SurfaceTiles& tiles) {
+  return result("Tiles")(arrayOf(tiles.points_offsets), arrayOf(tiles.points_indices),
+                         arrayOf(tiles.points_weights), tilePoints(tiles),
+                         arrayOf(tiles.tile_anchor), arrayOf(tiles.tile_base), arrayOf(tiles.tile),
+                         rowsOf(tiles.tile_uv), rowsOf(tiles.scale), flags(tiles.moved));
+}
+
 py::object surfaceTiles(const SharedSurface& shared, const py::object& face, const py::object& uv,
                         const std::optional<int>& max_depth, int threads) {
   checkThreads(threads);
@@ -87,10 +95,46 @@ py::object surfaceTiles(const SharedSurface& shared, const py::object& face, con
     const InterruptionPoint point = interruptible();
     tiles = shared.surface().tiles(at, max_depth.value_or(SurfaceTiles::kDefaultDepth), threads);
   }
-  return result("Tiles")(arrayOf(tiles.points_offsets), arrayOf(tiles.points_indices),
-                         arrayOf(tiles.points_weights), tilePoints(tiles),
-                         arrayOf(tiles.tile_anchor), arrayOf(tiles.tile_base), arrayOf(tiles.tile),
-                         rowsOf(tiles.tile_uv), rowsOf(tiles.scale), flags(tiles.moved));
+  return tilesResult(tiles);
+}
+
+constexpr char kQuadtreeDoc[] =
+    R"(tile_quadtree(max_depth=None, *, threads=0)
+
+All bicubic tiles of this surface, and for each Ptex face the quadtree that leads from (u, v) to its
+tile: what another program needs to evaluate the limit surface at locations that it finds itself.
+
+Parameters
+    max_depth: as in tiles(). What lies closer to an irregular vertex gets the tile beside it.
+    threads: 0 uses all cores.
+
+Returns TileQuadtree, with
+    child (nodes,): the first of a node's four children, or -1 - tile at the end of a way. Node f is
+        Ptex face f. It is -2^23 for faces that have no limit surface.
+    tiles: Tiles, with a location in the middle of each tile, or several.
+    origin (t, 2): where each tile begins on its face.
+    levels: the largest number of steps on a way.
+
+A step with (u, v) from a node whose child c is not negative: a = u >= 1/2, b = v >= 1/2, the next
+node is c + 2 b + a, and (u, v) becomes (2 u - a, 2 v - b). The place in the tile is
+((u, v) on the face - origin[tile]) * scale, with the `scale` of the tile's location, cut off at 0 and 1.
+
+Depends on the topology alone. Cost: O(max_depth) nodes at each irregular vertex, and that of
+tiles() for as many locations. Raises ValueError for a max_depth out of range.)";
+
+py::object tileQuadtree(const SharedSurface& shared, const std::optional<int>& max_depth,
+                        int threads) {
+  checkThreads(threads);
+  TileQuadtree tree;
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    tree = limitsurf::tileQuadtree(shared.surface(),
+                                   max_depth.value_or(SurfaceTiles::kDefaultDepth), threads);
+  }
+  return result("TileQuadtree")(arrayOf(tree.child), tilesResult(tree.tiles), rowsOf(tree.origin),
+                                tree.levels);
 }
 
 }  // namespace
@@ -98,7 +142,9 @@ py::object surfaceTiles(const SharedSurface& shared, const py::object& face, con
 void bindSurfaceTiles(py::class_<SharedSurface>& type) {
   using namespace py::literals;
   type.def("tiles", &surfaceTiles, "face"_a, "uv"_a, "max_depth"_a = py::none(), py::kw_only(),
-           "threads"_a = 0, kTilesDoc);
+           "threads"_a = 0, kTilesDoc)
+      .def("tile_quadtree", &tileQuadtree, "max_depth"_a = py::none(), py::kw_only(),
+           "threads"_a = 0, kQuadtreeDoc);
 }
 
 }  // namespace limitsurf::python

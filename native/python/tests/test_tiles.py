@@ -226,3 +226,43 @@ def test_locations_are_checked(surface):
         surface.tiles([0, 0], [[0, 0], [0, 1.5]])
     with pytest.raises(ls.LocationError, match="row 0"):
         surface.tiles([10**6], [[0, 0]])
+
+
+def tiles_by_quadtree(tree, face, uv):
+    """The tile of each location, and the place in it, as the documentation says."""
+    node, rest = face.copy(), uv.copy()
+    for _ in range(tree.levels):
+        below, upper = tree.child[node], (rest >= 0.5).astype(float)
+        splits = below >= 0
+        node = np.where(splits, below + (upper @ [1, 2]).astype(int), node)
+        rest = np.where(splits[:, None], 2 * rest - upper, rest)
+    tile = -1 - tree.child[node]
+    scale = np.zeros_like(tree.origin)
+    scale[tree.tiles.tile] = tree.tiles.scale
+    return tile, ((uv - tree.origin[tile]) * scale[tile]).clip(0, 1)
+
+
+@pytest.mark.parametrize("shape", [shapes.house(), shapes.fan(5, False), shapes.cube()])
+def test_quadtrees_lead_to_the_tiles(shape):
+    positions, faces = shape
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
+    tree = surface.tile_quadtree(20)
+    rng = np.random.default_rng(2)
+    face = rng.integers(surface.face_count, size=3000)
+    uv = rng.uniform(0.001, 0.999, (3000, 2))
+    tile, in_tile = tiles_by_quadtree(tree, face, uv)
+    stored = {key: getattr(tree.tiles, key) for key in ls.Tiles.__slots__}
+    found = ls.Tiles(**stored | {"tile": tile, "tile_uv": in_tile})
+    position, _slopes, _size = evaluated(found, positions)
+    error = length(position - surface.evaluate(face, uv).position)
+    assert error.max() < POSITION_ERROR * np.linalg.norm(np.ptp(positions, axis=0))
+
+
+def test_quadtrees_of_faces_without_a_surface():
+    positions, faces = shapes.cube()
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces, holes=[1]))
+    tree = surface.tile_quadtree()
+    assert tree.child[1] == -(2**23)
+    assert (tree.child[[0, 2, 3, 4, 5]] > -(2**23)).all()
+    with pytest.raises(ValueError, match="max_depth is 0; expected 1 to 256"):
+        surface.tile_quadtree(0)

@@ -14,6 +14,7 @@
 #include "limitsurf/prefetch.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/strands/root_pose.h"
+#include "limitsurf/surface/strands/strand_offsets.h"
 
 namespace limitsurf {
 namespace {
@@ -184,7 +185,6 @@ struct StrandPoser::Data {
        const std::vector<std::int64_t>& point_offsets)
       : surface(of_surface), count(strand_count), offsets(point_offsets) {}
 
-  void checkOffsets() const;
   void bind(Span<Location> at, const RowsIn<FloatPoints>& rest_roots,
             const RowsIn<FloatRotations>& rest_rotations, int threads);
 
@@ -247,27 +247,6 @@ struct StrandPoser::Data {
   std::vector<int> unbound;
 };
 
-void StrandPoser::Data::checkOffsets() const {
-  if (offsets.empty()) {
-    return;
-  }
-  if (offsets.size() != count + 1) {
-    throw std::invalid_argument("there are " + std::to_string(offsets.size()) + " offsets for " +
-                                std::to_string(count) + " strands; expected " +
-                                std::to_string(count + 1));
-  }
-  if (offsets[0] != 0) {
-    throw std::invalid_argument("offset 0 is " + std::to_string(offsets[0]) + "; expected 0");
-  }
-  for (std::size_t i = 1; i < offsets.size(); ++i) {
-    if (offsets[i] < offsets[i - 1]) {
-      throw std::invalid_argument("offset " + std::to_string(i) + " is " +
-                                  std::to_string(offsets[i]) + ", less than the one before it, " +
-                                  std::to_string(offsets[i - 1]));
-    }
-  }
-}
-
 void StrandPoser::Data::bind(Span<Location> at, const RowsIn<FloatPoints>& rest_roots,
                              const RowsIn<FloatRotations>& rest_rotations, int threads) {
   const auto isBound = [&](std::size_t row) {
@@ -307,7 +286,9 @@ StrandPoser::StrandPoser(const LimitSurface& surface, Span<Location> at,
   const auto count = static_cast<std::int64_t>(at.size());
   checkRows("rest_roots", rest_roots.rows(), count);
   checkRows("rest_rotations", rest_rotations.rows(), count);
-  data_->checkOffsets();
+  if (!offsets.empty()) {
+    checkOffsets(offsets, at.size());
+  }
   data_->bind(at, rest_roots, rest_rotations, threads);
 }
 

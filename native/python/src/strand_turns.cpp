@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/strands/strand_turns.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "arrays.h"
+#include "strand_poser.h"
+#include "strand_turns.h"
+
+namespace limitsurf::python {
+namespace {
+
+constexpr char kShortestTurnsDoc[] =
+    R"((n, 3, 3) rotations that turn each of the vectors source (n, 3) to the direction of that of target (n, 3)
+by the smallest angle. Vectors may have any length.
+
+Where two are opposite the rotation is about an axis that is perpendicular to both and to the world's axis
+that is least aligned with them. It is the identity where a source is not finite, and NaN where another
+vector has no direction. Error: 1e-15 over the length of the sum of the two unit vectors. Raises ValueError
+for arrays of other shapes. Cost: O(n).
+)";
+
+constexpr char kRotationMatricesDoc[] =
+    R"((n, 3, 3) rotations for quaternions (n, 4), w, x, y, z, of any length; NaN where all four are 0.
+
+Raises ValueError for an array of another shape.
+)";
+
+constexpr char kMoveStrandsDoc[] =
+    R"((points, 3) float64: strands as they are when their roots have moved and they have turned with them.
+
+A point p of strand i goes to new_roots[i] + turns[i] (p - roots[i]).
+
+Parameters
+    points: (points, 3).
+    offsets: (n + 1,) integers: strand i has the points offsets[i] to offsets[i + 1] - 1. None: each
+        strand has one point.
+    roots, new_roots: (n, 3).
+    turns: (n, 3, 3) rotations.
+
+Raises ValueError for arrays of other shapes, and for offsets that do not begin with 0, that decrease, or
+that do not end with the number of points. Cost: O(points).
+)";
+
+Points vectors(const py::object& object, const char* name) {
+  const Doubles array = doubles(object, name);
+  if (array.ndim() != 2 || array.shape(1) != 3) {
+    throw py::value_error(std::string(name) + " has shape " + shapeText(array) +
+                          "; expected (n, 3)");
+  }
+  return pointsOf(array);
+}
+
+py::array_t<double> matrices(const Rotations& rotations) {
+  return py::array_t<double>({rotations.rows(), Eigen::Index{3}, Eigen::Index{3}},
+                             rotations.data());
+}
+
+py::array_t<double> turnsBetween(const py::object& source, const py::object& target) {
+  return matrices(shortestTurns(vectors(source, "source"), vectors(target, "target")));
+}
+
+py::array_t<double> rotationMatrices(const py::object& quaternions) {
+  const Doubles array = doubles(quaternions, "quaternions");
+  if (array.ndim() != 2 || array.shape(1) != 4) {
+    throw py::value_error("quaternions has shape " + shapeText(array) + "; expected (n, 4)");
+  }
+  return matrices(rotationsOf(Eigen::Map<const Quaternions>(array.data(), array.shape(0), 4)));
+}
+
+py::array_t<double> moveStrands(const py::object& points, const py::object& offsets,
+                                const py::object& roots, const py::object& new_roots,
+                                const py::object& turns) {
+  const Doubles rotations = doubles(turns, "turns");
+  if (rotations.ndim() != 3 || rotations.shape(1) != 3 || rotations.shape(2) != 3) {
+    throw py::value_error("turns has shape " + shapeText(rotations) + "; expected (n, 3, 3)");
+  }
+  const std::vector<std::int64_t> begins = strandOffsets(offsets);
+  const Points from = vectors(points, "points"), before = vectors(roots, "roots"),
+               after = vectors(new_roots, "new_roots");
+  const Eigen::Map<const Rotations> turn(rotations.data(), rotations.shape(0), 9);
+  return pointArray(movedStrands(from, begins, before, after, turn));
+}
+
+}  // namespace
+
+void bindStrandTurns(py::module_& module) {
+  using namespace py::literals;
+  module.def("shortest_turns", &turnsBetween, "source"_a, "target"_a, kShortestTurnsDoc);
+  module.def("rotation_matrices", &rotationMatrices, "quaternions"_a, kRotationMatricesDoc);
+  module.def("move_strands", &moveStrands, "points"_a, "offsets"_a, "roots"_a, "new_roots"_a,
+             "turns"_a, kMoveStrandsDoc);
+}
+
+}  // namespace limitsurf::python
