@@ -65,12 +65,14 @@ def register() -> None:
     bake_frames.attach_command()
     sampling.attach_library()
     ui.append_menus()
+    ui.attach_presets()
     if _is_module:
         atexit.register(unregister)
 
 
 def unregister() -> None:
     atexit.unregister(unregister)
+    ui.detach_presets()
     ui.remove_menus()
     sampling.detach_library()
     bake_frames.detach_command()

@@ -28,6 +28,8 @@ PANEL = "VIEW3D_PT_limit_surface"
 REPORT_PANEL = "VIEW3D_PT_limit_report"
 HAIR_PANEL = "VIEW3D_PT_limit_hair"
 POINTS_PANEL = "VIEW3D_PT_limit_points"
+HAIR_PRESETS = "VIEW3D_PT_limit_hair_presets"
+POINTS_PRESETS = "VIEW3D_PT_limit_points_presets"
 SNAP_PANEL = "VIEW3D_PT_limit_snap"
 TEXTURES_PANEL = "VIEW3D_PT_limit_textures"
 FOLLOW_PANEL = "VIEW3D_PT_limit_follow"
@@ -82,6 +84,7 @@ LIMIT_MESH_OBJECT = "Limit Mesh"
 DECAL_OBJECT = "Limit Decal"
 DECAL_UV = "Image"  # UV map of decals
 INSTANCES_GROUP = "Limit Instances"
+SCALES_GROUP = "Limit Scales"
 
 # What follows a deforming surface: groups, the tables that they read, and their attributes
 GROUP_MARK = "limit_surface_group"  # custom property of node groups: their name and version

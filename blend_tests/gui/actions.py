@@ -279,6 +279,12 @@ def set_next(operator: str, **settings: object) -> None:
         setattr(last, name, value)
 
 
+def next_settings(operator: str, *names: str) -> list[object]:
+    """Returns the properties with which a button or menu entry will call the operator."""
+    last = bpy.context.window_manager.operator_properties_last(operator)
+    return [getattr(last, name) for name in names]
+
+
 def vertex_count(name: str) -> int:
     return len(bpy.data.objects[name].data.vertices)
 

@@ -305,6 +305,18 @@ class BlenderSession:
             found.append(name)
         raise AssertionError(f"a menu without an end: {found}")
 
+    def choose_in_menu(self, command: str) -> None:
+        """Chooses the entry of the open menu whose command, as it is copied, contains a text."""
+        seen: list[str] = []
+        while len(seen) < MOST_ENTRIES:
+            self.call("clear_clipboard")
+            self.key("Down", "ctrl+c")
+            seen.append(self.call("clipboard"))
+            if command in seen[-1]:
+                self.key("Return")
+                return
+        raise AssertionError(f"no entry of the menu has {command}: {seen}")
+
     def open_redo_panel(self) -> tuple[float, float]:
         """Opens the redo panel by F9 in the middle of the viewport, and returns where the column of
         its fields begins.
@@ -313,6 +325,11 @@ class BlenderSession:
         self.move(x, y)
         self.key("F9")
         return x + 200, y
+
+    def find_presets(self, x: float, y: float) -> tuple[float, float]:
+        """Returns where around (x, y) the menu of presets is."""
+        menu = 'bpy.ops.wm.call_menu(name="WM_MT_operator_presets")'
+        return self._find(x - 100, y + 2 * ROW, y - 400, menu)
 
     def find_field(self, x: float, y: float, value: str) -> tuple[float, float]:
         """Returns where below (x, y) a field with this value is."""

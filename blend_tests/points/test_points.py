@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Points have the same locations as hair, with frames, and instances by stock nodes."""
 
+import math
+
 import bpy
 import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
+from limit_surface.nodes import groups
 from limit_surface.reading import attributes
 from scenes import add_hair, add_mesh, add_points, add_subsurf, locations, surface_without_addon
 
@@ -88,3 +91,46 @@ def test_save_and_load_with_instances(tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "points.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "points.blend"))
     assert len(instances(bpy.data.objects[name])) == 20
+
+
+def scale_of(points):
+    """Returns the vertices of the scale that stands on the points."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    meshes = [i.object.data for i in depsgraph.object_instances if i.parent and i.is_instance]
+    return attributes.read(meshes[0], ids.POSITION)
+
+
+def test_scales_by_stock_nodes():
+    ob = scenes.cross()
+    ob.scale = (2, 2, 2)
+    bpy.context.view_layer.update()
+    points = add_points(ob, per_side=3, instances="SCALE", instance="Nothing", scale_length=0.3)
+    (modifier,) = points.modifiers
+    assert modifier.name == ids.SCALES_GROUP
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    shown = np.array(
+        [np.array(i.matrix_world) for i in depsgraph.object_instances if i.is_instance]
+    )
+    matrix = np.array(ob.matrix_world)
+    at = scenes.transformed(matrix, attributes.read(points.data, "position"))
+    np.testing.assert_allclose(shown[:, :3, 3], at, atol=1e-5)
+    frames = surface_without_addon(ob).frames(*locations(points.data))
+    np.testing.assert_allclose(shown[:, :3, :3], matrix[:3, :3] @ frames, atol=1e-5)
+    scale = 2 * scale_of(points).astype(np.float64)  # in the world
+    tip = scale[scale[:, 0].argmax()]
+    np.testing.assert_allclose(np.linalg.norm(tip), 0.3, rtol=1e-5)  # along u, above the surface
+    assert tip[1] == pytest.approx(0, abs=1e-6)
+    assert tip[2] > 0
+    assert scale[:, 2].min() > -1e-6
+    assert 0.15 < np.ptp(scale[:, 1]) <= 0.24
+
+
+def test_scales_can_be_turned_and_laid_flat():
+    points = add_points(scenes.cross(), per_side=1, instances="SCALE", scale_length=0.3)
+    before = scale_of(points)
+    groups.set_input(points.modifiers[0], "Turn", math.pi / 2)
+    groups.set_input(points.modifiers[0], "Lift", 0.0)
+    after = scale_of(points)
+    np.testing.assert_allclose(after[:, 0], -before[:, 1], atol=1e-6)
+    assert np.ptp(after[:, 1]) == pytest.approx(0.3, abs=1e-6)
+    assert after[:, 2].max() < 0.3 * np.sin(0.24) < before[:, 2].max()

@@ -26,6 +26,7 @@ class Socket(NamedTuple):
     name: str
     kind: str  # the type without "NodeSocket": Geometry, Object, Int, Vector, ...
     description: str
+    subtype: str = ""  # of numbers: DISTANCE, ANGLE, ...
 
 
 class Tree:
@@ -44,12 +45,14 @@ class Tree:
         self.group.is_modifier = is_modifier
         for in_out, sockets in (("OUTPUT", outputs), ("INPUT", inputs)):
             for socket in sockets:
-                self.group.interface.new_socket(
+                made = self.group.interface.new_socket(
                     socket.name,
                     in_out=in_out,
                     socket_type=f"NodeSocket{socket.kind}",
                     description=socket.description,
                 )
+                if socket.subtype:
+                    made.subtype = socket.subtype
         self.inputs = self.group.nodes.new("NodeGroupInput").outputs
         self._outputs = self.group.nodes.new("NodeGroupOutput").inputs
 

@@ -147,7 +147,7 @@ class ScatterOperator(
     8. `_report`: ScatterOperator says what was made.
     """
 
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"REGISTER", "UNDO", "PRESET"}
     noun = ""
     _why_not_following = ""
     _question = ""  # the size of what will be made, while a dialog offers a modifier
@@ -312,16 +312,16 @@ class ScatterOperator(
         ground = made.ground
         found, refused = ground.cage, ground.region.refused
         faces = ground.region.face_count
-        self.summary = f"{len(ground.locations):,} {self.noun} on {faces:,} faces"
+        what, apart = f"{len(ground.locations):,} {self.noun} on {faces:,} faces", ""
         if ground.scattered.curves:
-            self.summary = f"{len(ground.locations):,} {self.noun} along "
-            self.summary += borders(ground.scattered.curves)
+            what = f"{len(ground.locations):,} {self.noun} along {borders(ground.scattered.curves)}"
         if ground.scattered.distance is not None:
-            self.summary += f", at least {ground.scattered.distance:.4g} apart"
+            apart = f", at least {ground.scattered.distance:.4g} apart"
+        self.summary = what + apart
         if refused:
             warning = left_out(len(refused), len(found.face_sizes), reasons(refused))
             self.report({"WARNING"}, warning)
-        notes = [f"{self.summary} of {self.surface}", *found.notes]
+        notes = [f"{what} of {self.surface}{apart}", *found.notes]
         if how:
             notes.append(f"they follow the surface {how}")
         elif self._why_not_following:

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from bpy.props import StringProperty
+from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import ids
 from ..errors import RefusalError
 from ..nodes.instances import put_instances
+from ..nodes.scales import put_scales
 from ..placing import roots
 from ..placing.binding import Binding
 from ..placing.new_objects import add_on_surface
@@ -26,29 +27,54 @@ class Points:
     normal: np.ndarray  # (n, 3) float32
     tangent: np.ndarray
     rotation: np.ndarray  # (n, 4) float32
+    world_scale: float  # how much larger things are in the world than in the object's space
 
 
 class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
     """Scatter points over the active mesh's limit surface: vertices that carry the surface's
-    normal, tangent and rotation, and optionally an instance of an object on each"""
+    normal, tangent and rotation, and optionally an instance of an object or a scale on each"""
 
     bl_idname = ids.POINTS_ADD
     bl_label = "Add Points on Limit Surface"
     noun = "points"
 
+    instances: EnumProperty(
+        name="Instances",
+        description="What stands on each point",
+        items=(
+            ("OBJECT", "Object", "Put an instance of an object on each point, if one is named", 0),
+            ("SCALE", "Scale", "Put a scale on each point, as of a fish or a lizard", 1),
+        ),
+        default="OBJECT",
+    )
     instance: StringProperty(
         name="Instance",
         description="Name of an object to put on each point, with its Z axis along the surface "
         "normal and its X axis along growing u. Along a border, its Z axis has the chosen "
         "direction and its Y axis runs along the border",
     )
+    scale_length: FloatProperty(
+        name="Scale Length",
+        description="Length of the scales in world units. Their width, lift and turn are inputs of "
+        "the modifier Limit Scales",
+        default=0.15,
+        min=0.0,
+        soft_max=10.0,
+        precision=4,
+        subtype="DISTANCE",
+    )
 
     def check_properties(self) -> None:
-        if self.instance and self.instance not in bpy.data.objects:
+        is_named = self.instances == "OBJECT" and self.instance
+        if is_named and self.instance not in bpy.data.objects:
             raise RefusalError(f"There is no object {self.instance!r} to put on the points")
 
     def draw_own(self, layout: bpy.types.UILayout) -> None:
-        layout.prop_search(self, "instance", bpy.data, "objects")
+        layout.prop(self, "instances")
+        if self.instances == "SCALE":
+            layout.prop(self, "scale_length")
+        else:
+            layout.prop_search(self, "instance", bpy.data, "objects")
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Points]:
         space = WorldSpace(found.matrix)
@@ -64,7 +90,7 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
                 tangent[part.rows] = frame[:, :, 0]
                 normal[part.rows] = frame[:, :, 2]
                 rotation[part.rows] = quaternions(frame)
-            return Points(binding, normal, tangent, rotation)
+            return Points(binding, normal, tangent, rotation, space.mean_scale)
 
         return make
 
@@ -81,7 +107,9 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
             attributes.write(mesh, ids.ROTATION, "QUATERNION", "POINT", made.rotation)
             mesh.update()
             ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, surface)
-            if self.instance:
+            if self.instances == "SCALE":
+                put_scales(ob, self.scale_length / made.world_scale)
+            elif self.instance:
                 put_instances(ob, bpy.data.objects[self.instance])
             return ob
         except BaseException:

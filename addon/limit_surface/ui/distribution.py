@@ -11,6 +11,13 @@ from .. import ids, native
 from ..placing import distribution_properties, live_count
 from ..placing.followers import ground_of
 from ..tasks import wrapped_text
+from .presets import VIEW3D_PT_limit_hair_presets, VIEW3D_PT_limit_points_presets
+
+
+def operator_class(operator: str) -> type:
+    """Returns the class of an operator, which Blender knows by another name."""
+    area, name = operator.split(".")
+    return getattr(bpy.types, f"{area.upper()}_OT_{name}")
 
 
 class _DistributionPanel:
@@ -22,6 +29,7 @@ class _DistributionPanel:
     bl_parent_id = ids.PANEL
     bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
     operator = ""
+    presets: type[bpy.types.Panel]
     noun = ""
     layout: bpy.types.UILayout
 
@@ -32,9 +40,12 @@ class _DistributionPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        self.presets.draw_menu(layout)
         layout.use_property_split = True
         settings = context.window_manager.operator_properties_last(self.operator)
         distribution_properties.draw(layout, settings, context)
+        operator_class(self.operator).draw_own(settings, layout)
+        layout.prop(settings, "follow")
         wrapped_text.draw(layout, live_count.text(context, settings, self.noun), "INFO")
         layout.operator(self.operator)
 
@@ -43,6 +54,7 @@ class VIEW3D_PT_limit_hair(_DistributionPanel, bpy.types.Panel):
     bl_idname = ids.HAIR_PANEL
     bl_label = "Hair"
     operator = ids.HAIR_ADD
+    presets = VIEW3D_PT_limit_hair_presets
     noun = "strands"
 
 
@@ -50,4 +62,5 @@ class VIEW3D_PT_limit_points(_DistributionPanel, bpy.types.Panel):
     bl_idname = ids.POINTS_PANEL
     bl_label = "Points"
     operator = ids.POINTS_ADD
+    presets = VIEW3D_PT_limit_points_presets
     noun = "points"

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+
+op = bpy.context.active_operator
+
+op.distribution = "UNIFORM"
+op.amount = "COUNT"
+op.per_side = 20
+op.count = 20000
+op.density = 1000.0
+op.distance = 0.05
+op.length = 0.15
+op.points = 4
+op.tilt = (0.0, 0.0)
+op.random = 0.5
+op.radius = 0.003

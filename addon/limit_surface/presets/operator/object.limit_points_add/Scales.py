@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+
+op = bpy.context.active_operator
+
+op.distribution = "BLUE_NOISE"
+op.amount = "DISTANCE"
+op.per_side = 20
+op.count = 1000
+op.density = 1000.0
+op.distance = 0.08
+op.instances = "SCALE"
+op.instance = ""
+op.scale_length = 0.2
