@@ -37,6 +37,7 @@ def drawn(panel):
             layout=layout,
             operator=getattr(bpy.types, panel).operator,
             noun=getattr(bpy.types, panel).noun,
+            presets=getattr(bpy.types, panel).presets,
         ),
         bpy.context,
     )

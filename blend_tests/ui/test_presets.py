@@ -14,7 +14,7 @@ from processes import ROOT, run_python
 
 FOLDER = ROOT / "addon/limit_surface/presets/operator"
 SHIPPED = {
-    ids.HAIR_ADD: ["Grass", "Long_Hair", "Short_Fur"],
+    ids.HAIR_ADD: ["Eyebrows", "Grass", "Lashes", "Long_Hair", "Short_Fur"],
     ids.POINTS_ADD: ["Scales"],
 }
 ALL = [(operator, name) for operator, names in SHIPPED.items() for name in names]
@@ -75,7 +75,7 @@ def test_all_presets_of_an_operator_set_the_same_properties(operator):
 
 @pytest.mark.parametrize(("operator", "name"), ALL)
 def test_every_preset_can_be_run(operator, name):
-    scenes.add_subsurf(scenes.monkey())
+    scenes.add_subsurf(scenes.monkey())  # it has open boundaries: the eyes
     settings = choose(operator, name)
     chosen = {
         line.removeprefix("op."): getattr(settings, line.removeprefix("op."))
@@ -86,7 +86,7 @@ def test_every_preset_can_be_run(operator, name):
     assert getattr(getattr(bpy.ops, area), short)(**plain) == {"FINISHED"}
     made = bpy.context.active_object
     if operator == ids.HAIR_ADD:
-        assert len(made.data.curves) == chosen["count"] > 5000
+        assert len(made.data.curves) == chosen["count"]
         assert scenes.strands(made).shape[1] == chosen["points"]
     else:
         assert made.modifiers[0].name == ids.SCALES_GROUP

@@ -142,7 +142,7 @@ def shown_in_redo_panel(**chosen):
         _question="",
         add_subsurf=False,
     )
-    self.draw_own = lambda layout: last.draw_own(self, layout)
+    self.draw_own = last.draw_own
     last.draw(self, bpy.context)
     assert "80 strands on 5 faces" in labels(self.layout.column())
     laid_out = self.layout.prop.call_args_list + self.layout.column().prop.call_args_list

@@ -76,6 +76,7 @@ FIGURES = {
     "exact_uv": exact("uv", "the end of a UV seam"),
     "follow": rendered("follow", "hair on a mesh that bends, and its distance from the surface"),
     "limit_mesh": rendered("limit_mesh", "meshes by levels and by flatness, and exact normals"),
+    "presets": rendered("presets", "what each of the shipped presets makes"),
     "project_image": rendered("project_image", "an image projected from a camera, and a decal"),
     "report": rendered("report", "distances from the limit surface at two levels, as colours"),
     "snap": rendered("snap", "objects and hair before and after snapping"),

@@ -90,10 +90,11 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
     def sources(self) -> Mapping[str, Choice]:
         return steering.choices(self.properties)
 
-    def draw_own(self, layout: bpy.types.UILayout) -> None:
-        surface = surface_object(self.properties, bpy.context)
-        steering.draw(layout, self.properties, surface)
-        steering.draw_image_place(layout, self.properties, surface, DENSITY.source)
+    @staticmethod
+    def draw_own(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
+        surface = surface_object(properties, bpy.context)
+        steering.draw(layout, properties, surface)
+        steering.draw_image_place(layout, properties, surface, DENSITY.source)
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Strands]:
         space = WorldSpace(found.matrix)

@@ -218,7 +218,7 @@ class ScatterOperator(
             return
         layout.use_property_split = True
         distribution_properties.draw(layout, self.properties, context)
-        self.draw_own(layout)
+        self.draw_own(layout, self.properties)
         layout.prop(self, "follow")
         ob = distribution_properties.surface_object(self.properties, context)
         if self.add_subsurf or (ob is not None and setup.lacks_subsurf(ob)):
@@ -226,8 +226,11 @@ class ScatterOperator(
         layout.prop(self, "allow_large")
         draw_summary(layout, self.summary)
 
-    def draw_own(self, layout: bpy.types.UILayout) -> None:
-        """Draws the properties of the subclass."""
+    @staticmethod
+    def draw_own(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
+        """Draws the properties of the subclass. Panels with the settings of the next run call it,
+        too.
+        """
 
     def _ask(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Opens a dialog in which the user confirms a very large number, unless that is allowed

@@ -69,12 +69,13 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
         if is_named and self.instance not in bpy.data.objects:
             raise RefusalError(f"There is no object {self.instance!r} to put on the points")
 
-    def draw_own(self, layout: bpy.types.UILayout) -> None:
-        layout.prop(self, "instances")
-        if self.instances == "SCALE":
-            layout.prop(self, "scale_length")
+    @staticmethod
+    def draw_own(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
+        layout.prop(properties, "instances")
+        if properties.instances == "SCALE":
+            layout.prop(properties, "scale_length")
         else:
-            layout.prop_search(self, "instance", bpy.data, "objects")
+            layout.prop_search(properties, "instance", bpy.data, "objects")
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Points]:
         space = WorldSpace(found.matrix)
