@@ -138,7 +138,8 @@ def rich_scene():
 
 
 def users():
-    ids_ = (i for kind in scenes.kinds() for i in getattr(bpy.data, kind) if isinstance(i, bpy.types.ID))
+    items = (item for kind in scenes.kinds() for item in getattr(bpy.data, kind))
+    ids_ = (item for item in items if isinstance(item, bpy.types.ID))
     return {repr(i): (i.users, i.use_fake_user) for i in ids_}
 
 

@@ -135,7 +135,7 @@ def on_base_mesh(ob: bpy.types.Object, face: np.ndarray, uv: np.ndarray) -> np.n
 
 def surface_without_addon(ob: bpy.types.Object, boundary: str = "ALL") -> limitsurf.LimitSurface:
     """Returns the limit surface of the mesh that Blender shows once all Subdivision modifiers are
-    disabled, with the creases of that mesh.
+    disabled, with the creases of that mesh unless the first modifier ignores creases.
     """
     subsurfs = [m for m in ob.modifiers if m.type == "SUBSURF"]
     shown = [m.show_viewport for m in ob.modifiers]
@@ -148,6 +148,8 @@ def surface_without_addon(ob: bpy.types.Object, boundary: str = "ALL") -> limits
     edge_sharpness, vertex_sharpness = _sharpness(mesh, edges)
     for modifier, was in zip(ob.modifiers, shown, strict=True):
         modifier.show_viewport = was
+    if subsurfs and not subsurfs[0].use_creases:
+        edge_sharpness, vertex_sharpness = 0 * edge_sharpness, 0 * vertex_sharpness
     cage = limitsurf.ControlMesh.from_faces(
         positions,
         faces,
