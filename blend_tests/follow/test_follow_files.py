@@ -10,6 +10,9 @@ import numpy as np
 import scenes
 from follow_scenes import check_hair, deforming
 from limit_surface import ids
+from limit_surface.nodes import groups
+from limit_surface.nodes.follow import TILES
+from limit_surface.placing.followers import modifier_of
 
 
 def followed() -> tuple[bpy.types.Object, bpy.types.Object]:
@@ -147,4 +150,34 @@ def test_a_library_override_follows_in_its_own_pose(tmp_path):
     bpy.ops.wm.open_mainfile(filepath=save(tmp_path / ".."))
     ob = next(o for o in bpy.data.objects if o.name.startswith("Holes") and not o.library)
     hair = next(o for o in bpy.data.objects if o.type == "CURVES" and not o.library)
+    check_frames(ob, hair)
+
+
+def overridden(tmp_path: Path) -> tuple[bpy.types.Object, bpy.types.Object]:
+    """Returns library overrides of a surface and of hair, whose tables are overrides, too."""
+    linked = append_collection(save_collection(tmp_path), link=True)
+    bpy.context.scene.collection.children.link(linked)
+    linked.override_hierarchy_create(
+        bpy.context.scene, bpy.context.view_layer, do_fully_editable=True
+    )
+    ob = next(o for o in bpy.data.objects if o.name.startswith("Holes") and not o.library)
+    hair = next(o for o in bpy.data.objects if o.type == "CURVES" and not o.library)
+    return ob, hair
+
+
+def test_new_hair_on_an_overridden_surface_leaves_overridden_tables_alone(tmp_path):
+    ob, hair = overridden(tmp_path)
+    table = groups.get_input(modifier_of(hair), TILES)
+    assert table.override_library
+    assert table.data.library
+    rows = len(table.data.vertices)
+    layers = bpy.context.view_layer.layer_collection.children
+    layer = next(layer for layer in layers if layer.collection.override_library)
+    assert ob.name in layer.collection.objects
+    bpy.context.view_layer.active_layer_collection = layer
+    new = scenes.add_points(ob, follow="NODES")
+    own = groups.get_input(modifier_of(new), TILES)
+    assert own != table
+    assert own.data.library is None
+    assert len(table.data.vertices) == rows
     check_frames(ob, hair)

@@ -10,37 +10,6 @@ import scenes
 from follow_scenes import check_hair, deforming, follow
 from limit_surface import ids
 from limit_surface.reading import attributes
-from mathutils import Matrix
-
-FRAMES = ((1, 0.0), (13, 0.5), (30, 0.0))
-
-
-@pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize("scene", scenes.SCENES)
-def test_strands_follow(scene, mirrored):
-    ob = deforming(scene, mirrored)
-    hair = scenes.add_hair(ob, per_side=3, tilt=(0.4, 0.2), follow="NONE")
-    before = scenes.strands(hair).copy()
-    follow(hair)
-    np.testing.assert_array_equal(scenes.strands(hair), before)
-    for frame, subframe in FRAMES:
-        bpy.context.scene.frame_set(frame, subframe=subframe)
-        check_hair(ob, hair)
-
-
-@pytest.mark.parametrize("scene", scenes.SCENES)
-def test_points_follow_with_their_frames(scene):
-    ob = deforming(scene)
-    points = scenes.add_points(ob, per_side=3, follow="NONE")
-    follow(points)
-    bound = follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
-    for frame, subframe in FRAMES:
-        bpy.context.scene.frame_set(frame, subframe=subframe)
-        now = follow_truth.on_surface(ob, points.data)
-        assert np.abs(follow_truth.shown(points, ids.POSITION) - now.position).max() < bound
-        for name, column in ((ids.TANGENT, 0), (ids.NORMAL, 2)):
-            error = np.abs(follow_truth.shown(points, name) - now.frame[:, :, column]).max()
-            assert error < follow_truth.FRAME_BOUND
 
 
 def test_instances_turn_with_their_points():
@@ -119,16 +88,6 @@ def test_a_modifier_behind_the_subdivision_deforms_nothing():
     scenes.add_subsurf(ob)
     ob.modifiers.new("Cast", "CAST")
     assert not scenes.add_hair(ob).modifiers
-
-
-def test_hair_of_another_transform_follows():
-    ob = deforming("grid with holes")
-    hair = scenes.add_hair(ob, follow="NONE")
-    hair.parent = None
-    hair.matrix_world = Matrix.Translation((1, 2, 3)) @ Matrix.Diagonal((0.5, 0.7, -0.9, 1))
-    follow(hair)
-    bpy.context.scene.frame_set(20)
-    check_hair(ob, hair)
 
 
 def test_one_surface_has_one_pair_of_tables():

@@ -9,6 +9,8 @@ from limit_surface.follow import stale
 from limit_surface.placing.follow_state import State
 from mathutils import Euler, Matrix
 
+FRAMES = ((1, 0.0), (13, 0.5), (30, 0.0))
+
 
 def deforming(scene: str, mirrored: bool = False) -> bpy.types.Object:
     ob = scenes.SCENES[scene]()
@@ -26,8 +28,7 @@ def follow(*things: bpy.types.Object) -> None:
 
 
 def check_hair(ob: bpy.types.Object, hair: bpy.types.Object) -> None:
-    relation = np.linalg.inv(np.array(hair.matrix_world)) @ np.array(ob.matrix_world)
-    now = follow_truth.on_surface(ob, hair.data, relation)
+    now = follow_truth.on_surface(ob, hair.data, follow_truth.relation(ob, hair))
     expected = follow_truth.moved(scenes.strands(hair), hair.data, now)
     error = np.abs(follow_truth.shown_strands(hair) - expected).max()
     assert error < follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)

@@ -24,6 +24,34 @@ class Frames(NamedTuple):
     frame: np.ndarray  # (n, 3, 3): columns tangent, normal x tangent, normal
 
 
+class AtRest(NamedTuple):
+    """Strands before they are bound, and where the surface is then: nothing of it is what the
+    extension has stored about the rest.
+    """
+
+    points: np.ndarray  # (strands, points, 3)
+    frames: Frames
+
+    @classmethod
+    def read(cls, ob: bpy.types.Object, hair: bpy.types.Object) -> "AtRest":
+        """Reads hair whose roots are on the surface, and makes sure that they are."""
+        points = scenes.strands(hair).astype(np.float64)
+        frames = on_surface(ob, hair.data, relation(ob, hair))
+        error = np.abs(points[:, 0] - frames.position).max()
+        assert error < POSITION_BOUND * diagonal(ob)
+        return cls(points, frames)
+
+    def carried(self, now: Frames) -> np.ndarray:
+        """Returns where the points go when their roots go to these frames."""
+        return _carried(self.points, self.frames, now)
+
+    def check(self, ob: bpy.types.Object, hair: bpy.types.Object) -> None:
+        """Compares the hair as it is shown with where it has to be in this frame."""
+        now = on_surface(ob, hair.data, relation(ob, hair))
+        error = np.abs(shown_strands(hair) - self.carried(now)).max()
+        assert error < POSITION_BOUND * diagonal(ob)
+
+
 def animate(ob: bpy.types.Object) -> None:
     """Adds a shape key that bends the mesh from frame 1 to 30, and a wave."""
     positions = attributes.read(ob.data, ids.POSITION)
@@ -50,7 +78,7 @@ def on_surface(
     surface: limitsurf.LimitSurface | None = None,
 ) -> Frames:
     """Returns the frames at the locations that `data` stores, on the surface as it is now, in the
-    space that the matrix leads to. Creases need a `surface` that has them.
+    space that the matrix leads to.
     """
     subsurf = next((m for m in ob.modifiers if m.type == "SUBSURF"), None)
     boundary = subsurf.boundary_smooth if subsurf else "ALL"
@@ -88,9 +116,17 @@ def matrices(quaternions: np.ndarray) -> np.ndarray:
 
 def moved(points: np.ndarray, data: bpy.types.ID, now: Frames) -> np.ndarray:
     """Returns points (n, k, 3), k of each location, carried from their rest to the frames."""
-    before = rest(data)
+    return _carried(points, rest(data), now)
+
+
+def _carried(points: np.ndarray, before: Frames, now: Frames) -> np.ndarray:
     local = np.einsum("nji,nkj->nki", before.frame, points - before.position[:, None])
     return now.position[:, None] + np.einsum("nij,nkj->nki", now.frame, local)
+
+
+def relation(ob: bpy.types.Object, thing: bpy.types.Object) -> np.ndarray:
+    """Returns the matrix from the surface's space to that of the thing."""
+    return np.linalg.inv(np.array(thing.matrix_world)) @ np.array(ob.matrix_world)
 
 
 def shown(ob: bpy.types.Object, name: str) -> np.ndarray:

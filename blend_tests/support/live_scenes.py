@@ -6,20 +6,12 @@ import follow_truth
 import limitsurf
 import numpy as np
 import scenes
+from follow_scenes import FRAMES, deforming
+from follow_truth import relation
 from limit_surface import ids
 from limit_surface.reading import attributes, cage
-from mathutils import Euler, Matrix
 
-FRAMES = ((1, 0.0), (13, 0.5), (30, 0.0))
-
-
-def deforming(scene: str, mirrored: bool = False) -> bpy.types.Object:
-    ob = scenes.SCENES[scene]()
-    follow_truth.animate(ob)
-    scenes.add_subsurf(ob)
-    turned = Matrix.Translation((0.3, -0.2, 0.5)) @ Euler((0.3, 0.5, -0.7)).to_matrix().to_4x4()
-    ob.matrix_world = turned @ Matrix.Diagonal((-1.2 if mirrored else 1.2, 1.2, 0.8, 1))
-    return ob
+__all__ = ["FRAMES", "deforming", "relation"]
 
 
 def with_armature(scene: str) -> bpy.types.Object:
@@ -81,34 +73,9 @@ def follow(*things: bpy.types.Object, mode: str = "LIVE") -> None:
         assert bpy.ops.object.limit_follow(mode=mode) == {"FINISHED"}
 
 
-def relation(ob: bpy.types.Object, thing: bpy.types.Object) -> np.ndarray:
-    """Returns the matrix from the surface's space to that of the thing."""
-    return np.linalg.inv(np.array(thing.matrix_world)) @ np.array(ob.matrix_world)
-
-
 def rest(hair: bpy.types.Object) -> np.ndarray:
     """Returns the strands at rest (strands, points, 3)."""
     return attributes.read(hair.data, ids.LIVE_REST).reshape(len(hair.data.curves), -1, 3)
-
-
-def creased_surface(ob: bpy.types.Object) -> limitsurf.LimitSurface:
-    """Returns the limit surface of the mesh before its subdivision, with the creases of edges."""
-    subsurf = next(m for m in ob.modifiers if m.type == "SUBSURF")
-    subsurf.show_viewport = False
-    mesh = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    creases = attributes.read(mesh, ids.EDGE_CREASE)
-    edges = attributes.read(mesh, ids.EDGE_VERTICES)
-    sharpness = 10 * creases.astype(np.float64) ** 2
-    corners = np.flatnonzero(np.bincount(edges.ravel()) == 2)  # Blender's rule for these
-    lowest = [sharpness[(edges == corner).any(axis=1)].min() for corner in corners]
-    cage = limitsurf.ControlMesh.from_faces(
-        attributes.read(mesh, ids.POSITION).astype(np.float64),
-        [list(polygon.vertices) for polygon in mesh.polygons],
-        edge_sharpness=(edges, sharpness),
-        vertex_sharpness=(corners, lowest),
-    )
-    subsurf.show_viewport = True
-    return limitsurf.LimitSurface(cage)
 
 
 def check_hair(

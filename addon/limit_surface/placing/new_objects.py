@@ -55,10 +55,11 @@ def set_corner_normals(mesh: bpy.types.Mesh, normals: np.ndarray) -> None:
 
 
 def _collection(context: bpy.types.Context) -> bpy.types.Collection:
-    """Returns the active collection, or the scene's own where the active one is linked or
-    hidden.
+    """Returns the active collection, or the scene's own where the active one is hidden, linked, or
+    the override of a linked one, to which objects cannot be added.
     """
     active = context.view_layer.active_layer_collection
-    if active.is_visible and active.collection.is_editable:
+    collection = active.collection
+    if active.is_visible and collection.is_editable and not collection.override_library:
         return active.collection
     return context.scene.collection

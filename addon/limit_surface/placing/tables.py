@@ -242,7 +242,9 @@ def new_object(kind: str, whose: bpy.types.Object) -> bpy.types.Object:
     """Adds a hidden object with an empty mesh, beside the object that it belongs to."""
     name = _name(kind, whose)
     ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
-    home = next((c for c in whose.users_collection if c.is_editable), None)
+    # objects cannot be added to the overrides of linked collections
+    homes = (c for c in whose.users_collection if c.is_editable and not c.override_library)
+    home = next(homes, None)
     (home or bpy.context.scene.collection).objects.link(ob)
     ob.hide_viewport = ob.hide_render = ob.hide_select = True
     return ob
