@@ -22,7 +22,8 @@ void checkShare(double value, const char* name) {
   }
 }
 
-void checkNumber(double count) {
+void checkNumber(double on_curves, int rows) {
+  const double count = on_curves * rows;
   if (count > static_cast<double>(kMostLocations)) {
     throw std::invalid_argument(
         text("there would be ", count, " locations; the limit is ", kMostLocations));
@@ -67,6 +68,13 @@ void checkAlongOptions(const AlongOptions& options) {
     throw std::invalid_argument(
         text("spacing is ", *options.spacing, "; it must be finite and above 0"));
   }
+  if (options.rows < 1) {
+    throw std::invalid_argument(text("rows is ", options.rows, "; it must be at least 1"));
+  }
+  if (options.rows > 1 && !(options.row_distance > 0 && std::isfinite(options.row_distance))) {
+    throw std::invalid_argument(
+        text("row_distance is ", options.row_distance, "; it must be finite and above 0"));
+  }
   checkShare(options.jitter, "jitter");
   checkShare(options.phase.value_or(0), "phase");
 }
@@ -78,7 +86,7 @@ std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptio
   }
   const double total = std::accumulate(lengths.begin(), lengths.end(), 0.);
   if (options.count) {
-    checkNumber(static_cast<double>(*options.count));
+    checkNumber(static_cast<double>(*options.count), options.rows);
     if (*options.count == 0) {
       return std::vector<std::int64_t>(lengths.size(), 0);
     }
@@ -88,7 +96,7 @@ std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptio
     }
     return shares(*options.count, lengths, total);
   }
-  checkNumber(total / *options.spacing);
+  checkNumber(total / *options.spacing, options.rows);
   std::vector<std::int64_t> result;
   for (const double length : lengths) {
     result.push_back(length > 0 ? std::max<std::int64_t>(std::llround(length / *options.spacing), 1)

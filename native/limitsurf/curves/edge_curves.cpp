@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limitsurf/curves/edge_curves_data.h"
+#include "limitsurf/curves/face_neighbors.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -48,15 +49,6 @@ class Measure {
   std::vector<CurveLeaf>& leaves_;
   double negligible_;
 };
-
-/// For each face of the control mesh the number of its first Ptex face.
-std::vector<int> firstPtexFaces(const LimitSurface& surface) {
-  std::vector<int> first(static_cast<std::size_t>(surface.mesh().faceCount()), -1);
-  for (int face = surface.faceCount() - 1; face >= 0; --face) {
-    first[static_cast<std::size_t>(surface.baseFace()[static_cast<std::size_t>(face)])] = face;
-  }
-  return first;
-}
 
 /// The direction of a cubic at a parameter: that of its derivative or, where this vanishes, of the
 /// way from or to a place beside it.

@@ -24,16 +24,28 @@ struct AlongOptions {
   std::optional<double> phase;
   std::uint64_t seed = 0;
   CurveSide side = CurveSide::left;  ///< the side whose faces the locations are on, where both have
+  /// The number of rows. Row r lies r row distances from the curves, along the surface.
+  int rows = 1;
+  double row_distance = 0;
 };
 
-/// Locations along curves: curve by curve, and along each curve.
+/// Bound on how much nearer than its row's distance any part of the curves may be to a location,
+/// relative to that distance, where the shortest way leads roughly towards the part that is nearest
+/// in space. The length of the geodesic from the location's own foot has the error kGeodesicError.
+/// Geodesics to the curves are sought in five directions for each part that is nearer in space;
+/// this may miss one that leads another way, around a fold.
+constexpr double kRowError = 1e-2;
+
+/// Locations along curves: row by row, curve by curve, and along each curve.
 struct AlongCurves {
   std::vector<Location> at;
   std::vector<int> curve;
-  std::vector<double> arc;  ///< arc length from the curve's start
+  std::vector<double> arc;  ///< arc length from the curve's start; of the geodesic's foot in rows
   /// Unit vectors in the surface's tangent plane: along the curve, and perpendicular to it, away
-  /// from the location's face.
+  /// from the location's face. In rows the latter points to the foot.
   Points tangent, outward;
+  std::vector<int> row;
+  std::vector<std::int64_t> ended;  ///< for each row, the number of locations that it lacks
 };
 
 /// Locations evenly along curves, by true arc length. `curves` must have been made of the surface
@@ -43,8 +55,14 @@ struct AlongCurves {
 /// on each curve neighbours are equally far apart; on a closed curve the last one and the first one
 /// are, too. A seed gives the same locations on every machine and with any number of threads.
 ///
+/// The locations of further rows lie at the ends of geodesics that leave the curves
+/// perpendicularly, into the faces on the given side, at places that each row draws anew. A row
+/// ends where the surface ends, and where it would run into itself or another row: where another
+/// part of the curves is nearer than its distance (kRowError).
+///
 /// Throws std::invalid_argument unless exactly one of count and spacing is given, for values out of
-/// range, and for a count above 0 on curves without length. Cost: about 1 microsecond a location.
+/// range, and for a count above 0 on curves without length. Cost: about 1 microsecond a location
+/// on the curves, and some ten microseconds for each in other rows.
 AlongCurves scatterAlong(const LimitSurface& surface, const EdgeCurves& curves,
                          const AlongOptions& options, int threads = 0,
                          const Progress& progress = {});

@@ -329,6 +329,8 @@ class LimitSurface(metaclass=_BoundType):
         *,
         phase: float | None = None,
         side: Literal["left", "right"] = "left",
+        rows: int = 1,
+        row_distance: float = 0.0,
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> AlongCurves: ...

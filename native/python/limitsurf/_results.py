@@ -123,14 +123,16 @@ class BlueNoise(Locations):
 class AlongCurves(Locations):
     """Locations along curves: the curve's number (n,), the arc length from its start (n,), and unit
     vectors (n, 3) in the surface's tangent plane, along the curve and away from the location's
-    face."""
+    face; the row (n,), and for each row the number of locations that it lacks."""
 
-    __slots__ = ("arc", "curve", "outward", "tangent")
+    __slots__ = ("arc", "curve", "ended", "outward", "row", "tangent")
 
     curve: NDArray[np.int32]
     arc: NDArray[np.float64]
     tangent: NDArray[np.float64]
     outward: NDArray[np.float64]
+    row: NDArray[np.int32]
+    ended: NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -96,7 +96,8 @@ py::object along(const AlongCurves& found) {
   const py::object at = locations(found.at);
   return result("AlongCurves")(at.attr("face"), at.attr("uv"), arrayOf(found.curve),
                                arrayOf(found.arc), pointArray(found.tangent),
-                               pointArray(found.outward));
+                               pointArray(found.outward), arrayOf(found.row),
+                               arrayOf(found.ended));
 }
 
 py::object curvesAt(const BoundEdgeCurves& self, const py::object& curve, const py::object& arc,
@@ -132,9 +133,12 @@ py::object curvesAt(const BoundEdgeCurves& self, const py::object& curve, const 
 py::object scatterAlong(const SharedSurface& shared, const BoundEdgeCurves& curves,
                         std::optional<std::int64_t> count, std::optional<double> spacing,
                         double jitter, std::uint64_t seed, std::optional<double> phase,
-                        const std::string& side, int threads, const py::object& progress) {
+                        const std::string& side, int rows, double row_distance, int threads,
+                        const py::object& progress) {
   checkThreads(threads);
   AlongOptions options;
+  options.rows = rows;
+  options.row_distance = row_distance;
   options.count = count;
   options.spacing = spacing;
   options.jitter = jitter;
@@ -240,7 +244,8 @@ void bindEdgeCurveMakers(py::class_<SharedSurface>& type) {
            py::keep_alive<0, 1>(), kEdgeCurvesMakerDoc)
       .def("scatter_along", &scatterAlong, "curves"_a, "count"_a = py::none(),
            "spacing"_a = py::none(), "jitter"_a = 0., "seed"_a = 0, py::kw_only(),
-           "phase"_a = py::none(), "side"_a = "left", "threads"_a = 0, "progress"_a = py::none(),
+           "phase"_a = py::none(), "side"_a = "left", "rows"_a = 1, "row_distance"_a = 0., "threads"_a = 0,
+           "progress"_a = py::none(),
            kScatterAlongDoc);
 }
 

@@ -34,7 +34,7 @@ for each edge.
 )";
 
 constexpr const char* kEdgeCurvesAtDoc =
-    R"(The points at arc lengths along curves: AlongCurves (.face, .uv, .curve, .arc, .tangent, .outward).
+    R"(The points at arc lengths along curves: AlongCurves as scatter_along() gives them.
 
 Parameters
 ----------
@@ -77,18 +77,32 @@ phase : float, optional
 side : 'left' or 'right'
     The side of the curves whose faces the locations are on. Where no face with a surface is on that side,
     they are on the other one.
+rows : int
+    The number of rows. Row r lies r times row_distance away from the curves, into the faces on the given
+    side: its locations are the ends of geodesics that leave the curves perpendicularly, at places that
+    each row draws anew.
+row_distance : float
+    The distance between rows along the surface, in units of the mesh, above 0 if there are several rows.
 threads : int
     0 uses all cores.
 progress : function, optional
     It is called from time to time with the part of the work that is done, 0 to 1. An exception that it
     raises ends the call.
 
-Returns AlongCurves, curve by curve and along each of them: .face (n,) int32 and .uv (n, 2); .curve (n,)
-int32; .arc (n,), the arc length from the curve's start; .tangent and .outward (n, 3), unit vectors in the
-surface's tangent plane, along the curve and perpendicular to it, away from the location's face.
+Returns AlongCurves, row by row, curve by curve and along each of them: .face (n,) int32 and .uv (n, 2);
+.curve (n,) int32; .arc (n,), the arc length from the curve's start, in rows that of the geodesic's foot;
+.tangent and .outward (n, 3), unit vectors in the surface's tangent plane, along the curve and
+perpendicular to it, away from the location's face, in rows towards the foot; .row (n,) int32; and .ended
+(rows,) int64, the number of locations that each row lacks.
+
+A row ends where the surface ends, and where it would run into itself or another row: where another part
+of the curves is nearer than the row's distance. All other locations keep it to 1 %. Nearer parts are
+sought by geodesics towards the places that are nearer in space.
 
 Raises ValueError for values out of range, for a count above 0 on curves without length, and if the
-surface has been posed since the curves were made. Cost: about 1 microsecond a location.
+surface has been posed since the curves were made. Cost: about 1 microsecond a location on the curves,
+and for each location in other rows some microseconds for each face up to it, several times as much where
+curves are near each other.
 )";
 
 }  // namespace limitsurf::python
