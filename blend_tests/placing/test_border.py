@@ -245,3 +245,33 @@ def test_they_follow_a_mesh_that_deforms(add):
     exact = scenes.surface_without_addon(ob).evaluate(*locations(made.data)).position
     np.testing.assert_allclose(moved, exact, atol=2e-5)
     assert np.abs(moved - attributes.read(made.data, ids.REST_ROOT)).max() > 1
+
+
+def test_rows_keep_their_distance_along_the_surface(capfd):
+    ob = scenes.flat_grid(6)
+    place(ob, {"scale": (2, 2, 2)})
+    points = add_points(ob, distribution="BORDER", count=200, rows=4, row_distance=1.5)
+    at = attributes.read(points.data, "position").astype(np.float64)
+    surface = scenes.surface_without_addon(ob)
+    curves = surface.edge_curves()
+    dense = curves.at(0, np.linspace(0, curves.lengths[0], 20_000))
+    border = surface.evaluate(dense.face, dense.uv).position
+    distance = 2 * np.linalg.norm(at[:, None] - border[None], axis=2).min(axis=1)
+    row = np.rint(distance / 1.5)
+    np.testing.assert_allclose(distance, 1.5 * row, rtol=0.01, atol=2e-3)
+    numbers = np.bincount(row.astype(int), minlength=4)
+    assert numbers[0] == 200
+    assert (np.diff(numbers) < 0).all()
+    assert numbers[3] > 0
+    said = capfd.readouterr().out
+    assert "rows end where they would meet: of 200 each" in said
+    for lacking, name in zip(200 - numbers[1:], ("row 2", "row 3", "row 4"), strict=True):
+        assert f"{name} lacks {lacking}" in said
+
+
+def test_rows_that_do_not_end_are_not_mentioned(capfd):
+    bpy.ops.mesh.primitive_cylinder_add(vertices=24, end_fill_type="NOTHING", depth=4)
+    add_points(bpy.context.active_object, distribution="BORDER", count=50, rows=3)
+    said = capfd.readouterr().out
+    assert "150 points along 2 borders" in said
+    assert "rows end" not in said

@@ -174,12 +174,11 @@ def test_redo_panel_shows_every_property_where_it_counts():
         assert {"count", "density", "distance"} & shown == {amount.lower()}
         every |= shown
     assert not {"border", "direction", "flow"} & every
-    along = shown_in_redo_panel(**distribution | {"distribution": "BORDER", "amount": "COUNT"})
+    distribution |= {"distribution": "BORDER", "amount": "COUNT", "rows": 1}
+    along = shown_in_redo_panel(**distribution)
     assert {"border", "border_jitter", "direction", "flow", "count"} <= along
     assert "lift" not in along
-    every |= shown_in_redo_panel(
-        **distribution | {"distribution": "BORDER", "amount": "COUNT", "direction": "OUTWARDS"}
-    )
+    every |= shown_in_redo_panel(**distribution | {"direction": "OUTWARDS", "rows": 2})
     assert every == set(properties_of(ids.HAIR_ADD).keys()) - {"rna_type", "summary", "surface"}
 
 

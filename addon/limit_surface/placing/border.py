@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 #: The edges of a border: those that the library finds itself, or the two vertices of each
 Edges = Literal["boundary", "creases"] | np.ndarray
 
+MOST_ROWS_NAMED = 3
+
 _MISSING = {
     "BOUNDARY": "has no open boundary: each of its edges is between two faces",
     "CREASES": "has no creased edges",
@@ -60,6 +62,20 @@ def borders(count: int) -> str:
     return "1 border" if count == 1 else f"{count:,} borders"
 
 
+def where_rows_end(ended: np.ndarray, asked_for: int) -> str:
+    """Returns a sentence about the rows that lack things, or nothing. `ended` holds how many each
+    row lacks of those that were asked for.
+    """
+    short = np.flatnonzero(ended)
+    if not len(short):
+        return ""
+    lacking = [f"row {row + 1} lacks {ended[row]:,}" for row in short[:MOST_ROWS_NAMED]]
+    others = short[MOST_ROWS_NAMED:]
+    if len(others):
+        lacking.append(f"the other rows {ended[others].sum():,}")
+    return f"rows end where they would meet: of {asked_for:,} each, {', '.join(lacking)}"
+
+
 def _selected(mesh: bpy.types.Mesh) -> np.ndarray:
     values = np.empty(len(mesh.edges), bool)
     mesh.edges.foreach_get("select", values)
@@ -86,6 +102,8 @@ class BorderLayout:
 
     jitter: float
     side: Literal["left", "right"]  # whose faces they stand on
+    rows: int
+    row_distance: float  # in world units
 
     def scatter(
         self,
@@ -102,6 +120,8 @@ class BorderLayout:
             jitter=self.jitter,
             seed=seed,
             side=self.side,
+            rows=self.rows,
+            row_distance=self.row_distance,
             progress=progress,
         )
 

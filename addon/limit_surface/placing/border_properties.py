@@ -4,7 +4,7 @@
 import math
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from .border import BorderChoice, BorderLayout, Turn
 
@@ -37,6 +37,25 @@ class BorderProperties:
         min=0.0,
         max=1.0,
         subtype="FACTOR",
+    )
+    rows: IntProperty(
+        name="Rows",
+        description="Number of rows: the first one lies on the border, and the others beside it. "
+        "A row ends where it would meet itself or another one",
+        default=1,
+        min=1,
+        max=1000,
+        soft_max=20,
+    )
+    row_distance: FloatProperty(
+        name="Row Distance",
+        description="Distance between rows in world space, measured along the surface",
+        default=0.05,
+        min=1e-6,
+        soft_min=1e-3,
+        soft_max=10.0,
+        precision=4,
+        subtype="DISTANCE",
     )
     other_side: BoolProperty(
         name="Other Side",
@@ -84,7 +103,12 @@ def choice(properties: bpy.types.OperatorProperties) -> BorderChoice | None:
 
 
 def layout_of(properties: bpy.types.OperatorProperties) -> BorderLayout:
-    return BorderLayout(properties.border_jitter, "right" if properties.other_side else "left")
+    return BorderLayout(
+        jitter=properties.border_jitter,
+        side="right" if properties.other_side else "left",
+        rows=properties.rows,
+        row_distance=properties.row_distance,
+    )
 
 
 def turn_of(properties: bpy.types.OperatorProperties) -> Turn:
@@ -95,6 +119,9 @@ def turn_of(properties: bpy.types.OperatorProperties) -> Turn:
 def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
     layout.prop(properties, "border")
     layout.prop(properties, "border_jitter", slider=True)
+    layout.prop(properties, "rows")
+    if properties.rows > 1:
+        layout.prop(properties, "row_distance")
     layout.prop(properties, "other_side")
     layout.prop(properties, "direction")
     if properties.direction == "OUTWARDS":

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..tasks.job import Progress
-from .border import Amount, BorderDirections, BorderLayout, Turn
+from .border import Amount, BorderDirections, BorderLayout, Turn, where_rows_end
 from .region import Region
 from .roots import Locations
 
@@ -37,6 +37,7 @@ class Scattered:
     distance: float | None = None  # the distance in the world that they keep from each other
     directions: BorderDirections | None = None  # for things along borders
     curves: int = 0  # the number of borders
+    note: str = ""  # a remark for the report
 
 
 @dataclass(frozen=True)
@@ -125,8 +126,10 @@ class Distribution:
             raise RefusalError("A border has no area: give a count or a distance")
         sums = region.border_sums
         if self.amount == "COUNT":
-            return Expected(round(self.count * sums.weight), region.density is None)
-        return Expected(max(round(sums.length / self.distance * sums.weight), 1), False)
+            count = round(self.count * self.border.rows * sums.weight)
+            return Expected(count, region.density is None and self.border.rows == 1)
+        count = round(sums.length / self.distance * self.border.rows * sums.weight)
+        return Expected(max(count, 1), False)
 
     def _along_border(self, region: Region, progress: Progress) -> Scattered:
         by_count = self.amount == "COUNT"
@@ -144,6 +147,7 @@ class Distribution:
             Locations(at.face[stays], at.uv[stays]),
             directions=directions.at(stays),
             curves=len(curves),
+            note=where_rows_end(found.ended, int(np.count_nonzero(found.row == 0))),
         )
 
 

@@ -325,6 +325,9 @@ class ScatterOperator(
             warning = left_out(len(refused), len(found.face_sizes), reasons(refused))
             self.report({"WARNING"}, warning)
         notes = [f"{what} of {self.surface}{apart}", *found.notes]
+        if ground.scattered.note:
+            notes.insert(1, ground.scattered.note)
+            self.summary += f"\n{ground.scattered.note}"
         if how:
             notes.append(f"they follow the surface {how}")
         elif self._why_not_following:

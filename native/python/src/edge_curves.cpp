@@ -96,8 +96,7 @@ py::object along(const AlongCurves& found) {
   const py::object at = locations(found.at);
   return result("AlongCurves")(at.attr("face"), at.attr("uv"), arrayOf(found.curve),
                                arrayOf(found.arc), pointArray(found.tangent),
-                               pointArray(found.outward), arrayOf(found.row),
-                               arrayOf(found.ended));
+                               pointArray(found.outward), arrayOf(found.row), arrayOf(found.ended));
 }
 
 py::object curvesAt(const BoundEdgeCurves& self, const py::object& curve, const py::object& arc,
@@ -244,9 +243,8 @@ void bindEdgeCurveMakers(py::class_<SharedSurface>& type) {
            py::keep_alive<0, 1>(), kEdgeCurvesMakerDoc)
       .def("scatter_along", &scatterAlong, "curves"_a, "count"_a = py::none(),
            "spacing"_a = py::none(), "jitter"_a = 0., "seed"_a = 0, py::kw_only(),
-           "phase"_a = py::none(), "side"_a = "left", "rows"_a = 1, "row_distance"_a = 0., "threads"_a = 0,
-           "progress"_a = py::none(),
-           kScatterAlongDoc);
+           "phase"_a = py::none(), "side"_a = "left", "rows"_a = 1, "row_distance"_a = 0.,
+           "threads"_a = 0, "progress"_a = py::none(), kScatterAlongDoc);
 }
 
 }  // namespace limitsurf::python

@@ -206,3 +206,82 @@ def test_progress_and_cancelling():
 
     with pytest.raises(KeyError):
         surface.scatter_along(curves, 10, progress=stop)
+
+
+def chords(points, radius):
+    """Every pair of points that are at most so far apart, in both orders, and their distances."""
+    cells = np.floor(points / radius).astype(np.int64)
+    cells -= cells.min(axis=0) - 1
+    size = cells.max(axis=0) + 2
+    key = (cells[:, 0] * size[1] + cells[:, 1]) * size[2] + cells[:, 2]
+    order = np.argsort(key)
+    sorted_keys = key[order]
+    pairs = []
+    for shift in np.ndindex(3, 3, 3):
+        step = ((shift[0] - 1) * size[1] + shift[1] - 1) * size[2] + shift[2] - 1
+        first = np.searchsorted(sorted_keys, key + step, "left")
+        last = np.searchsorted(sorted_keys, key + step, "right")
+        count = last - first
+        a = np.repeat(np.arange(len(points)), count)
+        within = np.arange(len(a)) - np.repeat(np.cumsum(count) - count, count)
+        pairs.append(np.stack([a, order[np.repeat(first, count) + within]]))
+    a, b = np.concatenate(pairs, axis=1)
+    length = np.linalg.norm(points[a] - points[b], axis=1)
+    near = (length <= radius) & (a != b)
+    return a[near], b[near], length[near]
+
+
+def shortest(points, sources, radius):
+    """The lengths of the shortest ways over chords, which neither leave the surface by much nor
+    have few directions to choose from."""
+    a, b, length = chords(points, radius)
+    distance = np.full(len(points), np.inf)
+    distance[sources] = 0
+    while True:
+        better = distance.copy()
+        np.minimum.at(better, b, distance[a] + length)
+        if np.array_equal(better, distance):
+            return distance
+        distance = better
+
+
+@pytest.mark.parametrize("name", ["cube", "house"])
+def test_rows_on_curved_surfaces_against_shortest_ways(name):
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.ALL[name]))
+    edges = [[0, 1], [1, 3], [3, 2], [2, 0]] if name == "cube" else "boundary"
+    curves = surface.edge_curves(edges)
+    step = curves.lengths.sum() / 25
+    rows = surface.scatter_along(curves, 120, rows=4, row_distance=step, seed=1)
+    assert (np.bincount(rows.row, minlength=4) + rows.ended == 120).all()
+    assert (np.bincount(rows.row, minlength=4) > 20).all()
+    at = surface.evaluate(rows.face, rows.uv).position
+    arc = np.linspace(0, curves.lengths[0], 600)
+    border = curves.at(0, arc)
+    mesh = surface.tessellate(6)
+    points = np.concatenate([surface.evaluate(border.face, border.uv).position, mesh.positions, at])
+    ways = shortest(points, np.arange(600), step * 0.45)[-len(at) :]
+    wanted = step * rows.row
+    # chords cut corners of the surface, and their directions are not quite those of the way
+    np.testing.assert_allclose(ways[rows.row > 0], wanted[rows.row > 0], rtol=0.025)
+
+
+def test_rows_run_beside_the_curve():
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.grid(8, 8)))
+    curves = surface.edge_curves()
+    rows = surface.scatter_along(curves, 40, rows=3, row_distance=0.5)
+    assert rows.row.dtype == np.int32
+    assert rows.ended.tolist()[0] == 0
+    assert (np.diff(rows.row) >= 0).all()
+    start = curves.at(rows.curve, rows.arc)
+    foot = surface.evaluate(start.face, start.uv).position
+    at = surface.evaluate(rows.face, rows.uv).position
+    np.testing.assert_allclose(
+        at - foot, -0.5 * rows.row[:, None] * rows.outward, atol=1e-6
+    )  # straight in a plane
+    np.testing.assert_allclose(
+        np.cross(rows.tangent, rows.outward), np.tile([0, 0, -1.0], (len(rows), 1)), atol=1e-9
+    )
+    with pytest.raises(ValueError, match="row_distance is 0"):
+        surface.scatter_along(curves, 40, rows=2)
+    with pytest.raises(ValueError, match="rows is 0"):
+        surface.scatter_along(curves, 40, rows=0)

@@ -117,12 +117,111 @@ TEST(ScatterAlong, DirectionsAreTangentialAndOrthonormal) {
   }
 }
 
+/// The distances of all locations in a plane from the curves, by many points of these.
+std::vector<double> distancesInPlane(const LimitSurface& surface, const EdgeCurves& curves,
+                                     const AlongCurves& along) {
+  std::vector<std::int64_t> curve;
+  std::vector<double> arc;
+  for (int i = 0; i < curves.count(); ++i) {
+    for (int k = 0; k <= 3000; ++k) {
+      curve.push_back(i);
+      arc.push_back(curves.length(i) * k / 3000);
+    }
+  }
+  const Points dense = surface.evaluate(pointsAlong(surface, curves, curve, arc).at).position;
+  const Points at = surface.evaluate(along.at).position;
+  std::vector<double> distances;
+  for (Eigen::Index i = 0; i < at.rows(); ++i) {
+    distances.push_back((dense.rowwise() - at.row(i)).rowwise().norm().minCoeff());
+  }
+  return distances;
+}
+
+TEST(ScatterAlong, RowsInAPlaneKeepTheirDistanceAndEndWhereTheyMeet) {
+  std::vector<int> holes;
+  for (const int row : {4, 5}) {
+    holes.push_back(12 * row + 5);
+    holes.push_back(12 * row + 6);
+  }
+  Cage corners = fullGrid(12, 12);
+  corners.options.boundary = Boundary::corners;
+  for (const Cage& cage : {gridWithHoles(12, 12, holes), corners}) {
+    const LimitSurface surface = limitSurface(cage);
+    const EdgeCurves curves(surface, EdgeChoice::boundary);
+    AlongOptions options = byCount(400);
+    options.rows = 8;
+    options.row_distance = 0.7;
+    const AlongCurves along = scatterAlong(surface, curves, options);
+    const std::vector<double> distance = distancesInPlane(surface, curves, along);
+    std::vector<std::int64_t> count(8, 0);
+    for (std::size_t i = 0; i < along.at.size(); ++i) {
+      const int row = along.row[i];
+      ++count[static_cast<std::size_t>(row)];
+      // The points of the curves are 0.016 apart.
+      EXPECT_NEAR(distance[i], 0.7 * row, row == 0 ? 0.009 : kRowError * 0.7 * row + 2e-4);
+    }
+    for (std::size_t row = 0; row < 8; ++row) {
+      EXPECT_EQ(count[row] + along.ended[row], 400);
+    }
+    EXPECT_EQ(count[0], 400);
+    EXPECT_GT(along.ended[1], 0);
+    EXPECT_GT(count[3], 0);
+  }
+}
+
+TEST(ScatterAlong, RowsOfASquareAreAsLongAsItsOffsets) {
+  Cage square = fullGrid(12, 12);
+  square.options.boundary = Boundary::corners;
+  const LimitSurface surface = limitSurface(square);
+  const EdgeCurves curves(surface, EdgeChoice::boundary);
+  AlongOptions options = byCount(4800);
+  options.rows = 7;
+  options.row_distance = 0.9;
+  const AlongCurves along = scatterAlong(surface, curves, options);
+  for (int row = 0; row < 7; ++row) {
+    // Of each side so much is left: none of it may be missing, and at each end at most what the
+    // bound allows may be too much.
+    const double left = 400 * (12 - 2 * 0.9 * row), more = 800 * 0.9 * row * 1.1 * kRowError;
+    const auto found = 4800 - along.ended[static_cast<std::size_t>(row)];
+    EXPECT_GE(static_cast<double>(found), left - 10) << row;
+    EXPECT_LE(static_cast<double>(found), left + more + 10) << row;
+  }
+}
+
+TEST(ScatterAlong, RowsFollowThePlaneAroundAnEdge) {
+  // A lip: two sheets close to each other in space, which are joined far away.
+  Cage cage = fullGrid(12, 4);
+  for (int v = 0; v < cage.vertexCount(); ++v) {
+    const double x = cage.positions(v, 0);
+    if (x > 6) {
+      cage.positions(v, 0) = 12 - x;
+      cage.positions(v, 2) = 0.2;
+    }
+  }
+  const LimitSurface surface = limitSurface(cage);
+  // The edges at x = 1 of the lower sheet: those above them on the upper sheet are 0.2 away.
+  std::vector<std::pair<std::int64_t, std::int64_t>> edges;
+  for (int j = 0; j < 4; ++j) {
+    edges.emplace_back(13 * j + 1, 13 * (j + 1) + 1);
+    edges.emplace_back(13 * j + 11, 13 * (j + 1) + 11);
+  }
+  const EdgeCurves curves(surface, edges);
+  AlongOptions options = byCount(80);
+  options.rows = 2;
+  options.row_distance = 0.8;
+  const AlongCurves along = scatterAlong(surface, curves, options);
+  // Only where a geodesic leaves the sheet's sides.
+  EXPECT_LE(along.ended[1], 2);
+}
+
 TEST(ScatterAlong, DependsOnTheSeedAlone) {
   const LimitSurface surface = limitSurface(mixture(3));
   const EdgeCurves curves(surface, EdgeChoice::boundary);
   AlongOptions options = byCount(1000);
   options.jitter = 0.5;
   options.seed = 7;
+  options.rows = 3;
+  options.row_distance = 0.02 * diagonal(surface.positions());
   const AlongCurves one = scatterAlong(surface, curves, options, 1);
   const AlongCurves many = scatterAlong(surface, curves, options, 3);
   EXPECT_EQ(one.arc, many.arc);
@@ -153,6 +252,14 @@ TEST(ScatterAlong, RefusesWhatHasNoMeaning) {
   options = {};
   options.spacing = 0;
   refuses(options);
+  options = byCount(5);
+  options.rows = 0;
+  refuses(options);
+  options.rows = 2;
+  refuses(options);
+  options.row_distance = 1e-300;
+  refuses(options);
+  options = {};
   options.spacing = 1e-300;
   refuses(options);
   EXPECT_THROW(scatterAlong(closed, none, byCount(1)), std::invalid_argument);
