@@ -192,7 +192,7 @@ def test_users_are_asked(name):
     operator.draw(window_context())
     text = " ".join(call.kwargs["text"] for call in layout.column().label.call_args_list)
     assert text.startswith("Cube has no Subdivision Surface modifier, so its limit surface is not")
-    assert text.endswith("This makes 54 " + operator.noun + ".")
+    assert text.endswith("or to be inside the mesh.")
     assert [call.args[1] for call in layout.prop.call_args_list] == ["add_subsurf"]
     assert operator.execute(bpy.context) == {"FINISHED"}  # what OK does
     assert [m.type for m in ob.modifiers] == ["SUBSURF"]
@@ -213,7 +213,7 @@ def test_the_same_dialog_asks_about_large_counts():
     operator = stand_in("hair", per_side=1000)
     assert dialog(operator)
     assert operator.allow_large
-    assert operator._question.startswith("6,000,000 strands of 5 points")
+    assert "inside the mesh. Make 6,000,000 strands of 5 points (" in operator._question
 
 
 def test_users_are_not_asked_where_it_is_settled():

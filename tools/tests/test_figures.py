@@ -10,8 +10,8 @@ import pytest
 from figures import make
 
 ROOT = Path(__file__).parents[2]
-#: A screenshot of the tests in a window
-SCREENSHOTS = {"snap_modal"}
+#: Screenshots of the tests in a window
+SCREENSHOTS = {"first_minute", "snap_modal"}
 
 
 def run(*options: str) -> subprocess.CompletedProcess[str]:

@@ -12,7 +12,7 @@ from ..errors import RefusalError
 from ..reading import cage, displayed_mesh
 from ..sources.source_mesh import Choice
 from ..subsurf import setup
-from ..tasks import polling
+from ..tasks import polling, wrapped_text
 from ..tasks.job import Job, Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from ..tasks.properties import LargeCountProperty, draw_summary
@@ -150,7 +150,7 @@ class ScatterOperator(
     bl_options = {"REGISTER", "UNDO", "PRESET"}
     noun = ""
     _why_not_following = ""
-    _question = ""  # the size of what will be made, while a dialog offers a modifier
+    _question = ""  # what a dialog asks while it offers a modifier
 
     @property
     def too_large(self) -> str:
@@ -214,7 +214,8 @@ class ScatterOperator(
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         if self._question:
-            subsurf_offer.draw_question(layout, self, self._question)
+            wrapped_text.draw(layout, self._question, "INFO", subsurf_offer.LINE)
+            layout.prop(self, "add_subsurf")
             return
         layout.use_property_split = True
         distribution_properties.draw(layout, self.properties, context)
@@ -241,9 +242,11 @@ class ScatterOperator(
         if self._may_offer(order.surface.find()):
             order.size.check(allow_large=True)  # what can never be made is refused at once
             self.add_subsurf = True
-            self.surface, self._question = order.surface.name, order.size.how_many
-            if order.size.is_large:
-                self.allow_large, self._question = True, str(order.size)
+            self.surface, self._question = (
+                order.surface.name,
+                subsurf_offer.question(order.surface.name, order.size),
+            )
+            self.allow_large = self.allow_large or order.size.is_large
             return subsurf_offer.open_dialog(context, self)
         if order.size.is_large and not self.allow_large:
             # the dialog asks for this consent; if the user declines it, nothing is run

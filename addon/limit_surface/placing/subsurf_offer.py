@@ -9,12 +9,12 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty
 
-from ..tasks import wrapped_text
+from ..tasks.request_size import RequestSize
 from .region import Region
 
 MOST_VERTICES = 10_000  # so many vertices are measured at most
 WIDTH = 340  # of the dialog, in pixels
-_LINE = 55  # characters on a line of the dialog
+LINE = 55  # characters on a line of the dialog
 
 
 class AddSubsurfProperty:
@@ -35,16 +35,15 @@ def open_dialog(context: bpy.types.Context, operator: bpy.types.Operator) -> set
     )
 
 
-def draw_question(
-    layout: bpy.types.UILayout, operator: bpy.types.OperatorProperties, size: str
-) -> None:
+def question(surface: str, size: RequestSize) -> str:
+    """Returns what the dialog asks. It names the size only if that is very large, because presets
+    in the dialog change it.
+    """
     text = (
-        f"{operator.surface} has no Subdivision Surface modifier, so its limit surface is not "
-        "shown. What stands on that surface will seem to float, or to be inside the mesh."
+        f"{surface} has no Subdivision Surface modifier, so its limit surface is not shown. What "
+        "stands on that surface will seem to float, or to be inside the mesh."
     )
-    wrapped_text.draw(layout, text, "INFO", _LINE)
-    layout.prop(operator, "add_subsurf")
-    wrapped_text.draw(layout, f"This makes {size}.", "BLANK1", _LINE)
+    return f"{text} Make {size}?" if size.is_large else text
 
 
 def gap(covered: Region) -> float:

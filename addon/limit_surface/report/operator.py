@@ -15,7 +15,7 @@ from ..tasks.refused_faces import left_out
 from ..tasks.watched_operator import WatchedOperator
 from .distances import Distances, measure_all
 from .storage import check_attributes, store_numbers, store_on_mesh
-from .text import numbers, sentence
+from .text import numbers, sentence, short_sentence
 
 
 @dataclass(frozen=True)
@@ -129,4 +129,5 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         self.summary = "\n".join(lines)
         if refused:
             self.report({"WARNING"}, left_out(refused, len(found.face_sizes)))
-        self.report({"INFO"}, "; ".join([f"{ob.name}: {'; '.join(lines)}", *found.notes]))
+        short = "; ".join(short_sentence(*item) for item in kept.items())
+        self.report({"INFO"}, "; ".join([f"{ob.name}: {short}", *found.notes]))

@@ -26,5 +26,14 @@ def sentence(mesh: str, kept: Mapping[str, float]) -> str:
     )
 
 
+def short_sentence(mesh: str, kept: Mapping[str, float]) -> str:
+    """Returns what fits the status bar beside the same of another mesh."""
+    largest, slide = kept["max"], kept["slide_max"]
+    return (
+        f"{MESHES[mesh]}, level {kept['level']}: at most {largest:.3g} from the surface, "
+        f"{slide:.3g} from the same place"
+    )
+
+
 def spread(kept: Mapping[str, float], of: str) -> str:
     return f"at most {kept[f'{of}max']:.4g}, {kept[f'{of}mean']:.4g} on average"
