@@ -23,6 +23,7 @@ LAYERS = (
     "search",
     "sample",
     "curves",
+    "geodesic",
     "uv",
     "image",
     "project",

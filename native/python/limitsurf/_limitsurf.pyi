@@ -12,6 +12,7 @@ from ._results import (
     DataEvaluation,
     Evaluation,
     FaceLevels,
+    GuideWeights,
     Hits,
     Locations,
     MapDistortion,
@@ -243,6 +244,20 @@ class PtexLayout(metaclass=_BoundType):
     def texels(self) -> PtexTexels: ...
     def map_coordinates(self, face: ArrayLike, uv: ArrayLike) -> NDArray[np.float64]: ...
 
+def resample_strands(
+    points: ArrayLike, offsets: ArrayLike, count: int, *, threads: int = 0
+) -> NDArray[np.float64]: ...
+def child_strands(
+    guide_points: ArrayLike,
+    guide_normals: ArrayLike,
+    guide: ArrayLike,
+    weight: ArrayLike,
+    roots: ArrayLike,
+    normals: ArrayLike,
+    *,
+    threads: int = 0,
+    progress: Callable[[float], object] | None = None,
+) -> NDArray[np.float32]: ...
 def bilinear(pixels: ArrayLike, st: ArrayLike, *, threads: int = 0) -> NDArray[np.float64]: ...
 
 class LimitSurface(metaclass=_BoundType):
@@ -480,6 +495,18 @@ class LimitSurface(metaclass=_BoundType):
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> BlueNoise: ...
+    def guide_weights(
+        self,
+        guide_face: ArrayLike,
+        guide_uv: ArrayLike,
+        face: ArrayLike,
+        uv: ArrayLike,
+        count: int = 4,
+        *,
+        cuts: ArrayLike | None = None,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> GuideWeights: ...
     def tessellate(
         self,
         levels: ArrayLike,

@@ -211,6 +211,19 @@ class PtexTexels:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class GuideWeights:
+    """The nearest guides of places, (n, count) each: their numbers, weights that add up to 1, and
+    distances along the surface. Where there are fewer, guide is -1, weight 0 and distance inf."""
+
+    guide: NDArray[np.int32]
+    weight: NDArray[np.float64]
+    distance: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.guide)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class FaceLevels:
     """A level for each face of a mesh, and the deviation or the length that was measured there."""
 

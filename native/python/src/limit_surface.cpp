@@ -145,6 +145,7 @@ void bindLimitSurface(py::module_& module) {
   bindTessellation(type);
   bindSearch(type);
   bindSampling(type);
+  bindGuideWeights(type);
   bindProjection(type);
   bindDisplacement(type);
 }

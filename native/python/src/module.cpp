@@ -4,6 +4,7 @@
 #include "control_mesh.h"
 #include "displacement.h"
 #include "edge_curves.h"
+#include "guides.h"
 #include "images.h"
 #include "limit_surface.h"
 #include "limitsurf/error.h"
@@ -34,5 +35,6 @@ PYBIND11_MODULE(_limitsurf, module) {
   limitsurf::python::bindStrandPoser(module);
   limitsurf::python::bindEdgeCurves(module);
   limitsurf::python::bindStrandTurns(module);
+  limitsurf::python::bindChildStrands(module);
   limitsurf::python::bindLimitSurface(module);
 }

@@ -67,6 +67,7 @@ void bindSearch(py::class_<SharedSurface>& type);
 /// area() and the scatter methods
 void bindSampling(py::class_<SharedSurface>& type);
 /// tiles()
+void bindGuideWeights(py::class_<SharedSurface>& type);
 void bindSurfaceTiles(py::class_<SharedSurface>& type);
 
 }  // namespace limitsurf::python

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limitsurf/geodesic/cut_edges.h"
+#include "limitsurf/progress.h"
+#include "limitsurf/surface/limit_surface.h"
+#include "limitsurf/types.h"
+
+namespace limitsurf {
+
+/// Bound on the error of the distances of guide_weights, on smooth surfaces: relative to the
+/// distance, where that is at least an eighth of a face's side. On flat surfaces the error is below
+/// 1e-3 of such a side, as far as no cut or border stands in the way.
+constexpr double kGeodesicError = 0.01;
+
+/// The nearest guides of places on a surface, `count` in each row, the nearest first. Where there
+/// are fewer guides that can be reached, the guide is -1, the weight 0 and the distance infinite.
+struct GuideWeights {
+  int count = 0;
+  std::vector<std::int32_t> guide;
+  std::vector<double> weight;  ///< the weights of a row add up to 1
+  std::vector<double> distance;
+};
+
+struct GuideOptions {
+  static constexpr int kMostGuides = 16;
+
+  int count = 4;  ///< guides of each place, 1 to kMostGuides
+  /// Edges of the control mesh that no way crosses. A way may go around the end of a row of edges.
+  EdgeList cuts{};
+  int threads = 0;
+  Progress progress{};
+};
+
+/// Finds the nearest guides of each place by their distance along the surface, and weights that
+/// fall off with it: ((1 - d / R) / d)^2 for the distance d, where R is the distance of the next
+/// guide that has no weight, and scaled so that they add up to 1 (Franke, Nielson: "Smooth
+/// interpolation of large sets of scattered data", 1980). So the weights of a guide go to 0 where
+/// another takes its place, and a place at a guide has the shape of this guide alone.
+///
+/// Distances are measured on triangles with their vertices on the limit surface, which are smaller
+/// where guides are close together: kGeodesicError. A guide can be missed only if it is farther
+/// away than a guide that is found, or by less than the size of a triangle nearer than it.
+///
+/// Properties: any number of threads gives the same bits; a row does not depend on the others.
+///
+/// Throws std::invalid_argument for a count out of range, MeshError for cuts that are no edges, and
+/// as evaluate() does for locations. Cost: about 2 microseconds for each vertex of the triangles
+/// and each guide that it keeps (three more than `count`), on one core; a microsecond a place, on
+/// all of them. Memory: 24 bytes for each of the former and 16 for each guide of a place.
+GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guides,
+                          const LocationBatch& at, const GuideOptions& options = {});
+
+/// The weights of guides at these distances, which are sorted. The first `count` of them get one,
+/// the next, if there is one, is where weights end.
+void weightsByDistance(const double* distances, int count, double end, double* weights);
+
+}  // namespace limitsurf

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "limitsurf/geodesic/geodesic_mesh.h"
+#include "limitsurf/progress.h"
+
+namespace limitsurf {
+
+/// A place on the triangles.
+struct MeshPlace {
+  Vector3 position;
+  int triangle;
+};
+
+/// For each vertex of a mesh the sources that are nearest to it along the mesh, with their
+/// distances.
+///
+/// Distances spread from vertex to vertex, the shortest first, as in Dijkstra's algorithm (Kimmel,
+/// Sethian: "Computing geodesic paths on manifolds", 1998). Each step lays the triangle ahead and
+/// the source into one plane (unfolding.h), so that the wave fronts are circles instead of lines
+/// and distances on flat surfaces are exact. A vertex passes on its nearest sources only.
+class NearestSources {
+ public:
+  struct Entry {
+    int source;
+    double distance;
+  };
+
+  /// Each vertex keeps its `most` nearest sources.
+  NearestSources(const GeodesicMesh& mesh, const std::vector<MeshPlace>& sources, int most,
+                 const Progress& progress);
+
+  /// In no particular order.
+  Span<Entry> at(int vertex) const {
+    return Span<Entry>(entries_.data() + static_cast<std::size_t>(vertex) * capacity_,
+                       counts_[vertex]);
+  }
+
+  /// The distances of all sources that the vertices of the place's triangle know, in no particular
+  /// order.
+  void find(const MeshPlace& place, std::vector<Entry>& found) const;
+
+ private:
+  struct Waiting {
+    double distance;
+    int vertex, source;
+    bool operator>(const Waiting& other) const;
+  };
+
+  Entry* findEntry(int vertex, int source);
+  const Entry* findEntry(int vertex, int source) const;
+  void offer(int vertex, int source, double distance);
+  void passOn(int vertex, int source, double distance);
+  void spread(const Progress& progress);
+
+  const GeodesicMesh& mesh_;
+  const std::vector<MeshPlace>& sources_;
+  std::size_t most_, capacity_;
+  // The first entries of a vertex are final, up to finals_; those that follow may still shrink.
+  std::vector<Entry> entries_;
+  std::vector<unsigned short> counts_, finals_;
+  std::vector<Waiting> heap_;
+};
+
+}  // namespace limitsurf

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limitsurf {
+
+/// The three sides of a triangle a, b, c.
+struct TriangleSides {
+  double ab, ac, bc;
+};
+
+/// The distance of c from a source beyond the side ab of a triangle, of which the distances of a
+/// and b are known: the triangle and the source are laid into one plane. It is infinite where the
+/// straight way from there to c passes beside the side. On a flat surface it is exact.
+inline double unfoldedDistance(double to_a, double to_b, const TriangleSides& sides) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double ab = sides.ab;
+  if (!(ab > 0)) {
+    return kInfinity;
+  }
+  // a lies at the origin and b at (ab, 0); the source is below them, c above
+  const double source_x = ((to_a - to_b) * (to_a + to_b) / ab + ab) / 2;
+  const double x = ((sides.ac - sides.bc) * (sides.ac + sides.bc) / ab + ab) / 2;
+  const double source_y = std::sqrt(std::max(0., (to_a - source_x) * (to_a + source_x)));
+  const double y = std::sqrt(std::max(0., (sides.ac - x) * (sides.ac + x)));
+  const double height = source_y + y;
+  if (!(height > 0)) {
+    return kInfinity;
+  }
+  const double crossing = source_x + (x - source_x) * (source_y / height);
+  constexpr double kTolerance = 1e-9;
+  if (crossing < -kTolerance * ab || crossing > (1 + kTolerance) * ab) {
+    return kInfinity;
+  }
+  return std::hypot(x - source_x, height);
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "guides.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "batches.h"
+#include "limitsurf/geodesic/guide_weights.h"
+#include "limitsurf/surface/strands/child_strands.h"
+#include "progress.h"
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+namespace {
+
+constexpr char kGuideWeightsDoc[] =
+    R"(guide_weights(guide_face, guide_uv, face, uv, count=4, *, cuts=None, threads=0, progress=None)
+
+The nearest guides of places by distance along the surface, and weights that fall off with it: what
+children of hair need. A way does not lead through the air: guides on the other lip are far away.
+
+Parameters
+    guide_face, guide_uv: (g,) Ptex faces and (g, 2): the roots of the guides.
+    face, uv: (n,) and (n, 2): the places.
+    count: guides of each place, 1 to 16.
+    cuts: (m, 2) integers, pairs of vertices: edges of the control mesh that no way crosses, as a
+        parting. A way may go around the end of a row of edges. To keep regions apart, give all edges
+        between them.
+    threads: 0 uses all cores.
+    progress: a function that is called from time to time with the part of the work that is done, 0 to
+        1; an exception that it raises ends the call.
+
+Returns GuideWeights: .guide (n, count) int32, .weight and .distance (n, count), the nearest first. With
+d the distance, the weights are ((1 - d / R) / d)^2, scaled so that they add up to 1; R is the distance
+of the next guide, which gets no weight (Franke & Nielson 1980). So a guide's weight goes to 0 where
+another guide takes its place, and at a guide's root this guide alone counts. Where fewer guides can be
+reached, guide is -1, weight 0 and distance inf.
+
+Error: distances are measured on triangles with their vertices on the surface, by fast marching whose
+wave fronts are circles: within 1 % from an eighth of a face's side on, and on flat surfaces within 1e-3
+of such a side, except behind cuts and borders. The number of threads gives
+the same bits. Distances are those of the present pose: for those in the world, pose the surface there.
+
+Raises LocationError and MeshError as evaluate() does, MeshError for cuts that are no edges of the mesh,
+naming the row, ValueError for a count out of range. Cost for a mesh of 10,000 faces and 1,000 guides:
+some seconds, and a microsecond for each place. Memory: 24 bytes for each of some 160,000 vertices and
+count + 3, and 20 for each guide of a place.)";
+
+constexpr char kResampleDoc[] =
+    R"(resample_strands(points, offsets, count, *, threads=0)
+
+(strands, count, 3) float64: polylines resampled to points at equal distances along them. Strand i has
+the points (p, 3) from offsets[i] to offsets[i + 1] - 1, at least one; its first and its last point stay.
+Raises ValueError for arrays of other shapes, a count below 2, and a strand without points.)";
+
+constexpr char kChildrenDoc[] =
+    R"(child_strands(guide_points, guide_normals, guide, weight, roots, normals, *, threads=0, progress=None)
+
+Strands that are shaped as the guides around them.
+
+Parameters
+    guide_points: (g, p, 3): the guides, all with the same number of points (resample_strands()).
+    guide_normals: (g, 3): unit normals of the surface at their roots.
+    guide, weight: (n, k): those of guide_weights(). -1 with the weight 0 stands for no guide.
+    roots, normals: (n, 3): where the children stand, and the unit normals there.
+    threads: 0 uses all cores.
+    progress: as for guide_weights().
+
+Returns (n, p, 3) float32. The shape of a guide, relative to its first point, is turned by the smallest
+rotation that turns the normal at its root into that at the child's. A child's shape is the weighted mean
+of these, scaled about its root so that its length is the weighted mean of the guides' lengths. Its first
+point is its root.
+
+Raises ValueError for arrays of other shapes, and for a guide that does not exist, naming the row. Cost:
+some nanoseconds for each point and guide.)";
+
+EdgeList edgesOf(const py::object& cuts) {
+  EdgeList edges;
+  if (cuts.is_none()) {
+    return edges;
+  }
+  Integers array = integers<MeshError>(cuts, "cuts");
+  if (array.ndim() == 1 && array.size() == 0) {
+    return edges;
+  }
+  requireRows<MeshError>(array, "cuts", 2);
+  edges.reserve(static_cast<std::size_t>(array.shape(0)));
+  for (py::ssize_t row = 0; row < array.shape(0); ++row) {
+    edges.emplace_back(array.at(row, 0), array.at(row, 1));
+  }
+  return edges;
+}
+
+template <typename T>
+py::array_t<T> table(const std::vector<T>& values, std::size_t rows, int columns) {
+  py::array_t<T> array({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
+  std::copy(values.begin(), values.end(), array.mutable_data());
+  return array;
+}
+
+py::object guideWeights(const SharedSurface& shared, const py::object& guide_face,
+                        const py::object& guide_uv, const py::object& face, const py::object& uv,
+                        int count, const py::object& cuts, int threads,
+                        const py::object& progress) {
+  checkThreads(threads);
+  const CheckedLocations guides = locationsOn(shared.surface(), guide_face, guide_uv);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  const GuideOptions options{count, edgesOf(cuts), threads, ProgressReport(progress)};
+  GuideWeights found;
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    found = limitsurf::guideWeights(shared.surface(), guides, at, options);
+  }
+  return result("GuideWeights")(table(found.guide, at.size(), count),
+                                table(found.weight, at.size(), count),
+                                table(found.distance, at.size(), count));
+}
+
+Points rowsOfPoints(const py::object& object, const char* name) {
+  const Doubles array = doubles(object, name);
+  if (array.ndim() == 1 && array.size() == 0) {
+    return Points(0, 3);
+  }
+  requireRows<std::invalid_argument>(array, name, 3);
+  return pointsOf(array);
+}
+
+py::object resampleStrands(const py::object& points, const py::object& offsets, int count,
+                           int threads) {
+  const Points from = rowsOfPoints(points, "points");
+  const Integers array = integers<std::invalid_argument>(offsets, "offsets");
+  requireVector<std::invalid_argument>(array, "offsets");
+  const std::vector<std::int64_t> starts(array.data(), array.data() + array.size());
+  Points made;
+  {
+    const py::gil_scoped_release release;
+    const InterruptionPoint point = interruptible();
+    made = resampledStrands(from, starts, count, threads);
+  }
+  return py::array_t<double>({made.rows() / count, Eigen::Index{count}, Eigen::Index{3}},
+                             made.data());
+}
+
+GuideStrands guideStrands(const py::object& points, const py::object& normals) {
+  const Doubles array = doubles(points, "guide_points");
+  if (array.ndim() != 3 || array.shape(2) != 3) {
+    throw py::value_error("guide_points has shape " + shapeText(array) + "; expected (g, p, 3)");
+  }
+  GuideStrands guides;
+  guides.points_per_strand = static_cast<int>(array.shape(1));
+  guides.points =
+      Eigen::Map<const Points>(array.data(), array.shape(0) * array.shape(1), Eigen::Index{3});
+  guides.normals = rowsOfPoints(normals, "guide_normals");
+  return guides;
+}
+
+ChildRoots childRoots(const py::object& guide, const py::object& weight, const py::object& roots,
+                      const py::object& normals) {
+  ChildRoots children;
+  children.position = rowsOfPoints(roots, "roots");
+  children.normal = rowsOfPoints(normals, "normals");
+  const Integers numbers = integers<std::invalid_argument>(guide, "guide");
+  const Doubles weights = doubles(weight, "weight");
+  if (numbers.ndim() != 2 || weights.ndim() != 2 || numbers.shape(0) != weights.shape(0) ||
+      numbers.shape(1) != weights.shape(1)) {
+    throw py::value_error("guide has shape " + shapeText(numbers) + " and weight " +
+                          shapeText(weights) + "; expected (n, k) for both");
+  }
+  children.guides = static_cast<int>(numbers.shape(1));
+  children.guide.reserve(static_cast<std::size_t>(numbers.size()));
+  for (py::ssize_t i = 0; i < numbers.size(); ++i) {
+    children.guide.push_back(static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(numbers.data()[i], INT32_MIN, INT32_MAX)));
+  }
+  children.weight.assign(weights.data(), weights.data() + weights.size());
+  return children;
+}
+
+py::object childStrands(const py::object& guide_points, const py::object& guide_normals,
+                        const py::object& guide, const py::object& weight, const py::object& roots,
+                        const py::object& normals, int threads, const py::object& progress) {
+  const GuideStrands guides = guideStrands(guide_points, guide_normals);
+  const ChildRoots children = childRoots(guide, weight, roots, normals);
+  const ProgressReport report(progress);
+  FloatPoints made;
+  {
+    const py::gil_scoped_release release;
+    const InterruptionPoint point = interruptible();
+    made = limitsurf::childStrands(guides, children, threads, report);
+  }
+  return py::array_t<float>(
+      {children.position.rows(), Eigen::Index{guides.points_per_strand}, Eigen::Index{3}},
+      made.data());
+}
+
+}  // namespace
+
+void bindGuideWeights(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  type.def("guide_weights", &guideWeights, "guide_face"_a, "guide_uv"_a, "face"_a, "uv"_a,
+           "count"_a = GuideOptions().count, py::kw_only(), "cuts"_a = py::none(), "threads"_a = 0,
+           "progress"_a = py::none(), kGuideWeightsDoc);
+}
+
+void bindChildStrands(py::module_& module) {
+  using namespace py::literals;
+  module.def("resample_strands", &resampleStrands, "points"_a, "offsets"_a, "count"_a,
+             py::kw_only(), "threads"_a = 0, kResampleDoc);
+  module.def("child_strands", &childStrands, "guide_points"_a, "guide_normals"_a, "guide"_a,
+             "weight"_a, "roots"_a, "normals"_a, py::kw_only(), "threads"_a = 0,
+             "progress"_a = py::none(), kChildrenDoc);
+}
+
+}  // namespace limitsurf::python
