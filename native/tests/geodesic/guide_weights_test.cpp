@@ -17,7 +17,9 @@
 namespace limitsurf::test {
 namespace {
 
-Points positionsOf(const LimitSurface& surface, const std::vector<Location>& at) {
+using Locations = std::vector<Location>;
+
+Points positionsOf(const LimitSurface& surface, const Locations& at) {
   return surface.evaluate(at).position;
 }
 
@@ -50,8 +52,8 @@ TEST(GuideWeights, AreEuclideanOnAFlatSheet) {
   cage = perturbed(cage, 0.2, 5);
   cage.positions.col(2).setZero();
   const LimitSurface surface = limitSurface(cage);
-  const std::vector<Location> guides = scatterJittered(surface, 1, 3);
-  const std::vector<Location> at = scatterJittered(surface, 6, 4);
+  const Locations guides = scatterJittered(surface, 1, 3);
+  const Locations at = scatterJittered(surface, 6, 4);
   const GuideWeights found = guideWeights(surface, guides, at);
   const Points p = positionsOf(surface, at), g = positionsOf(surface, guides);
   for (Eigen::Index row = 0; row < p.rows(); ++row) {
@@ -67,8 +69,8 @@ TEST(GuideWeights, AreEuclideanOnAFlatSheet) {
 
 TEST(GuideWeights, GoAroundATorus) {
   const LimitSurface surface = limitSurface(torus(24, 12));
-  const std::vector<Location> all = scatterJittered(surface, 1, 1);
-  const std::vector<Location> guides = {all[0], all[30], all[100], all[170], all[250]};
+  const Locations all = scatterJittered(surface, 1, 1);
+  const Locations guides = {all[0], all[30], all[100], all[170], all[250]};
   GuideOptions options;
   options.count = 5;
   const Eigen::MatrixXd there =
@@ -82,7 +84,7 @@ TEST(GuideWeights, GoAroundATorus) {
     }
   }
   const Eigen::MatrixXd back =
-      distancesByGuide(guideWeights(surface, {all[200]}, guides, options), 1);
+      distancesByGuide(guideWeights(surface, Locations{all[200]}, guides, options), 1);
   for (std::size_t k = 0; k < guides.size(); ++k) {
     EXPECT_NEAR(back(k, 0), there(200, k), kGeodesicError * there(200, k));
   }
@@ -103,8 +105,8 @@ TEST(GuideWeights, AreGeodesicOnACylinder) {
           height * cage.positions(vertex, 1) / sides;
     }
     const LimitSurface surface = limitSurface(cage);
-    const std::vector<Location> all = scatterJittered(surface, 1, 9);
-    const std::vector<Location> guides = {all[3], all[40], all[77]};
+    const Locations all = scatterJittered(surface, 1, 9);
+    const Locations guides = {all[3], all[40], all[77]};
     GuideOptions options;
     options.count = 3;
     const Eigen::MatrixXd found =
@@ -130,15 +132,15 @@ TEST(GuideWeights, DoNotCrossCuts) {
     return Location{static_cast<int>(x) + 4 * static_cast<int>(y), x - std::floor(x),
                     y - std::floor(y)};
   };
-  const std::vector<Location> guides = {place(1.9, 0.5), place(2.1, 3.5)};
-  const std::vector<Location> at = {place(2.1, 0.5), place(1.9, 3.5), place(0.5, 2.5)};
+  const Locations guides = {place(1.9, 0.5), place(2.1, 3.5)};
+  const Locations at = {place(2.1, 0.5), place(1.9, 3.5), place(0.5, 2.5)};
   GuideOptions options;
   options.count = 2;
   // from the border to the middle: ways go around the end
   options.cuts = {{2, 7}, {12, 7}};
   const Eigen::MatrixXd around = distancesByGuide(guideWeights(surface, guides, at, options), 2);
   const Points p = positionsOf(surface, at), g = positionsOf(surface, guides);
-  const Vector3 end = surface.evaluate({place(2, 2)}).position.row(0).transpose();
+  const Vector3 end = surface.evaluate(Locations{place(2, 2)}).position.row(0).transpose();
   const auto by_end = [&](const auto& a, const auto& b) {
     return (Vector3(a) - end).norm() + (end - Vector3(b)).norm();
   };
@@ -168,8 +170,8 @@ TEST(GuideWeights, DoNotCrossTheGapBetweenSheets) {
     cage.faces.push_back(face);
   }
   const LimitSurface surface = limitSurface(cage);
-  const std::vector<Location> at = scatterJittered(surface, 2, 0);
-  const GuideWeights found = guideWeights(surface, {{4, 0.5, 0.5}, {13, 0.5, 0.5}}, at);
+  const Locations at = scatterJittered(surface, 2, 0);
+  const GuideWeights found = guideWeights(surface, Locations{{4, 0.5, 0.5}, {13, 0.5, 0.5}}, at);
   for (std::size_t row = 0; row < at.size(); ++row) {
     EXPECT_EQ(found.guide[4 * row], at[row].face / 9);
     EXPECT_EQ(found.guide[4 * row + 1], -1);
@@ -194,13 +196,13 @@ TEST(GuideWeights, FadeWhereAnotherGuideTakesOver) {
 
 TEST(GuideWeights, AreTheSameForAnyNumberOfThreads) {
   const LimitSurface surface = limitSurface(mixture(4));
-  std::vector<Location> at = scatterJittered(surface, 8, 2);
+  Locations at = scatterJittered(surface, 8, 2);
   at.erase(std::remove_if(at.begin(), at.end(),
                           [&](const Location& l) {
                             return surface.refused().count(surface.baseFace()[l.face]) > 0;
                           }),
            at.end());
-  std::vector<Location> guides;
+  Locations guides;
   for (std::size_t i = 0; i < at.size(); i += 97) {
     guides.push_back(at[i]);
   }
@@ -212,20 +214,20 @@ TEST(GuideWeights, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(a.weight, b.weight);
   EXPECT_EQ(a.distance, b.distance);
   // a row does not depend on the others
-  const GuideWeights alone = guideWeights(surface, guides, {at[11]});
+  const GuideWeights alone = guideWeights(surface, guides, Locations{at[11]});
   EXPECT_TRUE(std::equal(alone.weight.begin(), alone.weight.end(), a.weight.begin() + 44));
 }
 
 TEST(GuideWeights, NameWhatIsWrong) {
   const LimitSurface surface = limitSurface(fullGrid(2, 2));
-  const std::vector<Location> at = {{0, 0.5, 0.5}};
+  const Locations at = {{0, 0.5, 0.5}};
   GuideOptions options;
   options.cuts = {{0, 1}, {0, 4}};
   expectThrow<MeshError>([&] { guideWeights(surface, at, at, options); }, {"row 1"});
   options.cuts.clear();
   options.count = 17;
   expectThrow<std::invalid_argument>([&] { guideWeights(surface, at, at, options); }, {"17"});
-  expectThrow<LocationError>([&] { guideWeights(surface, {{9, 0, 0}}, at); }, {"face 9"});
+  expectThrow<LocationError>([&] { guideWeights(surface, Locations{{9, 0, 0}}, at); }, {"face 9"});
 }
 
 }  // namespace
