@@ -10,6 +10,7 @@ from . import (
     bake_displacement,
     bake_frames,
     bake_maps,
+    children,
     curvature,
     follow,
     hair,
@@ -30,6 +31,7 @@ from .placing import live_count
 _parts = (
     preferences,
     hair,
+    children,
     points,
     snap,
     snap_modal,

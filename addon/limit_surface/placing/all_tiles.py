@@ -25,8 +25,13 @@ class AllTiles:
     """
 
     def __init__(
-        self, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph, depth: int, levels: int
+        self,
+        surface: bpy.types.Object,
+        depsgraph: bpy.types.Depsgraph,
+        depth: int,
+        levels: int | None,
     ) -> None:
+        """Takes the levels of the mesh of faces, or None to make no such mesh."""
         following.check_surface(surface, depsgraph.scene)
         self._surface, self._depth, self._levels = surface, depth, levels
         with cage.opened(surface, depsgraph) as (found, mesh):
@@ -35,6 +40,8 @@ class AllTiles:
         check_some_left(limit, surface.name)
         self.tree = limit.tile_quadtree(depth)
         self._face_count = limit.face_count
+        if levels is None:
+            return
         faces = np.flatnonzero(self.tree.child[: limit.face_count] != _NO_TILE)
         side = 2**levels
         self._face, self._uv = _grids(faces, side)
@@ -55,8 +62,14 @@ class AllTiles:
         table[ids.ALL_TILES_MARK] = self._depth
         tables.connect(table, holder, surface, points, self._bound)
         self._fill(table.data, points.origin)
-        self._write_faces()
+        if self._levels is not None:
+            self._write_faces()
         return table
+
+    @property
+    def topology(self) -> int:
+        """Returns the checksum of the control mesh's edges that the tables hold."""
+        return self._bound.topology
 
     def _fill(self, mesh: bpy.types.Mesh, origin: int) -> None:
         tree = self.tree
@@ -68,10 +81,12 @@ class AllTiles:
             (locate.ORIGIN, "FLOAT2", begin),
             (locate.LEVELS, "INT", np.full(rows, tree.levels)),
             (locate.FACES, "INT", np.full(rows, self._face_count)),
+            (ids.CAGE_TOPOLOGY, "INT", np.full(rows, self._bound.topology)),
         ):
             attributes.write(mesh, name, kind, "POINT", tables.padded(values, rows))
 
     def _write_faces(self) -> None:
+        assert self._levels is not None
         ob = faces_of(self._surface) or tables.new_object(ids.FACES_TABLE, self._surface)
         ob.parent = self._surface  # shares its transform
         ob[ids.FACES_MARK] = self._levels

@@ -101,8 +101,8 @@ TEST(GuideWeights, AreGeodesicOnACylinder) {
     const double height = 2 * M_PI;
     for (Eigen::Index vertex = 0; vertex < cage.positions.rows(); ++vertex) {
       const double turn = 2 * M_PI * cage.positions(vertex, 0) / sides;
-      cage.positions.row(vertex) << std::cos(turn), std::sin(turn),
-          height * cage.positions(vertex, 1) / sides;
+      const double z = height * cage.positions(vertex, 1) / sides;
+      cage.positions.row(vertex) << std::cos(turn), std::sin(turn), z;
     }
     const LimitSurface surface = limitSurface(cage);
     const Locations all = scatterJittered(surface, 1, 9);

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The guides that children follow, read from hair that stands on the surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from .. import native
+from ..errors import RefusalError
+from ..placing import followers, following
+from ..placing.places import Places
+from ..placing.posed_surface import transformed
+from ..placing.roots import Locations
+from ..reading import attributes, cage
+from ..tasks.object_keys import ObjectKey
+
+
+@dataclass(frozen=True)
+class Guides:
+    key: ObjectKey
+    count: int  # of the strands of the object
+    strand: np.ndarray  # (g,) the strands that have a place on the surface
+    at: Locations  # their places
+    points: np.ndarray  # (g, points, 3) as they are in this frame, in the surface's space
+
+
+def read(
+    ob: bpy.types.Object,
+    surface: bpy.types.Object,
+    found: cage.Cage,
+    points: int,
+    depsgraph: bpy.types.Depsgraph,
+) -> Guides:
+    """Reads the guides with so many points on each, at equal distances. Raises RefusalError for
+    hair that cannot guide.
+    """
+    if not followers.is_placed(ob):
+        raise RefusalError(
+            f"{ob.name} stores no places on a limit surface: run Follow Limit Surface or Snap to "
+            "Limit Surface on it first"
+        )
+    following.check_holds(ob, surface, following.signature(found))
+    places = Places.read(ob.data)
+    if not len(places.rows):
+        raise RefusalError(f"{ob.name} has no strand with a place on {surface.name}")
+    places.check(found.ptex_face_count, surface.name)
+    shown = ob.evaluated_get(depsgraph)
+    offsets = _offsets(shown.data)
+    if len(offsets) - 1 != places.count:
+        raise RefusalError(
+            f"The modifiers of {ob.name} change its number of strands, from {places.count:,} to "
+            f"{len(offsets) - 1:,}: disable or apply them"
+        )
+    relation = np.linalg.solve(found.matrix, np.array(shown.matrix_world, np.float64))
+    positions = transformed(relation, attributes.read(shown.data, "position").astype(np.float64))
+    shapes = native.limitsurf.resample_strands(positions, offsets, points)
+    at = Locations(places.face.astype(np.int32), places.uv.astype(np.float32))
+    return Guides(ObjectKey.of(ob), places.count, places.rows, at, shapes[places.rows])
+
+
+def _offsets(data: bpy.types.Curves) -> np.ndarray:
+    offsets = np.empty(len(data.curve_offset_data), np.int32)
+    data.curve_offset_data.foreach_get("value", offsets)
+    return offsets

@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator object.limit_children_add."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from .. import ids, native
+from ..errors import RefusalError
+from ..nodes import children as nodes
+from ..placing import all_tiles, followers, following, roots
+from ..placing.all_tiles import AllTiles
+from ..placing.binding import Binding
+from ..placing.distribution_properties import surface_object
+from ..placing.follow_properties import follows
+from ..placing.new_objects import add_on_surface
+from ..placing.rotations import WorldSpace
+from ..placing.scatter_operator import Ground, Made, Order, ScatterOperator
+from ..reading import attributes, cage
+from ..sources.source_mesh import Choice
+from ..tasks import polling
+from ..tasks.job import Progress, part_of
+from . import guides as guide_hair
+from . import live_children, parting
+from .spread import Followed, Spread
+
+DEPTH = 16  # of the tables of tiles that are made for live children
+_ROOTS = 0.5  # the part of the progress at which the roots are evaluated
+
+
+@dataclass(frozen=True)
+class Children:
+    """Children as curves."""
+
+    binding: Binding
+    position: np.ndarray  # (children, points, 3) float32
+    surface_uv: np.ndarray | None
+    uv_map: str
+
+
+class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, bpy.types.Operator):
+    """Add strands between the strands of the active hair, which guides them: roots lie exactly on
+    the limit surface, and each child is shaped as the guides that are nearest to it along the
+    surface"""
+
+    bl_idname = ids.CHILDREN_ADD
+    bl_label = "Add Children on Limit Surface"
+    noun = "children"
+
+    # what is read for live children
+    _tiles: AllTiles | None = None
+    _guides_binding: following.Request | None = None
+
+    mode: EnumProperty(
+        name="Mode",
+        description="What children are",
+        items=(
+            (
+                "MADE",
+                "Curves",
+                "Make curves, which can be combed and edited, and do not depend on the guides any "
+                "more",
+                "",
+                0,
+            ),
+            (
+                "LIVE",
+                "Live",
+                "Store places and guides alone: Geometry Nodes grow the strands wherever they are "
+                "shown, as the guides are in that frame, also without this extension",
+                "",
+                1,
+            ),
+        ),
+        default="MADE",
+    )
+    guides: StringProperty(
+        name="Guides",
+        description="Name of the hair whose strands are the guides. If empty, the active hair is "
+        "used",
+        options={"SKIP_SAVE"},
+    )
+    guide_count: IntProperty(
+        name="Guides per Child",
+        description="Number of the nearest guides that shape a child",
+        default=4,
+        min=1,
+        max=live_children.MOST_GUIDES,
+    )
+    points: IntProperty(
+        name="Points",
+        description="Number of control points on each child, including the root",
+        default=8,
+        min=2,
+        max=1024,
+        soft_max=32,
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Radius of the children in world units",
+        default=0.001,
+        min=0.0,
+        soft_max=0.1,
+        precision=4,
+        subtype="DISTANCE",
+    )
+    viewport_share: FloatProperty(
+        name="Viewport Share",
+        description="Share of the live children that the viewport shows. Renders show all of them",
+        default=0.1,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        def has_guides() -> bool:
+            ob = context.active_object
+            return ob is not None and (ob.type == "MESH" or followers.ground_of(ob) is not None)
+
+        return polling.in_object_mode(
+            cls, context, has_guides, "Make hair on a mesh active first, whose strands will guide"
+        )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        ob = context.active_object
+        if not self.guides and ob is not None and ob.type == "CURVES":
+            self.guides = ob.name
+        return super().invoke(context, event)
+
+    def elements_per_location(self) -> int:
+        return self.points if self.mode == "MADE" else 0
+
+    def check_properties(self) -> None:
+        if self.mode == "LIVE" and self.target != "LIMIT":
+            raise RefusalError(
+                "Live children grow on the limit surface: choose the mode Curves for roots on a "
+                "displayed mesh"
+            )
+        if self.mode == "LIVE" and self.follow == "LIVE":
+            raise RefusalError(
+                "Live children follow the surface by nodes: choose another value of Follow, which "
+                "is about the guides then"
+            )
+
+    def sources(self) -> Mapping[str, Choice]:
+        return {"parting": parting.choice(self.properties)}
+
+    def draw_own(self, layout: bpy.types.UILayout) -> None:
+        layout.prop(self, "mode")
+        layout.prop_search(self, "guides", bpy.data, "objects")
+        for name in ("guide_count", "points", "radius"):
+            layout.prop(self, name)
+        if self.mode == "LIVE":
+            layout.prop(self, "viewport_share")
+        parting.draw(layout, self.properties, surface_object(self.properties, bpy.context))
+
+    def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
+        result = super().finish(context, made)
+        binding, self._guides_binding = self._guides_binding, None
+        if binding is not None:
+            binding.compute().write()
+        return result
+
+    def _report(self, made: Made, how: str) -> None:
+        followed = made.ground.scattered
+        assert isinstance(followed, Followed)
+        if self.mode == "LIVE":
+            self._why_not_following = ""
+            how = f"by Geometry Nodes, as {followed.guides.key.name} shapes them"
+        super()._report(made, how)
+        if followed.unreached:
+            text = f"{followed.unreached:,} places were left out: no guide can be reached from them"
+            self.report({"WARNING"}, text)
+            self.summary += f"\n{text}"
+
+    def _guides_object(self) -> bpy.types.Object:
+        ob = bpy.context.active_object
+        if self.guides:
+            ob = bpy.data.objects.get(self.guides)
+            if ob is None:
+                raise RefusalError(f"There is no object {self.guides!r} whose strands could guide")
+        if ob is None or ob.type != "CURVES":
+            raise RefusalError("Children need guides: make hair active, or name it as Guides")
+        return ob
+
+    def _read(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Order:
+        hair = self._guides_object()
+        theirs = followers.surface_of(hair)
+        if theirs != ob:
+            raise RefusalError(
+                f"{hair.name} stands on {theirs.name if theirs else 'no surface'}, not on {ob.name}"
+            )
+        order = super()._read(ob, depsgraph)
+        guides = guide_hair.read(hair, ob, order.region.cage, self.points, depsgraph)
+        self.guides = hair.name  # so that the redo panel finds them
+        spread = Spread(order.distribution, guides, self.guide_count)
+        if self.mode == "LIVE":
+            following.check_surface(ob, depsgraph.scene)
+            was = all_tiles.settings_of(ob)
+            self._tiles = AllTiles(ob, depsgraph, was.depth or DEPTH, was.levels)
+            order = replace(order, binding=None)
+            is_bound = followers.modifier_of(hair) or followers.live_modifier_of(hair)
+            if not is_bound and follows(self.follow, ob):
+                self._guides_binding = following.Request(ob, depsgraph, [hair])
+        return replace(order, distribution=spread)
+
+    def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Any]:
+        if self.mode == "LIVE":
+            return _live_table
+        uv_map = found.uv_map.name if found.uv_map else ""
+
+        def make(ground: Ground, progress: Progress) -> Children:
+            return _curves(ground, uv_map, progress)
+
+        return make
+
+    def add(
+        self, context: bpy.types.Context, surface: bpy.types.Object, made: Any
+    ) -> bpy.types.Object:
+        radius = self.radius / WorldSpace(np.array(surface.matrix_world)).mean_scale
+        guides = bpy.data.objects[self.guides]
+        if isinstance(made, live_children.Table):
+            materials = guides.data.materials
+            settings = {
+                nodes.POINTS: self.points,
+                nodes.SHARE: self.viewport_share,
+                nodes.RADIUS: radius,
+                nodes.MATERIAL: materials[0] if len(materials) else None,
+            }
+            tiles, self._tiles = self._tiles, None
+            return live_children.add(context, surface, guides, tiles, made, settings)
+        count, points = made.position.shape[:2]
+        curves = bpy.data.hair_curves.new(ids.CHILDREN_OBJECT)
+        try:
+            curves.add_curves([points] * count)
+            curves.points.foreach_set("position", made.position.ravel())
+            attributes.write(curves, "radius", "FLOAT", "POINT", np.full(count * points, radius))
+            made.binding.write(curves, "CURVE")
+            curves.surface = surface
+            for material in guides.data.materials:
+                curves.materials.append(material)
+            if made.surface_uv is not None:
+                curves.surface_uv_map = made.uv_map
+                attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", made.surface_uv)
+            return add_on_surface(context, ids.CHILDREN_OBJECT, curves, surface)
+        except BaseException:
+            bpy.data.hair_curves.remove(curves)
+            raise
+
+
+def _live_table(ground: Ground, _progress: Progress) -> live_children.Table:
+    followed = _followed(ground)
+    strand = followed.guides.strand[followed.guide]
+    return live_children.Table.of(followed.locations, strand, followed.weight)
+
+
+def _curves(ground: Ground, uv_map: str, progress: Progress) -> Children:
+    followed = _followed(ground)
+    count = len(followed.locations)
+    binding = Binding(followed.locations)
+    root, normal = np.empty((count, 3)), np.empty((count, 3))
+    for part in roots.evaluate(ground.evaluate, followed.locations, part_of(progress, 0, _ROOTS)):
+        binding.fill(part)
+        root[part.rows], normal[part.rows] = part.position, part.frame[:, :, 2]
+    guides = followed.guides
+    frames = ground.region.cage.surface().frames(guides.at.face, guides.at.uv)
+    position = native.limitsurf.child_strands(
+        guides.points,
+        frames[:, :, 2],
+        followed.guide,
+        followed.weight,
+        root,
+        normal,
+        progress=part_of(progress, _ROOTS, 1),
+    )
+    return Children(binding, position, ground.surface_uv(), uv_map)
+
+
+def _followed(ground: Ground) -> Followed:
+    assert isinstance(ground.scattered, Followed)
+    return ground.scattered
