@@ -2,6 +2,7 @@
 """Pages of the documentation: their examples, and their tables of an operator's properties."""
 
 import re
+from collections.abc import Collection
 
 import bpy
 import numpy as np
@@ -16,15 +17,19 @@ def examples(page: str) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
 
 
-def check_properties(section: str, operator: str, empty: str = "none") -> None:
-    """The section's table lists the properties of `bpy.ops.object.<operator>` and their defaults.
-    `empty` is how it shows an empty name."""
+def check_properties(
+    section: str, operator: str, empty: str = "none", only: Collection[str] | None = None
+) -> None:
+    """The section's table lists the properties of `bpy.ops.object.<operator>`, or `only` some of
+    them, and their defaults. `empty` is how it shows an empty name."""
     rows: dict[str, str] = {}
     row = r"^\| (`[^|]+`) \| *`?([^|`]*?)`? *\|"
     for names, said in re.findall(row, section, re.MULTILINE):
         rows |= dict.fromkeys(re.findall(r"`(\w+)`", names), said)
     properties = getattr(bpy.ops.object, operator).get_rna_type().properties
     shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
+    if only is not None:
+        shown = {name: rna for name, rna in shown.items() if name in only}
     assert rows == {name: default_of(rna, empty) for name, rna in shown.items()}
 
 

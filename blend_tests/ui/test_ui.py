@@ -104,7 +104,7 @@ def test_preferences_show_the_version():
 def test_menu_offers_the_operators():
     layout = drawn(bpy.types.VIEW3D_MT_object_limit_surface)
     offered = [call.args[0] for call in layout.operator.call_args_list]
-    first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.SNAP, ids.SNAP_MODAL, ids.SHOW]
+    first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.CHILDREN_ADD, ids.SNAP, ids.SNAP_MODAL, ids.SHOW]
     first += [ids.REPORT_OPERATOR, ids.ATTACH, ids.SAMPLE_TABLES, ids.SAMPLE_REMOVE]
     first += [ids.FOLLOW, ids.REBIND, ids.UNBIND]
     textures = drawn(bpy.types.VIEW3D_PT_limit_textures).column()

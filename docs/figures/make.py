@@ -60,6 +60,7 @@ FIGURES = {
     "figure1": rendered("figure1", "the paper's figure 1: hair on an open mesh's limit surface"),
     "bake_maps": rendered("bake_maps", "a mesh with its normal map, and other baked maps"),
     "border": rendered("border", "lashes, rows and a crease along borders"),
+    "children": rendered("children", "children by Blender's node group and by this extension"),
     "curvature": rendered("curvature", "curvature as colours and as principal directions"),
     "density": rendered("distribution", "densities from three sources", "make_densities"),
     "displacement": rendered("displacement.picture", "a head, a displacement map, and its sculpt"),

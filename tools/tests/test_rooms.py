@@ -21,6 +21,7 @@ CAPABILITIES = (
     "bake_displacement",
     "bake_frames",
     "bake_maps",
+    "children",
     "curvature",
     "follow",
     "hair",

@@ -236,6 +236,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
                 nodes.MATERIAL: materials[0] if len(materials) else None,
             }
             tiles, self._tiles = self._tiles, None
+            assert tiles is not None
             return live_children.add(context, surface, guides, tiles, made, settings)
         count, points = made.position.shape[:2]
         curves = bpy.data.hair_curves.new(ids.CHILDREN_OBJECT)

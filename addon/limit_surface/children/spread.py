@@ -8,16 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import RefusalError
-from ..placing.distribution import Distribution, Expected, Scattered
+from ..placing.distribution import Expected, Scattered
 from ..placing.region import Region
 from ..placing.roots import Locations
+from ..placing.scatter_operator import Distributes
 from ..tasks.job import Progress, part_of
 from .guides import Guides
 
 _SCATTERED = 0.4  # the part of the progress at which the locations are found
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Followed(Scattered):
     """Locations with their guides."""
 
@@ -31,7 +32,7 @@ class Followed(Scattered):
 class Spread:
     """A Distribution whose locations know their guides."""
 
-    distribution: Distribution
+    distribution: Distributes
     guides: Guides
     count: int  # guides of each child
 
@@ -62,10 +63,11 @@ class Spread:
                 "faces that are covered"
             )
         return Followed(
-            Locations(at.face[reached], at.uv[reached]),
-            found.distance,
-            self.guides,
-            near.guide[reached],
-            near.weight[reached],
-            int((~reached).sum()),
+            locations=Locations(at.face[reached], at.uv[reached]),
+            distance=found.distance,
+            curves=found.curves,
+            guides=self.guides,
+            guide=near.guide[reached],
+            weight=near.weight[reached],
+            unreached=int((~reached).sum()),
         )

@@ -3,7 +3,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import bpy
 import numpy as np
@@ -29,7 +29,7 @@ from . import (
     subsurf_offer,
 )
 from .border import borders
-from .distribution import TOO_LOW, Distribution, Scattered
+from .distribution import TOO_LOW, Expected, Scattered
 from .follow_properties import FollowOrLiveProperties, can_deform, why_not_automatic
 from .followers import ground_of
 from .rotations import WorldSpace
@@ -86,13 +86,24 @@ class Ground:
         return smoothed.evaluate(self.locations.face, self.locations.uv.astype(np.float64)).value
 
 
+class Distributes(Protocol):
+    """A Distribution, or what adds to one."""
+
+    @property
+    def amount(self) -> str: ...
+
+    def expected(self, region: region.Region) -> Expected: ...
+
+    def scatter(self, region: region.Region, progress: Progress) -> Scattered: ...
+
+
 @dataclass(frozen=True)
 class Order:
     """All that is asked for, read from Blender: the rest of the work needs arrays alone."""
 
     surface: ObjectKey
     region: region.Region
-    distribution: Distribution
+    distribution: Distributes
     shown: displayed_mesh.DisplayedMesh | None
     size: RequestSize
     binding: following.Request | None  # None: things do not follow the surface by nodes

@@ -14,6 +14,7 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
     def draw(self, _context: bpy.types.Context) -> None:
         self.layout.operator(ids.HAIR_ADD, icon="CURVES")
         self.layout.operator(ids.POINTS_ADD, icon="POINTCLOUD_DATA")
+        self.layout.operator(ids.CHILDREN_ADD, icon="PARTICLEMODE")
         self.layout.operator(ids.SNAP, icon="SNAP_ON")
         self.layout.operator(ids.SNAP_MODAL, icon="VIEW_PAN")
         self.layout.operator(ids.SHOW, icon="HIDE_OFF")

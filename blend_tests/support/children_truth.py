@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where children of guides have to be: by numpy, on the surface as it is in this frame."""
+
+import bpy
+import follow_truth
+import numpy as np
+import scenes
+from limit_surface import ids
+from limit_surface.nodes import children as nodes
+from limit_surface.nodes import groups
+from limit_surface.reading import attributes
+
+
+def table_of(live: bpy.types.Object) -> bpy.types.Object:
+    (modifier,) = groups.modifiers(live, ids.CHILDREN_GROUP)
+    return groups.get_input(modifier, nodes.TABLE)
+
+
+def set_input(live: bpy.types.Object, name: str, value: object) -> None:
+    (modifier,) = groups.modifiers(live, ids.CHILDREN_GROUP)
+    groups.set_input(modifier, name, value)
+
+
+def stored(live: bpy.types.Object) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Returns faces, uv, guides (n, 4) and weights (n, 4) of live children."""
+    data = table_of(live).data
+    place = attributes.read(data, "position").astype(np.float64)
+    guide = np.stack([attributes.read(data, name) for name in nodes.GUIDE], axis=1)
+    weight = attributes.read(data, nodes.WEIGHTS).astype(np.float64)
+    weight = np.column_stack([weight, 1 - weight.sum(axis=1)])
+    return place[:, 2].astype(int), place[:, :2], guide, weight
+
+
+def shown_strands(ob: bpy.types.Object) -> np.ndarray:
+    """Returns the points (n, k, 3) of children as Blender evaluates them; (0, 0, 3) for none."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    data = ob.evaluated_get(depsgraph).data
+    if not len(data.curves):
+        return np.zeros((0, 0, 3))
+    points = attributes.read(data, "position").astype(np.float64)
+    return points.reshape(len(data.curves), -1, 3)
+
+
+def expected(live: bpy.types.Object, guides: bpy.types.Object, ob: bpy.types.Object) -> np.ndarray:
+    """Returns the strands of live children. The guides have equally spaced points, as many as the
+    children, and share the surface's transform.
+    """
+    face, uv, guide, weight = stored(live)
+    surface = scenes.surface_without_addon(ob)
+    root, normal = surface.evaluate(face, uv).position, surface.frames(face, uv)[:, :, 2]
+    of_guides = surface.frames(*scenes.locations(guides.data))[:, :, 2]
+    strands = follow_truth.shown_strands(guides).astype(np.float64)
+    offsets = strands - strands[:, :1]
+    lengths = _lengths(offsets)
+    shape, length = np.zeros((len(face), *strands.shape[1:])), np.zeros(len(face))
+    for k in range(guide.shape[1]):
+        turn = _turns(of_guides[guide[:, k]], normal)
+        turned = np.einsum("nij,npj->npi", turn, offsets[guide[:, k]])
+        shape += weight[:, k, None, None] * turned
+        length += weight[:, k] * lengths[guide[:, k]]
+    return root[:, None] + shape * (length / _lengths(shape))[:, None, None]
+
+
+def _lengths(strands: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(np.diff(strands, axis=1), axis=2).sum(axis=1)
+
+
+def _turns(source: np.ndarray, target: np.ndarray) -> np.ndarray:
+    """Returns the smallest rotations (n, 3, 3) from unit vectors to others, by Rodrigues' formula:
+    1 + [v] + [v]^2 / (1 + c) with v their cross product and c their dot product.
+    """
+    v, c = np.cross(source, target), np.einsum("ni,ni->n", source, target)
+    cross = np.cross(v[:, None], np.eye(3)).swapaxes(1, 2)  # its columns are v x axis
+    return np.eye(3) + cross + cross @ cross / (1 + c)[:, None, None]
