@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
+from limit_surface.children.spread import Spread
+from limit_surface.errors import CancelledError
 from limit_surface.reading import attributes
 
 
@@ -246,3 +248,19 @@ def test_poll():
     made = add_children(add_guides(sheet()))
     assert bpy.context.active_object == made
     assert bpy.ops.object.limit_children_add.poll()
+
+
+@pytest.mark.parametrize("mode", ["MADE", "LIVE"])
+def test_work_that_is_cancelled_leaves_nothing(mode, monkeypatch):
+    guides = add_guides(sheet())
+    scatter = Spread.scatter
+
+    def cancelled(self, region, progress):
+        def stop(part):
+            if part > 0.5:  # the locations are there, and their guides are looked for
+                raise CancelledError("Cancelled: nothing was made")
+
+        return scatter(self, region, stop)
+
+    monkeypatch.setattr(Spread, "scatter", cancelled)
+    refused("Cancelled", guides, mode=mode, distribution="UNIFORM", count=1000)
