@@ -81,6 +81,7 @@ void checkAlongOptions(const AlongOptions& options) {
 
 std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptions& options) {
   std::vector<double> lengths;
+  lengths.reserve(static_cast<std::size_t>(curves.count()));
   for (int curve = 0; curve < curves.count(); ++curve) {
     lengths.push_back(curves.length(curve));
   }
@@ -98,6 +99,7 @@ std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptio
   }
   checkNumber(total / *options.spacing, options.rows);
   std::vector<std::int64_t> result;
+  result.reserve(lengths.size());
   for (const double length : lengths) {
     result.push_back(length > 0 ? std::max<std::int64_t>(std::llround(length / *options.spacing), 1)
                                 : 0);

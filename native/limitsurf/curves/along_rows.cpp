@@ -54,6 +54,7 @@ struct Samples {
 
 std::vector<std::pair<int, int>> verticesOfEdges(const EdgeCurves& curves) {
   std::vector<std::pair<int, int>> edges;
+  edges.reserve(static_cast<std::size_t>(curves.edgeCount()));
   for (std::int64_t edge = 0; edge < curves.edgeCount(); ++edge) {
     edges.push_back(curves.edgeVertices(edge));
   }

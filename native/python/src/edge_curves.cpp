@@ -173,6 +173,7 @@ py::array_t<int> edgePairs(const BoundEdgeCurves& self, const Pair& pair) {
 
 py::array_t<double> lengthsOf(const BoundEdgeCurves& self) {
   std::vector<double> lengths;
+  lengths.reserve(static_cast<std::size_t>(self.curves().count()));
   for (int curve = 0; curve < self.curves().count(); ++curve) {
     lengths.push_back(self.curves().length(curve));
   }
@@ -181,6 +182,7 @@ py::array_t<double> lengthsOf(const BoundEdgeCurves& self) {
 
 py::array_t<double> edgeLengthsOf(const BoundEdgeCurves& self) {
   std::vector<double> lengths;
+  lengths.reserve(static_cast<std::size_t>(self.curves().edgeCount()));
   for (std::int64_t edge = 0; edge < self.curves().edgeCount(); ++edge) {
     lengths.push_back(self.curves().edgeLength(edge));
   }
