@@ -97,12 +97,12 @@ std::vector<std::int64_t> alongCounts(const EdgeCurves& curves, const AlongOptio
     }
     return shares(*options.count, lengths, total);
   }
-  checkNumber(total / *options.spacing, options.rows);
+  const double spacing = options.spacing.value_or(total);
+  checkNumber(total / spacing, options.rows);
   std::vector<std::int64_t> result;
   result.reserve(lengths.size());
   for (const double length : lengths) {
-    result.push_back(length > 0 ? std::max<std::int64_t>(std::llround(length / *options.spacing), 1)
-                                : 0);
+    result.push_back(length > 0 ? std::max<std::int64_t>(std::llround(length / spacing), 1) : 0);
   }
   return result;
 }

@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <memory>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 
 #include "limitsurf/curves/along_places.h"
@@ -145,10 +145,10 @@ AlongCurves scatterAlong(const LimitSurface& surface, const EdgeCurves& curves,
   const auto count =
       static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
   const std::size_t all = count * static_cast<std::size_t>(options.rows);
-  std::optional<AlongRows> rows;
+  std::unique_ptr<const AlongRows> rows;
   if (options.rows > 1 && count > 0) {
-    rows.emplace(surface, curves, options.row_distance, options.row_distance * (options.rows - 1),
-                 threads);
+    rows = std::make_unique<const AlongRows>(surface, curves, options.row_distance,
+                                             options.row_distance * (options.rows - 1), threads);
   }
   Appender result(all);
   std::vector<std::int64_t> ended(static_cast<std::size_t>(options.rows), 0);
