@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Children as curves: roots, shapes, guides along the surface, partings, refusals."""
 
+from types import SimpleNamespace
+from unittest.mock import MagicMock
+
 import bpy
 import follow_truth
 import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
+from limit_surface.children.operator import OBJECT_OT_limit_children_add
 from limit_surface.children.spread import Spread
 from limit_surface.errors import CancelledError
 from limit_surface.reading import attributes
@@ -264,3 +268,18 @@ def test_work_that_is_cancelled_leaves_nothing(mode, monkeypatch):
 
     monkeypatch.setattr(Spread, "scatter", cancelled)
     refused("Cancelled", guides, mode=mode, distribution="UNIFORM", count=1000)
+
+
+@pytest.mark.parametrize("parting", ["NONE", "FACE_ATTRIBUTE"])
+def test_the_redo_panel_shows_all_properties(parting):
+    sheet()
+    kind = bpy.ops.object.limit_children_add.get_rna_type()
+    settings = {p.identifier: getattr(p, "default", None) for p in kind.properties}
+    chosen = SimpleNamespace(**settings | {"mode": "LIVE", "parting": parting})
+    layout = MagicMock()
+    OBJECT_OT_limit_children_add.draw_own(layout, chosen)
+    drawn = [*layout.prop.call_args_list, *layout.prop_search.call_args_list]
+    names = {"mode", "guides", "guide_count", "points", "radius", "viewport_share", "parting"}
+    if parting == "FACE_ATTRIBUTE":
+        names.add("parting_attribute")
+    assert {call.args[1] for call in drawn} == names

@@ -153,14 +153,15 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
     def sources(self) -> Mapping[str, Choice]:
         return {"parting": parting.choice(self.properties)}
 
-    def draw_own(self, layout: bpy.types.UILayout) -> None:
-        layout.prop(self, "mode")
-        layout.prop_search(self, "guides", bpy.data, "objects")
+    @staticmethod
+    def draw_own(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
+        layout.prop(properties, "mode")
+        layout.prop_search(properties, "guides", bpy.data, "objects")
         for name in ("guide_count", "points", "radius"):
-            layout.prop(self, name)
-        if self.mode == "LIVE":
-            layout.prop(self, "viewport_share")
-        parting.draw(layout, self.properties, surface_object(self.properties, bpy.context))
+            layout.prop(properties, name)
+        if properties.mode == "LIVE":
+            layout.prop(properties, "viewport_share")
+        parting.draw(layout, properties, surface_object(properties, bpy.context))
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         result = super().finish(context, made)
