@@ -136,6 +136,7 @@ LIVE_WRITTEN = "limit_written"  # custom property of the data: the frame and the
 CAGE_SCENE = ".limit_cage"
 BAKE_COLLECTION = ".limit_bake"
 WEIGHTS_GROUP = ".limit_weights"
+LINES_GROUP = ".limit_lines"
 VERTEX_WEIGHT = ".limit_weight"  # attribute of the private scene's meshes
 
 DISPLACEMENT = "limit_displacement"  # custom property of images that hold displacement

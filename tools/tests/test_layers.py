@@ -21,6 +21,7 @@ LAYERS = (
     "surface",
     "tessellate",
     "search",
+    "flow",
     "sample",
     "curves",
     "geodesic",

@@ -88,7 +88,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
         return self.points
 
     def sources(self) -> Mapping[str, Choice]:
-        return steering.choices(self.properties)
+        return steering.choices(self.properties, bpy.context)
 
     @staticmethod
     def draw_own(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
@@ -106,6 +106,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
 
         def make(ground: Ground, progress: Progress) -> Strands:
             steered, maker = steering.Steering(ground.region), StrandMaker(space, seed)
+            flow = steered.flow(ground.locations)
             binding = Binding(ground.locations)
             position = np.empty((len(ground.locations), points, 3), np.float32)
             radii = np.empty(len(ground.locations), np.float32)
@@ -113,11 +114,14 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
                 binding.fill(part)
                 frame = ground.world_frames(part, space)
                 factors = steered.factors(ground.locations, part.rows)
-                flow = steered.flow(ground.locations, part.rows, frame)
+                lean = tilt * factors["tilt"]
+                if flow is not None:
+                    sideways = np.einsum("nij,ni->nj", frame[:, :, :2], flow[part.rows])
+                    lean = lean + flow_angle * sideways
                 shape = Shape(
                     length=length * factors["length"],
                     points=points,
-                    lean=tilt * factors["tilt"] + flow_angle * flow,
+                    lean=lean,
                     random=random * factors["random"],
                     random_length=(random_length * factors["random"]).clip(max=1),
                 )

@@ -75,19 +75,18 @@ class Steering:
                 found[name] = np.maximum(found[name], 0)
         return found
 
-    def flow(self, locations: Locations, rows: slice, frame: np.ndarray) -> np.ndarray:
-        """Returns the flow (n, 2), as it is seen in the first two columns of frames in the
-        world.
-        """
+    def flow(self, locations: Locations) -> np.ndarray | None:
+        """Returns the flow (n, 3) in the world, or None where there is none."""
         if self._flow is None:
-            return np.zeros((1, 2))
-        face, uv = locations.face[rows], locations.uv[rows].astype(np.float64)
-        return np.einsum("nij,ni->nj", frame[:, :, :2], self._flow(face, uv))
+            return None
+        return self._flow(locations.face, locations.uv.astype(np.float64))
 
 
-def choices(properties: bpy.types.OperatorProperties) -> Mapping[str, Choice]:
+def choices(
+    properties: bpy.types.OperatorProperties, context: bpy.types.Context
+) -> Mapping[str, Choice]:
     values = {name: source.choice(properties) for name, source in STEERED.items()}
-    return {**values, FLOW: flow_properties.choice(properties)}
+    return {**values, FLOW: flow_properties.choice(properties, context)}
 
 
 def draw(

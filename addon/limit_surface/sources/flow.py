@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Directions over a surface into which strands are combed, from images, attributes and curvature.
+"""Directions over a surface into which strands are combed: images, attributes, curves, curvature.
 
 A flow is read from the cage's mesh after its modifiers. It is evaluated in the world.
 """
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import bpy
 
 #: A function from Ptex faces (n,) and uv (n, 2) to vectors (n, 3) in the world: tangents of the
-#: surface, at most 1 long
+#: surface, at most 1 long. It is called once for all locations.
 Directions = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 # Principal directions are axes without a head. The head is where this vector points: downwards,
@@ -108,12 +108,34 @@ class Curvature:
 
 
 @dataclass(frozen=True)
+class Curves:
+    """Lines in the world, whose directions are continued over the surface."""
+
+    name: str  # of the object, for messages
+    lines: np.ndarray  # (n, 2, 3)
+
+    def on(self, found: Cage) -> Directions:
+        surface = found.surface(in_world=True)
+        points = self.lines.reshape(-1, 3)
+        offsets = np.arange(0, len(points) + 1, 2)
+
+        def at(face: np.ndarray, uv: np.ndarray) -> np.ndarray:
+            try:
+                return surface.curve_directions(points, offsets, face, uv)
+            except ValueError as error:
+                raise RefusalError(f"Flow: {self.name}: {error}") from error
+
+        return at
+
+
+@dataclass(frozen=True)
 class FlowChoice:
-    source: str  # NONE, IMAGE, ATTRIBUTE, CURVATURE_1 or CURVATURE_2
+    source: str  # NONE, IMAGE, ATTRIBUTE, CURVES, CURVATURE_1 or CURVATURE_2
     image: str
     uv_map: str
     extension: str
     attribute: str
+    curves: Curves | None
 
     def wanted_vertex_groups(self, _ob: bpy.types.Object) -> list[str]:
         return []
@@ -127,7 +149,9 @@ class FlowChoice:
                 return self._of_image(mesh)
             if self.source == "ATTRIBUTE":
                 return self._of_attribute(mesh)
-        return None if self.source == "NONE" else Curvature(int(self.source[-1]))
+        if self.source in ("NONE", "CURVES"):
+            return self.curves
+        return Curvature(int(self.source[-1]))
 
     def _of_image(self, mesh: SourceMesh) -> CombMap:
         image = image_map.find(self.image)

@@ -8,8 +8,11 @@ import math
 import bpy
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
-from .flow import FlowChoice
+from ..errors import RefusalError
+from ..reading import curve_lines
+from .flow import Curves, FlowChoice
 from .value_properties import search
+from .values import labelled
 
 SOURCE = "flow_source"
 
@@ -38,6 +41,14 @@ class FlowProperties:
                 2,
             ),
             (
+                "CURVES",
+                "Curves",
+                "Follow the curves of an object that are nearest along the surface, from their "
+                "first points to their last",
+                "OUTLINER_OB_CURVE",
+                3,
+            ),
+            (
                 "CURVATURE_1",
                 "Larger Curvature",
                 "Use the principal direction of the larger curvature, which runs along a limb. Of "
@@ -62,6 +73,11 @@ class FlowProperties:
     flow_attribute: StringProperty(
         name="Attribute", description="Name of the vector attribute that holds the directions"
     )
+    flow_curves: StringProperty(
+        name="Curves",
+        description="Name of the curve or hair object whose curves the strands follow. They may "
+        "lie on the surface or near it",
+    )
     flow_angle: FloatProperty(
         name="Flow Angle",
         description="Angle by which strands lean away from the normal where the flow has the "
@@ -73,14 +89,24 @@ class FlowProperties:
     )
 
 
-def choice(properties: bpy.types.OperatorProperties) -> FlowChoice:
+def choice(properties: bpy.types.OperatorProperties, context: bpy.types.Context) -> FlowChoice:
+    """Returns the choice. Curves are read at once. Raises RefusalError where there are none."""
     return FlowChoice(
         source=properties.flow_source,
         image=properties.flow_image,
         uv_map=properties.uv_map,
         extension=properties.extension,
         attribute=properties.flow_attribute,
+        curves=_read_curves(properties, context) if properties.flow_source == "CURVES" else None,
     )
+
+
+def _read_curves(properties: bpy.types.OperatorProperties, context: bpy.types.Context) -> Curves:
+    ob = bpy.data.objects.get(properties.flow_curves)
+    with labelled("Flow"):
+        if ob is None:
+            raise RefusalError(f"There is no object {properties.flow_curves!r}")
+        return Curves(ob.name, curve_lines.read(ob, context.evaluated_depsgraph_get()))
 
 
 def draw(
@@ -96,4 +122,6 @@ def draw(
         search(layout, properties, "flow_image", bpy.data, "images")
     elif source == "ATTRIBUTE":
         search(layout, properties, "flow_attribute", ob and ob.data, "attributes")
+    elif source == "CURVES":
+        search(layout, properties, "flow_curves", bpy.data, "objects")
     layout.prop(properties, "flow_angle")

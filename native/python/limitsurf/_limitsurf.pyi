@@ -404,6 +404,17 @@ class LimitSurface(metaclass=_BoundType):
         dtype: DTypeLike = ...,
         progress: Callable[[float], object] | None = None,
     ) -> RayHits: ...
+    def curve_directions(
+        self,
+        points: ArrayLike,
+        offsets: ArrayLike | None,
+        face: ArrayLike,
+        uv: ArrayLike,
+        *,
+        threads: int = 0,
+        dtype: DTypeLike = ...,
+        progress: Callable[[float], object] | None = None,
+    ) -> NDArray[np.floating[Any]]: ...
     def project(
         self,
         uv_map: SurfaceData,

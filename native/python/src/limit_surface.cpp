@@ -146,6 +146,7 @@ void bindLimitSurface(py::module_& module) {
   bindSearch(type);
   bindSampling(type);
   bindGuideWeights(type);
+  bindFlow(type);
   bindProjection(type);
   bindDisplacement(type);
 }

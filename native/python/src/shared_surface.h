@@ -66,6 +66,8 @@ void bindTessellation(py::class_<SharedSurface>& type);
 void bindSearch(py::class_<SharedSurface>& type);
 /// area() and the scatter methods
 void bindSampling(py::class_<SharedSurface>& type);
+/// curve_directions()
+void bindFlow(py::class_<SharedSurface>& type);
 /// tiles()
 void bindGuideWeights(py::class_<SharedSurface>& type);
 void bindSurfaceTiles(py::class_<SharedSurface>& type);

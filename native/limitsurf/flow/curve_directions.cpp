@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/flow/curve_directions.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "limitsurf/flow/flow_mesh.h"
+#include "limitsurf/parallel.h"
+#include "limitsurf/search/surface_search.h"
+#include "limitsurf/surface/differential.h"
+
+namespace limitsurf {
+namespace {
+
+using Matrix2 = Eigen::Matrix2d;
+
+/// How strongly the field is held at a curve, times the length of a quad's side: where it is pulled
+/// aside it leaves the curve's direction by about 1/kHold of what it changes over a quad.
+constexpr double kHold = 1000;
+/// Keeps the system regular on parts of a surface that have no curve, times 1 / area.
+constexpr double kRest = 1e-9;
+/// Parts of curves that are steeper than this have no direction along the surface.
+constexpr double kFlattest = 1e-3;
+/// Shorter vectors of the field have no direction.
+constexpr double kShortest = 1e-12;
+/// Samples of a curve on the length of a quad's side.
+constexpr double kSamplesPerSide = 2;
+
+/// Pieces of curves: places in their middle, with the directions, as long as the pieces.
+struct Samples {
+  Points middle, along;
+};
+
+void check(const Polylines& curves) {
+  const auto& offsets = curves.offsets;
+  if (offsets.empty() || offsets.front() != 0 || !std::is_sorted(offsets.begin(), offsets.end()) ||
+      offsets.back() != curves.points.rows()) {
+    throw std::invalid_argument(
+        "offsets must begin with 0, must not decrease, and must end with the number of points, " +
+        std::to_string(curves.points.rows()));
+  }
+  for (Eigen::Index row = 0; row < curves.points.rows(); ++row) {
+    if (!curves.points.row(row).allFinite()) {
+      throw std::invalid_argument("row " + std::to_string(row) + ": the point is not finite");
+    }
+  }
+}
+
+/// Calls body(from, to) for the ends of each straight line of positive length.
+template <typename Body>
+void forEachLine(const Polylines& curves, const Body& body) {
+  for (std::size_t curve = 0; curve + 1 < curves.offsets.size(); ++curve) {
+    for (std::int64_t row = curves.offsets[curve] + 1; row < curves.offsets[curve + 1]; ++row) {
+      const Vector3 from = curves.points.row(row - 1), to = curves.points.row(row);
+      if (from != to) {
+        body(from, to);
+      }
+    }
+  }
+}
+
+Samples sample(const Polylines& curves, double spacing) {
+  constexpr double kMostPieces = 1 << 20;  // of one line
+  const auto pieces = [&](const Vector3& from, const Vector3& to) {
+    return static_cast<int>(std::clamp(std::ceil((to - from).norm() / spacing), 1., kMostPieces));
+  };
+  Eigen::Index count = 0;
+  forEachLine(curves, [&](const Vector3& from, const Vector3& to) { count += pieces(from, to); });
+  Samples samples{Points(count, 3), Points(count, 3)};
+  Eigen::Index row = 0;
+  forEachLine(curves, [&](const Vector3& from, const Vector3& to) {
+    const int parts = pieces(from, to);
+    for (int i = 0; i < parts; ++i, ++row) {
+      samples.middle.row(row) = from + (i + 0.5) / parts * (to - from);
+      samples.along.row(row) = (to - from) / parts;
+    }
+  });
+  return samples;
+}
+
+Vector3 normalOf(const double* frame) { return {frame[2], frame[5], frame[8]}; }
+
+/// The equations of the field: two unknowns for each vertex, its components in the vertex's plane.
+class Equations {
+ public:
+  explicit Equations(const FlowMesh& mesh)
+      : mesh_(mesh), right_(Eigen::VectorXd::Zero(2 * mesh.vertexCount())) {}
+
+  /// Adds the integral of |grad X|^2. Each quad is the mean of its two divisions into triangles.
+  void addChange() {
+    entries_.reserve(mesh_.quadCount() * 4 * 9 * 4);
+    for (std::size_t i = 0; i < mesh_.quadCount(); ++i) {
+      const std::array<int, 4> v = mesh_.quad(i);
+      for (int corner = 0; corner < 4; ++corner) {
+        addTriangle({v[corner], v[(corner + 1) % 4], v[(corner + 2) % 4]}, 0.5);
+      }
+    }
+    const double rest = kRest / mesh_.area() * mesh_.meanSide() * mesh_.meanSide();
+    for (int i = 0; i < 2 * mesh_.vertexCount(); ++i) {
+      entries_.emplace_back(i, i, rest);
+    }
+  }
+
+  /// Holds the field at a place to a vector of the plane with this normal, which may be taken as
+  /// its weight times a unit vector.
+  void hold(const FlowMesh::Place& place, const Vector3& normal, const Vector3& direction,
+            double weight) {
+    const PlaneBasis plane = planeBasis(normal);
+    std::array<Matrix2, 4> into;
+    for (int i = 0; i < 4; ++i) {
+      into[i] = place.weights[i] * intoPlane(place.vertices[i], normal, plane);
+    }
+    const Eigen::Vector2d wanted = plane.transpose() * direction;
+    for (int i = 0; i < 4; ++i) {
+      right_.segment<2>(2 * place.vertices[i]) += weight * into[i].transpose() * wanted;
+      for (int j = 0; j < 4; ++j) {
+        add(place.vertices[i], place.vertices[j], weight * into[i].transpose() * into[j]);
+      }
+    }
+  }
+
+  Eigen::VectorXd solve() const {
+    Eigen::SparseMatrix<double> matrix(right_.size(), right_.size());
+    matrix.setFromTriplets(entries_.begin(), entries_.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+    if (solver.info() != Eigen::Success) {
+      throw std::runtime_error("the directions of the curves cannot be continued");
+    }
+    return solver.solve(right_);
+  }
+
+ private:
+  Matrix2 intoPlane(int vertex, const Vector3& normal, const PlaneBasis& plane) const {
+    return plane.transpose() * turned(mesh_.basis(vertex), mesh_.normal(vertex), normal);
+  }
+
+  void add(int row, int column, const Matrix2& block) {
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) {
+        entries_.emplace_back(2 * row + i, 2 * column + j, block(i, j));
+      }
+    }
+  }
+
+  void addTriangle(const std::array<int, 3>& v, double share) {
+    const std::array<Vector3, 3> p = {mesh_.position(v[0]), mesh_.position(v[1]),
+                                      mesh_.position(v[2])};
+    const Vector3 across = (p[1] - p[0]).cross(p[2] - p[0]);
+    const double twice_area = across.norm();
+    constexpr double kThinnest = 1e-10;
+    const double longest = std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(),
+                                     (p[0] - p[2]).squaredNorm()});
+    if (!(twice_area > kThinnest * longest)) {
+      return;
+    }
+    const Vector3 normal = across / twice_area;
+    const PlaneBasis plane = planeBasis(normal);
+    std::array<Matrix2, 3> into;
+    for (int i = 0; i < 3; ++i) {
+      into[i] = intoPlane(v[i], normal, plane);
+    }
+    for (int k = 0; k < 3; ++k) {  // the edge opposite of corner k has half the angle's cotangent
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      const double weight = share * (p[i] - p[k]).dot(p[j] - p[k]) / twice_area / 2;
+      add(v[i], v[i], weight * into[i].transpose() * into[i]);
+      add(v[j], v[j], weight * into[j].transpose() * into[j]);
+      add(v[i], v[j], -weight * into[i].transpose() * into[j]);
+      add(v[j], v[i], -weight * into[j].transpose() * into[i]);
+    }
+  }
+
+  const FlowMesh& mesh_;
+  std::vector<Eigen::Triplet<double>> entries_;
+  Eigen::VectorXd right_;
+};
+
+/// Holds the field to the curves. Returns the number of pieces that run along the surface.
+std::size_t holdToCurves(const LimitSurface& surface, const FlowMesh& mesh, const Samples& samples,
+                         int threads, Equations& equations) {
+  const Hits hits = SurfaceSearch(surface, threads).closest(samples.middle, {}, threads);
+  const auto frames = surface.frames(hits.at, threads);
+  const double strength = kHold / mesh.meanSide();
+  std::size_t held = 0;
+  for (std::size_t row = 0; row < hits.at.size(); ++row) {
+    const Vector3 normal = normalOf(frames.row(static_cast<Eigen::Index>(row)).data());
+    const Vector3 piece = samples.along.row(static_cast<Eigen::Index>(row));
+    const Vector3 along = piece - normal * normal.dot(piece);
+    const double length = along.norm();
+    if (length > kFlattest * piece.norm()) {
+      equations.hold(mesh.place(hits.at[row]), normal, along / length, strength * length);
+      ++held;
+    }
+  }
+  return held;
+}
+
+Points evaluate(const LimitSurface& surface, const FlowMesh& mesh, const Eigen::VectorXd& field,
+                const LocationBatch& at, int threads) {
+  const auto frames = surface.frames(at, threads);
+  Points directions(static_cast<Eigen::Index>(at.size()), 3);
+  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const Vector3 normal = normalOf(frames.row(row).data());
+      const FlowMesh::Place place = mesh.place(at[i]);
+      Vector3 sum = Vector3::Zero();
+      for (int k = 0; k < 4; ++k) {
+        const int vertex = place.vertices[k];
+        sum += place.weights[k] * (turned(mesh.basis(vertex), mesh.normal(vertex), normal) *
+                                   field.segment<2>(2 * vertex));
+      }
+      const double length = sum.norm();
+      directions.row(row) = length > kShortest ? Vector3(sum / length) : Vector3::Zero();
+    }
+  });
+  return directions;
+}
+
+}  // namespace
+
+Points curveDirections(const LimitSurface& surface, const Polylines& curves,
+                       const LocationBatch& locations, int threads, const Progress& progress) {
+  checkThreads(threads);
+  check(curves);
+  const LocationBatch at = surface.checkLocations(locations);
+  const auto report = [&](double part) {
+    if (progress) {
+      progress(part);
+    }
+    InterruptionPoint::pass();
+  };
+  const FlowMesh mesh(surface, kFlowPolygons, threads);
+  if (!(mesh.area() > 0)) {
+    throw std::invalid_argument("the surface has no area");
+  }
+  report(0.1);
+  Equations equations(mesh);
+  equations.addChange();
+  const Samples samples = sample(curves, mesh.meanSide() / kSamplesPerSide);
+  if (holdToCurves(surface, mesh, samples, threads, equations) == 0) {
+    throw std::invalid_argument("no part of a curve runs along the surface");
+  }
+  report(0.4);
+  const Eigen::VectorXd field = equations.solve();
+  report(0.9);
+  Points directions = evaluate(surface, mesh, field, at, threads);
+  report(1);
+  return directions;
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
+#include "batches.h"
+#include "limitsurf/flow/curve_directions.h"
+#include "progress.h"
+#include "shared_surface.h"
+
+namespace limitsurf::python {
+namespace {
+
+constexpr char kCurveDirectionsDoc[] =
+    R"((n, 3) unit tangents of the surface that continue the directions of curves smoothly over it.
+
+Parameters
+    points: (m, 3), the points of the curves, which consist of straight lines between them. A closed
+        curve ends with its first point.
+    offsets: (k + 1,) integers: curve i has the points offsets[i] to offsets[i + 1] - 1. None: all
+        points are one curve.
+    face, uv: (n,) Ptex faces and (n, 2), as in evaluate().
+    threads: 0 uses all cores.
+    progress: a function that is called with the part that is done, 0 to 1.
+
+At a curve the direction is the curve's own (from its first point to its last), seen from the surface's
+point that is closest to it. Elsewhere it is that of the field of tangent vectors that agrees with the
+curves and changes least along the surface: a place follows the curves that are near it along the
+surface, and between two curves the direction turns from one to the other. Rows are 0 where no way along
+the surface leads to a curve.
+
+The field is computed on about 30,000 polygons on the limit surface, or one for each Ptex face if there
+are more of these. Curves that cross one polygon in different directions are averaged there.
+
+Raises LocationError and MeshError as evaluate() does, and ValueError for arrays of other shapes, for
+offsets that do not begin with 0, decrease, or do not end with m, for a point that is not finite, and if no
+part of a curve runs along the surface. Cost: less than a second up to 30,000 Ptex faces. The number of
+threads gives the same bits.
+)";
+
+Polylines curvesOf(const py::object& points, const py::object& offsets) {
+  const Doubles array = doubles(points, "points");
+  if (array.ndim() != 2 || array.shape(1) != 3) {
+    throw py::value_error("points has shape " + shapeText(array) + "; expected (m, 3)");
+  }
+  Polylines curves{pointsOf(array), {0, array.shape(0)}};
+  if (!offsets.is_none()) {
+    const Integers given = integers<std::invalid_argument>(offsets, "offsets");
+    requireVector<std::invalid_argument>(given, "offsets");
+    curves.offsets.assign(given.data(), given.data() + given.size());
+  }
+  return curves;
+}
+
+py::object curveDirections(const SharedSurface& shared, const py::object& points,
+                           const py::object& offsets, const py::object& face, const py::object& uv,
+                           int threads, const py::object& dtype, const py::object& progress) {
+  checkThreads(threads);
+  const Polylines curves = curvesOf(points, offsets);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  Output output(floatType(dtype), {static_cast<py::ssize_t>(at.size()), 3});
+  const ProgressReport report(progress);
+  {
+    const py::gil_scoped_release release;
+    const HeldPose held(shared);
+    const InterruptionPoint point = interruptible();
+    const Points found =
+        limitsurf::curveDirections(shared.surface(), curves, at, threads, report);
+    output.put(0, found.data(), 3 * at.size());
+  }
+  return output.object();
+}
+
+}  // namespace
+
+void bindFlow(py::class_<SharedSurface>& type) {
+  using namespace py::literals;
+  type.def("curve_directions", &curveDirections, "points"_a, "offsets"_a, "face"_a, "uv"_a,
+           py::kw_only(), "threads"_a = 0, "dtype"_a = py::dtype("float64"),
+           "progress"_a = py::none(), kCurveDirectionsDoc);
+}
+
+}  // namespace limitsurf::python
