@@ -236,3 +236,110 @@ def check_hair_refused(match, properties):
     assert scenes.file_contents() == before
     assert bpy.context.active_object == active
     assert ids.REST_ROOT not in active.data.attributes
+
+
+def add_curve(points, cyclic=False, bevel=0.0):
+    """Adds a curve of straight lines."""
+    data = bpy.data.curves.new("Guide", "CURVE")
+    data.dimensions, data.bevel_depth = "3D", bevel
+    spline = data.splines.new("POLY")
+    spline.points.add(len(points) - 1)
+    for point, place_of in zip(spline.points, points, strict=True):
+        point.co = (*place_of, 1)
+    spline.use_cyclic_u = cyclic
+    ob = bpy.data.objects.new("Guide", data)
+    bpy.context.collection.objects.link(ob)
+    bpy.context.view_layer.update()
+    return ob
+
+
+def follow(ob, **properties):
+    chosen = {"flow_source": "CURVES", "flow_curves": "Guide", "flow_angle": ANGLE}
+    return add_hair(ob, **chosen | properties)
+
+
+@pytest.mark.parametrize("bevel", [0.0, 0.3])
+@pytest.mark.parametrize("transform", TRANSFORMS)
+def test_one_straight_curve_combs_a_whole_flat_sheet(transform, bevel):
+    """The curve stands in the world, above the sheet, and may be thick."""
+    ob = scenes.flat_grid(SIDE)
+    place(ob, TRANSFORMS[transform])
+    start, towards = np.array([3.0, 3.0, 0.2]), np.array([0.8, 0.6, 0])
+    guide = add_curve(
+        transformed(ob.matrix_world, start + np.outer([0, 1, 3], towards)) - [1, 2, 3], bevel=bevel
+    )
+    guide.location = (1, 2, 3)
+    direction, _ = world_directions(follow(ob))
+    expected = leaning(ob, towards, ANGLE)
+    np.testing.assert_allclose(direction, np.broadcast_to(expected, direction.shape), atol=3e-5)
+
+
+def test_directions_turn_linearly_from_one_curve_to_another():
+    """Between two parallel lines across a strip the vectors that change least are linear."""
+    ob = scenes.flat_grid(SIDE)
+    add_subsurf(ob, "PRESERVE_CORNERS")  # the limit surface is the whole square
+    count = 400
+    y = np.linspace(0, SIDE, count, endpoint=False)
+    step = SIDE / count
+    start = np.stack([np.full(count, 6 - step / 2), y, 0 * y], axis=1)
+    pieces = np.stack([start, start + [step, step, 0]], axis=1)  # at 45 degrees across x = 6
+    hair = bpy.data.hair_curves.new("Hair")
+    hair.add_curves([2] * (count + 1))
+    line = np.array([[[2, 0, 0], [2, SIDE, 0]]])
+    positions = np.concatenate([line, pieces]).astype(np.float32)
+    hair.points.foreach_set("position", positions.ravel())
+    bpy.context.collection.objects.link(bpy.data.objects.new("Hair", hair))
+    bpy.context.view_layer.update()
+    direction, root = world_directions(follow(ob, flow_curves="Hair", flow_angle=np.pi / 2))
+    part = np.clip((root[:, :1] - 2) / 4, 0, 1)
+    expected = unit((1 - part) * [0, 1, 0] + part * unit(np.array([1.0, 1, 0])))
+    np.testing.assert_allclose(direction, expected, atol=4e-3)
+
+
+def test_closed_curves_go_round():
+    """Around a circle in the middle of a disc-like sheet all strands go round."""
+    ob = scenes.flat_grid(SIDE)
+    turn = np.linspace(0, 2 * np.pi, 256, endpoint=False)
+    ring = np.stack([4 + 2 * np.cos(turn), 4 + 2 * np.sin(turn), 0 * turn], axis=1)
+    add_curve(ring, cyclic=True)
+    direction, root = world_directions(follow(ob, flow_angle=np.pi / 2, per_side=8))
+    x, y = (root[:, :2] - 4).T
+    radius = np.hypot(x, y)
+    near = np.abs(radius - 2) < 0.1
+    assert near.sum() > 40
+    around = np.stack([-y, x, 0 * x], axis=1) / radius[:, None]
+    cosine = np.einsum("ni,ni->n", direction, around)
+    assert cosine[near].min() > 0.998
+    assert cosine[radius > 0.5].min() > 0.9
+
+
+def test_curves_leave_nothing_behind():
+    ob = scenes.flat_grid(2)
+    add_curve([(0, 0, 0), (1, 1, 0)], bevel=0.1)
+    before = scenes.file_contents()
+    hair = follow(ob)
+    after = scenes.file_contents()
+    assert set(after["objects"]) - set(before["objects"]) == {hair.name}
+    assert after["node_groups"] == before["node_groups"]
+    assert after["curves"] == before["curves"]
+    assert after["meshes"] == before["meshes"]
+
+
+@pytest.mark.parametrize(
+    ("match", "points"),
+    [
+        ("Guide: no part of a curve runs along the surface", [(1, 1, 0), (1, 1, 2)]),
+        ("Guide has no curves", [(1, 1, 0)]),
+    ],
+)
+def test_curves_that_say_nothing(match, points):
+    scenes.activate(scenes.flat_grid(2))
+    add_curve(points)
+    check_hair_refused(f"Flow: {match}", {"flow_source": "CURVES", "flow_curves": "Guide"})
+
+
+def test_objects_that_hold_no_curves():
+    scenes.flat_grid(2)
+    refused = {"flow_source": "CURVES"}
+    check_hair_refused("Flow: There is no object 'Nix'", refused | {"flow_curves": "Nix"})
+    check_hair_refused("Flow: Flat is no curve object", refused | {"flow_curves": "Flat"})

@@ -82,6 +82,10 @@ FIGURES = {
     "project_image": rendered("project_image", "an image projected from a camera, and a decal"),
     "report": rendered("report", "distances from the limit surface at two levels, as colours"),
     "snap": rendered("snap", "objects and hair before and after snapping"),
+    "steering": rendered(
+        "steering", "strands steered by a group, an image and curves", "make_steering"
+    ),
+    "hair_nodes": rendered("steering", "Blender's hair nodes on strands", "make_hair_nodes"),
     "eigenbasis_error": Figure("eigenbasis", "errors by valence, as tools/verify_eigenbasis found"),
     "projection": Figure("projection", "a projected checker, and filtered look-ups"),
     "query_rays": Figure("queries", "a picture of 614,400 rays, and its outline", "make_rays"),

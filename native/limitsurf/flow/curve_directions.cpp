@@ -19,9 +19,10 @@ namespace {
 
 using Matrix2 = Eigen::Matrix2d;
 
-/// How strongly the field is held at a curve, times the length of a quad's side: where it is pulled
-/// aside it leaves the curve's direction by about 1/kHold of what it changes over a quad.
-constexpr double kHold = 1000;
+/// How strongly the field is held at a curve, times the length of a quad's side: it leaves the
+/// curve's direction by about 1/kHold of what it changes over a quad. (Held much more strongly, it
+/// would overshoot beside curves that turn within a quad.)
+constexpr double kHold = 10;
 /// Keeps the system regular on parts of a surface that have no curve, times 1 / area.
 constexpr double kRest = 1e-9;
 /// Parts of curves that are steeper than this have no direction along the surface.
