@@ -154,8 +154,8 @@ class Equations {
     const Vector3 across = (p[1] - p[0]).cross(p[2] - p[0]);
     const double twice_area = across.norm();
     constexpr double kThinnest = 1e-10;
-    const double longest = std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(),
-                                     (p[0] - p[2]).squaredNorm()});
+    const double longest = std::max(
+        {(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
     if (!(twice_area > kThinnest * longest)) {
       return;
     }

@@ -14,7 +14,8 @@ constexpr int kMostLevels = 6;
 
 int levelsFor(const LimitSurface& surface, std::int64_t wanted) {
   const std::vector<int> sizes = surface.mesh().faceSizes();
-  const bool all_quads = std::all_of(sizes.begin(), sizes.end(), [](int size) { return size == 4; });
+  const bool all_quads =
+      std::all_of(sizes.begin(), sizes.end(), [](int size) { return size == 4; });
   // a sub-face of an n-gon has half as many quads a side as a quad
   int levels = all_quads ? 0 : 1;
   std::int64_t quads = surface.faceCount();
@@ -76,9 +77,7 @@ void FlowMesh::computeNormals() {
 
 FlowMesh::Place FlowMesh::place(const Location& at) const {
   const int side = side_[at.face];
-  const auto cell = [side](double x) {
-    return std::min(static_cast<int>(x * side), side - 1);
-  };
+  const auto cell = [side](double x) { return std::min(static_cast<int>(x * side), side - 1); };
   const int i = cell(at.u), j = cell(at.v);
   const double u = at.u * side - i, v = at.v * side - j;
   return {quad(first_quad_[at.face] + static_cast<std::size_t>(j) * side + i),

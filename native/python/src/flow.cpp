@@ -62,8 +62,7 @@ py::object curveDirections(const SharedSurface& shared, const py::object& points
     const py::gil_scoped_release release;
     const HeldPose held(shared);
     const InterruptionPoint point = interruptible();
-    const Points found =
-        limitsurf::curveDirections(shared.surface(), curves, at, threads, report);
+    const Points found = limitsurf::curveDirections(shared.surface(), curves, at, threads, report);
     output.put(0, found.data(), 3 * at.size());
   }
   return output.object();

@@ -84,8 +84,7 @@ TEST(CurveDirections, OneStraightCurveGivesItsDirectionToAFlatSurface) {
   const auto at = everywhere(surface);
   const Vector3 along = Vector3(2, 1, 0).normalized();
   // the curve floats above the surface, slanting
-  const Points found =
-      curveDirections(surface, curves({{{1, 1, 0.5}, {3, 2, 0.9}}}), at);
+  const Points found = curveDirections(surface, curves({{{1, 1, 0.5}, {3, 2, 0.9}}}), at);
   for (Eigen::Index row = 0; row < found.rows(); ++row) {
     EXPECT_LT((found.row(row).transpose() - along).norm(), 1e-7);
   }
@@ -125,9 +124,10 @@ TEST(CurveDirections, FollowTheSurfaceAroundACylinder) {
   const auto at = everywhere(surface);
   const Evaluation e = surface.evaluate(at, Derivatives::first, true);
   const Points along_axis = curveDirections(surface, curves({{{1, 0, 0.5}, {1, 0, 1.5}}}), at);
-  const Points around = curveDirections(
-      surface, curves({{{std::cos(turn * 2), std::sin(turn * 2), 1},
-                        {std::cos(turn * 3), std::sin(turn * 3), 1}}}), at);
+  const Points around = curveDirections(surface,
+                                        curves({{{std::cos(turn * 2), std::sin(turn * 2), 1},
+                                                 {std::cos(turn * 3), std::sin(turn * 3), 1}}}),
+                                        at);
   for (Eigen::Index row = 0; row < e.position.rows(); ++row) {
     EXPECT_LT((along_axis.row(row).transpose() - Vector3::UnitZ()).norm(), 1e-6);
     const Vector3 normal = e.normal.row(row);
@@ -138,9 +138,8 @@ TEST(CurveDirections, FollowTheSurfaceAroundACylinder) {
 
 TEST(CurveDirections, DoNotJumpAcrossAGap) {
   // two sheets above each other that hang together on one side only, like two lips
-  const LimitSurface surface = sheet(8, 4, [](int i, int j) {
-    return i < 4 ? Vector3(i, j, 0) : Vector3(8 - i, j, 0.2);
-  });
+  const LimitSurface surface =
+      sheet(8, 4, [](int i, int j) { return i < 4 ? Vector3(i, j, 0) : Vector3(8 - i, j, 0.2); });
   const auto at = everywhere(surface);
   const Points position = surface.evaluate(at).position;
   // curves on both sheets, close to each other in space, that run opposite ways
