@@ -101,11 +101,11 @@ STEERED = (
 )
 _COMBED = {"flow_source": "CURVES", "flow_curves": "Guides", "flow_angle": 0.7, "points": 12}
 _CLUMP = ("Clump Hair Curves", {"Guide Distance": 0.05, "Shape": 0.3})
-_NOISE = ("Hair Curves Noise", {"Distance": 0.02, "Scale": 6.0, "Scale along Curve": 2.0})
+_NOISE = ("Hair Curves Noise", {"Distance": 0.01, "Scale": 6.0, "Scale along Curve": 2.0})
 WITH_NODES = (
     Panel("As it is made", "combed along curves", _COMBED, add_guides),
     Panel("Clump Hair Curves", "Guide Distance 0.05", _COMBED, add_guides, (_CLUMP,)),
-    Panel("Clump, then Hair Curves Noise", "Distance 0.02", _COMBED, add_guides, (_CLUMP, _NOISE)),
+    Panel("Clump, then Hair Curves Noise", "Distance 0.01", _COMBED, add_guides, (_CLUMP, _NOISE)),
 )
 
 
@@ -138,7 +138,7 @@ def draw(panel: Panel, path: Path, samples: int) -> None:
     hair.data.materials.append(scene.material("Hair", HAIR, 0.25, 0.45, 0.4))
     for name, inputs in panel.nodes:
         add_nodes(hair, name, inputs)
-    scene.render(path, View(20, 48), np.array([0, 0, 0.05]), 1.35, PIXELS, samples)
+    scene.render(path, View(20, 48), np.array([0, 0, 0.05]), 1.55, PIXELS, samples)
 
 
 def add_nodes(hair: bpy.types.Object, name: str, inputs: dict[str, float]) -> None:
