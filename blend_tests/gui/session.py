@@ -326,11 +326,6 @@ class BlenderSession:
         self.key("F9")
         return x + 200, y
 
-    def find_presets(self, x: float, y: float) -> tuple[float, float]:
-        """Returns where around (x, y) the menu of presets is."""
-        menu = 'bpy.ops.wm.call_menu(name="WM_MT_operator_presets")'
-        return self._find(x - 100, y + 2 * ROW, y - 400, menu)
-
     def find_field(self, x: float, y: float, value: str) -> tuple[float, float]:
         """Returns where below (x, y) a field with this value is."""
         return self._find(x, y, y - 400, value)
