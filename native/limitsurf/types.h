@@ -5,10 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-static_assert(EIGEN_MAX_ALIGN_BYTES == 16,
-              "limitsurf's matrices are aligned to 16 bytes: link the CMake target "
-              "limitsurf::limitsurf, or define EIGEN_MAX_ALIGN_BYTES=16");
-
 namespace limitsurf {
 
 using Vector3 = Eigen::Vector3d;
