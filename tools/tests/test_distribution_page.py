@@ -12,7 +12,7 @@ PAGE = Path(__file__).parents[2] / "docs/distribution.md"
 def test_example(sheet):
     known = {"positions": sheet["positions"] / 3, "faces": sheet["faces"]}
     section = PAGE.read_text().split("\n## In Python\n")[1]
-    example, along = re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
+    example, along, flow = re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
     counts = []
     for line in example.splitlines():
         exec(line, known)
@@ -20,6 +20,8 @@ def test_example(sheet):
             counts.append(len(known["at"]))
     assert counts[:2] == [100_000, 20_000]
     exec(along, known)
+    exec(flow, known)
+    assert np.shape(known["towards"]) == (len(known["at"]), 3)
     assert len(known["lashes"]) == 400
     assert len(known["half_way"]) == 1
     points = known["roots"].position

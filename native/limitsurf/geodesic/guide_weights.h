@@ -14,7 +14,7 @@ namespace limitsurf {
 /// Bound on the error of the distances of guide_weights, on smooth surfaces: relative to the
 /// distance, where that is at least an eighth of a face's side. On flat surfaces the error is below
 /// 1e-3 of such a side, as far as no cut or border stands in the way.
-constexpr double kGeodesicError = 0.01;
+constexpr double kGuideDistanceError = 0.01;
 
 /// The nearest guides of places on a surface, `count` in each row, the nearest first. Where there
 /// are fewer guides that can be reached, the guide is -1, the weight 0 and the distance infinite.
@@ -42,8 +42,8 @@ struct GuideOptions {
 /// another takes its place, and a place at a guide has the shape of this guide alone.
 ///
 /// Distances are measured on triangles with their vertices on the limit surface, which are smaller
-/// where guides are close together: kGeodesicError. A guide can be missed only if it is farther
-/// away than a guide that is found, or by less than the size of a triangle nearer than it.
+/// where guides are close together: kGuideDistanceError. A guide can be missed only if it is
+/// farther away than a guide that is found, or by less than the size of a triangle nearer than it.
 ///
 /// Properties: any number of threads gives the same bits; a row does not depend on the others.
 ///

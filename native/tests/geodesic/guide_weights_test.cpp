@@ -86,7 +86,7 @@ TEST(GuideWeights, GoAroundATorus) {
   const Eigen::MatrixXd back =
       distancesByGuide(guideWeights(surface, Locations{all[200]}, guides, options), 1);
   for (std::size_t k = 0; k < guides.size(); ++k) {
-    EXPECT_NEAR(back(k, 0), there(200, k), kGeodesicError * there(200, k));
+    EXPECT_NEAR(back(k, 0), there(200, k), kGuideDistanceError * there(200, k));
   }
 }
 
@@ -118,7 +118,7 @@ TEST(GuideWeights, AreGeodesicOnACylinder) {
         const double turn = std::abs(std::remainder(
             std::atan2(p(row, 1), p(row, 0)) - std::atan2(g(k, 1), g(k, 0)), 2 * M_PI));
         const double truth = std::hypot(radius * turn, p(row, 2) - g(k, 2));
-        EXPECT_NEAR(found(row, k), truth, kGeodesicError * std::max(truth, height / sides / 8))
+        EXPECT_NEAR(found(row, k), truth, kGuideDistanceError * std::max(truth, height / sides / 8))
             << sides;
       }
     }
