@@ -110,5 +110,6 @@ def test_the_dialog_shows_what_counts(waiting):
         "space", "width", "height", "margin", "use_tiles", "overlap",
     }  # fmt: skip
     assert shown["PTEX"] - shown["UV"] == {"direction", "max_distance", "face_resolution"}
-    labels = [call.kwargs["text"] for call in operator.layout.label.call_args_list]
+    column = operator.layout.column.return_value
+    labels = [call.kwargs["text"] for call in column.label.call_args_list]
     assert labels == ["one", "two"]
