@@ -7,7 +7,7 @@ import pytest
 import scenes
 from limit_surface import ids
 from limit_surface.reading import attributes
-from scenes import add_hair, add_subsurf, add_uv_map, strands, transformed
+from scenes import add_hair, add_subsurf, add_uv_map, place, strands, transformed
 
 SIDE = 8
 ANGLE = 0.7
@@ -18,12 +18,6 @@ TRANSFORMS = {
     "mirrored": {"scale": (-1.0, 1.0, 1.0), "rotation_euler": (0.1, 0.2, 0.3)},
     "turned inside out": {"scale": (-2.0, -2.0, -0.5)},
 }
-
-
-def place(ob, transform):
-    for name, value in transform.items():
-        setattr(ob, name, value)
-    bpy.context.view_layer.update()
 
 
 def unit(vectors):

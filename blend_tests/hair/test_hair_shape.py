@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface.reading import attributes
-from scenes import add_hair, add_subsurf, locations, strands, surface_without_addon, transformed
+from scenes import (
+    add_hair,
+    add_subsurf,
+    locations,
+    place,
+    strands,
+    surface_without_addon,
+    transformed,
+)
 
 TRANSFORMS = {
     "identity": {},
@@ -16,12 +24,6 @@ TRANSFORMS = {
     "mirrored and stretched": {"scale": (2.0, -0.3, 1.5), "location": (1, 2, 3)},
     "turned inside out": {"scale": (-1.2, -0.7, -2.0)},
 }
-
-
-def place(ob, transform):
-    for name, value in transform.items():
-        setattr(ob, name, value)
-    bpy.context.view_layer.update()
 
 
 def world_vectors(hair):

@@ -10,16 +10,7 @@ from limit_surface import ids
 from limit_surface.reading import attributes
 from mathutils import Vector
 from refusals import check_refused
-from scenes import add_hair, add_points, add_subsurf, locations
-
-STRETCHED = {"scale": (0.4, 2.5, 1.0), "rotation_euler": (0.3, 0.2, 1.0), "location": (3, 1, -2)}
-MIRRORED = {"scale": (-1.5, 1.0, 0.6), "rotation_euler": (1.0, 0.0, 0.4)}
-
-
-def place(ob, transform):
-    for name, value in transform.items():
-        setattr(ob, name, value)
-    bpy.context.view_layer.update()
+from scenes import MIRRORED, STRETCHED, add_hair, add_points, add_subsurf, locations, place
 
 
 def world_positions(points):

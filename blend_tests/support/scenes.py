@@ -179,6 +179,17 @@ def _sharpness(mesh: bpy.types.Mesh, edges: np.ndarray) -> tuple[np.ndarray, np.
     return edge, vertex
 
 
+STRETCHED = {"scale": (0.4, 2.5, 1.0), "rotation_euler": (0.3, 0.2, 1.0), "location": (3, 1, -2)}
+MIRRORED = {"scale": (-1.5, 1.0, 0.6), "rotation_euler": (1.0, 0.0, 0.4)}
+
+
+def place(ob: bpy.types.Object, transform: dict[str, tuple[float, ...]]) -> None:
+    """Sets properties of an object's transform."""
+    for name, value in transform.items():
+        setattr(ob, name, value)
+    bpy.context.view_layer.update()
+
+
 def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
     return points @ np.array(matrix)[:3, :3].T + np.array(matrix)[:3, 3]
 
