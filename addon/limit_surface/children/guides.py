@@ -10,11 +10,10 @@ import numpy as np
 
 from .. import native
 from ..errors import RefusalError
-from ..placing import followers, following
+from ..placing import followers, following, shown_strands
 from ..placing.places import Places
-from ..placing.posed_surface import transformed
 from ..placing.roots import Locations
-from ..reading import attributes, cage
+from ..reading import cage
 from ..tasks.object_keys import ObjectKey
 
 
@@ -47,21 +46,7 @@ def read(
     if not len(places.rows):
         raise RefusalError(f"{ob.name} has no strand with a place on {surface.name}")
     places.check(found.ptex_face_count, surface.name)
-    shown = ob.evaluated_get(depsgraph)
-    offsets = _offsets(shown.data)
-    if len(offsets) - 1 != places.count:
-        raise RefusalError(
-            f"The modifiers of {ob.name} change its number of strands, from {places.count:,} to "
-            f"{len(offsets) - 1:,}: disable or apply them"
-        )
-    relation = np.linalg.solve(found.matrix, np.array(shown.matrix_world, np.float64))
-    positions = transformed(relation, attributes.read(shown.data, "position").astype(np.float64))
+    positions, offsets = shown_strands.read(ob, found.matrix, depsgraph)
     shapes = native.limitsurf.resample_strands(positions, offsets, points)
     at = Locations(places.face.astype(np.int32), places.uv.astype(np.float32))
     return Guides(ObjectKey.of(ob), places.count, places.rows, at, shapes[places.rows])
-
-
-def _offsets(data: bpy.types.Curves) -> np.ndarray:
-    offsets = np.empty(len(data.curve_offset_data), np.int32)
-    data.curve_offset_data.foreach_get("value", offsets)
-    return offsets

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import bpy
@@ -14,15 +14,15 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 from .. import ids, native
 from ..errors import RefusalError
 from ..nodes import children as nodes
-from ..placing import all_tiles, followers, following, roots
+from ..placing import all_tiles, followers, following, new_hair, roots
 from ..placing.all_tiles import AllTiles
 from ..placing.binding import Binding
 from ..placing.distribution_properties import surface_object
 from ..placing.follow_properties import follows
-from ..placing.new_objects import add_on_surface
+from ..placing.new_hair import Strands
 from ..placing.rotations import WorldSpace
 from ..placing.scatter_operator import Ground, Made, Order, ScatterOperator
-from ..reading import attributes, cage
+from ..reading import cage
 from ..sources.source_mesh import Choice
 from ..tasks import polling
 from ..tasks.job import Progress, part_of
@@ -32,16 +32,6 @@ from .spread import Followed, Spread
 
 DEPTH = 16  # of the tables of tiles that are made for live children
 _ROOTS = 0.5  # the part of the progress at which the roots are evaluated
-
-
-@dataclass(frozen=True)
-class Children:
-    """Children as curves."""
-
-    binding: Binding
-    position: np.ndarray  # (children, points, 3) float32
-    surface_uv: np.ndarray | None
-    uv_map: str
 
 
 class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, bpy.types.Operator):
@@ -182,6 +172,9 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             self.report({"WARNING"}, text)
             self.summary += f"\n{text}"
 
+    def _local_radius(self, matrix: np.ndarray) -> float:
+        return self.radius / WorldSpace(matrix).mean_scale
+
     def _guides_object(self) -> bpy.types.Object:
         ob = bpy.context.active_object
         if self.guides:
@@ -217,45 +210,29 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
         if self.mode == "LIVE":
             return _live_table
         uv_map = found.uv_map.name if found.uv_map else ""
+        radius = self._local_radius(found.matrix)
 
-        def make(ground: Ground, progress: Progress) -> Children:
-            return _curves(ground, uv_map, progress)
+        def make(ground: Ground, progress: Progress) -> Strands:
+            return _curves(ground, radius, uv_map, progress)
 
         return make
 
     def add(
         self, context: bpy.types.Context, surface: bpy.types.Object, made: Any
     ) -> bpy.types.Object:
-        radius = self.radius / WorldSpace(np.array(surface.matrix_world)).mean_scale
         guides = bpy.data.objects[self.guides]
         if isinstance(made, live_children.Table):
             materials = guides.data.materials
             settings = {
                 nodes.POINTS: self.points,
                 nodes.SHARE: self.viewport_share,
-                nodes.RADIUS: radius,
+                nodes.RADIUS: self._local_radius(np.array(surface.matrix_world)),
                 nodes.MATERIAL: materials[0] if len(materials) else None,
             }
             tiles, self._tiles = self._tiles, None
             assert tiles is not None
             return live_children.add(context, surface, guides, tiles, made, settings)
-        count, points = made.position.shape[:2]
-        curves = bpy.data.hair_curves.new(ids.CHILDREN_OBJECT)
-        try:
-            curves.add_curves([points] * count)
-            curves.points.foreach_set("position", made.position.ravel())
-            attributes.write(curves, "radius", "FLOAT", "POINT", np.full(count * points, radius))
-            made.binding.write(curves, "CURVE")
-            curves.surface = surface
-            for material in guides.data.materials:
-                curves.materials.append(material)
-            if made.surface_uv is not None:
-                curves.surface_uv_map = made.uv_map
-                attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", made.surface_uv)
-            return add_on_surface(context, ids.CHILDREN_OBJECT, curves, surface)
-        except BaseException:
-            bpy.data.hair_curves.remove(curves)
-            raise
+        return new_hair.add(context, ids.CHILDREN_OBJECT, surface, made, guides.data.materials)
 
 
 def _live_table(ground: Ground, _progress: Progress) -> live_children.Table:
@@ -264,7 +241,7 @@ def _live_table(ground: Ground, _progress: Progress) -> live_children.Table:
     return live_children.Table.of(followed.locations, strand, followed.weight)
 
 
-def _curves(ground: Ground, uv_map: str, progress: Progress) -> Children:
+def _curves(ground: Ground, radius: float, uv_map: str, progress: Progress) -> Strands:
     followed = _followed(ground)
     count = len(followed.locations)
     binding = Binding(followed.locations)
@@ -283,7 +260,7 @@ def _curves(ground: Ground, uv_map: str, progress: Progress) -> Children:
         normal,
         progress=part_of(progress, _ROOTS, 1),
     )
-    return Children(binding, position, ground.surface_uv(), uv_map)
+    return Strands.equal(binding, position, np.full(count, radius), ground.surface_uv(), uv_map)
 
 
 def _followed(ground: Ground) -> Followed:

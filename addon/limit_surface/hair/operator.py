@@ -2,33 +2,23 @@
 """Operator object.limit_hair_add."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import bpy
 import numpy as np
 from bpy.props import FloatProperty, FloatVectorProperty, IntProperty
 
 from .. import ids
-from ..placing import roots
+from ..placing import new_hair, roots
 from ..placing.binding import Binding
 from ..placing.distribution_properties import DENSITY, surface_object
-from ..placing.new_objects import add_on_surface
+from ..placing.new_hair import Strands
 from ..placing.rotations import WorldSpace
 from ..placing.scatter_operator import Ground, ScatterOperator
-from ..reading import attributes, cage
+from ..reading import cage
 from ..sources.source_mesh import Choice
 from ..tasks.job import Progress
 from . import steering
 from .strands import Shape, StrandMaker
-
-
-@dataclass(frozen=True)
-class Strands:
-    binding: Binding
-    position: np.ndarray  # (strands, points, 3) float32
-    radius: np.ndarray  # (strands,) float32
-    surface_uv: np.ndarray | None
-    uv_map: str
 
 
 class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy.types.Operator):
@@ -127,25 +117,11 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
                 )
                 position[part.rows] = maker.strands(part.position, frame, shape)
                 radii[part.rows] = radius * factors["radius"][:, 0]
-            return Strands(binding, position, radii, ground.surface_uv(), uv_map)
+            return Strands.equal(binding, position, radii, ground.surface_uv(), uv_map)
 
         return make
 
     def add(
         self, context: bpy.types.Context, surface: bpy.types.Object, made: Strands
     ) -> bpy.types.Object:
-        count, points = made.position.shape[:2]
-        curves = bpy.data.hair_curves.new(ids.HAIR_OBJECT)
-        try:
-            curves.add_curves([points] * count)
-            curves.points.foreach_set("position", made.position.ravel())
-            attributes.write(curves, "radius", "FLOAT", "POINT", made.radius.repeat(points))
-            made.binding.write(curves, "CURVE")
-            curves.surface = surface
-            if made.surface_uv is not None:
-                curves.surface_uv_map = made.uv_map
-                attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", made.surface_uv)
-            return add_on_surface(context, ids.HAIR_OBJECT, curves, surface)
-        except BaseException:
-            bpy.data.hair_curves.remove(curves)
-            raise
+        return new_hair.add(context, ids.HAIR_OBJECT, surface, made)

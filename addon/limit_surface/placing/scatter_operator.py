@@ -73,17 +73,8 @@ class Ground:
         return directions.in_surface_space(part.rows, part.frame[:, :, 2], space)
 
     def surface_uv(self) -> np.ndarray | None:
-        """Returns the locations on the UV map of the mesh that the viewport shows. Where that mesh
-        is subdivided the map is smoothed, because Blender's nodes look locations up on the
-        evaluated mesh.
-        """
-        found = self.cage.uv_map
-        if found is None:
-            return None
-        smoothed = self.region.surface.face_varying(
-            found.values, found.indices, self.cage.shown_uv_interpolation
-        )
-        return smoothed.evaluate(self.locations.face, self.locations.uv.astype(np.float64)).value
+        face, uv = self.locations.face, self.locations.uv.astype(np.float64)
+        return self.cage.surface_uv(self.region.surface, face, uv)
 
 
 class Distributes(Protocol):

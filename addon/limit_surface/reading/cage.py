@@ -92,6 +92,20 @@ class Cage:
             surface.set_positions(self.world_positions())
         return surface
 
+    def surface_uv(
+        self, surface: limitsurf.LimitSurface, face: np.ndarray, uv: np.ndarray
+    ) -> np.ndarray | None:
+        """Returns locations (n, 2) on the UV map of the mesh that the viewport shows, as curves
+        store them; None where there is no map. Where that mesh is subdivided the map is smoothed,
+        because Blender's nodes look locations up on the evaluated mesh.
+        """
+        if self.uv_map is None:
+            return None
+        smoothed = surface.face_varying(
+            self.uv_map.values, self.uv_map.indices, self.shown_uv_interpolation
+        )
+        return smoothed.evaluate(face, uv).value
+
     def with_holes(self, faces: np.ndarray) -> limitsurf.ControlMesh:
         """Returns the control mesh with some faces made holes, which have no surface."""
         mesh = self.mesh

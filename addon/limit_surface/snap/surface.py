@@ -59,16 +59,7 @@ class TargetSurface:
         return seen_from(space, places, self.cage.matrix)
 
     def surface_uv(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray | None:
-        """Returns coordinates on the UV map of the mesh that the viewport shows, as new hair stores
-        them.
-        """
-        found = self.cage.uv_map
-        if found is None:
-            return None
-        shown = self._in_object.face_varying(
-            found.values, found.indices, self.cage.shown_uv_interpolation
-        )
-        return shown.evaluate(face, uv).value
+        return self.cage.surface_uv(self._in_object, face, uv)
 
     def _positions(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
         if self._shown is None:

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The strands of hair as they are shown in a frame, after the hair's modifiers."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError
+from ..reading import attributes
+from .posed_surface import transformed
+
+
+def read(
+    ob: bpy.types.Object, space: np.ndarray, depsgraph: bpy.types.Depsgraph
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns points (m, 3) in the space that the matrix `space` maps to the world, and the first
+    point of each strand, with the number of all points at the end. Raises RefusalError where
+    modifiers change the number of strands.
+    """
+    shown, count = ob.evaluated_get(depsgraph), len(ob.data.curves)
+    offsets = np.empty(len(shown.data.curve_offset_data), np.int32)
+    shown.data.curve_offset_data.foreach_get("value", offsets)
+    if len(offsets) - 1 != count:
+        raise RefusalError(
+            f"The modifiers of {ob.name} change its number of strands, from {count:,} to "
+            f"{len(offsets) - 1:,}: disable or apply them"
+        )
+    points = attributes.read(shown.data, "position").astype(np.float64)
+    matrix = np.array(shown.matrix_world, np.float64)
+    if np.array_equal(matrix, space):
+        return points, offsets
+    return transformed(np.linalg.solve(space, matrix), points), offsets
