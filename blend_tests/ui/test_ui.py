@@ -105,7 +105,9 @@ def test_menu_offers_the_operators():
     layout = drawn(bpy.types.VIEW3D_MT_object_limit_surface)
     offered = [call.args[0] for call in layout.operator.call_args_list]
     first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.CHILDREN_ADD, ids.SNAP, ids.SNAP_MODAL, ids.SHOW]
-    first += [ids.REPORT_OPERATOR, ids.ATTACH, ids.SAMPLE_TABLES, ids.SAMPLE_REMOVE]
+    first += [ids.REPORT_OPERATOR, ids.ATTACH]
+    first += [ids.PARTICLES_FROM_HAIR, ids.HAIR_FROM_PARTICLES]
+    first += [ids.SAMPLE_TABLES, ids.SAMPLE_REMOVE]
     first += [ids.FOLLOW, ids.REBIND, ids.UNBIND]
     textures = drawn(bpy.types.VIEW3D_PT_limit_textures).column()
     assert textures.enabled is True

@@ -26,6 +26,7 @@ CAPABILITIES = (
     "follow",
     "hair",
     "limit_mesh",
+    "particles",
     "points",
     "project_image",
     "report",

@@ -14,18 +14,18 @@ from .posed_surface import transformed
 def read(
     ob: bpy.types.Object, space: np.ndarray, depsgraph: bpy.types.Depsgraph
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns points (m, 3) in the space that the matrix `space` maps to the world, and the first
-    point of each strand, with the number of all points at the end. Raises RefusalError where
-    modifiers change the number of strands.
+    """Reads hair with one strand or more. Returns points (m, 3) in the space that the matrix
+    `space` maps to the world, and the first point of each strand, with the number of all points at
+    the end. Raises RefusalError where modifiers change the number of strands.
     """
     shown, count = ob.evaluated_get(depsgraph), len(ob.data.curves)
-    offsets = np.empty(len(shown.data.curve_offset_data), np.int32)
-    shown.data.curve_offset_data.foreach_get("value", offsets)
-    if len(offsets) - 1 != count:
+    if len(shown.data.curves) != count:
         raise RefusalError(
             f"The modifiers of {ob.name} change its number of strands, from {count:,} to "
-            f"{len(offsets) - 1:,}: disable or apply them"
+            f"{len(shown.data.curves):,}: disable or apply them"
         )
+    offsets = np.empty(count + 1, np.int32)
+    shown.data.curve_offset_data.foreach_get("value", offsets)
     points = attributes.read(shown.data, "position").astype(np.float64)
     matrix = np.array(shown.matrix_world, np.float64)
     if np.array_equal(matrix, space):

@@ -13,7 +13,9 @@ and the class that provides it:
    the redo panel and confirmed dialogs begin.
 4. `start`: the operator reads from Blender what the work needs, and hands a job to `watch`.
 5. `watch`: WatchedOperator runs the job. It is done at once for scripts; where somebody waits, it
-   runs in a thread, and `modal` looks after it until it is done or ESC ends it by `cancel`.
+   runs in a thread, and `modal` looks after it until it is done or ESC ends it by `cancel`. A
+   PiecewiseJob (`tasks/piecewise_job.py`), which works on Blender's own data, runs piece by piece
+   in `modal` instead.
 6. `finish`: the operator gets what the job has made, and is the first to change anything.
 
 `placing/scatter_operator.py` says how a ScatterOperator divides steps 4 to 6 further.
@@ -29,7 +31,7 @@ import bpy
 from .. import native
 from .job import Job
 from .polling import mesh_in_object_mode
-from .progress import Waiting, progress_bar
+from .progress import TICK, Waiting, progress_bar
 from .properties import SummaryProperty
 
 #: Where a user waits, work that is not done after so many seconds shows its progress while Blender
@@ -92,6 +94,7 @@ class WatchedOperator(SummaryProperty):
             return {"RUNNING_MODAL"}
         job = self._job
         assert job is not None
+        job.advance(TICK)
         self._waiting.show(job.part)
         if not job.is_done:
             return {"RUNNING_MODAL"}

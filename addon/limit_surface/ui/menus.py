@@ -20,6 +20,8 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
         self.layout.operator(ids.SHOW, icon="HIDE_OFF")
         self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
         self.layout.operator(ids.ATTACH, icon="LINKED")
+        self.layout.operator(ids.PARTICLES_FROM_HAIR, icon="PARTICLES")
+        self.layout.operator(ids.HAIR_FROM_PARTICLES, icon="CURVES")
         self.layout.operator(ids.SAMPLE_TABLES, icon="NODETREE")
         self.layout.operator(ids.SAMPLE_REMOVE, icon="TRASH")
         self.layout.separator()
