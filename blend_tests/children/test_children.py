@@ -9,27 +9,12 @@ import follow_truth
 import numpy as np
 import pytest
 import scenes
+from children_scenes import add_children, add_guides, check_parted, lengths, sheet, two_sided
 from limit_surface import ids
 from limit_surface.children.operator import OBJECT_OT_limit_children_add
 from limit_surface.children.spread import Spread
 from limit_surface.errors import CancelledError
 from limit_surface.reading import attributes
-
-
-def add_guides(ob: bpy.types.Object, **properties: object) -> bpy.types.Object:
-    settings = {"distribution": "UNIFORM", "count": 30, "points": 8, "length": 0.3}
-    return scenes.add_hair(ob, **settings | properties)
-
-
-def add_children(guides: bpy.types.Object, **properties: object) -> bpy.types.Object:
-    scenes.activate(guides)
-    settings = {"distribution": "UNIFORM", "count": 300}
-    assert bpy.ops.object.limit_children_add(**settings | properties) == {"FINISHED"}
-    return bpy.context.active_object
-
-
-def lengths(strands: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(np.diff(strands, axis=1), axis=2).sum(axis=1)
 
 
 def subdivided(name: str) -> bpy.types.Object:
@@ -100,31 +85,6 @@ def test_children_follow_by_nodes():
     now = follow_truth.on_surface(ob, made.data)
     away = np.abs(follow_truth.shown_strands(made)[:, 0] - now.position).max()
     assert away < follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
-
-
-def two_sided(ob: bpy.types.Object) -> bpy.types.Object:
-    """Adds guides that lean to the left where x < 2, and to the right elsewhere."""
-    guides = add_guides(ob, count=60)
-    strands = scenes.strands(guides)
-    left = strands[:, 0, 0] < 2
-    lean = np.where(left, -1, 1)[:, None] * np.linspace(0, 1, 8)
-    strands[:, :, 0] = strands[:, :1, 0] + lean
-    guides.data.points.foreach_set("position", strands.ravel())
-    return guides
-
-
-def check_parted(made: bpy.types.Object) -> None:
-    strands = scenes.strands(made)
-    leans = strands[:, -1, 0] - strands[:, 0, 0]
-    np.testing.assert_array_equal(np.sign(leans), np.where(strands[:, 0, 0] < 2, -1, 1))
-    bent = np.abs(leans) / lengths(strands)
-    assert bent.min() > 0.9
-
-
-def sheet() -> bpy.types.Object:
-    ob = scenes.flat_grid(4)
-    scenes.add_subsurf(ob)
-    return ob
 
 
 def mark_middle(ob: bpy.types.Object) -> np.ndarray:

@@ -141,7 +141,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             )
 
     def sources(self) -> Mapping[str, Choice]:
-        return {"parting": parting.choice(self.properties)}
+        return {"parting": parting.choice(self.properties, bpy.context)}
 
     @staticmethod
     def draw_own(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Partings: edges of the control mesh across which no child follows a guide."""
+"""Partings: edges of the control mesh, and curves, across which no child follows a guide."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -11,8 +12,10 @@ from bpy.props import EnumProperty, StringProperty
 
 from .. import ids
 from ..errors import RefusalError
-from ..reading import attributes
+from ..reading import attributes, curve_lines
 from ..sources.source_mesh import SourceMesh
+from ..sources.value_properties import search
+from ..sources.values import labelled
 
 _NAMED = ("EDGE_ATTRIBUTE", "FACE_ATTRIBUTE")
 
@@ -41,6 +44,13 @@ class PartingProperties:
                 3,
             ),
             ("MATERIALS", "Materials", "Part between faces of different material slots", "", 4),
+            (
+                "CURVES",
+                "Curves",
+                "Part along the curves of an object, which are laid onto the surface",
+                "",
+                5,
+            ),
         ),
         default="NONE",
     )
@@ -49,21 +59,35 @@ class PartingProperties:
         description="Name of the Boolean edge attribute that is true along the parting, or of the "
         "integer or Boolean face attribute that tells regions apart",
     )
+    parting_curves: StringProperty(
+        name="Parting Curves",
+        description="Name of the curve or hair object along whose curves the hair is parted. They "
+        "may lie on the surface or near it",
+    )
+
+
+class Parting(NamedTuple):
+    """Arguments of LimitSurface.guide_weights."""
+
+    cuts: np.ndarray  # (n, 2): edges of the control mesh by their vertices
+    cut_points: np.ndarray  # (m, 3) in the world
+    cut_offsets: np.ndarray  # (curves + 1,)
 
 
 @dataclass(frozen=True)
 class PartingChoice:
-    """The chosen parting. `read` returns its edges, (n, 2) vertices."""
+    """The chosen parting, of which curves have been read already."""
 
     kind: str
     attribute: str
+    lines: np.ndarray  # (n, 2, 3) of curves in the world
 
     def wanted_vertex_groups(self, _ob: bpy.types.Object) -> list[str]:
         return []
 
-    def read(self, mesh: SourceMesh) -> np.ndarray:
+    def read(self, mesh: SourceMesh) -> Parting:
         edges = attributes.read(mesh.mesh, ids.EDGE_VERTICES)
-        return edges[self._is_cut(mesh)]
+        return Parting(edges[self._is_cut(mesh)], *curve_lines.joined(self.lines))
 
     def _is_cut(self, mesh: SourceMesh) -> np.ndarray:
         data = mesh.mesh
@@ -93,8 +117,16 @@ class PartingChoice:
         return attributes.read(mesh.mesh, self.attribute)
 
 
-def choice(properties: bpy.types.OperatorProperties) -> PartingChoice:
-    return PartingChoice(properties.parting, properties.parting_attribute)
+def choice(properties: bpy.types.OperatorProperties, context: bpy.types.Context) -> PartingChoice:
+    """Returns the choice. Raises RefusalError if curves are chosen and there are none."""
+    lines = np.empty((0, 2, 3))
+    if properties.parting == "CURVES":
+        ob = bpy.data.objects.get(properties.parting_curves)
+        with labelled("Parting"):
+            if ob is None:
+                raise RefusalError(f"There is no object {properties.parting_curves!r}")
+            lines = curve_lines.read(ob, context.evaluated_depsgraph_get())
+    return PartingChoice(properties.parting, properties.parting_attribute, lines)
 
 
 def draw(
@@ -103,6 +135,8 @@ def draw(
     ob: bpy.types.Object | None,
 ) -> None:
     layout.prop(properties, "parting")
+    if properties.parting == "CURVES":
+        search(layout, properties, "parting_curves", bpy.data, "objects")
     if properties.parting not in _NAMED:
         return
     if ob is None:

@@ -53,7 +53,7 @@ class Spread:
             at.face,
             at.uv,
             self.count,
-            cuts=region.sources["parting"],
+            **region.sources["parting"]._asdict(),
             progress=part_of(progress, _SCATTERED, 1),
         )
         reached = near.guide[:, 0] >= 0

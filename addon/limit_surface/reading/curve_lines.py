@@ -42,6 +42,18 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
     return lines @ matrix[:3, :3].T + matrix[:3, 3]
 
 
+def joined(lines: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns lines (n, 2, 3) as curves: their points (m, 3), and the offsets (k + 1,) of each
+    one's points. A line that begins where the one before ends continues its curve.
+    """
+    begins = np.ones(len(lines), bool)
+    begins[1:] = (lines[1:, 0] != lines[:-1, 1]).any(axis=1)
+    keeps = np.ones((len(lines), 2), bool)
+    keeps[:, 0] = begins
+    sizes = keeps.sum(axis=1)
+    return lines[keeps], np.append((np.cumsum(sizes) - sizes)[begins], sizes.sum())
+
+
 @contextmanager
 def _thin(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
     """Yields the object, or for a Curve object a copy without bevel, extrusion and filling."""

@@ -37,34 +37,6 @@ struct Samples {
   Points middle, along;
 };
 
-void check(const Polylines& curves) {
-  const auto& offsets = curves.offsets;
-  if (offsets.empty() || offsets.front() != 0 || !std::is_sorted(offsets.begin(), offsets.end()) ||
-      offsets.back() != curves.points.rows()) {
-    throw std::invalid_argument(
-        "offsets must begin with 0, must not decrease, and must end with the number of points, " +
-        std::to_string(curves.points.rows()));
-  }
-  for (Eigen::Index row = 0; row < curves.points.rows(); ++row) {
-    if (!curves.points.row(row).allFinite()) {
-      throw std::invalid_argument("row " + std::to_string(row) + ": the point is not finite");
-    }
-  }
-}
-
-/// Calls body(from, to) for the ends of each straight line of positive length.
-template <typename Body>
-void forEachLine(const Polylines& curves, const Body& body) {
-  for (std::size_t curve = 0; curve + 1 < curves.offsets.size(); ++curve) {
-    for (std::int64_t row = curves.offsets[curve] + 1; row < curves.offsets[curve + 1]; ++row) {
-      const Vector3 from = curves.points.row(row - 1), to = curves.points.row(row);
-      if (from != to) {
-        body(from, to);
-      }
-    }
-  }
-}
-
 Samples sample(const Polylines& curves, double spacing) {
   constexpr double kMostPieces = 1 << 20;  // of one line
   const auto pieces = [&](const Vector3& from, const Vector3& to) {
@@ -227,7 +199,7 @@ Points evaluate(const LimitSurface& surface, const FlowMesh& mesh, const Eigen::
 Points curveDirections(const LimitSurface& surface, const Polylines& curves,
                        const LocationBatch& locations, int threads, const Progress& progress) {
   checkThreads(threads);
-  check(curves);
+  checkPolylines(curves);
   const LocationBatch at = surface.checkLocations(locations);
   const auto report = [&](double part) {
     if (progress) {

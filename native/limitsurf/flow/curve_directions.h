@@ -2,20 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "limitsurf/progress.h"
+#include "limitsurf/search/polylines.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
-
-/// Curves as points with straight lines between them. Curve i has the points offsets[i] to
-/// offsets[i + 1] - 1; a closed curve ends with its first point.
-struct Polylines {
-  Points points;
-  std::vector<std::int64_t> offsets;
-};
 
 /// The number of polygons on which curveDirections() computes, to a factor of 2, unless the mesh
 /// itself has more or they would be smaller than 1/64 of a face.

@@ -109,6 +109,9 @@ GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guid
     throw std::invalid_argument("count is " + std::to_string(options.count) + "; expected 1 to " +
                                 std::to_string(GuideOptions::kMostGuides));
   }
+  if (!options.cut_curves.offsets.empty() || options.cut_curves.points.rows() > 0) {
+    checkPolylines(options.cut_curves);
+  }
   const LocationBatch checked_guides = surface.checkLocations(guides);
   const LocationBatch checked = surface.checkLocations(at);
   GuideWeights result;
@@ -118,8 +121,9 @@ GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guid
   result.weight.assign(size, 0);
   result.distance.assign(size, std::numeric_limits<double>::infinity());
 
-  const GeodesicMesh mesh(surface, levelsFor(surface, checked_guides), options.cuts,
-                          options.threads, partOf(options.progress, 0, kTriangles));
+  const GeodesicMesh mesh(surface, levelsFor(surface, checked_guides),
+                          {options.cuts, options.cut_curves}, options.threads,
+                          partOf(options.progress, 0, kTriangles));
   const std::vector<MeshPlace> sources = placesOn(surface, mesh, checked_guides, options.threads);
   const NearestSources nearest(mesh, sources, options.count + kSpare,
                                partOf(options.progress, kTriangles, kDistances));

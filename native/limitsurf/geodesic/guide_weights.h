@@ -6,6 +6,7 @@
 
 #include "limitsurf/geodesic/cut_edges.h"
 #include "limitsurf/progress.h"
+#include "limitsurf/search/polylines.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/types.h"
 
@@ -31,6 +32,10 @@ struct GuideOptions {
   int count = 4;  ///< guides of each place, 1 to kMostGuides
   /// Edges of the control mesh that no way crosses. A way may go around the end of a row of edges.
   EdgeList cuts{};
+  /// Curves on the surface or near it that no way crosses. They are laid onto the surface at the
+  /// points of it that are closest to them. A way may go around an end, unless it lies on a border
+  /// or on another curve.
+  Polylines cut_curves{};
   int threads = 0;
   Progress progress{};
 };
@@ -47,10 +52,12 @@ struct GuideOptions {
 ///
 /// Properties: any number of threads gives the same bits; a row does not depend on the others.
 ///
-/// Throws std::invalid_argument for a count out of range, MeshError for cuts that are no edges, and
-/// as evaluate() does for locations. Cost: about 2 microseconds for each vertex of the triangles
-/// and each guide that it keeps (three more than `count`), on one core; a microsecond a place, on
-/// all of them. Memory: 24 bytes for each of the former and 16 for each guide of a place.
+/// Throws std::invalid_argument for a count out of range, for offsets of curves that are not those
+/// of Polylines, and naming the first point of them that is not finite; MeshError for cuts that are
+/// no edges, and as evaluate() does for locations. Cost: about 2 microseconds for each vertex of
+/// the triangles and each guide that it keeps (three more than `count`), on one core; a microsecond
+/// a place, on all of them. Memory: 24 bytes for each of the former and 16 for each guide of a
+/// place.
 GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guides,
                           const LocationBatch& at, const GuideOptions& options = {});
 

@@ -515,6 +515,8 @@ class LimitSurface(metaclass=_BoundType):
         count: int = 4,
         *,
         cuts: ArrayLike | None = None,
+        cut_points: ArrayLike | None = None,
+        cut_offsets: ArrayLike | None = None,
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> GuideWeights: ...

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <vector>
-
 #include "batches.h"
 #include "limitsurf/flow/curve_directions.h"
+#include "polylines.h"
 #include "progress.h"
 #include "shared_surface.h"
 
@@ -36,25 +35,11 @@ part of a curve runs along the surface. Cost, on one core: 0.4 s for 16,000
 polygons, 9 s for 100,000. The number of threads gives the same bits.
 )";
 
-Polylines curvesOf(const py::object& points, const py::object& offsets) {
-  const Doubles array = doubles(points, "points");
-  if (array.ndim() != 2 || array.shape(1) != 3) {
-    throw py::value_error("points has shape " + shapeText(array) + "; expected (m, 3)");
-  }
-  Polylines curves{pointsOf(array), {0, array.shape(0)}};
-  if (!offsets.is_none()) {
-    const Integers given = integers<std::invalid_argument>(offsets, "offsets");
-    requireVector<std::invalid_argument>(given, "offsets");
-    curves.offsets.assign(given.data(), given.data() + given.size());
-  }
-  return curves;
-}
-
 py::object curveDirections(const SharedSurface& shared, const py::object& points,
                            const py::object& offsets, const py::object& face, const py::object& uv,
                            int threads, const py::object& dtype, const py::object& progress) {
   checkThreads(threads);
-  const Polylines curves = curvesOf(points, offsets);
+  const Polylines curves = polylinesOf(points, "points", offsets, "offsets");
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   Output output(floatType(dtype), {static_cast<py::ssize_t>(at.size()), 3});
   const ProgressReport report(progress);

@@ -9,6 +9,7 @@
 #include "batches.h"
 #include "limitsurf/geodesic/guide_weights.h"
 #include "limitsurf/surface/strands/child_strands.h"
+#include "polylines.h"
 #include "progress.h"
 #include "shared_surface.h"
 
@@ -16,7 +17,8 @@ namespace limitsurf::python {
 namespace {
 
 constexpr char kGuideWeightsDoc[] =
-    R"(guide_weights(guide_face, guide_uv, face, uv, count=4, *, cuts=None, threads=0, progress=None)
+    R"(guide_weights(guide_face, guide_uv, face, uv, count=4, *, cuts=None, cut_points=None, cut_offsets=None,
+              threads=0, progress=None)
 
 The nearest guides of places by distance along the surface, and weights that fall off with it: what
 children of hair need. A way does not lead through the air: guides on the other lip are far away.
@@ -28,6 +30,12 @@ Parameters
     cuts: (m, 2) integers, pairs of vertices: edges of the control mesh that no way crosses, as a
         parting. A way may go around the end of a row of edges. To keep regions apart, give all edges
         between them.
+    cut_points: (p, 3): the points of curves that no way crosses either. They consist of straight lines
+        between these points, and are laid onto the surface at the points of it that are closest to
+        them. A closed curve ends with its first point. A way may go around an end, unless that lies on
+        a border or on another curve.
+    cut_offsets: (k + 1,) integers: curve i has the points cut_offsets[i] to cut_offsets[i + 1] - 1.
+        None: all points are one curve.
     threads: 0 uses all cores.
     progress: a function that is called from time to time with the part of the work that is done, 0 to
         1; an exception that it raises ends the call.
@@ -44,7 +52,9 @@ of such a side, except behind cuts and borders. The number of threads gives
 the same bits. Distances are those of the present pose: for those in the world, pose the surface there.
 
 Raises LocationError and MeshError as evaluate() does, MeshError for cuts that are no edges of the mesh,
-naming the row, ValueError for a count out of range. Cost for a mesh of 10,000 faces and 1,000 guides:
+naming the row, and ValueError for a count out of range, for points and offsets of curves of other shapes,
+for offsets that do not begin with 0, decrease, or do not end with p, and for a point that is not finite.
+Cost for a mesh of 10,000 faces and 1,000 guides:
 some seconds, and a microsecond for each place. Memory: 24 bytes for each of some 160,000 vertices and
 count + 3, and 20 for each guide of a place.)";
 
@@ -102,12 +112,16 @@ py::array_t<T> table(const std::vector<T>& values, std::size_t rows, int columns
 
 py::object guideWeights(const SharedSurface& shared, const py::object& guide_face,
                         const py::object& guide_uv, const py::object& face, const py::object& uv,
-                        int count, const py::object& cuts, int threads,
-                        const py::object& progress) {
+                        int count, const py::object& cuts, const py::object& cut_points,
+                        const py::object& cut_offsets, int threads, const py::object& progress) {
   checkThreads(threads);
   const CheckedLocations guides = locationsOn(shared.surface(), guide_face, guide_uv);
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
-  const GuideOptions options{count, edgesOf(cuts), threads, ProgressReport(progress)};
+  const GuideOptions options{
+      count, edgesOf(cuts),
+      cut_points.is_none() ? Polylines{}
+                           : polylinesOf(cut_points, "cut_points", cut_offsets, "cut_offsets"),
+      threads, ProgressReport(progress)};
   GuideWeights found;
   {
     const py::gil_scoped_release release;
@@ -202,7 +216,8 @@ py::object childStrands(const py::object& guide_points, const py::object& guide_
 void bindGuideWeights(py::class_<SharedSurface>& type) {
   using namespace py::literals;
   type.def("guide_weights", &guideWeights, "guide_face"_a, "guide_uv"_a, "face"_a, "uv"_a,
-           "count"_a = GuideOptions().count, py::kw_only(), "cuts"_a = py::none(), "threads"_a = 0,
+           "count"_a = GuideOptions().count, py::kw_only(), "cuts"_a = py::none(),
+           "cut_points"_a = py::none(), "cut_offsets"_a = py::none(), "threads"_a = 0,
            "progress"_a = py::none(), kGuideWeightsDoc);
 }
 

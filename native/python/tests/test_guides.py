@@ -59,6 +59,20 @@ def test_cuts_keep_regions_apart(sheet):
     assert (sheet.guide_weights(*guides, *at, 2).guide >= 0).all()
 
 
+def test_curves_keep_regions_apart(sheet):
+    guides = [0, 5, 30], np.full((3, 2), 0.5)
+    at = places(sheet, 500, 5)
+    x, y = sheet.evaluate(*at).position[:, :2].T
+    # two curves: one from border to border, and one from it to the border
+    points = [[2.6, -1, 0], [2.6, 7, 0], [2.6, 3.3, 0], [-1, 3.3, 0]]
+    found = sheet.guide_weights(*guides, *at, 2, cut_points=points, cut_offsets=[0, 2, 4])
+    truth = np.where(x > 2.6, 1, np.where(y > 3.3, 2, 0))
+    np.testing.assert_array_equal(found.guide[:, 0], truth)
+    np.testing.assert_array_equal(found.guide[:, 1], -1)
+    one = sheet.guide_weights(*guides, *at, 3, cut_points=points[:2])
+    np.testing.assert_array_equal((one.guide >= 0).sum(axis=1), np.where(x > 2.6, 1, 2))
+
+
 def test_any_number_of_threads_gives_the_same(sheet):
     guides, at = places(sheet, 50, 6), places(sheet, 5000, 7)
     one = sheet.guide_weights(*guides, *at, threads=1)
@@ -96,6 +110,12 @@ def test_errors(sheet):
         sheet.guide_weights(*at, *at, cuts=[0, 1])
     with pytest.raises(ls.LocationError, match="face 36"):
         sheet.guide_weights([36], [[0, 0]], *at)
+    with pytest.raises(ValueError, match="cut_points has shape"):
+        sheet.guide_weights(*at, *at, cut_points=[0, 1])
+    with pytest.raises(ValueError, match="row 1: the point is not finite"):
+        sheet.guide_weights(*at, *at, cut_points=[[0, 0, 0], [np.nan, 0, 0]])
+    with pytest.raises(ValueError, match="number of points, 2"):
+        sheet.guide_weights(*at, *at, cut_points=np.zeros((2, 3)), cut_offsets=[0, 1])
     for count in (0, 17):
         with pytest.raises(ValueError, match=f"count is {count}"):
             sheet.guide_weights(*at, *at, count)

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limitsurf/types.h"
+
+namespace limitsurf {
+
+/// Curves as points with straight lines between them. Curve i has the points offsets[i] to
+/// offsets[i + 1] - 1; a closed curve ends with its first point.
+struct Polylines {
+  Points points;
+  std::vector<std::int64_t> offsets;
+};
+
+/// Throws std::invalid_argument for offsets that do not begin with 0, decrease, or do not end with
+/// the number of points; and naming the first point that is not finite.
+void checkPolylines(const Polylines& curves);
+
+/// Calls body(from, to) for the ends of each straight line of positive length.
+template <typename Body>
+void forEachLine(const Polylines& curves, const Body& body) {
+  for (std::size_t curve = 0; curve + 1 < curves.offsets.size(); ++curve) {
+    for (std::int64_t row = curves.offsets[curve] + 1; row < curves.offsets[curve + 1]; ++row) {
+      const Vector3 from = curves.points.row(row - 1), to = curves.points.row(row);
+      if (from != to) {
+        body(from, to);
+      }
+    }
+  }
+}
+
+}  // namespace limitsurf
