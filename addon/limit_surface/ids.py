@@ -48,6 +48,8 @@ SURFACE_UV = "surface_uv_coordinate"  # defined by Blender
 NORMAL = "normal"
 TANGENT = "tangent"
 ROTATION = "rotation"
+SCALE = "scale"
+MEMBER = "instance_index"
 
 # Attributes of the surface's mesh
 DISTANCE = "limit_distance"
@@ -89,6 +91,7 @@ DECAL_OBJECT = "Limit Decal"
 DECAL_UV = "Image"  # UV map of decals
 CHILDREN_OBJECT = "Limit Children"
 INSTANCES_GROUP = "Limit Instances"
+MEMBERS_GROUP = "Limit Collection Instances"
 SCALES_GROUP = "Limit Scales"
 
 # What follows a deforming surface: groups, the tables that they read, and their attributes

@@ -124,8 +124,8 @@ def test_menu_offers_the_operators():
         assert properties_of(operator)
 
 
-def choices(name):
-    return properties_of(ids.HAIR_ADD)[name].enum_items.keys()
+def choices(name, operator=ids.HAIR_ADD):
+    return properties_of(operator)[name].enum_items.keys()
 
 
 def properties_of(operator):
@@ -133,10 +133,10 @@ def properties_of(operator):
     return getattr(getattr(bpy.ops, area), name).get_rna_type().properties
 
 
-def shown_in_redo_panel(**chosen):
+def shown_in_redo_panel(operator=ids.HAIR_ADD, **chosen):
     """Returns the names of the properties that are shown with these choices."""
-    last = bpy.types.OBJECT_OT_limit_hair_add
-    names = properties_of(ids.HAIR_ADD).keys()
+    last = getattr(bpy.types, operator.replace("object.", "OBJECT_OT_"))
+    names = properties_of(operator).keys()
     values = {name: "NONE" if name.endswith("_source") else "" for name in names} | chosen
     self = MagicMock(
         summary="80 strands on 5 faces",
@@ -182,6 +182,32 @@ def test_redo_panel_shows_every_property_where_it_counts():
     assert "lift" not in along
     every |= shown_in_redo_panel(**distribution | {"direction": "OUTWARDS", "rows": 2})
     assert every == set(properties_of(ids.HAIR_ADD).keys()) - {"rna_type", "summary", "surface"}
+
+
+def test_redo_panel_of_points_shows_every_property_where_it_counts():
+    ob = scenes.cross()
+    for name in "AB":
+        ob.data.materials.append(bpy.data.materials.new(name))
+
+    def shown(**chosen):
+        plain = {"distribution": "JITTERED", "faces": "ALL", "instances": "OBJECT"}
+        return shown_in_redo_panel(ids.POINTS_ADD, **plain | {"flow_axis": "X"} | chosen)
+
+    every = shown(instances="SCALE") | shown(flow_source="ATTRIBUTE", flow_axis="Z")
+    assert "flow_angle" in every
+    assert "flow_angle" not in shown(flow_source="ATTRIBUTE")
+    assert not {"collection", "index_source", "flow_axis"} & shown()
+    steered = [f"{name}_source" for name in ("scale", "rotation", "tilt", "random", "index")]
+    for name in (*steered, "density_source", "flow_source", "faces"):
+        for choice in choices(name, ids.POINTS_ADD):
+            chosen = shown(instances="COLLECTION", **{name: choice})
+            assert ({"uv_map", "extension"} <= chosen) == (choice == "IMAGE")
+            every |= chosen
+    for amount in choices("amount", ids.POINTS_ADD):
+        every |= shown(distribution="BLUE_NOISE", amount=amount)
+    border = {"distribution": "BORDER", "amount": "COUNT", "direction": "OUTWARDS", "rows": 2}
+    every |= shown(**border) | shown()
+    assert every == set(properties_of(ids.POINTS_ADD).keys()) - {"rna_type", "summary", "surface"}
 
 
 def test_registering_again():

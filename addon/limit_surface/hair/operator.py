@@ -15,13 +15,14 @@ from ..placing.new_hair import Strands
 from ..placing.rotations import WorldSpace
 from ..placing.scatter_operator import Ground, ScatterOperator
 from ..reading import cage
+from ..sources import steering
 from ..sources.source_mesh import Choice
 from ..tasks.job import Progress
-from . import steering
+from .steering import SIGNED, STEERED, SteeringProperties, draw
 from .strands import Shape, StrandMaker
 
 
-class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy.types.Operator):
+class OBJECT_OT_limit_hair_add(ScatterOperator, SteeringProperties, bpy.types.Operator):
     """Grow hair on the active mesh's limit surface: each root lies exactly on the smooth surface
     that its subdivisions converge to"""
 
@@ -78,13 +79,13 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
         return self.points
 
     def sources(self) -> Mapping[str, Choice]:
-        return steering.choices(self.properties, bpy.context)
+        return steering.choices(self.properties, bpy.context, STEERED)
 
     @staticmethod
     def draw_own(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
         surface = surface_object(properties, bpy.context)
-        steering.draw(layout, properties, surface)
-        steering.draw_image_place(layout, properties, surface, DENSITY.source)
+        draw(layout, properties, surface)
+        steering.draw_image_place(layout, properties, surface, STEERED, DENSITY.source)
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Strands]:
         space = WorldSpace(found.matrix)
@@ -95,15 +96,20 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, steering.SteeringProperties, bpy
         uv_map = found.uv_map.name if found.uv_map else ""
 
         def make(ground: Ground, progress: Progress) -> Strands:
-            steered, maker = steering.Steering(ground.region), StrandMaker(space, seed)
-            flow = steered.flow(ground.locations)
+            region, maker = ground.region, StrandMaker(space, seed)
+            steered = steering.Steering(
+                region.sources, region.cage, region.surface, STEERED, SIGNED
+            )
+            at = ground.locations
+            flow = steered.flow(at.face, at.uv.astype(np.float64))
             binding = Binding(ground.locations)
             position = np.empty((len(ground.locations), points, 3), np.float32)
             radii = np.empty(len(ground.locations), np.float32)
             for part in roots.evaluate(ground.evaluate, ground.locations, progress):
                 binding.fill(part)
                 frame = ground.world_frames(part, space)
-                factors = steered.factors(ground.locations, part.rows)
+                uv = at.uv[part.rows].astype(np.float64)
+                factors = steered.factors(at.face[part.rows], uv)
                 lean = tilt * factors["tilt"]
                 if flow is not None:
                     sideways = np.einsum("nij,ni->nj", frame[:, :, :2], flow[part.rows])

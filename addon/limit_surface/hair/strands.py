@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..placing.rotations import WorldSpace
+from ..placing.rotations import WorldSpace, leaning, within_disc
 
 
 @dataclass(frozen=True)
@@ -34,21 +34,7 @@ class StrandMaker:
         """
         shorter = shape.random_length * self._lengths.random((len(root), 1))
         length = shape.length * (1 - shorter)
-        along = self._space.to_local(length * self._leaning(frame, shape))
+        lean = shape.lean + shape.random * within_disc(len(frame), self._directions)
+        along = self._space.to_local(length * leaning(frame, lean))
         steps = np.linspace(0, 1, shape.points)[None, :, None]
         return root[:, None, :] + steps * along[:, None, :]
-
-    def _leaning(self, frame: np.ndarray, shape: Shape) -> np.ndarray:
-        """Returns unit vectors: the last columns, each turned as it leans by the angle's size."""
-        tilt = shape.lean + shape.random * _within_disc(len(frame), self._directions)
-        angle = np.linalg.norm(tilt, axis=1, keepdims=True)
-        sideways = np.einsum("nij,nj->ni", frame[:, :, :2], tilt)
-        # sin(angle) / angle, which is 1 where nothing is tilted
-        return np.cos(angle) * frame[:, :, 2] + np.sinc(angle / np.pi) * sideways
-
-
-def _within_disc(count: int, rng: np.random.Generator) -> np.ndarray:
-    """Points (n, 2), uniform in the unit disc."""
-    distance, turn = rng.random((count, 2)).T
-    turn *= 2 * np.pi
-    return np.sqrt(distance)[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)

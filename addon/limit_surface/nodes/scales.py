@@ -7,6 +7,7 @@ import bpy
 
 from .. import ids
 from .groups import Kind, add_modifier
+from .instances import placed
 from .tree import Socket, Tree, Value
 
 COLUMNS, ROWS = 9, 7  # vertices of a scale along and across
@@ -23,7 +24,7 @@ def _build() -> bpy.types.NodeTree:
     tree = Tree(
         ids.SCALES_GROUP,
         [
-            Socket("Geometry", "Geometry", "Points with the attribute rotation"),
+            Socket("Geometry", "Geometry", "Points with the attributes rotation and scale"),
             Socket(
                 "Length", "Float", "Length of the scales, from the point to the tip", "DISTANCE"
             ),
@@ -41,10 +42,7 @@ def _build() -> bpy.types.NodeTree:
     scale = tree.set_position(scale, True, _turned(tree, _position(tree)))
     scale = tree.get("GeometryNodeSetShadeSmooth", scale)
     scale = tree.get("GeometryNodeSetMaterial", scale, True, tree.inputs["Material"])
-    placed = tree.node("GeometryNodeInstanceOnPoints", tree.inputs["Geometry"])
-    tree.set(placed.inputs["Instance"], scale)
-    tree.set(placed.inputs["Rotation"], tree.attribute(ids.ROTATION, "QUATERNION"))
-    return tree.finish(Geometry=placed.outputs["Instances"])
+    return tree.finish(Geometry=placed(tree, scale).outputs["Instances"])
 
 
 def _position(tree: Tree) -> list[Value]:
@@ -77,4 +75,4 @@ def _turned(tree: Tree, position: list[Value]) -> Value:
     )
 
 
-SCALES = Kind(ids.SCALES_GROUP, 1, _build)
+SCALES = Kind(ids.SCALES_GROUP, 2, _build)

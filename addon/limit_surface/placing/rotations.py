@@ -33,6 +33,23 @@ def unit(vectors: np.ndarray) -> np.ndarray:
         return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
+def leaning(frame: np.ndarray, lean: np.ndarray) -> np.ndarray:
+    """Returns unit vectors (n, 3): the last columns of frames (n, 3, 3), each turned towards the
+    first two columns by angles (n, 2) in radians.
+    """
+    angle = np.linalg.norm(lean, axis=1, keepdims=True)
+    sideways = np.einsum("nij,nj->ni", frame[:, :, :2], lean)
+    # sin(angle) / angle, which is 1 where nothing leans
+    return np.cos(angle) * frame[:, :, 2] + np.sinc(angle / np.pi) * sideways
+
+
+def within_disc(count: int, rng: np.random.Generator) -> np.ndarray:
+    """Returns points (n, 2), uniform in the unit disc."""
+    distance, turn = rng.random((count, 2)).T
+    turn *= 2 * np.pi
+    return np.sqrt(distance)[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+
+
 class WorldSpace:
     """Converts frames of an object's surface to world space, whatever the object's scale."""
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operator object.limit_points_add."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import bpy
@@ -10,15 +10,22 @@ from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import ids
 from ..errors import RefusalError
-from ..nodes.instances import put_instances
+from ..nodes import instances
 from ..nodes.scales import put_scales
 from ..placing import roots
 from ..placing.binding import Binding
+from ..placing.distribution_properties import DENSITY, surface_object
 from ..placing.new_objects import add_on_surface
 from ..placing.rotations import WorldSpace, quaternions
 from ..placing.scatter_operator import Ground, ScatterOperator
 from ..reading import attributes, cage
+from ..sources import steering
+from ..sources.index import IndexChoice
+from ..sources.source_mesh import Choice
 from ..tasks.job import Progress
+from . import posing
+from .orientation import Poser
+from .steering import INDEX, STEERED, SteeringProperties, draw
 
 
 @dataclass(frozen=True)
@@ -27,10 +34,12 @@ class Points:
     normal: np.ndarray  # (n, 3) float32
     tangent: np.ndarray
     rotation: np.ndarray  # (n, 4) float32
+    scale: np.ndarray  # (n,) float32
+    member: np.ndarray | None  # (n,) int32, of the collection
     world_scale: float  # how much larger things are in the world than in the object's space
 
 
-class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
+class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.Operator):
     """Scatter points over the active mesh's limit surface: vertices that carry the surface's
     normal, tangent and rotation, and optionally an instance of an object or a scale on each"""
 
@@ -44,6 +53,12 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
         items=(
             ("OBJECT", "Object", "Put an instance of an object on each point, if one is named", 0),
             ("SCALE", "Scale", "Put a scale on each point, as of a fish or a lizard", 1),
+            (
+                "COLLECTION",
+                "Collection",
+                "Put an instance of one of a collection's members on each point",
+                2,
+            ),
         ),
         default="OBJECT",
     )
@@ -52,6 +67,11 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
         description="Name of an object to put on each point, with its Z axis along the surface "
         "normal and its X axis along growing u. Along a border, its Z axis has the chosen "
         "direction and its Y axis runs along the border",
+    )
+    collection: StringProperty(
+        name="Collection",
+        description="Name of the collection whose objects and child collections stand on the "
+        "points. They are counted in the order of their names",
     )
     scale_length: FloatProperty(
         name="Scale Length",
@@ -68,30 +88,56 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
         is_named = self.instances == "OBJECT" and self.instance
         if is_named and self.instance not in bpy.data.objects:
             raise RefusalError(f"There is no object {self.instance!r} to put on the points")
+        if self.instances == "COLLECTION":
+            found = bpy.data.collections.get(self.collection)
+            if found is None:
+                raise RefusalError(
+                    f"There is no collection {self.collection!r} to put on the points"
+                )
+            if not posing.size_of(found):
+                raise RefusalError(f"The collection {found.name} is empty")
+
+    def sources(self) -> Mapping[str, Choice]:
+        found = steering.choices(self.properties, bpy.context, STEERED)
+        if self.instances == "COLLECTION":
+            found[posing.MEMBERS] = IndexChoice.of(INDEX.choice(self.properties))
+        return found
 
     @staticmethod
     def draw_own(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -> None:
+        surface = surface_object(properties, bpy.context)
         layout.prop(properties, "instances")
+        images = dict(STEERED)
         if properties.instances == "SCALE":
             layout.prop(properties, "scale_length")
+        elif properties.instances == "COLLECTION":
+            layout.prop_search(properties, "collection", bpy.data, "collections")
+            INDEX.draw(layout, properties, surface)
+            images[posing.MEMBERS] = INDEX
         else:
             layout.prop_search(properties, "instance", bpy.data, "objects")
+        draw(layout, properties, surface)
+        steering.draw_image_place(layout, properties, surface, images, DENSITY.source)
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Points]:
-        space = WorldSpace(found.matrix)
+        space, settings = WorldSpace(found.matrix), posing.Settings.of(self)
 
         def make(ground: Ground, progress: Progress) -> Points:
-            count = len(ground.locations)
+            count, poser = len(ground.locations), Poser(settings.seed)
+            posed = posing.Posed(ground, space, settings)
             binding = Binding(ground.locations)
             normal, tangent = (np.empty((count, 3), np.float32) for _ in range(2))
             rotation = np.empty((count, 4), np.float32)
+            scale = np.empty(count, np.float32)
             for part in roots.evaluate(ground.evaluate, ground.locations, progress):
                 binding.fill(part)
-                frame = ground.frames(part, space)
+                frame, pose = ground.frames(part, space), posed.of(part.rows)
                 tangent[part.rows] = frame[:, :, 0]
                 normal[part.rows] = frame[:, :, 2]
-                rotation[part.rows] = quaternions(frame)
-            return Points(binding, normal, tangent, rotation, space.mean_scale)
+                rotation[part.rows] = quaternions(poser.turned(frame, pose))
+                scale[part.rows] = poser.scales(pose, len(frame))[:, 0]
+            members = posed.members()
+            return Points(binding, normal, tangent, rotation, scale, members, space.mean_scale)
 
         return make
 
@@ -106,12 +152,17 @@ class OBJECT_OT_limit_points_add(ScatterOperator, bpy.types.Operator):
             attributes.write(mesh, ids.NORMAL, "FLOAT_VECTOR", "POINT", made.normal)
             attributes.write(mesh, ids.TANGENT, "FLOAT_VECTOR", "POINT", made.tangent)
             attributes.write(mesh, ids.ROTATION, "QUATERNION", "POINT", made.rotation)
+            attributes.write(mesh, ids.SCALE, "FLOAT", "POINT", made.scale)
+            if made.member is not None:
+                attributes.write(mesh, ids.MEMBER, "INT", "POINT", made.member)
             mesh.update()
             ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, surface)
             if self.instances == "SCALE":
                 put_scales(ob, self.scale_length / made.world_scale)
+            elif self.instances == "COLLECTION":
+                instances.put_members(ob, bpy.data.collections[self.collection])
             elif self.instance:
-                put_instances(ob, bpy.data.objects[self.instance])
+                instances.put_instances(ob, bpy.data.objects[self.instance])
             return ob
         except BaseException:
             bpy.data.meshes.remove(mesh)

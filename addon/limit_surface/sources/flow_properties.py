@@ -18,13 +18,13 @@ SOURCE = "flow_source"
 
 
 class FlowProperties:
-    """Mixin for operators whose strands can be combed."""
+    """Mixin for operators whose things can be combed."""
 
     flow_source: EnumProperty(
         name="Flow From",
-        description="Source of directions along the surface, towards which strands lean",
+        description="Source of directions along the surface, into which things are combed",
         items=(
-            ("NONE", "None", "Do not comb the strands", "", 0),
+            ("NONE", "None", "Do not comb anything", "", 0),
             (
                 "IMAGE",
                 "Image",
@@ -75,12 +75,12 @@ class FlowProperties:
     )
     flow_curves: StringProperty(
         name="Curves",
-        description="Name of the curve or hair object whose curves the strands follow. They may "
+        description="Name of the curve or hair object whose curves are followed. They may "
         "lie on the surface or near it",
     )
     flow_angle: FloatProperty(
         name="Flow Angle",
-        description="Angle by which strands lean away from the normal where the flow has the "
+        description="Angle by which things lean away from the normal where the flow has the "
         "length 1. Where it is shorter they lean less. A negative angle reverses the flow",
         default=math.radians(60),
         min=-math.pi,
@@ -124,4 +124,3 @@ def draw(
         search(layout, properties, "flow_attribute", ob and ob.data, "attributes")
     elif source == "CURVES":
         search(layout, properties, "flow_curves", bpy.data, "objects")
-    layout.prop(properties, "flow_angle")
