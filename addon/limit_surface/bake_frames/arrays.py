@@ -14,7 +14,16 @@ from ..reading import attributes
 TYPES = frozenset({"MESH", "CURVES", "POINTCLOUD"})
 
 # attributes that are written where an object has them
-_CARRIED = ("radius", ids.FACE, ids.UV, ids.NORMAL, ids.TANGENT, ids.ROTATION)
+_CARRIED = (
+    "radius",
+    ids.FACE,
+    ids.UV,
+    ids.NORMAL,
+    ids.TANGENT,
+    ids.ROTATION,
+    ids.SCALE,
+    ids.MEMBER,
+)
 
 
 def write(path: Path, ob: bpy.types.Object) -> None:
