@@ -5,6 +5,8 @@ import bpy
 import pages
 import particle_scenes
 import scenes
+from figures import comparison, particles
+from processes import ROOT
 
 PAGE = pages.text("particles")
 
@@ -26,3 +28,12 @@ def test_tables_list_the_properties_and_their_defaults():
     ):
         section = PAGE.split(f"## {heading}")[1].split("\n## ")[0]
         pages.check_properties(section, operator)
+
+
+def test_picture_is_what_the_operator_makes(tmp_path):
+    particles.make(tmp_path, samples=4)
+    mean, worst = comparison.of_renders(
+        tmp_path / "particles.png", ROOT / "docs/images/particles.png"
+    )
+    assert mean < 0.8
+    assert worst < 16
