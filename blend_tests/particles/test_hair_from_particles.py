@@ -163,6 +163,41 @@ def test_thickness_and_material():
     assert radius[KEYS // 2] == pytest.approx(0.005 + 0.02 * 0.5**0.5, rel=1e-5)
 
 
+def test_particles_on_the_mesh_before_its_subdivision():
+    ob = scenes.cross()
+    add_system(ob)
+    scenes.add_subsurf(ob).levels = 2
+    strands = drawn(ob)
+    hair = made(ob, snap_roots=False)
+    np.testing.assert_allclose(in_world(hair), strands, atol=particle_scenes.bound(strands))
+
+
+def test_strands_of_different_numbers_of_keys():
+    ob = scenes.cross()
+    add_system(ob)
+    curves = bpy.data.hair_curves.new("Uneven")
+    curves.add_curves([2, 5, 9])
+    points = np.random.default_rng(1).normal(size=(16, 3)).astype(np.float32)
+    curves.points.foreach_set("position", points.ravel())
+    curves.surface = ob
+    uneven = bpy.data.objects.new("Uneven", curves)
+    bpy.context.collection.objects.link(uneven)
+    bpy.context.view_layer.update()
+    scenes.activate(uneven)
+    for other in bpy.context.selected_objects:
+        other.select_set(other == uneven)
+    uneven.select_set(True)
+    bpy.ops.curves.convert_to_particle_system()
+    hair = made(ob, system="Uneven", snap_roots=False)
+    sizes = [curve.points_length for curve in hair.data.curves]
+    assert sizes == [2, 5, 9]
+    strands = drawn(ob, number=1)
+    expected = [strands[0, ::8], strands[1, ::2], strands[2]]
+    np.testing.assert_allclose(
+        attributes.read(hair.data, "position"), np.concatenate(expected), atol=3e-6
+    )
+
+
 def test_the_named_system_is_taken():
     ob = furry(name="First", count=10)
     add_system(ob, "Second", 20)

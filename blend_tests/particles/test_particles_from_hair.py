@@ -184,6 +184,27 @@ def test_hair_that_follows_is_taken_as_it_is_shown():
     check_drawn(ob, bent)
 
 
+def test_hair_that_was_moved_away():
+    ob = scenes.cross()
+    scenes.add_subsurf(ob).levels = 2
+    scenes.place(ob, scenes.STRETCHED)
+    hair = add_hair(ob)
+    hair.location, hair.rotation_euler = (0.5, -0.2, 1), (0.1, 0.2, 0.3)
+    bpy.context.view_layer.update()
+    convert()
+    check_drawn(ob, in_world(hair))
+
+
+def test_modifiers_before_the_subdivision_that_add_faces():
+    ob = scenes.cross()
+    ob.modifiers.new("Mirror", "MIRROR").use_axis = (False, False, True)
+    scenes.add_subsurf(ob).levels = 2
+    hair = add_hair(ob)
+    assert in_world(hair)[:, 0, 2].min() < -0.5
+    convert()
+    check_drawn(ob, in_world(hair))
+
+
 def test_unbound_strands_stand_at_the_closest_place():
     ob = scenes.cross()
     scenes.add_subsurf(ob).levels = 2
@@ -193,6 +214,22 @@ def test_unbound_strands_stand_at_the_closest_place():
     attributes.write(hair.data, ids.FACE, "INT", "CURVE", face)
     convert()
     check_drawn(ob, in_world(hair))
+
+
+def test_a_warning_where_renders_differ(capfd):
+    ob = scenes.cross()
+    subsurf = scenes.add_subsurf(ob)
+    add_hair(ob)
+    for levels, viewport, text in (
+        ("VIEWPORT", 1, "in the viewport (level 1), and beside them in renders (level 2)"),
+        ("RENDER", 1, "in renders (level 2), and beside them in the viewport (level 1)"),
+        ("VIEWPORT", 2, ""),
+    ):
+        subsurf.levels, subsurf.render_levels = viewport, 2
+        convert(levels=levels)
+        said = capfd.readouterr().out
+        assert ("Warning" in said) == bool(text)
+        assert text in said
 
 
 @pytest.mark.parametrize("is_shown", [True, False])

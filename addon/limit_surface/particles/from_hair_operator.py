@@ -16,7 +16,7 @@ from ..placing import followers, following, shown_strands
 from ..placing.places import Places
 from ..placing.posed_surface import PosedSurface, at_closest
 from ..placing.rotations import WorldSpace
-from ..reading import attributes, cage
+from ..reading import attributes, cage, rules
 from ..tasks import polling
 from ..tasks.object_keys import ObjectKey
 from ..tasks.piecewise_job import Pieces, PiecewiseJob
@@ -116,6 +116,10 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
         if made.resampled:
             self.summary += f"\n{made.resampled:,} strands were resampled"
         self.report({"INFO"}, self.summary.replace("\n", "; "))
+        warning = _levels_warning(bpy.data.objects[made.surface], self.levels)
+        if warning:
+            self.summary += f"\n{warning}"
+            self.report({"WARNING"}, warning)
         return {"FINISHED"}
 
     def _read(
@@ -195,6 +199,21 @@ def _places(
         near = at_closest(posed, posed.in_world.closest(found.to_world(roots[others])))
         face[others], uv[others] = near.face, near.uv
     return found.surface().varying(vertices).evaluate(face, uv).value
+
+
+def _levels_warning(surface: bpy.types.Object, levels: str) -> str:
+    """Returns a warning where the viewport and renders do not show the same polygons, or None."""
+    subsurf = rules.find_subsurf(surface)
+    if subsurf is None or subsurf.levels == subsurf.render_levels:
+        return ""
+    exact, other = "the viewport", "renders"
+    at, beside = subsurf.levels, subsurf.render_levels
+    if levels == "RENDER":
+        exact, other, at, beside = other, exact, beside, at
+    return (
+        f"The particles are where the strands are in {exact} (level {at}), and beside them in "
+        f"{other} (level {beside}): give {subsurf.name} the same levels for both"
+    )
 
 
 def _radius(
