@@ -4,7 +4,9 @@
 import bpy
 import pages
 import scenes
+from figures import comparison, points
 from limit_surface.placing.follow_properties import FollowOrLiveProperties
+from processes import ROOT
 
 PAGE = pages.text("points")
 
@@ -26,3 +28,10 @@ def test_table_lists_the_properties_and_their_defaults():
     own -= set(bpy.ops.object.limit_children_add.get_rna_type().properties.keys())
     assert not own & set(FollowOrLiveProperties.__annotations__)
     pages.check_properties(table, "limit_points_add", only=own)
+
+
+def test_picture_is_what_the_operator_makes(tmp_path):
+    points.make(tmp_path, samples=4)
+    mean, worst = comparison.of_renders(tmp_path / "points.png", ROOT / "docs/images/points.png")
+    assert mean < 0.8
+    assert worst < 16

@@ -79,6 +79,7 @@ FIGURES = {
     "follow": rendered("follow", "hair on a mesh that bends, and its distance from the surface"),
     "limit_mesh": rendered("limit_mesh", "meshes by levels and by flatness, and exact normals"),
     "particles": rendered("particles", "hair as particles by Blender and by this extension"),
+    "points": rendered("points", "instances that a group, curves and an attribute steer"),
     "presets": rendered("presets", "what each of the shipped presets makes"),
     "project_image": rendered("project_image", "an image projected from a camera, and a decal"),
     "report": rendered("report", "distances from the limit surface at two levels, as colours"),
