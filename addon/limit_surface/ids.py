@@ -111,6 +111,7 @@ FOLLOW_CURVE_GROUP = "Limit Curve"
 FOLLOW_LIVE_GROUP = "Limit Live"
 CHILDREN_GROUP = "Limit Children"
 CHILDREN_TABLE = "Limit Children Table"
+CHILDREN_SETTINGS = "limit_surface_children"  # custom property of live children
 POINTS_TABLE = "Limit Points"
 TILES_TABLE = "Limit Tiles"
 ALL_POINTS_TABLE = "Limit All Points"

@@ -14,7 +14,7 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 from .. import ids, native
 from ..errors import RefusalError
 from ..nodes import children as nodes
-from ..placing import all_tiles, followers, following, new_hair, roots
+from ..placing import all_tiles, followers, following, live_children, new_hair, roots
 from ..placing.all_tiles import AllTiles
 from ..placing.binding import Binding
 from ..placing.distribution_properties import surface_object
@@ -27,10 +27,12 @@ from ..sources.source_mesh import Choice
 from ..tasks import polling
 from ..tasks.job import Progress, part_of
 from . import guides as guide_hair
-from . import live_children, parting
+from . import parting
 from .spread import Followed, Spread
 
 DEPTH = 16  # of the tables of tiles that are made for live children
+# properties that live children do not store: what a run is about, and what it says
+_OF_ONE_RUN = {"rna_type", "surface", "guides", "summary", "replaces", "allow_large", "add_subsurf"}
 _ROOTS = 0.5  # the part of the progress at which the roots are evaluated
 
 
@@ -109,6 +111,12 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
         subtype="FACTOR",
     )
 
+    replaces: StringProperty(
+        name="Replaces",
+        description="Name of the object of live children that are made again, in place of new ones",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         def has_guides() -> bool:
@@ -172,6 +180,16 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             self.report({"WARNING"}, text)
             self.summary += f"\n{text}"
 
+    def _settings(self) -> dict[str, Any]:
+        """Returns the properties as JSON can hold them, but for those of one run alone."""
+        names = self.properties.bl_rna.properties.keys()
+        return {
+            name: value if isinstance(value, bool | int | float | str) else list(value)
+            for name in names
+            if name not in _OF_ONE_RUN
+            for value in (getattr(self, name),)
+        }
+
     def _local_radius(self, matrix: np.ndarray) -> float:
         return self.radius / WorldSpace(matrix).mean_scale
 
@@ -223,7 +241,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
         guides = bpy.data.objects[self.guides]
         if isinstance(made, live_children.Table):
             materials = guides.data.materials
-            settings = {
+            inputs = {
                 nodes.POINTS: self.points,
                 nodes.SHARE: self.viewport_share,
                 nodes.RADIUS: self._local_radius(np.array(surface.matrix_world)),
@@ -231,7 +249,12 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             }
             tiles, self._tiles = self._tiles, None
             assert tiles is not None
-            return live_children.add(context, surface, guides, tiles, made, settings)
+            settings = self._settings()
+            old = bpy.data.objects.get(self.replaces)
+            if old is not None:
+                live_children.make_again(old, surface, guides, tiles, made, settings)
+                return old
+            return live_children.add(context, surface, guides, tiles, made, inputs, settings)
         return new_hair.add(context, ids.CHILDREN_OBJECT, surface, made, guides.data.materials)
 
 

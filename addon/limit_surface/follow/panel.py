@@ -87,6 +87,10 @@ def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
         column.label(text=f"{objects:,} {noun} it by nodes")
         column.label(text=f"{state.places:,} strands and points")
         column.label(text=f"Tables: {_size(state.table_bytes)}")
+    if state.children:
+        objects = len(state.children)
+        noun = "object grows" if objects == 1 else "objects grow"
+        column.label(text=f"{objects:,} {noun} live children: {state.child_count:,}")
     if state.samples is not None:
         column.label(text=f"Tables for sampling: {_size(state.sample_bytes)}")
 

@@ -12,14 +12,15 @@ from ..placing.binding_operator import BindingOperator
 from ..placing.rebinding import Rebinding
 from ..tasks import polling
 from ..tasks.properties import draw_summary
-from .subjects import to_rebind
+from . import children_rebinding
+from .subjects import children_to_rebind, to_rebind
 
 _NOTHING = "Select a surface or what follows it"
 
 
 class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
     """Bind everything that follows the selected surface again, after its topology, creases or rules
-    have changed"""
+    have changed. Live children are made again with the settings that they were made with"""
 
     bl_idname = ids.REBIND
     bl_label = "Rebind to Limit Surface"
@@ -70,7 +71,8 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
 
     def bind(self, context: bpy.types.Context) -> set[str]:
         by_surface = to_rebind(context)
-        if not by_surface:
+        children = children_to_rebind(context, by_surface)
+        if not by_surface and not children:
             raise RefusalError(_NOTHING)
         depsgraph = context.evaluated_depsgraph_get()
         limit = self.distance or math.inf
@@ -82,6 +84,14 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
         for rebound in done:
             if rebound.warning:
                 self.report({"WARNING"}, rebound.warning)
-        self.summary = "\n".join(str(rebound) for rebound in done)
+        lines = [str(rebound) for rebound in done]
+        for ob in children:
+            try:
+                lines.append(children_rebinding.make_again(context, ob))
+            except RefusalError as error:
+                if not lines:
+                    raise
+                self.report({"WARNING"}, str(error))
+        self.summary = "\n".join(lines)
         self.report({"INFO"}, self.summary.replace("\n", "; "))
         return {"FINISHED"}

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The objects that the operators of following work on."""
 
+from collections.abc import Iterable
+
 import bpy
 
 from ..errors import RefusalError
+from ..placing import live_children
 from ..placing.followers import (
     followers_of,
     is_placed,
@@ -28,8 +31,11 @@ def chosen_followers(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Returns the selected objects that follow a surface, or where there are none, all that follow
     the active mesh.
     """
-    found = [ob for ob in selected(context) if modifier_of(ob) or live_modifier_of(ob)]
+    chosen = selected(context)
+    found = [ob for ob in chosen if modifier_of(ob) or live_modifier_of(ob)]
     active = context.active_object
+    if any(live_children.modifier_of(ob) for ob in chosen):
+        return found
     if not found and active is not None and active.type == "MESH":
         found = [*followers_of(active), *live_followers_of(active)]
     return found
@@ -78,4 +84,30 @@ def to_rebind(
             found.setdefault(surface, []).append(ob)
         elif ob.type == "MESH" and (followers_of(ob) or live_followers_of(ob) or strays_of(ob)):
             found.setdefault(ob, [])
+    return found
+
+
+def children_to_rebind(
+    context: bpy.types.Context, surfaces: Iterable[bpy.types.Object]
+) -> list[bpy.types.Object]:
+    """Returns the selected live children, and all that grow on the selected meshes or on these
+    surfaces.
+    """
+    chosen = selected(context)
+    found = [ob for ob in chosen if live_children.modifier_of(ob)]
+    for surface in dict.fromkeys([*surfaces, *(ob for ob in chosen if ob.type == "MESH")]):
+        found += live_children.on_surface(surface)
+    return list(dict.fromkeys(found))
+
+
+def children_to_unbind(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Returns the selected live children, or where nothing is selected that follows, all that grow
+    on the active mesh.
+    """
+    chosen = selected(context)
+    found = [ob for ob in chosen if live_children.modifier_of(ob)]
+    active = context.active_object
+    follows = any(modifier_of(ob) or live_modifier_of(ob) for ob in chosen)
+    if not found and not follows and active is not None and active.type == "MESH":
+        found = live_children.on_surface(active)
     return found

@@ -10,12 +10,13 @@ from ..placing.live_unbinding import LiveUnbinding
 from ..placing.unbinding import Unbinding, leftovers_of, remove_leftovers
 from ..tasks import polling
 from ..tasks.properties import SummaryProperty, draw_summary
-from .subjects import chosen_followers
+from .children_unbinding import ChildrenUnbinding
+from .subjects import children_to_unbind, chosen_followers
 
 
 class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
     """Stop the selected hair and points from following. If only the surface is selected, stop
-    everything that follows it"""
+    everything that follows it. Live children become curves"""
 
     bl_idname = ids.UNBIND
     bl_label = "Unbind from Limit Surface"
@@ -35,8 +36,11 @@ class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
         return polling.in_object_mode(
             cls,
             context,
-            lambda: bool(chosen_followers(context)) or _leftovers(context),
-            "Select hair or points that follow a limit surface",
+            lambda: (
+                bool(chosen_followers(context) or children_to_unbind(context))
+                or _leftovers(context)
+            ),
+            "Select hair or points that follow a limit surface, or live children",
         )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -44,13 +48,16 @@ class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
         try:
             depsgraph = context.evaluated_depsgraph_get()
             things = chosen_followers(context)
+            children = children_to_unbind(context)
             live = [ob for ob in things if live_modifier_of(ob)]
             by_nodes = [ob for ob in things if ob not in live]
-            if not things:
+            if not things and not children:
                 self.summary = remove_leftovers(context.active_object)
                 self.report({"INFO"}, self.summary)
                 return {"FINISHED"}
-            unbindings: list[Unbinding | LiveUnbinding] = []
+            unbindings: list[Unbinding | LiveUnbinding | ChildrenUnbinding] = []
+            if children:  # before their guides are unbound
+                unbindings.append(ChildrenUnbinding(children, depsgraph))
             if by_nodes:
                 unbindings.append(Unbinding(by_nodes, depsgraph, self.shape))
             if live:

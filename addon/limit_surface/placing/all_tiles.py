@@ -71,6 +71,11 @@ class AllTiles:
         """Returns the checksum of the control mesh's edges that the tables hold."""
         return self._bound.topology
 
+    @property
+    def signature(self) -> str:
+        """Returns following.signature of the control mesh."""
+        return self._bound.signature
+
     def _fill(self, mesh: bpy.types.Mesh, origin: int) -> None:
         tree = self.tree
         tables.TilesTable(tree.tiles, origin, len(tree.child)).fill(mesh)

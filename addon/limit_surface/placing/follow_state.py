@@ -14,7 +14,7 @@ from .. import ids
 from ..nodes import groups
 from ..nodes.follow import TILES
 from ..reading import rules
-from . import all_tiles, following, mending, tables
+from . import all_tiles, following, live_children, mending, tables
 from .followers import (
     followers_of,
     holder_of,
@@ -40,24 +40,32 @@ class State:
     followers: list[bpy.types.Object]
     strays: list[bpy.types.Object]  # they were bound, and have lost their modifier
     samples: bpy.types.Object | None = None  # the table of all tiles
+    children: tuple[bpy.types.Object, ...] = ()  # live children that grow on it
 
     @classmethod
     def of(cls, ob: bpy.types.Object | None) -> State | None:
         """Returns the state of the surface that the object is or follows; None where nothing
-        follows and there are no tables of all tiles. These count for the surface alone.
+        follows, no live children grow, and there are no tables of all tiles. These count for the
+        surface and its live children alone.
         """
         if ob is None:
             return None
-        surface = (surface_of(ob) if was_bound(ob) else None) or ob
-        samples = all_tiles.of_surface(surface) if surface == ob else None
-        state = cls(surface, followers_of(surface), strays_of(surface), samples)
-        return state if state.followers or state.strays or samples else None
+        surface = (surface_of(ob) if was_bound(ob) else live_children.surface_of(ob)) or ob
+        children = tuple(live_children.on_surface(surface))
+        counts = surface == ob or ob in children
+        samples = all_tiles.of_surface(surface) if counts else None
+        state = cls(surface, followers_of(surface), strays_of(surface), samples, children)
+        return state if state.followers or state.strays or samples or children else None
 
     @property
     def places(self) -> int:
         """The number of strands and points that follow."""
         stored = [data.attributes for data in holders(self.followers)]
         return sum(len(of[ids.TILE].data) for of in stored if ids.TILE in of)
+
+    @property
+    def child_count(self) -> int:
+        return sum(live_children.count_of(ob) for ob in self.children)
 
     @property
     def table_bytes(self) -> int:
@@ -72,7 +80,12 @@ class State:
         """Returns what has gone wrong. The signature is that of the surface as it is now; without
         it, only what can be seen without an evaluation is named.
         """
-        return [*self._broken(), *(self._stale(signature) if signature else ())]
+        of_children = (
+            Trouble(text, ids.REBIND)
+            for ob in self.children
+            for text in live_children.obstacles(ob, signature)
+        )
+        return [*self._broken(), *(self._stale(signature) if signature else ()), *of_children]
 
     def _broken(self) -> Iterator[Trouble]:
         remedy = ids.FOLLOW if self.followers or self.strays else ids.SAMPLE_TABLES
@@ -135,7 +148,7 @@ def surfaces() -> list[bpy.types.Object]:
         if ob.library is not None:
             continue
         surface = tables.surface_of(ob) if ids.ALL_TILES_MARK in ob else None
-        state = State.of(ob) if was_bound(ob) else None
+        state = State.of(ob) if was_bound(ob) or live_children.modifier_of(ob) else None
         for each in (surface, state.surface if state else None):
             if each is not None:
                 found[each] = None

@@ -134,7 +134,7 @@ def anything_follows() -> bool:
     """Tells whether the file has a node group by which something follows a surface. It is far
     quicker than a look at all objects, so panels ask it first.
     """
-    names = (*_GROUPS, ids.FOLLOW_LIVE_GROUP)
+    names = (*_GROUPS, ids.FOLLOW_LIVE_GROUP, ids.CHILDREN_GROUP)
     return any(groups.name_of(group) in names for group in bpy.data.node_groups)
 
 

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Turns live children into curves, as they are in this frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..nodes import children as nodes
+from ..nodes import groups
+from ..placing import following, live_children, tables
+from ..placing.binding import Binding
+from ..placing.posed_surface import PosedSurface
+from ..placing.roots import Locations
+from ..reading import attributes, cage
+
+
+@dataclass(frozen=True)
+class _Curves:
+    """What live children are in this frame, all of them."""
+
+    ob: bpy.types.Object
+    points: int  # on each strand
+    position: np.ndarray
+    radius: np.ndarray
+    binding: Binding
+
+
+class ChildrenUnbinding:
+    """Raises RefusalError for live children that cannot become curves; nothing has changed then."""
+
+    def __init__(
+        self, children: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph
+    ) -> None:
+        self._curves = [_read(ob, depsgraph) for ob in children]
+
+    def write(self) -> str:
+        """Changes the file, and returns a report."""
+        for made in self._curves:
+            data, table = made.ob.data, live_children.table_of(made.ob)
+            data.add_curves([made.points] * len(made.binding.locations))
+            attributes.write(data, ids.POSITION, "FLOAT_VECTOR", "POINT", made.position)
+            attributes.write(data, "radius", "FLOAT", "POINT", made.radius)
+            made.binding.write(data, "CURVE")
+            made.ob.modifiers.remove(live_children.modifier_of(made.ob))
+            for name in (ids.SIGNATURE, ids.CHILDREN_SETTINGS):
+                if name in made.ob:
+                    del made.ob[name]
+            if table is not None and not tables.readers(table):
+                tables.remove_object(table)
+        names = ", ".join(made.ob.name for made in self._curves)
+        return f"Live children became curves as they are in this frame: {names}"
+
+
+def _read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Curves:
+    following.check_editable(ob)
+    if ob.data.users > 1:
+        raise RefusalError(f"{ob.name} shares its data: make it a single user first")
+    surface, table = live_children.surface_of(ob), live_children.table_of(ob)
+    count = live_children.count_of(ob)
+    modifier = live_children.modifier_of(ob)
+    assert modifier is not None
+    name = modifier.name
+
+    def show_all(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
+        for other in list(copy.modifiers):
+            if other.name != name:
+                copy.modifiers.remove(other)
+        groups.set_input(copy.modifiers[name], nodes.SHARE, 1.0)
+
+    with cage.evaluated_copy(ob, len(ob.modifiers), depsgraph, show_all) as evaluated:
+        shown = evaluated.data
+        if surface is None or table is None or not count or len(shown.curves) != count:
+            raise RefusalError(
+                f"{ob.name} grows no strands that could become curves: rebind it first, or delete "
+                "it"
+            )
+        position, radius = (attributes.read(shown, kind) for kind in (ids.POSITION, "radius"))
+    u, v, face = attributes.read(table.data, ids.POSITION).T
+    at = Locations(face.astype(np.int32), np.stack([u, v], axis=1))
+    posed = PosedSurface(cage.read(surface, depsgraph))
+    binding = Binding.at(posed, at, np.array(ob.matrix_world, np.float64))
+    return _Curves(ob, len(position) // count, position, radius, binding)
