@@ -113,6 +113,16 @@ def test_hair_follows(follow):
     np.testing.assert_allclose(roots, exact, atol=2e-6)
 
 
+def test_the_report_says_why_hair_does_not_follow(capfd):
+    ob = furry()
+    particle_scenes.add_shape_key(ob)
+    ob.modifiers["Subdivision"].show_render = False
+    scenes.add_subsurf(ob)
+    hair = made(ob)
+    assert not hair.modifiers
+    assert "they do not follow the surface: " in capfd.readouterr().out
+
+
 def test_roots_off_the_surface_keep_their_distance():
     """The floating roots of hair that follows keep their place beside the surface."""
     ob = furry()

@@ -7,7 +7,7 @@ import particle_scenes
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.errors import CancelledError
+from limit_surface.errors import CancelledError, RefusalError
 from limit_surface.particles import system
 from limit_surface.placing.places import ROOT_KINDS
 from limit_surface.reading import attributes
@@ -315,9 +315,27 @@ def test_refusals():
     check_refused("not in the view layer", ob)
     bpy.context.collection.objects.link(ob)
     bpy.context.view_layer.update()
+    scenes.activate(ob)
+    bpy.ops.object.mode_set(mode="EDIT")
+    scenes.activate(hair)
+    check_refused("Cross is in Edit Mode", ob)
+    scenes.activate(ob)
+    bpy.ops.object.mode_set(mode="OBJECT")
     scenes.activate(hair)
     ob.data.clear_geometry()
     check_refused("no faces", ob)
+
+
+def test_nothing_is_left_of_a_system_that_blender_does_not_evaluate(monkeypatch):
+    ob = scenes.cross()
+    add_hair(ob)
+
+    def refuse(_context, _surface, name):
+        assert name in ob.particle_systems
+        raise RefusalError("not evaluated")
+
+    monkeypatch.setattr(system.Shown, "of", refuse)
+    check_refused("not evaluated", ob)
 
 
 def test_refuses_hair_that_is_not_bound():

@@ -203,12 +203,13 @@ def test_scales_of_fish_are_posed_as_well():
     np.testing.assert_allclose(posed, 0.5 * plain @ about_z(np.array([0.3])), atol=1e-5)
 
 
-def test_points_that_follow_keep_scale_and_turn():
+@pytest.mark.parametrize("follow", ["NODES", "LIVE"])
+def test_points_that_follow_keep_scale_and_turn(follow):
     ob = scenes.cross()
     add_subsurf(ob)
     key = particle_scenes.add_shape_key(ob)
     points, before = add_thorny(
-        ob, follow="NODES", scale=0.5, rotation=1.0, tilt=(0.4, 0.2), random_scale=0.5
+        ob, follow=follow, scale=0.5, rotation=1.0, tilt=(0.4, 0.2), random_scale=0.5
     )
     face, uv = scenes.locations(points.data)
     rest = scenes.surface_without_addon(ob).frames(face, uv)

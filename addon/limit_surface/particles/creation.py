@@ -36,16 +36,16 @@ def add(context: bpy.types.Context, surface: bpy.types.Object, made: Particles) 
     """Adds a system with as many keys, which do not lie on the strands yet, and returns its
     name. Raises RefusalError where Blender makes none; nothing has changed then.
     """
-    before = {found.name for found in surface.particle_systems}
+    before = set(surface.modifiers.keys())
     try:
         _convert(context, surface, made)
-        (new,) = {found.name for found in surface.particle_systems} - before or {None}
-        if new is None:
+        new = [modifier for modifier in surface.modifiers if modifier.name not in before]
+        if not new:
             raise RefusalError(f"Blender cannot make a particle system on {surface.name}")
         try:
-            return _set_up(context, surface, new, made)
+            return _set_up(context, surface, new[0], made)
         except BaseException:
-            system.remove(surface, new)
+            system.remove(surface, new[0].particle_system.name)
             raise
     finally:
         context.view_layer.update()
@@ -69,15 +69,15 @@ def _convert(context: bpy.types.Context, surface: bpy.types.Object, made: Partic
 
 
 def _set_up(
-    context: bpy.types.Context, surface: bpy.types.Object, name: str, made: Particles
+    context: bpy.types.Context,
+    surface: bpy.types.Object,
+    modifier: bpy.types.ParticleSystemModifier,
+    made: Particles,
 ) -> str:
     """Gives a new system its names and settings. Returns its name."""
-    found = surface.particle_systems[name]
+    found = modifier.particle_system
     if len(found.particles) != len(made.strands):
         raise RefusalError(f"Blender cannot make a particle system on {surface.name}")
-    modifier = next(
-        m for m in surface.modifiers if m.type == "PARTICLE_SYSTEM" and m.particle_system == found
-    )
     found.name = modifier.name = found.settings.name = made.name
     count, keys = made.strands.shape[:2]
     settings = found.settings

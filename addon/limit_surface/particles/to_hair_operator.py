@@ -13,7 +13,7 @@ from .. import ids
 from ..errors import RefusalError
 from ..placing import followers, following, live_binding, new_hair
 from ..placing.binding import Binding
-from ..placing.follow_properties import FollowOrLiveProperties
+from ..placing.follow_properties import FollowOrLiveProperties, can_deform, why_not_automatic
 from ..placing.new_hair import Strands
 from ..placing.posed_surface import PosedSurface, at_closest
 from ..placing.rotations import WorldSpace
@@ -28,8 +28,6 @@ from ..tasks.watched_operator import WatchedOperator
 from . import system, thickness
 
 _NOTHING = "Make a mesh with a hair particle system active first"
-
-
 _POLL = 0.05  # seconds between two looks at a thread
 
 
@@ -153,7 +151,7 @@ class OBJECT_OT_limit_hair_from_particles(
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
         hair = new_hair.add(context, ids.HAIR_OBJECT, surface, made.strands, _material(made))
-        how = ""
+        how, why = "", ""
         if made.bindings:
             made.bindings.write(hair)
             how = "by Geometry Nodes"
@@ -161,7 +159,9 @@ class OBJECT_OT_limit_hair_from_particles(
             depsgraph = context.evaluated_depsgraph_get()
             live_binding.LiveRequest(surface, depsgraph, [hair]).write(context)
             how = "live"
-        self._report(made, how)
+        elif self.follow == "AUTO" and can_deform(surface):
+            why = why_not_automatic(surface)
+        self._report(made, how, why)
         return {"FINISHED"}
 
     def _chosen(self, surface: bpy.types.Object) -> str:
@@ -174,13 +174,15 @@ class OBJECT_OT_limit_hair_from_particles(
             raise RefusalError(f"The particles of {found.name} are no hair, but emitted")
         return found.name
 
-    def _report(self, made: Made, how: str) -> None:
+    def _report(self, made: Made, how: str, why_not: str) -> None:
         count = len(made.strands.sizes)
         self.summary = f"{count:,} strands from {made.system} of {made.surface.name}"
         were = "were" if self.snap_roots else "are"
         notes = [f"roots {were} at most {made.farthest:.4g} from the limit surface"]
         if how:
             notes.append(f"they follow the surface {how}")
+        if why_not:
+            notes.append(f"they do not follow the surface: {why_not}")
         self.summary += "".join(f"\n{note}" for note in notes)
         self.report({"INFO"}, "; ".join([*self.summary.splitlines()[:1], *notes]))
 
