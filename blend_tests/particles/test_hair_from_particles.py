@@ -150,6 +150,14 @@ def test_hair_that_the_viewport_leaves_out():
     assert settings.display_percentage == 10
 
 
+def test_children_are_left_out():
+    ob = furry()
+    strands = drawn(ob)
+    ob.particle_systems[0].settings.child_type = "INTERPOLATED"
+    hair = made(ob, snap_roots=False)
+    np.testing.assert_allclose(in_world(hair), strands, atol=particle_scenes.bound(strands))
+
+
 def test_thickness_and_material():
     ob = furry({"scale": (2, 2, 2)})
     brown = bpy.data.materials.new("Brown")
