@@ -183,8 +183,8 @@ class OBJECT_OT_limit_hair_from_particles(
             notes.append(f"they follow the surface {how}")
         if why_not:
             notes.append(f"they do not follow the surface: {why_not}")
-        self.summary += "".join(f"\n{note}" for note in notes)
-        self.report({"INFO"}, "; ".join([*self.summary.splitlines()[:1], *notes]))
+        self.report({"INFO"}, "; ".join([self.summary, *notes]))
+        self.summary += "".join(f"\n{note[0].upper()}{note[1:]}" for note in notes)
 
 
 def _material(made: Made) -> list[bpy.types.Material]:
