@@ -7,6 +7,8 @@ HAIR_ADD = "object.limit_hair_add"
 POINTS_ADD = "object.limit_points_add"
 SNAP = "object.limit_snap"
 SNAP_MODAL = "view3d.limit_snap_modal"
+DRAW = "view3d.limit_draw"
+CURVE_LAY = "object.limit_curve_lay"
 REPORT_OPERATOR = "object.limit_report"
 SHOW = "object.limit_show"
 BAKE_MAPS = "object.limit_bake_maps"
@@ -84,6 +86,8 @@ SELECTION = ".selection"  # where it is missing, all is selected
 REPORT = "limit_report"  # custom property of the surface's object
 
 HAIR_OBJECT = "Limit Hair"
+DRAWING_OBJECT = "Limit Drawing"
+GUIDES_OBJECT = "Limit Guides"
 POINTS_OBJECT = "Limit Points"
 CURVATURE_OBJECT = "Limit Curvature"
 LIMIT_MESH_OBJECT = "Limit Mesh"
@@ -93,6 +97,10 @@ CHILDREN_OBJECT = "Limit Children"
 INSTANCES_GROUP = "Limit Instances"
 MEMBERS_GROUP = "Limit Collection Instances"
 SCALES_GROUP = "Limit Scales"
+
+# Custom properties of Curve objects' data, which have no attributes: FACE and UV, as above, of all
+# control points in the order in which nodes number them, and the distance along the normal
+OFFSET = "limit_offset"
 
 # What follows a deforming surface: groups, the tables that they read, and their attributes
 GROUP_MARK = "limit_surface_group"  # custom property of node groups: their name and version
@@ -108,6 +116,7 @@ FOLLOW_POINTS_GROUP = "Limit Follow"
 FOLLOW_ORIENTED_GROUP = "Limit Follow Oriented"
 FOLLOW_NORMALS_GROUP = "Limit Follow Normals"
 FOLLOW_CURVE_GROUP = "Limit Curve"
+TUBE_GROUP = "Limit Tube"
 FOLLOW_LIVE_GROUP = "Limit Live"
 CHILDREN_GROUP = "Limit Children"
 CHILDREN_TABLE = "Limit Children Table"

@@ -18,15 +18,19 @@ def examples(page: str) -> list[str]:
 
 
 def check_properties(
-    section: str, operator: str, empty: str = "none", only: Collection[str] | None = None
+    section: str,
+    operator: str,
+    empty: str = "none",
+    only: Collection[str] | None = None,
+    category: str = "object",
 ) -> None:
-    """The section's table lists the properties of `bpy.ops.object.<operator>`, or `only` some of
-    them, and their defaults. `empty` is how it shows an empty name."""
+    """The section's table lists the properties of `bpy.ops.<category>.<operator>`, or `only` some
+    of them, and their defaults. `empty` is how it shows an empty name."""
     rows: dict[str, str] = {}
     row = r"^\| (`[^|]+`) \| *`?([^|`]*?)`? *\|"
     for names, said in re.findall(row, section, re.MULTILINE):
         rows |= dict.fromkeys(re.findall(r"`(\w+)`", names), said)
-    properties = getattr(bpy.ops.object, operator).get_rna_type().properties
+    properties = getattr(getattr(bpy.ops, category), operator).get_rna_type().properties
     shown = {p.identifier: p for p in properties if not p.is_hidden and p.identifier != "rna_type"}
     if only is not None:
         shown = {name: rna for name, rna in shown.items() if name in only}

@@ -32,7 +32,7 @@ def test_panel_offers_the_operators():
     assert "No active mesh" in labels(layout)
     assert layout.column().enabled is True
     offered = [call.args[0] for call in layout.column().operator.call_args_list]
-    assert offered == [ids.HAIR_ADD, ids.POINTS_ADD]
+    assert offered == [ids.HAIR_ADD, ids.POINTS_ADD, ids.DRAW]
 
 
 def test_panel_shows_whose_rules_count():
@@ -104,8 +104,8 @@ def test_preferences_show_the_version():
 def test_menu_offers_the_operators():
     layout = drawn(bpy.types.VIEW3D_MT_object_limit_surface)
     offered = [call.args[0] for call in layout.operator.call_args_list]
-    first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.CHILDREN_ADD, ids.SNAP, ids.SNAP_MODAL, ids.SHOW]
-    first += [ids.REPORT_OPERATOR, ids.ATTACH]
+    first = [ids.HAIR_ADD, ids.POINTS_ADD, ids.CHILDREN_ADD, ids.SNAP, ids.SNAP_MODAL, ids.DRAW]
+    first += [ids.CURVE_LAY, ids.SHOW, ids.REPORT_OPERATOR, ids.ATTACH]
     first += [ids.PARTICLES_FROM_HAIR, ids.HAIR_FROM_PARTICLES]
     first += [ids.SAMPLE_TABLES, ids.SAMPLE_REMOVE]
     first += [ids.FOLLOW, ids.REBIND, ids.UNBIND]

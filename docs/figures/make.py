@@ -63,6 +63,7 @@ FIGURES = {
     "children": rendered("children", "children by Blender's node group and by this extension"),
     "curvature": rendered("curvature", "curvature as colours and as principal directions"),
     "density": rendered("distribution", "densities from three sources", "make_densities"),
+    "draw": rendered("draw", "a seam, stitches and a cable that were drawn on a sheet"),
     "displacement": rendered("displacement.picture", "a head, a displacement map, and its sculpt"),
     "distribution": rendered("distribution", "the three distributions", "make_distributions"),
     "exact_boundary": exact("boundary", "an extraordinary vertex on the boundary"),

@@ -22,6 +22,7 @@ LAYERS = (
     "tessellate",
     "search",
     "flow",
+    "path",
     "sample",
     "curves",
     "geodesic",

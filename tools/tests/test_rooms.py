@@ -15,7 +15,7 @@ import pytest
 
 ADDON = Path(__file__).resolve().parents[2] / "addon/limit_surface"
 MOST_IN_ROOT = 6
-ROOMS = ("reading", "subsurf", "tasks", "images", "nodes", "sources", "placing")
+ROOMS = ("reading", "subsurf", "tasks", "images", "nodes", "sources", "placing", "viewport")
 CAPABILITIES = (
     "attach",
     "bake_displacement",
@@ -23,6 +23,7 @@ CAPABILITIES = (
     "bake_maps",
     "children",
     "curvature",
+    "draw",
     "follow",
     "hair",
     "limit_mesh",

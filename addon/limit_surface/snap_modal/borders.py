@@ -9,7 +9,7 @@ import numpy as np
 
 from ..reading import ragged_rows
 from ..snap.surface import TargetSurface
-from .ray import Ray
+from ..viewport.ray import Ray
 
 STEPS = np.linspace(0, 1, 17)
 PASSES = 4  # each step divides the interval by 8, until it is far smaller than a pixel

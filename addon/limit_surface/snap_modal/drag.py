@@ -9,9 +9,9 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..snap.surface import TargetSurface
+from ..viewport.ray import Ray
 from .borders import Borders
 from .handles import Handle, Place
-from .ray import Ray
 
 LOCKS = ("FREE", "BORDER", "BOUNDARY")
 # number of elements nearest on screen that are tested; the nearest one that is not hidden is taken

@@ -10,7 +10,7 @@ from ..errors import RefusalError
 from ..snap.binding_again import bind_again
 from ..snap.properties import ALIGNMENTS, HAIR, PlacingProperties
 from ..snap.surface import TargetSurface
-from . import ray
+from ..viewport import ray
 from .drag import Drag, Glide, nearest_in_sight, offset_step
 from .drawing import Drawing, Mark
 from .subject import Subject, find_subject

@@ -17,6 +17,8 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
         self.layout.operator(ids.CHILDREN_ADD, icon="PARTICLEMODE")
         self.layout.operator(ids.SNAP, icon="SNAP_ON")
         self.layout.operator(ids.SNAP_MODAL, icon="VIEW_PAN")
+        self.layout.operator(ids.DRAW, icon="GREASEPENCIL")
+        self.layout.operator(ids.CURVE_LAY, icon="MOD_SHRINKWRAP")
         self.layout.operator(ids.SHOW, icon="HIDE_OFF")
         self.layout.operator(ids.REPORT_OPERATOR, icon="DRIVER_DISTANCE")
         self.layout.operator(ids.ATTACH, icon="LINKED")
@@ -35,6 +37,7 @@ class VIEW3D_MT_object_limit_surface(bpy.types.Menu):
 def _draw_in_add_curve(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.separator()
     self.layout.operator(ids.HAIR_ADD, text="Hair on Limit Surface", icon="CURVES")
+    self.layout.operator(ids.DRAW, icon="GREASEPENCIL")
 
 
 def _draw_in_object(self: bpy.types.Menu, _context: bpy.types.Context) -> None:

@@ -40,6 +40,7 @@ class VIEW3D_PT_limit_surface(bpy.types.Panel):
         column.enabled = native.available()
         column.operator(ids.HAIR_ADD, icon="CURVES")
         column.operator(ids.POINTS_ADD, icon="POINTCLOUD_DATA")
+        column.operator(ids.DRAW, icon="GREASEPENCIL")
 
 
 def _draw_rules(layout: bpy.types.UILayout, surface: bpy.types.Object) -> None:

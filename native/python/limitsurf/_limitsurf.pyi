@@ -14,9 +14,11 @@ from ._results import (
     FaceLevels,
     GuideWeights,
     Hits,
+    LaidPaths,
     Locations,
     MapDistortion,
     MapLocations,
+    PathFit,
     Projection,
     PtexTexels,
     RayHits,
@@ -415,6 +417,45 @@ class LimitSurface(metaclass=_BoundType):
         dtype: DTypeLike = ...,
         progress: Callable[[float], object] | None = None,
     ) -> NDArray[np.floating[Any]]: ...
+    def lay_path(
+        self,
+        points: ArrayLike,
+        tolerance: float,
+        *,
+        handle_left: ArrayLike | None = None,
+        handle_right: ArrayLike | None = None,
+        offsets: ArrayLike | None = None,
+        closed: bool | ArrayLike = False,
+        max_step: float = ...,
+        threads: int = 0,
+    ) -> LaidPaths: ...
+    def fit_path(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        tolerance: float,
+        *,
+        kind: Literal["bezier", "poly"] = "bezier",
+        closed: bool = False,
+        offset: float = 0.0,
+        corner_angle: float = ...,
+        values: ArrayLike | None = None,
+        value_tolerance: float = 0.0,
+        threads: int = 0,
+    ) -> PathFit: ...
+    def smooth_path(
+        self,
+        face: ArrayLike,
+        uv: ArrayLike,
+        weights: ArrayLike,
+        iterations: int = 1,
+        *,
+        closed: bool = False,
+        threads: int = 0,
+    ) -> Locations: ...
+    def even_path(
+        self, face: ArrayLike, uv: ArrayLike, count: int, *, threads: int = 0
+    ) -> Locations: ...
     def project(
         self,
         uv_map: SurfaceData,

@@ -186,6 +186,37 @@ class RayHits(Hits):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LaidPaths:
+    """Polylines on the surface: path p is rows offsets[p] to offsets[p + 1] - 1, and comes from the
+    curve curve[p] (LimitSurface.lay_path())."""
+
+    face: NDArray[np.int32]
+    uv: NDArray[np.float64]
+    position: NDArray[np.float64]
+    place: NDArray[np.float64]
+    offsets: NDArray[np.int64]
+    curve: NDArray[np.int32]
+    closed: NDArray[np.bool_]
+    deviation: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.curve)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PathFit:
+    """A curve through the rows of a path that are its control points; the handles are None for
+    polylines (LimitSurface.fit_path())."""
+
+    rows: NDArray[np.int32]
+    handle_left: NDArray[np.float64] | None
+    handle_right: NDArray[np.float64] | None
+    deviation: float
+    error: float
+    resolution: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Projection:
     """The image on texels: places in the image (n, 2), footprints (n, 2, 2) and weights (n,)."""
 

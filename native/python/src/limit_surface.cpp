@@ -144,6 +144,7 @@ void bindLimitSurface(py::module_& module) {
   bindTangentFrames(type);
   bindTessellation(type);
   bindSearch(type);
+  bindPaths(type);
   bindSampling(type);
   bindGuideWeights(type);
   bindFlow(type);

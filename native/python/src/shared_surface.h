@@ -64,6 +64,8 @@ void bindDataMakers(py::class_<SharedSurface>& type);
 void bindTessellation(py::class_<SharedSurface>& type);
 /// closest(), ray_cast(), ray_cast_all()
 void bindSearch(py::class_<SharedSurface>& type);
+/// lay_path(), fit_path(), smooth_path(), even_path()
+void bindPaths(py::class_<SharedSurface>& type);
 /// area() and the scatter methods
 void bindSampling(py::class_<SharedSurface>& type);
 /// curve_directions()

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curve objects on the surface: new ones, and splines added to those that exist."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from .. import ids
+from ..errors import RefusalError
+from ..nodes import groups, tube
+from ..placing import curve_points
+from ..placing.follow_properties import follows
+from ..placing.new_objects import add_on_surface
+from ..placing.posed_surface import at_closest, transformed
+from ..placing.roots import Locations
+from ..placing.rotations import WorldSpace
+from ..reading import splines as blender_splines
+from . import splines
+from .fitting import Spline
+from .ground import Ground
+
+
+@dataclass(frozen=True)
+class Thickness:
+    radius: float  # world units; 0: none
+    bevel_resolution: int
+
+
+def add_new(
+    context: bpy.types.Context,
+    ground: Ground,
+    made: Sequence[Spline],
+    thickness: Thickness,
+    follow: str,
+) -> bpy.types.Object:
+    data = bpy.data.curves.new(ids.DRAWING_OBJECT, "CURVE")
+    try:
+        data.dimensions = "3D"
+        splines.add(data, made)
+        splines.store_locations(data, splines.joined([spline.locations for spline in made]))
+        scale = WorldSpace(ground.matrix).mean_scale
+        is_bound = follows(follow, ground.ob)
+        if thickness.radius and not is_bound:
+            data.bevel_depth = thickness.radius / scale
+            data.bevel_resolution = thickness.bevel_resolution
+            data.use_fill_caps = True
+        ob = add_on_surface(context, ids.DRAWING_OBJECT, data, ground.ob)
+    except BaseException:
+        bpy.data.curves.remove(data)
+        raise
+    if is_bound:
+        curve_points.bind([ob], ground.ob, context)
+        if thickness.radius:
+            # Nodes see control points only where the curve itself has no bevel.
+            sides = 4 * (thickness.bevel_resolution + 1)
+            tube.add_tube(ob, thickness.radius / scale, sides)
+    return ob
+
+
+def change(
+    context: bpy.types.Context,
+    ob: bpy.types.Object,
+    ground: Ground,
+    removed: Sequence[int],
+    made: Sequence[Spline],
+) -> None:
+    """Replaces splines of a Curve object by others."""
+    data = ob.data
+    kept = _kept_locations(ob, ground, removed)
+    splines.remove(data, removed)
+    splines.add(data, made)
+    splines.store_locations(data, splines.joined([kept, *(spline.locations for spline in made)]))
+    if next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None) and len(data.splines):
+        curve_points.bind([ob], ground.ob, context)
+
+
+def store_offset(data: bpy.types.Curve, offset: float) -> None:
+    """Keeps the offset, with which the curve is continued later."""
+    if offset:
+        data[ids.OFFSET] = offset
+    else:
+        data.pop(ids.OFFSET, None)
+
+
+def _kept_locations(ob: bpy.types.Object, ground: Ground, removed: Sequence[int]) -> Locations:
+    """Returns the locations of the control points that remain: those that are stored, or else the
+    closest ones.
+    """
+    counts = [len(blender_splines.points(spline)) for spline in ob.data.splines]
+    stays = np.ones(len(counts), bool)
+    stays[list(removed)] = False
+    rows = np.repeat(stays, counts)
+    found = splines.locations(ob.data)
+    if found is None:
+        matrix = np.array(ob.matrix_world, np.float64)
+        points = transformed(matrix, blender_splines.positions(ob.data).astype(np.float64))
+        found = at_closest(ground.posed, ground.surface.closest(points))
+    return Locations(found.face[rows], found.uv[rows])
+
+
+def check_editable(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
+    """Raises RefusalError for a Curve object on which nobody can draw."""
+    data = ob.data
+    if not ob.is_editable or not data.is_editable:
+        raise RefusalError(f"{ob.name} is linked from another file")
+    if data.shape_keys:
+        raise RefusalError(f"{ob.name} has shape keys, which keep the number of its points")
+    if data.dimensions == "2D":
+        raise RefusalError(f"{ob.name} is a 2D curve, which stays in its plane: make it 3D")
+    if next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None):
+        curve_points.check(ob, surface)

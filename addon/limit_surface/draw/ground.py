@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surface on which strokes lie, in world space."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ..placing.posed_surface import PosedSurface, transformed
+from ..reading import cage
+from ..tasks.refused_faces import check_some_left
+from .stroke import Stroke
+
+if TYPE_CHECKING:
+    import limitsurf
+
+#: The tolerance unless another one is chosen, as a share of the surface's extent
+AUTOMATIC = 1e-4
+#: Paths are laid more closely than curves are fitted to them.
+PATH = 0.25
+#: The longest step of a path, as a share of the extent: narrow features between two points of a
+#: path could be missed.
+STEP = 0.01
+
+
+class Ground:
+    def __init__(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+        self.ob = ob
+        self.posed = PosedSurface(cage.read(ob, depsgraph))
+        self.surface: limitsurf.LimitSurface = self.posed.in_world
+        check_some_left(self.surface, ob.name)
+        self.matrix = self.posed.cage.matrix
+        #: the sign of the outward normal: the world's surface of a mirrored object is inside out
+        self.outward = -1.0 if self.posed.cage.is_mirrored else 1.0
+        low, high = self.surface.bounds()
+        self.size = float(np.linalg.norm(high - low))
+
+    def tolerance(self, chosen: float) -> float:
+        """Returns the tolerance in world units; 0 chooses one by the surface's size."""
+        return chosen or AUTOMATIC * self.size
+
+    def stroke(
+        self, face: np.ndarray, uv: np.ndarray, radius: np.ndarray, is_closed: bool = False
+    ) -> Stroke:
+        uv = np.asarray(uv, np.float64).reshape(-1, 2)
+        on = self.surface.evaluate(face, uv, derivatives=1)
+        assert on.normal is not None
+        normal = self.outward * on.normal
+        return Stroke(np.asarray(face, np.int32), uv, radius, on.position, normal, is_closed)
+
+    def lay(
+        self,
+        points: np.ndarray,
+        radius: np.ndarray,
+        tolerance: float,
+        is_closed: bool = False,
+        handles: tuple[np.ndarray, np.ndarray] | None = None,
+        max_step: float = np.inf,
+    ) -> list[Stroke]:
+        """Lays the curve through points (n, 3) of the world onto the surface: in several pieces
+        where it cannot be laid in one.
+        """
+        left, right = handles or (None, None)
+        laid = self.surface.lay_path(
+            points,
+            PATH * tolerance,
+            handle_left=left,
+            handle_right=right,
+            closed=is_closed,
+            max_step=min(max_step, STEP * self.size),
+        )
+        places = np.arange(len(points) + 1)
+        radii = np.interp(laid.place, places, np.append(radius, radius[0]))
+        return [
+            self.stroke(laid.face[rows], laid.uv[rows], radii[rows], bool(closed))
+            for begin, end, closed in zip(
+                laid.offsets[:-1], laid.offsets[1:], laid.closed, strict=True
+            )
+            for rows in [slice(begin, end)]
+            if end > begin + 1
+        ]
+
+    def laid_again(
+        self, stroke: Stroke, tolerance: float, max_step: float = np.inf
+    ) -> list[Stroke]:
+        """Lays the stroke through its own points, which stay points of it."""
+        points, radius = stroke.position, stroke.radius
+        if stroke.is_closed:  # the last point repeats the first
+            points, radius = points[:-1], radius[:-1]
+        return self.lay(points, radius, tolerance, stroke.is_closed, max_step=max_step)
+
+    def mirrored(self, points: np.ndarray) -> np.ndarray:
+        """Returns points (n, 3) of the world mirrored along the X axis of the surface's object."""
+        flip = self.matrix @ np.diag([-1.0, 1.0, 1.0, 1.0]) @ np.linalg.inv(self.matrix)
+        return transformed(flip, points)
+
+    def mirror_stroke(self, stroke: Stroke, tolerance: float) -> list[Stroke]:
+        points, radius = self.mirrored(stroke.position), stroke.radius
+        if stroke.is_closed:
+            points, radius = points[:-1], radius[:-1]
+        return self.lay(points, radius, tolerance, stroke.is_closed)

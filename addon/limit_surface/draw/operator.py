@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operator view3d.limit_draw."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import BoolProperty, CollectionProperty, IntProperty
+
+from .. import ids, native
+from ..errors import RefusalError
+from ..placing.follow_properties import FollowProperties
+from ..tasks.properties import SummaryProperty, draw_summary
+from . import properties, result, splines, stroke, subject
+from .ground import Ground
+from .pen import Pen
+from .session import Session, Settings
+from .stroke import LIMIT_PG_draw_point, LIMIT_PG_draw_spline
+
+
+class VIEW3D_OT_limit_draw(
+    properties.DrawingProperties, FollowProperties, SummaryProperty, bpy.types.Operator
+):
+    """Draw curves or guide strands on the exact limit surface of the active mesh, with the mouse or
+    a pen. With a curve active that was drawn before, its strokes are continued, erased and
+    smoothed"""
+
+    bl_idname = ids.DRAW
+    bl_label = "Draw on Limit Surface"
+    bl_options = {"REGISTER", "UNDO", "BLOCKING"}
+
+    strokes: CollectionProperty(
+        name="Strokes",
+        description="Points of the strokes, one stroke after the other. Scripts and the redo panel "
+        "use them",
+        type=LIMIT_PG_draw_point,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    removed: CollectionProperty(
+        name="Removed",
+        description="Splines of the active curve that the strokes replace",
+        type=LIMIT_PG_draw_spline,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    changes_active: BoolProperty(
+        name="Changes Active",
+        description="Whether the active curve was changed, and no new object was made",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    steadying: IntProperty(
+        name="Steady",
+        description="How much strokes are smoothed as they are drawn: the number of smoothing "
+        "steps. The steps of the mouse's pixels vanish after 8",
+        default=8,
+        min=0,
+        max=200,
+    )
+    use_mirror: BoolProperty(
+        name="X Mirror",
+        description="Draw, erase and smooth on the other side of the surface's X axis as well",
+        default=False,
+    )
+    use_pressure: BoolProperty(
+        name="Pressure",
+        description="Let the pressure of a pen make the curves thinner",
+        default=True,
+    )
+    use_join: BoolProperty(
+        name="Join",
+        description="Continue a stroke where a new one begins at its end, and close a stroke that "
+        "ends where it began",
+        default=True,
+    )
+    brush: IntProperty(
+        name="Brush",
+        description="Radius of the brushes that erase and smooth, in pixels",
+        default=25,
+        min=1,
+        max=1000,
+        subtype="PIXEL",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not native.available():
+            cls.poll_message_set(native.obstacle())
+            return False
+        try:
+            subject.find(context)
+        except RefusalError as error:
+            cls.poll_message_set(str(error))
+            return False
+        return True
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.layout.use_property_split = True
+        properties.draw(self.layout, self, is_new=not self.changes_active)
+        draw_summary(self.layout, self.summary)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Makes what the stored strokes say; without strokes there is nothing to do."""
+        if not self.strokes and not self.removed:
+            return self._refuse("Drawing needs a window and a mouse or pen: scripts set `strokes`")
+        try:
+            found = subject.find(context)
+            ground = Ground(found.surface, context.evaluated_depsgraph_get())
+            return self._make(context, found, ground)
+        except native.refusals as error:
+            return self._refuse(error)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if context.area is None or context.area.type != "VIEW_3D":
+            return self._refuse("Only available in a 3D viewport")
+        try:
+            self._found = subject.find(context)
+            ground = Ground(self._found.surface, context.evaluated_depsgraph_get())
+            tolerance = ground.tolerance(self.tolerance)
+            begun = []
+            if self._found.edited:
+                self.output = "CURVE"
+                self.offset = float(self._found.edited.data.get(ids.OFFSET, 0.0))
+                begun = splines.strokes(self._found.edited, ground, tolerance)
+        except native.refusals as error:
+            return self._refuse(error)
+        settings = Settings(tolerance, self.steadying, self.use_mirror, self.use_join)
+        self._pen = Pen(
+            context.area, Session(ground, settings, begun), self.brush, self.use_pressure
+        )
+        context.window_manager.modal_handler_add(self)
+        self._pen.show(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        try:
+            answer = self._pen.take(context, event)
+            if answer == {"FINISHED"}:
+                answer = self._confirm(context)
+        except native.refusals as error:
+            answer = self._refuse(error)
+        except BaseException:
+            self._pen.close(context)
+            raise
+        if answer & {"FINISHED", "CANCELLED"}:
+            self._pen.close(context)
+        return answer
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Is called when Blender ends the operator, for example because another file is opened."""
+        self._pen.close(context)
+
+    def _confirm(self, context: bpy.types.Context) -> set[str]:
+        session = self._pen.session
+        self.brush, settings = self._pen.brush, session.settings
+        self.use_mirror, self.use_join = settings.is_mirrored, settings.continues
+        if not session.is_changed:
+            self.report({"INFO"}, "Nothing was drawn")
+            return {"CANCELLED"}
+        stroke.write(session.changed, self.strokes)
+        self.removed.clear()
+        for number in session.removed:
+            self.removed.add().index = number
+        return self._make(context, self._found, session.ground)
+
+    def _make(self, context: bpy.types.Context, found: subject.Subject, ground: Ground) -> set[str]:
+        """Puts the strokes into the file. The stored strokes are read back, so that the redo panel
+        makes the same of them.
+        """
+        self.changes_active = found.edited is not None
+        tolerance = ground.tolerance(self.tolerance)
+        strokes = result.read_strokes(self.strokes, ground, tolerance)
+        removed = [each.index for each in self.removed]
+        if removed and found.edited is None:
+            raise RefusalError("`removed` names splines, but no curve is active")
+        self.summary = result.make(context, ground, found.edited, strokes, removed, self)
+        self.report({"INFO"}, "; ".join([self.summary, *ground.posed.cage.notes]))
+        return {"FINISHED"}
+
+    def _refuse(self, reason: object) -> set[str]:
+        self.report({"ERROR"}, str(reason))
+        return {"CANCELLED"}

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Properties of what is drawn, which operators share, and their layout in the redo panel."""
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty
+
+SPLINES = (
+    ("BEZIER", "Bézier", "Make Bézier curves with few control points", 0),
+    ("POLY", "Poly", "Make polylines", 1),
+)
+
+
+class FitProperties:
+    """Mixin with what curves are fitted by."""
+
+    spline: EnumProperty(
+        name="Spline", description="Type of the curves that are made", items=SPLINES
+    )
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description="Largest distance of the curves from the surface, or from their offset, in "
+        "world units. 0 chooses a ten-thousandth of the surface's extent",
+        default=0.0,
+        min=0.0,
+        soft_max=0.1,
+        precision=5,
+        subtype="DISTANCE",
+    )
+    offset: FloatProperty(
+        name="Offset",
+        description="Distance from the surface along its normal, in world units",
+        default=0.0,
+        subtype="DISTANCE",
+    )
+
+
+class DrawingProperties(FitProperties):
+    """Mixin with what is made of strokes."""
+
+    output: EnumProperty(
+        name="Make",
+        description="What is made of the strokes",
+        items=(
+            ("CURVE", "Curve", "Make a Curve object: for stitches, cables, seams and scratches", 0),
+            (
+                "GUIDES",
+                "Guide Strands",
+                "Make hair curves that are rooted where the strokes begin",
+                1,
+            ),
+        ),
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Radius of the curves at full pressure, in world units. 0 makes curves without "
+        "thickness",
+        default=0.01,
+        min=0.0,
+        soft_max=1.0,
+        precision=4,
+        subtype="DISTANCE",
+    )
+    bevel_resolution: IntProperty(
+        name="Bevel Resolution",
+        description="Number of segments of each quarter of the tube around the curves, less one",
+        default=2,
+        min=0,
+        max=32,
+    )
+    points: IntProperty(
+        name="Points",
+        description="Number of control points on each strand, including the root",
+        default=8,
+        min=2,
+        max=1024,
+        soft_max=64,
+    )
+
+
+def draw(layout: bpy.types.UILayout, of: bpy.types.OperatorProperties, is_new: bool) -> None:
+    """Draws the properties; a Curve object that exists keeps what belongs to all its splines."""
+    is_curve = of.output == "CURVE"
+    if is_new:
+        layout.prop(of, "output")
+    if is_curve:
+        layout.prop(of, "spline")
+        layout.prop(of, "tolerance")
+    else:
+        layout.prop(of, "points")
+    layout.prop(of, "offset")
+    if is_new:
+        layout.prop(of, "radius")
+        if is_curve:
+            row = layout.row()
+            row.active = of.radius > 0
+            row.prop(of, "bevel_resolution")
+        layout.prop(of, "follow")

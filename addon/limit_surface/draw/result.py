@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From strokes to objects in the file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ..errors import RefusalError
+from . import curve_object, guides, stroke
+from .fitting import Fit, Spline
+from .ground import Ground
+from .stroke import Stroke
+
+
+def read_strokes(
+    points: bpy.types.bpy_prop_collection, ground: Ground, tolerance: float
+) -> list[Stroke]:
+    """Returns the strokes of an operator's property, laid onto the surface between their points.
+    Raises LocationError or MeshError for points that have no place on the surface.
+    """
+    found = []
+    for face, uv, radius, is_closed in stroke.read(points):
+        begun = ground.stroke(face, uv.astype(np.float64), radius)
+        found += ground.lay(begun.position, radius, tolerance, is_closed)
+    if points and not found:
+        raise RefusalError("A stroke needs at least two different points")
+    return found
+
+
+def make(
+    context: bpy.types.Context,
+    ground: Ground,
+    edited: bpy.types.Object | None,
+    strokes: Sequence[Stroke],
+    removed: Sequence[int],
+    how: Any,
+) -> str:
+    """Makes an object of the strokes, or changes the one that is edited. `how` holds the
+    operator's properties. Returns the summary.
+    """
+    if edited is None and how.output == "GUIDES":
+        guides.add_new(context, ground, strokes, how.points, how.offset, how.radius, how.follow)
+        return f"{_counted(len(strokes), 'guide strand')} on {ground.ob.name}"
+    tolerance = ground.tolerance(how.tolerance)
+    fit = Fit(how.spline, tolerance, how.offset)
+    matrix = np.array((edited or ground.ob).matrix_world, np.float64)
+    made = [fit.spline(each, ground, matrix) for each in strokes]
+    if edited is None:
+        thickness = curve_object.Thickness(how.radius, how.bevel_resolution)
+        edited = curve_object.add_new(context, ground, made, thickness, how.follow)
+    else:
+        check_numbers(edited, removed)
+        curve_object.change(context, edited, ground, removed, made)
+    curve_object.store_offset(edited.data, how.offset)
+    warn_of_deviation(how, tolerance, made)
+    return summary(made, len(set(removed)), ground, how.offset)
+
+
+def check_numbers(ob: bpy.types.Object, removed: Sequence[int]) -> None:
+    count = len(ob.data.splines)
+    for number in removed:
+        if number >= count:
+            raise RefusalError(f"{ob.name} has no spline {number}: it has {count}")
+
+
+def summary(made: Sequence[Spline], removed: int, ground: Ground, offset: float) -> str:
+    if not made:
+        return f"{_counted(removed, 'spline')} removed"
+    points = sum(len(spline.position) for spline in made)
+    farthest = max(spline.deviation for spline in made)
+    where = f"{offset:.4g} beside {ground.ob.name}" if offset else ground.ob.name
+    return (
+        f"{_counted(len(made), 'stroke')} with {points:,} control points on {where}, "
+        f"at most {farthest:.2g} off"
+    )
+
+
+def warn_of_deviation(
+    operator: bpy.types.Operator, tolerance: float, made: Sequence[Spline]
+) -> None:
+    """Says it where an offset is larger than the surface's hollows are wide: curves cannot keep it
+    there.
+    """
+    farthest = max((spline.deviation for spline in made), default=0.0)
+    if farthest > tolerance:
+        operator.report(
+            {"WARNING"},
+            f"Curves are up to {farthest:.2g} off, more than the tolerance {tolerance:.2g}: "
+            "the offset is too large for the surface's hollows, or the tolerance too small",
+        )
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A stroke: a path on the surface, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntProperty
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke:
+    """The points of a stroke. The last point of a closed stroke repeats the first."""
+
+    face: np.ndarray  # (n,) int32
+    uv: np.ndarray  # (n, 2)
+    radius: np.ndarray  # (n,) as a share of the full radius: the pressure
+    position: np.ndarray  # (n, 3) world
+    normal: np.ndarray  # (n, 3) world; NaN where there is none
+    is_closed: bool = False
+    spline: int = -1  # the number of the spline that holds it unchanged; -1 for none
+
+    def __len__(self) -> int:
+        return len(self.face)
+
+
+class LIMIT_PG_draw_point(bpy.types.PropertyGroup):
+    """A point of a stroke, as scripts and the redo panel pass it to the operator."""
+
+    face: IntProperty(name="Face", description="Ptex face of the point's location", min=0)
+    uv: FloatVectorProperty(
+        name="UV", description="Place on the face", size=2, min=0.0, max=1.0, precision=6
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Radius at the point, as a share of the operator's radius: the pressure",
+        default=1.0,
+        min=0.0,
+    )
+    is_first: BoolProperty(name="First", description="Whether a new stroke begins here")
+    is_closed: BoolProperty(
+        name="Closed", description="At a first point: whether the stroke returns to it at its end"
+    )
+
+
+class LIMIT_PG_draw_spline(bpy.types.PropertyGroup):
+    """A spline that the operator removes from the Curve object."""
+
+    index: IntProperty(name="Index", description="Number of the spline", min=0)
+
+
+def write(strokes: Sequence[Stroke], points: bpy.types.bpy_prop_collection) -> None:
+    """Stores strokes in a collection of LIMIT_PG_draw_point. The repeated point of closed strokes
+    is left out.
+    """
+    points.clear()
+    if not strokes:
+        return
+    counts = [len(stroke) - stroke.is_closed for stroke in strokes]
+    for _ in range(sum(counts)):
+        points.add()
+
+    def joined(name: str) -> np.ndarray:
+        rows = [getattr(each, name)[:count] for each, count in zip(strokes, counts, strict=True)]
+        return np.concatenate(rows)
+
+    first = np.cumsum([0, *counts[:-1]])
+    points.foreach_set("face", joined("face"))
+    points.foreach_set("uv", joined("uv").astype(np.float32).ravel())
+    points.foreach_set("radius", joined("radius").astype(np.float32))
+    for row, stroke in zip(first, strokes, strict=True):
+        points[int(row)].is_first = True
+        points[int(row)].is_closed = stroke.is_closed
+
+
+def read(
+    points: bpy.types.bpy_prop_collection,
+) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, bool]]:
+    """Returns the face, (u, v), radius and closedness of each stroke of a collection."""
+    count = len(points)
+    face, uv, radius = np.empty(count, np.int32), np.empty((count, 2), np.float32), np.empty(count)
+    if not count:
+        return []
+    points.foreach_get("face", face)
+    points.foreach_get("uv", uv.ravel())
+    points.foreach_get("radius", radius)
+    first = [row for row in range(count) if row == 0 or points[row].is_first]
+    ends = [*first[1:], count]
+    return [
+        (face[begin:end], uv[begin:end], radius[begin:end], points[begin].is_closed)
+        for begin, end in zip(first, ends, strict=True)
+        if end > begin + 1
+    ]

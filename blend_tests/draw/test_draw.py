@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""view3d.limit_draw without a window: strokes that are given, and refusals.
+
+Mouse and keys are tested in blend_tests/gui.
+"""
+
+import bpy
+import draw_scenes as drawn
+import numpy as np
+import pytest
+import scenes
+
+TOLERANCE = 1e-3
+#: Blender stores coordinates up to 8 in single precision
+ROUNDING = 1e-6
+
+
+@pytest.fixture
+def target():
+    ob = scenes.cross()
+    ob.location, ob.rotation_euler, ob.scale = (1, -2, 0.5), (0.3, 0.2, -0.4), (1.5, 0.7, -1.2)
+    bpy.context.view_layer.update()
+    return ob
+
+
+def draw(strokes, **properties):
+    return bpy.ops.view3d.limit_draw(
+        **{"strokes": drawn.points(*strokes), "tolerance": TOLERANCE} | properties
+    )
+
+
+ACROSS = drawn.Given([0, 0, 1], [(0.2, 0.3), (0.8, 0.6), (0.5, 0.5)])
+WITHIN = drawn.Given([2, 2, 2], [(0.1, 0.1), (0.9, 0.2), (0.5, 0.9)])
+
+
+@pytest.mark.parametrize("spline", ["BEZIER", "POLY"])
+@pytest.mark.parametrize("offset", [0.0, 0.02])
+def test_curve_is_on_the_surface_everywhere(target, spline, offset):
+    assert draw([ACROSS, WITHIN], spline=spline, offset=offset) == {"FINISHED"}
+    ob = bpy.context.active_object
+    assert ob.parent == target
+    np.testing.assert_array_equal(ob.matrix_world, target.matrix_world)
+    assert [each.type for each in ob.data.splines] == [spline] * 2
+    for number, given in enumerate((ACROSS, WITHIN)):
+        shown = drawn.world_points(ob, number)
+        off = drawn.distance_from(target, shown) - offset
+        assert np.abs(off).max() < TOLERANCE + ROUNDING
+        wanted = drawn.world_places(target, given, offset)
+        assert drawn.distance_from_polyline(wanted, shown).max() < TOLERANCE
+
+
+def test_every_control_point_carries_its_location(target):
+    draw([ACROSS, WITHIN])
+    data = bpy.context.active_object.data
+    face, uv = np.array(data["limit_face"]), np.array(data["limit_uv"]).reshape(-1, 2)
+    points = np.concatenate([drawn.control_points(spline) for spline in data.splines])
+    assert len(face) == len(uv) == len(points)
+    np.testing.assert_array_equal(uv, uv.astype(np.float32))
+    exact = scenes.surface_without_addon(target).evaluate(face, uv).position
+    np.testing.assert_array_equal(points, exact.astype(np.float32))
+
+
+def test_tolerance_zero_is_a_share_of_the_extent(target):
+    draw([ACROSS], tolerance=0)
+    ob = bpy.context.active_object
+    size = np.linalg.norm(np.ptp(drawn.samples(target), axis=0))
+    off = drawn.distance_from(target, drawn.world_points(ob, 0))
+    assert off.max() < 1.01e-4 * size + ROUNDING
+    few = len(ob.data.splines[0].bezier_points)
+    scenes.activate(target)
+    draw([ACROSS], tolerance=0.05)
+    assert len(bpy.context.active_object.data.splines[0].bezier_points) < few
+
+
+def test_pressure_becomes_the_radius(target):
+    thin = drawn.Given(WITHIN.face, WITHIN.uv, [1.0, 0.25, 0.5])
+    draw([thin], radius=0.03)
+    data = bpy.context.active_object.data
+    scale = np.cbrt(abs(np.linalg.det(np.array(target.matrix_world)[:3, :3])))
+    assert data.bevel_depth == pytest.approx(0.03 / scale, rel=1e-6)
+    radius = [point.radius for point in data.splines[0].bezier_points]
+    assert radius[0] == 1.0
+    assert radius[-1] == 0.5
+    assert min(radius) == 0.25
+
+
+def test_closed_stroke(target):
+    ring = drawn.Given([2] * 4, [(0.2, 0.2), (0.8, 0.2), (0.8, 0.8), (0.2, 0.8)], is_closed=True)
+    draw([ring])
+    ob = bpy.context.active_object
+    assert ob.data.splines[0].use_cyclic_u
+    shown = drawn.world_points(ob, 0)
+    np.testing.assert_allclose(shown[0], shown[-1], atol=ROUNDING)
+    assert drawn.distance_from(target, shown).max() < TOLERANCE + ROUNDING
+    assert drawn.distance_from_polyline(drawn.world_places(target, ring), shown).max() < TOLERANCE
+
+
+def test_strokes_are_added_to_the_active_curve_and_replaced(target):
+    draw([ACROSS])
+    ob = bpy.context.active_object
+    first = drawn.control_points(ob.data.splines[0])
+    draw([WITHIN])
+    assert bpy.context.active_object == ob
+    assert len(ob.data.splines) == 2
+    np.testing.assert_array_equal(drawn.control_points(ob.data.splines[0]), first)
+    counts = [len(spline.bezier_points) for spline in ob.data.splines]
+    assert len(ob.data["limit_face"]) == sum(counts)
+    draw([], removed=[{"name": "", "index": 0}])
+    assert [len(spline.bezier_points) for spline in ob.data.splines] == counts[1:]
+    assert set(ob.data["limit_face"]) == {2}
+    assert len(bpy.data.objects) == 2
+
+
+def test_guides_are_rooted_where_strokes_begin(target):
+    scenes.add_uv_map(target, lambda p: 0.1 * p[:, :2])
+    assert draw([ACROSS, WITHIN], output="GUIDES", points=6, offset=0.1) == {"FINISHED"}
+    ob = bpy.context.active_object
+    assert ob.type == "CURVES"
+    assert ob.data.surface == target
+    assert [curve.points_length for curve in ob.data.curves] == [6, 6]
+    strands = scenes.strands(ob)
+    uv = np.array([(0.2, 0.3), (0.1, 0.1)], np.float32)
+    exact = scenes.surface_without_addon(target).evaluate([0, 2], uv.astype(float)).position
+    np.testing.assert_array_equal(strands[:, 0], exact.astype(np.float32))
+    matrix = np.array(target.matrix_world, np.float64)
+    rise = drawn.distance_from(target, scenes.transformed(matrix, strands.reshape(-1, 3)))
+    np.testing.assert_allclose(rise.reshape(2, 6), [np.linspace(0, 0.1, 6)] * 2, atol=1e-5)
+    names = {"limit_face", "limit_uv", "rest_root", "rest_rot", "surface_uv_coordinate", "radius"}
+    assert names <= set(ob.data.attributes.keys())
+
+
+@pytest.mark.parametrize("output", ["CURVE", "GUIDES"])
+def test_what_is_drawn_follows_the_mesh(output):
+    target = scenes.flat_grid(4)
+    draw([drawn.Given([5, 6], [(0.5, 0.5), (0.5, 0.5)])], output=output, follow="NODES")
+    ob = bpy.context.active_object
+    before = drawn.evaluated_points(ob)
+    for vertex in target.data.vertices:
+        vertex.co.z += 1
+    target.data.update()
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(drawn.evaluated_points(ob), before + [0, 0, 1], atol=10 * ROUNDING)
+
+
+REFUSED = [
+    ({}, "scripts set `strokes`"),
+    ({"strokes": drawn.points(drawn.Given([99, 99], [(0, 0), (1, 1)]))}, "face 99 is not"),
+    ({"strokes": drawn.points(drawn.Given([0], [(0, 0)]))}, "at least two"),
+    (
+        {"strokes": drawn.points(ACROSS), "removed": [{"name": "", "index": 0}]},
+        "no curve is active",
+    ),
+]
+
+
+@pytest.mark.parametrize(("properties", "reason"), REFUSED)
+def test_refusals_change_nothing(target, properties, reason):
+    before = scenes.file_contents()
+    with pytest.raises(RuntimeError, match=reason):
+        bpy.ops.view3d.limit_draw(**properties)
+    assert scenes.file_contents() == before
+
+
+def test_only_where_there_is_something_to_draw_on():
+    assert not bpy.ops.view3d.limit_draw.poll()
+    bpy.ops.curve.primitive_bezier_circle_add()
+    assert not bpy.ops.view3d.limit_draw.poll()
+    target = scenes.cross()
+    assert bpy.ops.view3d.limit_draw.poll()
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert not bpy.ops.view3d.limit_draw.poll()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    draw([ACROSS])
+    ob = bpy.context.active_object
+    assert ob.parent == target
+    ob.data.dimensions = "2D"
+    assert not bpy.ops.view3d.limit_draw.poll()
+
+
+def test_undo_and_redo(target):
+    bpy.ops.ed.undo_push(message="Before")
+    draw([ACROSS])
+    bpy.ops.ed.undo_push(message="Drawn")
+    bpy.ops.ed.undo()
+    assert not bpy.data.curves
+    assert bpy.context.active_object.type == "MESH"
