@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures how quickly the extension answers in Blender's window: dragging over a large mesh, the
-window during a long bake, and ESC. Prints a table in Markdown.
+"""Measures how quickly the extension answers in Blender's window: dragging and drawing over a large
+mesh, the window during a long bake, and ESC. Prints a table in Markdown.
 
     tools/gui_test.sh --bench
 
 This command runs it in the Blender of the window tests, without a graphics card. Drawing takes
-longer there than elsewhere, so only the times of dragging are those of the extension itself.
+longer there than elsewhere, so only the times of dragging and of strokes are those of the extension
+itself.
 """
 
 import sys
@@ -29,6 +30,7 @@ DRAWINGS = 20  # the number of drawings of the window that are measured
 def measured(blender: BlenderSession) -> list[tuple[str, float, float]]:
     """Returns the name of what is measured, and its median and largest time in seconds."""
     rows = [(f"Dragging, {name}", *summary(times)) for name, times in moves(blender)]
+    rows.append(("Drawing a stroke", *summary(stroke(blender))))
     idle, baking, escape = bake(blender)
     rows.append(("Drawing the whole window", *summary(idle)))
     rows.append(("Drawing the whole window while maps are baked", *summary(baking)))
@@ -47,6 +49,14 @@ def moves(blender: BlenderSession) -> list[tuple[str, np.ndarray]]:
     found = drags.drag_over_large_sheet(blender)
     blender.key("Escape")
     return list(found._asdict().items())
+
+
+def stroke(blender: BlenderSession) -> np.ndarray:
+    blender.new_file()
+    found = drags.draw_over_large_sheet(blender)
+    blender.release()
+    blender.key("Escape")
+    return found
 
 
 def bake(blender: BlenderSession) -> tuple[np.ndarray, np.ndarray, float]:

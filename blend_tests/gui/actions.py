@@ -200,6 +200,56 @@ def start_drag(**properties: object) -> None:
         bpy.ops.view3d.limit_snap_modal("INVOKE_DEFAULT", **properties)
 
 
+def start_drawing(**properties: object) -> None:
+    remember()
+    area, window = view()
+    with bpy.context.temp_override(area=area, region=window):
+        bpy.ops.view3d.limit_draw("INVOKE_DEFAULT", **properties)
+
+
+def splines(name: str) -> list[dict[str, object]]:
+    """Returns the control points of a Curve object in the world, spline by spline."""
+    ob = bpy.data.objects[name]
+    found = []
+    for spline in ob.data.splines:
+        points = spline.bezier_points if spline.type == "BEZIER" else spline.points
+        found.append(
+            {
+                "points": [tuple(ob.matrix_world @ point.co.to_3d()) for point in points],
+                "closed": spline.use_cyclic_u,
+                "radius": [point.radius for point in points],
+            }
+        )
+    return found
+
+
+def bevel_depth(name: str) -> float:
+    return bpy.data.objects[name].data.bevel_depth
+
+
+def drawn_points(name: str) -> list[tuple[float, ...]]:
+    """Returns the points in the world through which a Curve object's lines are drawn."""
+    ob = bpy.data.objects[name]
+    depth, ob.data.bevel_depth = ob.data.bevel_depth, 0
+    mesh = ob.to_mesh()
+    found = [tuple(ob.matrix_world @ vertex.co) for vertex in mesh.vertices]
+    ob.to_mesh_clear()
+    ob.data.bevel_depth = depth
+    return found
+
+
+def symmetric_sheet() -> None:
+    """Adds a bent sheet that is symmetric about its object's X axis, seen from above, active."""
+    y, x = np.mgrid[:9, :9].reshape(2, -1) - 4.0
+    bpy.data.batch_remove(bpy.data.objects)
+    mesh = bpy.data.meshes.new("Sheet")
+    mesh.from_pydata(np.stack([x, y, 0.05 * x * x], 1), [], grids.grid_faces(8, 8).tolist())
+    ob = bpy.data.objects.new("Sheet", mesh)
+    ob.rotation_euler = (0, 0, 0.3)
+    bpy.context.scene.collection.objects.link(ob)
+    activate(ob)
+
+
 def running() -> list[str]:
     return [operator.bl_idname for operator in bpy.context.window.modal_operators]
 
@@ -258,14 +308,25 @@ def large_sheet(side: int) -> int:
 def time_moves() -> None:
     """From now on TIMES holds the seconds that the operator spends at each move of the mouse."""
     operator = sys.modules["bl_ext.user_default.limit_surface.snap_modal.operator"]
-    cls, follow = operator.VIEW3D_OT_limit_snap_modal, operator.VIEW3D_OT_limit_snap_modal._follow
+    time_calls(operator.VIEW3D_OT_limit_snap_modal, "_follow")
 
-    def timed(self, context, event):
+
+def time_strokes() -> None:
+    """From now on TIMES holds the seconds that drawing spends at each event of the mouse."""
+    pen = sys.modules["bl_ext.user_default.limit_surface.draw.pen"]
+    time_calls(pen.Pen, "take")
+
+
+def time_calls(cls: type, name: str) -> None:
+    own = getattr(cls, name)
+
+    def timed(self, *arguments):
         start = time.perf_counter()
-        follow(self, context, event)
+        answer = own(self, *arguments)
         TIMES.append(time.perf_counter() - start)
+        return answer
 
-    cls._follow = timed
+    setattr(cls, name, timed)
 
 
 def times() -> list[float]:

@@ -23,6 +23,22 @@ def circle(blender: BlenderSession, moves: int) -> None:
         blender.move(520 + 150 * np.cos(turn), 380 + 100 * np.sin(turn))
 
 
+def draw_over_large_sheet(blender: BlenderSession, moves: int = FREE) -> np.ndarray:
+    """Draws a stroke with so many moves over the sheet, and does not end it. Returns the seconds
+    that drawing spent at each move.
+    """
+    assert blender.call("large_sheet", SIDE) > 100_000
+    blender.call("time_strokes")
+    blender.call("start_drawing")
+    blender.move(520 + 150, 380)
+    before = len(blender.call("times"))
+    blender.hold()
+    circle(blender, moves)
+    times = np.array(blender.call("times"))[before:]
+    assert len(times) >= moves
+    return times
+
+
 def drag_over_large_sheet(
     blender: BlenderSession, free: int = FREE, constrained: int = CONSTRAINED
 ) -> Moves:

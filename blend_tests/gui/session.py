@@ -223,6 +223,28 @@ class BlenderSession:
         self._xdotool("mouseup", 1)
         self.settle()
 
+    def hold(self) -> None:
+        """Presses the left button, and holds it down until `release`."""
+        self._xdotool("mousedown", 1)
+        self.settle()
+
+    def release(self) -> None:
+        self._xdotool("mouseup", 1)
+        self.settle()
+
+    def stroke(self, places: Sequence[Sequence[float]], held: str | None = None) -> None:
+        """Moves along these places with the left button held down, and a key as well."""
+        self.move(*places[0])
+        if held:
+            self._xdotool("keydown", held)
+        self.hold()
+        for place in places[1:]:
+            self.move(*place)
+        self.release()
+        if held:
+            self._xdotool("keyup", held)
+            self.settle()
+
     def wheel(self, steps: int) -> None:
         """Turns the wheel upwards, or downwards if negative."""
         for _ in range(abs(steps)):

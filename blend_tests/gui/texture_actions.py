@@ -91,7 +91,8 @@ def image_digest(name: str) -> str:
 
 def contents() -> dict[str, list[str]]:
     """Returns the names of what is in the file, by type."""
-    kinds = ("images", "meshes", "objects", "materials", "node_groups", "textures", "scenes")
+    kinds = ("images", "meshes", "curves", "objects", "materials", "node_groups", "textures")
+    kinds += ("scenes",)
     return {kind: sorted(item.name for item in getattr(bpy.data, kind)) for kind in kinds}
 
 
