@@ -12,7 +12,7 @@ itself.
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -27,17 +27,17 @@ from test_waiting import ADD_POINTS, MOST  # noqa: E402
 DRAWINGS = 20  # the number of drawings of the window that are measured
 
 
-def measured(blender: BlenderSession) -> list[tuple[str, float, float]]:
-    """Returns the name of what is measured, and its median and largest time in seconds."""
-    rows = [(f"Dragging, {name}", *summary(times)) for name, times in moves(blender)]
-    rows.append(("Drawing a stroke", *summary(stroke(blender))))
+def measured(blender: BlenderSession) -> Iterator[tuple[str, float, float]]:
+    """Yields the name of what is measured, and its median and largest time in seconds."""
+    for name, times in moves(blender):
+        yield f"Dragging, {name}", *summary(times)
+    yield "Drawing a stroke", *summary(stroke(blender))
     idle, baking, escape = bake(blender)
-    rows.append(("Drawing the whole window", *summary(idle)))
-    rows.append(("Drawing the whole window while maps are baked", *summary(baking)))
-    rows.append(("ESC until the bake has ended", escape, escape))
+    yield "Drawing the whole window", *summary(idle)
+    yield "Drawing the whole window while maps are baked", *summary(baking)
+    yield "ESC until the bake has ended", escape, escape
     escape = scatter(blender)
-    rows.append(("ESC until the scattering has ended", escape, escape))
-    return rows
+    yield "ESC until the scattering has ended", escape, escape
 
 
 def summary(times: np.ndarray) -> tuple[float, float]:
@@ -84,6 +84,7 @@ def drawings(blender: BlenderSession) -> np.ndarray:
 
 def scatter(blender: BlenderSession) -> float:
     blender.new_file()
+    blender.call("subdivide", "Cube")  # otherwise a dialog offers the modifier
     threads = blender.call("threads")
     blender.call("set_next", ADD_POINTS, distribution="BLUE_NOISE", amount="COUNT", count=MOST)
     blender.call("start", ADD_POINTS, distribution="BLUE_NOISE", amount="COUNT", count=MOST)
@@ -115,7 +116,7 @@ def main() -> None:
     ):
         print("| | median | at most |", "|---|---:|---:|", sep="\n")
         for what, median, most in measured(blender):
-            print(f"| {what} | {1000 * median:.1f} ms | {1000 * most:.1f} ms |")
+            print(f"| {what} | {1000 * median:.1f} ms | {1000 * most:.1f} ms |", flush=True)
 
 
 if __name__ == "__main__":
