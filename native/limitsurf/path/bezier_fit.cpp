@@ -143,7 +143,7 @@ Vector3 PathTangents::oneSided(int row, int step) const {
   }
   const Vector3 here = path_.row(row), first = path_.row(near);
   const double h1 = (first - here).norm();
-  const Vector3 slope1 = (first - here) / h1;
+  Vector3 slope1 = (first - here) / h1;
   const int far = is_corner_[near] ? -1 : neighbour(near, step);
   if (far < 0 || far == row) {
     return slope1;

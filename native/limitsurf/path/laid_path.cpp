@@ -179,6 +179,7 @@ class Layer {
   /// Joins the spans that are as near to the surface as they seem, and opens the others again.
   void measure() {
     std::vector<Segment> segments;
+    segments.reserve(measured_.size());
     for (const Span& span : measured_) {
       segments.push_back({nodes_[span.from].position, nodes_[span.to].position});
     }

@@ -19,7 +19,7 @@
 namespace limitsurf::test {
 namespace {
 
-constexpr int kDense = 40;  ///< samples on each segment
+constexpr int kDense = 20;  ///< samples on each segment
 constexpr double kDirectly = 1e-3;
 
 double diagonalOf(const LimitSurface& surface) {
