@@ -5,7 +5,7 @@ import pytest
 from session import ROW
 
 ADD_HAIR = "object.limit_hair_add"
-ADD_POINTS = "object.limit_points_add"
+DRAW = "view3d.limit_draw"  # the last button above the panel
 HAIR = "Limit Hair"
 
 
@@ -16,10 +16,10 @@ def open_presets(blender):
     """
     blender.call("subdivide", "Cube")
     blender.open_tab()
-    x, y = blender.find_button(ADD_POINTS)
-    header = y - 1.5 * ROW
+    x, y = blender.find_button(DRAW)
+    header = y - 1.7 * ROW  # y is between the button's upper border and a quarter of its height
     blender.click(x, header)
-    yield lambda: blender.click(x, header - 1.5 * ROW)
+    yield lambda: blender.click(x, header - 1.55 * ROW)
     blender.click(x, header)
     names = ("distribution", "count", "length", "points", "random", "radius")
     defaults = ("JITTERED", 1000, 0.1, 5, 0, 0.001)
