@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
+from limit_surface.nodes import groups
 from limit_surface.reading import attributes, rules
 from scenes import add_hair, add_subsurf
 
@@ -159,20 +160,30 @@ def test_blenders_attach_hair_stores_the_same(sheet):
     group = wanted.node_groups[0]
     attach = hair.modifiers.new("Attach", "NODES")
     attach.node_group = group
-    sockets = {
-        (i.name, i.socket_type): i.identifier
+    # Blender 5.2 has another name for the object, and keeps inputs elsewhere.
+    (surface,) = (i.name for i in group.interface.items_tree if _is_input(i, "NodeSocketObject"))
+    groups.set_input(attach, surface, sheet)
+    (uv_map,) = (
+        i.identifier
         for i in group.interface.items_tree
-        if i.item_type == "SOCKET" and i.in_out == "INPUT"
-    }
-    attach[sockets["Surface", "NodeSocketObject"]] = sheet
-    uv_map = sockets["Surface UV Map", "NodeSocketVector"]
-    attach[f"{uv_map}_use_attribute"], attach[f"{uv_map}_attribute_name"] = True, "Flat"
+        if _is_input(i, "NodeSocketVector") and i.name == "Surface UV Map"
+    )
+    if bpy.app.version < (5, 2):
+        attach[f"{uv_map}_use_attribute"], attach[f"{uv_map}_attribute_name"] = True, "Flat"
+    else:
+        given = getattr(attach.properties.inputs, uv_map)
+        given.type, given.attribute_name = "ATTRIBUTE", "Flat"
     found = evaluated(hair)
     assert np.abs(
         attributes.read(found, "position") - scenes.strands(hair).reshape(-1, 3)
     ).max() < (0.2)
     theirs = attributes.read(found, ids.SURFACE_UV)[:, :2]
     assert np.abs(theirs - ours).max() < NEAR
+
+
+def _is_input(item, socket_type):
+    is_input = item.item_type == "SOCKET" and item.in_out == "INPUT"
+    return is_input and item.socket_type == socket_type
 
 
 def looked_up(mesh, uv):

@@ -271,7 +271,8 @@ def test_scripts_that_do_not_unregister_end(again):
         text=True,
         timeout=60,
     )
-    assert (done.returncode, done.stdout[:4]) == (0, "made"), done.stderr
+    assert done.returncode == 0, done.stderr
+    assert "made" in done.stdout.splitlines()  # Blender may print lines of its own
     assert "Traceback" not in done.stderr
 
 
