@@ -87,7 +87,7 @@ def test_report_states_the_largest_distance(target, capfd):
     ob = curve("BEZIER", over(target, PLACES))
     lay(ob, target)
     said = capfd.readouterr().out
-    stated = float(said.split("at most ")[1].split(" off")[0])
+    stated = float(said.split("at most ")[1].split(" from ")[0])
     found = drawn.distance_from(target, drawn.world_points(ob, 0)).max()
     assert stated <= TOLERANCE
     assert stated == pytest.approx(found, rel=0.2)
@@ -169,3 +169,25 @@ def test_only_with_curves_and_a_mesh(target):
     assert bpy.ops.object.limit_curve_lay.poll()
     scenes.activate(ob)
     assert not bpy.ops.object.limit_curve_lay.poll()
+
+
+def test_materials_and_shading_stay(target):
+    ob = curve("BEZIER", over(target, PLACES))
+    for name in "AB":
+        ob.data.materials.append(bpy.data.materials.new(name))
+    ob.data.splines[0].material_index, ob.data.splines[0].use_smooth = 1, False
+    lay(ob, target)
+    (spline,) = ob.data.splines
+    assert (spline.material_index, spline.use_smooth) == (1, False)
+
+
+def test_curves_without_a_place_in_the_world_are_refused(target):
+    ob = curve("BEZIER", over(target, PLACES))
+    before = ob.scale.copy()
+    ob.scale = (0, 1, 1)
+    with pytest.raises(RuntimeError, match="scale"):
+        lay(ob, target)
+    ob.scale = before
+    ob.data.splines[0].bezier_points[1].co.x = float("nan")
+    with pytest.raises(RuntimeError, match="Spline 0 of Cable has coordinates"):
+        lay(ob, target)

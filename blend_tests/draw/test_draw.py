@@ -184,3 +184,103 @@ def test_undo_and_redo(target):
     bpy.ops.ed.undo()
     assert not bpy.data.curves
     assert bpy.context.active_object.type == "MESH"
+
+
+@pytest.fixture
+def bent():
+    """A flat grid, and a shape key that bends it."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=6, y_subdivisions=4)
+    ob = bpy.context.active_object
+    ob.shape_key_add(name="Basis")
+    key = ob.shape_key_add(name="Bend")
+    for point in key.data:
+        point.co.z += point.co.x**2
+    return ob, key
+
+
+FAR = drawn.Given([0, 18], [(0.5, 0.5), (0.5, 0.5)])
+NEAR = drawn.Given([5, 23], [(0.5, 0.5), (0.5, 0.5)])
+
+
+def test_what_follows_is_changed_only_in_the_pose_of_its_binding(bent):
+    _surface, key = bent
+    draw([FAR, NEAR], radius=0.0)
+    ob = bpy.context.active_object
+    at_rest = drawn.evaluated_points(ob)
+    key.value = 1
+    there = drawn.evaluated_points(ob)
+    assert np.abs(there - at_rest).max() > 0.1
+    removed = [{"name": "", "index": 0}]
+    with pytest.raises(RuntimeError, match="another shape or place now than when"):
+        bpy.ops.view3d.limit_draw(removed=removed)
+    with pytest.raises(RuntimeError, match="another shape or place now than when"):
+        draw([NEAR])
+    np.testing.assert_array_equal(drawn.evaluated_points(ob), there)
+    key.value = 0
+    bpy.context.view_layer.update()
+    assert bpy.ops.view3d.limit_draw(removed=removed) == {"FINISHED"}
+    np.testing.assert_allclose(
+        drawn.evaluated_points(ob),
+        at_rest[len(at_rest) - len(drawn.evaluated_points(ob)) :],
+        atol=1e-6,
+    )
+    key.value = 1
+    np.testing.assert_allclose(
+        drawn.evaluated_points(ob), there[len(there) - len(drawn.evaluated_points(ob)) :], atol=1e-5
+    )
+
+
+def test_points_follow_their_own_location_where_another_sheet_is_nearer():
+    """Of two sheets 0.05 apart the lower one is drawn on, with an offset that ends at the upper."""
+    x, y = np.meshgrid(np.arange(5.0), np.arange(5.0))
+    corners = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], 1)
+    faces = np.array([[a, a + 1, a + 6, a + 5] for j in range(4) for a in range(5 * j, 5 * j + 4)])
+    mesh = bpy.data.meshes.new("Sheets")
+    points = np.concatenate([corners, corners + [0, 0, 0.05]])
+    mesh.from_pydata(points.tolist(), [], np.concatenate([faces, faces + 25]).tolist())
+    ob = bpy.data.objects.new("Sheets", mesh)
+    bpy.context.collection.objects.link(ob)
+    bpy.context.view_layer.objects.active = ob
+    ob.shape_key_add(name="Basis")
+    key = ob.shape_key_add(name="Raise")
+    for point in list(key.data)[25:]:
+        point.co.z += 1
+    stroke = drawn.Given([5, 6, 10], [(0.3, 0.5), (0.5, 0.5), (0.5, 0.5)])
+    draw([stroke], radius=0.0, offset=0.04)
+    curve = bpy.context.active_object
+    assert np.abs(drawn.evaluated_points(curve)[:, 2] - 0.04).max() < 1e-6
+    key.value = 1
+    assert np.abs(drawn.evaluated_points(curve)[:, 2] - 0.04).max() < 1e-6
+
+
+@pytest.mark.parametrize("to", [3, 4])
+def test_pieces_are_reported(to, capfd):
+    """Faces 0 to 3 are an island, and faces 4 to 7 another one."""
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(3.0), np.arange(3.0)))
+    corners = np.stack([x, y, 0 * x], 1)
+    faces = np.array([[a, a + 1, a + 4, a + 3] for a in (0, 1, 3, 4)])
+    mesh = bpy.data.meshes.new("Islands")
+    positions = np.concatenate([corners, corners + [4, 0, 0]])
+    mesh.from_pydata(positions.tolist(), [], np.concatenate([faces, faces + 9]).tolist())
+    ob = bpy.data.objects.new("Islands", mesh)
+    bpy.context.collection.objects.link(ob)
+    bpy.context.view_layer.objects.active = ob
+    draw([drawn.Given([0, to], [(0.5, 0.5), (0.5, 0.5)])])
+    is_divided = len(bpy.context.active_object.data.splines) > 1
+    assert is_divided == (to == 4)
+    assert ("pieces were made" in capfd.readouterr().out) == is_divided
+
+
+def test_tolerances_below_single_precision_are_not_tried(target):
+    draw([WITHIN], tolerance=1e-12)
+    finest = len(bpy.context.active_object.data.splines[0].bezier_points)
+    bpy.context.view_layer.objects.active = target
+    corners = drawn.samples(target)
+    draw([WITHIN], tolerance=1e-6 * np.linalg.norm(np.ptp(corners, axis=0)) / 2)
+    assert len(bpy.context.active_object.data.splines[0].bezier_points) == finest
+
+
+def test_a_hidden_mesh_is_not_drawn_on(target):
+    target.hide_set(True)
+    with pytest.raises(RuntimeError, match="hidden"):
+        draw([WITHIN])

@@ -53,7 +53,8 @@ def add_new(
         bpy.data.curves.remove(data)
         raise
     if is_bound:
-        curve_points.bind([ob], ground.ob, context)
+        found = splines.joined([spline.locations for spline in made])
+        curve_points.bind([ob], ground.ob, context, {ob: found})
         if thickness.radius:
             # Nodes see control points only where the curve itself has no bevel.
             sides = 4 * (thickness.bevel_resolution + 1)
@@ -73,9 +74,10 @@ def change(
     kept = _kept_locations(ob, ground, removed)
     splines.remove(data, removed)
     splines.add(data, made)
-    splines.store_locations(data, splines.joined([kept, *(spline.locations for spline in made)]))
+    found = splines.joined([kept, *(spline.locations for spline in made)])
+    splines.store_locations(data, found)
     if next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None) and len(data.splines):
-        curve_points.bind([ob], ground.ob, context)
+        curve_points.bind([ob], ground.ob, context, {ob: found})
 
 
 def store_offset(data: bpy.types.Curve, offset: float) -> None:
@@ -100,6 +102,19 @@ def _kept_locations(ob: bpy.types.Object, ground: Ground, removed: Sequence[int]
         points = transformed(matrix, blender_splines.positions(ob.data).astype(np.float64))
         found = at_closest(ground.posed, ground.surface.closest(points))
     return Locations(found.face[rows], found.uv[rows])
+
+
+def check_places(ob: bpy.types.Object, ground: Ground) -> None:
+    """Raises RefusalError for a Curve object whose points cannot be compared with the surface."""
+    WorldSpace(np.array(ob.matrix_world, np.float64))  # refuses a scale of 0
+    for number, spline in enumerate(ob.data.splines):
+        points = blender_splines.points(spline)
+        names = ("co", "handle_left", "handle_right") if spline.type == "BEZIER" else ("co",)
+        if not all(np.isfinite(blender_splines.values(points, name)).all() for name in names):
+            raise RefusalError(
+                f"Spline {number} of {ob.name} has coordinates that are not finite numbers"
+            )
+    curve_points.check_pose(ob, ground.ob, ground.posed)
 
 
 def check_editable(ob: bpy.types.Object, surface: bpy.types.Object) -> None:

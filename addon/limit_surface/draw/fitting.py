@@ -25,6 +25,8 @@ class Spline:
     is_closed: bool
     resolution: int
     deviation: float  # world units: the largest distance from the surface, or from the offset
+    material_index: int = 0
+    use_smooth: bool = True
 
 
 @dataclass(frozen=True)

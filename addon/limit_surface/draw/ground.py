@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: The tolerance unless another one is chosen, as a share of the surface's extent
 AUTOMATIC = 1e-4
+#: The smallest tolerance, as a share of the extent: Blender's single precision holds no better one.
+LEAST = 1e-6
 #: Paths are laid more closely than curves are fitted to them.
 PATH = 0.25
 #: The longest step of a path, as a share of the extent: narrow features between two points of a
@@ -39,7 +41,7 @@ class Ground:
 
     def tolerance(self, chosen: float) -> float:
         """Returns the tolerance in world units; 0 chooses one by the surface's size."""
-        return chosen or AUTOMATIC * self.size
+        return max(chosen, LEAST * self.size) if chosen else AUTOMATIC * self.size
 
     def stroke(
         self, face: np.ndarray, uv: np.ndarray, radius: np.ndarray, is_closed: bool = False

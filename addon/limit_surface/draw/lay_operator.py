@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 
@@ -58,6 +60,8 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, SummaryProperty, bpy.t
         if len({ob.data for ob in curves}) < len(curves):
             raise RefusalError("Two of the selected objects share their curves: make them single")
         ground = Ground(surface, context.evaluated_depsgraph_get())
+        for ob in curves:
+            curve_object.check_places(ob, ground)
         tolerance = ground.tolerance(self.tolerance)
         fit = Fit(self.spline, tolerance, self.offset)
         laid = [_laid(ob, ground, fit, tolerance) for ob in curves]
@@ -66,13 +70,7 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, SummaryProperty, bpy.t
             curve_object.store_offset(ob.data, self.offset)
         everything = [spline for made, _numbers in laid for spline in made]
         self.summary = result.summary(everything, 0, ground, self.offset)
-        pieces = len(everything) - sum(len(numbers) for _made, numbers in laid)
-        if pieces > 0:
-            self.report(
-                {"WARNING"},
-                "Some splines were laid in several pieces, because the surface has no way between "
-                f"them: there are {pieces:,} more splines now",
-            )
+        result.warn_of_pieces(self, len(everything), sum(len(numbers) for _made, numbers in laid))
         result.warn_of_deviation(self, tolerance, everything)
         self.report({"INFO"}, "; ".join([self.summary, *ground.posed.cage.notes]))
         return {"FINISHED"}
@@ -86,7 +84,11 @@ def _laid(
     by_spline = splines.strokes(ob, ground, tolerance)
     if not by_spline:
         raise RefusalError(f"{ob.name} has no spline with two control points or more")
-    made = [fit.spline(stroke, ground, matrix) for stroke in by_spline]
+    made = []
+    for stroke in by_spline:
+        before = ob.data.splines[stroke.spline]
+        look = {name: getattr(before, name) for name in ("material_index", "use_smooth")}
+        made.append(replace(fit.spline(stroke, ground, matrix), **look))
     return made, sorted({stroke.spline for stroke in by_spline})
 
 

@@ -10,7 +10,7 @@ from .. import ids, native
 from ..errors import RefusalError
 from ..placing.follow_properties import FollowProperties
 from ..tasks.properties import SummaryProperty, draw_summary
-from . import properties, result, splines, stroke, subject
+from . import curve_object, properties, result, splines, stroke, subject
 from .ground import Ground
 from .pen import Pen
 from .session import Session, Settings
@@ -116,6 +116,7 @@ class VIEW3D_OT_limit_draw(
             tolerance = ground.tolerance(self.tolerance)
             begun = []
             if self._found.edited:
+                curve_object.check_places(self._found.edited, ground)
                 self.output = "CURVE"
                 self.offset = float(self._found.edited.data.get(ids.OFFSET, 0.0))
                 begun = splines.strokes(self._found.edited, ground, tolerance)
@@ -166,7 +167,10 @@ class VIEW3D_OT_limit_draw(
         """
         self.changes_active = found.edited is not None
         tolerance = ground.tolerance(self.tolerance)
+        if found.edited is not None:
+            curve_object.check_places(found.edited, ground)
         strokes = result.read_strokes(self.strokes, ground, tolerance)
+        result.warn_of_pieces(self, len(strokes), stroke.count(self.strokes))
         removed = [each.index for each in self.removed]
         if removed and found.edited is None:
             raise RefusalError("`removed` names splines, but no curve is active")

@@ -19,7 +19,8 @@ class FitProperties:
     tolerance: FloatProperty(
         name="Tolerance",
         description="Largest distance of the curves from the surface, or from their offset, in "
-        "world units. 0 chooses a ten-thousandth of the surface's extent",
+        "world units. 0 chooses a ten-thousandth of the surface's extent. The smallest tolerance "
+        "is a millionth of it",
         default=0.0,
         min=0.0,
         soft_max=0.1,

@@ -72,11 +72,13 @@ def summary(made: Sequence[Spline], removed: int, ground: Ground, offset: float)
         return f"{_counted(removed, 'spline')} removed"
     points = sum(len(spline.position) for spline in made)
     farthest = max(spline.deviation for spline in made)
-    where = f"{offset:.4g} beside {ground.ob.name}" if offset else ground.ob.name
-    return (
-        f"{_counted(len(made), 'stroke')} with {points:,} control points on {where}, "
-        f"at most {farthest:.2g} off"
-    )
+    made_of = f"{_counted(len(made), 'stroke')} with {points:,} control points"
+    if offset:
+        return (
+            f"{made_of}, {offset:.4g} away from {ground.ob.name} along its normal, at most "
+            f"{farthest:.2g} from there"
+        )
+    return f"{made_of} on {ground.ob.name}, at most {farthest:.2g} from its limit surface"
 
 
 def warn_of_deviation(
@@ -89,8 +91,19 @@ def warn_of_deviation(
     if farthest > tolerance:
         operator.report(
             {"WARNING"},
-            f"Curves are up to {farthest:.2g} off, more than the tolerance {tolerance:.2g}: "
-            "the offset is too large for the surface's hollows, or the tolerance too small",
+            f"Curves are up to {farthest:.2g} from where they should run, more than the tolerance "
+            f"{tolerance:.2g}: the offset is larger than the surface's hollows or than the gap to "
+            "another part of the surface, or the tolerance is too small",
+        )
+
+
+def warn_of_pieces(operator: bpy.types.Operator, laid: int, given: int) -> None:
+    """Says it where curves were divided, because no way along the surface was found."""
+    if laid > given:
+        operator.report(
+            {"WARNING"},
+            f"Of {_counted(given, 'curve')} {laid:,} pieces were made: between them no way along "
+            "the surface was found. Put points closer together there to join them",
         )
 
 

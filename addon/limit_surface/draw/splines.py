@@ -49,7 +49,7 @@ def _fill(new: bpy.types.Spline, spline: Spline) -> None:
         points.foreach_set("radius", spline.radius.astype(np.float32))
         new.resolution_u = spline.resolution
     new.use_cyclic_u = spline.is_closed
-    new.use_smooth = True
+    new.use_smooth, new.material_index = spline.use_smooth, spline.material_index
 
 
 def _handle_types(spline: Spline) -> np.ndarray:

@@ -76,6 +76,11 @@ def write(strokes: Sequence[Stroke], points: bpy.types.bpy_prop_collection) -> N
         points[int(row)].is_closed = stroke.is_closed
 
 
+def count(points: bpy.types.bpy_prop_collection) -> int:
+    """Returns the number of strokes in a collection of LIMIT_PG_draw_point."""
+    return len(read(points))
+
+
 def read(
     points: bpy.types.bpy_prop_collection,
 ) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, bool]]:

@@ -25,12 +25,17 @@ def find(context: bpy.types.Context) -> Subject:
     if context.mode != "OBJECT":
         raise RefusalError("Only available in Object Mode")
     active = context.active_object
+    surface, edited = None, None
     if active is not None and active.type == "MESH":
-        return Subject(active, None)
-    if active is not None and active.type == "CURVES" and active.data.surface is not None:
-        return Subject(active.data.surface, None)
-    surface = surface_of(active) if active is not None and active.type == "CURVE" else None
+        surface = active
+    elif active is not None and active.type == "CURVES":
+        surface = active.data.surface
+    elif active is not None and active.type == "CURVE":
+        surface, edited = surface_of(active), active
     if surface is None:
         raise RefusalError("Make the mesh to draw on active, or a curve that was drawn on a mesh")
-    check_editable(active, surface)
-    return Subject(surface, active)
+    if not surface.visible_get(view_layer=context.view_layer):
+        raise RefusalError(f"{surface.name} is hidden: show it to draw on it")
+    if edited is not None:
+        check_editable(edited, surface)
+    return Subject(surface, edited)

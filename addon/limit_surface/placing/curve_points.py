@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curve objects that follow a surface: each control point follows the place on the surface that
-was closest to it. The places are on the vertices of a hidden table.
+"""Curve objects that follow a surface: each control point follows a place on the surface, the one
+that was closest to it unless its location is known. The places are on the vertices of a hidden
+table.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import bpy
 import numpy as np
@@ -14,18 +15,24 @@ from .. import ids
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow_curve import FOLLOW_CURVE, POINTS
-from ..reading import cage, splines
+from ..reading import attributes, cage, splines
 from ..tasks.refused_faces import check_some_left
 from . import following, tables
 from .binding import Binding
 from .followers import curve_table
 from .posed_surface import PosedSurface, at_closest, transformed
+from .roots import Locations
 from .rotations import WorldSpace
+
+#: The largest difference between a bound root and its place that counts as none, as a share of the
+#: largest coordinate: some times what single precision rounds off.
+MOVED = 1e-5
 
 
 class CurveRequest:
     """The binding of Curve objects to one surface, also of such that follow it already: their
-    control points get new places.
+    control points get new places. `known` holds the locations of the control points of curves for
+    which they are known; other points are bound to the closest places.
 
     Raises RefusalError where that cannot be; nothing has changed then.
     """
@@ -36,6 +43,7 @@ class CurveRequest:
         surface: bpy.types.Object,
         depsgraph: bpy.types.Depsgraph,
         use_proxy: bool | None = None,
+        known: Mapping[bpy.types.Object, Locations] | None = None,
     ) -> None:
         self._curves, self._surface, self._use_proxy = list(curves), surface, use_proxy
         for ob in curves:
@@ -47,8 +55,10 @@ class CurveRequest:
         posed = PosedSurface(cage.read(surface, depsgraph))
         check_some_left(posed.in_world, surface.name)
         self._points = [splines.positions(ob.data) for ob in curves]
+        known = known or {}
         self._places = [
-            _places(ob, points, posed) for ob, points in zip(curves, self._points, strict=True)
+            _places(ob, points, posed, known.get(ob))
+            for ob, points in zip(curves, self._points, strict=True)
         ]
 
     def write(self, context: bpy.types.Context) -> list[following.Outcome]:
@@ -62,10 +72,36 @@ class CurveRequest:
 
 
 def bind(
-    curves: Sequence[bpy.types.Object], surface: bpy.types.Object, context: bpy.types.Context
+    curves: Sequence[bpy.types.Object],
+    surface: bpy.types.Object,
+    context: bpy.types.Context,
+    known: Mapping[bpy.types.Object, Locations] | None = None,
 ) -> list[following.Outcome]:
     """Makes Curve objects follow at once. Raises what CurveRequest raises."""
-    return CurveRequest(curves, surface, context.evaluated_depsgraph_get()).write(context)
+    depsgraph = context.evaluated_depsgraph_get()
+    return CurveRequest(curves, surface, depsgraph, known=known).write(context)
+
+
+def check_pose(ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurface) -> None:
+    """Raises RefusalError if a curve follows the surface and the surface has another shape or place
+    now than when the curve was bound. The curve's own points are then not where it is shown.
+    """
+    table = curve_table(ob)
+    if table is None:
+        return
+    face = attributes.read(table.data, ids.FACE)
+    if len(face) and int(face.max()) >= posed.in_object.face_count:
+        raise RefusalError(f"{ob.name} is bound to faces that do not exist any more: use Rebind")
+    found = Locations(face, attributes.read(table.data, ids.UV))
+    now = Binding.at(posed, found, np.array(ob.matrix_world, np.float64)).root
+    bound = attributes.read(table.data, ids.REST_ROOT)
+    size = np.abs(bound).max(initial=0.0)
+    if np.abs(now - bound).max(initial=0.0) > MOVED * size:
+        raise RefusalError(
+            f"{ob.name} follows {surface.name}, which has another shape or place now than when "
+            "the curve was bound. Go back to that frame or pose to change the curve, or use Unbind "
+            "to keep the present one"
+        )
 
 
 def _store(ob: bpy.types.Object, points: np.ndarray, places: Binding) -> None:
@@ -104,8 +140,12 @@ def has_others(ob: bpy.types.Object) -> bool:
     return table is None or len(table.data.vertices) != len(splines.positions(ob.data))
 
 
-def _places(ob: bpy.types.Object, points: np.ndarray, posed: PosedSurface) -> Binding:
+def _places(
+    ob: bpy.types.Object, points: np.ndarray, posed: PosedSurface, known: Locations | None
+) -> Binding:
     matrix = np.array(ob.matrix_world, np.float64)
     WorldSpace(matrix)  # refuses a scale of 0
+    if known is not None:
+        return Binding.at(posed, known, matrix)
     hits = posed.in_world.closest(transformed(matrix, points.astype(np.float64)))
     return Binding.at(posed, at_closest(posed, hits), matrix)
