@@ -199,6 +199,14 @@ def test_refusals_change_nothing():
     refused("Bare stores no places", loose)
 
 
+@pytest.mark.parametrize("mode", ["MADE", "LIVE"])
+def test_guides_that_are_nowhere_are_refused(mode):
+    guides = add_guides(subdivided("cross"))
+    guides.data.curves[2].points[0].position = (float("nan"), 0, 0)
+    with pytest.raises(RuntimeError, match=f"Strand 2 of {guides.name} has coordinates"):
+        add_children(guides, mode=mode)
+
+
 def test_guides_of_another_topology_are_refused():
     ob = sheet()
     guides = add_guides(ob, follow="NODES")

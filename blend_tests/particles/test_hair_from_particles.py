@@ -258,7 +258,7 @@ def test_refusals():
     check_refused("Fur has no hair", ob)
     settings.count = 10
     settings.type = "EMITTER"
-    check_refused("no hair, but emitted", ob)
+    check_refused("emits particles: only hair", ob)
 
 
 def test_needs_particles():

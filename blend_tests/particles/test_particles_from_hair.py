@@ -338,6 +338,14 @@ def test_nothing_is_left_of_a_system_that_blender_does_not_evaluate(monkeypatch)
     check_refused("not evaluated", ob)
 
 
+def test_refuses_hair_that_is_nowhere():
+    ob = scenes.cross()
+    hair = add_hair(ob)
+    curve = hair.data.curves[3]
+    curve.points[1].position = (0, float("nan"), 0)
+    check_refused(f"Strand 3 of {hair.name} has coordinates that are not finite", ob)
+
+
 def test_refuses_hair_that_is_not_bound():
     ob = scenes.cross()
     hair = add_hair(ob)

@@ -171,7 +171,9 @@ class OBJECT_OT_limit_hair_from_particles(
         if found is None:
             raise RefusalError(f"{surface.name} has no particle system {self.system!r}")
         if found.settings.type != "HAIR":
-            raise RefusalError(f"The particles of {found.name} are no hair, but emitted")
+            raise RefusalError(
+                f"The particle system {found.name} emits particles: only hair can be converted"
+            )
         return found.name
 
     def _report(self, made: Made, how: str, why_not: str) -> None:

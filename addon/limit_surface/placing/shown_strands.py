@@ -16,7 +16,8 @@ def read(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Reads hair with one strand or more. Returns points (m, 3) in the space that the matrix
     `space` maps to the world, and the first point of each strand, with the number of all points at
-    the end. Raises RefusalError where modifiers change the number of strands.
+    the end. Raises RefusalError where modifiers change the number of strands, and where coordinates
+    are not finite numbers.
     """
     shown, count = ob.evaluated_get(depsgraph), len(ob.data.curves)
     if len(shown.data.curves) != count:
@@ -27,6 +28,12 @@ def read(
     offsets = np.empty(count + 1, np.int32)
     shown.data.curve_offset_data.foreach_get("value", offsets)
     points = attributes.read(shown.data, "position").astype(np.float64)
+    lost = ~np.isfinite(points).all(axis=1)
+    if lost.any():
+        strand = int(np.searchsorted(offsets, lost.argmax(), side="right")) - 1
+        raise RefusalError(
+            f"Strand {strand} of {ob.name} has coordinates that are not finite numbers: delete it"
+        )
     matrix = np.array(shown.matrix_world, np.float64)
     if np.array_equal(matrix, space):
         return points, offsets
