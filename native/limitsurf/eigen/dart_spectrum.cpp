@@ -46,7 +46,8 @@ struct Polynomials {
   }
 };
 
-/// The difference of both sides of the secular equation, over the sign of sin(N psi) at the pole.
+/// The difference of both sides of the secular equation, over the sign of sin(N psi) at the pole
+/// from which the wave counts.
 template <typename Scalar>
 struct Secular {
   Scalar value, slope;  ///< and its derivative by delta
@@ -82,15 +83,34 @@ Real signChange(Real a, Real b, const Value& value) {
   }
 }
 
-/// The eigenvalue between poles k and k + 1, as a distance from the closer one.
+/// The odd multiple of pi / (2 N) at which pole k is.
+int multipleOfPole(int k) { return 2 * k + 1; }
+
+/// Whether psi = multiple pi / (2 N), which is midway between two poles, solves the secular
+/// equation. sin(N psi) is 0 there, so that the other side has to be 0 as well: 2 lambda - 1 is 0
+/// at psi = pi/4, which is midway where N is divisible by 4; N Q is 0 at N = 4, psi = pi/2, where
+/// lambda is 1/4.
+bool solvesMidway(int faces, int multiple) {
+  return 2 * multiple == faces || (faces == 4 && multiple == 4);
+}
+
+/// The eigenvalue between poles k and k + 1, as a distance from the closer one. Where it is midway
+/// between them rounding would decide on the sign that the secular equation has there.
 CircleWave<Real> between(int faces, int k) {
+  const int midway = multipleOfPole(k) + 1;
+  if (solvesMidway(faces, midway)) {
+    return {faces, midway, 0};
+  }
   const Real half = kPi<Real> / (2 * static_cast<Real>(faces));
   const auto from = [&](int pole) {
-    return [=](Real delta) { return Secular<Real>(faces, {faces, pole, delta}).value; };
+    return [=](Real delta) {
+      return Secular<Real>(faces, {faces, multipleOfPole(pole), delta}).value;
+    };
   };
   const bool left = (from(k)(0) < 0) != (from(k)(half) < 0);
   const int pole = left ? k : k + 1;
-  return {faces, pole, left ? signChange(0, half, from(pole)) : signChange(-half, 0, from(pole))};
+  return {faces, multipleOfPole(pole),
+          left ? signChange(0, half, from(pole)) : signChange(-half, 0, from(pole))};
 }
 
 /// The eigenvalue below those of the poles. -1/2 is below all eigenvalues; near the zero of D,
@@ -141,10 +161,10 @@ CircleWave<Complex> refined(int faces, const Complex& lambda) {
   const int pole = std::clamp(static_cast<int>(std::floor(psi.real() / spacing)), 0, faces - 1);
   Complex delta = psi - (static_cast<Real>(pole) + Real(1) / 2) * spacing;
   for (int i = 0; i < kNewtonSteps; ++i) {
-    const Secular<Complex> at(faces, {faces, pole, delta});
+    const Secular<Complex> at(faces, {faces, multipleOfPole(pole), delta});
     delta -= at.value / at.slope;
   }
-  return {faces, pole, delta};
+  return {faces, multipleOfPole(pole), delta};
 }
 
 /// All eigenvalues are real: the pair becomes the two closest ones of itself and the waves next to
@@ -165,15 +185,17 @@ void pairClosest(int faces, std::vector<CircleWave<Real>>& waves,
   }
   if (wave >= 0) {
     const CircleWave<Real> joins = waves[wave];
-    waves[wave] = {faces, pair[exchanged].pole(), pair[exchanged].delta().real()};
-    pair[exchanged] = {faces, joins.pole(), joins.delta()};
+    waves[wave] = {faces, pair[exchanged].multiple(), pair[exchanged].delta().real()};
+    pair[exchanged] = {faces, joins.multiple(), joins.delta()};
   }
 }
 
 }  // namespace
 
 DartSpectrum::DartSpectrum(int faces) : lowest(lowestEigenvalue(faces)) {
-  const auto lambdaOfPole = [&](int k) { return CircleWave<Real>(faces, k, 0).lambda(); };
+  const auto lambdaOfPole = [&](int k) {
+    return CircleWave<Real>(faces, multipleOfPole(k), 0).lambda();
+  };
   for (int k = 0; k + 1 < faces; ++k) {
     if (lambdaOfPole(k) > kNoSignChange && lambdaOfPole(k + 1) < kNoSignChange) {
       continue;

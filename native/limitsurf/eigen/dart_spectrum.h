@@ -19,9 +19,10 @@ namespace limitsurf {
 ///     N (2 lambda - 1) (N Q) cos(N psi) = (s / 2) (3/2 lambda - 1/4) sin(N psi) / sin(psi)
 /// Both sides vanish at D = 0 as well, which is no eigenvalue. cos(N psi) vanishes at the poles
 /// psi = (2 k + 1) pi / (2 N), k = 0, ..., N - 1. Between two of them the difference of both sides
-/// changes its sign, unless 3/2 lambda - 1/4 does: this gives N - 2 eigenvalues. One more lies
-/// below those of the poles. The last two follow from the traces of S and S^2: for most N they are
-/// a complex pair near 1/2, else they are real.
+/// changes its sign, unless 3/2 lambda - 1/4 does: this gives N - 2 eigenvalues. Where N is
+/// divisible by 4, one of them is 1/2, exactly midway between two poles, and for N = 4 the other
+/// one is 1/4, midway as well. One more lies below those of the poles. The last two follow from the
+/// traces of S and S^2: for most N they are a complex pair near 1/2, else they are real.
 struct DartSpectrum {
   using Real = long double;
   using Complex = std::complex<Real>;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <vector>
 
 #include "limitsurf/eigen/circle.h"
@@ -17,28 +18,29 @@ namespace limitsurf {
 // and the wave is cos(psi n) at spokes, cos(psi n) / s at faces.
 
 /// A wave that neither grows nor decays, unless delta has an imaginary part:
-/// psi = (2 pole + 1) pi / (2 N) + delta. At delta = 0 the wave vanishes at e_0. Eigenvalues lie so
-/// close to these poles that delta is stored instead of psi, to keep its digits.
+/// psi = multiple pi / (2 N) + delta. At delta = 0 and an odd multiple, a pole of the spectrum, the
+/// wave vanishes at e_0. Most eigenvalues lie so close to a pole that delta is stored instead of
+/// psi, to keep its digits.
 template <typename Scalar>
 class CircleWave {
  public:
   using Real = decltype(std::abs(Scalar()));
 
-  CircleWave(int faces, int pole, const Scalar& delta)
-      : faces_(faces), pole_(pole), delta_(delta), circle_(4L * faces) {
+  CircleWave(int faces, int multiple, const Scalar& delta)
+      : faces_(faces), multiple_(multiple), delta_(delta), circle_(std::int64_t{4} * faces) {
     const Scalar c = cos(1);
     s_ = (c + std::sqrt(c * c + Real(4))) / Real(4);
   }
 
-  int pole() const { return pole_; }
+  int multiple() const { return multiple_; }
   const Scalar& delta() const { return delta_; }
   const Scalar& root() const { return s_; }  ///< s
   Scalar lambda() const { return s_ * s_; }
-  Scalar cos(long n) const {
+  Scalar cos(std::int64_t n) const {
     const Scalar turn = delta_ * static_cast<Real>(n);
     return at(n).real() * std::cos(turn) - at(n).imag() * std::sin(turn);
   }
-  Scalar sin(long n) const {
+  Scalar sin(std::int64_t n) const {
     const Scalar turn = delta_ * static_cast<Real>(n);
     return at(n).imag() * std::cos(turn) + at(n).real() * std::sin(turn);
   }
@@ -49,12 +51,12 @@ class CircleWave {
 
  private:
   bool onSpoke(int n) const { return (faces_ - n) % 2 == 0; }
-  std::complex<Real> at(long n) const {
-    const long i = (2L * pole_ + 1) * n;
+  std::complex<Real> at(std::int64_t n) const {
+    const std::int64_t i = multiple_ * n;
     return {circle_.cos(i), circle_.sin(i)};
   }
 
-  int faces_, pole_;
+  int faces_, multiple_;
   Scalar delta_;
   Circle<Real> circle_;
   Scalar s_;
@@ -105,7 +107,7 @@ class WavePowers {
       low_.push_back({wave.cos(i), wave.sin(i)});
     }
     for (int i = 0; i * digits_ <= faces; ++i) {
-      high_.push_back({wave.cos(1L * i * digits_), wave.sin(1L * i * digits_)});
+      high_.push_back({wave.cos(i * digits_), wave.sin(i * digits_)});
     }
   }
   template <typename Wider>

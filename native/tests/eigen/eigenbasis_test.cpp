@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "limitsurf/eigen/dart_spectrum.h"
 #include "limitsurf/eigen/ring_slots.h"
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"
@@ -158,6 +159,33 @@ TEST(Eigenbasis, HasTheSpectrumOfDarts) {
 
 TEST(SlowEigenbasis, HasTheSpectrumOfDarts) {
   for (int faces = 61; faces <= 200; ++faces) compareSpectrum(faces);
+}
+
+/// Whether a dart has a real eigenvalue, to the last bit of a double.
+bool hasEigenvalue(int faces, double eigenvalue) {
+  const DartSpectrum spectrum(faces);
+  const auto is_equal = [&](const auto& wave) {
+    return static_cast<double>(std::abs(wave.lambda())) == eigenvalue;
+  };
+  return std::any_of(spectrum.waves.begin(), spectrum.waves.end(), is_equal) ||
+         std::any_of(spectrum.pair.begin(), spectrum.pair.end(), is_equal);
+}
+
+TEST(Eigenbasis, OfDartsHasTheEigenvaluesMidwayBetweenPoles) {
+  for (int faces = 4; faces <= 100; faces += 4) EXPECT_TRUE(hasEigenvalue(faces, 0.5)) << faces;
+  EXPECT_TRUE(hasEigenvalue(4, 0.25));
+  for (int faces : {2, 3, 5, 6, 7, 9, 10}) EXPECT_FALSE(hasEigenvalue(faces, 0.5)) << faces;
+}
+
+void openDart(int faces) { EXPECT_NO_THROW(DartSpectrum{faces}) << faces << " faces"; }
+
+TEST(Eigenbasis, OfDartsOpens) {
+  for (int faces = 2; faces <= 200; ++faces) openDart(faces);
+  for (int faces = 201; faces <= 1000; faces += 47) openDart(faces);
+}
+
+TEST(SlowEigenbasis, OfDartsOpens) {
+  for (int faces = 201; faces <= 1000; ++faces) openDart(faces);
 }
 
 TEST(Eigenbasis, OfDartsHasComplexPairs) {
