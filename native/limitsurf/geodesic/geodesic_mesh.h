@@ -39,6 +39,16 @@ class GeodesicMesh {
     return Span<int>(around_).subspan(first_around_[vertex],
                                       first_around_[vertex + 1] - first_around_[vertex]);
   }
+  /// Where a corner of a triangle lies on the triangle's own Ptex face.
+  Location at(int triangle, int corner) const {
+    constexpr double kPart = 1. / SurfaceTriangles::Corner::kOne;
+    const SurfaceTriangles::Corner place = triangles_.corners[triangle][corner];
+    return {triangles_.face[triangle], place.u * kPart, place.v * kPart};
+  }
+  /// The barycentric coordinates of a location on the triangle's Ptex face.
+  std::array<double, 3> weights(int triangle, const Location& at) const {
+    return barycentric(triangles_.corners[triangle], at.u, at.v);
+  }
   double distance(int a, int b) const { return (position(a) - position(b)).norm(); }
   /// The triangle in which a location lies, on a face that has a limit surface.
   int triangleAt(const Location& at) const { return cells_.find(triangles_, at); }

@@ -13,9 +13,10 @@
 namespace limitsurf {
 namespace {
 
-/// A distance is replaced by one that is shorter by more than this share: what is shorter by
-/// rounding alone is not worth spreading again.
-constexpr double kShorter = 1 - 1e-12;
+/// A distance is replaced by one that is shorter by more than this share. Among long thin
+/// triangles, as around a pole, distances approach their limits over thousands of rounds; what is
+/// left of that is far below kGuideDistanceError.
+constexpr double kShorter = 1 - 1e-6;
 /// The number of steps between two reports of progress.
 constexpr std::size_t kStepsPerReport = std::size_t{1} << 16;
 
@@ -27,11 +28,12 @@ bool NearestSources::Waiting::operator>(const Waiting& other) const {
 }
 
 NearestSources::NearestSources(const GeodesicMesh& mesh, const std::vector<MeshPlace>& sources,
-                               int most, const Progress& progress)
+                               int most, const Progress& progress, double reach)
     : mesh_(mesh),
       sources_(sources),
       most_(static_cast<std::size_t>(most)),
       capacity_(2 * most_),
+      reach_(reach),
       entries_(static_cast<std::size_t>(mesh.vertexCount()) * capacity_),
       counts_(static_cast<std::size_t>(mesh.vertexCount())),
       finals_(static_cast<std::size_t>(mesh.vertexCount())) {
@@ -62,6 +64,9 @@ const NearestSources::Entry* NearestSources::findEntry(int vertex, int source) c
 /// Offers a vertex a distance, which it takes if it does not know a shorter one. With twice as many
 /// entries as it keeps, the largest can be dropped for a smaller one: it is not among the nearest.
 void NearestSources::offer(int vertex, int source, double distance) {
+  if (distance > reach_) {
+    return;
+  }
   Entry* entry = findEntry(vertex, source);
   if (!entry) {
     if (finals_[vertex] == most_) {

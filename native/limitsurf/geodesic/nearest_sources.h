@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "limitsurf/geodesic/geodesic_mesh.h"
@@ -28,9 +29,9 @@ class NearestSources {
     double distance;
   };
 
-  /// Each vertex keeps its `most` nearest sources.
+  /// Each vertex keeps its `most` nearest sources, of those that are not farther away than `reach`.
   NearestSources(const GeodesicMesh& mesh, const std::vector<MeshPlace>& sources, int most,
-                 const Progress& progress);
+                 const Progress& progress, double reach = std::numeric_limits<double>::infinity());
 
   /// In no particular order.
   Span<Entry> at(int vertex) const {
@@ -58,6 +59,7 @@ class NearestSources {
   const GeodesicMesh& mesh_;
   const std::vector<MeshPlace>& sources_;
   std::size_t most_, capacity_;
+  double reach_;
   // The first entries of a vertex are final, up to finals_; those that follow may still shrink.
   std::vector<Entry> entries_;
   std::vector<unsigned short> counts_, finals_;

@@ -12,14 +12,19 @@ struct TriangleSides {
   double ab, ac, bc;
 };
 
-/// The distance of c from a source beyond the side ab of a triangle, of which the distances of a
-/// and b are known: the triangle and the source are laid into one plane. It is infinite where the
-/// straight way from there to c passes beside the side. On a flat surface it is exact.
-inline double unfoldedDistance(double to_a, double to_b, const TriangleSides& sides) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A straight way across the side ab of a triangle.
+struct UnfoldedWay {
+  double distance = std::numeric_limits<double>::infinity();
+  double share = 0;  ///< of ab, from a to the point where the way crosses it
+};
+
+/// The way to c from a source beyond the side ab of a triangle, of which the distances of a and b
+/// are known: the triangle and the source are laid into one plane. The distance is infinite where
+/// the straight way from there to c passes beside the side. On a flat surface it is exact.
+inline UnfoldedWay unfoldedWay(double to_a, double to_b, const TriangleSides& sides) {
   const double ab = sides.ab;
   if (!(ab > 0)) {
-    return kInfinity;
+    return {};
   }
   // a lies at the origin and b at (ab, 0); the source is below them, c above
   const double source_x = ((to_a - to_b) * (to_a + to_b) / ab + ab) / 2;
@@ -28,14 +33,18 @@ inline double unfoldedDistance(double to_a, double to_b, const TriangleSides& si
   const double y = std::sqrt(std::max(0., (sides.ac - x) * (sides.ac + x)));
   const double height = source_y + y;
   if (!(height > 0)) {
-    return kInfinity;
+    return {};
   }
   const double crossing = source_x + (x - source_x) * (source_y / height);
-  constexpr double kTolerance = 1e-9;
-  if (crossing < -kTolerance * ab || crossing > (1 + kTolerance) * ab) {
-    return kInfinity;
+  if (crossing < 0 || crossing > ab) {
+    return {};
   }
-  return std::hypot(x - source_x, height);
+  return {std::hypot(x - source_x, height), std::clamp(crossing / ab, 0., 1.)};
+}
+
+/// The distance of unfoldedWay().
+inline double unfoldedDistance(double to_a, double to_b, const TriangleSides& sides) {
+  return unfoldedWay(to_a, to_b, sides).distance;
 }
 
 }  // namespace limitsurf

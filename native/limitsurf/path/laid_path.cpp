@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/path/gap_joiner.h"
 #include "limitsurf/path/surface_distance.h"
 
 namespace limitsurf {
@@ -21,12 +23,8 @@ constexpr double kJump = 1. / 8;
 constexpr double kNarrower = 0.999;
 /// The number of points that may join a gap.
 constexpr int kMostBridges = 512;
-/// The share of the tolerance that a segment may take before its distance is measured closely: it
-/// leaves room for what lies between three probes.
-constexpr double kAccepted = 0.75;
-/// Relative to the size of coordinates: points that are nearer than this are the same, and searches
-/// find no smaller distance from the surface.
-constexpr double kSame = 1e-14, kLeastDistance = 1e-12;
+/// Relative to the size of coordinates: points that are nearer than this are the same.
+constexpr double kSame = 1e-14;
 
 constexpr double kQuarters[3] = {0.25, 0.5, 0.75};
 
@@ -45,10 +43,18 @@ struct Span {
   int gap = -1;  ///< the number of the gap to which it belongs, or -1
 };
 
+/// A place where closest points jump from one node to another.
+struct Gap {
+  int from, to;
+  int bridges = 0;       ///< the points that join it so far
+  bool is_open = false;  ///< whether closest points cannot join it
+};
+
 class Layer {
  public:
-  Layer(const SurfaceSearch& search, const SpaceCurves& curves, const LayOptions& options)
-      : search_(search), curves_(curves), options_(options) {
+  Layer(const LimitSurface& surface, const SurfaceSearch& search, const SpaceCurves& curves,
+        const LayOptions& options)
+      : search_(search), curves_(curves), options_(options), joiner_(surface, search, options) {
     size_ = curves.points.rows() > 0 ? curves.points.cwiseAbs().maxCoeff() : 0;
   }
 
@@ -58,6 +64,15 @@ class Layer {
       refine();
       measure();
       InterruptionPoint::pass();
+    }
+    deviation_.resize(nodes_.size(), 0);
+    for (const Gap& gap : gaps_) {
+      if (gap.is_open) {
+        join(gap.from, gap.to);
+      }
+    }
+    for (std::size_t curve = 0; curve < curves_.size(); ++curve) {
+      leaveOutDetours(curve);
     }
     return collected();
   }
@@ -130,7 +145,7 @@ class Layer {
       return false;
     }
     for (Eigen::Index i = 3; i < 6; ++i) {
-      if (distanceFrom(a.position, b.position, hits.position.row(row + i)) > accepted) {
+      if (distanceFromSegment(a.position, b.position, hits.position.row(row + i)) > accepted) {
         return false;
       }
     }
@@ -143,8 +158,8 @@ class Layer {
     Span begun = span;
     const Node a = nodes_[span.from], b = nodes_[span.to];
     if (begun.gap < 0 && isJump(span)) {
-      begun.gap = static_cast<int>(bridges_.size());
-      bridges_.push_back(0);
+      begun.gap = static_cast<int>(gaps_.size());
+      gaps_.push_back({span.from, span.to});
       open.push_back(begun);  // it is looked at again, from its own middle
       return;
     }
@@ -152,8 +167,9 @@ class Layer {
       const double rest =
           (position - a.position).squaredNorm() + (b.position - position).squaredNorm();
       if (!(rest <= kNarrower * (b.position - a.position).squaredNorm()) ||
-          ++bridges_[begun.gap] > kMostBridges) {
-        return;  // the nodes remain unjoined
+          ++gaps_[begun.gap].bridges > kMostBridges) {
+        gaps_[begun.gap].is_open = true;
+        return;
       }
     }
     const int middle = static_cast<int>(nodes_.size());
@@ -207,9 +223,49 @@ class Layer {
     }
   }
 
+  /// Where a curve passes by another part of the surface, goes past it: there and back are gaps
+  /// that nothing joins, but a short way leads from before the first to beyond the second. Control
+  /// points are not left out.
+  void leaveOutDetours(std::size_t curve) {
+    for (int node = static_cast<int>(curves_.offsets[curve]); node >= 0; node = nodes_[node].next) {
+      if (nodes_[node].next < 0 || nodes_[node].is_joined) {
+        continue;
+      }
+      for (int last = nodes_[node].next; nodes_[last].next >= 0 && !isControlPoint(last);
+           last = nodes_[last].next) {
+        if (!nodes_[last].is_joined && join(node, nodes_[last].next)) {
+          break;
+        }
+      }
+    }
+  }
+
+  bool isControlPoint(int node) const { return node < curves_.points.rows(); }
+
+  /// Replaces what lies between two nodes of a path by a short way, if there is one.
+  bool join(int from, int to) {
+    const std::optional<JoinedGap> joined = joiner_.join(nodes_[from].at, nodes_[to].at);
+    if (!joined) {
+      return false;
+    }
+    int node = from;
+    for (std::size_t i = 0; i < joined->deviation.size(); ++i) {
+      const bool is_last = i == joined->at.size();
+      if (!is_last) {
+        nodes_.push_back({joined->at[i], joined->position[i], nodes_[from].place});
+        deviation_.push_back(0);
+      }
+      const int next = is_last ? to : static_cast<int>(nodes_.size()) - 1;
+      nodes_[node].next = next;
+      nodes_[node].is_joined = true;
+      deviation_[node] = joined->deviation[i];
+      node = next;
+    }
+    return true;
+  }
+
   /// The paths in the order of their curves.
-  LaidPaths collected() {
-    deviation_.resize(nodes_.size(), 0);
+  LaidPaths collected() const {
     LaidPaths paths;
     std::vector<int> rows;
     paths.offsets.push_back(0);
@@ -258,12 +314,6 @@ class Layer {
     return (1 - t) * a.position + t * b.position;
   }
 
-  static double distanceFrom(const Vector3& a, const Vector3& b, const Vector3& point) {
-    const Vector3 along = b - a;
-    const double t = std::clamp((point - a).dot(along) / along.squaredNorm(), 0., 1.);
-    return (a + t * along - point).norm();
-  }
-
   const SurfaceSearch& search_;
   const SpaceCurves& curves_;
   const LayOptions& options_;
@@ -271,13 +321,14 @@ class Layer {
   std::vector<Node> nodes_;
   std::vector<double> deviation_;  ///< for each node that of the segment to the next
   std::vector<Span> open_, measured_;
-  std::vector<int> bridges_;  ///< for each gap the points that join it so far
+  std::vector<Gap> gaps_;
+  GapJoiner joiner_;
 };
 
 }  // namespace
 
-LaidPaths layCurves(const SurfaceSearch& search, const SpaceCurves& curves,
-                    const LayOptions& options) {
+LaidPaths layCurves(const LimitSurface& surface, const SurfaceSearch& search,
+                    const SpaceCurves& curves, const LayOptions& options) {
   checkThreads(options.threads);
   checkTolerance(options.tolerance);
   if (!(options.max_step > 0)) {
@@ -285,7 +336,7 @@ LaidPaths layCurves(const SurfaceSearch& search, const SpaceCurves& curves,
                                 "; it must be more than 0");
   }
   curves.check();
-  return Layer(search, curves, options).lay();
+  return Layer(surface, search, curves, options).lay();
 }
 
 }  // namespace limitsurf

@@ -33,6 +33,9 @@ struct LaidPaths {
   std::vector<double> deviation;
 };
 
+/// How many times as long as a gap in space a way along the surface may be that joins it.
+constexpr double kLongestWay = 4;
+
 /// Lays curves onto the limit surface, between their control points too.
 ///
 /// Each point of a curve goes to the closest point of the surface. Between control points the path
@@ -41,16 +44,20 @@ struct LaidPaths {
 ///
 /// Where closest points jump (beyond a concave fold, the curve is equally close to both sides) the
 /// path is joined along the surface: the point closest to the middle of the gap halves it again and
-/// again. Where that does not narrow the gap, as between the two sides of a thin sheet, the path
-/// ends, and another path begins beyond.
+/// again. Where that does not narrow the gap, a short way along the surface joins it
+/// (ShortestWays). Where there is none that is at most kLongestWay times as long as the gap in
+/// space, as between the two sides of a thin sheet, the path ends, and another one begins beyond.
+/// Where a path leaves a part of the surface and comes back without a control point in between, as
+/// past an eye in a head, such a way joins both ends, too, and what lies between is left out.
 ///
 /// The control points themselves are rows of the path, with whole numbers as their places. Depends
 /// neither on the number of threads nor on the other curves, to the last bit. Cost: some 40
-/// searches for each segment.
+/// searches for each segment; where short ways are needed, a tessellation of the surface, and for
+/// each of them the distances of the triangles that are near enough.
 ///
 /// Throws what SpaceCurves::check() throws, std::invalid_argument for a tolerance or a step that is
 /// not above 0, and MeshError for a surface without faces.
-LaidPaths layCurves(const SurfaceSearch& search, const SpaceCurves& curves,
-                    const LayOptions& options);
+LaidPaths layCurves(const LimitSurface& surface, const SurfaceSearch& search,
+                    const SpaceCurves& curves, const LayOptions& options);
 
 }  // namespace limitsurf

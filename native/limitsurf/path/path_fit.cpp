@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -29,6 +30,17 @@ struct Piece {
   int first, last;
   BezierFit curve;
   int chords = 1;
+};
+
+/// Points of pieces at which distances are measured.
+struct Probes {
+  std::vector<Vector3> points;
+  std::vector<std::pair<int, int>> rows;  ///< of the path, to which each point belongs
+
+  void add(const Vector3& point, const Piece& piece) {
+    points.push_back(point);
+    rows.emplace_back(piece.first, piece.last);
+  }
 };
 
 class Fitter {
@@ -128,14 +140,10 @@ class Fitter {
 
   /// The distances of the path's points from the straight segment itself.
   void measureStraight(Piece& piece) const {
-    const Vector3 from = path_.row(piece.first);
-    const Vector3 along = Vector3(path_.row(piece.last)) - from;
-    const double squared = along.squaredNorm();
+    const Vector3 from = path_.row(piece.first), to = path_.row(piece.last);
     piece.curve.error = 0;
     for (int row = piece.first + 1; row < piece.last; ++row) {
-      const Vector3 arm = Vector3(path_.row(row)) - from;
-      const double t = squared > 0 ? std::clamp(arm.dot(along) / squared, 0., 1.) : 0;
-      const double distance = (arm - t * along).norm();
+      const double distance = distanceFromSegment(from, to, path_.row(row));
       if (distance > piece.curve.error) {
         piece.curve.error = distance;
         piece.curve.farthest = row;
@@ -163,22 +171,41 @@ class Fitter {
   }
 
   /// The points of a piece as it is drawn, and the middles between them, without its ends.
-  void addProbes(const Piece& piece, int chords, std::vector<Vector3>& probes) const {
+  void addProbes(const Piece& piece, int chords, Probes& probes) const {
     Vector3 before = piece.curve.points[0];
     for (int i = 1; i <= chords; ++i) {
       const Vector3 next = bezierPoint(piece.curve.points, double(i) / chords);
-      probes.push_back((before + next) / 2);
+      probes.add((before + next) / 2, piece);
       if (i < chords) {
-        probes.push_back(next);
+        probes.add(next, piece);
       }
       before = next;
     }
   }
 
-  /// How far points are from where the curve is to run.
-  Eigen::VectorXd distances(const std::vector<Vector3>& points) const {
-    const Hits hits = feet(search_, points, options_.threads);
-    return (hits.distance.array() - std::abs(options_.offset)).abs();
+  /// How far points are from where the curve is to run. Another part of the surface may be closer
+  /// than the one from which the offset is counted: then the distance from the path itself counts,
+  /// which is not smaller than that.
+  Eigen::VectorXd distances(const Probes& probes) const {
+    const Hits hits = feet(search_, probes.points, options_.threads);
+    const double offset = std::abs(options_.offset);
+    Eigen::VectorXd off = (hits.distance.array() - offset).abs();
+    for (Eigen::Index i = 0; i < off.size(); ++i) {
+      if (hits.distance[i] < offset && off[i] > kForSegments * options_.tolerance) {
+        const auto probe = static_cast<std::size_t>(i);
+        off[i] = std::min(off[i], fromPath(probes.points[probe], probes.rows[probe]));
+      }
+    }
+    return off;
+  }
+
+  /// The distance of a point from a range of the path.
+  double fromPath(const Vector3& point, const std::pair<int, int>& rows) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int row = rows.first; row < rows.second; ++row) {
+      least = std::min(least, distanceFromSegment(path_.row(row), path_.row(row + 1), point));
+    }
+    return least;
   }
 
   /// How many chords are measured: a straight segment at more places than its middle.
@@ -186,17 +213,17 @@ class Fitter {
 
   /// Measures the pieces; returns those by which the ones too far from the surface are replaced.
   std::vector<Piece> checked(std::vector<Piece> open) {
-    std::vector<Vector3> probes;
+    Probes probes;
     std::vector<std::size_t> begin;
     for (Piece& piece : open) {
       piece.chords =
           isBezier() ? chordsWithin(piece.curve.points, kForChords * options_.tolerance) : 1;
-      begin.push_back(probes.size());
+      begin.push_back(probes.points.size());
       if (piece.chords <= kMostChords) {
         addProbes(piece, measuredChords(piece), probes);
       }
     }
-    begin.push_back(probes.size());
+    begin.push_back(probes.points.size());
     const Eigen::VectorXd off = distances(probes);
     std::vector<Piece> again;
     for (std::size_t i = 0; i < open.size(); ++i) {
@@ -229,7 +256,7 @@ class Fitter {
       fit.resolution = std::max(fit.resolution, piece.chords);
     }
     fit.rows.push_back(last());
-    std::vector<Vector3> probes;
+    Probes probes;
     for (const Piece& piece : done_) {
       addProbes(piece, isBezier() ? fit.resolution : measuredChords(piece), probes);
     }

@@ -14,7 +14,8 @@ struct FitOptions {
   /// The largest distance of the fitted curve from the surface, and of the path's points from it.
   double tolerance = 0;
   /// The distance along the normal at which the curve is to run beside the surface. All distances
-  /// from the surface are then counted from there.
+  /// from the surface are then counted from there; where another part of the surface is closer than
+  /// that, from the path, which has to be as dense as layCurves() makes it.
   double offset = 0;
   /// Whether the path is closed: its last point repeats its first.
   bool closed = false;

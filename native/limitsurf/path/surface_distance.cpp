@@ -42,6 +42,13 @@ Hits feet(const SurfaceSearch& search, const std::vector<Vector3>& points, int t
   return feet(search, rows, threads);
 }
 
+double distanceFromSegment(const Vector3& from, const Vector3& to, const Vector3& point) {
+  const Vector3 along = to - from;
+  const double squared = along.squaredNorm();
+  const double t = squared > 0 ? std::clamp((point - from).dot(along) / squared, 0., 1.) : 0;
+  return (from + t * along - point).norm();
+}
+
 std::vector<double> largestDistances(const SurfaceSearch& search,
                                      const std::vector<Segment>& segments, int threads) {
   const std::size_t count = segments.size();

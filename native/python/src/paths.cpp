@@ -24,8 +24,10 @@ one flag or (c,), joins the last point of a curve with its first.
 Each point of a curve goes to the closest point of the surface. Between control points the path is refined
 until its straight segments are within tolerance of the surface, and of the projection of the curve.
 Segments are at most max_step long. Where closest points jump, beyond a fold for example, the path is
-joined along the surface; where there is no such way, as between the two sides of a thin sheet, it ends,
-and another one begins.
+joined by a short way along the surface. Where there is none that is at most 4 times as long as the gap in
+space, as between the two sides of a thin sheet, it ends, and another one begins. Where it leaves a part
+of the surface and comes back without a control point in between, as past an eye in a head, such a way joins
+both ends, too, and what lies between is left out.
 
 Returns LaidPaths: .face (m,), .uv (m, 2), .position (m, 3) of points on the surface, .place (m,), the
 number of the control point before each plus a parameter up to 1; path p consists of rows .offsets[p] to
@@ -36,7 +38,7 @@ Bounds: points are exact as those of closest(). .deviation is the largest distan
 segment, refined between the neighbours of the farthest: a lower bound of the true maximum, to 1 % where
 the distance along a segment has one maximum; features narrower than a sixteenth of a segment can be
 missed, which max_step prevents. It is at most tolerance, or 1e-12 of the largest coordinate.
-Cost: some 40 searches for each segment.
+Cost: some 40 searches for each segment; the first short way needs a tessellation of the surface, too.
 
 Raises ValueError for arrays of other shapes, rows that are not finite, offsets that do not cover the
 points, and a tolerance or max_step that is not above 0; MeshError where no face has a limit surface.
@@ -157,8 +159,8 @@ py::object layPath(const SharedSurface& shared, const py::object& points, double
   checkThreads(threads);
   const SpaceCurves curves = spaceCurves(points, handle_left, handle_right, offsets, closed);
   const LaidPaths laid =
-      onSurface(shared, threads, [&](const LimitSurface&, const SurfaceSearch& search) {
-        return layCurves(search, curves, {tolerance, max_step, threads});
+      onSurface(shared, threads, [&](const LimitSurface& surface, const SurfaceSearch& search) {
+        return layCurves(surface, search, curves, {tolerance, max_step, threads});
       });
   const py::object at = locations(laid.at);
   py::array_t<bool> is_closed(static_cast<py::ssize_t>(laid.closed.size()));

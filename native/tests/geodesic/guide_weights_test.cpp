@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "limitsurf/geodesic/unfolding.h"
 #include "limitsurf/sample/jittered_sampling.h"
 #include "support/cages/meshes.h"
+#include "support/cages/query_cages.h"
 #include "support/throws.h"
 
 namespace limitsurf::test {
@@ -175,6 +177,26 @@ TEST(GuideWeights, DoNotCrossTheGapBetweenSheets) {
   for (std::size_t row = 0; row < at.size(); ++row) {
     EXPECT_EQ(found.guide[4 * row], at[row].face / 9);
     EXPECT_EQ(found.guide[4 * row + 1], -1);
+  }
+}
+
+TEST(GuideWeights, EndAmongLongThinTriangles) {
+  // Distances are told of every 2^16 steps: the triangles around this pole have 2^17 corners.
+  const LimitSurface surface = limitSurface(pole(100));
+  int reports = 0;
+  GuideOptions options;
+  options.progress = [&reports](double) {
+    if (++reports > 500) {
+      throw std::runtime_error("distances are spread without end");
+    }
+  };
+  Random random(8);
+  const Locations at = searchedLocations(surface, 8, random);
+  const GuideWeights found = guideWeights(surface, Locations{at[0]}, at, options);
+  EXPECT_GT(reports, 0);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const double straight = (positionsOf(surface, {at[i]}) - positionsOf(surface, {at[0]})).norm();
+    EXPECT_GE(found.distance[i * found.count], straight * (1 - kGuideDistanceError));
   }
 }
 
