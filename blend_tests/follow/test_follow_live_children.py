@@ -117,6 +117,32 @@ def test_other_guides_are_seen_and_rebound(scene):
     assert bpy.context.active_object == live
 
 
+def test_as_many_guides_with_other_roots_are_seen_and_rebound(scene):
+    ob, guides, live = scene
+    face = attributes.read(guides.data, ids.FACE)
+    uv = attributes.read(guides.data, ids.UV)
+    order = np.roll(
+        np.arange(len(face)), 1
+    )  # a guide removed at one end, another added at the other
+    attributes.write(guides.data, ids.FACE, "INT", "CURVE", face[order])
+    attributes.write(guides.data, ids.UV, "FLOAT2", "CURVE", uv[order])
+    expected = [f"The guides of {live.name} have other roots than when it was made"]
+    assert troubles(live) == expected
+    select(live)
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    assert troubles(live) == []
+    live.pop(ids.CHILDREN_GUIDES)  # a file of an older version
+    assert troubles(live) == []
+
+
+def test_combed_guides_need_no_rebinding(scene):
+    _ob, guides, live = scene
+    points = attributes.read(guides.data, "position")
+    points[1::2] += 0.01
+    attributes.write(guides.data, "position", "FLOAT_VECTOR", "POINT", points)
+    assert troubles(live) == []
+
+
 def test_faces_that_changed_are_seen_and_rebound(scene):
     ob, guides, live = scene
     children_truth.set_input(live, nodes.RADIUS, 0.02)

@@ -48,7 +48,7 @@ class ChildrenUnbinding:
             attributes.write(data, "radius", "FLOAT", "POINT", made.radius)
             made.binding.write(data, "CURVE")
             made.ob.modifiers.remove(live_children.modifier_of(made.ob))
-            for name in (ids.SIGNATURE, ids.CHILDREN_SETTINGS):
+            for name in (ids.SIGNATURE, ids.CHILDREN_SETTINGS, ids.CHILDREN_GUIDES):
                 if name in made.ob:
                     del made.ob[name]
             if table is not None and not tables.readers(table):

@@ -6,6 +6,7 @@ them. The object stores the settings that they were made with, so that they can 
 from __future__ import annotations
 
 import json
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -124,6 +125,16 @@ def _connect(
         groups.set_input(modifier, name, value)
     ob[ids.SIGNATURE] = tiles.signature
     ob[ids.CHILDREN_SETTINGS] = json.dumps(settings)
+    ob[ids.CHILDREN_GUIDES] = _sum_of_roots(guides)
+
+
+def _sum_of_roots(guides: bpy.types.Object) -> str:
+    """Returns a checksum of the places at which the guides' roots are bound."""
+    checksum = 0
+    for name in (ids.FACE, ids.UV):
+        if name in guides.data.attributes:
+            checksum = zlib.crc32(attributes.read(guides.data, name).tobytes(), checksum)
+    return f"{checksum:08x}"
 
 
 def modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:
@@ -184,6 +195,8 @@ def obstacles(ob: bpy.types.Object, signature: str | None) -> Iterator[str]:
         before, now = groups.get_input(modifier_of(ob), nodes.GUIDE_COUNT), len(guides.data.curves)
         if before != now:
             yield f"The number of guides of {ob.name} has changed from {before:,} to {now:,}"
+        elif ob.get(ids.CHILDREN_GUIDES, "") not in ("", _sum_of_roots(guides)):
+            yield f"The guides of {ob.name} have other roots than when it was made"
     if signature and not following.holds(ob, signature):
         surface = surface_of(ob)
         name = surface.name if surface else ""
