@@ -167,8 +167,8 @@ def refused(match: str, guides: bpy.types.Object, **properties: object) -> None:
 def test_refusals_change_nothing():
     ob = sheet()
     guides = add_guides(ob)
-    refused("Parting: There is no object ''", guides)
-    refused("Parting: Flat is no curve object", guides, parting_curves=ob.name)
+    refused("Parting: Choose curves along which hair is parted", guides)
+    refused("Parting: Flat is neither a curve object nor hair", guides, parting_curves=ob.name)
     empty = linked(bpy.data.curves.new("Empty", "CURVE"))
     refused("Parting: .* has no curves", guides, parting_curves=empty.name)
 

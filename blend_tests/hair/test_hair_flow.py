@@ -335,5 +335,8 @@ def test_curves_that_say_nothing(match, points):
 def test_objects_that_hold_no_curves():
     scenes.flat_grid(2)
     refused = {"flow_source": "CURVES"}
-    check_hair_refused("Flow: There is no object 'Nix'", refused | {"flow_curves": "Nix"})
-    check_hair_refused("Flow: Flat is no curve object", refused | {"flow_curves": "Flat"})
+    for name, text in (
+        ("Nix", "There is no object 'Nix': choose curves or hair"),
+        ("Flat", "Flat is neither a curve object nor hair"),
+    ):
+        check_hair_refused(f"Flow: {text}", refused | {"flow_curves": name})

@@ -13,6 +13,7 @@ from .. import ids, native
 from ..errors import RefusalError
 from ..images import texel_places
 from ..reading import attributes, cage
+from ..reading.named import find_object
 from ..tasks.refused_faces import check_some_left
 
 if TYPE_CHECKING:
@@ -57,9 +58,7 @@ def read(
 
 def _target(name: str, context: bpy.types.Context, ob: bpy.types.Object) -> bpy.types.Object:
     if name:
-        target = bpy.data.objects.get(name)
-        if target is None:
-            raise RefusalError(f"There is no object {name!r}")
+        target = find_object(name, "the sculpted mesh")
     else:
         others = [o for o in context.selected_objects if o != ob and o.type == "MESH"]
         if len(others) != 1:

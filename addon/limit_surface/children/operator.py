@@ -23,6 +23,7 @@ from ..placing.new_hair import Strands
 from ..placing.rotations import WorldSpace
 from ..placing.scatter_operator import Ground, Made, Order, ScatterOperator
 from ..reading import cage
+from ..reading.named import find_object
 from ..sources.source_mesh import Choice
 from ..tasks import polling
 from ..tasks.job import Progress, part_of
@@ -196,9 +197,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
     def _guides_object(self) -> bpy.types.Object:
         ob = bpy.context.active_object
         if self.guides:
-            ob = bpy.data.objects.get(self.guides)
-            if ob is None:
-                raise RefusalError(f"There is no object {self.guides!r} whose strands could guide")
+            ob = find_object(self.guides, "hair whose strands guide the children")
         if ob is None or ob.type != "CURVES":
             raise RefusalError("Children need guides: make hair active, or name it as Guides")
         return ob

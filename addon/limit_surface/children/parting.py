@@ -13,6 +13,7 @@ from bpy.props import EnumProperty, StringProperty
 from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes, curve_lines
+from ..reading.named import find_object
 from ..sources.source_mesh import SourceMesh
 from ..sources.value_properties import search
 from ..sources.values import labelled
@@ -121,10 +122,8 @@ def choice(properties: bpy.types.OperatorProperties, context: bpy.types.Context)
     """Returns the choice. Raises RefusalError if curves are chosen and there are none."""
     lines = np.empty((0, 2, 3))
     if properties.parting == "CURVES":
-        ob = bpy.data.objects.get(properties.parting_curves)
         with labelled("Parting"):
-            if ob is None:
-                raise RefusalError(f"There is no object {properties.parting_curves!r}")
+            ob = find_object(properties.parting_curves, "curves along which hair is parted")
             lines = curve_lines.read(ob, context.evaluated_depsgraph_get())
     return PartingChoice(properties.parting, properties.parting_attribute, lines)
 

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
+from ..tasks.counting import counted
 from . import curve_object, guides, stroke
 from .fitting import Fit, Spline
 from .ground import Ground
@@ -44,7 +45,7 @@ def make(
     """
     if edited is None and how.output == "GUIDES":
         guides.add_new(context, ground, strokes, how.points, how.offset, how.radius, how.follow)
-        return f"{_counted(len(strokes), 'guide strand')} on {ground.ob.name}"
+        return f"{counted(len(strokes), 'guide strands')} on {ground.ob.name}"
     tolerance = ground.tolerance(how.tolerance)
     fit = Fit(how.spline, tolerance, how.offset)
     matrix = np.array((edited or ground.ob).matrix_world, np.float64)
@@ -69,10 +70,10 @@ def check_numbers(ob: bpy.types.Object, removed: Sequence[int]) -> None:
 
 def summary(made: Sequence[Spline], removed: int, ground: Ground, offset: float) -> str:
     if not made:
-        return f"{_counted(removed, 'spline')} removed"
+        return f"{counted(removed, 'splines')} removed"
     points = sum(len(spline.position) for spline in made)
     farthest = max(spline.deviation for spline in made)
-    made_of = f"{_counted(len(made), 'stroke')} with {points:,} control points"
+    made_of = f"{counted(len(made), 'strokes')} with {points:,} control points"
     if offset:
         return (
             f"{made_of}, {offset:.4g} away from {ground.ob.name} along its normal, at most "
@@ -102,10 +103,6 @@ def warn_of_pieces(operator: bpy.types.Operator, laid: int, given: int) -> None:
     if laid > given:
         operator.report(
             {"WARNING"},
-            f"Of {_counted(given, 'curve')} {laid:,} pieces were made: between them no way along "
+            f"Of {counted(given, 'curves')} {laid:,} pieces were made: between them no way along "
             "the surface was found. Put points closer together there to join them",
         )
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"

@@ -13,6 +13,7 @@ from ..reading import cage, displayed_mesh
 from ..sources.source_mesh import Choice
 from ..subsurf import setup
 from ..tasks import polling, wrapped_text
+from ..tasks.counting import counted
 from ..tasks.job import Job, Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from ..tasks.properties import LargeCountProperty, draw_summary
@@ -320,9 +321,11 @@ class ScatterOperator(
         ground = made.ground
         found, refused = ground.cage, ground.region.refused
         faces = ground.region.face_count
-        what, apart = f"{len(ground.locations):,} {self.noun} on {faces:,} faces", ""
+        what, apart = counted(len(ground.locations), self.noun), ""
         if ground.scattered.curves:
-            what = f"{len(ground.locations):,} {self.noun} along {borders(ground.scattered.curves)}"
+            what += f" along {borders(ground.scattered.curves)}"
+        else:
+            what += f" on {counted(faces, 'faces')}"
         if ground.scattered.distance is not None:
             apart = f", at least {ground.scattered.distance:.4g} apart"
         self.summary = what + apart

@@ -19,6 +19,7 @@ from ..placing.new_objects import add_on_surface
 from ..placing.rotations import WorldSpace, quaternions
 from ..placing.scatter_operator import Ground, ScatterOperator
 from ..reading import attributes, cage
+from ..reading.named import find_object
 from ..sources import steering
 from ..sources.index import IndexChoice
 from ..sources.source_mesh import Choice
@@ -85,9 +86,8 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
     )
 
     def check_properties(self) -> None:
-        is_named = self.instances == "OBJECT" and self.instance
-        if is_named and self.instance not in bpy.data.objects:
-            raise RefusalError(f"There is no object {self.instance!r} to put on the points")
+        if self.instances == "OBJECT" and self.instance:
+            find_object(self.instance, "the object to put on the points")
         if self.instances == "COLLECTION":
             found = bpy.data.collections.get(self.collection)
             if found is None:

@@ -25,7 +25,7 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
     point. Raises RefusalError where there are none.
     """
     if ob.type not in TYPES:
-        raise RefusalError(f"{ob.name} is no curve object")
+        raise RefusalError(f"{ob.name} is neither a curve object nor hair")
     tree = bpy.data.node_groups.new(ids.LINES_GROUP, "GeometryNodeTree")
     mesh = bpy.data.meshes.new(ids.TEMPORARY_MESH)
     empty = bpy.data.objects.new(ids.TEMPORARY_MESH, mesh)

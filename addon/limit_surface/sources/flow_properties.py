@@ -8,8 +8,8 @@ import math
 import bpy
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
-from ..errors import RefusalError
 from ..reading import curve_lines
+from ..reading.named import find_object
 from .flow import Curves, FlowChoice
 from .value_properties import search
 from .values import labelled
@@ -102,10 +102,8 @@ def choice(properties: bpy.types.OperatorProperties, context: bpy.types.Context)
 
 
 def _read_curves(properties: bpy.types.OperatorProperties, context: bpy.types.Context) -> Curves:
-    ob = bpy.data.objects.get(properties.flow_curves)
     with labelled("Flow"):
-        if ob is None:
-            raise RefusalError(f"There is no object {properties.flow_curves!r}")
+        ob = find_object(properties.flow_curves, "curves or hair whose direction strands follow")
         return Curves(ob.name, curve_lines.read(ob, context.evaluated_depsgraph_get()))
 
 

@@ -67,6 +67,8 @@ def wanted_vertex_groups(ob: bpy.types.Object, choices: Iterable[Choice]) -> lis
 
 def check_vertex_group(ob: bpy.types.Object, name: str) -> None:
     """Raises RefusalError where the object has no such group, or its weights cannot be read."""
+    if not name:
+        raise RefusalError(f"Choose a vertex group of {ob.name}")
     if name not in ob.vertex_groups:
         raise RefusalError(f"{ob.name} has no vertex group {name!r}")
     if name in ob.data.attributes:
