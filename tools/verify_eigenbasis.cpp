@@ -20,6 +20,7 @@
 
 #include "limitsurf/eigen/eigenbasis.h"
 #include "limitsurf/eigen/ring_slots.h"
+#include "limitsurf/precision/double_double_eigen.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"
@@ -29,7 +30,7 @@
 namespace limitsurf {
 namespace {
 
-using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+using WideMatrix = Eigen::Matrix<DoubleDouble, Eigen::Dynamic, Eigen::Dynamic>;
 
 struct Line {
   int valence = 0;
@@ -46,8 +47,8 @@ std::vector<int> someFaces(int faces) {
   return {some.begin(), some.end()};
 }
 
-LongMatrix ringMatrix(const Ring& ring) {
-  return subdivideRing<LongMatrix>(ring, LongMatrix::Identity(ring.size(), ring.size()));
+WideMatrix ringMatrix(const Ring& ring) {
+  return subdivideRing<WideMatrix>(ring, WideMatrix::Identity(ring.size(), ring.size()));
 }
 
 /// The eigenvalue that occurs more often than it has eigenvectors.
@@ -63,15 +64,15 @@ void findDefect(const Eigenbasis& basis, Line& line) {
     lambda[pair.b] = square < 0 ? lambda[pair.a] : pair.mean - std::sqrt(square);
   }
   std::sort(lambda.rbegin(), lambda.rend());
-  const LongMatrix s = ringMatrix(basis.ring());
+  const WideMatrix s = ringMatrix(basis.ring());
   for (std::size_t i = 0; i < lambda.size();) {
     std::size_t end = i;
     while (end < lambda.size() && lambda[i] - lambda[end] < 1e-14) {
       ++end;
     }
     if (end - i > 1) {
-      Eigen::FullPivLU<LongMatrix> lu(s - lambda[i] * LongMatrix::Identity(s.rows(), s.cols()));
-      lu.setThreshold(1e-13L);
+      Eigen::FullPivLU<WideMatrix> lu(s - lambda[i] * WideMatrix::Identity(s.rows(), s.cols()));
+      lu.setThreshold(1e-13);
       if (lu.dimensionOfKernel() < static_cast<Eigen::Index>(end - i)) {
         line.index = static_cast<int>(i);
         line.value = lambda[i];

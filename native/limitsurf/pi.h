@@ -4,6 +4,6 @@
 namespace limitsurf {
 
 template <typename Real>
-constexpr Real kPi = static_cast<Real>(3.14159265358979323846264338327950288L);
+constexpr Real kPi = static_cast<Real>(3.141592653589793);
 
 }  // namespace limitsurf

@@ -14,6 +14,7 @@ import pytest
 
 NATIVE = Path(__file__).resolve().parents[2] / "native"
 LAYERS = (
+    "precision",
     "rules",
     "mesh",
     "eigen",

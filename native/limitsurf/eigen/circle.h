@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "limitsurf/pi.h"
+#include "limitsurf/precision/elementary.h"
 
 namespace limitsurf {
 
@@ -15,33 +15,45 @@ class Circle {
  public:
   explicit Circle(std::int64_t period) : period_(period) {}
 
-  Real sin(std::int64_t i) const { return cosQuarters(4 * i - period_); }
-  Real cos(std::int64_t i) const { return cosQuarters(4 * i); }
+  Real sin(std::int64_t i) const { return at(i).sin; }
+  Real cos(std::int64_t i) const { return at(i).cos; }
 
- private:
-  /// cos(2 pi q / (4 period)).
-  Real cosQuarters(std::int64_t q) const {
-    const std::int64_t full = 4 * period_;
-    q = ((q % full) + full) % full;
-    if (q > full / 2) {
-      q = full - q;
+  /// Both at the angle 2 pi i / period.
+  SineCosine<Real> at(std::int64_t i) const {
+    const std::int64_t full = 4 * period_, turn = ((4 * i) % full + full) % full;
+    const std::int64_t in_quarter = turn % period_;  // of period_ parts
+    SineCosine<Real> result = 2 * in_quarter > period_
+                                  ? exchanged(firstEighth(period_ - in_quarter))
+                                  : firstEighth(in_quarter);
+    switch (turn / period_) {
+      case 1:
+        return {result.cos, -result.sin};
+      case 2:
+        return {-result.sin, -result.cos};
+      case 3:
+        return {-result.cos, result.sin};
+      default:
+        return result;
     }
-    if (q > period_) {
-      return -firstQuarter(full / 2 - q);
-    }
-    return firstQuarter(q);
   }
 
-  Real firstQuarter(std::int64_t q) const {
-    if (q == period_) {
-      return 0;
+ private:
+  static SineCosine<Real> exchanged(const SineCosine<Real>& x) { return {x.cos, x.sin}; }
+
+  /// At the angle (pi / 2) i / period, i <= period / 2.
+  SineCosine<Real> firstEighth(std::int64_t i) const {
+    if (i == 0) {
+      return {0, 1};
     }
-    if (3 * q == 2 * period_) {
-      return Real(1) / 2;
+    const Real angle = kPi<Real> * static_cast<Real>(i) / (2 * static_cast<Real>(period_));
+    SineCosine<Real> result = sineCosine(angle);
+    if (3 * i == period_) {
+      result.sin = Real(1) / 2;
     }
-    const Real unit = kPi<Real> / (2 * static_cast<Real>(period_));
-    return 2 * q > period_ ? std::sin(unit * static_cast<Real>(period_ - q))
-                           : std::cos(unit * static_cast<Real>(q));
+    if (2 * i == period_) {
+      result.sin = result.cos;
+    }
+    return result;
   }
 
   std::int64_t period_;

@@ -94,7 +94,6 @@ std::vector<CurveMode<Real>> curveModes(const Ring& ring) {
   }
 }
 
-template std::vector<CurveMode<double>> curveModes(const Ring&);
-template std::vector<CurveMode<long double>> curveModes(const Ring&);
+template std::vector<CurveMode<DoubleDouble>> curveModes(const Ring&);
 
 }  // namespace limitsurf

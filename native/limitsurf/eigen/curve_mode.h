@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "limitsurf/eigen/ring.h"
+#include "limitsurf/precision/double_double.h"
 
 namespace limitsurf {
 
@@ -47,7 +48,6 @@ CurveCoefficients<Vector> curveCoefficients(RingKind kind, const Vector& v, cons
   return {v + bend, (e_0 - e_k) / 2, bend};
 }
 
-extern template std::vector<CurveMode<double>> curveModes(const Ring&);
-extern template std::vector<CurveMode<long double>> curveModes(const Ring&);
+extern template std::vector<CurveMode<DoubleDouble>> curveModes(const Ring&);
 
 }  // namespace limitsurf

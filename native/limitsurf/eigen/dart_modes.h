@@ -29,7 +29,7 @@ struct ModePair {
 /// together take O(N^1.5) memory.
 class DartModes {
  public:
-  DartModes(int faces, ModeContinuation& continuation);
+  explicit DartModes(int faces);
 
   int count() const { return static_cast<int>(given_.size() + waves_.size()); }
   /// The eigenvalue of a mode; for the modes of the pair, the mean of their eigenvalues.
@@ -55,7 +55,7 @@ class DartModes {
                          Eigen::MatrixXd& ring) const;
 
  private:
-  using Real = long double;
+  using Real = DoubleDouble;
   class Builder;
 
   // A mode by its values at the places n = 0, ..., N (dart_wave.h) and at the vertex.

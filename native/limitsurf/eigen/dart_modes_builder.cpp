@@ -10,14 +10,11 @@ namespace limitsurf {
 
 using tile_grid::slot;
 
-/// Computes DartModes, in long double.
+/// Computes DartModes, in double-doubles.
 class DartModes::Builder {
  public:
-  Builder(DartModes& modes, ModeContinuation& continuation)
-      : modes_(modes),
-        continuation_(continuation),
-        faces_(modes.faces_),
-        ring_{RingKind::dart, modes.faces_} {}
+  explicit Builder(DartModes& modes)
+      : modes_(modes), faces_(modes.faces_), ring_{RingKind::dart, modes.faces_} {}
 
   void build() {
     DartSpectrum spectrum(faces_);
@@ -47,7 +44,7 @@ class DartModes::Builder {
   static std::vector<CircleWave<Real>>::iterator closest(std::vector<CircleWave<Real>>& waves,
                                                          Real lambda) {
     return std::min_element(waves.begin(), waves.end(), [&](const auto& a, const auto& b) {
-      return std::abs(a.lambda() - lambda) < std::abs(b.lambda() - lambda);
+      return abs(a.lambda() - lambda) < abs(b.lambda() - lambda);
     });
   }
 
@@ -55,25 +52,35 @@ class DartModes::Builder {
 
   /// Without the vertex.
   static std::vector<double> rounded(const Places& places) {
-    return {places.begin(), places.end() - 1};
+    std::vector<double> result;
+    for (int n = 0; n + 1 < static_cast<int>(places.size()); ++n) {
+      result.push_back(static_cast<double>(places[n]));
+    }
+    return result;
   }
 
-  SlotValues ringValues(const Places& places, int face) const {
+  /// The values at a face's slots of what has the value at(n) at the place n; n = N + 1 is the
+  /// vertex.
+  template <typename At>
+  SlotValues ringValuesOf(const At& at, int face) const {
     SlotValues values{};
     forEachRingSlot(ring_, face, [&](int slot, int point) {
       values[slot] =
-          places[point == 0              ? faces_ + 1
-                 : point < ring_.face(0) ? std::abs(2 * (point - ring_.edge(0)) - faces_)
-                                         : std::abs(2 * (point - ring_.face(0)) + 1 - faces_)];
+          at(point == 0              ? faces_ + 1
+             : point < ring_.face(0) ? std::abs(2 * (point - ring_.edge(0)) - faces_)
+                                     : std::abs(2 * (point - ring_.face(0)) + 1 - faces_));
     });
     return values;
+  }
+  SlotValues ringValues(const Places& places, int face) const {
+    return ringValuesOf([&](int n) { return places[n]; }, face);
   }
 
   /// The constant mode's left eigenvector, which is the mask of limit positions.
   void addConstant() {
     const DecayingWave<Real> wave(faces_, 1);
     Places left = placesOf(DartVectors(faces_, wave).left, wave, faces_);
-    scalePlaces(left, 1 / productOfPlaces(left, Places(left.size(), 1)));
+    scalePlaces(left, Real(1) / productOfPlaces(left, Places(left.size(), 1)));
     modes_.constant_left_ = rounded(left);
   }
 
@@ -104,8 +111,9 @@ class DartModes::Builder {
     const Eigenvectors vectors = eigenvectors(wave);
     addGiven(wave.lambda(), vectors);
     for (int face = 0; face < faces_; ++face) {
-      modes_.given_.back().tables.push_back(ModeContinuation::rounded(continuation_.continued(
-          ring_.sides(face), wave.lambda(), ringValues(vectors.right, face))));
+      modes_.given_.back().tables.push_back(ModeContinuation::rounded(
+          ModeContinuation::of(ring_.sides(face))
+              .continued(wave.lambda(), ringValues(vectors.right, face))));
     }
   }
 
@@ -115,14 +123,14 @@ class DartModes::Builder {
   void addLinear(const CircleWave<Real>& wave) {
     Eigenvectors vectors = eigenvectors(wave);
     for (Real& value : vectors.right) {
-      value = std::round(value);
+      value = std::round(value.high());
     }
     scalePlaces(vectors.left, 1 / productOfPlaces(vectors.left, vectors.right));
     addGiven(Real(1) / 2, vectors);
     for (int face = 0; face < faces_; ++face) {
       const SlotValues values = ringValues(vectors.right, face);
       modes_.given_.back().tables.push_back(ModeContinuation::rounded(
-          continuation_.linear(ring_.sides(face), values[slot(1, 0)], values[slot(0, 1)])));
+          ModeContinuation::of(ring_.sides(face)).linear(values[slot(1, 0)], values[slot(0, 1)])));
     }
   }
 
@@ -131,8 +139,8 @@ class DartModes::Builder {
     const Eigenvectors vectors = eigenvectors(wave);
     addGiven(wave.lambda(), vectors);
     for (int face = 0; face < faces_; ++face) {
-      const auto wide = continuation_.continuedBeside(ring_.sides(face), wave.lambda(), kMet,
-                                                      ringValues(vectors.right, face));
+      const auto wide = ModeContinuation::of(ring_.sides(face))
+                            .continuedBeside(wave.lambda(), kMet, ringValues(vectors.right, face));
       modes_.given_.back().tables.push_back(ModeContinuation::rounded(wide));
       modes_.rest_.push_back({});
       for (Eigen::Index q = 0; q < wide.rest.size(); ++q) {
@@ -143,8 +151,7 @@ class DartModes::Builder {
 
   /// For eigenvectors w1 and w2 to mean +- d the pair is a = (w1 + w2) / 2 and b = (w1 - w2) / (2
   /// d), which both have a limit at d = 0. So have their coefficients c1 + c2 and (c1 - c2) d.
-  void addPair(const std::vector<CircleWave<DartSpectrum::Complex>>& waves) {
-    using Complex = DartSpectrum::Complex;
+  void addPair(const std::vector<CircleWave<Complex>>& waves) {
     const Complex lambda[2] = {waves[0].lambda(), waves[1].lambda()};
     const Complex half = (lambda[0] - lambda[1]) / Real(2);
     std::vector<Complex> right[2], left[2];
@@ -174,9 +181,10 @@ class DartModes::Builder {
     addGiven(mean, vectors[0]);
     addGiven(mean, vectors[1]);
     for (int face = 0; face < faces_; ++face) {
-      const auto wide = continuation_.continuedPair(
-          ring_.sides(face), mean, forth, back,
-          {ringValues(vectors[0].right, face), ringValues(vectors[1].right, face)});
+      const auto wide = ModeContinuation::of(ring_.sides(face))
+                            .continuedPair(mean, forth, back,
+                                           {ringValues(vectors[0].right, face),
+                                            ringValues(vectors[1].right, face)});
       for (int i = 0; i < 2; ++i) {
         modes_.given_[kPair + i].tables.push_back(ModeContinuation::rounded(wide[i]));
       }
@@ -229,18 +237,41 @@ class DartModes::Builder {
       vector->face_wave /= wave.root();
     }
     DartVector<Real>&right = vectors.right, &left = vectors.left;
-    Real size = std::abs(right.vertex), norm = right.vertex * left.vertex;
-    for (int n = 0; n <= faces_; ++n) {
-      const Real w = powers.at(n).cos, value = right.at(n, faces_, w);
-      size = std::max(size, std::abs(value));
-      norm += static_cast<Real>(placeMultiplicity(n, faces_)) * value * left.at(n, faces_, w);
-    }
+    const Real size = largest(powers, right);
     right.scale(1 / size);
-    left.scale(size / norm);
+    left.scale(1 / product(powers, left, right));
+  }
+
+  /// The largest value of a vector, in double.
+  double largest(const WavePowers<Real>& powers, const DartVector<Real>& vector) const {
+    const DartVector<double> v = rounded(vector);
+    double result = std::max(std::abs(v.vertex), std::abs(v.sharp));
+    const WavePowers<double> waves(powers);
+    for (int n = 0; n < faces_; ++n) {
+      result = std::max(result, std::abs(v.at(n, faces_, waves.at(n).cos)));
+    }
+    return result;
+  }
+
+  /// The product of a left and a right vector, as a sum over all points of the ring.
+  Real product(const WavePowers<Real>& powers, const DartVector<Real>& left,
+               const DartVector<Real>& right) const {
+    const CosineSums<Real> sums(powers, faces_);
+    const int spoke = faces_ % 2, face = 1 - spoke;  // the parity of their places
+    const Real spokes = faces_ - 1, faces = faces_;
+    return right.vertex * left.vertex + right.sharp * left.sharp +
+           right.edge_constant * left.edge_constant * spokes +
+           (right.edge_constant * left.edge_wave + right.edge_wave * left.edge_constant) *
+               sums.first[spoke] +
+           right.edge_wave * left.edge_wave * sums.square[spoke] +
+           right.face_constant * left.face_constant * faces +
+           (right.face_constant * left.face_wave + right.face_wave * left.face_constant) *
+               sums.first[face] +
+           right.face_wave * left.face_wave * sums.square[face];
   }
 
   ModeTable continued(Sides sides, Real lambda, const SlotValues& values) {
-    return ModeContinuation::rounded(continuation_.continued(sides, lambda, values));
+    return ModeContinuation::rounded(ModeContinuation::of(sides).continued(lambda, values));
   }
 
   /// The tables from which the mode is put together on each inner face.
@@ -260,29 +291,23 @@ class DartModes::Builder {
     result.sine = continued(Sides::inner, lambda, sine);
   }
 
-  /// The tables of the first and the last face. Their slots reach kFarthest places from e_0.
+  /// The tables of the first and the last face.
   void continueBesideSharpSpoke(Real lambda, const WavePowers<Real>& powers,
                                 const DartVector<Real>& right, Wave& result) {
-    constexpr int kFarthest = 6;
     for (const int face : {0, faces_ - 1}) {
-      Places places;
-      for (int n = 0; n <= faces_; ++n) {
-        places.push_back(n + kFarthest < faces_ ? 0 : right.at(n, faces_, powers.at(n).cos));
-      }
-      places.push_back(right.vertex);
+      const auto at = [&](int n) {
+        return n > faces_ ? right.vertex : right.at(n, faces_, powers.at(n).cos);
+      };
       (face == 0 ? result.first : result.last) =
-          continued(ring_.sides(face), lambda, ringValues(places, face));
+          continued(ring_.sides(face), lambda, ringValuesOf(at, face));
     }
   }
 
   DartModes& modes_;
-  ModeContinuation& continuation_;
   const int faces_;
   const Ring ring_;
 };
 
-DartModes::DartModes(int faces, ModeContinuation& continuation) : faces_(faces) {
-  Builder(*this, continuation).build();
-}
+DartModes::DartModes(int faces) : faces_(faces) { Builder(*this).build(); }
 
 }  // namespace limitsurf

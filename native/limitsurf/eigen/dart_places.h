@@ -28,7 +28,7 @@ std::vector<Scalar> placesOf(const DartVector<Scalar>& vector, const Wave& wave,
 /// The product of a left and a right vector, as a sum over all points of the ring.
 template <typename Scalar>
 Scalar productOfPlaces(const std::vector<Scalar>& left, const std::vector<Scalar>& right) {
-  using Real = decltype(std::abs(Scalar()));
+  using Real = RealOf<Scalar>;
   const int faces = static_cast<int>(left.size()) - 2;
   Scalar sum = 0;
   for (int n = 0; n <= faces + 1; ++n) {
@@ -39,9 +39,10 @@ Scalar productOfPlaces(const std::vector<Scalar>& left, const std::vector<Scalar
 
 template <typename Real>
 Real largestOfPlaces(const std::vector<Real>& places) {
+  using std::abs;
   Real result = 0;
-  for (const Real value : places) {
-    result = std::max(result, std::abs(value));
+  for (const Real& value : places) {
+    result = std::max<Real>(result, abs(value));
   }
   return result;
 }

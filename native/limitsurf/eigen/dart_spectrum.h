@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <complex>
 #include <vector>
 
 #include "limitsurf/eigen/dart_wave.h"
@@ -24,8 +23,7 @@ namespace limitsurf {
 /// one is 1/4, midway as well. One more lies below those of the poles. The last two follow from the
 /// traces of S and S^2: for most N they are a complex pair near 1/2, else they are real.
 struct DartSpectrum {
-  using Real = long double;
-  using Complex = std::complex<Real>;
+  using Real = DoubleDouble;
 
   explicit DartSpectrum(int faces);
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
+
+#include "limitsurf/precision/complex.h"
 
 namespace limitsurf {
 
@@ -47,7 +50,7 @@ struct DartVectors {
 
   DartVectors(int faces, const Wave& wave) {
     using std::abs;
-    using Real = decltype(abs(Scalar()));
+    using Real = RealOf<Scalar>;
     const Real n = static_cast<Real>(faces), quarter = Real(1) / 4, one = 1;
     const Scalar lambda = wave.lambda(), end = wave.value(faces);
     const Scalar d = lambda * lambda - 3 * quarter * lambda + Real(1) / 16;

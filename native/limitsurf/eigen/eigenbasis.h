@@ -49,7 +49,8 @@ struct GridWindow {
 ///   the rest   of a dart: the modes that are symmetric about the sharp spoke (dart_modes.h).
 /// Coefficients belong to the vertex and serve all its faces. Because a spoke mode turns with the
 /// face, one pair of tables (for the sine and the cosine) serves all faces of the same Sides, so
-/// that a basis takes O(faces) memory. Tables are computed in long double and rounded once.
+/// that a basis takes O(faces) memory. Tables are computed in double-doubles, of 32 digits, and
+/// rounded once.
 class Eigenbasis {
  public:
   // Construction. Every surface asks get() once for each kind of ring that it has.
@@ -138,7 +139,7 @@ class Eigenbasis {
 
  private:
   struct FaceTables {  // of all faces with the same Sides
-    explicit FaceTables(const OuterModes<long double>& modes) : outer_modes(modes) {}
+    explicit FaceTables(const OuterModes<DoubleDouble>& modes) : outer_modes(modes) {}
     OuterModes<double> outer_modes;
     std::vector<Table> outer;   // one per outer mode
     std::vector<Table> cosine;  // per spoke pair: 2 i for lambda+, 2 i + 1 for lambda-

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/eigen/eigenbasis_builder.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "limitsurf/eigen/ring_slots.h"
 
@@ -41,14 +41,15 @@ void Eigenbasis::Builder::build() {
 void Eigenbasis::Builder::buildCircle() {
   basis_.period_ = ring_.closed() ? 2L * ring_.faces : 4L * ring_.faces;
   const Circle<Real> circle(basis_.period_);
-  for (long i = 0; i < basis_.period_; ++i) {
-    basis_.cos_.push_back(static_cast<double>(circle.cos(i)));
-    basis_.sin_.push_back(static_cast<double>(circle.sin(i)));
+  for (std::int64_t i = 0; i < basis_.period_; ++i) {
+    circle_.push_back(circle.at(i));
+    basis_.cos_.push_back(static_cast<double>(circle_.back().cos));
+    basis_.sin_.push_back(static_cast<double>(circle_.back().sin));
   }
 }
 
 void Eigenbasis::Builder::buildOuterTables(Sides sides) {
-  const ModeContinuation::Outer& o = continuation_.outer(sides);
+  const ModeContinuation::Outer& o = ModeContinuation::of(sides).outer();
   auto tables = std::make_unique<FaceTables>(o);
   for (int q = 0; q < o.count(); ++q) {
     SlotValues values{};
@@ -68,10 +69,9 @@ void Eigenbasis::Builder::buildOuterTables(Sides sides) {
 /// 0.
 Eigenbasis::Builder::SlotValues Eigenbasis::Builder::spokeValues(
     int m, const SpokeMode<Real>::Vector& vector, bool sine) const {
-  const Circle<Real> circle(basis_.period_);
   const auto wave = [&](int twice_position) {
-    const long i = 1L * m * twice_position;
-    return sine ? circle.sin(i) : circle.cos(i);
+    const SineCosine<Real>& at = circleAt(std::int64_t{m} * twice_position);
+    return sine ? at.sin : at.cos;
   };
   SlotValues values{};
   values[slot(0, -1)] = vector.edge * wave(-2);
@@ -84,14 +84,13 @@ Eigenbasis::Builder::SlotValues Eigenbasis::Builder::spokeValues(
   return values;
 }
 
-Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bool plus,
+Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m,
+                                                          const SpokeMode<Real>& mode, bool plus,
                                                           bool sine) {
-  const auto mode = ring_.closed() ? SpokeMode<Real>::at(2L * m, ring_.faces)
-                                   : SpokeMode<Real>::at(m, ring_.faces);
   const bool mirror = sides == Sides::right;
   if (plus && mode.linear) {
     const bool along_v = sine != mirror;
-    return continuation_.linear(sides, along_v ? 0 : 1, along_v ? 1 : 0);
+    return ModeContinuation::of(sides).linear(along_v ? 0 : 1, along_v ? 1 : 0);
   }
   SlotValues values = spokeValues(m, mode.vector(plus), sine);
   if (mirror) {
@@ -108,14 +107,12 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m, bo
       values[c] = 0;
     }
   }
-  return continuation_.continued(sides, mode.lambda(plus), values);
+  return ModeContinuation::of(sides).continued(mode.lambda(plus), values);
 }
 
 void Eigenbasis::Builder::buildSpokes() {
-  const bool interior = ring_.closed();
   for (int m = 1; m <= basis_.spokeCount(); ++m) {
-    const auto mode =
-        interior ? SpokeMode<Real>::at(2L * m, ring_.faces) : SpokeMode<Real>::at(m, ring_.faces);
+    const SpokeMode<Real> mode = spokeMode(m);
     for (const bool plus : {true, false}) {
       const auto& vector = mode.vector(plus);
       basis_.spokes_.push_back({static_cast<double>(vector.edge), static_cast<double>(vector.face),
@@ -127,9 +124,10 @@ void Eigenbasis::Builder::buildSpokes() {
       }
       for (const Sides sides : {Sides::inner, Sides::left, Sides::right, Sides::both}) {
         if (FaceTables* tables = basis_.face_tables_[static_cast<int>(sides)].get()) {
-          tables->sine.push_back(ModeContinuation::rounded(spokeTable(sides, m, plus, true)));
+          tables->sine.push_back(ModeContinuation::rounded(spokeTable(sides, m, mode, plus, true)));
           if (sides == Sides::inner) {
-            tables->cosine.push_back(ModeContinuation::rounded(spokeTable(sides, m, plus, false)));
+            tables->cosine.push_back(
+                ModeContinuation::rounded(spokeTable(sides, m, mode, plus, false)));
           }
         }
       }
@@ -146,7 +144,7 @@ void Eigenbasis::Builder::buildRadial() {
   const Real p = moves ? 3 / (2 * n) : 0, q = moves ? 1 / (4 * n) : 0;
   const Real column = Real(1) / 2 - p, q01 = Real(1) / 8 - q, q11 = Real(1) / 4 - q;
   const Real mean = moves ? (3 * n - 7) / (8 * n) : Real(3) / 8;
-  const Real root = moves ? std::sqrt(5 * n * n - 30 * n + 49) / (8 * n) : std::sqrt(Real(5)) / 8;
+  const Real root = moves ? sqrt(5 * n * n - 30 * n + 49) / (8 * n) : sqrt(Real(5)) / 8;
   Eigen::Matrix<Real, 2, 2> vectors;
   basis_.fixed_.resize(1);
   for (int i = 0; i < 2; ++i) {
@@ -163,7 +161,7 @@ void Eigenbasis::Builder::buildRadial() {
       const bool on_spoke = tile_grid::xOf(c) == 0 || tile_grid::yOf(c) == 0;
       values[c] = c == slot(0, 0) ? v : v + (on_spoke ? x[0] : x[1]);
     }
-    const Wide wide = continuation_.continued(Sides::inner, lambda, values);
+    const Wide wide = ModeContinuation::of(Sides::inner).continued(lambda, values);
     basis_.lambda_[1 + i] = static_cast<double>(lambda);
     basis_.radial_vertex_[i] = static_cast<double>(v);
     basis_.fixed_[0].tables[i] = ModeContinuation::rounded(wide);
@@ -183,7 +181,7 @@ void Eigenbasis::Builder::buildRadial() {
 
 void Eigenbasis::Builder::buildDart() {
   const int first = basis_.firstSymmetric();
-  auto modes = std::make_unique<DartModes>(ring_.faces, continuation_);
+  auto modes = std::make_unique<DartModes>(ring_.faces);
   for (int mode = 0; mode < modes->count(); ++mode) {
     basis_.lambda_[first + mode] = modes->lambda(mode);
   }
@@ -205,17 +203,17 @@ Eigenbasis::Builder::SlotValues Eigenbasis::Builder::ringValues(const std::vecto
 }
 
 /// A sector's spoke mode on one of its faces.
-Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeOnFace(int m, bool plus, int face) {
-  const auto mode = SpokeMode<Real>::at(m, ring_.faces);
-  const Circle<Real> circle(basis_.period_);
-  std::vector<Real> ring(ring_.size(), 0);
-  for (int i = 0; i <= ring_.faces; ++i) {
-    ring[ring_.edge(i)] = mode.vector(plus).edge * circle.sin(2L * m * i);
-  }
-  for (int j = 0; j < ring_.faces; ++j) {
-    ring[ring_.face(j)] = mode.vector(plus).face * circle.sin(1L * m * (2 * j + 1));
-  }
-  return continuation_.continued(basis_.sides(face), mode.lambda(plus), ringValues(ring, face));
+Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeOnFace(int m, const SpokeMode<Real>& mode,
+                                                           bool plus, int face) {
+  const auto& vector = mode.vector(plus);
+  SlotValues values{};
+  forEachRingSlot(ring_, face, [&](int slot, int point) {
+    const std::int64_t i = point - ring_.edge(0), j = point - ring_.face(0);
+    values[slot] = point == 0 ? Real(0)
+                   : j < 0    ? vector.edge * circleAt(2 * i * m).sin
+                              : vector.face * circleAt((2 * j + 1) * m).sin;
+  });
+  return ModeContinuation::of(basis_.sides(face)).continued(mode.lambda(plus), values);
 }
 
 void Eigenbasis::Builder::buildCurves() {
@@ -224,18 +222,21 @@ void Eigenbasis::Builder::buildCurves() {
   for (int i = 0; i < 2; ++i) {
     const CurveMode<Real>& mode = modes[i];
     basis_.lambda_[1 + i] = static_cast<double>(mode.lambda);
-    basis_.curve_ring_[i].assign(mode.ring.begin(), mode.ring.end());
+    for (const Real& value : mode.ring) {
+      basis_.curve_ring_[i].push_back(static_cast<double>(value));
+    }
+    const SpokeMode<Real> fed_mode = spokeMode(std::max(mode.fed_mode, 1));
     for (int j = 0; j < ring_.faces; ++j) {
       const SlotValues values = ringValues(mode.ring, j);
       const Sides sides = basis_.sides(j);
       Wide wide;
       if (mode.fed_mode) {
-        const Wide fed = spokeOnFace(mode.fed_mode, mode.feeds_plus, j);
-        wide = continuation_.continued(sides, mode.lambda, values, mode.feeds, &fed);
+        const Wide fed = spokeOnFace(mode.fed_mode, fed_mode, mode.feeds_plus, j);
+        wide = ModeContinuation::of(sides).continued(mode.lambda, values, mode.feeds, &fed);
       } else if (mode.lambda == Real(1) / 2) {  // a sum of spoke modes to phi = pi/2
-        wide = continuation_.linear(sides, values[slot(1, 0)], values[slot(0, 1)]);
+        wide = ModeContinuation::of(sides).linear(values[slot(1, 0)], values[slot(0, 1)]);
       } else {
-        wide = continuation_.continued(sides, mode.lambda, values);
+        wide = ModeContinuation::of(sides).continued(mode.lambda, values);
       }
       basis_.fixed_[j].tables[i] = ModeContinuation::rounded(wide);
     }

@@ -9,14 +9,14 @@
 
 namespace limitsurf {
 
-/// Computes an Eigenbasis, in long double.
+/// Computes an Eigenbasis, in double-doubles.
 class Eigenbasis::Builder {
  public:
   explicit Builder(Eigenbasis& basis) : basis_(basis), ring_(basis.ring_) {}
   void build();
 
  private:
-  using Real = long double;
+  using Real = DoubleDouble;
   using SlotValues = ModeContinuation::SlotValues;
   using Wide = ModeContinuation::Wide;
 
@@ -27,14 +27,23 @@ class Eigenbasis::Builder {
   void buildDart();
   void buildOuterTables(Sides sides);
 
+  /// The spoke modes number m.
+  SpokeMode<Real> spokeMode(int m) const {
+    return SpokeMode<Real>::at(ring_.closed() ? 2 * std::int64_t{m} : m, ring_.faces);
+  }
+  /// sin and cos of the angle 2 pi i / period, which may be negative.
+  const SineCosine<Real>& circleAt(std::int64_t i) const {
+    const std::int64_t rest = i % basis_.period_;
+    return circle_[static_cast<std::size_t>(rest < 0 ? rest + basis_.period_ : rest)];
+  }
   SlotValues spokeValues(int m, const SpokeMode<Real>::Vector& vector, bool sine) const;
-  Wide spokeTable(Sides sides, int m, bool plus, bool sine);
-  Wide spokeOnFace(int m, bool plus, int face);
+  Wide spokeTable(Sides sides, int m, const SpokeMode<Real>& mode, bool plus, bool sine);
+  Wide spokeOnFace(int m, const SpokeMode<Real>& mode, bool plus, int face);
   SlotValues ringValues(const std::vector<Real>& ring, int face) const;
 
   Eigenbasis& basis_;
   const Ring ring_;
-  ModeContinuation continuation_;
+  std::vector<SineCosine<Real>> circle_;
 };
 
 }  // namespace limitsurf

@@ -1,69 +1,136 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/eigen/mode_continuation.h"
 
-namespace limitsurf {
+#include "limitsurf/precision/sum_of_products.h"
 
-const ModeContinuation::Outer& ModeContinuation::outer(Sides sides) {
-  return outer_.try_emplace(sides, sides).first->second;
+namespace limitsurf {
+namespace {
+
+template <Sides sides>
+const ModeContinuation& shared() {
+  static const ModeContinuation continuation(sides);
+  return continuation;
 }
 
-void ModeContinuation::stepGrid(const Outer& outer, const SlotValues& ring_values,
-                                const SlotValues& next_ring, Wide& wide) {
+constexpr int kRingSlotCount = static_cast<int>(tile_grid::kRingSlots.size());
+
+}  // namespace
+
+const ModeContinuation& ModeContinuation::of(Sides sides) {
+  switch (sides) {
+    case Sides::inner:
+      return shared<Sides::inner>();
+    case Sides::left:
+      return shared<Sides::left>();
+    case Sides::right:
+      return shared<Sides::right>();
+    default:
+      return shared<Sides::both>();
+  }
+}
+
+ModeContinuation::ModeContinuation(Sides sides) : outer_(sides) {
+  from_ring_.resize(outer_.count(), kRingSlotCount);
+  for (int i = 0; i < kRingSlotCount; ++i) {
+    from_ring_.col(i) = outer_.inverse() * outer_.s11().col(tile_grid::kRingSlots[i]);
+  }
+}
+
+void ModeContinuation::stepGrid(const SlotValues& ring_values, const SlotValues& next_ring,
+                                Wide& wide) const {
   SlotValues values = ring_values;
-  for (int i = 0; i < outer.count(); ++i) {
-    values[outer.slots()[i]] = wide.outer[i];
+  for (int i = 0; i < outer_.count(); ++i) {
+    values[outer_.slots()[i]] = wide.outer[i];
   }
   wide.grid.fill(0);
-  outer.step().apply(values, wide.grid);
+  const TileStep<Real>& step = outer_.step();
+  for (const auto& row : step.rows()) {
+    SumOfProducts sum;
+    for (std::size_t i = row.first; i < row.end; ++i) {
+      // Weights are multiples of 1/64.
+      sum.add(values[step.term(i).slot], step.term(i).weight.high());
+    }
+    wide.grid[row.slot] = sum.sum();
+  }
   for (const int c : tile_grid::kRingSlots) {
     wide.grid[c] = next_ring[c];
   }
 }
 
-ModeContinuation::Wide ModeContinuation::continued(Sides sides, Real lambda,
-                                                   const SlotValues& ring_values, Real feeds,
-                                                   const Wide* fed) {
-  const Outer& o = outer(sides);
-  Outer::Vector rhs = Outer::Vector::Zero(o.count());
+ModeContinuation::Vector ModeContinuation::fromRing(const SlotValues& ring_values) const {
+  Vector result(outer_.count());
+  for (int q = 0; q < outer_.count(); ++q) {
+    SumOfProducts sum;
+    for (int i = 0; i < kRingSlotCount; ++i) {
+      sum.add(from_ring_(q, i), ring_values[tile_grid::kRingSlots[i]]);
+    }
+    result[q] = -sum.sum();
+  }
+  return result;
+}
+
+ModeContinuation::Vector ModeContinuation::outerPart(const Vector& z) const {
+  Vector result(outer_.count());
+  for (int i = 0; i < outer_.count(); ++i) {
+    SumOfProducts sum;
+    for (int q = 0; q < outer_.count(); ++q) {
+      sum.add(outer_.vectors()(i, q), z[q]);
+    }
+    result[i] = sum.sum();
+  }
+  return result;
+}
+
+void ModeContinuation::solveOuter(Real lambda, Real met, const Vector& right, Wide& wide) const {
+  Vector z = Vector::Zero(outer_.count());
+  wide.rest = Vector::Zero(outer_.count());
+  for (int q = 0; q < outer_.count(); ++q) {
+    if (outer_.lambda(q) == met) {
+      wide.rest[q] = -right[q];
+    } else {
+      z[q] = right[q] / (outer_.lambda(q) - lambda);
+    }
+  }
+  wide.outer = outerPart(z);
+}
+
+ModeContinuation::Wide ModeContinuation::continued(Real lambda, const SlotValues& ring_values,
+                                                   Real feeds, const Wide* fed) const {
+  Vector right = fromRing(ring_values);
   if (fed) {
-    rhs = feeds * fed->outer;
+    right += outer_.inverse() * (feeds * fed->outer);
   }
   Wide wide;
-  wide.outer = o.continuation(lambda, lambda, ring_values, rhs, wide.rest);
+  solveOuter(lambda, lambda, right, wide);
   SlotValues next{};
   for (const int c : tile_grid::kRingSlots) {
     // The fed vector's grid holds its ring times lambda.
     next[c] = lambda * ring_values[c] + (fed ? feeds * fed->grid[c] / lambda : 0);
   }
-  stepGrid(o, ring_values, next, wide);
+  stepGrid(ring_values, next, wide);
   return wide;
 }
 
-ModeContinuation::Wide ModeContinuation::continuedBeside(Sides sides, Real lambda, Real met,
-                                                         const SlotValues& ring_values) {
-  const Outer& o = outer(sides);
+ModeContinuation::Wide ModeContinuation::continuedBeside(Real lambda, Real met,
+                                                         const SlotValues& ring_values) const {
   Wide wide;
-  wide.outer = o.continuation(lambda, met, ring_values, Outer::Vector::Zero(o.count()), wide.rest);
+  solveOuter(lambda, met, fromRing(ring_values), wide);
   SlotValues next{};
   for (const int c : tile_grid::kRingSlots) {
     next[c] = lambda * ring_values[c];
   }
-  stepGrid(o, ring_values, next, wide);
+  stepGrid(ring_values, next, wide);
   return wide;
 }
 
 std::array<ModeContinuation::Wide, 2> ModeContinuation::continuedPair(
-    Sides sides, Real mean, Real forth, Real back, const std::array<SlotValues, 2>& ring_values) {
-  const Outer& o = outer(sides);
-  std::array<Outer::Vector, 2> right;
-  for (int i = 0; i < 2; ++i) {
-    right[i] = -(o.inverse() * o.fromRing(ring_values[i]));
-  }
+    Real mean, Real forth, Real back, const std::array<SlotValues, 2>& ring_values) const {
+  const std::array<Vector, 2> right = {fromRing(ring_values[0]), fromRing(ring_values[1])};
   // (S12 - mean) y_a - forth y_b = -S11 x_a and (S12 - mean) y_b - back y_a = -S11 x_b, mode by
   // mode of S12.
-  std::array<Outer::Vector, 2> z = right;
-  for (int q = 0; q < o.count(); ++q) {
-    const Real d = o.lambda(q) - mean, determinant = d * d - forth * back;
+  std::array<Vector, 2> z = right;
+  for (int q = 0; q < outer_.count(); ++q) {
+    const Real d = outer_.lambda(q) - mean, determinant = d * d - forth * back;
     z[0][q] = (d * right[0][q] + forth * right[1][q]) / determinant;
     z[1][q] = (d * right[1][q] + back * right[0][q]) / determinant;
   }
@@ -74,26 +141,23 @@ std::array<ModeContinuation::Wide, 2> ModeContinuation::continuedPair(
     for (const int c : tile_grid::kRingSlots) {
       next[c] = mean * ring_values[i][c] + feeds * ring_values[1 - i][c];
     }
-    result[i].outer = o.vectors() * z[i];
-    result[i].rest = Outer::Vector::Zero(o.count());
-    stepGrid(o, ring_values[i], next, result[i]);
+    result[i].outer = outerPart(z[i]);
+    result[i].rest = Vector::Zero(outer_.count());
+    stepGrid(ring_values[i], next, result[i]);
   }
   return result;
 }
 
-ModeContinuation::Wide ModeContinuation::linear(Sides sides, Real a, Real b) {
-  const Outer& o = outer(sides);
-  const auto value = [&](int c) {
-    return a * static_cast<Real>(tile_grid::xOf(c)) + b * static_cast<Real>(tile_grid::yOf(c));
-  };
+ModeContinuation::Wide ModeContinuation::linear(Real a, Real b) const {
+  const auto value = [&](int c) { return a * tile_grid::xOf(c) + b * tile_grid::yOf(c); };
   Wide wide;
-  wide.outer.resize(o.count());
-  wide.rest = Outer::Vector::Zero(o.count());
-  for (int i = 0; i < o.count(); ++i) {
-    wide.outer[i] = value(o.slots()[i]);
+  wide.outer.resize(outer_.count());
+  wide.rest = Vector::Zero(outer_.count());
+  for (int i = 0; i < outer_.count(); ++i) {
+    wide.outer[i] = value(outer_.slots()[i]);
   }
   for (int c = 0; c < tile_grid::kSlots; ++c) {
-    wide.grid[c] = tile_grid::exists(sides, c) ? value(c) / 2 : 0;
+    wide.grid[c] = tile_grid::exists(outer_.sides(), c) ? value(c) / 2 : 0;
   }
   return wide;
 }

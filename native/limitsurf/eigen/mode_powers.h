@@ -2,23 +2,13 @@
 #pragma once
 
 #include "limitsurf/eigen/dart_modes.h"
+#include "limitsurf/eigen/power.h"
 
 // Powers of the Jordan form J: what many subdivision steps do to a mode. A power costs
 // O(log(steps)) products. Where 2^steps belongs to the result it is multiplied in step by step,
 // because (2 lambda)^steps stays within the range of double where lambda^steps does not.
 
 namespace limitsurf {
-
-/// base^exponent, by repeated squaring; `one` is the unit of the multiplication.
-template <typename Number>
-Number power(Number base, int exponent, Number one) {
-  for (; exponent > 0; exponent >>= 1, base = base * base) {
-    if (exponent & 1) {
-      one = one * base;
-    }
-  }
-  return one;
-}
 
 inline double power(double base, int exponent) { return power(base, exponent, 1.); }
 

@@ -65,30 +65,7 @@ OuterModes<Real>::OuterModes(Sides sides) : sides_(sides), step_(sides) {
   inverse_ = vectors_.fullPivLu().inverse();
 }
 
-template <typename Real>
-typename OuterModes<Real>::Vector OuterModes<Real>::continuation(Real lambda, Real met,
-                                                                 const SlotValues& ring_values,
-                                                                 const Vector& rhs,
-                                                                 Vector& rest) const {
-  const Vector right = inverse_ * (rhs - fromRing(ring_values));
-  Vector z = Vector::Zero(count());
-  rest = Vector::Zero(count());
-  for (int q = 0; q < count(); ++q) {
-    if (lambda_[q] == met) {
-      rest[q] = -right[q];
-    } else {
-      z[q] = right[q] / (lambda_[q] - lambda);
-    }
-  }
-  return vectors_ * z;
-}
-
-template <typename Real>
-typename OuterModes<Real>::Vector OuterModes<Real>::fromRing(const SlotValues& ring_values) const {
-  return s11_ * Eigen::Map<const Vector>(ring_values.data(), tile_grid::kSlots);
-}
-
 template class OuterModes<double>;
-template class OuterModes<long double>;
+template class OuterModes<DoubleDouble>;
 
 }  // namespace limitsurf

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limitsurf/eigen/tile_grid.h"
+#include "limitsurf/precision/double_double_eigen.h"
 
 namespace limitsurf {
 
@@ -17,9 +18,8 @@ namespace limitsurf {
 template <typename Real>
 class OuterModes {
  public:
-  using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
-  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
-  using SlotValues = std::array<Real, tile_grid::kSlots>;
+  using Matrix =
+      Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, 0, tile_grid::kOuter, tile_grid::kSlots>;
 
   explicit OuterModes(Sides sides);
 
@@ -49,18 +49,6 @@ class OuterModes {
   const Matrix& s12() const { return s12_; }
   const TileStep<Real>& step() const { return step_; }
 
-  /// The outer part y of a vector whose ring part is x: (S12 - lambda) y = -S11 x + rhs (Lacewell &
-  /// Burley 2007, section 3.1).
-  ///
-  /// The components of the right-hand side along the outer modes with eigenvalue `met` are not
-  /// solved for but returned in `rest`: a step takes (x, y) to lambda (x, y) + rhs + W1 rest. Where
-  /// lambda equals an eigenvalue of S12, `met` has to be that eigenvalue; y has no component along
-  /// its modes then, and `rest` is 0 except at interior valence 2.
-  Vector continuation(Real lambda, Real met, const SlotValues& ring_values, const Vector& rhs,
-                      Vector& rest) const;
-  /// S11 x.
-  Vector fromRing(const SlotValues& ring_values) const;
-
  private:
   Sides sides_;
   TileStep<Real> step_;
@@ -70,6 +58,6 @@ class OuterModes {
 };
 
 extern template class OuterModes<double>;
-extern template class OuterModes<long double>;
+extern template class OuterModes<DoubleDouble>;
 
 }  // namespace limitsurf

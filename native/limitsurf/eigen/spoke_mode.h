@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
+#include "limitsurf/precision/double_double.h"
+
 namespace limitsurf {
 
 /// The two eigenvectors of a ring that turn by the angle phi from spoke to spoke.
@@ -30,10 +34,9 @@ struct SpokeMode {
 
   /// The modes to phi = pi numerator / denominator. Integers make it possible to recognise exactly
   /// the angles at which an eigenvalue is rational.
-  static SpokeMode at(long numerator, long denominator);
+  static SpokeMode at(std::int64_t numerator, std::int64_t denominator);
 };
 
-extern template struct SpokeMode<double>;
-extern template struct SpokeMode<long double>;
+extern template struct SpokeMode<DoubleDouble>;
 
 }  // namespace limitsurf

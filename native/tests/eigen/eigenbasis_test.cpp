@@ -10,7 +10,6 @@
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
-#include <complex>
 #include <cstdio>
 #include <numeric>
 #include <string>
@@ -18,6 +17,8 @@
 
 #include "limitsurf/eigen/dart_spectrum.h"
 #include "limitsurf/eigen/ring_slots.h"
+#include "limitsurf/precision/complex.h"
+#include "limitsurf/precision/double_double_eigen.h"
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"
 #include "support/random.h"
@@ -27,8 +28,7 @@ namespace {
 
 using Big = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
                                           boost::multiprecision::et_off>;
-using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-using LongComplex = std::complex<long double>;
+using WideMatrix = Eigen::Matrix<DoubleDouble, Eigen::Dynamic, Eigen::Dynamic>;
 
 constexpr RingKind kKinds[] = {RingKind::interior, RingKind::boundary, RingKind::pinned,
                                RingKind::cone, RingKind::dart};
@@ -41,8 +41,8 @@ std::string describe(const Ring& ring) {
 bool exists(const Ring& ring) { return ring.faces >= (ring.closed() ? 2 : 1); }
 
 /// The matrix of a step on the coefficients of the modes.
-LongMatrix jordanForm(const Eigenbasis& basis) {
-  LongMatrix j = LongMatrix::Zero(basis.modeCount(), basis.modeCount());
+WideMatrix jordanForm(const Eigenbasis& basis) {
+  WideMatrix j = WideMatrix::Zero(basis.modeCount(), basis.modeCount());
   for (int mode = 0; mode < basis.modeCount(); ++mode) j(mode, mode) = basis.eigenvalue(mode);
   for (const auto& chain : basis.chains()) j(chain.to, chain.from) = chain.rate;
   for (const ModePair& pair : basis.pairs()) {
@@ -55,20 +55,21 @@ LongMatrix jordanForm(const Eigenbasis& basis) {
 void compareWithRingMatrix(const Ring& ring) {
   const Eigenbasis basis(ring);
   const int n = ring.size();
-  const LongMatrix identity = LongMatrix::Identity(n, n), j = jordanForm(basis);
-  const LongMatrix s = subdivideRing<LongMatrix>(ring, identity);
-  LongMatrix right(n, n);
+  const WideMatrix identity = WideMatrix::Identity(n, n), j = jordanForm(basis);
+  const WideMatrix s = subdivideRing<WideMatrix>(ring, identity);
+  WideMatrix right(n, n);
   for (int mode = 0; mode < n; ++mode) {
     const std::vector<double> vector = basis.ringVector(mode);
-    right.col(mode) = Eigen::Map<const Eigen::VectorXd>(vector.data(), n).cast<long double>();
+    right.col(mode) = Eigen::Map<const Eigen::VectorXd>(vector.data(), n).cast<DoubleDouble>();
   }
   const Eigen::MatrixXd left = basis.projectTransposed(Eigen::MatrixXd::Identity(n, n)).transpose();
-  const LongMatrix wide_left = left.cast<long double>();
-  EXPECT_LE((s * right - right * j).cwiseAbs().maxCoeff(), 2e-15L) << describe(ring);
+  const auto largest = [](const WideMatrix& m) { return m.cast<double>().cwiseAbs().maxCoeff(); };
+  const WideMatrix wide_left = left.cast<DoubleDouble>();
+  EXPECT_LE(largest(s * right - right * j), 2e-15) << describe(ring);
   // The other errors are sums of the rounding of all modes.
-  const long double allowed = 1e-14L * std::max(1.L, ring.faces / 100.L);
-  EXPECT_LE((wide_left * right - identity).cwiseAbs().maxCoeff(), 2 * allowed) << describe(ring);
-  EXPECT_LE((s - right * j * wide_left).cwiseAbs().maxCoeff(), allowed) << describe(ring);
+  const double allowed = 1e-14 * std::max(1., ring.faces / 100.);
+  EXPECT_LE(largest(wide_left * right - identity), 2 * allowed) << describe(ring);
+  EXPECT_LE(largest(s - right * j * wide_left), allowed) << describe(ring);
 
   Random random(n);
   Points points(n, 3), coefficients;
@@ -95,12 +96,11 @@ TEST(SlowEigenbasis, FactorisesTheRingMatrix) {
 }
 
 /// The eigenvalues of the basis.
-std::vector<LongComplex> knownSpectrum(const Eigenbasis& basis) {
-  std::vector<LongComplex> result;
+std::vector<Complex> knownSpectrum(const Eigenbasis& basis) {
+  std::vector<Complex> result;
   for (int mode = 0; mode < basis.modeCount(); ++mode) result.push_back(basis.eigenvalue(mode));
   for (const ModePair& pair : basis.pairs()) {
-    const LongComplex root =
-        std::sqrt(LongComplex(static_cast<long double>(pair.forth) * pair.back));
+    const Complex root = sqrt(Complex(DoubleDouble(pair.forth).times(pair.back)));
     result[pair.a] += root;
     result[pair.b] -= root;
   }
@@ -109,9 +109,9 @@ std::vector<LongComplex> knownSpectrum(const Eigenbasis& basis) {
 
 /// The eigenvalues of S on the vectors that are symmetric, or antisymmetric, about a dart's sharp
 /// spoke.
-std::vector<LongComplex> numericSpectrum(const Ring& dart) {
+std::vector<Complex> numericSpectrum(const Ring& dart) {
   const int n = dart.faces;
-  std::vector<LongComplex> result;
+  std::vector<Complex> result;
   for (const int sign : {1, -1}) {
     std::vector<std::pair<int, int>> points;  // with their mirror images
     if (sign > 0) points.emplace_back(0, 0);
@@ -123,31 +123,34 @@ std::vector<LongComplex> numericSpectrum(const Ring& dart) {
       if (sign > 0 || n - 1 - j != j) points.emplace_back(dart.face(j), dart.face(n - 1 - j));
     }
     const int size = static_cast<int>(points.size());
-    LongMatrix vectors = LongMatrix::Zero(dart.size(), size);
+    WideMatrix vectors = WideMatrix::Zero(dart.size(), size);
     for (int i = 0; i < size; ++i) {
       vectors(points[i].second, i) = sign;
       vectors(points[i].first, i) = 1;
     }
-    const LongMatrix next = subdivideRing<LongMatrix>(dart, vectors);
-    LongMatrix part(size, size);
+    const WideMatrix next = subdivideRing<WideMatrix>(dart, vectors);
+    WideMatrix part(size, size);
     for (int i = 0; i < size; ++i) part.row(i) = next.row(points[i].first);
-    const auto eigenvalues = Eigen::EigenSolver<LongMatrix>(part, false).eigenvalues().eval();
-    result.insert(result.end(), eigenvalues.data(), eigenvalues.data() + eigenvalues.size());
+    const Eigen::EigenSolver<WideMatrix> solver(part, false);
+    for (int i = 0; i < size; ++i) {
+      result.emplace_back(solver.eigenvalues()[i].real(), solver.eigenvalues()[i].imag());
+    }
   }
   return result;
 }
 
 void compareSpectrum(int faces) {
   const Ring ring{RingKind::dart, faces};
-  const std::vector<LongComplex> known = knownSpectrum(Eigenbasis(ring));
-  std::vector<LongComplex> found = numericSpectrum(ring);
+  const std::vector<Complex> known = knownSpectrum(Eigenbasis(ring));
+  std::vector<Complex> found = numericSpectrum(ring);
   ASSERT_EQ(known.size(), found.size()) << faces;
-  for (const LongComplex& eigenvalue : known) {
+  for (const Complex& eigenvalue : known) {
     const auto nearest = std::min_element(found.begin(), found.end(), [&](auto a, auto b) {
-      return std::abs(a - eigenvalue) < std::abs(b - eigenvalue);
+      return abs(a - eigenvalue) < abs(b - eigenvalue);
     });
     // The solver's error grows where two eigenvalues almost meet.
-    EXPECT_LE(std::abs(*nearest - eigenvalue), 1e-14L) << faces << " faces: " << eigenvalue;
+    EXPECT_LE(abs(*nearest - eigenvalue).high(), 1e-14)
+        << faces << " faces: " << eigenvalue.real().high() << " + i " << eigenvalue.imag().high();
     found.erase(nearest);
   }
 }
@@ -165,7 +168,7 @@ TEST(SlowEigenbasis, HasTheSpectrumOfDarts) {
 bool hasEigenvalue(int faces, double eigenvalue) {
   const DartSpectrum spectrum(faces);
   const auto is_equal = [&](const auto& wave) {
-    return static_cast<double>(std::abs(wave.lambda())) == eigenvalue;
+    return static_cast<double>(abs(wave.lambda())) == eigenvalue;
   };
   return std::any_of(spectrum.waves.begin(), spectrum.waves.end(), is_equal) ||
          std::any_of(spectrum.pair.begin(), spectrum.pair.end(), is_equal);
@@ -458,11 +461,11 @@ double amplification(const Eigenbasis& basis, int face, int steps) {
   const int n = basis.modeCount();
   const Eigen::MatrixXd left = basis.projectTransposed(Eigen::MatrixXd::Identity(n, n));
   const Eigen::VectorXd left_size = left.bottomRows(n - 1).cwiseAbs().colwise().sum().transpose();
-  const std::vector<LongComplex> spectrum = knownSpectrum(basis);
+  const std::vector<Complex> spectrum = knownSpectrum(basis);
   const auto growth = [&](int mode) {
-    double size = static_cast<double>(std::abs(spectrum[mode]));
+    double size = static_cast<double>(abs(spectrum[mode]));
     for (const ModePair& pair : basis.pairs()) {
-      if (mode == pair.b) size = std::max(size, static_cast<double>(std::abs(spectrum[pair.a])));
+      if (mode == pair.b) size = std::max(size, static_cast<double>(abs(spectrum[pair.a])));
     }
     return size;
   };
