@@ -47,6 +47,7 @@ GeodesicMesh::GeodesicMesh(const LimitSurface& surface, const std::vector<int>& 
       cells_(surface, levels, triangles_) {
   hangTogether();
   listAround();
+  listNeighbors();
 }
 
 /// Replaces points by vertices: the corners that sides link around a point.
@@ -108,6 +109,34 @@ void GeodesicMesh::listAround() {
     for (const int vertex : triangles_.vertices[number]) {
       around_[end[vertex]++] = static_cast<int>(number);
     }
+  }
+}
+
+void GeodesicMesh::listNeighbors() {
+  wedges_.reserve(around_.size());
+  first_neighbor_.reserve(triangles_.points.size() + 1);
+  neighbors_.reserve(around_.size() + around_.size() / 8);
+  first_neighbor_.push_back(0);
+  for (int vertex = 0; vertex < vertexCount(); ++vertex) {
+    const auto first = static_cast<std::size_t>(first_neighbor_.back());
+    // Poles have many neighbors: each is looked for from the last one, beside which it mostly is.
+    const auto number_of = [&](int other) {
+      for (std::size_t i = neighbors_.size(); i-- > first;) {
+        if (neighbors_[i].vertex == other) {
+          return static_cast<int>(i - first);
+        }
+      }
+      neighbors_.push_back({other, distance(vertex, other)});
+      return static_cast<int>(neighbors_.size() - 1 - first);
+    };
+    for (const int number : trianglesAt(vertex)) {
+      const std::array<int, 3>& corners = triangle(number);
+      const int k = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
+      const int b = corners[(k + 1) % 3], c = corners[(k + 2) % 3];
+      const int b_number = number_of(b), c_number = number_of(c);
+      wedges_.push_back({b_number, c_number, distance(b, c)});
+    }
+    first_neighbor_.push_back(static_cast<int>(neighbors_.size()));
   }
 }
 

@@ -49,6 +49,24 @@ class GeodesicMesh {
   std::array<double, 3> weights(int triangle, const Location& at) const {
     return barycentric(triangles_.corners[triangle], at.u, at.v);
   }
+  struct Neighbor {
+    int vertex;
+    double distance;
+  };
+  /// A triangle at a vertex: its other two vertices, as numbers of neighbors, and their distance.
+  struct Wedge {
+    int b, c;
+    double distance;
+  };
+  /// The vertices that share a side with a vertex.
+  Span<Neighbor> neighborsAt(int vertex) const {
+    return Span<Neighbor>(neighbors_)
+        .subspan(first_neighbor_[vertex], first_neighbor_[vertex + 1] - first_neighbor_[vertex]);
+  }
+  Span<Wedge> wedgesAt(int vertex) const {
+    return Span<Wedge>(wedges_).subspan(first_around_[vertex],
+                                        first_around_[vertex + 1] - first_around_[vertex]);
+  }
   double distance(int a, int b) const { return (position(a) - position(b)).norm(); }
   /// The triangle in which a location lies, on a face that has a limit surface.
   int triangleAt(const Location& at) const { return cells_.find(triangles_, at); }
@@ -56,10 +74,14 @@ class GeodesicMesh {
  private:
   void hangTogether();
   void listAround();
+  void listNeighbors();
 
   SurfaceTriangles triangles_;  // whose points are the vertices
   TriangleCells cells_;
   std::vector<int> first_around_, around_;
+  std::vector<Wedge> wedges_;  // in the order of around_
+  std::vector<int> first_neighbor_;
+  std::vector<Neighbor> neighbors_;
 };
 
 }  // namespace limitsurf

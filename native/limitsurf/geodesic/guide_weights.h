@@ -54,7 +54,7 @@ struct GuideOptions {
 ///
 /// Throws std::invalid_argument for a count out of range, for offsets of curves that are not those
 /// of Polylines, and naming the first point of them that is not finite; MeshError for cuts that are
-/// no edges, and as evaluate() does for locations. Cost: about 2 microseconds for each vertex of
+/// no edges, and as evaluate() does for locations. Cost: about 1 microsecond for each vertex of
 /// the triangles and each guide that it keeps (three more than `count`), on one core; a microsecond
 /// a place, on all of them. Memory: 24 bytes for each of the former and 16 for each guide of a
 /// place.

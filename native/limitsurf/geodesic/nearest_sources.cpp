@@ -40,7 +40,8 @@ NearestSources::NearestSources(const GeodesicMesh& mesh, const std::vector<MeshP
   for (std::size_t source = 0; source < sources.size(); ++source) {
     for (const int vertex : mesh.triangle(sources[source].triangle)) {
       offer(vertex, static_cast<int>(source),
-            (sources[source].position - mesh.position(vertex)).norm());
+            (sources[source].position - mesh.position(vertex)).norm(),
+            findEntry(vertex, static_cast<int>(source)));
     }
   }
   spread(progress);
@@ -61,13 +62,13 @@ const NearestSources::Entry* NearestSources::findEntry(int vertex, int source) c
   return nullptr;
 }
 
-/// Offers a vertex a distance, which it takes if it does not know a shorter one. With twice as many
-/// entries as it keeps, the largest can be dropped for a smaller one: it is not among the nearest.
-void NearestSources::offer(int vertex, int source, double distance) {
+/// Offers a vertex a distance, which it takes if it does not know a shorter one; `entry` is what it
+/// knows. With twice as many entries as it keeps, the largest can be dropped for a smaller one: it
+/// is not among the nearest.
+void NearestSources::offer(int vertex, int source, double distance, Entry* entry) {
   if (distance > reach_) {
     return;
   }
-  Entry* entry = findEntry(vertex, source);
   if (!entry) {
     if (finals_[vertex] == most_) {
       return;
@@ -94,24 +95,28 @@ void NearestSources::offer(int vertex, int source, double distance) {
 }
 
 void NearestSources::passOn(int vertex, int source, double distance) {
-  for (const int number : mesh_.trianglesAt(vertex)) {
-    const std::array<int, 3>& triangle = mesh_.triangle(number);
-    const int k = triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
-    const int b = triangle[(k + 1) % 3], c = triangle[(k + 2) % 3];
-    const double ab = mesh_.distance(vertex, b), ac = mesh_.distance(vertex, c);
-    const double bc = mesh_.distance(b, c);
-    const Entry* known_b = findEntry(b, source);
-    const Entry* known_c = findEntry(c, source);
-    const double to_b = known_b ? known_b->distance : -1, to_c = known_c ? known_c->distance : -1;
-    double new_b = distance + ab, new_c = distance + ac;
-    if (known_c) {
-      new_b = std::min(new_b, unfoldedDistance(distance, to_c, {ac, ab, bc}));
+  const Span<GeodesicMesh::Neighbor> neighbors = mesh_.neighborsAt(vertex);
+  known_.resize(neighbors.size());
+  offered_.resize(neighbors.size());
+  for (std::size_t i = 0; i < neighbors.size(); ++i) {
+    known_[i] = findEntry(neighbors[i].vertex, source);
+    offered_[i] = distance + neighbors[i].distance;
+  }
+  for (const GeodesicMesh::Wedge& wedge : mesh_.wedgesAt(vertex)) {
+    const double ab = neighbors[wedge.b].distance, ac = neighbors[wedge.c].distance;
+    if (known_[wedge.c]) {
+      const double across =
+          unfoldedDistance(distance, known_[wedge.c]->distance, {ac, ab, wedge.distance});
+      offered_[wedge.b] = std::min(offered_[wedge.b], across);
     }
-    if (known_b) {
-      new_c = std::min(new_c, unfoldedDistance(distance, to_b, {ab, ac, bc}));
+    if (known_[wedge.b]) {
+      const double across =
+          unfoldedDistance(distance, known_[wedge.b]->distance, {ab, ac, wedge.distance});
+      offered_[wedge.c] = std::min(offered_[wedge.c], across);
     }
-    offer(b, source, new_b);
-    offer(c, source, new_c);
+  }
+  for (std::size_t i = 0; i < neighbors.size(); ++i) {
+    offer(neighbors[i].vertex, source, offered_[i], known_[i]);
   }
 }
 

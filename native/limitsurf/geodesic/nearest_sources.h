@@ -52,7 +52,7 @@ class NearestSources {
 
   Entry* findEntry(int vertex, int source);
   const Entry* findEntry(int vertex, int source) const;
-  void offer(int vertex, int source, double distance);
+  void offer(int vertex, int source, double distance, Entry* entry);
   void passOn(int vertex, int source, double distance);
   void spread(const Progress& progress);
 
@@ -64,6 +64,8 @@ class NearestSources {
   std::vector<Entry> entries_;
   std::vector<unsigned short> counts_, finals_;
   std::vector<Waiting> heap_;
+  std::vector<Entry*> known_;  // of a vertex's neighbors, while it passes on
+  std::vector<double> offered_;
 };
 
 }  // namespace limitsurf

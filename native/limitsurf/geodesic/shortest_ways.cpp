@@ -27,6 +27,10 @@ std::vector<int> levelsFor(const LimitSurface& surface) {
   return std::vector<int>(static_cast<std::size_t>(faces), level);
 }
 
+/// A way across triangles is compared with one along their sides, if it is longer than the distance
+/// by more than this: among long thin triangles it may go to and fro.
+constexpr double kAsExpected = 1.05;
+
 /// What is closer to a vertex or a side than this share of a triangle lies on it.
 constexpr double kOn = 1e-12;
 
@@ -46,28 +50,36 @@ SidePoint sidePoint(int a, int b, double share) {
   return {a, b, share};
 }
 
+struct Way {
+  std::vector<WayPart> parts;
+  double length = 0;
+};
+
 /// Goes from a place down the distances from an end.
 class Descent {
  public:
   Descent(const GeodesicMesh& mesh, const NearestSources& distances, const Location& from,
-          const MeshPlace& begin, const Location& to, int last)
+          const MeshPlace& begin, const Location& to, const MeshPlace& end)
       : mesh_(mesh),
         distances_(distances),
         from_(from),
         begin_(begin),
         to_(to),
-        last_triangle_(last) {}
+        end_(end.position),
+        last_triangle_(end.triangle) {}
 
   /// Straight across triangles, or from vertex to vertex only. No parts if it leads nowhere.
-  std::vector<WayPart> go(bool across) {
-    std::vector<WayPart> parts;
+  Way go(bool across) {
+    Way way;
+    Vector3 here = begin_.position;
     std::optional<SidePoint> at = begin();
     std::vector<int> ahead = at ? around(*at) : std::vector<int>{begin_.triangle};
     // a way that circles is given up
     for (std::size_t step = 0; step <= 2 * mesh_.triangleCount(); ++step) {
       if (std::find(ahead.begin(), ahead.end(), last_triangle_) != ahead.end()) {
-        parts.push_back({locate(last_triangle_, at), to_});
-        return parts;
+        way.parts.push_back({locate(last_triangle_, at), to_});
+        way.length += (end_ - here).norm();
+        return way;
       }
       Step best;
       for (const int triangle : ahead) {
@@ -79,8 +91,10 @@ class Descent {
       if (!(best.rest < kInfinity)) {
         break;
       }
-      parts.push_back({locate(best.triangle, at), locate(best.triangle, best.to)});
+      way.parts.push_back({locate(best.triangle, at), locate(best.triangle, best.to)});
       at = best.to;
+      way.length += (position(at) - here).norm();
+      here = position(at);
       ahead = around(best.to);
     }
     return {};
@@ -183,6 +197,7 @@ class Descent {
   Location from_;
   MeshPlace begin_;
   Location to_;
+  Vector3 end_;
   int last_triangle_;
 };
 
@@ -205,9 +220,15 @@ std::vector<WayPart> ShortestWays::find(const Location& from, const Location& to
   if (found.empty() || !(found[0].distance <= longest)) {
     return {};
   }
-  Descent descent(mesh_, distances, from, begin, to, end[0].triangle);
-  std::vector<WayPart> parts = descent.go(true);
-  return parts.empty() ? descent.go(false) : parts;
+  Descent descent(mesh_, distances, from, begin, to, end[0]);
+  const Way across = descent.go(true);
+  if (!across.parts.empty() && across.length <= kAsExpected * found[0].distance) {
+    return across.parts;
+  }
+  const Way along = descent.go(false);
+  const bool is_along =
+      across.parts.empty() || (!along.parts.empty() && along.length < across.length);
+  return is_along ? along.parts : across.parts;
 }
 
 }  // namespace limitsurf

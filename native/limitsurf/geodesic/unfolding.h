@@ -27,8 +27,9 @@ inline UnfoldedWay unfoldedWay(double to_a, double to_b, const TriangleSides& si
     return {};
   }
   // a lies at the origin and b at (ab, 0); the source is below them, c above
-  const double source_x = ((to_a - to_b) * (to_a + to_b) / ab + ab) / 2;
-  const double x = ((sides.ac - sides.bc) * (sides.ac + sides.bc) / ab + ab) / 2;
+  const double inverse = 1 / ab;
+  const double source_x = ((to_a - to_b) * (to_a + to_b) * inverse + ab) / 2;
+  const double x = ((sides.ac - sides.bc) * (sides.ac + sides.bc) * inverse + ab) / 2;
   const double source_y = std::sqrt(std::max(0., (to_a - source_x) * (to_a + source_x)));
   const double y = std::sqrt(std::max(0., (sides.ac - x) * (sides.ac + x)));
   const double height = source_y + y;
@@ -39,7 +40,8 @@ inline UnfoldedWay unfoldedWay(double to_a, double to_b, const TriangleSides& si
   if (crossing < 0 || crossing > ab) {
     return {};
   }
-  return {std::hypot(x - source_x, height), std::clamp(crossing / ab, 0., 1.)};
+  const double beside = x - source_x;
+  return {std::sqrt(beside * beside + height * height), std::clamp(crossing * inverse, 0., 1.)};
 }
 
 /// The distance of unfoldedWay().

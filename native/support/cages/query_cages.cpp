@@ -66,6 +66,14 @@ Cage moved(Cage cage, const Change& change) {
 
 }  // namespace
 
+NamedCages everyNth(const NamedCages& cages, std::size_t n) {
+  NamedCages some;
+  for (std::size_t i = n / 2; i < cages.size(); i += n) {
+    some.push_back(cages[i]);
+  }
+  return some;
+}
+
 NamedCages closedCages() {
   return {{"cube", cube()},
           {"crooked cube", perturbed(cube(), 0.2, 1)},

@@ -11,6 +11,9 @@ namespace limitsurf::test {
 /// and refused faces, sheets that meet, the bilinear scheme, planes.
 NamedCages queryCages();
 
+/// Every n-th of some cages, for tests that are repeated with all of them among the slow ones.
+NamedCages everyNth(const NamedCages& cages, std::size_t n);
+
 /// The query cages that have no boundaries.
 NamedCages closedCages();
 

@@ -422,7 +422,7 @@ void compareTiles(RingKind kind, const std::vector<int>& face_counts) {
 }
 
 TEST(Eigenbasis, ReachesSubdividedTiles) {
-  for (RingKind kind : kKinds) compareTiles(kind, {1, 2, 3, 4, 5, 6, 7, 8, 10, 17, 22});
+  for (RingKind kind : kKinds) compareTiles(kind, {1, 2, 3, 4, 5, 6, 8, 17});
 }
 
 TEST(SlowEigenbasis, ReachesSubdividedTiles) {

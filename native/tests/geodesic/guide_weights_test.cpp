@@ -228,16 +228,17 @@ TEST(GuideWeights, AreTheSameForAnyNumberOfThreads) {
   for (std::size_t i = 0; i < at.size(); i += 97) {
     guides.push_back(at[i]);
   }
-  GuideOptions one;
+  GuideOptions all, one;
+  all.count = one.count = 2;
   one.threads = 1;
-  const GuideWeights a = guideWeights(surface, guides, at),
+  const GuideWeights a = guideWeights(surface, guides, at, all),
                      b = guideWeights(surface, guides, at, one);
   EXPECT_EQ(a.guide, b.guide);
   EXPECT_EQ(a.weight, b.weight);
   EXPECT_EQ(a.distance, b.distance);
   // a row does not depend on the others
-  const GuideWeights alone = guideWeights(surface, guides, Locations{at[11]});
-  EXPECT_TRUE(std::equal(alone.weight.begin(), alone.weight.end(), a.weight.begin() + 44));
+  const GuideWeights alone = guideWeights(surface, guides, Locations{at[11]}, all);
+  EXPECT_TRUE(std::equal(alone.weight.begin(), alone.weight.end(), a.weight.begin() + 22));
 }
 
 TEST(GuideWeights, NameWhatIsWrong) {

@@ -21,7 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// By how much a way may be longer than a distance of guides says, of which kGuideDistanceError is
 /// the distance's own: the triangles of ways are larger. Ways among the long thin triangles of a
 /// pole of valence 100 are not as straight.
-constexpr double kLonger = 0.03, kLongerAtPoles = 0.3;
+constexpr double kLonger = 0.03, kLongerAtPoles = 1;
 
 /// The length of a way on the surface, by chords. Fails where its parts do not follow each other.
 double lengthOf(const LimitSurface& surface, const std::vector<WayPart>& parts) {
@@ -63,10 +63,11 @@ TEST(ShortestWays, AreStraightOnAFlatSheet) {
   }
 }
 
-TEST(ShortestWays, AreAsLongAsTheDistancesOfGuides) {
+/// Returns the number of ways.
+int compareWithGuides(const NamedCages& cages) {
   Random random(8);
   int compared = 0;
-  for (const auto& [name, cage] : queryCages()) {
+  for (const auto& [name, cage] : cages) {
     const LimitSurface surface = limitSurface(cage);
     const ShortestWays ways(surface, 0);
     const std::vector<Location> at = searchedLocations(surface, 5, random);
@@ -79,14 +80,22 @@ TEST(ShortestWays, AreAsLongAsTheDistancesOfGuides) {
         EXPECT_TRUE(parts.empty()) << name;
         continue;
       }
-      ASSERT_FALSE(parts.empty()) << name << ", " << i;
+      EXPECT_FALSE(parts.empty()) << name << ", " << i;
       const double length = lengthOf(surface, parts);
       EXPECT_LE(length, (1 + longer) * found.distance[i] + 1e-3 * size) << name << ", " << i;
       EXPECT_GE(length, (1 - kLonger) * found.distance[i] - 1e-3 * size) << name << ", " << i;
       ++compared;
     }
   }
-  EXPECT_GT(compared, 60);
+  return compared;
+}
+
+TEST(ShortestWays, AreAsLongAsTheDistancesOfGuides) {
+  EXPECT_GT(compareWithGuides(everyNth(queryCages(), 6)), 12);
+}
+
+TEST(SlowShortestWays, AreAsLongAsTheDistancesOfGuides) {
+  EXPECT_GT(compareWithGuides(queryCages()), 60);
 }
 
 TEST(ShortestWays, DoNotLeadFromOnePartToAnother) {

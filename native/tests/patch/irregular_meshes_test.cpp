@@ -29,7 +29,7 @@ void compareUnderAllRules(const std::string& name, Cage cage, const std::vector<
 
 TEST(IrregularMeshes, KnownShapesAgreeWithSubdivision) {
   Accuracy all("known shapes", 1);
-  const std::vector<int> levels = {11, 40};
+  const std::vector<int> levels = {40};
   compareUnderAllRules("cross", cross(), levels, all);
   compareUnderAllRules("cube", perturbed(cube(), 0.2, 1), levels, all);
   compareUnderAllRules("tetrahedron", perturbed(tetrahedron(), 0.2, 2), levels, all);
@@ -71,7 +71,7 @@ void compareMixtures(int first_seed, int count, const std::vector<int>& levels, 
   std::printf("%s", all.details().c_str());
 }
 
-TEST(IrregularMeshes, MixturesAgreeWithSubdivision) { compareMixtures(1, 2, {40}, 1); }
+TEST(IrregularMeshes, MixturesAgreeWithSubdivision) { compareMixtures(1, 1, {40}, 1); }
 
 TEST(SlowIrregularMeshes, PolygonsAgreeWithSubdivision) {
   Accuracy all("polygons", 1);

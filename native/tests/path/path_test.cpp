@@ -66,10 +66,10 @@ double densest(const SurfaceSearch& search, const Points& rows) {
   return search.closest(samples).distance.maxCoeff();
 }
 
-TEST(Path, LaidOnEveryCageItIsWithinTheTolerance) {
+void layOn(const NamedCages& cages) {
   Random random(1);
   double worst = 0;
-  for (const auto& [name, cage] : queryCages()) {
+  for (const auto& [name, cage] : cages) {
     const LimitSurface surface = limitSurface(cage);
     const SurfaceSearch search(surface);
     const double tolerance = kDirectly * diagonalOf(surface);
@@ -96,6 +96,10 @@ TEST(Path, LaidOnEveryCageItIsWithinTheTolerance) {
   }
   std::printf("largest distance by %d samples a segment: %.3f tolerances\n", kDense, worst);
 }
+
+TEST(Path, LaidOnTheSurfaceItIsWithinTheTolerance) { layOn(everyNth(queryCages(), 4)); }
+
+TEST(SlowPath, LaidOnEveryCageItIsWithinTheTolerance) { layOn(queryCages()); }
 
 TEST(Path, ResultsDependNeitherOnThreadsNorOnTheOtherCurves) {
   Random random(2);
@@ -214,9 +218,9 @@ TEST(Path, BesideAnotherPartAnOffsetIsCountedFromTheOwnOne) {
   }
 }
 
-TEST(Path, FitsOnEveryCageAreWithinTheTolerance) {
+void fitOn(const NamedCages& cages) {
   Random random(4);
-  for (const auto& [name, cage] : queryCages()) {
+  for (const auto& [name, cage] : cages) {
     const LimitSurface surface = limitSurface(cage);
     const SurfaceSearch search(surface);
     const double tolerance = kDirectly * diagonalOf(surface);
@@ -249,6 +253,10 @@ TEST(Path, FitsOnEveryCageAreWithinTheTolerance) {
     }
   }
 }
+
+TEST(Path, FitsAreWithinTheTolerance) { fitOn(everyNth(queryCages(), 6)); }
+
+TEST(SlowPath, FitsOnEveryCageAreWithinTheTolerance) { fitOn(queryCages()); }
 
 TEST(Path, SmoothedOnAFlatSheetItStaysAndBecomesStraight) {
   const LimitSurface surface = limitSurface(fullGrid(4, 4));
