@@ -76,6 +76,7 @@ EDGE_CREASE = "crease_edge"
 VERTEX_CREASE = "crease_vert"
 CUSTOM_NORMAL = "custom_normal"
 SHARP_EDGE = "sharp_edge"
+SHARP_FACE = "sharp_face"
 
 # Attributes of curves that Blender defines
 CURVE_TYPE = "curve_type"

@@ -19,8 +19,10 @@ import numpy as np
 from .. import ids, native
 from ..errors import RefusalError
 from ..images import texel_places
+from ..placing import new_objects
 from ..reading import attributes, cage, displayed_mesh, rules
 from ..tasks.job import Progress
+from . import shaded_normals
 
 if TYPE_CHECKING:
     import limitsurf
@@ -70,7 +72,10 @@ class Polygons:
         found = texel_places.texels(
             self._uv, size, tile, margin=margin, allow_overlap=True, progress=progress
         )
-        return Shading(found, self._columns.evaluate(found.face, found.uv).value)
+        columns = self._columns.evaluate(found.face, found.uv).value
+        if shaded_normals.MAKES_UNIT_NORMALS:
+            columns[:, :3] = shaded_normals.unit(columns[:, :3])
+        return Shading(found, columns)
 
 
 def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: Kind, uv_name: str) -> Corners:
@@ -102,38 +107,37 @@ def _corners(mesh: bpy.types.Mesh, uv_name: str) -> Corners:
     so, as do programs that triangulate a mesh first. (Blender itself, and Eevee, calculate the
     tangents of whole quads.)
     """
-    mesh.calc_loop_triangles()
-    corners = _of(mesh.loop_triangles, "loops", 3, np.int32).ravel()
-    flat = attributes.read(mesh, "sharp_face") if "sharp_face" in mesh.attributes else False
-    flat = np.broadcast_to(flat, len(mesh.polygons))[
-        _of(mesh.loop_triangles, "polygon_index", 1, np.int32).ravel()
-    ]
-    uv = attributes.read(mesh, uv_name)[corners]
+    drawn = shaded_normals.triangles(mesh)
+    normal = shaded_normals.at_corners(mesh, drawn)
+    guide = shaded_normals.at_corners_for_tangents(mesh, drawn, normal)
+    uv = attributes.read(mesh, uv_name)[drawn.corner]
+    vertex = attributes.read(mesh, ids.CORNER_VERTEX)[drawn.corner]
+    positions = attributes.read(mesh, ids.POSITION)
+    if not new_objects.FREE_NORMALS:
+        chosen, vertex = _split(vertex, guide)
+        positions = positions[chosen]
     twin = bpy.data.meshes.new(ids.TEMPORARY_MESH)
     try:
-        vertex = attributes.read(mesh, ids.CORNER_VERTEX)[corners]
-        twin.from_pydata(attributes.read(mesh, ids.POSITION), [], vertex.reshape(-1, 3))
-        twin.polygons.foreach_set("use_smooth", ~flat)
-        twin.update()
-        # A polygon with flat shading is flat on each of its triangles.
-        normal = np.where(
-            np.repeat(flat, 3)[:, None],
-            _of(twin.corner_normals, "vector", 3),
-            _of(mesh.corner_normals, "vector", 3)[corners],
-        )
+        new_objects.add_polygons(twin, positions, np.full(len(drawn.polygon), 3), vertex)
         # Setting normals moves layers in memory, so no reference to one is kept.
         twin.uv_layers.new(name=uv_name).uv.foreach_set("vector", uv.ravel())
-        twin.normals_split_custom_set(normal)
+        new_objects.set_corner_normals(twin, guide)
         twin.calc_tangents(uvmap=uv_name)
-        tangent, sign = _of(twin.loops, "tangent", 3), _of(twin.loops, "bitangent_sign", 1)
+        tangent = shaded_normals.column(twin.loops, "tangent", 3)
+        sign = shaded_normals.column(twin.loops, "bitangent_sign", 1)
     finally:
         bpy.data.meshes.remove(twin)
-    return Corners(uv.astype(np.float64), normal, tangent, sign.ravel())
+    return Corners(uv.astype(np.float64), shaded_normals.unit(normal), tangent, sign.ravel())
 
 
-def _of(
-    data: bpy.types.bpy_prop_collection, key: str, width: int, dtype: type = np.float32
-) -> np.ndarray:
-    values: np.ndarray = np.empty(width * len(data), dtype)
-    data.foreach_get(key, values)
-    return values.reshape(-1, width)
+def _split(vertex: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Splits vertices until each has one normal. MikkTSpace takes the mean of tangents at corners
+    whose normals are equal to the last bit, and Blender rounds the normals of a vertex to the same
+    16 bits only where all its corners have the same one.
+
+    Returns the old vertex of each new one, and the new vertices of the corners.
+    """
+    rows = np.column_stack([vertex.astype(np.int32), (normal + 0.0).view(np.int32)])
+    rows = np.ascontiguousarray(rows).view([("", np.int32)] * rows.shape[1]).ravel()
+    _, first, new = np.unique(rows, return_index=True, return_inverse=True)
+    return vertex[first], new.ravel()

@@ -8,8 +8,8 @@ from .. import ids
 from ..reading import attributes, ragged_rows
 
 # From this version on normals can be stored as vectors; before, they are stored as angles of 16
-# bits.
-_FREE_NORMALS = bpy.app.version >= (4, 5)
+# bits, from the mean normal of the corners of a vertex between sharp edges.
+FREE_NORMALS = bpy.app.version >= (4, 5)
 
 
 def add_on_surface(
@@ -47,7 +47,7 @@ def add_polygons(
 
 def set_corner_normals(mesh: bpy.types.Mesh, normals: np.ndarray) -> None:
     """Sets the custom normals (n, 3) of all corners."""
-    if _FREE_NORMALS:
+    if FREE_NORMALS:
         attributes.write(mesh, ids.CUSTOM_NORMAL, "FLOAT_VECTOR", "CORNER", normals)
         mesh.update()
     else:
