@@ -1,133 +1,178 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/sample/area.h"
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/sample/area_quadrature.h"
+#include "limitsurf/sample/geometric_series.h"
 #include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
 namespace {
 
-/// The six points and weights of Gauss-Legendre quadrature on [0, 1].
-constexpr int kPoints = 6;
-constexpr double kAt[kPoints] = {0.033765242898423975, 0.16939530676686776, 0.38069040695840156,
-                                 0.6193095930415985,   0.8306046932331322,  0.966234757101576};
-constexpr double kWeight[kPoints] = {0.08566224618958525, 0.1803807865240693, 0.23395696728634546,
-                                     0.23395696728634546, 0.1803807865240693, 0.08566224618958525};
-
-/// The quadrature of a square has converged when halving the square changes it by at most this
-/// part.
-constexpr double kConverged = kAreaError / 10;
-constexpr int kMostHalvings = 10;
-/// Patches that are at most 2^-kSmallDepth of a face wide are integrated without halving: their
-/// share of the area is so small that their relative error may be larger by the same factor.
-constexpr int kSmallDepth = 3;
+/// At first each patch is integrated until its error is this part of its area.
+constexpr double kFirstTolerance = kAreaError / 5;
+/// The patches with the largest errors are refined until the sum of all errors is this part of the
+/// area.
+constexpr double kTolerance = kAreaError / 2;
+/// Refinement makes so many squares of all patches together, and at least so many of each patch
+/// that it takes up.
+constexpr int kMostSquares = 1 << 17, kFewSquares = 64;
+/// The parts of a core may have this part of its tolerance each.
+constexpr double kCoreShare = 4;
 /// The number of tiles that one task integrates.
-constexpr std::size_t kTilesPerTask = 8;
+constexpr std::size_t kTilesPerTask = 16;
 
-/// Adaptive quadrature over squares of a patch's parameters: a square is integrated as a whole and
-/// in quarters, and the quarters in the same way until both agree.
-class PatchArea {
+/// How exactly a tile is to be integrated.
+struct Effort {
+  double relative, absolute;  ///< error: part of the area, or in units of area; the larger counts
+  int most_squares;           ///< refinement makes so many squares
+};
+
+/// Integrates tiles. Lengths are in a unit of their own, so that areas neither overflow nor
+/// underflow.
+class TileArea {
  public:
-  explicit PatchArea(const BezierPatch& patch) : patch_(patch) {}
+  TileArea(const SurfacePatches& patches, double scale) : patches_(patches), scale_(scale) {}
 
-  double operator()(double s, double t, double size, int halvings) const {
-    const double whole = quadrature(s, t, size);
-    if (halvings == 0) {
-      return whole;
+  SurfaceArea operator()(int tile, const Effort& effort) {
+    pieces_.clear();
+    patches_.appendPieces(tile, pieces_);
+    SurfaceArea sum;
+    for (const SurfacePiece& piece : pieces_) {
+      if (piece.isCore()) {
+        return ofCore(piece, effort);
+      }
+      const BezierPatch patch = patches_.patch(piece);
+      add(ofPatches(&patch, 1, effort), sum);
     }
-    const double half = size / 2;
-    double sum = 0;
-    for (int q = 0; q < 4; ++q) {
-      sum += quadrature(s + (q & 1) * half, t + (q >> 1) * half, half);
-    }
-    if (std::abs(sum - whole) <= kConverged * sum) {
-      return sum;
-    }
-    double refined = 0;
-    for (int q = 0; q < 4; ++q) {
-      refined += (*this)(s + (q & 1) * half, t + (q >> 1) * half, half, halvings - 1);
-    }
-    return refined;
+    return sum;
   }
 
  private:
-  double quadrature(double s0, double t0, double size) const {
-    double sum = 0;
-    for (int j = 0; j < kPoints; ++j) {
-      for (int i = 0; i < kPoints; ++i) {
-        BezierPatch::Values at;
-        patch_.evaluate<1>(s0 + size * kAt[i], t0 + size * kAt[j], at);
-        const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>();
-        sum += kWeight[i] * kWeight[j] * ds.cross(dt).norm();
-      }
-    }
-    return sum * size * size;
+  static void add(const SurfaceArea& part, SurfaceArea& sum) {
+    sum.value += part.value;
+    sum.error += part.error;
+    sum.evaluations += part.evaluations;
   }
 
-  const BezierPatch& patch_;
+  SurfaceArea ofPatches(const BezierPatch* patches, int count, const Effort& effort) {
+    quadrature_.clear();
+    quadrature_.keepSquares(effort.most_squares > 0);
+    for (int i = 0; i < count; ++i) {
+      quadrature_.add(patches[i], scale_, effort.relative, effort.absolute);
+    }
+    quadrature_.refine(effort.absolute, effort.most_squares);
+    return quadrature_.result();
+  }
+
+  /// A core is a sequence of triples of patches towards the extraordinary vertex. Their areas
+  /// become a sum of geometric sequences, so that the areas of the first steps tell the rest.
+  SurfaceArea ofCore(SurfacePiece core, Effort effort) {
+    SurfacePatches::SplitCore split;
+    SurfaceArea sum;
+    GeometricSeries series;
+    double tolerance = effort.absolute;
+    effort.absolute /= kCoreShare;
+    while (core.steps < SurfacePatches::kMostSteps) {
+      patches_.split(core, split);
+      core = split.core;
+      const SurfaceArea step = ofPatches(split.patches, 3, effort);
+      add(step, sum);
+      series.add(step.value);
+      if (core.steps == 1) {
+        tolerance = std::max(tolerance, effort.relative * step.value);
+        effort.absolute = std::max(effort.absolute, effort.relative * step.value / kCoreShare);
+        effort.relative = 0;
+      }
+      // The shares of later steps in the area fall by a factor of 4 or so.
+      effort.most_squares /= 2;
+      if (series.error() <= tolerance || !(step.value > 0)) {
+        break;
+      }
+    }
+    sum.value = series.limit();
+    sum.error += series.error();
+    return sum;
+  }
+
+  const SurfacePatches& patches_;
+  double scale_;
+  std::vector<SurfacePiece> pieces_;
+  AreaQuadrature quadrature_;
 };
 
-double areaOf(const BezierPatch& patch, int halvings) {
-  return PatchArea(patch)(0, 0, 1, halvings);
-}
-
-/// The depth of a piece: it covers a square or a strip of its face that is 2^-depth wide.
-int depthOf(const FaceRectangle& on) {
-  return -std::ilogb(std::max(std::abs(on.us + on.ut), std::abs(on.vs + on.vt)));
-}
-
-/// The area of a core, patch after patch towards the extraordinary vertex, until what remains,
-/// which shrinks by a factor below 1/2 with each step, is negligible. The deeper a patch lies, the
-/// less its own precision matters.
-double areaOfCore(const SurfacePatches& patches, SurfacePiece core) {
-  constexpr int kAdaptiveSteps = 6;
-  const int tile_depth = depthOf(patches.rectangle(core));
-  SurfacePatches::SplitCore split;
-  double sum = 0;
-  while (core.steps < SurfacePatches::kMostSteps) {
-    patches.split(core, split);
-    core = split.core;
-    const bool adaptive = core.steps + tile_depth <= kAdaptiveSteps;
-    const int halvings = adaptive ? kMostHalvings : tile_depth > 0 ? 0 : 1;
-    double step = 0;
-    for (const BezierPatch& patch : split.patches) {
-      step += areaOf(patch, halvings);
-    }
-    sum += step;
-    // A small tile's share of its face's area may be as much less exact.
-    if (!(step > std::ldexp(kConverged / 100, 2 * tile_depth) * sum)) {
-      break;
-    }
+SurfaceArea sumOf(const std::vector<SurfaceArea>& areas) {
+  SurfaceArea sum;
+  for (const SurfaceArea& area : areas) {
+    sum.value += area.value;
+    sum.error += area.error;
+    sum.evaluations += area.evaluations;
   }
   return sum;
 }
 
+/// The tiles with the largest errors, as few as possible, without which the errors' sum is at most
+/// `error`.
+std::vector<std::size_t> worstTiles(const std::vector<SurfaceArea>& areas, double error) {
+  std::vector<std::size_t> order(areas.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return areas[a].error < areas[b].error; });
+  std::size_t good = 0;
+  for (double sum = 0; good < order.size(); ++good) {
+    sum += areas[order[good]].error;
+    if (!(sum <= error)) {
+      break;
+    }
+  }
+  order.erase(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(good));
+  return order;
+}
+
 }  // namespace
 
-double surfaceArea(const LimitSurface& surface, int threads) {
+SurfaceArea measuredArea(const LimitSurface& surface, int threads) {
   checkThreads(threads);
   const SurfacePatches patches(surface, threads);
-  std::vector<double> areas(static_cast<std::size_t>(patches.tileCount()));
+  const double diagonal = patches.diagonal();
+  const int unit = diagonal > 0 && std::isfinite(diagonal) ? std::ilogb(diagonal) : 0;
+  const double scale = std::ldexp(1., -unit);
+
+  std::vector<SurfaceArea> areas(static_cast<std::size_t>(patches.tileCount()));
   parallelFor(areas.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<SurfacePiece> pieces;
+    TileArea area(patches, scale);
     for (std::size_t tile = begin; tile < end; ++tile) {
-      pieces.clear();
-      patches.appendPieces(static_cast<int>(tile), pieces);
-      for (const SurfacePiece& piece : pieces) {
-        if (piece.isCore()) {
-          areas[tile] += areaOfCore(patches, piece);
-        } else {
-          const bool small = depthOf(patches.rectangle(piece)) >= kSmallDepth;
-          areas[tile] += areaOf(patches.patch(piece), small ? 0 : kMostHalvings);
-        }
-      }
+      areas[tile] = area(static_cast<int>(tile), {kFirstTolerance, 0, 0});
     }
   });
-  return std::accumulate(areas.begin(), areas.end(), 0.);
+  SurfaceArea sum = sumOf(areas);
+  if (sum.error > kTolerance * sum.value) {
+    const std::vector<std::size_t> worst = worstTiles(areas, kTolerance / 2 * sum.value);
+    const int count = static_cast<int>(worst.size());
+    const Effort effort = {0, kTolerance / 2 * sum.value / count,
+                           std::max(kFewSquares, kMostSquares / count)};
+    parallelFor(worst.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+      TileArea area(patches, scale);
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::int64_t before = areas[worst[i]].evaluations;
+        areas[worst[i]] = area(static_cast<int>(worst[i]), effort);
+        areas[worst[i]].evaluations += before;
+      }
+    });
+    sum = sumOf(areas);
+  }
+  sum.value = std::ldexp(sum.value, 2 * unit);
+  sum.error = std::ldexp(sum.error, 2 * unit);
+  return sum;
+}
+
+double surfaceArea(const LimitSurface& surface, int threads) {
+  return measuredArea(surface, threads).value;
 }
 
 }  // namespace limitsurf

@@ -248,6 +248,17 @@ constexpr const char* kVertexLocationsDoc =
 face is -1 and uv NaN for vertices that no face with a limit surface has.
 )";
 
+constexpr const char* kAreaDoc =
+    R"(The area of the limit surface, in squared units of length, without refused faces.
+
+Returns a float. With error=True, returns a tuple (area, error) of two floats: error is an estimate of
+the area's error, in the same unit. It is below 1e-9 of the area, unless du x dv vanishes inside faces,
+as along the folds of a mesh that is folded over in a plane; on such a surface the cost stays bounded and
+the error grows. A surface that is collapsed onto a line or a point has the area 0 up to that error.
+
+Cost: O(faces), whatever the positions are.
+)";
+
 constexpr const char* kScatterJitteredDoc =
     R"(Stratified random locations: one in each of per_side x per_side equal squares of every Ptex face.
 

@@ -80,12 +80,19 @@ auto sampled(const SharedSurface& shared, const py::object& density, int threads
   return sample(sampler, argument.on(shared.surface(), threads), tell);
 }
 
-double area(const SharedSurface& shared, int threads) {
+py::object area(const SharedSurface& shared, bool error, int threads) {
   checkThreads(threads);
-  const py::gil_scoped_release release;
-  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
-  const InterruptionPoint point = interruptible();
-  return surfaceArea(shared.surface(), threads);
+  SurfaceArea area;
+  {
+    const py::gil_scoped_release release;
+    const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+    const InterruptionPoint point = interruptible();
+    area = measuredArea(shared.surface(), threads);
+  }
+  if (error) {
+    return py::make_tuple(area.value, area.error);
+  }
+  return py::float_(area.value);
 }
 
 py::object scatterJittered(const SharedSurface& shared, int per_side, std::uint64_t seed,
@@ -125,10 +132,7 @@ py::object scatterBlueNoise(const SharedSurface& shared, std::optional<std::int6
 
 void bindSampling(py::class_<SharedSurface>& type) {
   using namespace py::literals;
-  type.def("area", &area, py::kw_only(), "threads"_a = 0,
-           "The area of the limit surface, in squared units of length, without refused faces. "
-           "Relative "
-           "error: 1e-9 (1e-7 where du x dv vanishes along a curve).")
+  type.def("area", &area, py::kw_only(), "error"_a = false, "threads"_a = 0, kAreaDoc)
       .def("scatter_jittered", &scatterJittered, "per_side"_a, "seed"_a = 0, py::kw_only(),
            "threads"_a = 0, kScatterJitteredDoc)
       .def("scatter_uniform", &scatterUniform, "count"_a, "seed"_a = 0, "density"_a = py::none(),

@@ -131,6 +131,32 @@ def test_area_scales(cube):
     assert cube.area() == pytest.approx(9 * area, rel=1e-12)
 
 
+def test_area_states_its_error(cube):
+    area, error = cube.area(error=True)
+    assert area == cube.area() == cube.area(error=False)
+    assert 0 < error < 1e-9 * area
+    y, x = np.divmod(np.arange(25), 5)
+    folded = np.stack([x + 0.7 * (y % 2), y + 0.7 * (x % 2), 0 * x], axis=1)
+    faces = [[i, i + 1, i + 6, i + 5] for j in range(4) for i in range(5 * j, 5 * j + 4)]
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(folded, faces))
+    area, error = surface.area(error=True)
+    assert 0 < error < 1e-4 * area
+
+
+@pytest.mark.parametrize("scale", [1e-77, 1e-30, 1e30, 1e78])
+def test_area_at_any_scale(cube, scale):
+    area = cube.area()
+    cube.set_positions(scale * cube.positions)
+    assert cube.area() / scale / scale == pytest.approx(area, rel=1e-12)
+
+
+def test_area_of_a_line_is_zero():
+    line = np.outer([0, 1, 1.37, 0.37], [0.3, 0.7, 0.11])
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(line, [[0, 1, 2, 3]]))
+    area, error = surface.area(error=True)
+    assert area <= error < 1e-13
+
+
 def test_bounds_are_tight(surface):
     low, high = surface.bounds()
     points = surface.tessellate(6).positions
