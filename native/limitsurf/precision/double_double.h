@@ -46,8 +46,8 @@ constexpr Rounded twoProduct(double a, double b) {
 }
 
 /// A number of about 32 digits, as an unevaluated sum of two doubles, of which the first one is the
-/// sum rounded to double. Its digits are the same on every machine with IEEE doubles, unlike those of
-/// C++'s widest type, which has 53, 64 or 113 bits. Expressions must not be contracted to fused
+/// sum rounded to double. Its digits are the same on every machine with IEEE doubles, unlike those
+/// of C++'s widest type, which has 53, 64 or 113 bits. Expressions must not be contracted to fused
 /// multiply-adds (-ffp-contract=off).
 ///
 /// With u = 2^-53 relative errors are at most

@@ -19,9 +19,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// By how much a way may be longer than a distance of guides says, of which kGuideDistanceError is
-/// the distance's own: the triangles of ways are larger. Ways among the long thin triangles of a
-/// pole of valence 100 are not as straight.
-constexpr double kLonger = 0.03, kLongerAtPoles = 1;
+/// the distance's own: the triangles of ways are larger. At poles they are far from the surface.
+constexpr double kLonger = 0.03, kLongerAtPoles = 2;
 
 /// The length of a way on the surface, by chords. Fails where its parts do not follow each other.
 double lengthOf(const LimitSurface& surface, const std::vector<WayPart>& parts) {
