@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the Blender extension dist/limit_surface-VERSION.zip, the native module's wheels inside.
 
-Takes every limitsurf wheel it finds in a folder, so that one zip can serve several versions of
-Python; they must carry their own libraries (`auditwheel repair`). Run it by the Python of an
-environment that has `bpy`, whose extension tool does the packing and the checks; no Blender
-executable is needed.
+Takes every limitsurf wheel it finds in a folder, so that one zip serves several versions of
+Python: Blender 4.2 to 5.0 need a wheel for cp311, later ones need one for cp313. The wheels must
+carry their own libraries (`auditwheel repair`). Wheels for several platforms give one zip for each
+of them.
+
+Run it by the Python of an environment that has `bpy`, whose extension tool does the packing and the
+checks. No Blender executable is needed.
 """
 
 import argparse
@@ -14,8 +17,10 @@ import shutil
 import sys
 import tempfile
 import tomllib
+import zipfile
 from pathlib import Path
 
+import wheel_names
 import wheels
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -23,6 +28,7 @@ ADDON = ROOT / "addon/limit_surface"
 LICENCE = ROOT / "LICENSES/GPL-3.0-or-later.txt"
 MANIFEST = "blender_manifest.toml"
 NO_WHEELS = "wheels = []\n"
+OWN_PLATFORM = 'platforms = ["linux-x64"]\n'
 
 
 def main() -> None:
@@ -31,15 +37,31 @@ def main() -> None:
     if arguments.build_wheel:
         wheels.build(arguments.wheels, arguments.python_headers)
     found = find_wheels(arguments.wheels, version)
+    platforms = platforms_of(found)
     arguments.output.mkdir(parents=True, exist_ok=True)
-    package = arguments.output / f"limit_surface-{version}.zip"
     with tempfile.TemporaryDirectory() as folder:
-        source = Path(folder) / "limit_surface"
-        lay_out(source, found)
-        blender_extension("build", "--source-dir", source, "--output-filepath", package)
-    blender_extension("validate", package)
+        source, packed = Path(folder) / "limit_surface", Path(folder) / "packed"
+        lay_out(source, found, list(platforms))
+        packed.mkdir()
+        if len(platforms) > 1:
+            blender_extension(
+                "build", "--source-dir", source, "--split-platforms", "--output-dir", packed
+            )
+        else:
+            package = packed / f"limit_surface-{version}.zip"
+            blender_extension("build", "--source-dir", source, "--output-filepath", package)
+        for package in sorted(packed.iterdir()):
+            blender_extension("validate", package)
+            report(Path(shutil.move(package, arguments.output / package.name)))
+    for platform, pythons in platforms.items():
+        print(f"{platform}: {', '.join(pythons)}")
+
+
+def report(package: Path) -> None:
+    with zipfile.ZipFile(package) as contents:
+        inside = [Path(name) for name in contents.namelist() if name.endswith(".whl")]
     print(f"{package}: {package.stat().st_size / 2**20:.1f} MiB with")
-    for wheel in found:
+    for wheel in inside:
         print(f"  {wheel.name}")
 
 
@@ -75,10 +97,9 @@ def find_wheels(folder: Path, version: str) -> list[Path]:
     if not found:
         fail(f"no limitsurf wheel in {folder}: make one with --build-wheel")
     for wheel in found:
-        wheel_version, platform = wheel.stem.split("-")[1], wheel.stem.split("-")[-1]
-        if wheel_version != version:
+        if wheel_names.version(wheel) != version:
             fail(f"{wheel} is not version {version}, the extension's: rebuild or delete it")
-        if platform.startswith("linux_"):
+        if any(tag.startswith("linux_") for tag in wheel_names.platform_tags(wheel)):
             fail(
                 f"{wheel} relies on libraries of the system that built it: run `auditwheel repair` "
                 "on it, and keep only what that writes"
@@ -86,8 +107,27 @@ def find_wheels(folder: Path, version: str) -> list[Path]:
     return found
 
 
-def lay_out(source: Path, packed: list[Path]) -> None:
-    """Lays out a copy of the add-on with its licence, and the wheels in it and in its manifest."""
+def platforms_of(found: list[Path]) -> dict[str, list[str]]:
+    """Returns the Pythons of the wheels for each platform, by Blender's names of the platforms."""
+    pythons: dict[str, list[str]] = {}
+    for wheel in found:
+        try:
+            names = wheel_names.blender_platforms(wheel)
+        except ValueError as error:
+            fail(str(error))
+        for name in names:
+            pythons.setdefault(name, []).append(wheel_names.python(wheel))
+    for name, there in pythons.items():
+        doubled = sorted({python for python in there if there.count(python) > 1})
+        if doubled:
+            fail(f"several wheels are for {', '.join(doubled)} on {name}: keep one")
+    return dict(sorted(pythons.items()))
+
+
+def lay_out(source: Path, packed: list[Path], platforms: list[str]) -> None:
+    """Lays out a copy of the add-on with its licence, and with the wheels, which its manifest names
+    with their platforms.
+    """
     shutil.copytree(ADDON, source, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(LICENCE, source / "LICENSE")
     (source / "wheels").mkdir()
@@ -95,10 +135,13 @@ def lay_out(source: Path, packed: list[Path]) -> None:
         shutil.copy(wheel, source / "wheels")
     manifest = source / MANIFEST
     text = manifest.read_text()
-    if NO_WHEELS not in text:
-        fail(f"{ADDON / MANIFEST} has no line `{NO_WHEELS.strip()}` to fill in")
+    for line in (NO_WHEELS, OWN_PLATFORM):
+        if line not in text:
+            fail(f"{ADDON / MANIFEST} has no line `{line.strip()}` to fill in")
     lines = "".join(f'  "./wheels/{wheel.name}",\n' for wheel in packed)
-    manifest.write_text(text.replace(NO_WHEELS, f"wheels = [\n{lines}]\n"))
+    names = ", ".join(f'"{name}"' for name in platforms)
+    text = text.replace(NO_WHEELS, f"wheels = [\n{lines}]\n")
+    manifest.write_text(text.replace(OWN_PLATFORM, f"platforms = [{names}]\n"))
 
 
 def blender_extension(*arguments: str | Path) -> None:

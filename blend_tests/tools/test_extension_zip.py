@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The extension as it is released: it is built, checked, installed into a clean folder and used
-there.
+"""The extension as it is released: it is built with a wheel for each Python of which headers are
+here, checked, installed into a clean folder and used there.
 """
 
 import os
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -23,9 +24,30 @@ def build(*options):
 
 
 @pytest.fixture(scope="module")
-def package(tmp_path_factory) -> Path:
+def other_headers() -> list[Path]:
+    """Finds the headers of the other Python that Blender 4.2 to 5.2 runs on."""
+    other = "python3.11" if sys.version_info >= (3, 13) else "python3.13"
+    pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+    kept = sorted(pyenv.glob(f"versions/*/bin/{other}"))
+    for python in (shutil.which(other), shutil.which(f"/usr/bin/{other}"), *kept):
+        if python is None:
+            continue
+        asked = subprocess.run(
+            [python, "-c", "import sysconfig; print(sysconfig.get_paths()['include'])"],
+            capture_output=True,
+            text=True,
+        )
+        folder = Path(asked.stdout.strip())
+        if asked.returncode == 0 and (folder / "patchlevel.h").exists():
+            return [folder]
+    return []
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory, other_headers) -> Path:
     folder = tmp_path_factory.mktemp("dist")
-    done = build("--build-wheel", "--wheels", folder / "wheels", "--output", folder)
+    options = [word for headers in other_headers for word in ("--python-headers", headers)]
+    done = build("--build-wheel", *options, "--wheels", folder / "wheels", "--output", folder)
     assert done.returncode == 0, done.stdout + done.stderr
     (zip_file,) = folder.glob("limit_surface-*.zip")
     return zip_file
@@ -43,14 +65,15 @@ def packages_without_limitsurf(tmp_path_factory) -> Path:
     return folder
 
 
-def test_contents(package):
+def test_contents(package, other_headers):
     with zipfile.ZipFile(package) as contents:
         names = contents.namelist()
         manifest = contents.read("blender_manifest.toml").decode()
     wheels = [name for name in names if name.endswith(".whl")]
-    assert len(wheels) == 1
-    assert "manylinux" in wheels[0]
-    assert f'"./{wheels[0]}"' in manifest
+    assert len({wheel.split("-")[2] for wheel in wheels}) == len(wheels) == 1 + len(other_headers)
+    for wheel in wheels:
+        assert "manylinux" in wheel
+        assert f'"./{wheel}"' in manifest
     assert "LICENSE" in names
     assert not [name for name in names if "__pycache__" in name]
 
