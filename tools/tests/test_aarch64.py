@@ -18,14 +18,20 @@ CROSS_COMPILER, EMULATOR = "aarch64-linux-gnu-g++", "qemu-aarch64"
 
 
 def compiling(compiler: str, headers: Path, program: Path) -> subprocess.Popen[str]:
-    sources = [
+    sources: list[str | Path] = [
         *sorted((NATIVE / "limitsurf/eigen").glob("*.cpp")),
         *sorted((NATIVE / "limitsurf/precision").glob("*.cpp")),
-        NATIVE / "tests/portable/eigenbasis_digest.cpp",
+        NATIVE / "tests/eigen/eigenbasis_digest.cpp",
     ]
-    includes = [f"-I{NATIVE}", "-isystem", headers, "-isystem", headers / "eigen3"]
+    includes: list[str | Path] = [
+        f"-I{NATIVE}",
+        "-isystem",
+        headers,
+        "-isystem",
+        headers / "eigen3",
+    ]
     # Sdc's functions for semi-sharp vertices stay undefined: no eigenbasis calls them.
-    link = ["-static", "-Wl,--unresolved-symbols=ignore-all", "-o", program]
+    link: list[str | Path] = ["-static", "-Wl,--unresolved-symbols=ignore-all", "-o", program]
     return subprocess.Popen(
         [
             compiler,
