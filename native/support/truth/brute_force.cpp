@@ -8,12 +8,12 @@
 namespace limitsurf::test {
 namespace {
 
-using Long = LongRay::Vector;
+using Wide = WideRay::Vector;
 
 /// The last step of a refinement whose result only has to be recognised.
 constexpr double kFewDigits = 0x1p-26;
 
-Long toLong(const Vector3& v) { return v.cast<long double>(); }
+Wide toWide(const Vector3& v) { return v.cast<DoubleDouble>(); }
 
 /// Newton's step towards the least distance, or Gauss and Newton's; {0, 0} where there is none.
 Eigen::Vector2d newtonStep(const Vector3& offset, const Evaluation& e, bool gauss) {
@@ -40,21 +40,21 @@ bool onSide(const Location& at) {
 
 }  // namespace
 
-LongRay::LongRay(const Vector3& from, const Vector3& to)
-    : origin(toLong(from)), direction(toLong(to)) {
+WideRay::WideRay(const Vector3& from, const Vector3& to)
+    : origin(toWide(from)), direction(toWide(to)) {
   direction /= direction.cwiseAbs().maxCoeff();
   direction.normalize();
 }
 
-std::pair<long double, long double> LongRay::alongAndAside(const Vector3& point) const {
-  const Long offset = toLong(point) - origin;
-  const long double along = offset.dot(direction);
+std::pair<DoubleDouble, DoubleDouble> WideRay::alongAndAside(const Vector3& point) const {
+  const Wide offset = toWide(point) - origin;
+  const DoubleDouble along = offset.dot(direction);
   return {along, (offset - along * direction).norm()};
 }
 
-long double distanceBetween(const Vector3& a, const Vector3& b) {
-  const Long offset = toLong(a) - toLong(b);
-  const long double scale = offset.cwiseAbs().maxCoeff();
+DoubleDouble distanceBetween(const Vector3& a, const Vector3& b) {
+  const Wide offset = toWide(a) - toWide(b);
+  const DoubleDouble scale = offset.cwiseAbs().maxCoeff();
   return scale > 0 ? scale * (offset / scale).norm() : 0;
 }
 
@@ -106,7 +106,7 @@ BruteForce::Foot BruteForce::nearest(const Vector3& point, int most_starts,
   std::sort(starts.begin(), starts.end(),
             [](const Start& a, const Start& b) { return a.distance < b.distance; });
   if (starts.size() > static_cast<std::size_t>(most_starts)) starts.resize(most_starts);
-  Foot best{std::numeric_limits<long double>::infinity(), {}};
+  Foot best{std::numeric_limits<double>::infinity(), {}};
   for (const Start& start : starts) {
     Foot foot{start.distance, start.at};
     if (accepts) {
@@ -148,7 +148,7 @@ BruteForce::Foot BruteForce::refined(const Vector3& point, Location at, double s
     const Points positions = surface_.evaluate(next, Derivatives::none, false, 1).position;
     bool lower = false;
     for (std::size_t i = 0; i < next.size(); ++i) {
-      const long double distance =
+      const DoubleDouble distance =
           distanceBetween(positions.row(static_cast<Eigen::Index>(i)), point);
       if (distance < best.distance) {
         best = {distance, next[i]};
@@ -160,12 +160,12 @@ BruteForce::Foot BruteForce::refined(const Vector3& point, Location at, double s
   return best;
 }
 
-std::vector<BruteForce::Root> BruteForce::roots(const LongRay& ray) const {
+std::vector<BruteForce::Root> BruteForce::roots(const WideRay& ray) const {
   const Vector3 direction = ray.direction.cast<double>();
   int least;
   direction.cwiseAbs().minCoeff(&least);
-  const Long across0 = ray.direction.cross(Long::Unit(least)).normalized();
-  const Long across1 = ray.direction.cross(across0);
+  const Wide across0 = ray.direction.cross(Wide::Unit(least)).normalized();
+  const Wide across1 = ray.direction.cross(across0);
   Eigen::Matrix<double, 3, 2> across;
   across << across0.cast<double>(), across1.cast<double>();
   const Eigen::Matrix<double, Eigen::Dynamic, 2> seen =
@@ -185,13 +185,13 @@ std::vector<BruteForce::Root> BruteForce::roots(const LongRay& ray) const {
         if (low.maxCoeff() > margin || high.minCoeff() < -margin) continue;
         Location at{faces_[f], (i + 0.5) / per_side_, (j + 0.5) / per_side_};
         Evaluation e;
-        std::pair<long double, long double> place;
+        std::pair<DoubleDouble, DoubleDouble> place;
         bool arrived = false;
         for (int round = 0; round < 30 && !arrived; ++round) {
           e = surface_.evaluate({&at, 1}, Derivatives::first, false, 1);
           const Vector3 position = e.position.row(0);
           place = ray.alongAndAside(position);
-          const Long offset = toLong(position) - ray.origin;
+          const Wide offset = toWide(position) - ray.origin;
           const Eigen::Vector2d f_here(static_cast<double>(offset.dot(across0)),
                                        static_cast<double>(offset.dot(across1)));
           Eigen::Matrix2d jacobian;

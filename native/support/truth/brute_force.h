@@ -2,27 +2,38 @@
 #pragma once
 
 #include <functional>
+#include <ostream>
 #include <utility>
 #include <vector>
 
+#include "limitsurf/precision/double_double_eigen.h"
 #include "support/cages/cage.h"
+
+namespace limitsurf {
+
+/// What GoogleTest prints.
+inline void PrintTo(const DoubleDouble& number, std::ostream* out) {
+  *out << number.high() << " + " << number.low();
+}
+
+}  // namespace limitsurf
 
 namespace limitsurf::test {
 
-/// A ray in long double; the direction is a unit vector.
-struct LongRay {
-  using Vector = Eigen::Matrix<long double, 3, 1>;
-  LongRay(const Vector3& from, const Vector3& to);
+/// A ray in double-doubles; the direction is a unit vector.
+struct WideRay {
+  using Vector = Eigen::Matrix<DoubleDouble, 3, 1>;
+  WideRay(const Vector3& from, const Vector3& to);
 
   /// The distance along the ray to its point nearest to `point`, and the distance of `point` from
   /// that.
-  std::pair<long double, long double> alongAndAside(const Vector3& point) const;
+  std::pair<DoubleDouble, DoubleDouble> alongAndAside(const Vector3& point) const;
 
   Vector origin, direction;
 };
 
 /// Nearest points and hits of rays by dense samples of LimitSurface::evaluate() and refinement of
-/// the best of them, with distances in long double. Everything that it finds exists, but it may
+/// the best of them, with distances in double-doubles. Everything that it finds exists, but it may
 /// miss some.
 class BruteForce {
  public:
@@ -30,7 +41,7 @@ class BruteForce {
   BruteForce(const LimitSurface& surface, int per_side);
 
   struct Foot {
-    long double distance;
+    DoubleDouble distance;
     Location at;
   };
   Foot closest(const Vector3& point) const { return nearest(point, 8, {}); }
@@ -42,12 +53,12 @@ class BruteForce {
   struct Root {
     Location at;
     Vector3 position;
-    long double distance;  ///< along the ray
-    double sine;           ///< of the angle between ray and surface
+    DoubleDouble distance;  ///< along the ray
+    double sine;            ///< of the angle between ray and surface
   };
   /// Places where the line of the ray crosses the surface, behind its origin too, sorted; each
   /// once, also where faces meet. Those at which it only touches are left out.
-  std::vector<Root> roots(const LongRay& ray) const;
+  std::vector<Root> roots(const WideRay& ray) const;
 
   const LimitSurface& surface() const { return surface_; }
   /// The diagonal of the control mesh's bounding box.
@@ -68,7 +79,7 @@ class BruteForce {
   Points samples_;
 };
 
-/// Distance in long double.
-long double distanceBetween(const Vector3& a, const Vector3& b);
+/// Distance in double-doubles.
+DoubleDouble distanceBetween(const Vector3& a, const Vector3& b);
 
 }  // namespace limitsurf::test

@@ -182,7 +182,7 @@ TEST(Closest, IsNearerThanOpenSubdivsPoints) {
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
       Eigen::Index nearest;
       (far.position.rowwise() - points.row(i)).rowwise().squaredNorm().minCoeff(&nearest);
-      const long double distance = distanceBetween(far.position.row(nearest), points.row(i));
+      const DoubleDouble distance = distanceBetween(far.position.row(nearest), points.row(i));
       EXPECT_LE(hits.distance[i], distance + kSearchError * diagonal)
           << name << ", " << textOf(points.row(i));
       EXPECT_GE(hits.distance[i], distance - 0.05 * diagonal)
@@ -226,7 +226,7 @@ TEST(Closest, IsOnTheSurfaceOfSubdivisionIn50Digits) {
       const Vector3 point = points.row(i);
       const std::string where = name + ", " + textOf(point);
       const Location& found = hits.at[static_cast<std::size_t>(i)];
-      const long double distance = distanceBetween(position(found), point);
+      const DoubleDouble distance = distanceBetween(position(found), point);
       EXPECT_LE(std::abs(static_cast<double>(distance - hits.distance[i])), allowed) << where;
       for (const double step : {1e-2, 1e-4, 1e-6}) {
         for (int turn = 0; turn < 4; ++turn) {
@@ -352,7 +352,8 @@ int compareFacing(int per_side, int step, std::size_t cage_step) {
         continue;
       }
       elsewhere += hits.distance[i] > all.distance[i] + 1e-9 * truth.diagonal();
-      EXPECT_LE(hits.distance[i], foot.distance + kSearchError * truth.diagonal())
+      EXPECT_LE(hits.distance[i],
+                static_cast<double>(foot.distance) + kSearchError * truth.diagonal())
           << where << ": " << describe(found) << " but " << describe(foot.at);
       if (hits.normal.row(i).allFinite()) {
         EXPECT_LE(angle(hits.normal.row(i), facing), options.max_angle + 1e-9)

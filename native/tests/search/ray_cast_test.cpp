@@ -63,7 +63,7 @@ Vector3 middleOf(const LimitSurface& surface) {
 double diagonalOf(const LimitSurface& surface) { return diagonal(surface.positions()); }
 
 /// Expects that a hit is a point of the surface and of the ray, at the distance that it states.
-void expectOnTheRay(const std::string& where, const LimitSurface& surface, const LongRay& ray,
+void expectOnTheRay(const std::string& where, const LimitSurface& surface, const WideRay& ray,
                     const Hits& hits, Eigen::Index row) {
   const Location& at = hits.at[static_cast<std::size_t>(row)];
   const Evaluation e = surface.evaluate({&at, 1}, Derivatives::first, true, 1);
@@ -93,7 +93,7 @@ void expectFirstOfAll(const std::string& name, const LimitSurface& surface, cons
   ASSERT_EQ(all.offsets.back(), static_cast<std::int64_t>(all.at.size()));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::string where = name + ", " + textOf(rays.origins[i], rays.directions[i]);
-    const LongRay ray(rays.origins[i], rays.directions[i]);
+    const WideRay ray(rays.origins[i], rays.directions[i]);
     const std::int64_t begin = all.offsets[i], end = all.offsets[i + 1];
     for (std::int64_t row = begin; row < end; ++row) {
       expectOnTheRay(where, surface, ray, all, row);
@@ -171,7 +171,7 @@ void compareWithBruteForce(const NamedCages& cages, int count, int per_side) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const std::string where = name + ", " + textOf(rays.origins[i], rays.directions[i]);
       for (const BruteForce::Root& root :
-           truth.roots(LongRay(rays.origins[i], rays.directions[i]))) {
+           truth.roots(WideRay(rays.origins[i], rays.directions[i]))) {
         const double distance = static_cast<double>(root.distance);
         if (distance < 1e-9 * unit) continue;
         EXPECT_TRUE(anyAt(all, i, distance, 2 * kSearchError * unit / std::max(root.sine, 1e-5)))

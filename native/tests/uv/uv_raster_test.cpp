@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <cstdio>
 
+#include "limitsurf/precision/complex.h"
 #include "support/throws.h"
 #include "support/truth/uv_images.h"
 
@@ -214,7 +214,7 @@ TEST(UvRaster, FindsBothSheetsOfFoldedQuads) {
     const RasterOptions options = image(kSide, kSide);
     const Texels texels = UvMap(named.map).rasterize(options);
     const std::vector<int> rows = rowsOf(texels, options);
-    using Complex = std::complex<long double>;  // as points of the plane
+    // Complex numbers as points of the plane.
     const auto point = [&](int i) { return Complex(quad[i][0], quad[i][1]); };
     const Complex a = point(0), b = point(1) - a, c = point(3) - a, d = point(2) - a - b - c;
     const auto area = [](const Complex& x, const Complex& y) {
@@ -226,20 +226,20 @@ TEST(UvRaster, FindsBothSheetsOfFoldedQuads) {
         const Eigen::RowVector2d at = centre(options, x, y);
         const Complex p = Complex(at[0], at[1]) - a;
         // (p - t c) x (b + t d) = 0, a quadratic in t.
-        const long double c0 = area(p, b), c1 = area(p, d) - area(c, b), c2 = -area(c, d);
-        const long double root = std::sqrt(std::max(0.L, c1 * c1 - 4 * c2 * c0));
-        const bool is_real = c1 * c1 - 4 * c2 * c0 >= 0;
+        const DoubleDouble c0 = area(p, b), c1 = area(p, d) - area(c, b), c2 = -area(c, d);
+        const DoubleDouble discriminant = c1 * c1 - 4 * c2 * c0;
+        const bool is_real = discriminant >= 0;
+        const DoubleDouble root = is_real ? sqrt(discriminant) : 0;
         int count = 0;
-        bool is_close = std::abs(c1 * c1 - 4 * c2 * c0) < 1e-12L;
-        for (const long double sign : {-1.L, 1.L}) {
+        bool is_close = abs(discriminant) < 1e-12;
+        for (const bool first : {true, false}) {
           // The form without cancellation.
-          const long double q = -(c1 + (c1 < 0 ? -root : root)) / 2;
-          const long double t = sign < 0 ? q / c2 : c0 / q;
-          const Complex along = b + t * d;
-          const long double s = ((p - t * c) * std::conj(along)).real() / std::norm(along);
-          const auto inside = [](long double v) { return v >= 0 && v <= 1; };
-          for (const long double v : {s, t}) {
-            is_close |= std::abs(v) < 1e-9L || std::abs(v - 1) < 1e-9L;
+          const DoubleDouble q = -(c1 + (c1 < 0 ? -root : root)) / 2;
+          const DoubleDouble t = first ? q / c2 : c0 / q;
+          const DoubleDouble s = ((p - t * c) / (b + t * d)).real();
+          const auto inside = [](const DoubleDouble& v) { return v >= 0 && v <= 1; };
+          for (const DoubleDouble& v : {s, t}) {
+            is_close |= abs(v) < 1e-9 || abs(v - 1) < 1e-9;
           }
           count += is_real && inside(s) && inside(t);
         }
