@@ -35,8 +35,14 @@ def roots_in_world(ob, thing, frame):
     return scenes.transformed(np.array(ob.matrix_world, np.float64), on_surface)
 
 
-@pytest.mark.parametrize("form", SUFFIXES)
-@pytest.mark.parametrize("scene", scenes.SCENES)
+#: Each scene in one form and one scene in each form, and the rest among the slow tests
+ALL = [(scene, form) for scene in scenes.SCENES for form in SUFFIXES]
+FAST = [case for case in ALL if case[0] == "mixed polygons" or case[1] == "npz"]
+
+
+@pytest.mark.parametrize(
+    ("scene", "form"), [*FAST, *scenes.slow(*(case for case in ALL if case not in FAST))]
+)
 def test_roots_are_on_the_limit_surface_in_each_frame(tmp_path, scene, form):
     ob = deforming(scene)
     hair = scenes.add_hair(ob, per_side=2, points=3, follow="NODES")

@@ -69,6 +69,7 @@ def test_page_tells_the_custom_property():
         assert told[name] == getattr(limitsurf.PtexLayout(4, 16), name)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     bpy.app.version >= (5, 0), reason="suns are brighter there than in the committed picture"
 )

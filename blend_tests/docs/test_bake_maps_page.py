@@ -44,6 +44,7 @@ def test_table_lists_the_maps():
     assert listed == {key: kind.name for key, kind in KINDS.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     bpy.app.version >= (5, 0), reason="suns are brighter there than in the committed picture"
 )

@@ -3,6 +3,7 @@
 
 import bpy
 import pages
+import pytest
 import scenes
 from figures import children, comparison
 from processes import ROOT
@@ -28,6 +29,7 @@ def test_table_lists_the_properties_and_their_defaults():
     pages.check_properties(table, "limit_children_add", only=own)
 
 
+@pytest.mark.slow
 def test_picture_is_what_the_operator_makes(tmp_path):
     children.make(tmp_path, samples=4)
     mean, worst = comparison.of_renders(

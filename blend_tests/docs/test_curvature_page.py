@@ -43,6 +43,7 @@ def test_page_lists_the_attributes():
     assert rows == stored - {ids.CURVATURE_OBJECT}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     bpy.app.version >= (5, 0), reason="suns are brighter there than in the committed picture"
 )

@@ -55,6 +55,7 @@ def test_every_choice_is_named():
 @pytest.mark.skipif(
     bpy.app.version >= (5, 0), reason="suns are brighter there than in the committed pictures"
 )
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["steering", "hair_nodes"])
 def test_pictures_of_strands_are_what_the_operator_gives(name, tmp_path):
     getattr(steering, f"make_{name}")(tmp_path, samples=4)

@@ -5,6 +5,7 @@ picture shows what the operator makes.
 
 import bpy
 import pages
+import pytest
 import scenes
 from figures import comparison, limit_mesh
 from processes import ROOT
@@ -31,6 +32,7 @@ def test_table_lists_the_properties_and_their_defaults():
     pages.check_properties(PAGE.split("## Levels")[0], "limit_mesh")
 
 
+@pytest.mark.slow
 def test_picture_is_what_the_operator_makes(tmp_path):
     limit_mesh.make(tmp_path, samples=4)
     mean, worst = comparison.of_renders(

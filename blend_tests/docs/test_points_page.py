@@ -3,6 +3,7 @@
 
 import bpy
 import pages
+import pytest
 import scenes
 from figures import comparison, points
 from limit_surface.placing.follow_properties import FollowOrLiveProperties
@@ -30,6 +31,7 @@ def test_table_lists_the_properties_and_their_defaults():
     pages.check_properties(table, "limit_points_add", only=own)
 
 
+@pytest.mark.slow
 def test_picture_is_what_the_operator_makes(tmp_path):
     points.make(tmp_path, samples=4)
     mean, worst = comparison.of_renders(tmp_path / "points.png", ROOT / "docs/images/points.png")

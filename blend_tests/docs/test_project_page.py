@@ -6,6 +6,7 @@ picture shows what the operator makes.
 import bpy
 import pages
 import projection_truth as truth
+import pytest
 import scenes
 from figures import comparison, project_image
 from processes import ROOT
@@ -28,6 +29,7 @@ def test_table_lists_the_properties_and_their_defaults():
     pages.check_properties(PAGE, "limit_project_image", empty="")
 
 
+@pytest.mark.slow
 def test_picture_is_what_the_operator_gives(tmp_path):
     project_image.make(tmp_path, samples=2)
     committed = ROOT / "docs/images/project_image.png"

@@ -48,7 +48,7 @@ def serve() -> None:
         while not rounds and connection.poll():
             name, arguments, keywords = connection.recv()
             if name == "settle":
-                rounds = ROUNDS
+                rounds = arguments[0] if arguments else ROUNDS
             else:
                 connection.send(outcome(name, arguments, keywords))
         return POLL

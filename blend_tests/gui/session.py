@@ -33,6 +33,7 @@ POLL = 0.05  # seconds between two checks of what is waited for
 ROW = 20  # the height of a button in pixels
 TAB_STRIP = 22  # the width in pixels of the strip of tabs at the sidebar's right edge
 MOST_ENTRIES = 30  # the largest number of entries in a menu
+MOVED = 2  # rounds of the main loop in which a move of the mouse during a stroke is handled
 CONFIRMATION = (71, 114, 179)  # the color of a dialog's OK button
 XWD_COLOR = 12  # bytes of each entry in the table of colors of X11's format XWD
 ADDON = "bl_ext.user_default.limit_surface"
@@ -239,7 +240,8 @@ class BlenderSession:
             self._xdotool("keydown", held)
         self.hold()
         for place in places[1:]:
-            self.move(*place)
+            self._xdotool("mousemove", *on_screen(*place))
+            self.call("settle", MOVED)
         self.release()
         if held:
             self._xdotool("keyup", held)

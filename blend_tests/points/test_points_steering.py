@@ -141,6 +141,7 @@ def test_where_there_is_no_flow_the_axes_are_those_of_the_surface():
     np.testing.assert_allclose(shown, without, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_flow_by_curves_and_on_a_curved_surface():
     ob = scenes.monkey()
     add_subsurf(ob)

@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 import pytest
+import scenes
 from figures.parity import zoo as parity_zoo
 from figures.parity.distances import Comparison
 from limit_surface import ids
@@ -12,6 +13,8 @@ from limit_surface.reading import attributes, rules, uv_map
 BEST = 10
 BOUND = 1e-6  # as a share of the diagonal, or on the UV map; Blender computes in single precision
 LEVELS = 3
+#: The monkey, the largest mesh, is among the slow tests where many settings are tried.
+FAST = [*(name for name in parity_zoo.MESHES if name != "monkey"), *scenes.slow("monkey")]
 CREASED = [kind for kind in parity_zoo.CREASES if kind != "none"]
 
 
@@ -37,7 +40,7 @@ def test_smooth_meshes(name, boundary):
 
 @pytest.mark.parametrize("boundary", rules.BOUNDARIES)
 @pytest.mark.parametrize("kind", CREASED)
-@pytest.mark.parametrize("name", parity_zoo.MESHES)
+@pytest.mark.parametrize("name", FAST)
 def test_creases(name, kind, boundary):
     found = Comparison(subdivided(name, kind, boundary), LEVELS)
     lagging, _ = found.lagging()
@@ -111,7 +114,7 @@ def test_uvs_of_simple_subdivision(name, uv_smooth):
 
 @pytest.mark.parametrize("kind", ["none", "edges and vertices", "sharp edges"])
 @pytest.mark.parametrize("uv_smooth", rules.UV_INTERPOLATIONS)
-@pytest.mark.parametrize("name", parity_zoo.MESHES)
+@pytest.mark.parametrize("name", FAST)
 def test_uvs(name, uv_smooth, kind):
     found = Comparison(subdivided(name, kind, uv_smooth=uv_smooth), LEVELS)
     _, lagging = found.lagging()

@@ -98,7 +98,7 @@ def stretched(ob):
     return ob
 
 
-@pytest.mark.parametrize("level", [1, 2])
+@pytest.mark.parametrize("level", [1, *scenes.slow(2)])
 @pytest.mark.parametrize("name", ["cross", "sheet", "polygons", "prism", "fans"])
 def test_distances_are_those_of_a_crowd_of_points(name, level):
     ob = stretched(parity_zoo.add(name))

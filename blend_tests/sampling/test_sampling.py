@@ -104,7 +104,7 @@ def check(ob: bpy.types.Object, made: bpy.types.Object, face: np.ndarray, uv: np
         assert seen(made, "Fits").all()
 
 
-@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("mirrored", [False, *scenes.slow(True)])
 @pytest.mark.parametrize("scene", scenes.SCENES)
 def test_samples_are_those_of_limitsurf(scene, mirrored):
     ob = deforming(scene, mirrored)

@@ -6,12 +6,21 @@ from collections.abc import Callable, Sequence
 import bpy
 import limitsurf
 import numpy as np
+import pytest
 from figures.meshes import grids, obj
 from figures.parity import zoo
 from limit_surface import ids
 from limit_surface.reading import attributes
 
 BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
+
+
+def slow(*cases: object) -> list[object]:
+    """Returns the cases of a parametrized test that run only with --slow; tuples are several
+    parameters.
+    """
+    parameters = [case if isinstance(case, tuple) else (case,) for case in cases]
+    return [pytest.param(*each, marks=pytest.mark.slow) for each in parameters]
 
 
 def add_mesh(

@@ -26,6 +26,7 @@ def fine_tree(surface):
     )
 
 
+@pytest.mark.slow
 def test_rays_are_steeper_than_the_surface(sheet):
     _, _, surface = sheet
     rng = np.random.default_rng(1)
@@ -40,6 +41,7 @@ def test_rays_are_steeper_than_the_surface(sheet):
         np.testing.assert_allclose(tree.ray_cast(origin, direction)[0], hit, atol=1e-3)
 
 
+@pytest.mark.slow
 def test_brute_force_finds_the_nearest_points(sheet):
     ob, found, surface = sheet
     points = truth.points_nearby(surface, 100)

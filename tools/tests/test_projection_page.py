@@ -7,6 +7,7 @@ from pathlib import Path
 import limitsurf as ls
 import matplotlib.image
 import numpy as np
+import pytest
 from figures import comparison
 from figures import projection as program
 
@@ -14,6 +15,7 @@ ROOT = Path(__file__).parents[2]
 BLOCK = 20  # pixels along each side
 
 
+@pytest.mark.slow
 def test_picture_is_up_to_date():
     shown = matplotlib.image.imread(ROOT / "docs/images/projection.png")[..., :3]
     mean, worst = comparison.of_plots(program.picture(), shown, BLOCK)
