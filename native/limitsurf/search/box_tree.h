@@ -35,6 +35,8 @@ class BoxTree {
 
   bool empty() const { return nodes_.empty(); }
   const Node& node(std::int32_t i) const { return nodes_[i]; }
+  /// Children have higher numbers than their parents.
+  std::int32_t nodeCount() const { return static_cast<std::int32_t>(nodes_.size()); }
   static bool isLeaf(std::int32_t child) { return child < 0; }
   static std::int32_t leaf(std::int32_t child) { return ~child; }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -9,6 +12,7 @@
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/closest_on_patch.h"
 #include "limitsurf/search/hit_evaluation.h"
+#include "limitsurf/search/normal_cones.h"
 #include "limitsurf/search/search_tree.h"
 
 namespace limitsurf {
@@ -44,16 +48,38 @@ double squaredDistance(const Box& box, const Vector3& point) {
   return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.).squaredNorm();
 }
 
+/// A direction in a unit of its own, a power of two, so that its square can be formed.
+Vector3 inUnit(const Vector3& direction) {
+  const double largest = direction.cwiseAbs().maxCoeff();
+  return {std::scalbn(direction[0], -std::ilogb(largest)),
+          std::scalbn(direction[1], -std::ilogb(largest)),
+          std::scalbn(direction[2], -std::ilogb(largest))};
+}
+
 /// Angles from here on count as pi, and then no cosine is too small.
 constexpr double kNearlyPi = kPi<double> - 1e-13, kAnyCosine = -2;
 
 /// Searches for one point after the other.
 class ClosestSearch {
  public:
-  explicit ClosestSearch(const SearchTree& data) : data_(data), cache_(data) {}
+  /// With `cones`, subtrees are left out whose normals do not meet the condition. Results are the
+  /// same to the last bit.
+  explicit ClosestSearch(const SearchTree& data, const NormalCones* cones = nullptr)
+      : data_(data), cones_(cones), cache_(data) {}
+
+  /// The number of leaves visited so far.
+  std::int64_t leaves() const { return leaves_; }
+  /// Whether the last search has met so many leaves in vain that it is to be made again with cones.
+  bool gaveUp() const { return gave_up_; }
 
   /// The location of the closest point, with face -1 if none is within `max_distance`.
   Location find(const Vector3& point, double max_distance, const Facing* facing) {
+    gave_up_ = false;
+    last_leaf_ = facing && !cones_ ? leaves_ + kPatience : kForever;
+    if (facing && cones_) {
+      unit_ = facing->direction.normalized();
+      reach_ = facing->least_cosine < -1 ? kPi<double> : std::acos(facing->least_cosine);
+    }
     point_ = point;
     facing_ = facing;
     best_ = {};
@@ -68,6 +94,9 @@ class ClosestSearch {
 
  private:
   static constexpr double kDistanceRounding = 1e-15;
+  /// A search with a condition on normals ends after this many leaves if it has no cones.
+  static constexpr std::int64_t kPatience = 64;
+  static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
   /// ClosestSoFar::enough() in the coordinates of boxes.
   double enoughInBoxes() const { return best_.enough() * (data_.scale * data_.scale); }
@@ -86,8 +115,15 @@ class ClosestSearch {
       if (next.squared < enoughInBoxes()) {
         if (!BoxTree::isLeaf(next.node)) {
           const BoxTree::Node& node = data_.tree->node(next.node);
-          const float near[2] = {box_point.squaredDistance(node.boxes[0]),
-                                 box_point.squaredDistance(node.boxes[1])};
+          float near[2] = {box_point.squaredDistance(node.boxes[0]),
+                           box_point.squaredDistance(node.boxes[1])};
+          if (facing_ && cones_) {
+            for (int child = 0; child < 2; ++child) {
+              if (cones_->ofChild(next.node, child).isBeyond(unit_, reach_)) {
+                near[child] = std::numeric_limits<float>::infinity();
+              }
+            }
+          }
           const int first = near[1] < near[0] ? 1 : 0;
           stack[height++] = {node.children[1 - first], near[1 - first]};
           next = {node.children[first], near[first]};
@@ -95,6 +131,11 @@ class ClosestSearch {
         }
         const std::int32_t leaf = BoxTree::leaf(next.node);
         if (data_.leaves[leaf].box.squaredDistance(point) < enoughInBoxes()) {
+          if (leaves_ == last_leaf_) {
+            gave_up_ = true;
+            return;
+          }
+          ++leaves_;
           visitLeaf(leaf);
         }
       }
@@ -147,7 +188,12 @@ class ClosestSearch {
   }
 
   const SearchTree& data_;
+  const NormalCones* cones_;
   PatchCache cache_;
+  std::int64_t leaves_ = 0, last_leaf_ = kForever;
+  bool gave_up_ = false;
+  Vector3 unit_;      // the direction in which the surface must face
+  double reach_ = 0;  // the largest angle between them
   Vector3 point_;
   const Facing* facing_ = nullptr;
   ClosestSoFar best_;
@@ -170,18 +216,43 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
   const double least_cosine =
       options.max_angle >= kNearlyPi ? kAnyCosine : std::cos(options.max_angle);
   std::vector<Location> at(static_cast<std::size_t>(points.rows()));
-  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    ClosestSearch search(*data_);
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      std::optional<Facing> filter;
-      if (facing) {
-        filter.emplace(Facing{data_->surface, options.facing.row(row).transpose(), least_cosine});
+  // A search that finds nothing that faces the right way would look at the whole surface. It is
+  // made again, with the help of cones.
+  std::vector<std::size_t> open(at.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  std::atomic<std::int64_t> leaves{0};
+  const auto searchOpen = [&](const NormalCones* cones) {
+    std::vector<char> gave_up(open.size(), 0);
+    parallelFor(open.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+      ClosestSearch search(*data_, cones);
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto row = static_cast<Eigen::Index>(open[i]);
+        std::optional<Facing> filter;
+        if (facing) {
+          filter.emplace(
+              Facing{data_->surface, inUnit(options.facing.row(row).transpose()), least_cosine});
+        }
+        at[open[i]] = search.find(points.row(row).transpose(), options.max_distance,
+                                  filter ? &*filter : nullptr);
+        gave_up[i] = search.gaveUp();
       }
-      at[i] = search.find(points.row(row).transpose(), options.max_distance,
-                          filter ? &*filter : nullptr);
+      leaves += search.leaves();
+    });
+    std::vector<std::size_t> still_open;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      if (gave_up[i]) {
+        still_open.push_back(open[i]);
+      }
     }
-  });
+    open.swap(still_open);
+  };
+  searchOpen(nullptr);
+  if (!open.empty()) {
+    searchOpen(&data_->normalCones(threads));
+  }
+  if (options.leaves) {
+    *options.leaves = leaves;
+  }
   Hits hits = hitsAt(data_->surface, std::move(at), threads);
   hits.distance.resize(points.rows());
   for (Eigen::Index row = 0; row < points.rows(); ++row) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "limitsurf/search/box_tree.h"
@@ -18,11 +19,14 @@ struct SearchLeaf {
   SurfacePiece piece;
 };
 
+class NormalCones;
+
 /// The patches of a surface under a tree of boxes. Boxes have coordinates of their own, whose
 /// squares single precision can hold: relative to `middle` and times `scale`, so that the diagonal
 /// of the control mesh is about 1.
 struct SearchTree {
   SearchTree(const LimitSurface& limit_surface, int threads);
+  ~SearchTree();
 
   const LimitSurface& surface;
   SurfacePatches patches;
@@ -39,9 +43,15 @@ struct SearchTree {
   /// The patches of the leaves, or none if they would need more than kPatchBytes together; those of
   /// cores are not set.
   std::vector<BezierPatch> kept;
+  /// Cones around normals, made when they are first asked for. Must not be called from within a
+  /// parallel loop.
+  const NormalCones& normalCones(int threads) const;
 
  private:
   static constexpr std::size_t kPatchBytes = std::size_t{64} << 20;
+
+  mutable std::once_flag cones_made_;
+  mutable std::unique_ptr<const NormalCones> cones_;
 
   /// Appends the pieces of a tile and boxes around them. Cores are split so far that their boxes
   /// fit closely.

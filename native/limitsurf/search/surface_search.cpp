@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/search/normal_cones.h"
 #include "limitsurf/search/search_tree.h"
 
 namespace limitsurf {
@@ -83,6 +84,14 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
       }
     });
   }
+}
+
+SearchTree::~SearchTree() = default;
+
+const NormalCones& SearchTree::normalCones(int threads) const {
+  std::call_once(cones_made_,
+                 [&] { cones_ = std::make_unique<const NormalCones>(*this, threads); });
+  return *cones_;
 }
 
 void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -37,6 +38,9 @@ struct ClosestOptions {
   /// boundaries and infinitely sharp edges end a sheet.
   Points facing;
   double max_angle = 1.5707963267948966;  ///< radians, 0 to pi
+  /// Unless null, receives the number of patches and cores that all searches together looked into:
+  /// what the cost is proportional to.
+  std::int64_t* leaves = nullptr;
 };
 
 struct SearchTree;
@@ -62,6 +66,9 @@ class SurfaceSearch {
   /// The method is branch and bound over the control hulls of bicubic patches and, around
   /// extraordinary vertices, of the remaining control net. A patch is done when the distance on it
   /// is convex and Newton's iteration has found its minimum, or when no point of it can be closer.
+  ///
+  /// With directions, subtrees are left out by the cones around their normals, as soon as a search
+  /// has looked into many patches in vain. The first such search makes the cones.
   ///
   /// Error: kSearchError. Of several points that are equally close, any one is returned. Throws
   /// std::invalid_argument naming the first row that is not finite, and for a max_distance or an

@@ -396,6 +396,92 @@ TEST(Closest, FacingTakesTheSideOfASheetThatIsAskedFor) {
   EXPECT_NEAR(search.closest(point, options).distance[0], 0.1, 1e-12);
 }
 
+/// Where nothing faces the right way, cones around normals tell so without a look at every patch.
+TEST(Closest, FacingCostsLittleWhereNothingFaces) {
+  const Cage quads = fullGrid(60, 60);
+  Cage bumpy = quads, triangles = fullGrid(12, 12);
+  for (int vertex = 0; vertex < bumpy.vertexCount(); ++vertex) {
+    bumpy.positions(vertex, 2) = 2 * std::sin(bumpy.positions(vertex, 0) / 5);
+  }
+  std::vector<std::vector<int>> halves;
+  for (const std::vector<int>& f : triangles.faces) {
+    halves.push_back({f[0], f[1], f[2]});
+    halves.push_back({f[0], f[2], f[3]});
+  }
+  triangles.faces = halves;
+  for (const Cage& cage : {quads, bumpy, triangles}) {
+    const LimitSurface surface = limitSurface(cage);
+    const SurfaceSearch search(surface);
+    const int count = 20;
+    Points points(count, 3);
+    for (int row = 0; row < count; ++row) {
+      points.row(row) = Vector3(0.17 * row + 1, 0.13 * row + 2, 0.5 + 0.01 * row);
+    }
+    std::int64_t match = 0, none = 0;
+    ClosestOptions options;
+    options.leaves = &match;
+    options.facing = Vector3(0, 0, 1).transpose().replicate(count, 1);
+    const Hits found = search.closest(points, options);
+    options.leaves = &none;
+    options.facing = -options.facing;
+    const Hits missed = search.closest(points, options);
+    for (int row = 0; row < count; ++row) {
+      EXPECT_GE(found.at[row].face, 0);
+      EXPECT_EQ(missed.at[row].face, -1);
+    }
+    // 64 leaves at most for a search without cones. With them there remain the cores at the border,
+    // where normals turn without bound: 4 of the grid of quads, and 5 or so of each triangle there.
+    const int border = cage.faces.front().size() == 3 ? 240 : 4;
+    EXPECT_LE(none, (64 + border) * count);
+    EXPECT_GT(match, 0);
+  }
+}
+
+/// Cones around normals leave nothing out: a condition that many patches fail is met far away.
+TEST(Closest, FacingFindsTheOnlyPlaceThatFaces) {
+  // A floor that turns up into a wall.
+  Cage cage = fullGrid(40, 40);
+  for (int vertex = 0; vertex < cage.vertexCount(); ++vertex) {
+    const double x = cage.positions(vertex, 0);
+    cage.positions(vertex, 0) = std::min(x, 35.);
+    cage.positions(vertex, 2) = 2 * std::max(0., x - 35);
+  }
+  const LimitSurface surface = limitSurface(cage);
+  const SurfaceSearch search(surface);
+  Points points(2, 3);
+  points << 2, 20.3, 4, 3, 11.2, 5;
+  ClosestOptions options;
+  std::int64_t leaves = 0;
+  options.leaves = &leaves;
+  options.facing = Vector3(-1, 0, 0).transpose().replicate(2, 1);
+  options.max_angle = 0.5;
+  const Hits hits = search.closest(points, options);
+  for (int row = 0; row < 2; ++row) {
+    ASSERT_GE(hits.at[row].face, 0);
+    EXPECT_LE(
+        (hits.position.row(row) - Eigen::RowVector3d(35, points(row, 1), points(row, 2))).norm(),
+        1e-9);
+  }
+  EXPECT_LE(leaves, 2 * (64 + 60));
+}
+
+TEST(Closest, FacingMayHaveAnyLength) {
+  const LimitSurface surface = limitSurface(cube());
+  const SurfaceSearch search(surface);
+  Points points(1, 3);
+  points << 1.5, 0.4, 0.3;
+  ClosestOptions options;
+  options.facing = Vector3(1, 1, 1).transpose();
+  const Hits unit = search.closest(points, options);
+  ASSERT_GE(unit.at[0].face, 0);
+  for (const double length : {1e-320, 1e-200, 1e200, 1.7e308}) {
+    options.facing = length * Vector3(1, 1, 1).transpose();
+    const Hits hits = search.closest(points, options);
+    EXPECT_EQ(hits.at[0].face, unit.at[0].face) << length;
+    EXPECT_EQ(hits.distance[0], unit.distance[0]) << length;
+  }
+}
+
 TEST(Closest, BitsDependNeitherOnThreadsNorOnTheBatch) {
   Random random(8);
   for (const Cage& cage : {perturbed(cube(), 0.2, 1), mixture(3), pole(100)}) {

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/search/normal_cones.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/pi.h"
+
+namespace limitsurf {
+namespace {
+
+/// More than the rounding of the angles of cones, and of the search's own test of normals.
+constexpr double kMargin = 1e-7;
+/// If the sine of the angle between two tangents of a patch may be smaller, nothing is known of its
+/// normals: there the search asks for the surface's frame.
+constexpr double kLeastSine = 0.01;
+/// The number of leaves that one task looks at.
+constexpr std::size_t kLeavesPerTask = 64;
+
+double angleBetween(const Vector3& a, const Vector3& b) {
+  // Exact for small angles, too.
+  return 2 * std::atan2((a - b).norm(), (a + b).norm());
+}
+
+/// A mean direction of vectors, and the largest distance of one of them from it, all of them with
+/// unit length. Returns false if one of them is 0.
+bool spread(Vector3 (&vectors)[12], Vector3& middle, double& farthest) {
+  middle.setZero();
+  for (Vector3& v : vectors) {
+    const double length = v.norm();
+    if (!(length > 0)) {
+      return false;
+    }
+    v /= length;
+    middle += v;
+  }
+  middle.normalize();
+  farthest = 0;
+  for (const Vector3& v : vectors) {
+    farthest = std::max(farthest, (v - middle).norm());
+  }
+  return true;
+}
+
+/// The cone of all normals that a search finds on a core, down to its vertex.
+NormalCone coneOfCore(const SearchTree& tree, SurfacePiece core) {
+  const Location vertex = tree.patches.rectangle(core).at(0, 0);
+  const auto frame = tree.surface.frames({&vertex, 1}, 1);
+  NormalCone cone;
+  cone.axis = Vector3(frame(0, 2), frame(0, 5), frame(0, 8));
+  SurfacePatches::SplitCore split;
+  do {
+    tree.patches.split(core, split);
+    for (const BezierPatch& patch : split.patches) {
+      cone = NormalCone::around(cone, normalCone(patch));
+    }
+    core = split.core;
+  } while (cone.angle < kPi<double> && tree.patches.coreRadius(core) > tree.tolerance &&
+           core.steps < SurfacePatches::kMostSteps);
+  return cone;
+}
+
+}  // namespace
+
+NormalCone NormalCone::everything() { return {Vector3::UnitZ(), kPi<double>}; }
+
+NormalCone NormalCone::around(const NormalCone& a, const NormalCone& b) {
+  const NormalCone& wide = a.angle < b.angle ? b : a;
+  const NormalCone& narrow = a.angle < b.angle ? a : b;
+  const double apart = angleBetween(wide.axis, narrow.axis);
+  if (!(apart + narrow.angle > wide.angle)) {
+    return wide;
+  }
+  const double angle = (wide.angle + apart + narrow.angle) / 2 + kMargin;
+  if (!(angle < kPi<double>)) {
+    return everything();
+  }
+  // The axis is turned towards the narrow one's.
+  const Vector3 across = narrow.axis - wide.axis.dot(narrow.axis) * wide.axis;
+  const double length = across.norm(), turn = angle - wide.angle;
+  if (!(length > 0)) {
+    return apart < 1 ? NormalCone{wide.axis, angle} : everything();
+  }
+  return {(std::cos(turn) * wide.axis + std::sin(turn) / length * across).normalized(),
+          angle + kMargin};
+}
+
+bool NormalCone::isBeyond(const Vector3& direction, double reach) const {
+  return angleBetween(axis, direction) > angle + reach + kMargin;
+}
+
+NormalCone normalCone(const BezierPatch& patch) {
+  // The derivatives are means of differences of control points, with positive weights.
+  Vector3 along_s[12], along_t[12];
+  const BezierPatch::Point* p = patch.points;
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      along_s[3 * j + i] = (p[4 * j + i + 1] - p[4 * j + i]).head<3>();
+      along_t[3 * j + i] = (p[4 * (i + 1) + j] - p[4 * i + j]).head<3>();
+    }
+  }
+  Vector3 s, t;
+  double off_s, off_t;
+  if (!spread(along_s, s, off_s) || !spread(along_t, t, off_t)) {
+    return NormalCone::everything();
+  }
+  // (s + a) x (t + b) differs from s x t by less than this.
+  const double off = off_s + off_t + off_s * off_t;
+  const Vector3 normal = s.cross(t);
+  const double sine = normal.norm();
+  if (!(off + kLeastSine < sine)) {
+    return NormalCone::everything();
+  }
+  return {normal / sine, std::asin(off / sine) + kMargin};
+}
+
+NormalCones::NormalCones(const SearchTree& tree, int threads) {
+  std::vector<NormalCone> leaves(tree.leaves.size());
+  parallelFor(leaves.size(), kLeavesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      const SurfacePiece& piece = tree.leaves[leaf].piece;
+      leaves[leaf] =
+          piece.isCore() ? coneOfCore(tree, piece) : normalCone(tree.patches.patch(piece));
+    }
+  });
+  const std::int32_t count = tree.tree->nodeCount();
+  children_.resize(2 * static_cast<std::size_t>(count));
+  // Children have higher numbers than their parents.
+  for (std::int32_t node = count - 1; node >= 0; --node) {
+    for (int side = 0; side < 2; ++side) {
+      const std::int32_t child = tree.tree->node(node).children[side];
+      children_[2 * static_cast<std::size_t>(node) + static_cast<std::size_t>(side)] =
+          BoxTree::isLeaf(child) ? leaves[static_cast<std::size_t>(BoxTree::leaf(child))]
+                                 : NormalCone::around(ofChild(child, 0), ofChild(child, 1));
+    }
+  }
+}
+
+}  // namespace limitsurf
