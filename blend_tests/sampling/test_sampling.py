@@ -192,7 +192,7 @@ def test_the_pages_example_is_exact():
         depsgraph = bpy.context.evaluated_depsgraph_get()
         found = np.array(
             [
-                instance.matrix_world
+                np.array(instance.matrix_world)  # which ends with the iteration
                 for instance in depsgraph.object_instances
                 if instance.is_instance and instance.parent.name == "Pebbles"
             ],

@@ -99,10 +99,10 @@ def warn_of_deviation(
 
 
 def warn_of_pieces(operator: bpy.types.Operator, laid: int, given: int) -> None:
-    """Says it where curves were divided, because no way along the surface was found."""
+    """Says it where curves were divided, because no short way along the surface was found."""
     if laid > given:
         operator.report(
             {"WARNING"},
-            f"Of {counted(given, 'curves')} {laid:,} pieces were made: between them no way along "
-            "the surface was found. Put points closer together there to join them",
+            f"Of {counted(given, 'curves')} {laid:,} pieces were made: no short way along the "
+            "surface joins them",
         )

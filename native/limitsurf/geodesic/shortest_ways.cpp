@@ -28,7 +28,7 @@ std::vector<int> levelsFor(const LimitSurface& surface) {
 }
 
 /// A way across triangles is compared with one along their sides, if it is longer than the distance
-/// by more than this: among long thin triangles it may go to and fro.
+/// by more than this: among long thin triangles it may turn back and forth.
 constexpr double kAsExpected = 1.05;
 
 /// What is closer to a vertex or a side than this share of a triangle lies on it.
