@@ -5,6 +5,7 @@ test.
 
 import os
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,18 @@ def addon():
 @pytest.fixture(autouse=True)
 def _empty_file(addon):
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Of the cases of a test that is marked with every(n), all but each n-th one become slow."""
+    seen = Counter[tuple[str, str]]()
+    for item in items:
+        if isinstance(item, pytest.Function) and (mark := item.get_closest_marker("every")):
+            test = str(item.path), item.originalname
+            if seen[test] % mark.args[0]:
+                item.add_marker(pytest.mark.slow)
+            seen[test] += 1
 
 
 _exit_status = pytest.StashKey[int]()

@@ -36,6 +36,8 @@ while (($#)); do
   shift
 done
 $quick && $slow && usage
+marked=() # the tests that pytest selects by their marks; pyproject.toml leaves the slow ones out
+$slow && marked=(-m 'slow or not slow')
 
 default=false windows=false
 if [[ $blender == "$DEFAULT_BLENDER" && ! $sanitizer ]]; then
@@ -89,17 +91,16 @@ run_ctest() {
 
 # Several processes at a time; what a file's tests share is mostly made once.
 run_pytest() {
-  local name=$1 selection=()
+  local name=$1
   shift
-  $slow && selection=(-m 'slow or not slow')
-  python -m pytest -q -n "$JOBS" --dist worksteal "${selection[@]}" \
+  python -m pytest -q -n "$JOBS" --dist worksteal "${marked[@]}" \
     --junitxml "$results/$name.xml" "$@"
 }
 
 # The window tests wait for the screen most of the time: other tests run meanwhile.
 start_window_tests() {
   window_start=$SECONDS
-  setsid "$ROOT/tools/gui_test.sh" >"$results/window.log" 2>&1 </dev/null &
+  setsid "$ROOT/tools/gui_test.sh" "${marked[@]}" >"$results/window.log" 2>&1 </dev/null &
   window_tests=$!
   background+=("$window_tests")
 }

@@ -125,6 +125,7 @@ def hide_its_collection(hair):
     bpy.context.view_layer.layer_collection.children["Hidden"].exclude = True
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("hide", [hide_object, hide_by_its_eye, hide_its_collection])
 @pytest.mark.parametrize("form", FORMATS)
 def test_hidden_in_the_viewport_is_baked(waves, tmp_path, form, hide):

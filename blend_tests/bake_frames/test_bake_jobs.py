@@ -30,7 +30,7 @@ def finish(*jobs):
         assert job.returncode == 0, out + err
 
 
-@pytest.mark.parametrize("form", ["abc", "npz", *scenes.slow("usd", "usda")])
+@pytest.mark.parametrize("form", ["abc", *scenes.slow("npz", "usd", "usda")])
 def test_two_ranges_are_one_run_bit_for_bit(file, tmp_path, form):
     def job(folder, frames):
         return start(

@@ -35,9 +35,9 @@ def roots_in_world(ob, thing, frame):
     return scenes.transformed(np.array(ob.matrix_world, np.float64), on_surface)
 
 
-#: Each scene in one form and one scene in each form, and the rest among the slow tests
+#: Each scene in one form; the rest is among the slow tests
 ALL = [(scene, form) for scene in scenes.SCENES for form in SUFFIXES]
-FAST = [case for case in ALL if case[0] == "mixed polygons" or case[1] == "npz"]
+FAST = [case for case in ALL if case[1] == "npz"]
 
 
 @pytest.mark.parametrize(

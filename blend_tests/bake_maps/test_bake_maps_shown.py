@@ -32,6 +32,7 @@ def drum(smooth: bool) -> bpy.types.Object:
     return with_subsurf(ob)
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("smooth", [True, False])
 @pytest.mark.parametrize("target", ["CAGE", "VIEWPORT", "RENDER"])
 @pytest.mark.parametrize("make", [suzanne, drum])

@@ -34,6 +34,7 @@ def test_examples_run():
     assert not (np.unique(locations(points.data)[0]) % 2).any()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     bpy.app.version >= (5, 0), reason="suns are brighter there than in the committed picture"
 )

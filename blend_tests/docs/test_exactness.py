@@ -11,6 +11,7 @@ from processes import ROOT
 PAGE = (ROOT / "docs/accuracy.md").read_text()
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", zoo.FEATURES)
 def test_default_quality_is_off_and_the_best_is_not(name):
     feature = zoo.FEATURES[name]()

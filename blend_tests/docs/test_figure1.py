@@ -6,9 +6,11 @@ import sys
 
 import bpy
 import numpy as np
+import pytest
 from processes import ROOT
 
 
+@pytest.mark.slow
 def test_figure_and_scene_are_written(tmp_path):
     program = (sys.executable, str(ROOT / "docs/figures/make.py"), "figure1", "--keep-scene")
     options = ("--width", "300", "--samples", "1", "--output", str(tmp_path))

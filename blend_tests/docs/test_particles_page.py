@@ -4,6 +4,7 @@
 import bpy
 import pages
 import particle_scenes
+import pytest
 import scenes
 from figures import comparison, particles
 from processes import ROOT
@@ -30,6 +31,7 @@ def test_tables_list_the_properties_and_their_defaults():
         pages.check_properties(section, operator)
 
 
+@pytest.mark.slow
 def test_picture_is_what_the_operator_makes(tmp_path):
     particles.make(tmp_path, samples=4)
     mean, worst = comparison.of_renders(

@@ -89,6 +89,7 @@ def scale_of(ob: bpy.types.Object) -> float:
     return max(1.0, float(np.abs(np.array(ob.matrix_world)[:3, :3]).max()))
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("scene", scenes.SCENES)
 def test_objects_follow(scene, mirrored):

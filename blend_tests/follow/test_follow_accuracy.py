@@ -109,7 +109,7 @@ def test_simple_subdivision(scene):
     check(ob, limitsurf.LimitSurface(mesh))
 
 
-@pytest.mark.parametrize("valence", [3, 7, 100])
+@pytest.mark.parametrize("valence", [3, 7, *scenes.slow(100)])
 def test_a_pole(valence):
     """Triangles around a vertex, and quads around them."""
     angle = 2 * np.pi * np.arange(valence) / valence
@@ -191,7 +191,7 @@ def one_face_corners(ob: bpy.types.Object, points: bpy.types.Object) -> np.ndarr
     return (faces_at[vertex] == 1) & (is_quad[base] | (nearest == 0))
 
 
-@pytest.mark.parametrize("scene", scenes.SCENES)
+@pytest.mark.parametrize("scene", scenes.SMALL_FIRST)
 def test_roots_near_extraordinary_vertices(scene):
     ob = scenes.SCENES[scene]()
     follow_truth.animate(ob)

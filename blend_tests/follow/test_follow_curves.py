@@ -113,6 +113,7 @@ def check(made: bpy.types.Object, ob: bpy.types.Object) -> None:
         assert error < scale * follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("kinds", [(kind,) for kind in KINDS] + [KINDS])
 def test_splines_follow(kinds, mirrored):

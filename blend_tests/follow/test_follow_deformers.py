@@ -104,6 +104,7 @@ DEFORMERS: dict[str, Callable[[bpy.types.Object], None]] = {
 }
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("is_child", [True, False])
 @pytest.mark.parametrize("name", DEFORMERS)
 def test_hair_follows(name, is_child):

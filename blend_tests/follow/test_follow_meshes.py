@@ -95,6 +95,7 @@ def test_decals_follow_at_their_distance(scene):
     check(ob, made)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("scene", scenes.SCENES)
 def test_limit_meshes_follow(scene, mirrored):
@@ -127,6 +128,7 @@ def make_live(made: bpy.types.Object) -> None:
     assert live_modifier_of(made)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("scene", scenes.SCENES)
 def test_limit_meshes_follow_live(scene, mirrored):

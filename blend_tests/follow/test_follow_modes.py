@@ -16,6 +16,7 @@ MODES = ("NODES", "LIVE")
 TWELVE_FRAMES = [(frame, subframe) for frame in (1, 4, 9, 14, 21, 30) for subframe in (0.0, 0.375)]
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("scene", scenes.SCENES)
@@ -31,6 +32,7 @@ def test_strands_follow(scene, mirrored, mode):
         at_rest.check(ob, hair)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("scene", scenes.SCENES)
 def test_points_follow_with_their_frames(scene, mode):

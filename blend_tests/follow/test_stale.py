@@ -81,7 +81,7 @@ BREAKS = {
 }
 
 
-@pytest.mark.parametrize("by", ["surface", "hair"])
+@pytest.mark.parametrize("by", ["surface", *scenes.slow("hair")])
 @pytest.mark.parametrize("what", BREAKS)
 def test_what_was_deleted_by_hand_is_restored_by_one_button(what, by):
     ob, hair = followed()

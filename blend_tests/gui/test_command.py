@@ -68,6 +68,7 @@ def test_frames_are_baked(user, tmp_path):
     assert "6 existed" in again.stdout
 
 
+@pytest.mark.slow
 def test_exit_codes(user, tmp_path):
     unknown = run(
         *(user, "-b", user / "shot.blend", "--command", "limit_surface", "bake", "--frames", "1"),

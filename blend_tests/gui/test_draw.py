@@ -83,7 +83,7 @@ def distance(pixel, polyline):
     return np.linalg.norm(a + np.clip(t, 0, 1)[:, None] * (b - a) - pixel, axis=1).min()
 
 
-@pytest.mark.parametrize("leave", ["Escape", "right button"])
+@pytest.mark.parametrize("leave", ["Escape", pytest.param("right button", marks=pytest.mark.slow)])
 def test_cancel_leaves_everything(blender, sheet, seen, leave):
     there = blender.call("contents")
     start(blender)
@@ -118,6 +118,7 @@ def test_erasing_divides_a_stroke(blender, sheet, seen):
     assert_on_sheet(blender, sheet)
 
 
+@pytest.mark.slow
 def test_smoothing_straightens_a_stroke(blender, sheet, seen):
     bumpy = [(1.5 + 0.15 * i, 2.5 + (0.12 if i % 2 else 0)) for i in range(18)]
     start(blender, steadying=0, brush=60)
@@ -151,6 +152,7 @@ def test_stroke_is_continued_and_closed(blender, sheet, seen):
     assert_on_sheet(blender, sheet)
 
 
+@pytest.mark.slow
 def test_strokes_that_meet_stay_apart_without_join(blender, sheet, seen):
     start(blender)
     blender.key("j")
@@ -160,6 +162,7 @@ def test_strokes_that_meet_stay_apart_without_join(blender, sheet, seen):
     assert len(splines(blender)) == 2
 
 
+@pytest.mark.slow
 def test_an_existing_drawing_is_continued(blender, sheet, seen):
     start(blender)
     blender.stroke(along(seen, LINE))
@@ -202,6 +205,7 @@ def test_mirrored_strokes(blender):
     assert abs(ends[0][0]) > 0.3  # well beside the plane of the mirror
 
 
+@pytest.mark.slow
 def test_stroke_that_leaves_the_surface_ends_there(blender, sheet, seen):
     start(blender)
     inside = along(seen, ((4.5, 2.0), (3.5, 2.0)), 6)
@@ -220,6 +224,7 @@ def test_stroke_that_leaves_the_surface_ends_there(blender, sheet, seen):
         assert abs(sheet.above(point)) < ON_SURFACE
 
 
+@pytest.mark.slow
 def test_nothing_drawn_is_nothing_made(blender, sheet, seen):
     there = blender.call("contents")
     start(blender)
@@ -248,6 +253,7 @@ def test_begun_by_the_button_and_adjusted_afterwards(blender, sheet, seen):
     assert blender.call("objects") == [NAME, "Sheet"]
 
 
+@pytest.mark.slow
 def test_stroke_on_a_hundred_thousand_faces(blender):
     """Its speed is measured by tools/bench_window.py."""
     drags.draw_over_large_sheet(blender, moves=10)
@@ -259,6 +265,7 @@ def test_stroke_on_a_hundred_thousand_faces(blender):
         assert z == pytest.approx(0.2 * np.sin(3 * x) * np.cos(2 * y), abs=1e-3)
 
 
+@pytest.mark.slow
 def test_what_is_shown_while_drawing(blender, sheet, seen):
     blender.call("smooth_sheet")
     before = blender.screenshot("draw_before")

@@ -38,6 +38,7 @@ def test_a_preset_of_the_sidebar_is_for_the_next_run(blender, open_presets):
     assert blender.call("curve_count", HAIR) == 20_000
 
 
+@pytest.mark.slow
 def test_a_preset_of_the_redo_panel_makes_it_anew(blender, open_presets):
     blender.click(*blender.find_button(ADD_HAIR))
     blender.await_end(ADD_HAIR)

@@ -50,6 +50,7 @@ def test_button_undo_and_redo(blender, sheet):
     assert blender.call("transform", "Pin") == after
 
 
+@pytest.mark.slow
 def test_offset_in_the_redo_panel(blender, sheet):
     """The redo panel starts from where the object was before it was snapped."""
     blender.call("pin")

@@ -61,7 +61,7 @@ def test_object_follows_the_mouse_until_a_click(blender, sheet, seen):
     assert blender.call("transform", "Pin") == after
 
 
-@pytest.mark.parametrize("way_out", ["Escape", "right click"])
+@pytest.mark.parametrize("way_out", ["Escape", pytest.param("right click", marks=pytest.mark.slow)])
 def test_all_is_restored(blender, sheet, seen, way_out):
     blender.call("pin")
     before = blender.call("transform", "Pin")
@@ -99,6 +99,7 @@ def test_wheel_and_numbers_offset_along_the_normal(blender, sheet, seen):
     np.testing.assert_allclose(position(blender, "Pin"), foot - 0.2 * normal, atol=ON_SURFACE)
 
 
+@pytest.mark.slow
 def test_align(blender, sheet, seen):
     blender.call("pin")
     blender.call("start_drag")
@@ -116,6 +117,7 @@ def test_align(blender, sheet, seen):
     blender.key("Escape")
 
 
+@pytest.mark.slow
 def test_along_a_face_border(blender, sheet, seen):
     blender.call("pin")
     blender.call("start_drag")
@@ -133,6 +135,7 @@ def test_along_a_face_border(blender, sheet, seen):
     blender.key("Escape")
 
 
+@pytest.mark.slow
 def test_along_the_boundary(blender, sheet, seen):
     """This also works where the mouse is beside the surface: it gives the nearest point of the
     curve on screen.
@@ -203,6 +206,7 @@ def test_strand_is_clicked_and_dragged_by_its_root(blender, sheet, seen):
     )
 
 
+@pytest.mark.slow
 def test_mouse_beside_the_surface_leaves_it_where_it_was(blender, sheet, seen):
     blender.call("pin")
     blender.call("start_drag")
@@ -213,6 +217,7 @@ def test_mouse_beside_the_surface_leaves_it_where_it_was(blender, sheet, seen):
     blender.key("Escape")
 
 
+@pytest.mark.slow
 def test_vertex_goes_back(blender, sheet, seen):
     blender.call("loose_vertices")
     before = blender.call("vertices", "Triangle")
@@ -226,6 +231,7 @@ def test_vertex_goes_back(blender, sheet, seen):
     assert blender.call("vertices", "Triangle") == before
 
 
+@pytest.mark.slow
 def test_strand_goes_back(blender, sheet, seen):
     blender.call("hair", 2)
     before = blender.call("strand", "Hair", 57)
@@ -257,6 +263,7 @@ def test_begun_by_the_button_and_adjusted_afterwards(blender, sheet, seen):
     np.testing.assert_allclose(position(blender, "Pin"), foot + 0.5 * normal, atol=ON_SURFACE)
 
 
+@pytest.mark.slow
 def test_what_is_locked_stays(blender, sheet, seen):
     blender.call("pin")
     blender.call("lock_location", "Pin")
@@ -268,6 +275,7 @@ def test_what_is_locked_stays(blender, sheet, seen):
     assert blender.call("transform", "Pin") == before
 
 
+@pytest.mark.slow
 def test_what_is_drawn(blender, sheet, seen):
     """This test also makes the picture of docs/snap_modal.md."""
     blender.call("smooth_sheet")

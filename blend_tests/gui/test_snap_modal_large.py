@@ -9,6 +9,7 @@ import pytest
 from quadric import Camera
 
 
+@pytest.mark.slow
 def test_moves_on_a_hundred_thousand_faces(blender):
     # A move takes seconds where the screen is drawn without a graphics card.
     moves = drags.drag_over_large_sheet(blender, free=10, constrained=4)

@@ -100,6 +100,7 @@ def test_projected_from_the_view_it_looks_like_the_image_and_is_undone(sheet, im
     assert_undistorted(redone, blank, sheet.call("camera"), image)
 
 
+@pytest.mark.slow
 def test_projection_is_adjusted_in_the_redo_panel(sheet, image):
     """The redo panel starts from the pixels before the projection: painted over itself the image
     would change nothing.
@@ -183,6 +184,7 @@ def test_esc_ends_a_long_bake_and_leaves_nothing(sheet, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_mesh_is_adjusted_in_the_redo_panel(sheet):
     there = sheet.call("contents")
     sheet.open_tab()
@@ -205,6 +207,7 @@ def test_mesh_is_adjusted_in_the_redo_panel(sheet):
     assert sheet.call("contents") == there
 
 
+@pytest.mark.slow
 def test_curvature_is_seen(sheet):
     """The sheet is blue where it bulges, and red where it is hollow."""
     there = sheet.call("contents")

@@ -252,6 +252,7 @@ def follow(ob, **properties):
     return add_hair(ob, **chosen | properties)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("bevel", [0.0, 0.3])
 @pytest.mark.parametrize("transform", TRANSFORMS)
 def test_one_straight_curve_combs_a_whole_flat_sheet(transform, bevel):

@@ -34,6 +34,7 @@ def both(dressed):
     return made, theirs, match(made.data, theirs)
 
 
+@pytest.mark.every(7)
 @pytest.mark.parametrize(
     ("domain", "kind"), [(d, k) for d, kinds in truth.KINDS.items() for k in kinds]
 )

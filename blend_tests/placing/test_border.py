@@ -49,6 +49,7 @@ def spline(points, samples=2000):
     return np.concatenate(parts)
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("transform", [{}, STRETCHED, MIRRORED])
 @pytest.mark.parametrize("scene", ["cross", "grid with holes", "mixed polygons"])
 def test_even_along_the_boundary_by_length_in_the_world(scene, transform):

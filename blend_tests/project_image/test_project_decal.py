@@ -119,6 +119,7 @@ def sphere():
     return bpy.context.active_object
 
 
+@pytest.mark.slow
 def test_silhouettes_are_followed():
     ob = sphere()
     camera = truth.add_camera((0, -6, 0), lens=80)

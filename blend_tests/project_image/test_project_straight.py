@@ -95,6 +95,7 @@ def projected():
     return truth.FineMesh(sheet), camera, bpy.data.images["Made"]
 
 
+@pytest.mark.slow
 def test_borders_are_straight_to_a_texel(projected):
     mesh, camera, made = projected
     off = np.concatenate([measure(mesh, camera, made, axis, 60) for axis in (0, 1)])

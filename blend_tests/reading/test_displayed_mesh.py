@@ -66,6 +66,7 @@ def on_drawn_triangles(mesh, corner_locations, face, uv):
     return found, facing
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("level", [1, 2, 3, *scenes.slow(4)])
 @pytest.mark.parametrize("name", ["cross", "sheet", "polygons", "prism", "fans", "fin", "monkey"])
 def test_positions_are_on_the_triangles_that_are_drawn(name, level):

@@ -42,6 +42,7 @@ def shown(ob):
     return attributes.read(mesh, ids.POSITION)
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("mesh_name", ["sheet", "polygons", "fin"])
 @pytest.mark.parametrize("domain", DOMAINS)
 @pytest.mark.parametrize("kind", element_numbers.TYPES)

@@ -38,6 +38,7 @@ def test_smooth_meshes(name, boundary):
     assert np.nanmax(found.positions(1)) > 1e-3
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("boundary", rules.BOUNDARIES)
 @pytest.mark.parametrize("kind", CREASED)
 @pytest.mark.parametrize("name", FAST)
@@ -112,6 +113,7 @@ def test_uvs_of_simple_subdivision(name, uv_smooth):
     assert np.nanmax(found.uvs(BEST)) <= BOUND
 
 
+@pytest.mark.every(7)
 @pytest.mark.parametrize("kind", ["none", "edges and vertices", "sharp edges"])
 @pytest.mark.parametrize("uv_smooth", rules.UV_INTERPOLATIONS)
 @pytest.mark.parametrize("name", FAST)
@@ -122,6 +124,7 @@ def test_uvs(name, uv_smooth, kind):
     assert lagging.any() == (uv_smooth == "SMOOTH_ALL" and kind == "edges and vertices")
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("kind", ["vertices", "edges and vertices"])
 @pytest.mark.parametrize("name", parity_zoo.MESHES)
 def test_uvs_at_decaying_corners_are_approached(name, kind):

@@ -98,6 +98,7 @@ def stretched(ob):
     return ob
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("level", [1, *scenes.slow(2)])
 @pytest.mark.parametrize("name", ["cross", "sheet", "polygons", "prism", "fans"])
 def test_distances_are_those_of_a_crowd_of_points(name, level):

@@ -66,6 +66,7 @@ def test_the_modifier_that_there_is_keeps_its_rules(capfd):
     assert "Cross shows its limit surface at level 4" in text
 
 
+@pytest.mark.slow
 def test_more_levels_come_closer(capfd):
     scenes.monkey()
     distances = []

@@ -58,6 +58,7 @@ ORIENTATIONS = {
 VIEW = Matrix.Rotation(0.3, 4, "X") @ Matrix.Translation((1, 2, -20))
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("orientation", ORIENTATIONS)
 @pytest.mark.parametrize("axis", "XYZ")
 def test_along_an_axis(orientation, axis):
@@ -199,6 +200,7 @@ def test_facing(side):
     np.testing.assert_allclose(thing.location, (2, 2.3, 1), atol=1e-6)
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("mode", ["XYZ", "ZXY", "QUATERNION", "AXIS_ANGLE"])
 @pytest.mark.parametrize("align", ["NORMAL", "NORMAL_DU"])
 @pytest.mark.parametrize("placed", [stretched, mirrored])

@@ -75,6 +75,8 @@ SCENES: dict[str, Callable[[], bpy.types.Object]] = {
     "mixed polygons": mixed_polygons,
     "monkey": monkey,
 }
+#: For tests in which the monkey, the largest mesh, takes many seconds: there it is a slow case.
+SMALL_FIRST = [*(name for name in SCENES if name != "monkey"), *slow("monkey")]
 
 
 def add_subsurf(ob: bpy.types.Object, boundary: str = "ALL") -> bpy.types.SubsurfModifier:

@@ -55,6 +55,7 @@ def test_brute_force_finds_the_nearest_points(sheet):
     assert max(on_surface) < 1e-4
 
 
+@pytest.mark.slow
 def test_table(capsys):
     bench_blender.main(["--faces", "150", "--queries", "1000", "--tree-queries", "600"])
     printed = capsys.readouterr().out

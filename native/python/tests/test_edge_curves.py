@@ -245,7 +245,7 @@ def shortest(points, sources, radius):
         distance = better
 
 
-@pytest.mark.parametrize("name", ["cube", "house"])
+@pytest.mark.parametrize("name", ["cube", pytest.param("house", marks=pytest.mark.slow)])
 def test_rows_on_curved_surfaces_against_shortest_ways(name):
     surface = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.ALL[name]))
     edges = [[0, 1], [1, 3], [3, 2], [2, 0]] if name == "cube" else "boundary"

@@ -278,7 +278,7 @@ def test_blue_noise_takes_a_count_or_a_radius(cube):
     "call",
     [
         "scatter_uniform(2 * 10**7)",
-        "scatter_blue_noise(count=3 * 10**6)",
+        pytest.param("scatter_blue_noise(count=3 * 10**6)", marks=pytest.mark.slow),
         "scatter_uniform(10**7, density=lambda face, uv: 1e-9 + (face == 7))",
     ],
 )

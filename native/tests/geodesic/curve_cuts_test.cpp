@@ -156,7 +156,7 @@ double aroundEnd(const Vector3& a, const Vector3& b, const Vector3& end) {
   return is_behind ? (a - end).norm() + (end - b).norm() : (a - b).norm();
 }
 
-TEST(CurveCuts, LeadAroundTheirEnds) {
+TEST(SlowCurveCuts, LeadAroundTheirEnds) {
   const LimitSurface surface = flatSheet(6);
   const Vector3 end(3.05, 2.6, 0);
   const Locations guides = scatterJittered(surface, 1, 3), at = scatterJittered(surface, 4, 5);
@@ -250,7 +250,7 @@ TEST(CurveCuts, CrossEachOtherAndEdges) {
                        options, parts);
 }
 
-TEST(CurveCuts, KeepNothingApartWhereTheyAreClosedInNothing) {
+TEST(SlowCurveCuts, KeepNothingApartWhereTheyAreClosedInNothing) {
   // a stitch in the middle changes only what lies behind it
   const LimitSurface surface = flatSheet(6);
   const Locations guides = scatterJittered(surface, 1, 3), at = scatterJittered(surface, 3, 5);
@@ -266,7 +266,7 @@ TEST(CurveCuts, KeepNothingApartWhereTheyAreClosedInNothing) {
   EXPECT_LT(changed, static_cast<int>(with.guide.size()) / 20);
 }
 
-TEST(CurveCuts, RandomScribblesHangTogetherOrNotAsCurvesDo) {
+TEST(SlowCurveCuts, RandomScribblesHangTogetherOrNotAsCurvesDo) {
   // every scribble ends with a line from border to border, which the rest must not open
   std::mt19937 random(7);
   std::uniform_real_distribution<double> coordinate(-0.5, 6.5);

@@ -216,7 +216,7 @@ TEST(GuideWeights, FadeWhereAnotherGuideTakesOver) {
   EXPECT_EQ(weights[0], 0.5);
 }
 
-TEST(GuideWeights, AreTheSameForAnyNumberOfThreads) {
+TEST(SlowGuideWeights, AreTheSameForAnyNumberOfThreads) {
   const LimitSurface surface = limitSurface(mixture(4));
   Locations at = scatterJittered(surface, 8, 2);
   at.erase(std::remove_if(at.begin(), at.end(),

@@ -163,7 +163,7 @@ TEST(DoubleDouble, SinesAndCosinesKeepTheirBounds) {
   EXPECT_EQ(sineCosine(DoubleDouble(0)).cos, DoubleDouble(1));
 }
 
-TEST(DoubleDouble, HyperbolicSinesAndCosinesKeepTheirBounds) {
+TEST(SlowDoubleDouble, HyperbolicSinesAndCosinesKeepTheirBounds) {
   Random random(6);
   for (int i = 0; i < kTrials; ++i) {
     const double range = i % 3 == 0 ? 0.1 : i % 3 == 1 ? 2 : 50;

@@ -225,7 +225,7 @@ TEST(BlueNoise, FollowsVertexWeights) {
   }
 }
 
-TEST(BlueNoise, FollowsAFunction) {
+TEST(SlowBlueNoise, FollowsAFunction) {
   const LimitSurface surface = limitSurface(bent(grid(8, 8)));
   // Every third face has no points, and the next one four times as many.
   const auto weightOf = [](const Location& at) {
@@ -290,7 +290,7 @@ TEST(BlueNoise, LeavesOutFacesWithoutASurface) {
 
 /// Where faces have no area, or normals point in opposite directions, sampling ends and the points
 /// keep their distance.
-TEST(BlueNoise, EndsOnDegenerateSurfaces) {
+TEST(SlowBlueNoise, EndsOnDegenerateSurfaces) {
   Cage folded = grid(6, 6);
   for (Eigen::Index i = 0; i < folded.positions.rows(); ++i) {
     double& x = folded.positions(i, 0);

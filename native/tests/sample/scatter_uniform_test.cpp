@@ -58,7 +58,7 @@ double weightAt(const Cage& cage, const Eigen::VectorXd& weights, const Location
          at.v * ((1 - at.u) * corners[3] + at.u * corners[2]);
 }
 
-TEST(ScatterUniform, IsUniformByAreaWithinFacesToo) {
+TEST(SlowScatterUniform, IsUniformByAreaWithinFacesToo) {
   for (const auto& [name, cage] : NamedCages{{"all kinds", scatteredCage()},
                                              {"pole of valence 23", bent(pole(23))},
                                              {"boundary valence 8", bent(fan(7, false, 2))},

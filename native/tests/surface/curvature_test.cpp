@@ -10,6 +10,7 @@
 #include "support/cages/sharp_meshes.h"
 #include "support/cages/strange_meshes.h"
 #include "support/truth/corner_points.h"
+#include "support/truth/decompositions.h"
 #include "support/truth/witness.h"
 
 namespace limitsurf::test {
@@ -155,8 +156,7 @@ Eigen::Matrix3d meanAround(const Cage& cage, const Vector3& vertex_normal, doubl
     Eigen::Matrix2d second;
     second << truth[kDuu].dot(truth[kNormal]), truth[kDuv].dot(truth[kNormal]),
         truth[kDuv].dot(truth[kNormal]), truth[kDvv].dot(truth[kNormal]);
-    const Eigen::Matrix3d turn =
-        Eigen::Quaterniond::FromTwoVectors(truth[kNormal], normal).toRotationMatrix();
+    const Eigen::Matrix3d turn = rotationBetween(truth[kNormal], normal);
     const Eigen::Matrix<double, 3, 2> turned = turn * dual;
     sum += area * turned * second * turned.transpose();
     total += area;

@@ -166,7 +166,7 @@ TEST(Extremes, PolygonsOfAThousandSidesAreOrdinary) {
   openAndCompare("polygon of 1000 sides", ngon(1000, 1), at, 1e-12);
 }
 
-TEST(Extremes, ValenceTenThousandOpens) {
+TEST(SlowExtremes, ValenceTenThousandOpens) {
   const std::vector<Location> at = {{0, 0.3, 0.2}, {29997, 0.01, 0.02}, {15000, 0.999, 1}};
   openAndCompare("pole of 10,000 triangles", pole(10000), at, 1e-11);
 }

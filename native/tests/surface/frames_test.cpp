@@ -131,7 +131,7 @@ std::vector<Cage> sharpFans(const std::vector<int>& spokes, bool sharp_vertex,
   return cages;
 }
 
-TEST(Frames, AtInteriorVerticesAreTheLimitAlongTheDiagonal) {
+TEST(SlowFrames, AtInteriorVerticesAreTheLimitAlongTheDiagonal) {
   compareAtVertices(fans(true, Boundary::smooth, {3, 4, 5, 6, 7, 8, 9}), 20);
 }
 

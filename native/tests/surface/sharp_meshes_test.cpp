@@ -91,7 +91,7 @@ TEST(SlowSharpMeshes, OfFractionalSharpnessAgreeWithSubdivision) {
   compareSharpened(10, 2, 8, 1, 4, {1, 2, 3, 5, 12, 20, 40}, {0.1, 0.3, 0.7, 1, 1.2, 1.5, 2});
 }
 
-TEST(SharpMeshes, WithAllEdgesSharpAgreeWithSubdivision) {
+TEST(SlowSharpMeshes, WithAllEdgesSharpAgreeWithSubdivision) {
   Accuracy all("all edges", 1);
   Random random(4);
   int number = 0;

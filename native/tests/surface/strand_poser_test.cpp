@@ -18,6 +18,7 @@
 #include "support/cages/meshes.h"
 #include "support/random.h"
 #include "support/throws.h"
+#include "support/truth/decompositions.h"
 #include "support/truth/golden.h"
 #include "support/truth/witness.h"
 
@@ -39,7 +40,7 @@ Eigen::Matrix4d stretched() {
 Eigen::Matrix4d mirrored() { return stretched() * Eigen::Vector4d(1, -1, 1, 1).asDiagonal(); }
 
 double condition(const Eigen::Matrix4d& map) {
-  const Eigen::Vector3d values = map.topLeftCorner<3, 3>().jacobiSvd().singularValues();
+  const Eigen::Vector3d values = singularValues(Eigen::Matrix3d(map.topLeftCorner<3, 3>()));
   return values[0] / values[2];
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "limitsurf/uv/map_distortion.h"
 #include "support/cages/meshes.h"
 #include "support/random.h"
+#include "support/truth/decompositions.h"
 #include "support/truth/deep_subdivision.h"
 #include "support/truth/witness.h"
 
@@ -98,7 +98,7 @@ void compare(const std::string& name, const Cage& cage, bool mirrored, double& w
     Eigen::Matrix2d map_matrix;
     map_matrix << m[kDu].head<2>(), m[kDv].head<2>();
     const Eigen::Matrix<double, 3, 2> stretch = position * map_matrix.inverse();
-    const Eigen::Vector2d values = stretch.jacobiSvd().singularValues();
+    const Eigen::Vector2d values = singularValues(stretch);
     const double scale = std::pow(largest(deep_map.evaluate({at[i].face, 0.5, 0.5})), 2);
     const double bound =
         kDistortionError *

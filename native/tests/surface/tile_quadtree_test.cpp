@@ -66,7 +66,7 @@ void expectTheTilesOfPlaces(const Cage& cage, int max_depth) {
   EXPECT_GT(compared, 1500);
 }
 
-TEST(TileQuadtree, LeadsToTheTilesOfPlaces) {
+TEST(SlowTileQuadtree, LeadsToTheTilesOfPlaces) {
   for (const int depth : {6, 24}) {
     expectTheTilesOfPlaces(grid(3, 3), depth);
     expectTheTilesOfPlaces(cross(), depth);

@@ -41,7 +41,7 @@ TEST(UvLocate, FindsThePlacesThatPointsCameFrom) {
   std::printf("worst error %.2g; %zu of %zu the same places\n", worst, same, all);
 }
 
-TEST(UvLocate, AgreesWithDenseTriangles) {
+TEST(SlowUvLocate, AgreesWithDenseTriangles) {
   Random random(8);
   DataRows points(400, 2);
   for (Eigen::Index row = 0; row < points.rows(); ++row) {

@@ -201,7 +201,7 @@ TEST(UvRaster, TellsStackedIslandsFromNeighbours) {
 }
 
 // Bilinear quads that fold, inverted in closed form.
-TEST(UvRaster, FindsBothSheetsOfFoldedQuads) {
+TEST(SlowUvRaster, FindsBothSheetsOfFoldedQuads) {
   const double kQuads[][4][2] = {{{0.05, 0.1}, {0.9, 0.2}, {0.4, 0.35}, {0.3, 0.95}},
                                  {{0.1, 0.1}, {0.9, 0.1}, {0.1, 0.9}, {0.9, 0.9}}};
   constexpr int kSide = 1000;
@@ -308,7 +308,7 @@ TEST(UvRaster, FindsBothSheetsAlongLongFolds) {
   }
 }
 
-TEST(UvRaster, TilesAreWindowsOfOneMap) {
+TEST(SlowUvRaster, TilesAreWindowsOfOneMap) {
   const auto place = [](double s, double t) {
     return Eigen::RowVector2d(-1.3 + 3.1 * s + 0.4 * t, 0.2 + 1.9 * t - 0.3 * s * t);
   };

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/surface/strands/child_strands.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/strands/strand_turns.h"
 
 namespace limitsurf {
 namespace {
@@ -134,8 +135,7 @@ FloatPoints childStrands(const GuideStrands& guides, const ChildRoots& children,
       }
       const std::int32_t guide = children.guide[entry];
       const Vector3 from = guides.normals.row(guide);
-      const Eigen::Matrix3d turn =
-          weight * Eigen::Quaterniond::FromTwoVectors(from, normal).toRotationMatrix();
+      const Eigen::Matrix3d turn = weight * shortestTurn(from, normal);
       const auto points = strand(guide);
       shape += (points.rowwise() - points.row(0)) * turn.transpose();
       wanted += weight * lengths[guide];

@@ -41,10 +41,12 @@ Vector3 leastAlignedAxis(const Vector3& vector) {
   return Vector3::Unit(axis);
 }
 
-/// Two reflections: one reverses the vector, the other exchanges that for the other vector.
-Matrix shortestTurn(const Vector3& from, const Vector3& to) {
+}  // namespace
+
+// Two reflections: one reverses the vector, the other exchanges that for the other vector.
+Eigen::Matrix3d shortestTurn(const Vector3& from, const Vector3& to) {
   if (!from.allFinite()) {
-    return Matrix::Identity();
+    return Eigen::Matrix3d::Identity();
   }
   const Vector3 source = unit(from), target = unit(to);
   Vector3 between = source + target;
@@ -53,8 +55,6 @@ Matrix shortestTurn(const Vector3& from, const Vector3& to) {
   }
   return mirror(unit(between)) * mirror(source);
 }
-
-}  // namespace
 
 Rotations shortestTurns(const Points& from, const Points& to) {
   checkRows("target", to.rows(), from.rows());

@@ -17,6 +17,9 @@ using Quaternions = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 /// unit vectors: it grows where they are almost opposite.
 constexpr double kTurnError = 1e-15;
 
+/// The rotation that turns one vector to the direction of another, as shortestTurns() has it.
+Eigen::Matrix3d shortestTurn(const Vector3& from, const Vector3& to);
+
 /// The rotations that turn each vector of `from` to the direction of that of `to` by the smallest
 /// angle. Vectors may have any length. Where they are opposite (closer than 1e-9 to it) they turn
 /// about an axis that is perpendicular to both and to the world's axis that is least aligned with
