@@ -35,7 +35,10 @@ def main() -> None:
     arguments = parse_arguments()
     version = tomllib.loads((ADDON / MANIFEST).read_text())["version"]
     if arguments.build_wheel:
-        wheels.build(arguments.wheels, arguments.python_headers)
+        library = wheels.Library.of_the_system()
+        if arguments.bundled:
+            library = wheels.Library.bundled(arguments.sources)
+        wheels.build(arguments.wheels, arguments.python_headers, library)
     found = find_wheels(arguments.wheels, version)
     platforms = platforms_of(found)
     arguments.output.mkdir(parents=True, exist_ok=True)
@@ -89,7 +92,25 @@ def parse_arguments() -> argparse.Namespace:
         help="with --build-wheel: another wheel, for the Python of these headers "
         "(/usr/include/python3.13, say); may be repeated",
     )
-    return parser.parse_args()
+    parser.add_argument(
+        "--bundled",
+        action="store_true",
+        help="with --build-wheel: compile OpenSubdiv and oneTBB from source into the module, "
+        "instead of packing the system's libraries beside it",
+    )
+    parser.add_argument(
+        "--sources",
+        type=Path,
+        metavar="FOLDER",
+        help="with --bundled: take these sources from the folders opensubdiv and tbb in FOLDER, "
+        "instead of fetching them",
+    )
+    arguments = parser.parse_args()
+    if arguments.bundled and not arguments.build_wheel:
+        parser.error("--bundled needs --build-wheel")
+    if arguments.sources and not arguments.bundled:
+        parser.error("--sources needs --bundled")
+    return arguments
 
 
 def find_wheels(folder: Path, version: str) -> list[Path]:

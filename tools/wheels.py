@@ -20,9 +20,9 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
-LIBRARY_TREE = ROOT / "build/cpp"
 MULTIARCH = "x86_64-linux-gnu"
 
 
@@ -30,22 +30,52 @@ class BuildError(Exception):
     """A program that the build runs has failed."""
 
 
-def build(folder: Path, other_headers: list[Path]) -> None:
+class Library(NamedTuple):
+    """How the library is compiled that the wheels' modules link."""
+
+    tree: Path
+    modules: Path  # the folder for the modules' build trees
+    definitions: list[str]
+
+    @classmethod
+    def of_the_system(cls) -> "Library":
+        """With the system's OpenSubdiv and oneTBB, which the repaired wheels then contain."""
+        return cls(ROOT / "build/cpp", ROOT / "build", [])
+
+    @classmethod
+    def bundled(cls, sources: Path | None) -> "Library":
+        """With OpenSubdiv and oneTBB compiled from source: fetched, or from the folders
+        `opensubdiv` and `tbb` in `sources`.
+        """
+        definitions = ["-DLIMITSURF_BUNDLED_DEPENDENCIES=ON"]
+        if sources is not None:
+            for name in ("opensubdiv", "tbb"):
+                source = (sources / name).resolve()
+                if not source.is_dir():
+                    raise BuildError(f"{source} is not a folder; expected the sources of {name}")
+                definitions.append(f"-DFETCHCONTENT_SOURCE_DIR_{name.upper()}={source}")
+        return cls(ROOT / "build/bundled", ROOT / "build/bundled/modules", definitions)
+
+
+def build(folder: Path, other_headers: list[Path], library: Library) -> None:
     """Builds repaired wheels in `folder`: for this Python, and for each Python whose headers are
     given.
 
-    The build is not isolated: it uses the packages of this environment, and no network.
+    The build is not isolated: it uses the packages of this environment, and no network, unless
+    the library's dependencies are fetched.
     """
     with alone(), tempfile.TemporaryDirectory() as raw:
-        library = compiled_library()
+        package = compile_library(library)
         pip = (sys.executable, "-m", "pip", "--disable-pip-version-check")
-        prebuilt = f"cmake.define.LIMITSURF_PREBUILT={library}"
-        options = ("-q", "--no-deps", "--no-build-isolation", "-C", prebuilt)
+        options = ["-q", "--no-deps", "--no-build-isolation"]
+        options += ["-C", f"cmake.define.LIMITSURF_PREBUILT={package}"]
+        options += ["-C", f"build-dir={library.modules}/{{wheel_tag}}"]
         run(*pip, "wheel", *options, "-w", raw, ROOT)
         (own,) = Path(raw).glob("limitsurf-*.whl")
         wheels = [own]
         for headers in other_headers:
-            wheels.append(with_module(own, compiled_module(headers, library), interpreter(headers)))
+            module = compiled_module(headers, package, library.modules)
+            wheels.append(with_module(own, module, interpreter(headers)))
         for wheel in wheels:
             run(sys.executable, "-m", "auditwheel", "repair", "-w", folder, wheel)
 
@@ -69,12 +99,12 @@ def alone() -> Iterator[None]:
         yield
 
 
-def compiled_library() -> Path:
+def compile_library(library: Library) -> Path:
     """Brings the library's CMake package up to date, and returns its folder."""
-    if not (LIBRARY_TREE / "build.ninja").exists():
-        run("cmake", "-S", ROOT, "--preset", "release")
-    compile_in(LIBRARY_TREE, "--target", "limitsurf")
-    return LIBRARY_TREE / "native"
+    if library.definitions or not (library.tree / "build.ninja").exists():
+        run("cmake", "-S", ROOT, "--preset", "release", "-B", library.tree, *library.definitions)
+    compile_in(library.tree, "--target", "limitsurf")
+    return library.tree / "native"
 
 
 def compile_in(build_tree: Path, *options: str) -> None:
@@ -82,12 +112,12 @@ def compile_in(build_tree: Path, *options: str) -> None:
     run("cmake", "--build", build_tree, "--parallel", jobs, *options)
 
 
-def compiled_module(headers: Path, library: Path) -> Path:
+def compiled_module(headers: Path, package: Path, trees: Path) -> Path:
     """Returns the module for the Python whose headers lie in a folder such as
     include/python3.13.
     """
     name = interpreter(headers)
-    build_folder = ROOT / "build" / f"{name}-headers"
+    build_folder = trees / f"{name}-headers"
     include = build_folder / "include"
     for source in (headers, headers.parent / MULTIARCH / headers.name):
         if source.exists():  # Debian stores pyconfig.h in another folder
@@ -100,7 +130,7 @@ def compiled_module(headers: Path, library: Path) -> Path:
         "CMAKE_SYSTEM_NAME": "Linux",
         "CMAKE_SYSTEM_PROCESSOR": "x86_64",
         "CMAKE_CXX_FLAGS": f"-isystem {include}",
-        "LIMITSURF_PREBUILT": library,
+        "LIMITSURF_PREBUILT": package,
         "Python_INCLUDE_DIR": include / headers.name,
         "PYTHON_IS_DEBUG": "OFF",
         "PYTHON_MODULE_EXTENSION": suffix,

@@ -7,52 +7,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <functional>
-#include <stdexcept>
-#include <string>
-#include <utility>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/loop_order.h"
+#include "limitsurf/thread_count.h"
 
 namespace limitsurf {
-
-/// A function that is called on the calling thread from time to time during long work. If it
-/// throws, the work ends. It is in effect for the lifetime of the object. Code that knows of
-/// keyboards and progress bars makes one, and the library, which knows of neither, calls pass().
-class InterruptionPoint {
- public:
-  explicit InterruptionPoint(std::function<void()> call)
-      : call_(std::move(call)), outer_(current()) {
-    current() = this;
-  }
-  ~InterruptionPoint() { current() = outer_; }
-  InterruptionPoint(const InterruptionPoint&) = delete;
-  InterruptionPoint& operator=(const InterruptionPoint&) = delete;
-
-  /// Calls the innermost function of this thread, if there is one.
-  static void pass() {
-    if (current()) {
-      current()->call_();
-    }
-  }
-
- private:
-  static InterruptionPoint*& current() {
-    static thread_local InterruptionPoint* point = nullptr;
-    return point;
-  }
-
-  std::function<void()> call_;
-  InterruptionPoint* outer_;
-};
-
-/// Throws std::invalid_argument for a negative number.
-inline void checkThreads(int threads) {
-  if (threads < 0) {
-    throw std::invalid_argument("threads is " + std::to_string(threads) +
-                                "; expected 0 (all cores) or the largest number of cores to use");
-  }
-}
 
 /// The number of rows of a batch that make one task, where a row takes about as long as an
 /// evaluation: long enough (some 50 microseconds) that starting a task costs little.

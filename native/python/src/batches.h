@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "arrays.h"
-#include "limitsurf/parallel.h"
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/surface/location_batch.h"
+#include "limitsurf/thread_count.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf::python {

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A wheel with OpenSubdiv and oneTBB inside the module: it needs no other libraries, and `bpy` can
+be imported after it. The sources are those of the system's distribution.
+"""
+
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from processes import ROOT, run_python
+
+LIBRARIES = {"opensubdiv": "opensubdiv", "onetbb": "tbb"}
+SOURCE_LIST = Path("/etc/apt/sources.list.d/debian.sources")
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory) -> Path:
+    """Fetches the sources as folders `opensubdiv` and `tbb`."""
+    if not SOURCE_LIST.exists():
+        pytest.skip(f"{SOURCE_LIST} is missing: no sources of packages here")
+    folder = tmp_path_factory.mktemp("sources")
+    for part in ("lists", "parts"):
+        (folder / part).mkdir()
+    sources = SOURCE_LIST.read_text().replace("Types: deb\n", "Types: deb-src\n")
+    (folder / "parts/debian.sources").write_text(sources)
+    apt = [
+        "apt-get",
+        "-qq",
+        *("-o", "Dir::Etc::sourcelist=/dev/null"),
+        *("-o", f"Dir::Etc::sourceparts={folder / 'parts'}"),
+        *("-o", f"Dir::State::lists={folder / 'lists'}"),
+    ]
+    for command in (["update"], ["source", "--download-only", *LIBRARIES]):
+        done = subprocess.run([*apt, *command], cwd=folder, capture_output=True, text=True)
+        if done.returncode:
+            pytest.skip(f"apt-get {command[0]} cannot fetch sources here: {done.stderr}")
+    for package, name in LIBRARIES.items():
+        (archive,) = folder.glob(f"{package}_*.orig.tar.*")
+        (folder / name).mkdir()
+        subprocess.run(
+            ["tar", "-xf", archive, "--strip-components=1", "-C", folder / name], check=True
+        )
+    return folder
+
+
+@pytest.mark.slow
+def test_wheel_needs_no_other_libraries(sources, tmp_path):
+    options = ("--build-wheel", "--bundled", "--sources", sources)
+    done = subprocess.run(
+        [
+            *(sys.executable, ROOT / "tools/build_extension.py", *options),
+            *("--wheels", tmp_path / "wheels", "--output", tmp_path),
+        ],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    (wheel,) = (tmp_path / "wheels").glob("*.whl")
+    with zipfile.ZipFile(wheel) as contents:
+        names = contents.namelist()
+        contents.extractall(tmp_path / "site")
+    assert [Path(name).parent.name for name in names if ".so" in name] == ["limitsurf"]
+    assert any(name.endswith("LICENSES/OpenSubdiv.txt") for name in names)
+    assert not any("GPL" in name for name in names)
+    code = (
+        f"import sys; sys.path.insert(0, {str(tmp_path / 'site')!r}); import limitsurf, bpy, os\n"
+        f"assert limitsurf.__file__.startswith({str(tmp_path)!r}), limitsurf.__file__\n"
+        "mesh = limitsurf.ControlMesh.from_faces([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\n"
+        "places = limitsurf.LimitSurface(mesh).scatter_uniform(1000, threads=2)\n"
+        "print(len(places), flush=True)\n"
+        "os._exit(0)  # the module bpy does not always end by itself\n"
+    )
+    assert run_python(code).stdout.strip() == "1000"
