@@ -255,14 +255,15 @@ def test_rows_on_curved_surfaces_against_shortest_ways(name):
     assert (np.bincount(rows.row, minlength=4) + rows.ended == 120).all()
     assert (np.bincount(rows.row, minlength=4) > 20).all()
     at = surface.evaluate(rows.face, rows.uv).position
-    arc = np.linspace(0, curves.lengths[0], 600)
+    arc = np.linspace(0, curves.lengths[0], 2400)
     border = curves.at(0, arc)
     mesh = surface.tessellate(6)
     points = np.concatenate([surface.evaluate(border.face, border.uv).position, mesh.positions, at])
-    ways = shortest(points, np.arange(600), step * 0.45)[-len(at) :]
+    ways = shortest(points, np.arange(len(arc)), step * 0.45)[-len(at) :]
     wanted = step * rows.row
-    # chords cut corners of the surface, and their directions are not quite those of the way
-    np.testing.assert_allclose(ways[rows.row > 0], wanted[rows.row > 0], rtol=0.025)
+    # Most of this is the error of the ways: their chords have not quite the right directions. With
+    # level 7 the largest difference is 0.25 %.
+    np.testing.assert_allclose(ways[rows.row > 0], wanted[rows.row > 0], rtol=0.01)
 
 
 def test_rows_run_beside_the_curve():
