@@ -60,32 +60,47 @@ Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& norma
   return result;
 }
 
-PrincipalCurvatures principalCurvatures(const Jet& jet) {
-  const double first = std::max(jet.patch.du.abs().maxCoeff(), jet.patch.dv.abs().maxCoeff());
-  const Vector3 du = jet.patch.du.head<3>() / first, dv = jet.patch.dv.head<3>() / first;
-  const Vector3 n = unitNormal(du, dv);
+double FundamentalForms::sine() const {
+  const double lengths = du.norm() * dv.norm();
+  return lengths > 0 ? cross.norm() / lengths : 0;
+}
+
+FundamentalForms fundamentalForms(const Jet& jet) {
+  const auto largestOf = [](const auto&... derivatives) {
+    const double largest = std::max({derivatives.abs().maxCoeff()...});
+    return largest > 0 ? largest : 1;
+  };
+  const double first = largestOf(jet.patch.du, jet.patch.dv);
+  const double second = largestOf(jet.patch.duu, jet.patch.duv, jet.patch.dvv);
+  FundamentalForms forms;
+  forms.du = jet.patch.du.head<3>() / first;
+  forms.dv = jet.patch.dv.head<3>() / first;
+  forms.cross = forms.du.cross(forms.dv);
+  const Vector3 n = unitNormal(forms.du, forms.dv);
+  const auto bend = [&](const Padded& derivative) {
+    return (derivative / second).matrix().head<3>().dot(n);
+  };
+  forms.uu = bend(jet.patch.duu);
+  forms.uv = bend(jet.patch.duv);
+  forms.vv = bend(jet.patch.dvv);
+  forms.scale = std::ldexp(second / first / first, jet.exponent);
+  return forms;
+}
+
+PrincipalCurvatures principalCurvatures(const FundamentalForms& forms) {
+  const Vector3 n = unitDirection(forms.cross);
   if (!n.allFinite()) {
     return {kNaN, kNaN, Vector3::Constant(kNaN), Vector3::Constant(kNaN)};
   }
-  double second = std::max({jet.patch.duu.abs().maxCoeff(), jet.patch.duv.abs().maxCoeff(),
-                            jet.patch.dvv.abs().maxCoeff()});
-  if (second == 0) {
-    second = 1;
-  }
   // In the orthonormal basis (x, y) of the tangent plane du = (a, 0), dv = (b, c).
-  const Vector3 x = du.normalized(), y = n.cross(x);
-  const double a = du.norm(), b = dv.dot(x), c = dv.dot(y);
-  const double uu = (jet.patch.duu / second).matrix().head<3>().dot(n);
-  const double uv = (jet.patch.duv / second).matrix().head<3>().dot(n);
-  const double vv = (jet.patch.dvv / second).matrix().head<3>().dot(n);
-  const double xx = uu / (a * a);
-  const double xy = (uv - b * a * xx) / (a * c);
-  const double yy = (vv - 2 * b * c * xy - b * b * xx) / (c * c);
-
-  const double scale = std::ldexp(second / first / first, jet.exponent);
+  const Vector3 x = forms.du.normalized(), y = n.cross(x);
+  const double a = forms.du.norm(), b = forms.dv.dot(x), c = forms.cross.norm() / a;
+  const double xx = forms.uu / (a * a);
+  const double xy = (forms.uv - b * a * xx) / (a * c);
+  const double yy = (forms.vv - 2 * b * c * xy - b * b * xx) / (c * c);
   PrincipalCurvatures result = principalCurvatures({xx, xy, yy}, x, y);
-  result.k1 *= scale;
-  result.k2 *= scale;
+  result.k1 *= forms.scale;
+  result.k2 *= forms.scale;
   return result;
 }
 

@@ -27,8 +27,24 @@ struct PrincipalCurvatures {
   Vector3 direction1, direction2;
 };
 
+/// What curvature is made of. Lengths and parameters are in units in which nothing overflows or
+/// underflows.
+struct FundamentalForms {
+  Vector3 du, dv;
+  Vector3 cross;      ///< du x dv; may be more accurate than the product of `du` and `dv`
+  double uu, uv, vv;  ///< the second derivatives' parts along the normal (second form: L, M, N)
+  double scale = 1;   ///< of curvatures that are computed from these forms, against those in space
+
+  /// Of the angle between du and dv; 0 where either vanishes.
+  double sine() const;
+};
+
+/// The second derivatives' parts along the normal are taken from the sums that they are. Deep in a
+/// ring tile they are small beside the sums: TileEvaluator::fundamentalForms() keeps their digits.
+FundamentalForms fundamentalForms(const Jet& jet);
+
 /// All members are NaN where du x dv vanishes or is NaN.
-PrincipalCurvatures principalCurvatures(const Jet& jet);
+PrincipalCurvatures principalCurvatures(const FundamentalForms& forms);
 
 /// The second fundamental form on two perpendicular unit vectors x and y of the tangent plane.
 struct ShapeOperator {

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limitsurf/surface/curvature/irregular_curvature.h"
 #include "limitsurf/surface/differential.h"
-#include "limitsurf/surface/irregular_curvature.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/vertex_limit.h"
 
@@ -165,7 +165,7 @@ Curvature LimitSurface::curvature(const LocationBatch& at, IrregularRule rule, d
                  [&](Eigen::Index row, const TileLocation& place, TileEvaluator& evaluator) {
                    Jet jet;
                    evaluator.evaluate<2>(place, jet);
-                   put(row, principalCurvatures(jet));
+                   put(row, principalCurvatures(evaluator.fundamentalForms(place, jet)));
                    out.irregular[row] = place.atVertex();
                    if (place.atVertex()) {
                      rings[row] = data_->table.ring_tiles[place.tile.index].ring;

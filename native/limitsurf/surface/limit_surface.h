@@ -57,17 +57,18 @@ enum class IrregularRule {
 
 /// The default radius, as a share of an edge, within which curvature is averaged around an
 /// irregular vertex: small beside any detail of the surface, and far above the radii at which
-/// kAverageCurvatureError hides the curvature.
+/// curvature loses digits.
 constexpr double kCurvatureRadius = 1. / 64;
 
 /// Throws std::invalid_argument unless 0 < radius <= 1/2.
 void checkCurvatureRadius(double radius);
 
-/// Averaged curvature: relative to what curvature would be if second derivatives all pointed along
-/// the normal, (|duu| + |duv| + |dvv|) / min(|du|, |dv|)^2, where that is largest among the
-/// averaged places. For tiny radii this is much more than the curvature itself: at 2^-40 no digit
-/// of it is left.
-constexpr double kAverageCurvatureError = 1e-9;
+/// Curvature, relative to the larger of |k1| and |k2| (gaussian: three times this, relative to its
+/// square), and averaged curvature, relative to the largest of them among the averaged places.
+/// Measured, on surfaces that bend: curvatures that the rounding of positions alone would make are
+/// rounding. Holds to 2^-40 of a face beside irregular vertices of up to 64 faces; further in, more
+/// and more digits are lost where the eigenvalues of the largest modes are equal or close.
+constexpr double kCurvatureError = 1e-9;
 
 /// Sparse linear weights on the control mesh's vertices, one row per location (CSR).
 struct Stencils {
@@ -200,7 +201,7 @@ class LimitSurface {
   ///   (1) all locations that name the same vertex in the same sector get the same bits;
   ///   (2) a mesh that is subdivided once gives the same at twice the radius.
   ///
-  /// Error: kAverageCurvatureError. Throws std::invalid_argument for a radius outside (0, 1/2].
+  /// Error: kCurvatureError. Throws std::invalid_argument for a radius outside (0, 1/2].
   /// Cost: O(Ptex faces) if any row needs an average, and O(valence^2) for each vertex.
   Curvature curvature(const LocationBatch& at, IrregularRule rule = IrregularRule::none,
                       double radius = kCurvatureRadius, int threads = 0) const;

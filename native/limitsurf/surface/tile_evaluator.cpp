@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/tile_weights.h"
@@ -151,55 +150,47 @@ void TileEvaluator::evaluateByModes(const RingTile& tile, int index, int steps,
 }
 
 Vector3 TileEvaluator::normalDirection(const TileLocation& at, const Jet& jet) {
-  const auto direct = [&]() -> Vector3 {
-    return unitNormal(jet.patch.du.head<3>(), jet.patch.dv.head<3>());
-  };
-  if (at.tile.kind != TileRef::kRing) {
-    return direct();
+  if (needsModeProducts(at)) {
+    ModeProducts products;
+    gatherModes(at, 1, products);
+    return unitDirection(products.cross());
   }
+  return unitNormal(jet.patch.du.head<3>(), jet.patch.dv.head<3>());
+}
+
+FundamentalForms TileEvaluator::fundamentalForms(const TileLocation& at, const Jet& jet) {
+  if (!needsModeProducts(at)) {
+    return limitsurf::fundamentalForms(jet);
+  }
+  ModeProducts products;
+  gatherModes(at, 2, products);
+  FundamentalForms forms = products.fundamentalForms();
+  // Weights of second derivatives lack this factor; see Eigenbasis::weights().
+  forms.scale = std::ldexp(forms.scale, Quarter(at.u, at.v).steps - 1);
+  return forms;
+}
+
+bool TileEvaluator::needsModeProducts(const TileLocation& at) {
+  return at.tile.kind == TileRef::kRing && !at.atVertex() &&
+         Quarter(at.u, at.v).steps > kStepsToParallel;
+}
+
+void TileEvaluator::gatherModes(const TileLocation& at, int order, ModeProducts& products) {
   const int index = static_cast<int>(at.tile.index);
   const RingTile& tile = table_.ring_tiles[index];
   const Quarter quarter(at.u, at.v);
-  const Points& modes = pose_.ring(tile.ring).coefficients;
-  if (quarter.steps <= kStepsToParallel || modes.rows() > kMostPairedModes) {
-    return direct();
-  }
   table_.rings[tile.ring].basis->weights(tile.face, quarter.steps, tile.ring_steps,
-                                         gridWindow(quarter, tile.sides, 1), mode_weights_,
+                                         gridWindow(quarter, tile.sides, order), mode_weights_,
                                          outer_weights_);
-  // du x dv = sum over pairs of (a_i b_j - a_j b_i) p_i x p_j.
-  struct Share {
-    double a, b;
-    Vector3 p;
-  };
-  std::vector<Share> shares;
-  double largest = 0;
-  const auto add = [&](double a, double b, const Vector3& p) {
-    shares.push_back({a, b, p});
-    largest = std::max({largest, std::abs(a), std::abs(b)});
-  };
+  const Points& modes = pose_.ring(tile.ring).coefficients;
+  products = ModeProducts(order, modes.rows() - 1 + outer_weights_.cols());
   for (Eigen::Index i = 1; i < modes.rows(); ++i) {
-    add(mode_weights_(1, i), mode_weights_(2, i), modes.row(i).transpose());
+    products.add(mode_weights_.col(i), modes.row(i).transpose());
   }
   for (Eigen::Index i = 0; i < outer_weights_.cols(); ++i) {
-    add(outer_weights_(1, i), outer_weights_(2, i),
-        pose_.ringTile(index).outer[i].head<3>().matrix());
+    products.add(outer_weights_.col(i), pose_.ringTile(index).outer[i].head<3>().matrix());
   }
-  if (!(largest > 0)) {
-    return direct();
-  }
-  for (Share& share : shares) {
-    share.a /= largest;
-    share.b /= largest;
-  }
-  Vector3 normal = Vector3::Zero();
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    for (std::size_t j = i + 1; j < shares.size(); ++j) {
-      const Share &s = shares[i], &t = shares[j];
-      normal += (s.a * t.b - t.a * s.b) * s.p.cross(t.p);
-    }
-  }
-  return unitDirection(normal);
+  products.sort();
 }
 
 template void TileEvaluator::evaluate<0>(const TileLocation&, Jet&);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "limitsurf/patch/tile_table.h"
+#include "limitsurf/surface/curvature/mode_products.h"
+#include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/jet.h"
 #include "limitsurf/surface/pose.h"
 
@@ -37,13 +39,23 @@ class TileEvaluator {
   /// product loses all its digits. There the products of different modes are added up instead.
   Vector3 normalDirection(const TileLocation& at, const Jet& jet);
 
+  /// The forms, for curvature, where the jet was evaluated, with second derivatives.
+  ///
+  /// Deep in a ring tile the second derivatives lie almost in the tangent plane. There their parts
+  /// along the normal are added up from products of three modes each.
+  FundamentalForms fundamentalForms(const TileLocation& at, const Jet& jet);
+
  private:
-  /// Up to so many steps du x dv itself keeps kNormalError: the angle between du and dv is about
-  /// 2^-steps at least, so that their product loses 8 bits at most.
+  /// Up to so many steps products of the sums themselves are taken. Between du and dv the angle is
+  /// then about 2^-steps at least, so that du x dv loses 8 bits at most. Second derivatives are
+  /// about 2^steps times their part along the normal at most, which loses as many.
   static constexpr int kStepsToParallel = 8;
-  /// Products of all pairs of modes take time that grows with the square of their number. With more
-  /// modes than this, du x dv is taken.
-  static constexpr int kMostPairedModes = 256;
+
+  /// Whether the location lies so deep in a ring tile that products of modes have to be taken.
+  static bool needsModeProducts(const TileLocation& at);
+  /// The modes of a ring tile and its outer points, with their weights at a location: first
+  /// derivatives, for order 2 second ones as well.
+  void gatherModes(const TileLocation& at, int order, ModeProducts& products);
 
   template <int Order>
   void evaluateBSpline(const TileLocation& at, Jet& jet);

@@ -141,8 +141,8 @@ If the vertex has no normal, the plane is perpendicular to the mean of the norma
 at which the surface is singular (du x dv = 0) or has an opposite normal are left out. If none remains,
 and at singular places anywhere, the result is NaN.
 
-Error bound of averages: 1e-9 of the curvature that second derivatives of the same length along the
-normal would have; below a radius of about 2^-40 no digit remains. Cost: as evaluate(), and O(valence^2)
+Error bound: 1e-9 of the larger of |k1| and |k2|, down to 2^-40 of a face beside irregular vertices of up
+to 64 faces; of averages, 1e-9 of the largest averaged curvature, for radii from 2^-40 on. Cost: as evaluate(), and O(valence^2)
 for each such vertex, and O(faces) for each 131,072 locations if any is at such a vertex.
 
 Raises ValueError for a radius outside (0, 1/2], MeshError for another `irregular`, and all errors that

@@ -16,6 +16,12 @@ namespace {
 
 Real power(int exponent) { return boost::multiprecision::ldexp(Real(1), exponent); }
 
+Real dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+Point cross(const Point& a, const Point& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 /// A refined face: either a patch, or an irregular face with those of its children that were asked
 /// for so far.
 struct Node {
@@ -112,7 +118,18 @@ struct DeepSubdivision::Data {
 DeepSubdivision::DeepSubdivision(const Cage& cage) : data_(std::make_unique<Data>(cage)) {}
 DeepSubdivision::~DeepSubdivision() = default;
 
-Truth DeepSubdivision::evaluate(const Location& at) {
+/// The B-spline patch of a location, and where in the patch the location lies.
+struct DeepSubdivision::Patch {
+  const Node* node;
+  double u, v;
+  int level;
+
+  Point derivative(int du, int dv) const {
+    return power(level * (du + dv)) * test::evaluate(node->grid, Real(u), Real(v), du, dv);
+  }
+};
+
+DeepSubdivision::Patch DeepSubdivision::patchAt(const Location& at) {
   Node* node = &data_->root(at.face);
   double u = at.u, v = at.v;
   int level = 0;
@@ -128,17 +145,47 @@ Truth DeepSubdivision::evaluate(const Location& at) {
     }
     node = child.get();
   }
-  const auto spline = [&](int du, int dv) {
-    return power(level * (du + dv)) * test::evaluate(node->grid, Real(u), Real(v), du, dv);
-  };
-  const Point du = spline(1, 0), dv = spline(0, 1);
-  const Point cross = {du.y * dv.z - du.z * dv.y, du.z * dv.x - du.x * dv.z,
-                       du.x * dv.y - du.y * dv.x};
-  const Real length = sqrt(cross.x * cross.x + cross.y * cross.y + cross.z * cross.z);
-  Vector3 normal = Vector3::Constant(NAN);
-  if (length > 0) normal = rounded((1 / length) * cross);
-  return {{rounded(node->mesh.origin + spline(0, 0)), rounded(du), rounded(dv),
-           rounded(spline(2, 0)), rounded(spline(1, 1)), rounded(spline(0, 2)), normal}};
+  return {node, u, v, level};
+}
+
+Truth DeepSubdivision::evaluate(const Location& at) {
+  const Patch patch = patchAt(at);
+  const Point du = patch.derivative(1, 0), dv = patch.derivative(0, 1);
+  const Point normal = cross(du, dv);
+  const Real length = sqrt(dot(normal, normal));
+  return {{rounded(patch.node->mesh.origin + patch.derivative(0, 0)), rounded(du), rounded(dv),
+           rounded(patch.derivative(2, 0)), rounded(patch.derivative(1, 1)),
+           rounded(patch.derivative(0, 2)),
+           length > 0 ? rounded((1 / length) * normal) : Vector3::Constant(NAN)}};
+}
+
+TrueCurvature DeepSubdivision::curvature(const Location& at) {
+  const Patch patch = patchAt(at);
+  const Point du = patch.derivative(1, 0), dv = patch.derivative(0, 1);
+  const Point across = cross(du, dv);
+  const Real area = sqrt(dot(across, across));
+  if (!(area > 0)) return {NAN, NAN, NAN, NAN, Vector3::Constant(NAN), 0};
+  const Point n = (1 / area) * across;
+  const Real E = dot(du, du), F = dot(du, dv), G = dot(dv, dv);
+  const Real L = dot(patch.derivative(2, 0), n), M = dot(patch.derivative(1, 1), n),
+             N = dot(patch.derivative(0, 2), n);
+  const Real mean = (E * N - 2 * F * M + G * L) / (2 * area * area);
+  const Real gaussian = (L * N - M * M) / (area * area);
+  const Real square = mean * mean - gaussian;
+  const Real radius = square > 0 ? Real(sqrt(square)) : Real(0);
+  const Real k1 = mean + radius, k2 = mean - radius;
+  // (x, y) with (L - k1 E) x + (M - k1 F) y = 0 and (M - k1 F) x + (N - k1 G) y = 0; the longer of
+  // the two solutions.
+  const Real l = L - k1 * E, m = M - k1 * F, g = N - k1 * G;
+  const Point first = m * du - l * dv, second = g * du - m * dv;
+  const Point direction = dot(first, first) > dot(second, second) ? first : second;
+  const Real length = sqrt(dot(direction, direction));
+  return {static_cast<double>(k1),
+          static_cast<double>(k2),
+          static_cast<double>(mean),
+          static_cast<double>(gaussian),
+          length > 0 ? rounded((1 / length) * direction) : Vector3::Constant(NAN),
+          static_cast<double>(area)};
 }
 
 Truth DeepSubdivision::corner(int face, int corner) {

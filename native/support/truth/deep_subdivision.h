@@ -9,6 +9,13 @@
 
 namespace limitsurf::test {
 
+/// Curvature at a place, each number the double nearest to the truth.
+struct TrueCurvature {
+  double k1, k2, mean, gaussian;
+  Vector3 direction1;  ///< along which the surface bends by k1, either way round
+  double area;         ///< |du x dv|
+};
+
 /// The limit surface by subdivision alone: an independent witness for LimitSurface.
 ///
 /// The faces around the location's face are refined by the rules of Catmull and Clark and of
@@ -30,6 +37,11 @@ class DeepSubdivision {
   /// at irregular vertices. The normal is NaN where du x dv vanishes.
   Truth evaluate(const Location& at);
 
+  /// Curvature by the textbook formulas, in the same numbers of 50 digits: unlike what the rounded
+  /// derivatives of evaluate() would give, it keeps all digits beside irregular vertices. NaN where
+  /// du x dv vanishes. Throws std::runtime_error exactly at irregular vertices.
+  TrueCurvature curvature(const Location& at);
+
   /// The quantities at a face's corner that is an irregular vertex. The position is that of the
   /// vertex after so many levels that it does not move any more. Along infinitely sharp edges that
   /// bound a sector, du, dv, duu and dvv are those of the crease curve, which is a B-spline; around
@@ -39,6 +51,10 @@ class DeepSubdivision {
 
  private:
   struct Data;
+  struct Patch;
+
+  Patch patchAt(const Location& at);
+
   std::unique_ptr<Data> data_;
 };
 

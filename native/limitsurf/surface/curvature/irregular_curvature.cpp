@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/surface/irregular_curvature.h"
+#include "limitsurf/surface/curvature/irregular_curvature.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -112,12 +112,15 @@ IrregularCurvature::Place IrregularCurvature::place(TileEvaluator& evaluator, in
   const bool is_quad = ptex_.first[base + 1] - ptex_.first[base] == 1;
   const double edge = is_quad ? 1 : 2;  // its length in u and v: a sub-face's sides are half edges
   Jet jet;
-  evaluator.evaluate<2>(locate(evaluator, ring_tile, edge * radius_, number), jet);
+  const TileLocation at = locate(evaluator, ring_tile, edge * radius_, number);
+  evaluator.evaluate<2>(at, jet);
+  const FundamentalForms forms = evaluator.fundamentalForms(at, jet);
   const Vector3 du = jet.patch.du.head<3>(), dv = jet.patch.dv.head<3>();
   Place result;
-  result.curvature = principalCurvatures(jet);
+  result.curvature = principalCurvatures(forms);
   result.scale = std::max(du.cwiseAbs().maxCoeff(), dv.cwiseAbs().maxCoeff());
-  result.area = result.scale > 0 ? (du / result.scale).cross(dv / result.scale).norm() : 0;
+  result.area =
+      result.scale > 0 ? (du / result.scale).norm() * (dv / result.scale).norm() * forms.sine() : 0;
   result.scale *= edge;
   return result;
 }
