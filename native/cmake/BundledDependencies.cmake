@@ -5,7 +5,8 @@
 # with no other code of the process.
 #
 # Both sources are fetched, unless FETCHCONTENT_SOURCE_DIR_OPENSUBDIV and FETCHCONTENT_SOURCE_DIR_TBB
-# name folders that hold them.
+# name folders that hold them. So are Eigen's headers where Eigen is not installed
+# (FETCHCONTENT_SOURCE_DIR_EIGEN).
 include(FetchContent)
 
 # The folder that SOURCE_SUBDIR names does not exist: OpenSubdiv's own CMake project, which looks for
@@ -19,6 +20,17 @@ FetchContent_Declare(tbb
   URL_HASH SHA256=eee380323bb7ce864355ed9431f85c43955faaae9e9bce35c62b372d7ffd9f8b
   SOURCE_SUBDIR none)
 FetchContent_MakeAvailable(opensubdiv tbb)
+
+find_package(Eigen3 3.4 CONFIG QUIET)
+if(NOT Eigen3_FOUND)
+  FetchContent_Declare(eigen
+    URL https://gitlab.com/libeigen/eigen/-/archive/3.4.0/eigen-3.4.0.tar.bz2
+    URL_HASH SHA256=b4c198460eba6f28d34894e3a5710998818515104d6e74e5cc331ce31e46e626
+    SOURCE_SUBDIR none)
+  FetchContent_MakeAvailable(eigen)
+  add_library(Eigen3::Eigen INTERFACE IMPORTED GLOBAL)
+  target_include_directories(Eigen3::Eigen INTERFACE ${eigen_SOURCE_DIR})
+endif()
 
 # The library needs the first three parts of OpenSubdiv; tests and benchmarks compare it with Bfr.
 file(GLOB LIMITSURF_OPENSUBDIV_SOURCES CONFIGURE_DEPENDS
@@ -49,6 +61,9 @@ endforeach()
 # objects.
 find_package(Threads REQUIRED)
 add_library(limitsurf_opensubdiv_headers INTERFACE)
+if(WIN32)
+  target_compile_definitions(limitsurf_opensubdiv_headers INTERFACE _USE_MATH_DEFINES)
+endif()
 target_include_directories(limitsurf_opensubdiv_headers SYSTEM INTERFACE ${opensubdiv_SOURCE_DIR})
 add_library(limitsurf_tbb_headers INTERFACE)
 target_include_directories(limitsurf_tbb_headers SYSTEM INTERFACE ${tbb_SOURCE_DIR}/include)

@@ -26,7 +26,7 @@ Eigenbasis::Eigenbasis(const Ring& ring) : ring_(ring), step_(ring) { Builder(*t
 
 int Eigenbasis::parts(int m, bool plus, int face, Part out[2]) const {
   const int first = firstMode(m);
-  const long turn = 2L * m * face;
+  const std::int64_t turn = edgeAngle(m, face);
   if (rotates()) {
     if (alternates(m)) {
       out[0] = plus ? Part{first, cosAt(turn), 0} : Part{first + 1, 0, cosAt(turn)};
@@ -86,10 +86,10 @@ std::vector<double> Eigenbasis::ringVector(int mode) const {
       const std::vector<double>& wave = part[p].cosine != 0 ? cos_ : sin_;
       const Spoke& spoke = spokes_[pairIndex(m, plus)];
       for (int i = 0; i < ring_.edges(); ++i) {
-        ring[ring_.edge(i)] = spoke.edge * wave[2L * m * i % period_];
+        ring[ring_.edge(i)] = spoke.edge * wave[edgeAngle(m, i) % period_];
       }
       for (int j = 0; j < ring_.faces; ++j) {
-        ring[ring_.face(j)] = spoke.face * wave[m * (2L * j + 1) % period_];
+        ring[ring_.face(j)] = spoke.face * wave[faceAngle(m, j) % period_];
       }
     }
   }

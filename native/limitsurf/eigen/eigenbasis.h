@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -169,8 +170,14 @@ class Eigenbasis {
   int fixedCount() const { return ring_.kind == RingKind::dart ? 0 : 2; }
   /// The first of a dart's symmetric modes.
   int firstSymmetric() const { return ring_.faces; }
-  double cosAt(long i) const { return cos_[static_cast<std::size_t>(i % period_)]; }
-  double sinAt(long i) const { return sin_[static_cast<std::size_t>(i % period_)]; }
+  /// Where spoke e_i and face point f_j of mode m stand in the tables cos_ and sin_, before they
+  /// are taken modulo period_. A product of two valences may exceed 32 bits.
+  static std::int64_t edgeAngle(int m, int i) { return 2 * std::int64_t{m} * i; }
+  static std::int64_t faceAngle(int m, int j) {
+    return std::int64_t{m} * (2 * std::int64_t{j} + 1);
+  }
+  double cosAt(std::int64_t i) const { return cos_[static_cast<std::size_t>(i % period_)]; }
+  double sinAt(std::int64_t i) const { return sin_[static_cast<std::size_t>(i % period_)]; }
   const Fixed& fixed(int face) const { return fixed_[ring_.closed() ? 0 : face]; }
   double rest(int face, int q) const { return dart_ ? dart_->rest(face, q) : rest_[q]; }
 
@@ -187,7 +194,7 @@ class Eigenbasis {
 
   Ring ring_;
   RingStep<double> step_;
-  long period_;  // of the tables cos_ and sin_
+  std::int64_t period_;  // of the tables cos_ and sin_
   std::vector<double> cos_, sin_;
   std::vector<double> lambda_;
   std::vector<Spoke> spokes_;  // by pairIndex

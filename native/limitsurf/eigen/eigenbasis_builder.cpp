@@ -2,6 +2,7 @@
 #include "limitsurf/eigen/eigenbasis_builder.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "limitsurf/eigen/ring_slots.h"
 
@@ -39,7 +40,7 @@ void Eigenbasis::Builder::build() {
 /// j at (2 pi / 2N) m (2 j + 1). In a sector spoke i stands at pi m i / k = (2 pi / 4k) 2 m i, and
 /// face j likewise.
 void Eigenbasis::Builder::buildCircle() {
-  basis_.period_ = ring_.closed() ? 2L * ring_.faces : 4L * ring_.faces;
+  basis_.period_ = (ring_.closed() ? 2 : 4) * std::int64_t{ring_.faces};
   const Circle<Real> circle(basis_.period_);
   for (std::int64_t i = 0; i < basis_.period_; ++i) {
     circle_.push_back(circle.at(i));

@@ -31,15 +31,15 @@ struct WaveSums {
 /// period.
 WaveSums waveSums(const Ring& ring, const Points& points, int m, const std::vector<double>& cos,
                   const std::vector<double>& sin) {
-  const long period = static_cast<long>(cos.size()), step = 2L * m;
-  const auto advance = [&](long& angle) {
+  const std::int64_t period = static_cast<std::int64_t>(cos.size()), step = 2 * std::int64_t{m};
+  const auto advance = [&](std::int64_t& angle) {
     angle += step;
     while (angle >= period) {
       angle -= period;
     }
   };
   WaveSums sums;
-  long edge_angle = 0, face_angle = m;
+  std::int64_t edge_angle = 0, face_angle = m;
   while (face_angle >= period) {
     face_angle -= period;
   }
@@ -126,10 +126,10 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
         const std::vector<double>& wave = part[p].cosine != 0 ? cos_ : sin_;
         const auto weight = norm * spoke.scale * mode_weights.row(part[p].mode);
         for (int i = 0; i < edges; ++i) {
-          ring.row(ring_.edge(i)) += spoke.edge * wave[2L * m * i % period_] * weight;
+          ring.row(ring_.edge(i)) += spoke.edge * wave[edgeAngle(m, i) % period_] * weight;
         }
         for (int j = 0; j < faces; ++j) {
-          ring.row(ring_.face(j)) += spoke.face / 4 * wave[m * (2L * j + 1) % period_] * weight;
+          ring.row(ring_.face(j)) += spoke.face / 4 * wave[faceAngle(m, j) % period_] * weight;
         }
       }
     }

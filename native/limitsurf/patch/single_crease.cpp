@@ -84,7 +84,7 @@ CubicWeights SingleCrease::weights(double t, bool cut) const {
   return w;
 }
 
-int SingleCrease::strips(double borders[]) const {
+int SingleCrease::strips(double borders[kMostStrips + 1]) const {
   int count = 0;
   borders[0] = 0;
   if (remainder_ > 0) {

@@ -454,6 +454,46 @@ TEST(Eigenbasis, OfLargeDartsReachesAStep) {
   }
 }
 
+// Twice the product of two numbers up to these valences exceeds 2^31.
+constexpr Ring kRingsBeyond32Bits[] = {{RingKind::interior, 50000}, {RingKind::pinned, 33000}};
+
+TEST(Eigenbasis, OfLargeValencesHasItsModesOnEveryFace) {
+  for (const Ring& ring : kRingsBeyond32Bits) {
+    const Eigenbasis basis(ring);
+    for (const int mode : {3, basis.modeCount() / 2, basis.modeCount() - 2}) {
+      const double lambda = basis.eigenvalue(mode);
+      const std::vector<double> vector = basis.ringVector(mode);
+      const Eigen::Map<const Eigen::VectorXd> before(vector.data(), ring.size());
+      const auto after = subdivideRing<Eigen::MatrixXd>(ring, before);
+      EXPECT_GE(before.cwiseAbs().maxCoeff(), 0.5) << describe(ring) << ", mode " << mode;
+      EXPECT_LE((after - lambda * before).cwiseAbs().maxCoeff(), 1e-15)
+          << describe(ring) << ", mode " << mode;
+      for (const int face : {0, ring.faces / 2, ring.faces - 1}) {
+        const Eigenbasis::Table table = basis.table(mode, face);
+        forEachRingSlot(ring, face, [&](int slot, int point) {
+          EXPECT_NEAR(table.grid[slot], lambda * vector[point], 1e-15)
+              << describe(ring) << ", mode " << mode << ", face " << face << ", slot " << slot;
+        });
+      }
+    }
+  }
+}
+
+TEST(SlowEigenbasis, OfLargeValencesHasItsDualVectors) {
+  const Ring ring = kRingsBeyond32Bits[1];
+  const Eigenbasis basis(ring);
+  const int mode = basis.modeCount() - 2;
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(basis.modeCount(), 1);
+  weights(mode, 0) = 1;
+  const Eigen::MatrixXd left = basis.projectTransposed(weights);
+  for (const int other : {3, basis.modeCount() / 2, mode - 1, mode, mode + 1}) {
+    const std::vector<double> vector = basis.ringVector(other);
+    const double product =
+        left.col(0).dot(Eigen::Map<const Eigen::VectorXd>(vector.data(), ring.size()));
+    EXPECT_NEAR(product, other == mode ? 1 : 0, 1e-13) << "mode " << other;
+  }
+}
+
 /// How much a control point of a face may move, relative to the ring's size, if the coefficient of
 /// each mode moves as far as rounding may move it (docs/accuracy.md): the sum over modes of
 /// lambda^(steps - 1), the size of the mode, and the size of its left eigenvector.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "limitsurf/geodesic/guide_weights.h"
+#include "limitsurf/pi.h"
 #include "limitsurf/sample/jittered_sampling.h"
 #include "limitsurf/search/surface_search.h"
 #include "support/cages/meshes.h"
@@ -130,7 +131,7 @@ TEST(CurveCuts, KeepInsideAndOutsideOfAClosedCurveApart) {
   Curve circle;
   const int count = 240;
   for (int i = 0; i < count; ++i) {
-    const double turn = 2 * M_PI * i / count;
+    const double turn = 2 * kPi<double> * i / count;
     circle.emplace_back(3 + 1.7 * std::cos(turn), 3 + 1.7 * std::sin(turn), 0);
   }
   circle.push_back(circle.front());
@@ -186,9 +187,9 @@ TEST(CurveCuts, AreGeodesicOnACylinder) {
       vertex -= vertex % (sides + 1) == sides ? sides : 0;
     }
   }
-  const double height = 2 * M_PI;
+  const double height = 2 * kPi<double>;
   for (Eigen::Index vertex = 0; vertex < cage.positions.rows(); ++vertex) {
-    const double turn = 2 * M_PI * cage.positions(vertex, 0) / sides;
+    const double turn = 2 * kPi<double> * cage.positions(vertex, 0) / sides;
     const double z = height * cage.positions(vertex, 1) / sides;
     cage.positions.row(vertex) << std::cos(turn), std::sin(turn), z;
   }
@@ -202,7 +203,7 @@ TEST(CurveCuts, AreGeodesicOnACylinder) {
   const Points p = surface.evaluate(at).position, g = surface.evaluate(guides).position;
   const auto angle = [&](const Points& rows, Eigen::Index row) {
     const double turn = std::atan2(rows(row, 1), rows(row, 0)) - cut;
-    return turn < 0 ? turn + 2 * M_PI : turn;  // since the cut
+    return turn < 0 ? turn + 2 * kPi<double> : turn;  // since the cut
   };
   int detours = 0;
   for (std::size_t entry = 0; entry < found.guide.size(); ++entry) {
@@ -212,7 +213,7 @@ TEST(CurveCuts, AreGeodesicOnACylinder) {
     const double turn = std::abs(angle(p, row) - angle(g, found.guide[entry]));
     const double truth = std::hypot(radius * turn, p(row, 2) - g(found.guide[entry], 2));
     EXPECT_NEAR(found.distance[entry], truth, kGuideDistanceError * std::max(truth, height / 200));
-    detours += turn > M_PI;
+    detours += turn > kPi<double>;
   }
   EXPECT_GT(detours, 100);
 }
@@ -299,7 +300,7 @@ TEST(CurveCuts, GoOnOverExtraordinaryVerticesAndCreases) {
   for (const double side : {-1., 1.}) {
     Curve ring;
     for (int i = 0; i <= 48; ++i) {
-      const double turn = 2 * M_PI * i / 48;
+      const double turn = 2 * kPi<double> * i / 48;
       ring.emplace_back(side * (outer - tube + tube * std::cos(turn)), 0.03, tube * std::sin(turn));
     }
     ring.back() = ring.front();

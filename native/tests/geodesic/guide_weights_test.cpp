@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "limitsurf/geodesic/unfolding.h"
+#include "limitsurf/pi.h"
 #include "limitsurf/sample/jittered_sampling.h"
 #include "support/cages/meshes.h"
 #include "support/cages/query_cages.h"
@@ -100,9 +101,9 @@ TEST(GuideWeights, AreGeodesicOnACylinder) {
         vertex -= vertex % (sides + 1) == sides ? sides : 0;
       }
     }
-    const double height = 2 * M_PI;
+    const double height = 2 * kPi<double>;
     for (Eigen::Index vertex = 0; vertex < cage.positions.rows(); ++vertex) {
-      const double turn = 2 * M_PI * cage.positions(vertex, 0) / sides;
+      const double turn = 2 * kPi<double> * cage.positions(vertex, 0) / sides;
       const double z = height * cage.positions(vertex, 1) / sides;
       cage.positions.row(vertex) << std::cos(turn), std::sin(turn), z;
     }
@@ -118,7 +119,7 @@ TEST(GuideWeights, AreGeodesicOnACylinder) {
       for (Eigen::Index k = 0; k < g.rows(); ++k) {
         const double radius = p.row(row).head<2>().norm();
         const double turn = std::abs(std::remainder(
-            std::atan2(p(row, 1), p(row, 0)) - std::atan2(g(k, 1), g(k, 0)), 2 * M_PI));
+            std::atan2(p(row, 1), p(row, 0)) - std::atan2(g(k, 1), g(k, 0)), 2 * kPi<double>));
         const double truth = std::hypot(radius * turn, p(row, 2) - g(k, 2));
         EXPECT_NEAR(found(row, k), truth, kGuideDistanceError * std::max(truth, height / sides / 8))
             << sides;
