@@ -11,6 +11,7 @@
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/loop_order.h"
 #include "limitsurf/thread_count.h"
+#include "limitsurf/worker_threads.h"
 
 namespace limitsurf {
 
@@ -20,14 +21,17 @@ constexpr std::size_t kRowsPerTask = 512;
 
 /// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or on at
 /// most `threads` of them. A range has about `grain` elements; InterruptionPoint::pass() is called
-/// after every kGrainsPerSlab of them. What a body does must not depend on how the range is
-/// divided.
+/// after each range that the calling thread has worked on. What a body does must not depend on how
+/// the range is divided.
 template <typename Body>
 void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& body) {
   constexpr std::size_t kGrainsPerSlab = 32;
   const auto slab = [&](std::size_t first, std::size_t last) {
-    if (threads == 1 || last - first <= grain) {
-      body(first, last);
+    if (threads == 1 || last - first <= grain || !workerThreadsExist()) {
+      for (std::size_t begin = first; begin < last; begin += grain) {
+        body(begin, std::min(last, begin + grain));
+        InterruptionPoint::pass();
+      }
       return;
     }
     LoopOrder order;
@@ -36,6 +40,7 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
                         [&](const tbb::blocked_range<std::size_t>& range) {
                           const LoopOrder::Task task(order);
                           body(range.begin(), range.end());
+                          InterruptionPoint::pass();  // it belongs to the calling thread
                         });
     };
     if (threads == 0) {

@@ -12,14 +12,22 @@ namespace limitsurf {
 std::shared_ptr<const Eigenbasis> Eigenbasis::get(const Ring& ring) {
   static std::mutex mutex;
   static std::map<Ring, std::weak_ptr<const Eigenbasis>> bases;
-  const std::lock_guard<std::mutex> lock(mutex);
-  std::weak_ptr<const Eigenbasis>& known = bases[ring];
-  std::shared_ptr<const Eigenbasis> basis = known.lock();
-  if (!basis) {
-    basis = std::make_shared<const Eigenbasis>(ring);
-    known = basis;
+  const auto find = [&]() -> std::weak_ptr<const Eigenbasis>& { return bases[ring]; };
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (std::shared_ptr<const Eigenbasis> known = find().lock()) {
+      return known;
+    }
   }
-  return basis;
+  // Large ones take seconds. The mutex is not held meanwhile: what interrupts the work may open a
+  // surface itself.
+  auto made = std::make_shared<const Eigenbasis>(ring);
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::shared_ptr<const Eigenbasis> known = find().lock();
+  if (!known) {
+    find() = known = std::move(made);
+  }
+  return known;
 }
 
 Eigenbasis::Eigenbasis(const Ring& ring) : ring_(ring), step_(ring) { Builder(*this).build(); }

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "limitsurf/first_made.h"
 #include "limitsurf/search/box_tree.h"
 #include "limitsurf/search/oriented_box.h"
 #include "limitsurf/search/surface_search.h"
@@ -50,8 +50,7 @@ struct SearchTree {
  private:
   static constexpr std::size_t kPatchBytes = std::size_t{64} << 20;
 
-  mutable std::once_flag cones_made_;
-  mutable std::unique_ptr<const NormalCones> cones_;
+  FirstMade<NormalCones> cones_;
 
   /// Appends the pieces of a tile and boxes around them. Cores are split so far that their boxes
   /// fit closely.

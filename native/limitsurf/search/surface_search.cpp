@@ -89,9 +89,7 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
 SearchTree::~SearchTree() = default;
 
 const NormalCones& SearchTree::normalCones(int threads) const {
-  std::call_once(cones_made_,
-                 [&] { cones_ = std::make_unique<const NormalCones>(*this, threads); });
-  return *cones_;
+  return cones_.get([&] { return std::make_unique<const NormalCones>(*this, threads); });
 }
 
 void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const {

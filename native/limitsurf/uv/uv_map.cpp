@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/uv/uv_map.h"
 
-#include <mutex>
-
+#include "limitsurf/first_made.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/uv/uv_raster.h"
 #include "limitsurf/uv/uv_search.h"
@@ -13,19 +12,14 @@ struct UvMap::Data {
   Data(const SurfaceData& map, int threads) : patches(map, threads), search(patches) {}
 
   const UvBorders& borders(int threads) const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!borders_) {
-      borders_ = std::make_unique<UvBorders>(patches, threads);
-    }
-    return *borders_;
+    return borders_.get([&] { return std::make_unique<const UvBorders>(patches, threads); });
   }
 
   UvPatches patches;
   UvSearch search;
 
  private:
-  mutable std::mutex mutex_;
-  mutable std::unique_ptr<UvBorders> borders_;  // made for the first margin
+  FirstMade<UvBorders> borders_;  // made for the first margin
 };
 
 UvMap::UvMap(const SurfaceData& map, int threads)

@@ -49,15 +49,6 @@ void checkDerivatives(int derivatives, int highest) {
   }
 }
 
-InterruptionPoint interruptible() {
-  return InterruptionPoint([] {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) {
-      throw py::error_already_set();
-    }
-  });
-}
-
 py::object locations(const Locations& at) {
   const auto rows = static_cast<py::ssize_t>(at.size());
   py::array_t<int> face(rows);

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <shared_mutex>
 #include <utility>
 #include <vector>
 
 #include "arrays.h"
-#include "limitsurf/interruption_point.h"
 #include "limitsurf/surface/location_batch.h"
 #include "limitsurf/thread_count.h"
 #include "limitsurf/types.h"
+#include "locks/call_lock.h"
+#include "locks/signals.h"
 
 namespace limitsurf::python {
 
@@ -61,18 +61,15 @@ CheckedLocations locationsOn(const Surface& surface, const py::object& face, con
 /// Throws ValueError for an order below 0 or above `highest`.
 void checkDerivatives(int derivatives, int highest);
 
-/// Lets Ctrl-C end the call. It is used by calls that have released the GIL.
-InterruptionPoint interruptible();
-
 /// The number of rows evaluated at a time: the results are copied while they are in the cache.
 constexpr std::size_t kRowsPerChunk = std::size_t{1} << 17;
 
 /// Calls body(first row, locations) for chunk after chunk of a batch, without the GIL. What the
-/// mutex guards does not change meanwhile, and Ctrl-C ends the call.
+/// lock guards does not change meanwhile, and Ctrl-C ends the call.
 template <typename Body>
-void inChunks(std::shared_mutex& mutex, const CheckedLocations& at, const Body& body) {
+void inChunks(const CallLock& lock, const CheckedLocations& at, const Body& body) {
   const py::gil_scoped_release release;
-  const std::shared_lock<std::shared_mutex> lock(mutex);
+  const CallLock::Hold hold(lock);
   const InterruptionPoint point = interruptible();
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerChunk) {
     body(begin, at.part(begin, std::min(kRowsPerChunk, at.size() - begin)));

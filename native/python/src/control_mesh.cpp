@@ -4,6 +4,7 @@
 #include <map>
 
 #include "arrays.h"
+#include "bound_class.h"
 #include "choices.h"
 #include "docstrings.h"
 
@@ -238,7 +239,7 @@ std::string description(const BoundMesh& mesh) {
 }  // namespace
 
 void bindControlMesh(py::module_& module) {
-  MeshClass type(module, "ControlMesh", kControlMeshDoc);
+  auto type = boundClass<MeshClass>(module, "ControlMesh", kControlMeshDoc);
   bindConstructors(type);
   bindArrays(type);
   bindOptions(type);

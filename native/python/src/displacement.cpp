@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "batches.h"
+#include "bound_class.h"
 #include "choices.h"
 #include "displacement_docstrings.h"
 #include "limitsurf/displace/displacement.h"
@@ -24,27 +25,9 @@ const Choices<RayDirection> kDirections = {{"both", RayDirection::both},
                                            {"outward", RayDirection::outward},
                                            {"inward", RayDirection::inward}};
 
-/// SubdividedFaces that Python may have made without initialising them.
-class BoundFaces : public ZeroedMemory {
- public:
-  BoundFaces(const ControlMesh& base, const ControlMesh& subdivided)
-      : faces_(std::make_unique<const SubdividedFaces>(base, subdivided)) {}
-
-  const SubdividedFaces& faces() const {
-    if (!faces_) {
-      throw py::value_error("these SubdividedFaces were never initialised");
-    }
-    return *faces_;
-  }
-
- private:
-  std::unique_ptr<const SubdividedFaces> faces_;
-};
-
-py::object locate(const BoundFaces& bound, const py::object& face, const py::object& uv,
+py::object locate(const SubdividedFaces& faces, const py::object& face, const py::object& uv,
                   int threads) {
   checkThreads(threads);
-  const SubdividedFaces& faces = bound.faces();
   Locations at = locationsOf(faces.baseFaceCount(), face, uv);
   {
     const py::gil_scoped_release release;
@@ -53,20 +36,6 @@ py::object locate(const BoundFaces& bound, const py::object& face, const py::obj
   }
   return locations(at);
 }
-
-/// Keeps the poses of two surfaces unchanged; both may be the same surface.
-class HeldPoses {
- public:
-  HeldPoses(const SharedSurface& first, const SharedSurface& second) : first_(first) {
-    if (&first != &second) {
-      second_.emplace(second);
-    }
-  }
-
- private:
-  HeldPose first_;
-  std::optional<HeldPose> second_;
-};
 
 /// The frames of `rows` locations, or none.
 FrameRows framesOf(const py::object& frames, std::size_t rows) {
@@ -105,13 +74,12 @@ py::object vectorDisplacement(const SharedSurface& base, const SharedSurface& ta
                               const py::object& frames, int threads, const py::object& progress) {
   checkThreads(threads);
   const ProgressReport report(progress);
-  target.surface();
   const CheckedLocations at = locationsOn(base.surface(), face, uv);
   const FrameRows all_frames = framesOf(frames, at.size());
   Output output(py::dtype("float64"), {static_cast<py::ssize_t>(at.size()), 3});
   {
     const py::gil_scoped_release release;
-    const HeldPoses held(base, target);
+    const CallLock::HoldTwo held(base.lock, target.lock);
     const InterruptionPoint point = interruptible();
     const SubdividedFaces faces(*base.mesh, *target.mesh);
     inParts(at, report, [&](std::size_t begin, const LocationBatch& some) {
@@ -132,7 +100,6 @@ py::object scalarDisplacement(const SharedSurface& base, const SharedSurface& ta
                               const py::object& progress) {
   checkThreads(threads);
   const ProgressReport report(progress);
-  target.surface();
   const CheckedLocations at = locationsOn(base.surface(), face, uv);
   const ScalarDisplacementOptions options{max_distance,
                                           choice(direction, "direction", kDirections)};
@@ -140,7 +107,7 @@ py::object scalarDisplacement(const SharedSurface& base, const SharedSurface& ta
   Output output(py::dtype("float64"), {static_cast<py::ssize_t>(at.size())});
   {
     const py::gil_scoped_release release;
-    const HeldPoses held(base, target);
+    const CallLock::HoldTwo held(base.lock, target.lock);
     const InterruptionPoint point = interruptible();
     const SurfaceSearch& search = target.search.get(target.surface(), threads);
     inParts(at, report, [&](std::size_t begin, const LocationBatch& some) {
@@ -169,7 +136,7 @@ py::object displaced(const SharedSurface& shared, const py::object& face, const 
   }
   const FrameRows all_frames = framesOf(frames, at.size());
   Output output(py::dtype("float64"), {rows, 3});
-  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
+  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const double* first = array.data() + begin * (scalar ? 1 : 3);
     const auto count = static_cast<Eigen::Index>(chunk.size());
     const Points moved =
@@ -187,28 +154,28 @@ py::object displaced(const SharedSurface& shared, const py::object& face, const 
 
 void bindSubdividedFaces(py::module_& module) {
   using namespace py::literals;
-  py::class_<BoundFaces>(module, "SubdividedFaces", kSubdividedFacesDoc)
+  boundClass<py::class_<SubdividedFaces>>(module, "SubdividedFaces", kSubdividedFacesDoc)
       .def(py::init([](const BoundMesh& base, const BoundMesh& target) {
              const py::gil_scoped_release release;
              const InterruptionPoint point = interruptible();
-             return std::make_unique<BoundFaces>(base, target);
+             return std::make_unique<SubdividedFaces>(base, target);
            }),
            "base"_a, "subdivided"_a)
       .def_property_readonly(
-          "levels", [](const BoundFaces& b) { return b.faces().levels(); },
+          "levels", [](const SubdividedFaces& b) { return b.levels(); },
           "The number of subdivisions of the base, 0 to 12.")
       .def_property_readonly(
           "order",
-          [](const BoundFaces& b) {
-            return b.faces().order() == FaceOrder::blender ? "blender" : "opensubdiv";
+          [](const SubdividedFaces& b) {
+            return b.order() == FaceOrder::blender ? "blender" : "opensubdiv";
           },
           "'blender' or 'opensubdiv'. Up to one level both orders are the same, and it is "
           "'blender'.")
       .def("locate", &locate, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0,
            kLocateOnSubdividedDoc)
-      .def("__repr__", [](const BoundFaces& b) {
-        return "SubdividedFaces(" + std::to_string(b.faces().baseFaceCount()) +
-               " Ptex faces, levels " + std::to_string(b.faces().levels()) + ")";
+      .def("__repr__", [](const SubdividedFaces& b) {
+        return "SubdividedFaces(" + std::to_string(b.baseFaceCount()) + " Ptex faces, levels " +
+               std::to_string(b.levels()) + ")";
       });
 }
 

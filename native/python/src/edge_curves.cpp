@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "batches.h"
+#include "bound_class.h"
 #include "choices.h"
 #include "edge_curves_docstrings.h"
 #include "limitsurf/curves/edge_curves.h"
@@ -21,21 +22,15 @@ namespace limitsurf::python {
 namespace {
 
 /// Curves, and the pose of which they were made. Python keeps the surface alive as long as this.
-struct BoundEdgeCurves : ZeroedMemory {
+struct BoundEdgeCurves {
   BoundEdgeCurves(const SharedSurface& of, EdgeCurves made)
-      : surface_(&of), pose_(of.pose()), curves_(std::make_unique<EdgeCurves>(std::move(made))) {}
+      : surface_(&of), pose_(of.pose()), curves_(std::move(made)) {}
 
-  const EdgeCurves& curves() const {
-    if (!curves_) {
-      throw py::value_error("this EdgeCurves was never initialised");
-    }
-    return *curves_;
-  }
+  const EdgeCurves& curves() const { return curves_; }
   const SharedSurface& surface() const { return *surface_; }
 
-  /// Throws unless they were made of this surface, as it is now posed. Its mutex must be held.
+  /// Throws unless they were made of this surface, as it is now posed. Its lock must be held.
   void check(const SharedSurface& of) const {
-    curves();
     if (&of != surface_) {
       throw std::invalid_argument("the curves were made by another surface");
     }
@@ -48,7 +43,7 @@ struct BoundEdgeCurves : ZeroedMemory {
  private:
   const SharedSurface* surface_;
   std::uint64_t pose_;
-  std::unique_ptr<EdgeCurves> curves_;
+  EdgeCurves curves_;
 };
 
 CurveSide sideOf(const std::string& side) {
@@ -201,7 +196,7 @@ py::array_t<bool> closedOf(const BoundEdgeCurves& self) {
 
 void bindEdgeCurves(py::module_& module) {
   using namespace py::literals;
-  py::class_<BoundEdgeCurves>(module, "EdgeCurves", kEdgeCurvesDoc)
+  boundClass<py::class_<BoundEdgeCurves>>(module, "EdgeCurves", kEdgeCurvesDoc)
       .def("__len__", [](const BoundEdgeCurves& self) { return self.curves().count(); })
       .def_property_readonly("lengths", &lengthsOf,
                              "(c,) float64: the arc length of each curve, in units of the mesh. "

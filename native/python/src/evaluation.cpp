@@ -24,7 +24,7 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
   for (int i = 0; i < wanted; ++i) {
     outputs[i] = Output(type, {rows, 3});
   }
-  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
+  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const Evaluation e = shared.surface().evaluate(chunk, static_cast<Derivatives>(derivatives),
                                                    derivatives > 0, threads);
     const Points* values[7] = {&e.position, &e.du, &e.dv, &e.normal, &e.duu, &e.duv, &e.dvv};
@@ -43,7 +43,7 @@ py::object frames(const SharedSurface& shared, const py::object& face, const py:
   const py::dtype type = floatType(dtype);
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
-  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
+  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const auto rotations = shared.surface().frames(chunk, threads);
     output.put(9 * begin, rotations.data(), 9 * chunk.size());
   });
@@ -69,7 +69,7 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
   }
   py::array_t<bool> is_irregular(rows);
   bool* flags = is_irregular.mutable_data();
-  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
+  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const Curvature c = shared.surface().curvature(chunk, rule, radius, threads);
     const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
     for (int i = 0; i < 4; ++i) {
@@ -91,7 +91,7 @@ py::object stencils(const SharedSurface& shared, const py::object& face, const p
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   Stencils all;
   all.offsets.push_back(0);
-  inChunks(shared.mutex, at, [&](std::size_t, const LocationBatch& chunk) {
+  inChunks(shared.lock, at, [&](std::size_t, const LocationBatch& chunk) {
     const Stencils part = shared.surface().stencils(chunk, derivatives > 0, threads);
     const std::int64_t before = all.offsets.back();
     for (std::size_t i = 1; i < part.offsets.size(); ++i) {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "batches.h"
+#include "bound_class.h"
 #include "choices.h"
-#include "control_mesh.h"
 #include "limitsurf/image/blend.h"
 #include "limitsurf/image/filtered_image.h"
 #include "limitsurf/project/box_projectors.h"
@@ -34,24 +34,8 @@ const Choices<BlendMode> kBlendModes = {
                               expected);
 }
 
-/// An image that Python may have made without initialising it.
-class BoundImage : public ZeroedMemory {
- public:
-  explicit BoundImage(FilteredImage image)
-      : image_(std::make_unique<FilteredImage>(std::move(image))) {}
-  const FilteredImage& image() const {
-    if (!image_) {
-      throw py::value_error("this FilteredImage was never initialised");
-    }
-    return *image_;
-  }
-
- private:
-  std::unique_ptr<FilteredImage> image_;
-};
-
-std::unique_ptr<BoundImage> makeImage(const py::object& pixels, const std::string& extension,
-                                      bool premultiplied, int threads) {
+std::unique_ptr<FilteredImage> makeImage(const py::object& pixels, const std::string& extension,
+                                         bool premultiplied, int threads) {
   const Extension beyond = choice(extension, "extension", kExtensions);
   const Floats array = floats(pixels, "pixels");
   constexpr py::ssize_t kLargestSide = py::ssize_t{1} << 20;
@@ -62,15 +46,14 @@ std::unique_ptr<BoundImage> makeImage(const py::object& pixels, const std::strin
   }
   const py::gil_scoped_release release;
   const InterruptionPoint point = interruptible();
-  return std::make_unique<BoundImage>(FilteredImage(
+  return std::make_unique<FilteredImage>(
       array.data(), static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
-      static_cast<int>(array.shape(2)), beyond, premultiplied, threads));
+      static_cast<int>(array.shape(2)), beyond, premultiplied, threads);
 }
 
-py::object sample(const BoundImage& bound, const py::object& st, const py::object& footprint,
+py::object sample(const FilteredImage& image, const py::object& st, const py::object& footprint,
                   int threads, const py::object& progress) {
   checkThreads(threads);
-  const FilteredImage& image = bound.image();
   const Doubles places = doubles(st, "st"), steps = doubles(footprint, "footprint");
   if (places.ndim() != 2 || places.shape(1) != 2) {
     refuseShape(places, "st", "(n, 2)");
@@ -155,21 +138,20 @@ py::object boxWeights(const py::object& normals, double blend, const py::object&
 
 void bindImages(py::module_& module) {
   using namespace py::literals;
-  py::class_<BoundImage>(module, "FilteredImage", kFilteredImageDoc)
+  boundClass<py::class_<FilteredImage>>(module, "FilteredImage", kFilteredImageDoc)
       .def(py::init(&makeImage), "pixels"_a, "extension"_a = "clip", py::kw_only(),
            "premultiplied"_a = false, "threads"_a = 0)
       .def_property_readonly(
           "shape",
-          [](const BoundImage& b) {
-            return py::make_tuple(b.image().height(), b.image().width(), b.image().channels());
+          [](const FilteredImage& b) {
+            return py::make_tuple(b.height(), b.width(), b.channels());
           },
           "(h, w, c): the shape of the pixels.")
       .def("sample", &sample, "st"_a, "footprint"_a, py::kw_only(), "threads"_a = 0,
            "progress"_a = py::none(), kSampleDoc)
-      .def("__repr__", [](const BoundImage& b) {
-        return "FilteredImage(" + std::to_string(b.image().width()) + " x " +
-               std::to_string(b.image().height()) + " pixels of " +
-               std::to_string(b.image().channels()) + " channels)";
+      .def("__repr__", [](const FilteredImage& b) {
+        return "FilteredImage(" + std::to_string(b.width()) + " x " + std::to_string(b.height()) +
+               " pixels of " + std::to_string(b.channels()) + " channels)";
       });
   module.def("blend_over", &blendOver, "below"_a, "above"_a, "weight"_a, "mode"_a = "mix",
              py::kw_only(), "premultiplied"_a = false, kBlendOverDoc);

@@ -2,11 +2,11 @@
 #include "limit_surface.h"
 
 #include <memory>
-#include <shared_mutex>
 #include <stdexcept>
 #include <string>
 
 #include "batches.h"
+#include "bound_class.h"
 #include "displacement.h"
 #include "docstrings.h"
 #include "edge_curves.h"
@@ -21,7 +21,7 @@ namespace {
 
 Points currentPositions(const SharedSurface& shared) {
   const py::gil_scoped_release release;
-  const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+  const HeldPose held(shared);
   return shared.surface().positions();
 }
 
@@ -34,12 +34,7 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
   }
   const Points points = pointsOf(array);
   const py::gil_scoped_release release;
-  if (HeldPose::isHeldHere(shared)) {
-    throw std::runtime_error(
-        "set_positions() called by a function that a call on the same surface "
-        "called: it would wait for itself");
-  }
-  const std::unique_lock<std::shared_mutex> lock(shared.mutex);
+  const CallLock::Hold hold(shared.lock, CallLock::Access::change);
   shared.surface().setPositions(points, threads);
   shared.forgetPose();
 }
@@ -55,7 +50,7 @@ py::array_t<double> bounds(const SharedSurface& shared, int threads) {
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> box;
   {
     const py::gil_scoped_release release;
-    const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+    const HeldPose held(shared);
     const InterruptionPoint point = interruptible();
     box = shared.surface().bounds(threads);
   }
@@ -83,7 +78,7 @@ std::unique_ptr<SharedSurface> unpickled(const py::tuple& state) {
   if (state.size() != 2 || !py::isinstance<BoundMesh>(state[0])) {
     throw py::value_error("no state of a LimitSurface");
   }
-  auto shared = makeSurface(py::cast<std::shared_ptr<BoundMesh>>(state[0]));
+  auto shared = makeSurface(py::cast<BoundMesh&>(state[0]).shared_from_this());
   setPositions(*shared, state[1], 0);
   return shared;
 }
@@ -130,8 +125,9 @@ void bindPose(py::class_<SharedSurface>& type) {
 
 void bindLimitSurface(py::module_& module) {
   using namespace py::literals;
-  py::class_<SharedSurface> type(module, "LimitSurface", kLimitSurfaceDoc);
-  type.def(py::init(&makeSurface), "mesh"_a.none(false))
+  auto type = boundClass<py::class_<SharedSurface>>(module, "LimitSurface", kLimitSurfaceDoc);
+  type.def(py::init([](BoundMesh& mesh) { return makeSurface(mesh.shared_from_this()); }),
+           "mesh"_a.none(false))
       .def("__repr__", &representation)
       .def(py::pickle(&pickled, &unpickled));
   bindTopology(type);

@@ -14,7 +14,8 @@
 #include "surface_data.h"
 #include "tangent_frames.h"
 
-PYBIND11_MODULE(_limitsurf, module) {
+// PyInit_limitsurf_in_main_interpreter(), which PyInit__limitsurf() calls.
+PYBIND11_MODULE(limitsurf_in_main_interpreter, module) {
   namespace py = pybind11;
   module.doc() = "The native part of limitsurf.";
   module.attr("__version__") = LIMITSURF_VERSION;
@@ -37,4 +38,16 @@ PYBIND11_MODULE(_limitsurf, module) {
   limitsurf::python::bindStrandTurns(module);
   limitsurf::python::bindChildStrands(module);
   limitsurf::python::bindLimitSurface(module);
+}
+
+/// What Python calls to import the module. In another interpreter of the process pybind11 would
+/// hang before it looked.
+extern "C" PYBIND11_EXPORT PyObject* PyInit__limitsurf() {
+  if (PyInterpreterState_Get() != PyInterpreterState_Main()) {
+    PyErr_SetString(PyExc_ImportError,
+                    "limitsurf cannot be imported in a subinterpreter; import it in the main "
+                    "interpreter of the process");
+    return nullptr;
+  }
+  return PyInit_limitsurf_in_main_interpreter();
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <shared_mutex>
 #include <utility>
 
 #include "batches.h"
@@ -96,7 +95,7 @@ py::object project(const SharedSurface& shared, const SharedData& uv_map, const 
     const SurfaceSearch* occluder =
         occlusion ? &shared.search.get(shared.surface(), threads) : nullptr;
     projectInParts(
-        at, report, arrays, [&] { return std::shared_lock<std::shared_mutex>(uv_map.mutex); },
+        at, report, arrays, [&] { return CallLock::Hold(uv_map.lock); },
         [&](const LocationBatch& part) {
           return limitsurf::project(shared.surface(), map, part, projector, size, occluder, options,
                                     threads);
@@ -104,19 +103,6 @@ py::object project(const SharedSurface& shared, const SharedData& uv_map, const 
   }
   return arrays.object();
 }
-
-/// Keeps the values of two maps unchanged; both may be the same map.
-class HeldMaps {
- public:
-  HeldMaps(const SharedData& a, const SharedData& b) : first_(a.mutex) {
-    if (&a != &b) {
-      second_ = std::shared_lock<std::shared_mutex>(b.mutex);
-    }
-  }
-
- private:
-  std::shared_lock<std::shared_mutex> first_, second_;
-};
 
 py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv_map,
                                const py::object& face, const py::object& uv,
@@ -137,16 +123,12 @@ py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv
   ProjectionArrays arrays(static_cast<py::ssize_t>(at.size()));
   {
     const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    std::optional<HeldPose> held_source;
-    if (&source != &shared) {
-      held_source.emplace(source);
-    }
+    const CallLock::HoldTwo held(shared.lock, source.lock);
     const InterruptionPoint point = interruptible();
     checkProjectAlongNormals(shared.surface(), map, source.surface(), other_map, size, options);
     const SurfaceSearch& search = source.search.get(source.surface(), threads);
     projectInParts(
-        at, report, arrays, [&] { return HeldMaps(uv_map, source_map); },
+        at, report, arrays, [&] { return CallLock::HoldTwo(uv_map.lock, source_map.lock); },
         [&](const LocationBatch& part) {
           return limitsurf::projectAlongNormals(shared.surface(), map, part, source.surface(),
                                                 other_map, search, size, options, threads);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "batches.h"
-#include "control_mesh.h"
+#include "bound_class.h"
 #include "limitsurf/displace/ptex_layout.h"
 #include "limitsurf/image/bilinear_image.h"
 
@@ -62,26 +62,9 @@ Raises ValueError for arrays of other shapes and naming the first place that is 
 
 using PlaceRows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-/// A layout that Python may have made without initialising it.
-class BoundLayout : public ZeroedMemory {
- public:
-  BoundLayout(int faces, int resolution)
-      : layout_(std::make_unique<const PtexLayout>(faces, resolution)) {}
-
-  const PtexLayout& layout() const {
-    if (!layout_) {
-      throw py::value_error("this PtexLayout was never initialised");
-    }
-    return *layout_;
-  }
-
- private:
-  std::unique_ptr<const PtexLayout> layout_;
-};
-
-py::object texels(const BoundLayout& bound) {
-  const std::vector<PtexLayout::Pixel> pixels = bound.layout().pixels();
-  const Locations at = bound.layout().locations();
+py::object texels(const PtexLayout& layout) {
+  const std::vector<PtexLayout::Pixel> pixels = layout.pixels();
+  const Locations at = layout.locations();
   const auto rows = static_cast<py::ssize_t>(at.size());
   py::array_t<int> x(rows), y(rows), face(rows);
   py::array_t<double> uv({rows, py::ssize_t{2}});
@@ -95,10 +78,10 @@ py::object texels(const BoundLayout& bound) {
   return result("PtexTexels")(x, y, face, uv);
 }
 
-py::array_t<double> mapCoordinates(const BoundLayout& bound, const py::object& face,
+py::array_t<double> mapCoordinates(const PtexLayout& layout, const py::object& face,
                                    const py::object& uv) {
-  const Locations at = locationsOf(bound.layout().faces(), face, uv);
-  const PlaceRows places = bound.layout().mapCoordinates(at);
+  const Locations at = locationsOf(layout.faces(), face, uv);
+  const PlaceRows places = layout.mapCoordinates(at);
   return py::array_t<double>({places.rows(), Eigen::Index{2}}, places.data());
 }
 
@@ -126,28 +109,27 @@ py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int
 
 void bindPtexLayout(py::module_& module) {
   using namespace py::literals;
-  py::class_<BoundLayout>(module, "PtexLayout", kPtexLayoutDoc)
+  boundClass<py::class_<PtexLayout>>(module, "PtexLayout", kPtexLayoutDoc)
       .def(py::init<int, int>(), "face_count"_a, "resolution"_a)
       .def_property_readonly(
-          "face_count", [](const BoundLayout& b) { return b.layout().faces(); },
-          "The number of Ptex faces.")
+          "face_count", [](const PtexLayout& b) { return b.faces(); }, "The number of Ptex faces.")
       .def_property_readonly(
-          "resolution", [](const BoundLayout& b) { return b.layout().resolution(); },
+          "resolution", [](const PtexLayout& b) { return b.resolution(); },
           "The number of pixels along the side of a tile, less one.")
       .def_property_readonly(
-          "columns", [](const BoundLayout& b) { return b.layout().columns(); },
+          "columns", [](const PtexLayout& b) { return b.columns(); },
           "The number of tiles in a row: the square root of their number, rounded up.")
       .def_property_readonly(
-          "width", [](const BoundLayout& b) { return b.layout().width(); },
+          "width", [](const PtexLayout& b) { return b.width(); },
           "The width of the image, in pixels.")
       .def_property_readonly(
-          "height", [](const BoundLayout& b) { return b.layout().height(); },
+          "height", [](const PtexLayout& b) { return b.height(); },
           "The height of the image, in pixels.")
       .def("texels", &texels, kTexelsDoc)
       .def("map_coordinates", &mapCoordinates, "face"_a, "uv"_a, kMapCoordinatesDoc)
-      .def("__repr__", [](const BoundLayout& b) {
-        return "PtexLayout(" + std::to_string(b.layout().faces()) + " faces, resolution " +
-               std::to_string(b.layout().resolution()) + ")";
+      .def("__repr__", [](const PtexLayout& b) {
+        return "PtexLayout(" + std::to_string(b.faces()) + " faces, resolution " +
+               std::to_string(b.resolution()) + ")";
       });
   module.def("bilinear", &bilinear, "pixels"_a, "st"_a, py::kw_only(), "threads"_a = 0,
              kBilinearDoc);

@@ -85,7 +85,7 @@ py::object area(const SharedSurface& shared, bool error, int threads) {
   SurfaceArea area;
   {
     const py::gil_scoped_release release;
-    const std::shared_lock<std::shared_mutex> lock(shared.mutex);
+    const HeldPose held(shared);
     const InterruptionPoint point = interruptible();
     area = measuredArea(shared.surface(), threads);
   }

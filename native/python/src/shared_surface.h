@@ -4,37 +4,26 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
-#include <shared_mutex>
 #include <utility>
 
 #include "arrays.h"
 #include "control_mesh.h"
-#include "kept_value.h"
 #include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
-#include "pose_hold.h"
+#include "locks/call_lock.h"
+#include "locks/kept_value.h"
 
 namespace limitsurf::python {
 
 /// A surface whose positions may be set while other Python threads evaluate it without the GIL.
-struct SharedSurface : ZeroedMemory {
-  explicit SharedSurface(std::shared_ptr<BoundMesh> m)
-      : mesh(std::move(m)), surface_(std::make_unique<LimitSurface>(*mesh)) {}
+struct SharedSurface {
+  explicit SharedSurface(std::shared_ptr<BoundMesh> m) : mesh(std::move(m)), surface_(*mesh) {}
 
-  const LimitSurface& surface() const {
-    if (!surface_) {
-      throw py::value_error("this LimitSurface was never initialised");
-    }
-    return *surface_;
-  }
-  LimitSurface& surface() {
-    std::as_const(*this).surface();
-    return *surface_;
-  }
+  const LimitSurface& surface() const { return surface_; }
+  LimitSurface& surface() { return surface_; }
 
-  /// Forgets what was made for the pose. The mutex must be held exclusively.
+  /// Forgets what was made for the pose. The lock must be held for a change.
   void forgetPose() {
     search.forget();
     sampler.forget();
@@ -44,16 +33,23 @@ struct SharedSurface : ZeroedMemory {
   std::uint64_t pose() const { return pose_; }
 
   std::shared_ptr<BoundMesh> mesh;
-  mutable std::shared_mutex mutex;
-  KeptValue<SurfaceSearch, LimitSurface> search;
-  KeptValue<AreaSampler, LimitSurface> sampler;
+  const CallLock lock{"LimitSurface"};
+  KeptValue<SurfaceSearch, LimitSurface> search{"search tree of a LimitSurface"};
+  KeptValue<AreaSampler, LimitSurface> sampler{"area of a LimitSurface"};
 
  private:
-  std::unique_ptr<LimitSurface> surface_;
+  LimitSurface surface_;
   std::atomic<std::uint64_t> pose_{0};
 };
 
-using HeldPose = PoseHold<SharedSurface>;
+/// Keeps a surface's pose unchanged during a call.
+class HeldPose {
+ public:
+  explicit HeldPose(const SharedSurface& shared) : hold_(shared.lock) {}
+
+ private:
+  CallLock::Hold hold_;
+};
 
 // The methods of LimitSurface by subject.
 /// evaluate(), frames(), curvature(), stencils()

@@ -10,6 +10,7 @@
 
 #include "arrays.h"
 #include "batches.h"
+#include "bound_class.h"
 #include "matrices.h"
 #include "strand_poser.h"
 
@@ -101,21 +102,16 @@ changes with every bit, but for one case in 2^32.
 )";
 
 /// Python keeps the surface alive as long as this.
-struct BoundStrandPoser : ZeroedMemory {
+struct BoundStrandPoser {
   BoundStrandPoser(const SharedSurface& of, StrandPoser made)
-      : surface_(&of), poser_(std::make_unique<StrandPoser>(std::move(made))) {}
+      : surface_(&of), poser_(std::move(made)) {}
 
   const SharedSurface& surface() const { return *surface_; }
-  const StrandPoser& poser() const {
-    if (!poser_) {
-      throw py::value_error("this StrandPoser was never initialised");
-    }
-    return *poser_;
-  }
+  const StrandPoser& poser() const { return poser_; }
 
  private:
   const SharedSurface* surface_;
-  std::unique_ptr<StrandPoser> poser_;
+  StrandPoser poser_;
 };
 
 /// The rows of an (n, Columns) array of float32.
@@ -317,7 +313,7 @@ std::vector<std::int64_t> strandOffsets(const py::object& offsets) {
 void bindStrandPoser(py::module_& module) {
   using namespace py::literals;
   const auto none = py::none();
-  py::class_<BoundStrandPoser>(module, "StrandPoser", kClassDoc)
+  boundClass<py::class_<BoundStrandPoser>>(module, "StrandPoser", kClassDoc)
       .def("__len__", [](const BoundStrandPoser& self) { return self.poser().size(); })
       .def_property_readonly(
           "bound_count", [](const BoundStrandPoser& self) { return self.poser().boundCount(); },

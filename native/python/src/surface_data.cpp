@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "batches.h"
+#include "bound_class.h"
 #include "choices.h"
 #include "docstrings.h"
 #include "limitsurf/error.h"
-#include "pose_hold.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -35,7 +35,7 @@ py::object evaluate(const SharedData& shared, const py::object& face, const py::
   for (int i = 0; i < wanted; ++i) {
     outputs[i] = Output(type, {rows, columns});
   }
-  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
+  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
     const DataEvaluation e = data.evaluate(chunk, static_cast<Derivatives>(derivatives), threads);
     const DataRows* values[6] = {&e.value, &e.du, &e.dv, &e.duu, &e.duv, &e.dvv};
     for (int i = 0; i < wanted; ++i) {
@@ -52,12 +52,7 @@ void setValues(SharedData& shared, const py::object& values, int threads) {
   const DataRows rows = rowsOf(values);
   SurfaceData& data = shared.data();
   const py::gil_scoped_release release;
-  if (PoseHold<SharedData>::isHeldHere(shared)) {
-    throw std::runtime_error(
-        "set_values() called by a function that a call on the same data called: it would wait for "
-        "itself");
-  }
-  const std::unique_lock<std::shared_mutex> lock(shared.mutex);
+  const CallLock::Hold hold(shared.lock, CallLock::Access::change);
   data.setValues(rows, threads);
   shared.uv_map.forget();
 }
@@ -89,18 +84,6 @@ std::unique_ptr<SharedData> perVertex(const SharedSurface& shared, const py::obj
 
 }  // namespace
 
-const SurfaceData& SharedData::data() const {
-  if (!data_) {
-    throw py::value_error("this SurfaceData was never initialised");
-  }
-  return *data_;
-}
-
-SurfaceData& SharedData::data() {
-  std::as_const(*this).data();
-  return *data_;
-}
-
 Interpolation interpolationOf(const std::string& name) {
   return choice(name, "interpolation", kInterpolations);
 }
@@ -116,7 +99,7 @@ DataRows rowsOf(const py::object& values) {
 
 void bindSurfaceData(py::module_& module) {
   using namespace py::literals;
-  py::class_<SharedData> type(module, "SurfaceData", kSurfaceDataDoc);
+  auto type = boundClass<py::class_<SharedData>>(module, "SurfaceData", kSurfaceDataDoc);
   type.def_property_readonly(
           "shape",
           [](const SharedData& s) { return py::make_tuple(s.data().rows(), s.data().columns()); },

@@ -3,30 +3,29 @@
 
 #include <pybind11/pybind11.h>
 
-#include <memory>
-#include <shared_mutex>
 #include <string>
+#include <utility>
 
-#include "control_mesh.h"
-#include "kept_value.h"
 #include "limitsurf/surface/surface_data.h"
 #include "limitsurf/uv/uv_map.h"
+#include "locks/call_lock.h"
+#include "locks/kept_value.h"
 
 namespace limitsurf::python {
 
 /// Data whose values may be set while other Python threads evaluate them without the GIL.
-class SharedData : public ZeroedMemory {
+class SharedData {
  public:
-  explicit SharedData(SurfaceData data) : data_(std::make_unique<SurfaceData>(std::move(data))) {}
+  explicit SharedData(SurfaceData data) : data_(std::move(data)) {}
 
-  const SurfaceData& data() const;
-  SurfaceData& data();
+  const SurfaceData& data() const { return data_; }
+  SurfaceData& data() { return data_; }
 
-  mutable std::shared_mutex mutex;
-  KeptValue<UvMap, SurfaceData> uv_map;
+  const CallLock lock{"SurfaceData"};
+  KeptValue<UvMap, SurfaceData> uv_map{"map of a SurfaceData"};
 
  private:
-  std::unique_ptr<SurfaceData> data_;
+  SurfaceData data_;
 };
 
 /// The rule of this name. Throws MeshError for another name.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tangent_frames.h"
 
-#include <shared_mutex>
-
 #include "arrays.h"
 #include "batches.h"
 #include "limitsurf/surface/shading_frames.h"
@@ -49,8 +47,8 @@ py::object tangentFrames(const SharedSurface& shared, const SharedData& uv_map,
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const SurfaceData& map = uv_map.data();
   Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
-  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
-    const std::shared_lock<std::shared_mutex> lock(uv_map.mutex);
+  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
+    const CallLock::Hold hold(uv_map.lock);
     const auto frames = limitsurf::tangentFrames(shared.surface(), map, chunk, threads);
     output.put(9 * begin, frames.data(), 9 * chunk.size());
   });
@@ -68,8 +66,8 @@ py::object mapDistortion(const SharedSurface& shared, const SharedData& uv_map,
   for (Output& output : outputs) {
     output = Output(type, {static_cast<py::ssize_t>(at.size())});
   }
-  inChunks(shared.mutex, at, [&](std::size_t begin, const LocationBatch& chunk) {
-    const std::shared_lock<std::shared_mutex> lock(uv_map.mutex);
+  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
+    const CallLock::Hold hold(uv_map.lock);
     const MapDistortion d = limitsurf::mapDistortion(shared.surface(), map, chunk, threads);
     const Eigen::VectorXd* values[3] = {&d.area, &d.stretch_high, &d.stretch_low};
     for (int i = 0; i < 3; ++i) {

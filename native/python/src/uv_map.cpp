@@ -12,7 +12,6 @@
 
 #include "batches.h"
 #include "docstrings.h"
-#include "pose_hold.h"
 #include "progress.h"
 #include "surface_data.h"
 
@@ -28,7 +27,7 @@ auto withMap(const SharedData& shared, int threads, const Use& use) {
   checkThreads(threads);
   const SurfaceData& data = shared.data();
   const py::gil_scoped_release release;
-  const PoseHold<SharedData> held(shared);
+  const CallLock::Hold hold(shared.lock);
   const InterruptionPoint point = interruptible();
   return use(shared.uv_map.get(data, threads));
 }

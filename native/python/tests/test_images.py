@@ -61,7 +61,7 @@ def test_any_numbers_will_do(rng):
         (ValueError, "pixel .0, 0.: channel 0 is nan", lambda: ls.FilteredImage([[[np.nan]]])),
         (ValueError, "extension is 'wrap'", lambda: ls.FilteredImage([[[1]]], UNKNOWN)),
         (TypeError, "pixels has dtype", lambda: ls.FilteredImage([[["x"]]])),
-        (ValueError, "never initialised", lambda: ls.FilteredImage.__new__(ls.FilteredImage).shape),
+        (TypeError, "never initialised", lambda: ls.FilteredImage.__new__(ls.FilteredImage).shape),
     ],
 )
 def test_no_image(error, message, call):

@@ -245,7 +245,7 @@ def test_bad_input_is_named(hair):
 def test_cannot_be_made_or_pickled_alone(hair):
     with pytest.raises(TypeError):
         ls.StrandPoser()
-    with pytest.raises(ValueError, match="never initialised"):
+    with pytest.raises(TypeError, match="never initialised"):
         ls.StrandPoser.__new__(ls.StrandPoser).pose([])
     with pytest.raises(TypeError):
         pickle.dumps(hair.poser())

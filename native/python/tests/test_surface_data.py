@@ -376,7 +376,7 @@ def test_data_without_a_surface_are_errors():
         lambda: blank.set_values([[0.0]]),
         lambda: repr(blank),
     ):
-        with pytest.raises(ValueError, match="never initialised"):
+        with pytest.raises(TypeError, match="never initialised"):
             use()
     with pytest.raises(TypeError):
         ls.SurfaceData()

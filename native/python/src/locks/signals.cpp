@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "signals.h"
+
+#include <pybind11/pybind11.h>
+
+#include <chrono>
+
+namespace limitsurf::python {
+
+namespace {
+
+/// Whoever asks for the GIL waits for other threads, some milliseconds each time.
+constexpr std::chrono::milliseconds kBetween{20};
+
+}  // namespace
+
+void lookForSignals() {
+  const pybind11::gil_scoped_acquire acquire;
+  if (PyErr_CheckSignals() != 0) {
+    throw pybind11::error_already_set();
+  }
+}
+
+InterruptionPoint interruptible() {
+  using Clock = std::chrono::steady_clock;
+  return InterruptionPoint([next = Clock::now() + kBetween]() mutable {
+    if (Clock::now() >= next) {
+      lookForSignals();
+      next = Clock::now() + kBetween;
+    }
+  });
+}
+
+}  // namespace limitsurf::python
