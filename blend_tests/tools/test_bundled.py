@@ -9,9 +9,12 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from elftools.elf.elffile import ELFFile
 from processes import ROOT, run_python
 
 LIBRARIES = {"opensubdiv": "opensubdiv", "onetbb": "tbb"}
+#: Libraries of the system, which every manylinux wheel may expect
+SYSTEM = {"ld-linux-x86-64.so.2", "libc.so.6", "libgcc_s.so.1", "libm.so.6", "libstdc++.so.6"}
 SOURCE_LIST = Path("/etc/apt/sources.list.d/debian.sources")
 
 
@@ -62,6 +65,10 @@ def test_wheel_needs_no_other_libraries(sources, tmp_path):
         names = contents.namelist()
         contents.extractall(tmp_path / "site")
     assert [Path(name).parent.name for name in names if ".so" in name] == ["limitsurf"]
+    (module,) = (tmp_path / "site/limitsurf").glob("*.so")
+    with module.open("rb") as file:
+        tags = list(ELFFile(file).get_section_by_name(".dynamic").iter_tags())
+    assert {tag.needed for tag in tags if tag.entry.d_tag == "DT_NEEDED"} <= SYSTEM
     assert any(name.endswith("LICENSES/OpenSubdiv.txt") for name in names)
     assert not any("GPL" in name for name in names)
     code = (
