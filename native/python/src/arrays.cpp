@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "limitsurf/error.h"
+
 namespace limitsurf::python {
 namespace {
 
@@ -77,6 +79,30 @@ Floats floats(const py::object& object, const char* name) {
   const bool is_small = array.dtype().kind() == 'f' && array.dtype().itemsize() <= 4;
   return py::cast<Floats>((is_small ? array : py::array(doubles(array, name)))
                               .attr("astype")("float32", py::arg("copy") = false));
+}
+
+Points rowsOfThree(const py::handle& object, const char* name) {
+  Doubles array = doubles(object, name);
+  if (array.ndim() == 1 && array.size() == 0) {
+    array = Doubles(std::vector<py::ssize_t>{0, 3});
+  }
+  requireRows<std::invalid_argument>(array, name, 3);
+  return pointsOf(array);
+}
+
+std::vector<std::pair<std::int64_t, std::int64_t>> pairsOf(const py::handle& object,
+                                                           const char* name) {
+  const Integers array = integers<MeshError>(object, name);
+  if (array.ndim() == 1 && array.size() == 0) {
+    return {};
+  }
+  requireRows<MeshError>(array, name, 2);
+  std::vector<std::pair<std::int64_t, std::int64_t>> pairs;
+  pairs.reserve(static_cast<std::size_t>(array.shape(0)));
+  for (py::ssize_t row = 0; row < array.shape(0); ++row) {
+    pairs.emplace_back(array.at(row, 0), array.at(row, 1));
+  }
+  return pairs;
 }
 
 Points pointsOf(const Doubles& array) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limitsurf/types.h"
@@ -63,6 +64,14 @@ template <typename T>
 py::array_t<T> arrayOf(const std::vector<T>& values) {
   return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
+
+/// The rows of an (n, 3) array, converted as doubles() does; [] has none. Throws
+/// std::invalid_argument for other shapes.
+Points rowsOfThree(const py::handle& object, const char* name);
+
+/// The rows of an (n, 2) array of integers; [] has none. Throws MeshError for other shapes.
+std::vector<std::pair<std::int64_t, std::int64_t>> pairsOf(const py::handle& object,
+                                                           const char* name);
 
 /// The points of an (n, 3) array, and the (n, 3) array of points.
 Points pointsOf(const Doubles& array);

@@ -19,7 +19,7 @@ namespace limitsurf::python {
 namespace {
 
 /// The number of rows displaced between two reports of the progress; Ctrl-C takes effect there.
-constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
+constexpr std::size_t kRowsPerMeasuring = std::size_t{1} << 16;
 
 const Choices<RayDirection> kDirections = {{"both", RayDirection::both},
                                            {"outward", RayDirection::outward},
@@ -55,8 +55,8 @@ FrameRows framesOf(const py::object& frames, std::size_t rows) {
 /// Calls body(first row, locations) for one part after the other, without the GIL.
 template <typename Body>
 void inParts(const CheckedLocations& at, const ProgressReport& report, const Body& body) {
-  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
-    const std::size_t count = std::min(kRowsPerPart, at.size() - begin);
+  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerMeasuring) {
+    const std::size_t count = std::min(kRowsPerMeasuring, at.size() - begin);
     body(begin, at.part(begin, count));
     report(static_cast<double>(begin + count) / static_cast<double>(at.size()));
   }

@@ -53,20 +53,6 @@ CurveSide sideOf(const std::string& side) {
   return side == "left" ? CurveSide::left : CurveSide::right;
 }
 
-std::vector<std::pair<std::int64_t, std::int64_t>> edgesOf(const py::object& object) {
-  Integers array = integers<MeshError>(object, "edges");
-  if (array.ndim() == 1 && array.size() == 0) {
-    return {};
-  }
-  requireRows<MeshError>(array, "edges", 2);
-  std::vector<std::pair<std::int64_t, std::int64_t>> edges;
-  edges.reserve(static_cast<std::size_t>(array.shape(0)));
-  for (py::ssize_t row = 0; row < array.shape(0); ++row) {
-    edges.emplace_back(array.at(row, 0), array.at(row, 1));
-  }
-  return edges;
-}
-
 std::unique_ptr<BoundEdgeCurves> makeCurves(const SharedSurface& shared, const py::object& edges,
                                             int threads) {
   checkThreads(threads);
@@ -77,7 +63,7 @@ std::unique_ptr<BoundEdgeCurves> makeCurves(const SharedSurface& shared, const p
         choice<EdgeChoice>(edges.cast<std::string>(), "edges",
                            {{"boundary", EdgeChoice::boundary}, {"creases", EdgeChoice::creases}});
   } else {
-    given = edgesOf(edges);
+    given = pairsOf(edges, "edges");
   }
   const py::gil_scoped_release release;
   const HeldPose held(shared);

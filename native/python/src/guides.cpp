@@ -86,23 +86,6 @@ point is its root.
 Raises ValueError for arrays of other shapes, and for a guide that does not exist, naming the row. Cost:
 some nanoseconds for each point and guide.)";
 
-EdgeList edgesOf(const py::object& cuts) {
-  EdgeList edges;
-  if (cuts.is_none()) {
-    return edges;
-  }
-  Integers array = integers<MeshError>(cuts, "cuts");
-  if (array.ndim() == 1 && array.size() == 0) {
-    return edges;
-  }
-  requireRows<MeshError>(array, "cuts", 2);
-  edges.reserve(static_cast<std::size_t>(array.shape(0)));
-  for (py::ssize_t row = 0; row < array.shape(0); ++row) {
-    edges.emplace_back(array.at(row, 0), array.at(row, 1));
-  }
-  return edges;
-}
-
 template <typename T>
 py::array_t<T> table(const std::vector<T>& values, std::size_t rows, int columns) {
   py::array_t<T> array({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
@@ -118,7 +101,7 @@ py::object guideWeights(const SharedSurface& shared, const py::object& guide_fac
   const CheckedLocations guides = locationsOn(shared.surface(), guide_face, guide_uv);
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const GuideOptions options{
-      count, edgesOf(cuts),
+      count, cuts.is_none() ? EdgeList{} : pairsOf(cuts, "cuts"),
       cut_points.is_none() ? Polylines{}
                            : polylinesOf(cut_points, "cut_points", cut_offsets, "cut_offsets"),
       threads, ProgressReport(progress)};

@@ -20,7 +20,7 @@ namespace limitsurf::python {
 namespace {
 
 /// The number of rows sampled between two reports of the progress; Ctrl-C takes effect there.
-constexpr Eigen::Index kRowsPerPart = Eigen::Index{1} << 18;
+constexpr Eigen::Index kRowsPerSampling = Eigen::Index{1} << 18;
 
 const Choices<Extension> kExtensions = {{"clip", Extension::clip},
                                         {"extend", Extension::extend},
@@ -73,8 +73,8 @@ py::object sample(const FilteredImage& image, const py::object& st, const py::ob
     const py::gil_scoped_release release;
     const InterruptionPoint point = interruptible();
     checkSamples(all_places, all_steps);
-    for (Eigen::Index begin = 0; begin < rows; begin += kRowsPerPart) {
-      const Eigen::Index count = std::min(kRowsPerPart, rows - begin);
+    for (Eigen::Index begin = 0; begin < rows; begin += kRowsPerSampling) {
+      const Eigen::Index count = std::min(kRowsPerSampling, rows - begin);
       const Colours part = image.sample(all_places.middleRows(begin, count),
                                         all_steps.middleRows(begin, count), threads);
       to = std::copy(part.data(), part.data() + part.size(), to);

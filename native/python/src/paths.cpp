@@ -93,13 +93,6 @@ Raises LocationError for locations that are not on the surface, MeshError for th
 ValueError for arrays of other shapes and a count below 2.
 )";
 
-/// The rows of an (n, 3) array.
-Points rowsOfThree(const py::object& object, const char* name) {
-  const Doubles array = doubles(object, name);
-  requireRows<std::invalid_argument>(array, name, 3);
-  return pointsOf(array);
-}
-
 Eigen::VectorXd numbers(const py::object& object, const char* name) {
   if (object.is_none()) {
     return {};

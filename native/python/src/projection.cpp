@@ -20,7 +20,7 @@ namespace limitsurf::python {
 namespace {
 
 /// The number of rows projected between two reports of the progress; Ctrl-C takes effect there.
-constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
+constexpr std::size_t kRowsPerProjection = std::size_t{1} << 16;
 
 const Choices<RayDirection> kRayDirections = {{"both", RayDirection::both},
                                               {"outward", RayDirection::outward},
@@ -54,8 +54,8 @@ class ProjectionArrays {
 template <typename Lock, typename Body>
 void projectInParts(const CheckedLocations& at, const ProgressReport& report,
                     ProjectionArrays& arrays, const Lock& lock, const Body& body) {
-  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
-    const std::size_t count = std::min(kRowsPerPart, at.size() - begin);
+  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerProjection) {
+    const std::size_t count = std::min(kRowsPerProjection, at.size() - begin);
     {
       const auto held = lock();
       arrays.put(begin, body(at.part(begin, count)));

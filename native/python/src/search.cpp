@@ -17,16 +17,6 @@ namespace {
 /// The number of rows searched between two reports of the progress; Ctrl-C takes effect there.
 constexpr Eigen::Index kRowsPerSearch = Eigen::Index{1} << 15;
 
-/// The rows of an (n, 3) array; [] has none.
-Points rowsOfThree(const py::object& object, const char* name) {
-  Doubles array = doubles(object, name);
-  if (array.ndim() == 1 && array.size() == 0) {
-    array = Doubles(std::vector<py::ssize_t>{0, 3});
-  }
-  requireRows<std::invalid_argument>(array, name, 3);
-  return pointsOf(array);
-}
-
 void requireAsMany(const Points& rows, const char* name, const Points& others,
                    const char* others_name) {
   if (rows.rows() != others.rows()) {

@@ -121,7 +121,7 @@ template <int Columns>
 using RowsMap = Eigen::Map<Rows<Columns>>;
 
 template <int Columns>
-Floats rowsOf(const py::object& object, const char* name) {
+Floats floatRows(const py::object& object, const char* name) {
   Floats array = floats(object, name);
   if (array.ndim() == 1 && array.size() == 0) {
     array = Floats(std::vector<py::ssize_t>{0, Columns});  // []
@@ -140,10 +140,10 @@ Eigen::Map<const Rows<Columns>> viewOf(const Floats& array) {
 
 /// Rest rotations: quaternions (n, 4), or matrices (n, 3, 3), which are converted. A matrix of
 /// zeros becomes the quaternion of zeros.
-FloatRotations rotationsOf(const py::object& object) {
+FloatRotations floatRotations(const py::object& object) {
   const py::array any = py::array::ensure(object);
   if (!any || any.ndim() != 3) {
-    return viewOf<4>(rowsOf<4>(object, "rest_rotations"));
+    return viewOf<4>(floatRows<4>(object, "rest_rotations"));
   }
   const Doubles array = doubles(object, "rest_rotations");
   if (array.shape(1) != 3 || array.shape(2) != 3) {
@@ -190,7 +190,7 @@ py::object posed(const BoundStrandPoser& self, const py::object& object, const c
                  const py::object& matrix, const py::object& out, const char* out_name, int threads,
                  const Body& body) {
   checkThreads(threads);
-  const Floats from = rowsOf<Columns>(object, name);
+  const Floats from = floatRows<Columns>(object, name);
   const Eigen::Matrix4d map = matrixOrNone(matrix, "matrix");
   Floats to = resultArray<Columns>(out, out_name, self.poser().pointCount());
   const Eigen::Map<const Rows<Columns>> input = viewOf<Columns>(from);
@@ -267,7 +267,7 @@ py::object poseRotations(const BoundStrandPoser& self, const py::object& rest_ro
 
 py::object fingerprints(const BoundStrandPoser& self, const py::object& points, int threads) {
   checkThreads(threads);
-  const Floats from = rowsOf<3>(points, "points");
+  const Floats from = floatRows<3>(points, "points");
   const Eigen::Map<const Rows<3>> input = viewOf<3>(from);
   std::vector<std::int32_t> numbers;
   {
@@ -285,8 +285,8 @@ std::unique_ptr<BoundStrandPoser> makePoser(const SharedSurface& shared, const p
   checkThreads(threads);
   const LimitSurface& surface = shared.surface();
   const Locations at = locationsOf(surface.faceCount(), face, uv, FaceCheck::size);
-  const Floats roots = rowsOf<3>(rest_roots, "rest_roots");
-  const FloatRotations rotations = rotationsOf(rest_rotations);
+  const Floats roots = floatRows<3>(rest_roots, "rest_roots");
+  const FloatRotations rotations = floatRotations(rest_rotations);
   const std::vector<std::int64_t> starts = strandOffsets(offsets);
   const Eigen::Map<const Rows<3>> root_rows = viewOf<3>(roots);
   const py::gil_scoped_release release;

@@ -44,22 +44,13 @@ Raises ValueError for arrays of other shapes, and for offsets that do not begin 
 that do not end with the number of points. Cost: O(points).
 )";
 
-Points vectors(const py::object& object, const char* name) {
-  const Doubles array = doubles(object, name);
-  if (array.ndim() != 2 || array.shape(1) != 3) {
-    throw py::value_error(std::string(name) + " has shape " + shapeText(array) +
-                          "; expected (n, 3)");
-  }
-  return pointsOf(array);
-}
-
 py::array_t<double> matrices(const Rotations& rotations) {
   return py::array_t<double>({rotations.rows(), Eigen::Index{3}, Eigen::Index{3}},
                              rotations.data());
 }
 
 py::array_t<double> turnsBetween(const py::object& source, const py::object& target) {
-  return matrices(shortestTurns(vectors(source, "source"), vectors(target, "target")));
+  return matrices(shortestTurns(rowsOfThree(source, "source"), rowsOfThree(target, "target")));
 }
 
 py::array_t<double> rotationMatrices(const py::object& quaternions) {
@@ -78,8 +69,8 @@ py::array_t<double> moveStrands(const py::object& points, const py::object& offs
     throw py::value_error("turns has shape " + shapeText(rotations) + "; expected (n, 3, 3)");
   }
   const std::vector<std::int64_t> begins = strandOffsets(offsets);
-  const Points from = vectors(points, "points"), before = vectors(roots, "roots"),
-               after = vectors(new_roots, "new_roots");
+  const Points from = rowsOfThree(points, "points"), before = rowsOfThree(roots, "roots"),
+               after = rowsOfThree(new_roots, "new_roots");
   const Eigen::Map<const Rotations> turn(rotations.data(), rotations.shape(0), 9);
   return pointArray(movedStrands(from, begins, before, after, turn));
 }

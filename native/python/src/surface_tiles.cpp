@@ -57,7 +57,7 @@ surface, ValueError for a max_depth out of range.
 Source: Stam 1998 and Lacewell & Burley 2007, the control points of their regular sub-patches.)";
 
 template <typename T>
-py::array_t<T> rowsOf(const Eigen::Matrix<T, Eigen::Dynamic, 2, Eigen::RowMajor>& rows) {
+py::array_t<T> pairArray(const Eigen::Matrix<T, Eigen::Dynamic, 2, Eigen::RowMajor>& rows) {
   return py::array_t<T>({rows.rows(), Eigen::Index{2}}, rows.data());
 }
 
@@ -81,7 +81,7 @@ py::object tilesResult(const SurfaceTiles& tiles) {
   return result("Tiles")(arrayOf(tiles.points_offsets), arrayOf(tiles.points_indices),
                          arrayOf(tiles.points_weights), tilePoints(tiles),
                          arrayOf(tiles.tile_anchor), arrayOf(tiles.tile_base), arrayOf(tiles.tile),
-                         rowsOf(tiles.tile_uv), rowsOf(tiles.scale), flags(tiles.moved));
+                         pairArray(tiles.tile_uv), pairArray(tiles.scale), flags(tiles.moved));
 }
 
 py::object surfaceTiles(const SharedSurface& shared, const py::object& face, const py::object& uv,
@@ -133,8 +133,8 @@ py::object tileQuadtree(const SharedSurface& shared, const std::optional<int>& m
     tree = limitsurf::tileQuadtree(shared.surface(),
                                    max_depth.value_or(SurfaceTiles::kDefaultDepth), threads);
   }
-  return result("TileQuadtree")(arrayOf(tree.child), tilesResult(tree.tiles), rowsOf(tree.origin),
-                                tree.levels);
+  return result("TileQuadtree")(arrayOf(tree.child), tilesResult(tree.tiles),
+                                pairArray(tree.origin), tree.levels);
 }
 
 }  // namespace

@@ -90,25 +90,16 @@ constexpr const char* kOutOfShadingFramesDoc =
 This is the inverse of into_shading_frames(), with the same parameters and errors.
 )";
 
-Points vectors(const py::object& object, const char* name) {
-  const Doubles array = doubles(object, name);
-  if (array.ndim() != 2 || array.shape(1) != 3) {
-    throw py::value_error(std::string(name) + " has shape " + shapeText(array) +
-                          "; expected (n, 3)");
-  }
-  return pointsOf(array);
-}
-
 /// Calls `convert`, which is intoShadingFrames() or outOfShadingFrames().
 template <Points (*convert)(const Points&, const ShadingFrames&)>
 py::object throughShadingFrames(const py::object& directions, const py::object& normals,
                                 const py::object& tangents, const py::object& signs) {
-  const Points from = vectors(directions, "vectors");
+  const Points from = rowsOfThree(directions, "vectors");
   const Doubles sign = doubles(signs, "signs");
   if (sign.ndim() != 1) {
     throw py::value_error("signs has shape " + shapeText(sign) + "; expected (n,)");
   }
-  const ShadingFrames frames{vectors(normals, "normals"), vectors(tangents, "tangents"),
+  const ShadingFrames frames{rowsOfThree(normals, "normals"), rowsOfThree(tangents, "tangents"),
                              Eigen::Map<const Eigen::VectorXd>(sign.data(), sign.shape(0))};
   Points out;
   {
