@@ -7,7 +7,8 @@
 #   tools/test.sh --sanitize address | undefined | thread
 #
 # --quick     only the C++ and Python tests and the style: no Blender, no window
-# --slow      also the tests that take minutes, and clang-tidy over all files
+# --slow      also the tests that take minutes, the benchmark programs and tools, and clang-tidy over
+#             all files
 # --blender   only the Python and Blender tests, under another version of the `bpy` wheel (4.2.23 or
 #             5.0.1, say) in an environment of its own
 # --sanitize  only the C++ tests, and the Python module's own ones, under a sanitizer of the
@@ -20,7 +21,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 usage() {
-  sed -n '4,19s/^# \{0,1\}//p' "$0"
+  sed -n '4,20s/^# \{0,1\}//p' "$0"
   exit 2
 }
 
@@ -73,9 +74,10 @@ part() {
   return "$status"
 }
 
+# build_cpp PRESET TREE [TARGET]
 build_cpp() {
   configure "$1"
-  cmake --build "build/$2" --parallel "$JOBS"
+  cmake --build "build/$2" --parallel "$JOBS" ${3:+--target "$3"}
 }
 
 # run_ctest TREE OPTIONS...
@@ -118,7 +120,9 @@ if [[ $sanitizer ]]; then
   run_sanitized "$sanitizer"
 else
   built=false
-  if $default && part "C++ build" build_cpp release cpp; then
+  target=limitsurf_tests # the benchmarks and tools take a minute more
+  $slow && target=
+  if $default && part "C++ build" build_cpp release cpp "$target"; then
     built=true
   fi
   $windows && start_window_tests

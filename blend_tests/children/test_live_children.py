@@ -22,7 +22,7 @@ BOUND = 4e-6
 
 
 def add_guides(ob: bpy.types.Object, **properties: object) -> bpy.types.Object:
-    settings = {"distribution": "UNIFORM", "count": 30, "points": 8, "length": 0.3}
+    settings = {"distribution": "UNIFORM", "count": 12, "points": 8, "length": 0.3}
     return scenes.add_hair(ob, **settings | {"random": 0.8, "follow": "NODES"} | properties)
 
 

@@ -63,6 +63,12 @@ def test_frames_are_baked(user, tmp_path):
             roots.append(arrays["position"][arrays["curve_offsets"][:-1]])
     np.testing.assert_allclose(heights, [0, 1, 2], atol=1e-6)
     assert np.abs(roots[1] - roots[0]).max() > 1e-3  # the hair follows the wave
+
+
+@pytest.mark.slow
+def test_frames_that_exist_are_left(user, tmp_path):
+    first = bake(user, tmp_path, "--frames", "1-5", "--step", "2", "--format", "npz")
+    assert first.returncode == 0
     again = bake(user, tmp_path, "--frames", "1-5", "--step", "2", "--format", "npz")
     assert again.returncode == 0
     assert "6 existed" in again.stdout

@@ -26,6 +26,7 @@ def open_presets(blender):
     blender.call("set_next", ADD_HAIR, **dict(zip(names, defaults, strict=True)))
 
 
+@pytest.mark.slow
 def test_a_preset_of_the_sidebar_is_for_the_next_run(blender, open_presets):
     open_presets()
     blender.screenshot("presets_menu")

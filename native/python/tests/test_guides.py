@@ -74,7 +74,7 @@ def test_curves_keep_regions_apart(sheet):
 
 
 def test_any_number_of_threads_gives_the_same(sheet):
-    guides, at = places(sheet, 50, 6), places(sheet, 5000, 7)
+    guides, at = places(sheet, 12, 6), places(sheet, 5000, 7)
     one = sheet.guide_weights(*guides, *at, threads=1)
     all_cores = sheet.guide_weights(*guides, *at)
     for name in ("guide", "weight", "distance"):
@@ -91,7 +91,7 @@ def test_none(sheet):
 
 def test_progress_is_told_and_ends_the_call(sheet):
     parts = []
-    sheet.guide_weights(*places(sheet, 50, 6), *places(sheet, 200_000, 7), progress=parts.append)
+    sheet.guide_weights(*places(sheet, 12, 6), *places(sheet, 200_000, 7), progress=parts.append)
     assert parts == sorted(parts)
     assert parts[-1] == 1
 

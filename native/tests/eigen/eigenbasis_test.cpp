@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -52,6 +51,8 @@ WideMatrix jordanForm(const Eigenbasis& basis) {
   return j;
 }
 
+/// Holds S R = R J and L R = 1, which together prove that the eigenvalues are those of S, each as
+/// often as it occurs.
 void compareWithRingMatrix(const Ring& ring) {
   const Eigenbasis basis(ring);
   const int n = ring.size();
@@ -93,75 +94,6 @@ TEST(SlowEigenbasis, FactorisesTheRingMatrix) {
     for (int faces = 25; faces <= 102; ++faces) compareWithRingMatrix({kind, faces});
     for (int faces : {125, 150, 169, 183, 198, 200}) compareWithRingMatrix({kind, faces});
   }
-}
-
-/// The eigenvalues of the basis.
-std::vector<Complex> knownSpectrum(const Eigenbasis& basis) {
-  std::vector<Complex> result;
-  for (int mode = 0; mode < basis.modeCount(); ++mode) result.push_back(basis.eigenvalue(mode));
-  for (const ModePair& pair : basis.pairs()) {
-    const Complex root = sqrt(Complex(DoubleDouble(pair.forth).times(pair.back)));
-    result[pair.a] += root;
-    result[pair.b] -= root;
-  }
-  return result;
-}
-
-/// The eigenvalues of S on the vectors that are symmetric, or antisymmetric, about a dart's sharp
-/// spoke.
-std::vector<Complex> numericSpectrum(const Ring& dart) {
-  const int n = dart.faces;
-  std::vector<Complex> result;
-  for (const int sign : {1, -1}) {
-    std::vector<std::pair<int, int>> points;  // with their mirror images
-    if (sign > 0) points.emplace_back(0, 0);
-    for (int i = 0; 2 * i <= n; ++i) {
-      const int image = (n - i) % n;
-      if (sign > 0 || image != i) points.emplace_back(dart.edge(i), dart.edge(image));
-    }
-    for (int j = 0; 2 * j < n; ++j) {
-      if (sign > 0 || n - 1 - j != j) points.emplace_back(dart.face(j), dart.face(n - 1 - j));
-    }
-    const int size = static_cast<int>(points.size());
-    WideMatrix vectors = WideMatrix::Zero(dart.size(), size);
-    for (int i = 0; i < size; ++i) {
-      vectors(points[i].second, i) = sign;
-      vectors(points[i].first, i) = 1;
-    }
-    const WideMatrix next = subdivideRing<WideMatrix>(dart, vectors);
-    WideMatrix part(size, size);
-    for (int i = 0; i < size; ++i) part.row(i) = next.row(points[i].first);
-    const Eigen::EigenSolver<WideMatrix> solver(part, false);
-    for (int i = 0; i < size; ++i) {
-      result.emplace_back(solver.eigenvalues()[i].real(), solver.eigenvalues()[i].imag());
-    }
-  }
-  return result;
-}
-
-void compareSpectrum(int faces) {
-  const Ring ring{RingKind::dart, faces};
-  const std::vector<Complex> known = knownSpectrum(Eigenbasis(ring));
-  std::vector<Complex> found = numericSpectrum(ring);
-  ASSERT_EQ(known.size(), found.size()) << faces;
-  for (const Complex& eigenvalue : known) {
-    const auto nearest = std::min_element(found.begin(), found.end(), [&](auto a, auto b) {
-      return abs(a - eigenvalue) < abs(b - eigenvalue);
-    });
-    // The solver's error grows where two eigenvalues almost meet.
-    EXPECT_LE(abs(*nearest - eigenvalue).high(), 1e-14)
-        << faces << " faces: " << eigenvalue.real().high() << " + i " << eigenvalue.imag().high();
-    found.erase(nearest);
-  }
-}
-
-TEST(Eigenbasis, HasTheSpectrumOfDarts) {
-  for (int faces = 2; faces <= 60; ++faces) compareSpectrum(faces);
-  compareSpectrum(100);
-}
-
-TEST(SlowEigenbasis, HasTheSpectrumOfDarts) {
-  for (int faces = 61; faces <= 200; ++faces) compareSpectrum(faces);
 }
 
 /// Whether a dart has a real eigenvalue, to the last bit of a double.
@@ -492,6 +424,18 @@ TEST(SlowEigenbasis, OfLargeValencesHasItsDualVectors) {
         left.col(0).dot(Eigen::Map<const Eigen::VectorXd>(vector.data(), ring.size()));
     EXPECT_NEAR(product, other == mode ? 1 : 0, 1e-13) << "mode " << other;
   }
+}
+
+/// The eigenvalues of the basis.
+std::vector<Complex> knownSpectrum(const Eigenbasis& basis) {
+  std::vector<Complex> result;
+  for (int mode = 0; mode < basis.modeCount(); ++mode) result.push_back(basis.eigenvalue(mode));
+  for (const ModePair& pair : basis.pairs()) {
+    const Complex root = sqrt(Complex(DoubleDouble(pair.forth).times(pair.back)));
+    result[pair.a] += root;
+    result[pair.b] -= root;
+  }
+  return result;
 }
 
 /// How much a control point of a face may move, relative to the ring's size, if the coefficient of

@@ -317,9 +317,9 @@ TEST(CurveCuts, GoOnOverExtraordinaryVerticesAndCreases) {
 }
 
 TEST(CurveCuts, DoNotDependOnThreads) {
-  const LimitSurface surface = flatSheet(5);
+  const LimitSurface surface = flatSheet(3);
   const Locations guides = scatterJittered(surface, 1, 3), at = scatterJittered(surface, 8, 5);
-  GuideOptions options = cutBy({{Vector3(-1, 2.2, 0), Vector3(4, 4, 0), Vector3(4.5, -1, 0)}});
+  GuideOptions options = cutBy({{Vector3(-1, 1.2, 0), Vector3(2, 2, 0), Vector3(2.5, -1, 0)}});
   options.threads = 1;
   const GuideWeights one = guideWeights(surface, guides, at, options);
   options.threads = 2;

@@ -629,7 +629,7 @@ void compareAtCentresOfCurvature(int count) {
   }
 }
 
-TEST(Closest, IsFoundAtCentresOfCurvature) { compareAtCentresOfCurvature(8); }
+TEST(Closest, IsFoundAtCentresOfCurvature) { compareAtCentresOfCurvature(4); }
 
 TEST(SlowClosest, IsFoundAtCentresOfCurvature) { compareAtCentresOfCurvature(60); }
 

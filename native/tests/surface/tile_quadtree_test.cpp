@@ -89,7 +89,7 @@ TEST(TileQuadtree, HasTheSmallestTilesThatItsDepthAllows) {
 
 TEST(TileQuadtree, IsTheSameForAllNumbersOfThreads) {
   const LimitSurface surface = limitSurface(mixture(2));
-  const TileQuadtree one = tileQuadtree(surface, 12, 1), two = tileQuadtree(surface, 12, 2);
+  const TileQuadtree one = tileQuadtree(surface, 6, 1), two = tileQuadtree(surface, 6, 2);
   EXPECT_EQ(one.child, two.child);
   EXPECT_EQ(one.origin, two.origin);
   EXPECT_EQ(one.tiles.tile_points, two.tiles.tile_points);

@@ -45,7 +45,7 @@ void compareWithGoldenValues(int step) {
   }
 }
 
-TEST(DeepSubdivision, AgreesWithGoldenValues) { compareWithGoldenValues(6); }
+TEST(DeepSubdivision, AgreesWithGoldenValues) { compareWithGoldenValues(18); }
 
 TEST(SlowDeepSubdivision, AgreesWithGoldenValues) { compareWithGoldenValues(1); }
 
@@ -114,7 +114,7 @@ void compareNonManifoldMeshes(int step) {
   std::printf("  worst %.2e\n", worst);
 }
 
-TEST(DeepSubdivision, AgreesWithOpenSubdivOnNonManifoldMeshes) { compareNonManifoldMeshes(67); }
+TEST(DeepSubdivision, AgreesWithOpenSubdivOnNonManifoldMeshes) { compareNonManifoldMeshes(199); }
 
 TEST(SlowDeepSubdivision, AgreesWithOpenSubdivOnNonManifoldMeshes) { compareNonManifoldMeshes(17); }
 
@@ -140,7 +140,7 @@ void compareSharpMeshes(int mixtures, int step) {
   std::printf("  worst %.2e\n", worst);
 }
 
-TEST(DeepSubdivision, AgreesWithOpenSubdivOnSharpMeshes) { compareSharpMeshes(4, 67); }
+TEST(DeepSubdivision, AgreesWithOpenSubdivOnSharpMeshes) { compareSharpMeshes(4, 199); }
 
 TEST(SlowDeepSubdivision, AgreesWithOpenSubdivOnSharpMeshes) { compareSharpMeshes(10, 17); }
 

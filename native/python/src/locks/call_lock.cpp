@@ -187,10 +187,10 @@ class Table {
               " when this process was forked: it can no longer be used here in this way");
         }
         if (other.thread == first->thread) {
-          throw std::runtime_error("this " + what +
-                                   " is in use by the call that has called this function (a signal "
-                                   "handler, a progress function or a destructor): it would wait "
-                                   "for itself");
+          throw std::runtime_error(
+              "this " + what +
+              " is in use by a call that has itself called this function, for example a density or "
+              "progress function, a signal handler or a destructor: it would wait for itself");
         }
         if (!seen.insert(other.thread).second) {
           continue;
