@@ -190,7 +190,7 @@ def test_a_density_cannot_repose_the_surface(cube):
         return uv[:, 0]
 
     for scatter in (cube.scatter_uniform, cube.scatter_blue_noise):
-        with pytest.raises(RuntimeError, match="this LimitSurface is in use by a call that has itself"):
+        with pytest.raises(RuntimeError, match="in use by a call that has itself called"):
             scatter(count=10, density=density)
     cube.set_positions(2 * cube.positions)  # afterwards it can be
 
