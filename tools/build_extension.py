@@ -37,7 +37,7 @@ def main() -> None:
     if arguments.build_wheel:
         library = wheels.Library.of_the_system()
         if arguments.bundled:
-            library = wheels.Library.bundled(arguments.sources)
+            library = wheels.Library.bundled(arguments.sources, arguments.glibc)
         wheels.build(arguments.wheels, arguments.python_headers, library)
     found = find_wheels(arguments.wheels, version)
     platforms = platforms_of(found)
@@ -105,11 +105,19 @@ def parse_arguments() -> argparse.Namespace:
         help="with --bundled: take these sources from the folders opensubdiv and tbb in FOLDER, "
         "instead of fetching them",
     )
+    parser.add_argument(
+        "--glibc",
+        metavar="VERSION",
+        help="with --bundled: wheels for Linux systems with this version of glibc (2.28, say) or a "
+        "later one, compiled by Zig (pip install ziglang)",
+    )
     arguments = parser.parse_args()
     if arguments.bundled and not arguments.build_wheel:
         parser.error("--bundled needs --build-wheel")
     if arguments.sources and not arguments.bundled:
         parser.error("--sources needs --bundled")
+    if arguments.glibc and not arguments.bundled:
+        parser.error("--glibc needs --bundled")
     return arguments
 
 

@@ -7,6 +7,9 @@
 #
 #   tools/release.sh [--trial] [--sources FOLDER] [--python PYTHON]
 #
+# The wheels are for every Linux with glibc 2.28 or later, as Blender itself is: Zig compiles them, and
+# is installed from PyPI where it is missing.
+#
 # --trial    makes one of uncommitted changes, of a version that the changelog calls unreleased, and
 #            while pyproject.toml has no address of the project; its notes say that it is none
 # --sources  takes OpenSubdiv's and oneTBB's sources from the folders opensubdiv and tbb in FOLDER,
@@ -18,9 +21,11 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 usage() {
-  sed -n '4,18s/^# \{0,1\}//p' "$0"
+  sed -n '4,21s/^# \{0,1\}//p' "$0"
   exit 2
 }
+
+ZIG=ziglang==0.17.1
 
 trial=false sources=() other_python=python3.13
 while (($#)); do
@@ -48,6 +53,8 @@ objections=()
   objections+=("The tag v$version is at another commit.")
 ! grep -q '//example\.org' pyproject.toml ||
   objections+=("pyproject.toml has no address of the project: it says example.org.")
+grep -q '^website = ' addon/limit_surface/blender_manifest.toml ||
+  objections+=("blender_manifest.toml has no website: it is the address of the project.")
 if ((${#objections[@]})) && ! $trial; then
   fail "This is not ready to be released." "${objections[@]}"
 fi
@@ -59,13 +66,14 @@ other_headers=$("$other_python" -c 'import sysconfig; print(sysconfig.get_paths(
   fail "$other_python has no headers in $other_headers."
 
 set_up
+python -c 'import ziglang' 2>/dev/null || python -m pip install -q "$ZIG"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 rm -rf "$release"
 mkdir -p "$release"
 
 say "Wheels and extension"
-python tools/build_extension.py --build-wheel --bundled "${sources[@]}" \
+python tools/build_extension.py --build-wheel --bundled --glibc 2.28 "${sources[@]}" \
   --python-headers "$other_headers" --wheels "$release" --output "$release"
 say "Source package"
 python -m build --sdist --no-isolation --outdir "$release" . >"$scratch/sdist.log" 2>&1 ||

@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
 MULTIARCH = "x86_64-linux-gnu"
+ZIG = ROOT / "native/cmake/toolchains/zig.cmake"
 
 
 class BuildError(Exception):
@@ -35,26 +36,35 @@ class Library(NamedTuple):
 
     tree: Path
     modules: Path  # the folder for the modules' build trees
-    definitions: list[str]
+    compiler: dict[str, str | Path]  # CMake variables of the library and of the modules
+    dependencies: dict[str, str | Path]  # CMake variables of the library
 
     @classmethod
     def of_the_system(cls) -> "Library":
         """With the system's OpenSubdiv and oneTBB, which the repaired wheels then contain."""
-        return cls(ROOT / "build/cpp", ROOT / "build", [])
+        return cls(ROOT / "build/cpp", ROOT / "build", {}, {})
 
     @classmethod
-    def bundled(cls, sources: Path | None) -> "Library":
+    def bundled(cls, sources: Path | None, glibc: str | None) -> "Library":
         """With OpenSubdiv and oneTBB compiled from source: fetched, or from the folders
-        `opensubdiv` and `tbb` in `sources`.
+        `opensubdiv` and `tbb` in `sources`. With a version of glibc, such as "2.28", Zig compiles
+        them for systems that have this version or a later one.
         """
-        definitions = ["-DLIMITSURF_BUNDLED_DEPENDENCIES=ON"]
+        dependencies: dict[str, str | Path] = {"LIMITSURF_BUNDLED_DEPENDENCIES": "ON"}
         if sources is not None:
             for name in ("opensubdiv", "tbb"):
                 source = (sources / name).resolve()
                 if not source.is_dir():
                     raise BuildError(f"{source} is not a folder; expected the sources of {name}")
-                definitions.append(f"-DFETCHCONTENT_SOURCE_DIR_{name.upper()}={source}")
-        return cls(ROOT / "build/bundled", ROOT / "build/bundled/modules", definitions)
+                dependencies[f"FETCHCONTENT_SOURCE_DIR_{name.upper()}"] = source
+        tree, compiler = ROOT / "build/bundled", {}
+        if glibc is not None:
+            tree = ROOT / f"build/bundled-glibc{glibc}"
+            compiler = {
+                "CMAKE_TOOLCHAIN_FILE": ZIG,
+                "LIMITSURF_ZIG_TARGET": f"{MULTIARCH}.{glibc}",
+            }
+        return cls(tree, tree / "modules", compiler, dependencies)
 
 
 def build(folder: Path, other_headers: list[Path], library: Library) -> None:
@@ -68,13 +78,14 @@ def build(folder: Path, other_headers: list[Path], library: Library) -> None:
         package = compile_library(library)
         pip = (sys.executable, "-m", "pip", "--disable-pip-version-check")
         options = ["-q", "--no-deps", "--no-build-isolation"]
-        options += ["-C", f"cmake.define.LIMITSURF_PREBUILT={package}"]
+        for name, value in {"LIMITSURF_PREBUILT": package, **library.compiler}.items():
+            options += ["-C", f"cmake.define.{name}={value}"]
         options += ["-C", f"build-dir={library.modules}/{{wheel_tag}}"]
         run(*pip, "wheel", *options, "-w", raw, ROOT)
         (own,) = Path(raw).glob("limitsurf-*.whl")
         wheels = [own]
         for headers in other_headers:
-            module = compiled_module(headers, package, library.modules)
+            module = compiled_module(headers, package, library)
             wheels.append(with_module(own, module, interpreter(headers)))
         for wheel in wheels:
             run(sys.executable, "-m", "auditwheel", "repair", "-w", folder, wheel)
@@ -101,8 +112,13 @@ def alone() -> Iterator[None]:
 
 def compile_library(library: Library) -> Path:
     """Brings the library's CMake package up to date, and returns its folder."""
-    if library.definitions or not (library.tree / "build.ninja").exists():
-        run("cmake", "-S", ROOT, "--preset", "release", "-B", library.tree, *library.definitions)
+    definitions = {**library.compiler, **library.dependencies}
+    if definitions or not (library.tree / "build.ninja").exists():
+        if library.compiler:  # it finds neither GoogleTest nor Boost
+            parts = ("BENCH", "TESTS", "TOOLS")
+            definitions |= {f"LIMITSURF_BUILD_{part}": "OFF" for part in parts}
+        options = [f"-D{key}={value}" for key, value in definitions.items()]
+        run("cmake", "-S", ROOT, "--preset", "release", "-B", library.tree, *options)
     compile_in(library.tree, "--target", "limitsurf")
     return library.tree / "native"
 
@@ -112,12 +128,12 @@ def compile_in(build_tree: Path, *options: str) -> None:
     run("cmake", "--build", build_tree, "--parallel", jobs, *options)
 
 
-def compiled_module(headers: Path, package: Path, trees: Path) -> Path:
+def compiled_module(headers: Path, package: Path, library: Library) -> Path:
     """Returns the module for the Python whose headers lie in a folder such as
     include/python3.13.
     """
     name = interpreter(headers)
-    build_folder = trees / f"{name}-headers"
+    build_folder = library.modules / f"{name}-headers"
     include = build_folder / "include"
     for source in (headers, headers.parent / MULTIARCH / headers.name):
         if source.exists():  # Debian stores pyconfig.h in another folder
@@ -136,6 +152,7 @@ def compiled_module(headers: Path, package: Path, trees: Path) -> Path:
         "PYTHON_MODULE_EXTENSION": suffix,
         "PYTHON_MODULE_DEBUG_POSTFIX": "",
         "pybind11_DIR": run(sys.executable, "-m", "pybind11", "--cmakedir").strip(),
+        **library.compiler,
     }
     options = [f"-D{key}={value}" for key, value in definitions.items()]
     run("cmake", "-S", ROOT, "-B", build_folder, "-G", "Ninja", *options)

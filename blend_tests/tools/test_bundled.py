@@ -11,10 +11,15 @@ from pathlib import Path
 import pytest
 from elftools.elf.elffile import ELFFile
 from processes import ROOT, run_python
+from wheel_names import platform_tags
 
 LIBRARIES = {"opensubdiv": "opensubdiv", "onetbb": "tbb"}
 #: Libraries of the system, which every manylinux wheel may expect
 SYSTEM = {"ld-linux-x86-64.so.2", "libc.so.6", "libgcc_s.so.1", "libm.so.6", "libstdc++.so.6"}
+#: The same before glibc 2.34, which took two of them into itself; Zig's C++ library is in the wheel
+SYSTEM_OF_OLD_GLIBC = {
+    *("ld-linux-x86-64.so.2", "libc.so.6", "libdl.so.2", "libm.so.6", "libpthread.so.0"),
+}
 SOURCE_LIST = Path("/etc/apt/sources.list.d/debian.sources")
 
 
@@ -49,8 +54,12 @@ def sources(tmp_path_factory) -> Path:
 
 
 @pytest.mark.slow
-def test_wheel_needs_no_other_libraries(sources, tmp_path):
-    options = ("--build-wheel", "--bundled", "--sources", sources)
+@pytest.mark.parametrize("glibc", [None, "2.28"])
+def test_wheel_needs_no_other_libraries(sources, tmp_path, glibc):
+    options = ["--build-wheel", "--bundled", "--sources", sources]
+    if glibc is not None:
+        pytest.importorskip("ziglang", reason="Zig is missing (pip install ziglang)")
+        options += ["--glibc", glibc]
     done = subprocess.run(
         [
             *(sys.executable, ROOT / "tools/build_extension.py", *options),
@@ -68,7 +77,12 @@ def test_wheel_needs_no_other_libraries(sources, tmp_path):
     (module,) = (tmp_path / "site/limitsurf").glob("*.so")
     with module.open("rb") as file:
         tags = list(ELFFile(file).get_section_by_name(".dynamic").iter_tags())
-    assert {tag.needed for tag in tags if tag.entry.d_tag == "DT_NEEDED"} <= SYSTEM
+    needed = {tag.needed for tag in tags if tag.entry.d_tag == "DT_NEEDED"}
+    assert needed <= (SYSTEM if glibc is None else SYSTEM_OF_OLD_GLIBC)
+    if glibc is not None:
+        floors = [int(tag.split("_")[2]) for tag in platform_tags(wheel) if tag.count("_") > 2]
+        assert floors, wheel.name
+        assert max(floors) <= int(glibc.split(".")[1]), wheel.name
     assert any(name.endswith("LICENSES/OpenSubdiv.txt") for name in names)
     assert not any("GPL" in name for name in names)
     code = (

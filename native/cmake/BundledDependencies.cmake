@@ -50,6 +50,9 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT MSVC)
   # oneTBB uses these instructions where it finds that the CPU has them.
   target_compile_options(limitsurf_tbb PRIVATE -mrtm -mwaitpkg)
 endif()
+if(APPLE)
+  target_compile_definitions(limitsurf_tbb PRIVATE _XOPEN_SOURCE) # for the functions in ucontext.h
+endif()
 
 foreach(part IN ITEMS limitsurf_opensubdiv limitsurf_tbb)
   set_target_properties(${part} PROPERTIES CXX_CLANG_TIDY "" EXPORT_COMPILE_COMMANDS OFF)

@@ -18,7 +18,7 @@ set(limitsurf_test_libraries)
 set(limitsurf_warning_as_error ${CMAKE_COMPILE_WARNING_AS_ERROR})
 set(CMAKE_COMPILE_WARNING_AS_ERROR OFF)
 
-if(LIMITSURF_BUILD_TESTS)
+if(LIMITSURF_BUILD_TESTS OR LIMITSURF_BUILD_TOOLS)
   FetchContent_Declare(googletest
     URL https://github.com/google/googletest/archive/refs/tags/release-1.12.1.tar.gz
     URL_HASH SHA256=81964fe578e9bd7c94dfdb09c8e4d6e6759e19967e397dbea48d1c10e45d0df2)

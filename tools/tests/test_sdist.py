@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 TEXTS = ("CHANGELOG.md", "CMakeLists.txt", "LICENSE", "PKG-INFO", "README.md", "pyproject.toml")
 FOLDERS = ("LICENSES/", "native/cmake/", "native/limitsurf/", "native/python/")
 #: Ends of the names of the files that the folders hold
-ENDS = (".cmake", ".cpp", ".h", ".in", ".md", ".py", ".pyi", ".txt", "py.typed")
+ENDS = (".cmake", ".cpp", ".h", ".in", ".map", ".md", ".py", ".pyi", ".txt", "py.typed")
 
 
 @pytest.fixture(scope="module")
