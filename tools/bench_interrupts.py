@@ -1,17 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures how long calls of the module `limitsurf` keep other Python threads waiting, and how soon
-Ctrl-C ends them. Prints a table in Markdown.
+"""Measures how long calls of the module `limitsurf` are deaf to Ctrl-C, how soon it ends them, and
+how long they keep other Python threads waiting. Prints a table in Markdown.
 
-    .venv/bin/python tools/bench_interrupts.py
+    .venv/bin/python tools/bench_interrupts.py [NAME ...]
+
+With names, only the calls whose name contains one of them. A timer signal arrives every few
+milliseconds while a call runs, and Python counts when it hears it: the longest time without is the
+longest that Ctrl-C can take to be heard. Then the call is made again and interrupted at some
+moments.
 """
 
+import argparse
 import os
+import pickle
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import limitsurf as ls
 import numpy as np
@@ -20,75 +30,326 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "native/python/test
 
 import shapes  # noqa: E402
 
-LET_RUN = 1.0  # seconds before Ctrl-C
-LOOK = 0.001  # seconds between two readings of the clock by the other thread
+TICK = 0.005  # seconds between two signals
+MOMENTS = (0.15, 0.5, 0.9)  # parts of a call after which Ctrl-C comes
+LIMIT = 0.5  # seconds within which Ctrl-C is to be heard
+
+Call = Callable[[], object]
 
 
-def calls() -> dict[str, Callable[[], object]]:
-    """Returns calls, each of which would take tens of seconds or more."""
-    around = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.pole(200)))
-    near = np.tile([[1e-4, 2e-4]], (4_000_000, 1))
-    positions, faces = shapes.grid(300, 300)
-    edges = np.vstack([faces[:, [0, 1]], faces[:, [0, 3]]])
-    sharp = ls.ControlMesh.from_faces(
-        positions, faces, edge_sharpness=(edges, np.full(len(edges), 6.5))
-    )
+@cache
+def positions_and_faces(kind: str) -> tuple[Any, Any]:
+    if kind == "quads":
+        positions, faces = shapes.grid(1000, 1000)
+    elif kind in ("triangles", "some triangles"):
+        side = 400 if kind == "triangles" else 12
+        positions, quads = shapes.grid(side, side)
+        faces = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    elif kind == "sharp":
+        positions, faces = shapes.grid(250, 250)
+    elif kind == "pole":
+        return shapes.pole(10_000)
+    else:
+        positions, faces = shapes.grid(300, 300)
     positions = positions * 1.0
-    positions[:, 2] = np.sin(positions[:, 0] * positions[:, 1])
-    rough = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
-    points = np.random.default_rng(0).uniform(-100, 200, (5_000_000, 3))
-    rough.closest(points[:1])
-    return {
-        "evaluate": lambda: around.evaluate(0, near),
-        "frames": lambda: around.frames(0, near),
-        "curvature": lambda: around.curvature(0, near),
-        "LimitSurface(mesh)": lambda: ls.LimitSurface(sharp),
-        "closest": lambda: rough.closest(points),
-        "ray_cast": lambda: rough.ray_cast(points, points),
-    }
+    positions[:, 2] = np.sin(0.9 * positions[:, 0]) * np.sin(positions[:, 1])
+    return positions, faces
 
 
-def measured(call: Callable[[], object]) -> tuple[float, float] | None:
-    """Returns in seconds the longest pause of another thread, and the time from Ctrl-C to the end;
-    None where the call had ended before.
-    """
+def edges_of(faces: Any) -> Any:
+    return np.vstack([faces[:, [0, 1]], faces[:, [0, 3]]])
+
+
+@cache
+def mesh(kind: str) -> ls.ControlMesh:
+    positions, faces = positions_and_faces(kind)
+    sharp = (edges_of(faces), np.full(2 * len(faces), 4.5)) if kind == "sharp" else None
+    return ls.ControlMesh.from_faces(positions, faces, edge_sharpness=sharp)
+
+
+@cache
+def surface(kind: str) -> ls.LimitSurface:
+    return ls.LimitSurface(mesh(kind))
+
+
+@cache
+def places(kind: str, count: int) -> tuple[Any, Any]:
+    rng = np.random.default_rng(0)
+    return rng.integers(0, surface(kind).face_count, count), rng.random((count, 2))
+
+
+@cache
+def uv_map(kind: str) -> ls.SurfaceData:
+    positions = positions_and_faces(kind)[0][:, :2]
+    return surface(kind).vertex_data(positions / positions.max())
+
+
+def making() -> Iterator[tuple[str, Call]]:
+    positions, faces = positions_and_faces("quads")
+    sizes = np.full(len(faces), 4)
+    edges = edges_of(faces)
+    nested = positions_and_faces("middle")[1].tolist() * 4
+    yield "ControlMesh, quads", lambda: ls.ControlMesh(positions, sizes, faces.ravel())
+    yield (
+        "ControlMesh, all edges sharp",
+        lambda: ls.ControlMesh.from_faces(
+            positions, faces, edge_sharpness=(edges, np.full(len(edges), 2.0))
+        ),
+    )
+    yield (
+        "ControlMesh.from_faces, lists",
+        lambda: ls.ControlMesh.from_faces(positions_and_faces("middle")[0], nested),
+    )
+    for kind in ("quads", "triangles", "sharp", "pole"):
+        yield f"LimitSurface, {kind}", lambda kind=kind: ls.LimitSurface(mesh(kind))
+    stored = pickle.dumps(surface("triangles"))
+    yield "pickle.loads(LimitSurface)", lambda: pickle.loads(stored)
+
+
+def posing() -> Iterator[tuple[str, Call]]:
+    for kind in ("quads", "triangles", "sharp", "pole"):
+        positions = positions_and_faces(kind)[0]
+        times = {"quads": 4, "pole": 4}.get(kind, 2)
+
+        def pose(kind: str = kind, positions: Any = positions, times: int = times) -> None:
+            for _ in range(times):
+                surface(kind).set_positions(positions)
+
+        yield f"set_positions, {kind}", pose
+    values = np.random.default_rng(0).random((len(positions_and_faces("triangles")[0]), 12))
+    corners = positions_and_faces("triangles")[1].ravel()
+    triangles = surface("triangles")
+    data = triangles.vertex_data(values)
+    yield "set_values, 12 columns", lambda: data.set_values(values)
+    yield "vertex_data, 12 columns", lambda: triangles.vertex_data(values)
+    yield "varying", lambda: triangles.varying(values)
+    yield "face_varying", lambda: triangles.face_varying(values, corners, "boundaries")
+
+
+def evaluating() -> Iterator[tuple[str, Call]]:
+    many = 4_000_000
+    triangles = surface("triangles")
+    yield "evaluate", lambda: triangles.evaluate(*places("triangles", many), derivatives=2)
+    yield "frames", lambda: triangles.frames(*places("triangles", many))
+    yield "curvature", lambda: triangles.curvature(*places("triangles", many))
+    corners = triangles.vertex_locations()
+    at_vertices = (corners.face, corners.uv)
+    yield "curvature, average", lambda: triangles.curvature(*at_vertices, irregular="average")
+    yield "stencils", lambda: triangles.stencils(*places("triangles", many // 8), derivatives=1)
+    yield "tiles", lambda: triangles.tiles(*places("triangles", many // 64))
+    yield "tile_quadtree", lambda: surface("middle").tile_quadtree()
+    yield "tile_quadtree, triangles", lambda: surface("some triangles").tile_quadtree()
+    unwrapped, fewer = uv_map("triangles"), places("triangles", many // 4)
+    yield "bounds", lambda: triangles.bounds()
+    yield "tangent_frames", lambda: triangles.tangent_frames(unwrapped, *fewer)
+    yield "tessellate", lambda: surface("middle").tessellate(3, corner_normals=True)
+    yield "levels_within", lambda: triangles.levels_within(1e-9)
+    yield "levels_of_length", lambda: triangles.levels_of_length(1e-3)
+
+
+def searching() -> Iterator[tuple[str, Call]]:
+    rng = np.random.default_rng(0)
+    near = rng.uniform(0, 300, (1_000_000, 3)) * [1, 1, 0.003]
+    far = rng.uniform(-100, 400, (100_000, 3))
+    thin = np.repeat(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])[None], 400, 0)
+    stack = ls.LimitSurface(
+        ls.ControlMesh.from_faces(thin.reshape(-1, 3), np.arange(1600).reshape(-1, 4))
+    )
+    yield "closest, first call", lambda: ls.LimitSurface(mesh("triangles")).closest(near[:100])
+    yield "closest, near", lambda: surface("middle").closest(near)
+    yield "closest, far", lambda: surface("middle").closest(far)
+    yield "closest, coincident sheets", lambda: stack.closest(rng.random((20_000, 3)))
+    yield "closest, none faces", lambda: surface("middle").closest(near[:50_000], facing=[0, 0, -1])
+    yield "ray_cast", lambda: surface("middle").ray_cast(far * 5, near[:100_000] - far)
+    yield "ray_cast_all", lambda: surface("middle").ray_cast_all(far * 5, near[:100_000] - far)
+
+
+def sampling() -> Iterator[tuple[str, Call]]:
+    yield "area", lambda: surface("quads").area()
+    yield "area, triangles", lambda: surface("triangles").area()
+    yield "area, pole", lambda: surface("pole").area()
+    yield "scatter_jittered", lambda: surface("quads").scatter_jittered(4)
+    yield "scatter_uniform", lambda: ls.LimitSurface(mesh("triangles")).scatter_uniform(1_000_000)
+    yield "scatter_blue_noise", lambda: surface("middle").scatter_blue_noise(count=100_000)
+    yield (
+        "scatter_blue_noise, triangles",
+        lambda: surface("triangles").scatter_blue_noise(count=50_000),
+    )
+    edges = edges_of(positions_and_faces("middle")[1])
+    yield "edge_curves", lambda: surface("middle").edge_curves(edges)
+    border = surface("middle").edge_curves()
+    yield (
+        "scatter_along, rows",
+        lambda: surface("middle").scatter_along(border, 20_000, rows=20, row_distance=0.3),
+    )
+
+
+def tracing() -> Iterator[tuple[str, Call]]:
+    middle, rng = surface("middle"), np.random.default_rng(0)
+    line = np.stack([np.linspace(0, 300, 300), np.linspace(0, 300, 300), np.zeros(300)], 1)
+    guides, at = places("middle", 1000), places("middle", 500_000)
+    yield "guide_weights", lambda: middle.guide_weights(*guides, *at)
+    yield "curve_directions", lambda: middle.curve_directions(line, None, *at)
+    yield "lay_path", lambda: middle.lay_path(line, 1e-6)
+    path = middle.lay_path(line, 1e-3)
+    some = (path.face, path.uv)
+    yield "fit_path", lambda: middle.fit_path(*some, 1e-5)
+    yield (
+        "smooth_path",
+        lambda: middle.smooth_path(*some, np.ones(len(path.face)), iterations=200),
+    )
+    yield "even_path", lambda: middle.even_path(*some, 200_000)
+    points = rng.random((8_000_000, 3))
+    offsets = np.arange(0, len(points) + 1, 8)
+    yield "resample_strands", lambda: ls.resample_strands(points, offsets, 16)
+
+
+def texturing() -> Iterator[tuple[str, Call]]:
+    middle, texture, rng = surface("middle"), uv_map("middle"), np.random.default_rng(0)
+    at = places("middle", 1_000_000)
+    view = np.diag([1 / 150, 1 / 150, -0.01, 1.0])
+    yield "rasterize", lambda: texture.rasterize(3000, 3000, margin=8)
+    yield "locate", lambda: texture.locate(rng.random((400_000, 2)))
+    yield "project", lambda: middle.project(texture, *at, view, (1e-3, 1e-3))
+    yield (
+        "project_along_normals",
+        lambda: middle.project_along_normals(
+            texture, at[0][:200_000], at[1][:200_000], middle, texture, (1e-3, 1e-3)
+        ),
+    )
+    fine = positions_and_faces("middle")
+    yield "SubdividedFaces", lambda: ls.SubdividedFaces(mesh("middle"), subdivided())
+    yield (
+        "scalar_displacement",
+        lambda: middle.scalar_displacement(middle, at[0][:300_000], at[1][:300_000]),
+    )
+    pixels = rng.random((4096, 4096, 4), np.float32)
+    yield "FilteredImage", lambda: ls.FilteredImage(pixels)
+    image = ls.FilteredImage(pixels)
+    steps = rng.uniform(-0.05, 0.05, (3_000_000, 2, 2))
+    yield "sample", lambda: image.sample(rng.random((3_000_000, 2)), steps)
+    colours = rng.random((8_000_000, 4), np.float32)
+    yield (
+        "blend_over",
+        lambda: ls.blend_over(colours, colours, np.ones(len(colours)), premultiplied=True),
+    )
+    normals = rng.normal(size=(8_000_000, 3))
+    yield "box_weights", lambda: ls.box_weights(normals, 0.5)
+    yield "bilinear", lambda: ls.bilinear(pixels, rng.random((8_000_000, 2)))
+    layout = ls.PtexLayout(len(fine[1]), 16)
+    yield "PtexLayout.texels", lambda: layout.texels()
+    signs = np.ones(len(normals))
+    yield (
+        "into_shading_frames",
+        lambda: ls.into_shading_frames(normals, normals, normals[::-1], signs),
+    )
+    yield "shortest_turns", lambda: ls.shortest_turns(normals, normals[::-1])
+
+
+@cache
+def subdivided() -> ls.ControlMesh:
+    """The mesh "middle" with each face divided in Blender's order of faces."""
+    base = positions_and_faces("middle")[1]
+    corners = np.arange(4 * len(base)).reshape(-1, 4)
+    middle = 4 * len(base)
+    faces = np.stack([corners, corners + middle, corners + 2 * middle, corners + 3 * middle], 2)
+    return ls.ControlMesh.from_faces(np.zeros((4 * middle, 3)), faces.reshape(-1, 4))
+
+
+@dataclass
+class Finding:
+    seconds: float
+    deaf: float  # the longest time without hearing a signal
+    pause: float  # the longest pause of another thread
+    ends: list[float]  # from Ctrl-C to the end, for each of the moments
+
+
+def measured(call: Call) -> Finding:
+    heard: list[float] = []
     over = threading.Event()
-    longest, asked = 0.0, 0.0
+    pause = 0.0
 
     def watch() -> None:
-        nonlocal longest, asked
-        begin = last = time.perf_counter()
+        nonlocal pause
+        last = time.perf_counter()
         while not over.is_set():
-            time.sleep(LOOK)
+            time.sleep(0.001)
             now = time.perf_counter()
-            longest, last = max(longest, now - last), now
-            if not asked and now - begin > LET_RUN:
-                asked = now
-                os.kill(os.getpid(), signal.SIGINT)
+            pause, last = max(pause, now - last), now
 
     watcher = threading.Thread(target=watch)
+    before = signal.signal(signal.SIGALRM, lambda *_: heard.append(time.perf_counter()))
     watcher.start()
+    begin = time.perf_counter()
+    signal.setitimer(signal.ITIMER_REAL, TICK, TICK)
+    try:
+        call()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        end = time.perf_counter()
+        over.set()
+        watcher.join()
+        signal.signal(signal.SIGALRM, before)
+    times = np.array([begin, *[t for t in heard if t < end], end])
+    return Finding(end - begin, float(np.diff(times).max()), pause, [])
+
+
+def interrupted(call: Call, after: float) -> float | None:
+    """The time from Ctrl-C to the end, or None where the call had ended before."""
+    asked = 0.0
+
+    def press() -> None:
+        nonlocal asked
+        asked = time.perf_counter()
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(after, press)
+    timer.start()
     try:
         call()
     except KeyboardInterrupt:
-        return longest, time.perf_counter() - asked
+        return time.perf_counter() - asked
     else:
         return None
     finally:
-        over.set()
-        watcher.join()
+        timer.cancel()
+        try:
+            timer.join()
+            time.sleep(0.01)
+        except KeyboardInterrupt:
+            pass
 
 
 def main() -> None:
-    print("| call | longest pause of another thread | until Ctrl-C has ended it |")
-    print("|---|---:|---:|")
-    for name, call in calls().items():
-        found = measured(call)
-        if found is None:
-            print(f"| `{name}` | took less than {LET_RUN:g} s | |")
-        else:
-            pause, end = found
-            print(f"| `{name}` | {1000 * pause:.0f} ms | {1000 * end:.0f} ms |")
+    arguments = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    arguments.add_argument("names", nargs="*", help="parts of the names of calls")
+    arguments.add_argument("--heard-only", action="store_true", help="do not press Ctrl-C")
+    given = arguments.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    print(
+        "| call | takes | longest wait for Ctrl-C | until it has ended the call "
+        "| longest pause of another thread |"
+    )
+    print("|---|---:|---:|---:|---:|")
+    slow = []
+    for group in (making, posing, evaluating, searching, sampling, tracing, texturing):
+        for name, call in group():
+            if given.names and not any(part in name for part in given.names):
+                continue
+            found = measured(call)
+            if not given.heard_only:
+                ends = (interrupted(call, part * found.seconds) for part in MOMENTS)
+                found.ends = [end for end in ends if end is not None]
+            ended = f"{1000 * max(found.ends):.0f} ms" if found.ends else ""
+            print(
+                f"| `{name}` | {found.seconds:.1f} s | {1000 * found.deaf:.0f} ms | {ended} "
+                f"| {1000 * found.pause:.0f} ms |",
+                flush=True,
+            )
+            if max([found.deaf, *found.ends]) > LIMIT:
+                slow.append(name)
+    print()
+    print("Slower than half a second:", ", ".join(slow) or "none")
 
 
 if __name__ == "__main__":

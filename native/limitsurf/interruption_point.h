@@ -19,6 +19,9 @@ class InterruptionPoint {
   InterruptionPoint(const InterruptionPoint&) = delete;
   InterruptionPoint& operator=(const InterruptionPoint&) = delete;
 
+  /// Whether this thread has a function.
+  static bool any() { return current() != nullptr; }
+
   /// Calls the innermost function of this thread, if there is one.
   static void pass() {
     if (current()) {
@@ -34,6 +37,21 @@ class InterruptionPoint {
 
   std::function<void()> call_;
   InterruptionPoint* outer_;
+};
+
+/// Passes the interruption point now and then within a serial loop.
+class InterruptionStride {
+ public:
+  /// Is called at each step of the loop, which takes up to some microseconds.
+  void step() {
+    if (++steps_ % kStride == 0) {
+      InterruptionPoint::pass();
+    }
+  }
+
+ private:
+  static constexpr unsigned kStride = 256;
+  unsigned steps_ = 0;
 };
 
 }  // namespace limitsurf

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
-#include <sstream>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/mesh/limits.h"
 #include "limitsurf/mesh/messages.h"
 
@@ -32,22 +33,53 @@ void checkSizes(const std::vector<std::int64_t>& sizes, std::size_t index_count)
   }
 }
 
-std::vector<std::pair<int, int>> sortedEdges(const ControlMesh& mesh) {
-  std::vector<std::pair<int, int>> edges;
-  edges.reserve(mesh.faceVertices().size());
-  for (int f = 0; f < mesh.faceCount(); ++f) {
-    const Span<int> vertices = mesh.faceVertices(f);
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      edges.push_back(std::minmax(vertices[i], vertices[(i + 1) % vertices.size()]));
+/// The edges of a mesh, found by their ends.
+class EdgeTable {
+ public:
+  explicit EdgeTable(const ControlMesh& mesh)
+      : first_(static_cast<std::size_t>(mesh.vertexCount()) + 1, 0) {
+    InterruptionStride stride;
+    forEachSide(mesh, [&](int low, int) {
+      stride.step();
+      ++first_[low + 1];
+    });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    high_.resize(mesh.faceVertices().size());
+    std::vector<std::ptrdiff_t> next(first_.begin(), first_.end() - 1);
+    forEachSide(mesh, [&](int low, int high) {
+      stride.step();
+      high_[next[low]++] = high;
+    });
+    for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
+      stride.step();
+      std::sort(high_.begin() + first_[vertex], high_.begin() + first_[vertex + 1]);
     }
   }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
 
-void checkSharpness(const std::string& where, double value) {
+  bool contains(int low, int high) const {
+    return std::binary_search(high_.begin() + first_[low], high_.begin() + first_[low + 1], high);
+  }
+
+ private:
+  template <typename Body>
+  static void forEachSide(const ControlMesh& mesh, const Body& body) {
+    for (int f = 0; f < mesh.faceCount(); ++f) {
+      const Span<int> vertices = mesh.faceVertices(f);
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const auto [low, high] = std::minmax(vertices[i], vertices[(i + 1) % vertices.size()]);
+        body(low, high);
+      }
+    }
+  }
+
+  std::vector<std::ptrdiff_t> first_;  // of each vertex
+  std::vector<int> high_;              // the other ends of its edges that are larger
+};
+
+template <typename Where>
+void checkSharpness(const Where& where, double value) {
   if (std::isnan(value) || value < 0) {
-    refuse(where, " has sharpness ", value, "; sharpness is 0 or more");
+    refuse(where(), " has sharpness ", value, "; sharpness is 0 or more");
   }
 }
 
@@ -59,19 +91,20 @@ void checkEdgeSharpness(const ControlMesh& mesh, const EdgeSharpness& sharpness)
   if (sharpness.edges.empty()) {
     return;
   }
-  const std::vector<std::pair<int, int>> edges = sortedEdges(mesh);
+  const EdgeTable edges(mesh);
+  InterruptionStride stride;
   for (std::size_t i = 0; i < sharpness.edges.size(); ++i) {
+    stride.step();
     const auto [a, b] = std::minmax(sharpness.edges[i].first, sharpness.edges[i].second);
-    std::ostringstream where;
-    where << "edge_sharpness row " << i << ", edge (" << sharpness.edges[i].first << ", "
-          << sharpness.edges[i].second << ")";
+    const auto where = [&, row = i] {
+      const auto& [first, second] = sharpness.edges[row];
+      return text("edge_sharpness row ", row, ", edge (", first, ", ", second, ")");
+    };
     const bool in_range = a >= 0 && b < mesh.vertexCount();
-    if (!in_range ||
-        !std::binary_search(edges.begin(), edges.end(),
-                            std::pair<int, int>(static_cast<int>(a), static_cast<int>(b)))) {
-      refuse(where.str(), ": the mesh has no such edge");
+    if (!in_range || !edges.contains(static_cast<int>(a), static_cast<int>(b))) {
+      refuse(where(), ": the mesh has no such edge");
     }
-    checkSharpness(where.str(), sharpness.values[i]);
+    checkSharpness(where, sharpness.values[i]);
   }
 }
 
@@ -82,12 +115,13 @@ void checkVertexSharpness(const ControlMesh& mesh, const VertexSharpness& sharpn
   }
   for (std::size_t i = 0; i < sharpness.vertices.size(); ++i) {
     const std::int64_t vertex = sharpness.vertices[i];
-    std::ostringstream where;
-    where << "vertex_sharpness row " << i << ", vertex " << vertex;
+    const auto where = [&, row = i] {
+      return text("vertex_sharpness row ", row, ", vertex ", sharpness.vertices[row]);
+    };
     if (vertex < 0 || vertex >= mesh.vertexCount()) {
-      refuse(where.str(), ": the mesh has ", mesh.vertexCount(), " vertices");
+      refuse(where(), ": the mesh has ", mesh.vertexCount(), " vertices");
     }
-    checkSharpness(where.str(), sharpness.values[i]);
+    checkSharpness(where, sharpness.values[i]);
   }
 }
 
@@ -167,7 +201,9 @@ ControlMesh::ControlMesh(Points positions, const std::vector<std::int64_t>& face
     face_offsets_.push_back(face_offsets_.back() + static_cast<int>(size));
   }
   face_vertices_.reserve(face_vertices.size());
+  InterruptionStride stride;
   for (int f = 0; f < faceCount(); ++f) {
+    stride.step();
     for (int i = face_offsets_[f]; i < face_offsets_[f + 1]; ++i) {
       if (face_vertices[i] < 0 || face_vertices[i] >= positions_.rows()) {
         refuse("face ", f, " names vertex ", face_vertices[i], "; the mesh has ", positions_.rows(),

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/mesh/messages.h"
 #include "limitsurf/mesh/value_vertices.h"
 #include "limitsurf/rules/decaying_sharpness.h"
@@ -53,7 +54,9 @@ class Builder {
     }
     if (options_.scheme == Scheme::catmark) {
       addEdges();
+      InterruptionStride stride;
       for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
+        stride.step();
         addVertex(vertex);
       }
     }
@@ -104,7 +107,9 @@ class Builder {
 
   void addEdges() {
     at_seam_.assign(mesh_.vertexCount(), false);
+    InterruptionStride stride;
     for (int edge = 0; edge < level_.GetNumEdges(); ++edge) {
+      stride.step();
       if (level_.GetEdgeFaces(edge).size() < 2) {
         continue;
       }

@@ -7,6 +7,7 @@
 
 #include "limitsurf/mesh/messages.h"
 #include "limitsurf/rules/subdivision_rules.h"
+#include "limitsurf/work_aside.h"
 
 namespace limitsurf {
 namespace {
@@ -15,6 +16,9 @@ namespace Far = OpenSubdiv::Far;
 
 /// Faces of up to this size are searched for repeated vertices without sorting, which takes longer.
 constexpr std::size_t kFewVertices = 8;
+
+/// Far is deaf while it makes a topology, some 0.2 seconds for each million corners.
+constexpr std::size_t kCornersAside = 500'000;
 
 /// A vertex that the face names twice, or -1.
 int repeatedVertex(Span<int> vertices) {
@@ -69,30 +73,51 @@ struct Sharpness {
   }
 };
 
+/// What Far makes a topology of, with copies of all arrays.
+struct FarInput {
+  explicit FarInput(const ControlMesh& mesh)
+      : vertex_count(mesh.vertexCount()),
+        sizes(mesh.faceSizes()),
+        vertices(mesh.faceVertices()),
+        sharpness(mesh),
+        options(sdcOptions(mesh.options())) {}
+
+  std::unique_ptr<Far::TopologyRefiner> refiner() const {
+    Far::TopologyDescriptor descriptor;
+    descriptor.numVertices = vertex_count;
+    descriptor.numFaces = static_cast<int>(sizes.size());
+    descriptor.numVertsPerFace = sizes.data();
+    descriptor.vertIndicesPerFace = vertices.data();
+    descriptor.numCreases = static_cast<int>(sharpness.edge_values.size());
+    descriptor.creaseVertexIndexPairs = sharpness.edges.data();
+    descriptor.creaseWeights = sharpness.edge_values.data();
+    descriptor.numCorners = static_cast<int>(sharpness.vertex_values.size());
+    descriptor.cornerVertexIndices = sharpness.vertices.data();
+    descriptor.cornerWeights = sharpness.vertex_values.data();
+    using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+    return std::unique_ptr<Far::TopologyRefiner>(
+        Factory::Create(descriptor, Factory::Options(OpenSubdiv::Sdc::SCHEME_CATMARK, options)));
+  }
+
+  int vertex_count;
+  std::vector<int> sizes, vertices;
+  Sharpness sharpness;
+  OpenSubdiv::Sdc::Options options;
+};
+
 }  // namespace
 
 Topology::Topology(const ControlMesh& mesh) {
-  std::vector<int> sizes = mesh.faceSizes();
-  const Sharpness sharpness(mesh);
-  Far::TopologyDescriptor descriptor;
-  descriptor.numVertices = mesh.vertexCount();
-  descriptor.numFaces = mesh.faceCount();
-  descriptor.numVertsPerFace = sizes.data();
-  descriptor.vertIndicesPerFace = mesh.faceVertices().data();
-  descriptor.numCreases = static_cast<int>(sharpness.edge_values.size());
-  descriptor.creaseVertexIndexPairs = sharpness.edges.data();
-  descriptor.creaseWeights = sharpness.edge_values.data();
-  descriptor.numCorners = static_cast<int>(sharpness.vertex_values.size());
-  descriptor.cornerVertexIndices = sharpness.vertices.data();
-  descriptor.cornerWeights = sharpness.vertex_values.data();
-
-  using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  refiner_.reset(Factory::Create(
-      descriptor, Factory::Options(OpenSubdiv::Sdc::SCHEME_CATMARK, sdcOptions(mesh.options()))));
+  FarInput input(mesh);
+  has_sharpness_ = input.sharpness.any();
+  if (InterruptionPoint::any() && mesh.faceVertices().size() > kCornersAside) {
+    refiner_ = workAside([input = std::move(input)] { return input.refiner(); });
+  } else {
+    refiner_ = input.refiner();
+  }
   if (!refiner_) {
     throw MeshError("OpenSubdiv cannot represent the topology of the mesh");
   }
-  has_sharpness_ = sharpness.any();
   refuseFaces(mesh);
   splitNonManifoldVertices(mesh);
 }
@@ -101,7 +126,9 @@ void Topology::refuseFaces(const ControlMesh& mesh) {
   for (const std::int64_t hole : mesh.options().holes) {
     refused_.emplace(static_cast<int>(hole), "it is a hole");
   }
+  InterruptionStride stride;
   for (int face = 0; face < mesh.faceCount(); ++face) {
+    stride.step();
     const int twice = repeatedVertex(mesh.faceVertices(face));
     if (twice >= 0) {
       refused_.emplace(face, text("it uses vertex ", twice, " twice"));
@@ -119,7 +146,9 @@ void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
   if (corners.empty()) {
     return;
   }
+  InterruptionStride stride;
   for (int face = 0; face < mesh.faceCount(); ++face) {
+    stride.step();
     const Span<int> vertices = mesh.faceVertices(face);
     for (int corner = 0; corner < static_cast<int>(vertices.size()); ++corner) {
       if (level().IsVertexNonManifold(vertices[corner])) {
@@ -128,6 +157,7 @@ void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
     }
   }
   for (const auto& [vertex, at] : corners) {
+    stride.step();
     splitIntoFans(mesh, vertex, at);
   }
 }

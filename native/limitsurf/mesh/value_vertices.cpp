@@ -3,6 +3,8 @@
 
 #include <map>
 
+#include "limitsurf/interruption_point.h"
+
 namespace limitsurf {
 
 ValueVertices::ValueVertices(const ControlMesh& mesh, const Topology& topology,
@@ -17,7 +19,9 @@ ValueVertices::ValueVertices(const ControlMesh& mesh, const Topology& topology,
     }
   }
   std::vector<int> corners;
+  InterruptionStride stride;
   for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
+    stride.step();
     first.push_back(static_cast<int>(values.size()));
     if (level.IsVertexNonManifold(vertex)) {
       number(indices, non_manifold_corners[vertex], false);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/patch/bilinear_tiles.h"
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/mesh/topology.h"
 
 namespace limitsurf {
@@ -37,7 +38,9 @@ TileTable buildBilinearTiles(const ControlMesh& mesh, const Topology& topology,
     table.faces[ptex_face] = {TileRef::kBSpline, static_cast<std::uint32_t>(table.bsplines.size())};
     table.bsplines.push_back(bilinear(corners));
   };
+  InterruptionStride stride;
   for (int face = 0; face < mesh.faceCount(); ++face) {
+    stride.step();
     if (topology.refused().count(face)) {
       continue;
     }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "limitsurf/interruption_point.h"
+
 namespace limitsurf {
 
 RefinedMesh::RefinedMesh(FaceMesh& parent, const std::vector<int>& faces,
@@ -35,17 +37,24 @@ void RefinedMesh::markVertices(const std::vector<int>& faces, bool with_neighbou
       }
     }
   };
-  std::for_each(faces.begin(), faces.end(), mark);
+  InterruptionStride stride;
+  for (const int face : faces) {
+    mark(face);
+    stride.step();
+  }
   if (with_neighbours) {
     const std::vector<int> inner = refined_vertices_;
     for (const int vertex : inner) {
+      stride.step();
       parent_.forEachAround(parent_.fan(vertex), [&](FaceCorner at) { mark(at.face); });
     }
   }
 }
 
 void RefinedMesh::makeChildren() {
+  InterruptionStride stride;
   for (const int vertex : refined_vertices_) {
+    stride.step();
     const VertexFan fan = parent_.fan(vertex);
     fans_.push_back({{static_cast<int>(origin_.size()), 0},
                      fan.faces,
@@ -83,7 +92,9 @@ void RefinedMesh::makeVertices() {
       set(beyond);
     }
   };
+  InterruptionStride stride;
   for (std::size_t v = 0; v < refined_vertices_.size(); ++v) {
+    stride.step();
     const int first = fans_[v].first.face;
     for (int c = first; c < first + fans_[v].faces; ++c) {
       const FaceCorner at = origin_[c];
@@ -112,7 +123,9 @@ void RefinedMesh::makeTwins() {
       }
     }
   };
+  InterruptionStride stride;
   for (int c = 0; c < static_cast<int>(origin_.size()); ++c) {
+    stride.step();
     const FaceCorner at = origin_[c];
     const FaceCorner beyond = parent_.twin(at);
     if (beyond.exists()) {
@@ -135,7 +148,9 @@ SharpnessAround RefinedMesh::subdivided(int parent_vertex) const {
 
 void RefinedMesh::subdivideSharpness() {
   side_sharpness_.assign(corner_vertex_.size(), 0);
+  InterruptionStride stride;
   for (std::size_t v = 0; v < refined_vertices_.size(); ++v) {
+    stride.step();
     const VertexFan& fan = fans_[v];
     const SharpnessAround around = subdivided(refined_vertices_[v]);
     for (int i = 0; i < fan.faces; ++i) {

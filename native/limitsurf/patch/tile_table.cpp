@@ -17,8 +17,6 @@ namespace {
 
 /// A face takes less time than an evaluation, so that a task has more of them than kRowsPerTask.
 constexpr std::size_t kFacesPerTask = 4096;
-/// How many irregular faces are refined between two chances to interrupt the work.
-constexpr unsigned kFacesPerInterruption = 4096;
 
 /// The tile of a quad that is regular at all corners.
 template <typename Mesh>
@@ -55,6 +53,12 @@ class Builder {
     addRegularFaces();
     addIrregularFaces();
     groupByRing(table_);
+    for (; !levels_.empty(); levels_.pop_back()) {  // which takes long where there is much in them
+      InterruptionPoint::pass();
+    }
+    for (; !meshes_.empty(); meshes_.pop_back()) {
+      InterruptionPoint::pass();
+    }
     return std::move(table_);
   }
 
@@ -108,7 +112,7 @@ class Builder {
         std::make_unique<RefinementLevel>(cage_, &cage_, nullptr, topology_.hasSharpness()));
     std::vector<Split> splits;
     for (int face = 0; face < mesh_.faceCount(); ++face) {
-      allowInterruption();
+      stride_.step();
       if (kinds_[face] == kIrregular && mesh_.faceSize(face) == 4) {
         table_.faces[ptex_.first[face]] = tileOrSplit(0, face, 0, splits);
       } else if (kinds_[face] == kIrregular) {
@@ -117,12 +121,6 @@ class Builder {
     }
     while (!splits.empty()) {
       splits = refine(splits);
-    }
-  }
-
-  void allowInterruption() {
-    if (++faces_passed_ % kFacesPerInterruption == 0) {
-      InterruptionPoint::pass();
     }
   }
 
@@ -144,7 +142,7 @@ class Builder {
         std::make_unique<RefinementLevel>(mesh, nullptr, &mesh, topology_.hasSharpness()));
     std::vector<Split> next;
     for (const Split& split : splits) {
-      allowInterruption();
+      stride_.step();
       const int corners = mesh.parent().faceSize(split.face);
       for (int corner = 0; corner < corners; ++corner) {
         const TileRef child =
@@ -193,7 +191,7 @@ class Builder {
   std::vector<std::unique_ptr<RefinementLevel>> levels_;
   RingTileMaker ring_tiles_;
   std::vector<FaceKind> kinds_;
-  unsigned faces_passed_ = 0;
+  InterruptionStride stride_;
 };
 
 }  // namespace

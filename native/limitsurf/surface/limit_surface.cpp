@@ -43,9 +43,11 @@ const std::map<int, std::string>& LimitSurface::refused() const { return data_->
 void LimitSurface::setPositions(const Points& positions, int threads) {
   checkThreads(threads);
   checkPositions(positions, data_->mesh.vertexCount());
-  data_->positions = positions;
   data_->pose.set(positions, threads);
+  data_->positions = positions;
 }
+
+bool LimitSurface::isPosed() const { return data_->pose.isSet(); }
 
 LocationBatch LimitSurface::checkLocations(const LocationBatch& at) const {
   return data_->tiles->checked(at);

@@ -11,8 +11,6 @@ namespace {
 
 /// A point takes a small part of the time of an evaluation, a ring much more than one.
 constexpr std::size_t kPointsPerTask = 16384, kRingsPerTask = 16;
-/// How many points are refined between two chances to interrupt the work.
-constexpr int kPointsPerInterruption = 1 << 18;
 
 Padded padded(const Vector3& v) { return {v[0], v[1], v[2], 0}; }
 
@@ -33,6 +31,18 @@ void setRingValues(const Ring& ring, int face, const Padded points[], Padded gri
   forEachRingSlot(ring, face, [&](int slot, int point) { grid[slot] = points[point]; });
 }
 
+/// Appends values until there are `count`. The system hands out memory when it is first written to,
+/// which may take seconds: that can be interrupted.
+template <typename T, typename... Value>
+void fill(std::vector<T>& values, std::size_t count, const Value&... value) {
+  InterruptionStride stride;
+  values.reserve(count);
+  while (values.size() < count) {
+    stride.step();
+    values.emplace_back(value...);
+  }
+}
+
 }  // namespace
 
 void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
@@ -41,11 +51,9 @@ void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padd
   setRingValues(ring, face, ring_points, after);
 }
 
-Pose::Pose(const TileTable& table)
-    : table_(&table),
-      rings_(table.rings.size()),
-      ring_tiles_(table.ring_tiles.size()),
-      first_tile_(table.rings.size() + 1, 0) {
+Pose::Pose(const TileTable& table) : table_(&table), first_tile_(table.rings.size() + 1, 0) {
+  fill(rings_, table.rings.size());
+  fill(ring_tiles_, table.ring_tiles.size());
   std::size_t tiles[TileTable::kMostDepth + 1] = {};
   for (const RingTile& tile : table.ring_tiles) {
     ++tiles[tile.depth];
@@ -61,10 +69,9 @@ Pose::Pose(const TileTable& table)
       break;
     }
   }
-  grids_.resize(grids);
-  for (Grid& grid : grids_) {  // slots without a point stay 0
-    std::fill_n(grid.points, tile_grid::kSlots, Padded::Zero());
-  }
+  Grid empty;  // slots without a point stay 0
+  std::fill_n(empty.points, tile_grid::kSlots, Padded::Zero());
+  fill(grids_, grids, empty);
   std::size_t next = 0;
   for (std::size_t t = 0; t < ring_tiles_.size(); ++t) {
     const RingTile& tile = table.ring_tiles[t];
@@ -75,6 +82,7 @@ Pose::Pose(const TileTable& table)
 }
 
 void Pose::set(const Points& cage, int threads) {
+  is_set_ = false;
   const RefinedPoints& refined = table_->points;
   points_.resize(static_cast<std::size_t>(refined.size()));
   parallelFor(static_cast<std::size_t>(cage.rows()), kPointsPerTask, threads,
@@ -89,16 +97,16 @@ void Pose::set(const Points& cage, int threads) {
       setRing(static_cast<int>(ring));
     }
   });
+  is_set_ = true;
 }
 
 void Pose::refinePoints() {
   const RefinedPoints& refined = table_->points;
   const int cage = refined.cagePoints();
   residuals_.resize(table_->fine ? static_cast<std::size_t>(refined.size() - cage) : 0);
+  InterruptionStride stride;
   for (int i = cage; i < refined.size(); ++i) {  // a point's sources have smaller numbers
-    if ((i - cage) % kPointsPerInterruption == 0) {
-      InterruptionPoint::pass();
-    }
+    stride.step();
     const Span<int> sources = refined.sources(i);
     const std::vector<double>& weights = refined.weights(i);
     Padded base, sum;

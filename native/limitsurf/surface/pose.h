@@ -46,7 +46,9 @@ class Pose {
 
   explicit Pose(const TileTable& table);
 
+  /// If something is thrown meanwhile, isSet() is false until the next time.
   void set(const Points& cage, int threads);
+  bool isSet() const { return is_set_; }
 
   const Padded& point(int i) const { return points_[i]; }
   /// The rounding error of a point: point(i) + residual(i) has twice the digits. It is 0 unless the
@@ -73,6 +75,7 @@ class Pose {
   void setRingTile(int tile, const std::vector<Padded>& ring_levels);
 
   const TileTable* table_;
+  bool is_set_ = false;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
   std::vector<Padded> residuals_;  // of the refined points

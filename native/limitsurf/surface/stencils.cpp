@@ -154,7 +154,9 @@ Stencils LimitSurface::stencils(const LocationBatch& at, bool first_derivatives,
   Stencils out;
   out.offsets.reserve(at.size() + 1);
   out.offsets.push_back(0);
+  InterruptionStride stride;
   for (const std::vector<Entry>& row : rows) {
+    stride.step();
     out.offsets.push_back(out.offsets.back() + static_cast<std::int64_t>(row.size()));
     for (const Entry& entry : row) {
       out.indices.push_back(entry.index);

@@ -80,6 +80,7 @@ SurfaceData::Data::Data(std::shared_ptr<const TiledSurface> surface, std::vector
 }
 
 void SurfaceData::Data::set(const DataRows& values, int threads) {
+  is_set = false;  // while some poses are those of other values
   const Eigen::Index vertices =
       rows_of_vertices.empty() ? values.rows() : static_cast<Eigen::Index>(rows_of_vertices.size());
   Points points = Points::Zero(vertices, 3);
@@ -87,13 +88,16 @@ void SurfaceData::Data::set(const DataRows& values, int threads) {
     const Eigen::Index first = static_cast<Eigen::Index>(i) * kColumnsPerPose;
     const Eigen::Index count = std::min(kColumnsPerPose, columns - first);
     points.rightCols(3 - count).setZero();
+    InterruptionStride stride;
     for (Eigen::Index vertex = 0; vertex < vertices; ++vertex) {
+      stride.step();
       const Eigen::Index row =
           rows_of_vertices.empty() ? vertex : rows_of_vertices[static_cast<std::size_t>(vertex)];
       points.row(vertex).head(count) = values.row(row).segment(first, count);
     }
     poses[i].set(points, threads);
   }
+  is_set = true;
 }
 
 SurfaceData::SurfaceData(std::unique_ptr<Data> data) : data_(std::move(data)) {}
@@ -116,6 +120,8 @@ void SurfaceData::setValues(const DataRows& values, int threads) {
   checkValues(values);
   data_->set(values, threads);
 }
+
+bool SurfaceData::isSet() const { return data_->is_set; }
 
 LocationBatch SurfaceData::checkLocations(const LocationBatch& at) const {
   return data_->tiles->checked(at);

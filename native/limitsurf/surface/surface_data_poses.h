@@ -23,6 +23,7 @@ struct SurfaceData::Data {
   std::shared_ptr<const TiledSurface> tiles;
   std::vector<int> rows_of_vertices;
   Eigen::Index rows, columns;
+  bool is_set = false;
   std::vector<Pose> poses;  // one for every three columns
 };
 

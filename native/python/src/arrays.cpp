@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "limitsurf/error.h"
@@ -106,12 +107,14 @@ std::vector<std::pair<std::int64_t, std::int64_t>> pairsOf(const py::handle& obj
 }
 
 Points pointsOf(const Doubles& array) {
-  return Eigen::Map<const Points>(array.data(), array.shape(0), 3);
+  Points points(array.shape(0), 3);
+  const double* const from = array.data();
+  forEachRow(static_cast<std::size_t>(array.shape(0)),
+             [&](std::size_t row) { std::copy_n(from + 3 * row, 3, points.data() + 3 * row); });
+  return points;
 }
 
-py::array_t<double> pointArray(const Points& points) {
-  return py::array_t<double>({points.rows(), Eigen::Index{3}}, points.data());
-}
+py::array_t<double> pointArray(Points points) { return rowArray(std::move(points)); }
 
 Output::Output(const py::dtype& dtype, std::vector<py::ssize_t> shape)
     : array_(py::array(dtype, std::move(shape))),

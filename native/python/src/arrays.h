@@ -5,12 +5,14 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "limitsurf/types.h"
+#include "locks/signals.h"
 
 namespace limitsurf::python {
 
@@ -60,9 +62,47 @@ void requireRows(const py::array& array, const char* name, int columns) {
   }
 }
 
+/// Calls body(i) for i below `count`, without the GIL; Ctrl-C ends that. For what passes over large
+/// arrays.
+template <typename Body>
+void forEachRow(std::size_t count, const Body& body) {
+  const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
+  InterruptionStride stride;
+  for (std::size_t i = 0; i < count; ++i) {
+    stride.step();
+    body(i);
+  }
+}
+
 template <typename T>
 py::array_t<T> arrayOf(const std::vector<T>& values) {
   return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+/// An array of the numbers in a container with data(), which it takes over: copies of large ones
+/// take long.
+template <typename Number, typename Values>
+py::array_t<Number> arrayIn(Values&& values, std::vector<py::ssize_t> shape) {
+  static_assert(!std::is_reference_v<Values>, "the container is taken over");
+  auto kept = std::make_unique<Values>(std::move(values));
+  auto* const numbers = reinterpret_cast<Number*>(kept->data());
+  const py::capsule owner(kept.get(), [](void* p) { delete static_cast<Values*>(p); });
+  kept.release();
+  return py::array_t<Number>(std::move(shape), numbers, owner);
+}
+
+template <typename T>
+py::array_t<T> arrayOf(std::vector<T>&& values) {
+  const auto count = static_cast<py::ssize_t>(values.size());
+  return arrayIn<T>(std::move(values), {count});
+}
+
+/// The rows of a matrix, which is taken over.
+template <typename Matrix>
+py::array_t<typename Matrix::Scalar> rowArray(Matrix&& rows) {
+  static_assert(Matrix::IsRowMajor, "numpy's order");
+  return arrayIn<typename Matrix::Scalar>(std::move(rows), {rows.rows(), rows.cols()});
 }
 
 /// The rows of an (n, 3) array, converted as doubles() does; [] has none. Throws
@@ -73,9 +113,9 @@ Points rowsOfThree(const py::handle& object, const char* name);
 std::vector<std::pair<std::int64_t, std::int64_t>> pairsOf(const py::handle& object,
                                                            const char* name);
 
-/// The points of an (n, 3) array, and the (n, 3) array of points.
+/// The points of an (n, 3) array, and the (n, 3) array of points. Ctrl-C ends what copies.
 Points pointsOf(const Doubles& array);
-py::array_t<double> pointArray(const Points& points);
+py::array_t<double> pointArray(Points points);
 
 /// An array of results, float64 or float32. Without a shape it is None.
 class Output {

@@ -27,9 +27,9 @@ Locations locationsOf(int face_count, const py::object& face, const py::object& 
   using Int = std::numeric_limits<int>;
   const std::int64_t lowest = check == FaceCheck::range ? 0 : Int::min();
   const std::int64_t highest = check == FaceCheck::range ? face_count - 1 : Int::max();
-  Locations result(rows);
-  const py::gil_scoped_release release;
-  for (std::size_t row = 0; row < rows; ++row) {
+  Locations result;
+  result.reserve(rows);
+  forEachRow(rows, [&](std::size_t row) {
     const std::int64_t id = ids[one ? 0 : row];
     if (id < lowest || id > highest) {
       std::ostringstream message;
@@ -37,8 +37,8 @@ Locations locationsOf(int face_count, const py::object& face, const py::object& 
               << " Ptex faces";
       throw LocationError(message.str());
     }
-    result[row] = {static_cast<int>(id), parameters[2 * row], parameters[2 * row + 1]};
-  }
+    result.push_back({static_cast<int>(id), parameters[2 * row], parameters[2 * row + 1]});
+  });
   return result;
 }
 
@@ -56,11 +56,11 @@ py::object locations(const Locations& at) {
   int* faces = face.mutable_data();
   double* uvs = uv.mutable_data();
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < at.size(); ++i) {
+  forEachRow(at.size(), [&](std::size_t i) {
     faces[i] = at[i].face;
     uvs[2 * i] = at[i].face < 0 ? kNaN : at[i].u;
     uvs[2 * i + 1] = at[i].face < 0 ? kNaN : at[i].v;
-  }
+  });
   return result("Locations")(face, uv);
 }
 

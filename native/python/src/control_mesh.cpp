@@ -7,6 +7,7 @@
 #include "bound_class.h"
 #include "choices.h"
 #include "docstrings.h"
+#include "locks/signals.h"
 
 namespace limitsurf::python {
 namespace {
@@ -100,6 +101,7 @@ std::shared_ptr<BoundMesh> makeMesh(const py::object& positions, const py::objec
   requireVector<MeshError>(vertices, "face_vertices");
   const std::vector<std::int64_t> size_vector = vectorOf(sizes), vertex_vector = vectorOf(vertices);
   const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
   return std::shared_ptr<BoundMesh>(new BoundMesh(points, size_vector, vertex_vector, options));
 }
 
@@ -116,6 +118,9 @@ std::pair<py::object, py::object> flattened(const py::object& faces) {
   std::vector<std::int64_t> sizes;
   py::list vertices;
   for (const py::handle face : py::iter(faces)) {
+    if (sizes.size() % 4096 == 0 && PyErr_CheckSignals() != 0) {
+      throw py::error_already_set();
+    }
     const Integers corner_vertices = integers<MeshError>(face, "a face");
     requireVector<MeshError>(corner_vertices, "a face");
     sizes.push_back(corner_vertices.size());

@@ -70,7 +70,7 @@ constexpr const char* kSetPositionsDoc =
     R"(Sets new positions, (V, 3) float, under the same topology.
 
 Raises MeshError for an array of another shape and for values that are not finite; the positions do
-not change then. Raises RuntimeError in a function that a call on the same surface has called. Waits
+not change then, nor if Ctrl-C ends the call. Raises RuntimeError in a function that a call on the same surface has called. Waits
 for evaluations that run in other threads. Cost: O(V), plus O(valence^2) for each irregular vertex.
 )";
 

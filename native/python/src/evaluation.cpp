@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "batches.h"
 #include "choices.h"
 #include "docstrings.h"
+#include "limitsurf/reserve_more.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -98,6 +100,7 @@ py::object stencils(const SharedSurface& shared, const py::object& face, const p
       all.offsets.push_back(before + part.offsets[i]);
     }
     const auto append = [](auto& to, const auto& from) {
+      reserveMore(to, from.size());
       to.insert(to.end(), from.begin(), from.end());
     };
     append(all.indices, part.indices);
@@ -105,11 +108,12 @@ py::object stencils(const SharedSurface& shared, const py::object& face, const p
     append(all.du_weights, part.du_weights);
     append(all.dv_weights, part.dv_weights);
   });
-  const auto optional = [&](const std::vector<double>& weights) {
-    return derivatives > 0 ? py::object(arrayOf(weights)) : py::object(py::none());
+  const auto optional = [&](std::vector<double>&& weights) {
+    return derivatives > 0 ? py::object(arrayOf(std::move(weights))) : py::object(py::none());
   };
-  return result("Stencils")(arrayOf(all.offsets), arrayOf(all.indices), arrayOf(all.weights),
-                            optional(all.du_weights), optional(all.dv_weights));
+  return result("Stencils")(arrayOf(std::move(all.offsets)), arrayOf(std::move(all.indices)),
+                            arrayOf(std::move(all.weights)), optional(std::move(all.du_weights)),
+                            optional(std::move(all.dv_weights)));
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
   const Points points = pointsOf(array);
   const py::gil_scoped_release release;
   const CallLock::Hold hold(shared.lock, CallLock::Access::change);
-  shared.surface().setPositions(points, threads);
-  shared.forgetPose();
+  const InterruptionPoint point = interruptible();
+  shared.setPositions(points, threads);
 }
 
 std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {

@@ -23,8 +23,16 @@ struct SharedSurface {
   const LimitSurface& surface() const { return surface_; }
   LimitSurface& surface() { return surface_; }
 
-  /// Forgets what was made for the pose. The lock must be held for a change.
-  void forgetPose() {
+  /// Sets the positions. If something is thrown, the surface is as before as soon as somebody reads
+  /// it. The lock must be held for a change.
+  void setPositions(const Points& positions, int threads) {
+    try {
+      surface_.setPositions(positions, threads);
+    } catch (...) {
+      lock.setWhole(surface_.isPosed());
+      throw;
+    }
+    lock.setWhole(true);
     search.forget();
     sampler.forget();
     ++pose_;
@@ -33,7 +41,7 @@ struct SharedSurface {
   std::uint64_t pose() const { return pose_; }
 
   std::shared_ptr<BoundMesh> mesh;
-  const CallLock lock{"LimitSurface"};
+  CallLock lock{"LimitSurface", [this] { surface_.setPositions(Points(surface_.positions()), 0); }};
   KeptValue<SurfaceSearch, LimitSurface> search{"search tree of a LimitSurface"};
   KeptValue<AreaSampler, LimitSurface> sampler{"area of a LimitSurface"};
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface_data.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -49,12 +50,11 @@ py::object evaluate(const SharedData& shared, const py::object& face, const py::
 
 void setValues(SharedData& shared, const py::object& values, int threads) {
   checkThreads(threads);
-  const DataRows rows = rowsOf(values);
-  SurfaceData& data = shared.data();
+  DataRows rows = rowsOf(values);
   const py::gil_scoped_release release;
   const CallLock::Hold hold(shared.lock, CallLock::Access::change);
-  data.setValues(rows, threads);
-  shared.uv_map.forget();
+  const InterruptionPoint point = interruptible();
+  shared.setValues(std::move(rows), threads);
 }
 
 std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::object& values,
@@ -62,13 +62,14 @@ std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::o
                                         int threads) {
   checkThreads(threads);
   const Interpolation rule = interpolationOf(interpolation);
-  const DataRows rows = rowsOf(values);
+  DataRows rows = rowsOf(values);
   const Integers picked = integers<MeshError>(indices, "indices");
   requireVector<MeshError>(picked, "indices");
   const std::vector<std::int64_t> corners(picked.data(), picked.data() + picked.size());
   const py::gil_scoped_release release;
   const InterruptionPoint point = interruptible();
-  return std::make_unique<SharedData>(shared.surface().faceVarying(rows, corners, rule, threads));
+  SurfaceData data = shared.surface().faceVarying(rows, corners, rule, threads);
+  return std::make_unique<SharedData>(std::move(data), std::move(rows));
 }
 
 /// `make`: LimitSurface::vertexData() or varying().
@@ -76,13 +77,26 @@ template <SurfaceData (LimitSurface::*make)(const DataRows&, int) const>
 std::unique_ptr<SharedData> perVertex(const SharedSurface& shared, const py::object& values,
                                       int threads) {
   checkThreads(threads);
-  const DataRows rows = rowsOf(values);
+  DataRows rows = rowsOf(values);
   const py::gil_scoped_release release;
   const InterruptionPoint point = interruptible();
-  return std::make_unique<SharedData>((shared.surface().*make)(rows, threads));
+  SurfaceData data = (shared.surface().*make)(rows, threads);
+  return std::make_unique<SharedData>(std::move(data), std::move(rows));
 }
 
 }  // namespace
+
+void SharedData::setValues(DataRows values, int threads) {
+  try {
+    data_.setValues(values, threads);
+  } catch (...) {
+    lock.setWhole(data_.isSet());
+    throw;
+  }
+  lock.setWhole(true);
+  values_ = std::move(values);
+  uv_map.forget();
+}
 
 Interpolation interpolationOf(const std::string& name) {
   return choice(name, "interpolation", kInterpolations);
@@ -93,8 +107,13 @@ DataRows rowsOf(const py::object& values) {
   if (array.ndim() < 1 || array.ndim() > 2) {
     throw MeshError("values has shape " + shapeText(array) + "; expected (m, d) or (m,)");
   }
-  return Eigen::Map<const DataRows>(array.data(), array.shape(0),
-                                    array.ndim() == 2 ? array.shape(1) : 1);
+  DataRows rows(array.shape(0), array.ndim() == 2 ? array.shape(1) : 1);
+  const double* const from = array.data();
+  forEachRow(static_cast<std::size_t>(rows.rows()), [&](std::size_t row) {
+    const auto columns = static_cast<std::size_t>(rows.cols());
+    std::copy_n(from + columns * row, columns, rows.data() + columns * row);
+  });
+  return rows;
 }
 
 void bindSurfaceData(py::module_& module) {

@@ -16,16 +16,20 @@ namespace limitsurf::python {
 /// Data whose values may be set while other Python threads evaluate them without the GIL.
 class SharedData {
  public:
-  explicit SharedData(SurfaceData data) : data_(std::move(data)) {}
+  SharedData(SurfaceData data, DataRows values)
+      : data_(std::move(data)), values_(std::move(values)) {}
 
   const SurfaceData& data() const { return data_; }
-  SurfaceData& data() { return data_; }
+  /// Sets the values. If something is thrown, they are as before as soon as somebody reads them.
+  /// The lock must be held for a change.
+  void setValues(DataRows values, int threads);
 
-  const CallLock lock{"SurfaceData"};
+  CallLock lock{"SurfaceData", [this] { data_.setValues(values_, 0); }};
   KeptValue<UvMap, SurfaceData> uv_map{"map of a SurfaceData"};
 
  private:
   SurfaceData data_;
+  DataRows values_;
 };
 
 /// The rule of this name. Throws MeshError for another name.

@@ -3,10 +3,8 @@
 
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <cstring>
 #include <optional>
-#include <vector>
+#include <utility>
 
 #include "batches.h"
 #include "limitsurf/surface/tiles/tile_quadtree.h"
@@ -56,32 +54,17 @@ surface, ValueError for a max_depth out of range.
 
 Source: Stam 1998 and Lacewell & Burley 2007, the control points of their regular sub-patches.)";
 
-template <typename T>
-py::array_t<T> pairArray(const Eigen::Matrix<T, Eigen::Dynamic, 2, Eigen::RowMajor>& rows) {
-  return py::array_t<T>({rows.rows(), Eigen::Index{2}}, rows.data());
-}
-
-py::array_t<int> tilePoints(const SurfaceTiles& tiles) {
-  const auto count = static_cast<py::ssize_t>(tiles.tile_points.size());
-  py::array_t<int> array({count, py::ssize_t{16}});
-  if (count > 0) {
-    std::memcpy(array.mutable_data(), tiles.tile_points.data(),
-                tiles.tile_points.size() * sizeof(tiles.tile_points[0]));
-  }
-  return array;
-}
-
-py::array_t<bool> flags(const std::vector<char>& values) {
-  py::array_t<bool> array(static_cast<py::ssize_t>(values.size()));
-  std::copy(values.begin(), values.end(), array.mutable_data());
-  return array;
-}
-
-py::object tilesResult(const SurfaceTiles& tiles) {
-  return result("Tiles")(arrayOf(tiles.points_offsets), arrayOf(tiles.points_indices),
-                         arrayOf(tiles.points_weights), tilePoints(tiles),
-                         arrayOf(tiles.tile_anchor), arrayOf(tiles.tile_base), arrayOf(tiles.tile),
-                         pairArray(tiles.tile_uv), pairArray(tiles.scale), flags(tiles.moved));
+py::object tilesResult(SurfaceTiles tiles) {
+  const auto tile_count = static_cast<py::ssize_t>(tiles.tile_points.size());
+  const auto rows = static_cast<py::ssize_t>(tiles.moved.size());
+  static_assert(sizeof(bool) == sizeof(char));
+  return result("Tiles")(
+      arrayOf(std::move(tiles.points_offsets)), arrayOf(std::move(tiles.points_indices)),
+      arrayOf(std::move(tiles.points_weights)),
+      arrayIn<int>(std::move(tiles.tile_points), {tile_count, py::ssize_t{16}}),
+      arrayOf(std::move(tiles.tile_anchor)), arrayOf(std::move(tiles.tile_base)),
+      arrayOf(std::move(tiles.tile)), rowArray(std::move(tiles.tile_uv)),
+      rowArray(std::move(tiles.scale)), arrayIn<bool>(std::move(tiles.moved), {rows}));
 }
 
 py::object surfaceTiles(const SharedSurface& shared, const py::object& face, const py::object& uv,
@@ -95,7 +78,7 @@ py::object surfaceTiles(const SharedSurface& shared, const py::object& face, con
     const InterruptionPoint point = interruptible();
     tiles = shared.surface().tiles(at, max_depth.value_or(SurfaceTiles::kDefaultDepth), threads);
   }
-  return tilesResult(tiles);
+  return tilesResult(std::move(tiles));
 }
 
 constexpr char kQuadtreeDoc[] =
@@ -133,8 +116,8 @@ py::object tileQuadtree(const SharedSurface& shared, const std::optional<int>& m
     tree = limitsurf::tileQuadtree(shared.surface(),
                                    max_depth.value_or(SurfaceTiles::kDefaultDepth), threads);
   }
-  return result("TileQuadtree")(arrayOf(tree.child), tilesResult(tree.tiles),
-                                pairArray(tree.origin), tree.levels);
+  return result("TileQuadtree")(arrayOf(std::move(tree.child)), tilesResult(std::move(tree.tiles)),
+                                rowArray(std::move(tree.origin)), tree.levels);
 }
 
 }  // namespace

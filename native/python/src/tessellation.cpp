@@ -55,22 +55,21 @@ py::array_t<int> facesOf(const Tessellation& t) {
   py::array_t<int> faces({count, py::ssize_t{4}});
   const int* corner = t.face_vertices.data();
   int* row = faces.mutable_data();
-  for (const int size : t.face_sizes) {
+  forEachRow(t.face_sizes.size(), [&](std::size_t face) {
     row[3] = -1;
-    std::copy(corner, corner + size, row);
-    corner += size;
-    row += 4;
-  }
+    row = std::copy_n(corner, t.face_sizes[face], row) + (4 - t.face_sizes[face]);
+    corner += t.face_sizes[face];
+  });
   return faces;
 }
 
 py::array_t<float> cornerUvs(const Tessellation& t) {
   py::array_t<float> uvs({static_cast<py::ssize_t>(t.corners.size()), py::ssize_t{2}});
   float* to = uvs.mutable_data();
-  for (const Tessellation::Corner& corner : t.corners) {
-    *to++ = static_cast<float>(corner.u) / Tessellation::Corner::kSteps;
-    *to++ = static_cast<float>(corner.v) / Tessellation::Corner::kSteps;
-  }
+  forEachRow(t.corners.size(), [&](std::size_t i) {
+    *to++ = static_cast<float>(t.corners[i].u) / Tessellation::Corner::kSteps;
+    *to++ = static_cast<float>(t.corners[i].v) / Tessellation::Corner::kSteps;
+  });
   return uvs;
 }
 
@@ -78,13 +77,14 @@ py::object tessellate(const SharedSurface& shared, const py::object& levels, boo
                       int threads, const py::object& progress) {
   checkThreads(threads);
   TessellationOptions options{threads, corner_normals, ProgressReport(progress)};
-  const Tessellation t = tessellation(shared, levels, options);
-  const py::object normals =
-      corner_normals ? py::object(pointArray(t.corner_normals)) : py::object(py::none());
-  return result("Tessellation")(pointArray(t.positions), pointArray(t.normals), facesOf(t),
-                                locations(t.locations), arrayOf(t.face_sizes),
-                                arrayOf(t.face_vertices), arrayOf(t.base_face),
-                                arrayOf(t.ptex_face), cornerUvs(t), normals);
+  Tessellation t = tessellation(shared, levels, options);
+  const py::object faces = facesOf(t), uvs = cornerUvs(t),
+                   normals = corner_normals ? py::object(pointArray(std::move(t.corner_normals)))
+                                            : py::object(py::none());
+  return result("Tessellation")(
+      pointArray(std::move(t.positions)), pointArray(std::move(t.normals)), faces,
+      locations(t.locations), arrayOf(std::move(t.face_sizes)), arrayOf(std::move(t.face_vertices)),
+      arrayOf(std::move(t.base_face)), arrayOf(std::move(t.ptex_face)), uvs, normals);
 }
 
 py::object faceLevels(const FaceLevels& found) {

@@ -2,6 +2,7 @@
 #include "limitsurf/surface/tiles/surface_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/reserve_more.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/tiles/tile_control_points.h"
 #include "limitsurf/surface/tiles/tile_place.h"
@@ -19,8 +21,9 @@ namespace {
 
 /// Locations that make one task: finding their tile costs far less than an evaluation.
 constexpr std::size_t kPlacesPerTask = 4096;
-/// Tiles that make one task: a tile costs up to 16 rows of weights.
-constexpr std::size_t kTilesPerTask = 16;
+/// Tiles that make one task: a tile costs up to 16 rows of weights. And how many are made before
+/// their points get numbers: the rows of all tiles take several times the memory of the result.
+constexpr std::size_t kTilesPerTask = 16, kTilesPerBlock = 4096;
 
 /// Gives refined points their numbers, equal rows the same.
 class PointNumbers {
@@ -56,6 +59,8 @@ class PointNumbers {
     const int next = out_.cage_points + static_cast<int>(out_.points_offsets.size()) - 1;
     const auto [known, is_new] = of_row_.try_emplace(std::move(bytes), next);
     if (is_new) {
+      reserveMore(out_.points_indices, row.indices.size());
+      reserveMore(out_.points_weights, row.weights.size());
       out_.points_indices.insert(out_.points_indices.end(), row.indices.begin(), row.indices.end());
       out_.points_weights.insert(out_.points_weights.end(), row.weights.begin(), row.weights.end());
       out_.points_offsets.push_back(static_cast<std::int64_t>(out_.points_indices.size()));
@@ -93,6 +98,22 @@ int tileOf(const std::vector<TilePart>& parts, std::uint64_t key) {
   return static_cast<int>(found - parts.begin());
 }
 
+void addTiles(const ControlPoints* controls, std::size_t count, PointNumbers& numbers,
+              SurfaceTiles& out) {
+  InterruptionStride stride;
+  for (std::size_t i = 0; i < count; ++i) {
+    stride.step();
+    std::array<int, 16> points;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      points[k] = numbers.numberOf(controls[i].points[k]);
+    }
+    out.tile_points.push_back(points);
+    out.tile_anchor.push_back(numbers.numberOf(controls[i].anchor));
+    out.tile_base.push_back(controls[i].relative ? numbers.withoutWeights()
+                                                 : out.tile_anchor.back());
+  }
+}
+
 }  // namespace
 
 SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int threads) const {
@@ -111,25 +132,18 @@ SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int thr
   });
 
   const std::vector<TilePart> parts = differentParts(places);
-  std::vector<ControlPoints> controls(parts.size());
-  const TileBuilder build(table);
-  parallelFor(parts.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      controls[i] = build(parts[i]);
-    }
-  });
-
   SurfaceTiles out;
   PointNumbers numbers(table.points, out);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    std::array<int, 16> points;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      points[k] = numbers.numberOf(controls[i].points[k]);
-    }
-    out.tile_points.push_back(points);
-    out.tile_anchor.push_back(numbers.numberOf(controls[i].anchor));
-    out.tile_base.push_back(controls[i].relative ? numbers.withoutWeights()
-                                                 : out.tile_anchor.back());
+  const TileBuilder build(table);
+  std::vector<ControlPoints> controls(std::min(parts.size(), kTilesPerBlock));
+  for (std::size_t first = 0; first < parts.size(); first += kTilesPerBlock) {
+    const std::size_t count = std::min(kTilesPerBlock, parts.size() - first);
+    parallelFor(count, kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        controls[i] = build(parts[first + i]);
+      }
+    });
+    addTiles(controls.data(), count, numbers, out);
   }
 
   const auto rows = static_cast<Eigen::Index>(at.size());

@@ -214,9 +214,27 @@ class Table {
 
 CallLock::~CallLock() { Table::instance().forget(*this); }
 
+void CallLock::mendIfBroken() const {
+  if (is_whole_) {
+    return;
+  }
+  const Hold alone(*this, Access::change);
+  if (!is_whole_) {  // nobody else has done it meanwhile
+    const InterruptionPoint point = interruptible();
+    mend_();
+    is_whole_ = true;
+  }
+}
+
 CallLock::Hold::Hold(const CallLock& lock, Access access) : lock_(lock) {
   Table& table = Table::instance();
-  table.acquire(lock, access, table.inTurn());
+  const bool in_turn = table.inTurn();
+  table.acquire(lock, access, in_turn);
+  while (access == Access::read && !lock.is_whole_) {
+    table.release(lock);
+    lock.mendIfBroken();
+    table.acquire(lock, access, in_turn);
+  }
 }
 
 CallLock::Hold::~Hold() { Table::instance().release(lock_); }
@@ -224,6 +242,16 @@ CallLock::Hold::~Hold() { Table::instance().release(lock_); }
 // The one with the smaller address comes first: otherwise two calls could wait for each other.
 CallLock::HoldTwo::HoldTwo(const CallLock& a, const CallLock& b)
     : first_(std::less<>()(&b, &a) ? b : a), second_(std::less<>()(&b, &a) ? a : b) {
+  do {
+    first_.mendIfBroken();
+    second_.mendIfBroken();
+    acquire();
+  } while (!isWhole());
+}
+
+CallLock::HoldTwo::~HoldTwo() { release(); }
+
+void CallLock::HoldTwo::acquire() {
   Table& table = Table::instance();
   const bool in_turn = table.inTurn();
   table.acquire(first_, Access::read, in_turn);
@@ -237,11 +265,19 @@ CallLock::HoldTwo::HoldTwo(const CallLock& a, const CallLock& b)
   }
 }
 
-CallLock::HoldTwo::~HoldTwo() {
+void CallLock::HoldTwo::release() {
   if (&first_ != &second_) {
     Table::instance().release(second_);
   }
   Table::instance().release(first_);
+}
+
+bool CallLock::HoldTwo::isWhole() {
+  if (first_.is_whole_ && second_.is_whole_) {
+    return true;
+  }
+  release();
+  return false;
 }
 
 }  // namespace limitsurf::python

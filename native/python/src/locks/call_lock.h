@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <functional>
+#include <utility>
+
 namespace limitsurf::python {
 
 /// Keeps an object as it is while calls read it, and lets one call at a time change it. Calls hold
@@ -22,13 +26,18 @@ class CallLock {
  public:
   enum class Access { read, change };
 
-  /// `what` is named in errors: "LimitSurface".
-  explicit CallLock(const char* what) : what_(what) {}
+  /// `what` is named in errors: "LimitSurface". mend() makes the object whole again.
+  explicit CallLock(const char* what, std::function<void()> mend = {})
+      : what_(what), mend_(std::move(mend)) {}
   ~CallLock();
   CallLock(const CallLock&) = delete;
   CallLock& operator=(const CallLock&) = delete;
 
   const char* what() const { return what_; }
+
+  /// Says whether a change has left the object as a whole. If not, the next call that reads calls
+  /// mend() before, alone; Ctrl-C ends that as well. The lock must be held for a change.
+  void setWhole(bool whole) const { is_whole_ = whole; }
 
   /// Has access for its lifetime. It belongs to the thread that makes it.
   class Hold {
@@ -51,11 +60,20 @@ class CallLock {
     HoldTwo& operator=(const HoldTwo&) = delete;
 
    private:
+    void acquire();
+    void release();
+    /// Releases both unless they are.
+    bool isWhole();
+
     const CallLock &first_, &second_;
   };
 
  private:
+  void mendIfBroken() const;
+
   const char* what_;
+  std::function<void()> mend_;
+  mutable std::atomic<bool> is_whole_{true};
 };
 
 }  // namespace limitsurf::python

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What an interruption leaves behind, whenever it comes.
+#include <gtest/gtest.h>
+
+#include "limitsurf/interruption_point.h"
+#include "limitsurf/surface/limit_surface.h"
+#include "limitsurf/surface/surface_data.h"
+#include "support/cages/cage.h"
+#include "support/cages/meshes.h"
+
+namespace limitsurf::test {
+namespace {
+
+struct Interrupted {};
+
+/// Calls call() again and again, ended at the first pass of an interruption point, at the second
+/// one, at the fourth and so on, until it is not ended any more. Returns how often it was.
+template <typename Call, typename Check>
+int interruptedAtAll(const Call& call, const Check& check) {
+  int times = 0;
+  for (long last = 1;; last *= 2) {
+    long passes = 0;
+    try {
+      const InterruptionPoint point([&] {
+        if (++passes == last) {
+          throw Interrupted();
+        }
+      });
+      call();
+      return times;
+    } catch (const Interrupted&) {
+      ++times;
+      check();
+    }
+  }
+}
+
+std::vector<Location> middles(const LimitSurface& surface) {
+  std::vector<Location> at;
+  for (int face = 0; face < surface.faceCount(); ++face) {
+    at.push_back({face, 0.25, 0.4});
+  }
+  return at;
+}
+
+Cage creasedGrid() {
+  Cage cage = fullGrid(40, 40);
+  for (int i = 0; i < 40; ++i) {
+    cage.options.edge_sharpness.edges.emplace_back(i + 41 * 20, i + 1 + 41 * 20);
+    cage.options.edge_sharpness.values.push_back(1.5 + i % 3);
+  }
+  return cage;
+}
+
+TEST(Interruption, OfTheConstructorLeavesTheMeshUsable) {
+  const ControlMesh mesh = controlMesh(creasedGrid());
+  EXPECT_GT(interruptedAtAll([&] { LimitSurface surface(mesh); }, [] {}), 3);
+  EXPECT_EQ(LimitSurface(mesh).faceCount(), 1600);
+}
+
+TEST(Interruption, OfAPoseIsToldAndHealedByTheNextPose) {
+  LimitSurface surface = limitSurface(creasedGrid());
+  const Points before = surface.positions(), after = (2 * before.array() + 1).matrix();
+  const std::vector<Location> at = middles(surface);
+  const Points expected = surface.evaluate(at, Derivatives::none).position;
+  int halves = 0;
+  const int times = interruptedAtAll(
+      [&] {
+        surface.setPositions(before);
+        surface.setPositions(after);
+      },
+      [&] {
+        halves += !surface.isPosed();
+        surface.setPositions(before);
+        EXPECT_TRUE(surface.isPosed());
+        EXPECT_EQ(surface.evaluate(at, Derivatives::none).position, expected);
+      });
+  EXPECT_GT(times, 3);
+  EXPECT_GT(halves, 0);
+}
+
+TEST(Interruption, OfValuesIsToldAndHealedByTheNextValues) {
+  const LimitSurface surface = limitSurface(creasedGrid());
+  const DataRows before = DataRows::Random(surface.positions().rows(), 7);
+  const DataRows after = DataRows::Random(surface.positions().rows(), 7);
+  SurfaceData data = surface.vertexData(before);
+  const std::vector<Location> at = middles(surface);
+  const DataRows expected = data.evaluate(at).value;
+  int halves = 0;
+  const int times = interruptedAtAll([&] { data.setValues(after); },
+                                     [&] {
+                                       halves += !data.isSet();
+                                       data.setValues(before);
+                                       EXPECT_TRUE(data.isSet());
+                                       EXPECT_EQ(data.evaluate(at).value, expected);
+                                     });
+  EXPECT_GT(times, 3);
+  EXPECT_EQ(halves, times);
+}
+
+}  // namespace
+}  // namespace limitsurf::test
