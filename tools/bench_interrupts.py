@@ -42,7 +42,7 @@ def positions_and_faces(kind: str) -> tuple[Any, Any]:
     if kind == "quads":
         positions, faces = shapes.grid(1000, 1000)
     elif kind in ("triangles", "some triangles"):
-        side = 400 if kind == "triangles" else 12
+        side = 200 if kind == "triangles" else 12
         positions, quads = shapes.grid(side, side)
         faces = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
     elif kind == "sharp":

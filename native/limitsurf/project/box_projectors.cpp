@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/project/projector.h"
 #include "limitsurf/search/checks.h"
 
@@ -33,7 +34,9 @@ BoxWeights boxWeights(const Points& normals, double blend, const Eigen::Matrix4d
   const Eigen::Matrix3d to_box = invertibleLinearPart(matrix, "matrix").inverse().transpose();
   checkDirections(normals);
   BoxWeights weights = BoxWeights::Zero(normals.rows(), 6);
+  InterruptionStride stride;
   for (Eigen::Index row = 0; row < normals.rows(); ++row) {
+    stride.step();
     const Vector3 normal = to_box * normals.row(row).transpose().stableNormalized();
     Eigen::Index largest;
     const double most = normal.cwiseAbs().maxCoeff(&largest);

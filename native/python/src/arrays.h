@@ -62,11 +62,14 @@ void requireRows(const py::array& array, const char* name, int columns) {
   }
 }
 
-/// Calls body(i) for i below `count`, without the GIL; Ctrl-C ends that. For what passes over large
-/// arrays.
+/// Calls body(i) for i below `count`, without the GIL, which may have been released before; Ctrl-C
+/// ends that. For what passes over large arrays.
 template <typename Body>
 void forEachRow(std::size_t count, const Body& body) {
-  const py::gil_scoped_release release;
+  std::optional<py::gil_scoped_release> release;
+  if (PyGILState_Check() == 1) {
+    release.emplace();
+  }
   const InterruptionPoint point = interruptible();
   InterruptionStride stride;
   for (std::size_t i = 0; i < count; ++i) {

@@ -126,12 +126,14 @@ py::object boxWeights(const py::object& normals, double blend, const py::object&
   const Doubles array = doubles(normals, "normals");
   requireRows<std::invalid_argument>(array, "normals", 3);
   const Eigen::Matrix4d to_box = matrixOrNone(matrix, "matrix");
+  const Points directions = pointsOf(array);
   BoxWeights weights;
   {
     const py::gil_scoped_release release;
-    weights = limitsurf::boxWeights(pointsOf(array), blend, to_box);
+    const InterruptionPoint point = interruptible();
+    weights = limitsurf::boxWeights(directions, blend, to_box);
   }
-  return py::array_t<double>({weights.rows(), Eigen::Index{6}}, weights.data());
+  return rowArray(std::move(weights));
 }
 
 }  // namespace
