@@ -41,6 +41,8 @@ PARTICLES_PANEL = "VIEW3D_PT_limit_particles"
 FOLLOW_PANEL = "VIEW3D_PT_limit_follow"
 OBJECT_MENU = "VIEW3D_MT_object_limit_surface"
 
+ATTRIBUTE_PREFIX = "limit_"
+
 # Attributes of generated curves and points
 FACE = "limit_face"
 UV = "limit_uv"

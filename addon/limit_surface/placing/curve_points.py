@@ -19,7 +19,7 @@ from ..reading import attributes, cage, splines
 from ..tasks.refused_faces import check_some_left
 from . import following, tables
 from .binding import Binding
-from .followers import curve_table
+from .followers import curve_table, surface_of
 from .posed_surface import PosedSurface, at_closest, transformed
 from .roots import Locations
 from .rotations import WorldSpace
@@ -121,6 +121,12 @@ def _store(ob: bpy.types.Object, points: np.ndarray, places: Binding) -> None:
 def check(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     """Raises RefusalError for a curve that cannot follow the surface."""
     following.check_thing(ob, surface)
+    theirs = surface_of(ob)
+    if theirs not in (None, surface):  # once it is bound, it counts as standing on that mesh
+        raise RefusalError(
+            f"{ob.name} belongs to {theirs.name}, its parent, and not to {surface.name}: clear the "
+            "parent to bind the curve to another mesh"
+        )
     data = ob.data
     if data.dimensions == "2D":
         raise RefusalError(f"{ob.name} is a 2D curve, which stays in its plane: make it 3D")

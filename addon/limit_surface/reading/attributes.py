@@ -7,6 +7,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
+from .. import ids
 from ..errors import RefusalError
 
 
@@ -32,13 +33,20 @@ LAYOUTS = {
 
 def write(data: bpy.types.ID, name: str, kind: str, domain: str, values: np.ndarray) -> None:
     """Creates the attribute, or overwrites it, with one row of `values` for each element of the
-    domain.
+    domain. An attribute of another type or domain is replaced if its name is one of this
+    extension's. Otherwise it is the user's, and RefusalError is raised.
     """
     attribute = data.attributes.get(name)
+    if attribute and (attribute.data_type, attribute.domain) != (kind, domain):
+        if not name.startswith(ids.ATTRIBUTE_PREFIX):
+            raise RefusalError(
+                f"{data.name} has an attribute {name} of another type or domain than is needed "
+                f"({kind}, {domain}): rename or remove it"
+            )
+        data.attributes.remove(attribute)
+        attribute = None
     if attribute is None:
         attribute = data.attributes.new(name, kind, domain)
-    if (attribute.name, attribute.data_type, attribute.domain) != (name, kind, domain):
-        raise RuntimeError(f"{data.name}: attribute {name!r} exists with another type or domain")
     layout = LAYOUTS[kind]
     values = np.ascontiguousarray(values, layout.dtype)
     if values.size != len(attribute.data) * layout.width:

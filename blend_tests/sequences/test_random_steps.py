@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random sequences of what an artist does: nothing crashes, nothing is left behind, and undo and
+redo restore everything. A seed that fails here fails again: `support/random_steps.py SEED STEPS
+FOLDER` repeats it.
+"""
+
+import subprocess
+import sys
+
+import bpy
+import pytest
+import scenes
+from limit_surface import ids
+from processes import ROOT
+
+FEW, MANY = 60, 250
+LINES_SHOWN = 40
+
+
+@pytest.mark.parametrize(
+    ("seed", "steps"), [(1, FEW), *scenes.slow(*((seed, MANY) for seed in range(100, 140)))]
+)
+def test_random_steps(seed, steps, tmp_path):
+    program = ROOT / "blend_tests/support/random_steps.py"
+    done = subprocess.run(
+        [sys.executable, program, str(seed), str(steps), tmp_path],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=1200,
+    )
+    end = "\n".join(done.stdout.splitlines()[-LINES_SHOWN:])
+    assert done.returncode == 0, end
+    assert "all steps done" in end
+
+
+def test_limit_mesh_of_a_mesh_with_locations_on_faces():
+    """Such meshes exist: the table of all tiles of a surface is one."""
+    ob = scenes.cross()
+    ob.data.attributes.new(ids.FACE, "INT", "FACE")
+    bpy.ops.object.limit_mesh(levels=1, store_locations=True)
+    made = bpy.context.object.data
+    assert made.attributes[ids.FACE].domain == "POINT"
+    assert ob.data.attributes[ids.FACE].domain == "FACE"
+
+
+def test_an_attribute_of_the_user_is_kept():
+    ob = scenes.cross()
+    ob.data.attributes.new(ids.REST_ROOT, "INT", "FACE")
+    before = scenes.file_contents()
+    with pytest.raises(RuntimeError, match="has an attribute rest_root of another type or domain"):
+        bpy.ops.object.limit_mesh(levels=1, store_locations=True)
+    assert scenes.file_contents() == before
+
+
+def test_a_curve_with_another_parent_is_refused_before_it_changes():
+    parent = scenes.cross()
+    bpy.ops.curve.primitive_bezier_curve_add()
+    curve = bpy.context.object
+    curve.parent = parent
+    other = scenes.grid_with_holes()
+    curve.select_set(True)
+    before = scenes.file_contents()
+    with pytest.raises(RuntimeError, match="belongs to Cross, its parent, and not to Holes"):
+        bpy.ops.object.limit_follow()
+    assert scenes.file_contents() == before
+    assert not curve.modifiers
+    assert not other.modifiers
