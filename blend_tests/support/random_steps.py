@@ -148,7 +148,7 @@ class Session:
             return
         bpy.ops.object.select_all(action="DESELECT")
         for ob in chosen:
-            if ob.name in bpy.context.view_layer.objects:
+            if ob in objects:
                 ob.select_set(True)
                 bpy.context.view_layer.objects.active = ob
         push("selection")
