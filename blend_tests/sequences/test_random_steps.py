@@ -11,6 +11,7 @@ import bpy
 import pytest
 import scenes
 from limit_surface import ids
+from limit_surface.nodes import groups
 from processes import ROOT
 
 FEW, MANY = 60, 250
@@ -66,3 +67,15 @@ def test_a_curve_with_another_parent_is_refused_before_it_changes():
     assert scenes.file_contents() == before
     assert not curve.modifiers
     assert not other.modifiers
+
+
+def test_unbinding_after_the_modifier_of_a_hidden_table_was_removed():
+    scenes.cross()
+    bpy.ops.object.limit_hair_add(per_side=2, follow="NODES")
+    removed = 0
+    for ob in bpy.data.objects:
+        for modifier in list(groups.modifiers(ob, ids.TILES_GROUP)):
+            ob.modifiers.remove(modifier)
+            removed += 1
+    assert removed
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}

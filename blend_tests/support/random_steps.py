@@ -304,7 +304,13 @@ class Session:
             else:
                 modifier.show_viewport = not modifier.show_viewport
         else:
-            kinds = ("SUBSURF", "MIRROR", "ARRAY") if ob.type == "MESH" else ("NODES",)
+            kinds = ["NODES"]
+            if ob.type == "MESH":
+                # several of a kind would soon make millions of polygons
+                there = {modifier.type for modifier in ob.modifiers}
+                kinds = [each for each in ("SUBSURF", "MIRROR", "ARRAY") if each not in there]
+            if not kinds:
+                return "enough modifiers"
             name = ob.modifiers.new("Added", self.random.choice(kinds)).name
         push("modifiers")
         return f"{ob.name} {name}"

@@ -18,7 +18,9 @@ def update(surface: bpy.types.Object | None, table: bpy.types.Object, wanted: bo
     """Makes the proxy anew, so that its modifiers are those of the surface, or removes it where
     none is wanted or there is no surface. None keeps what there was: a proxy or none.
     """
-    modifier = next(groups.modifiers(table, ids.TILES_GROUP))
+    modifier = next(groups.modifiers(table, ids.TILES_GROUP), None)
+    if modifier is None:  # somebody has removed it, and Blender removes a proxy that nobody uses
+        return
     old = groups.get_input(modifier, OBJECT)
     if wanted is None:
         wanted = bool(groups.get_input(modifier, USE))
