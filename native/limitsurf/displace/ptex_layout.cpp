@@ -6,6 +6,7 @@
 #include <string>
 
 #include "limitsurf/error.h"
+#include "limitsurf/number_text.h"
 
 namespace limitsurf {
 namespace {
@@ -88,6 +89,10 @@ Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> PtexLayout::mapCoordin
     if (place.face < 0 || place.face >= faces_) {
       throw LocationError("row " + std::to_string(row) + ": face " + std::to_string(place.face) +
                           " is not among the " + std::to_string(faces_) + " Ptex faces");
+    }
+    if (!(place.u >= 0 && place.u <= 1 && place.v >= 0 && place.v <= 1)) {
+      throw LocationError("row " + std::to_string(row) + ": (u, v) = (" + numberText(place.u) +
+                          ", " + numberText(place.v) + ") is outside [0, 1]");
     }
     const Pixel first = origin(place.face);
     result.row(static_cast<Eigen::Index>(row)) << (first.x + 0.5 + resolution_ * place.u) / width(),

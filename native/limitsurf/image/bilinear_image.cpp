@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -33,7 +34,9 @@ DataRows BilinearImage::sample(
   checkThreads(threads);
   for (Eigen::Index row = 0; row < places.rows(); ++row) {
     if (!places.row(row).allFinite()) {
-      throw std::invalid_argument("place " + std::to_string(row) + " is not finite");
+      throw std::invalid_argument("row " + std::to_string(row) + ": st (" +
+                                  numberText(places(row, 0)) + ", " + numberText(places(row, 1)) +
+                                  ") is not finite");
     }
   }
   using Pixel = Eigen::Map<const Eigen::RowVectorXf>;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/number_text.h"
+
 namespace limitsurf {
 namespace {
 
@@ -20,7 +22,7 @@ void checkShapes(const Colours& below, const Colours& above, const Eigen::Vector
   for (Eigen::Index i = 0; i < weight.size(); ++i) {
     if (!(weight[i] >= 0 && weight[i] <= 1)) {
       throw std::invalid_argument("row " + std::to_string(i) + ": the weight " +
-                                  std::to_string(weight[i]) + " is not between 0 and 1");
+                                  numberText(weight[i]) + " is not between 0 and 1");
     }
   }
 }

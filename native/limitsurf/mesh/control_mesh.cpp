@@ -56,9 +56,13 @@ class EdgeTable {
     }
   }
 
-  bool contains(int low, int high) const {
-    return std::binary_search(high_.begin() + first_[low], high_.begin() + first_[low + 1], high);
+  /// The number of an edge, or -1 if there is none. Numbers are less than size().
+  std::ptrdiff_t number(int low, int high) const {
+    const auto end = high_.begin() + first_[low + 1];
+    const auto place = std::lower_bound(high_.begin() + first_[low], end, high);
+    return place == end || *place != high ? -1 : place - high_.begin();
   }
+  std::size_t size() const { return high_.size(); }
 
  private:
   template <typename Body>
@@ -83,6 +87,19 @@ void checkSharpness(const Where& where, double value) {
   }
 }
 
+/// An edge or a vertex may be named again only with the same sharpness. `first_row` is the row that
+/// named it first, or -1.
+template <typename Where>
+void checkAgain(const Where& where, std::ptrdiff_t& first_row, std::size_t row,
+                const std::vector<double>& values) {
+  if (first_row < 0) {
+    first_row = static_cast<std::ptrdiff_t>(row);
+  } else if (values[static_cast<std::size_t>(first_row)] != values[row]) {
+    refuse(where(), " has sharpness ", values[row], ", but row ", first_row, " gives it ",
+           values[static_cast<std::size_t>(first_row)]);
+  }
+}
+
 void checkEdgeSharpness(const ControlMesh& mesh, const EdgeSharpness& sharpness) {
   if (sharpness.edges.size() != sharpness.values.size()) {
     refuse("edge_sharpness has ", sharpness.edges.size(), " edges but ", sharpness.values.size(),
@@ -92,6 +109,7 @@ void checkEdgeSharpness(const ControlMesh& mesh, const EdgeSharpness& sharpness)
     return;
   }
   const EdgeTable edges(mesh);
+  std::vector<std::ptrdiff_t> first_row(edges.size(), -1);
   InterruptionStride stride;
   for (std::size_t i = 0; i < sharpness.edges.size(); ++i) {
     stride.step();
@@ -101,10 +119,13 @@ void checkEdgeSharpness(const ControlMesh& mesh, const EdgeSharpness& sharpness)
       return text("edge_sharpness row ", row, ", edge (", first, ", ", second, ")");
     };
     const bool in_range = a >= 0 && b < mesh.vertexCount();
-    if (!in_range || !edges.contains(static_cast<int>(a), static_cast<int>(b))) {
+    const std::ptrdiff_t edge =
+        in_range ? edges.number(static_cast<int>(a), static_cast<int>(b)) : -1;
+    if (edge < 0) {
       refuse(where(), ": the mesh has no such edge");
     }
     checkSharpness(where, sharpness.values[i]);
+    checkAgain(where, first_row[static_cast<std::size_t>(edge)], i, sharpness.values);
   }
 }
 
@@ -113,6 +134,10 @@ void checkVertexSharpness(const ControlMesh& mesh, const VertexSharpness& sharpn
     refuse("vertex_sharpness has ", sharpness.vertices.size(), " vertices but ",
            sharpness.values.size(), " values");
   }
+  if (sharpness.vertices.empty()) {
+    return;
+  }
+  std::vector<std::ptrdiff_t> first_row(static_cast<std::size_t>(mesh.vertexCount()), -1);
   for (std::size_t i = 0; i < sharpness.vertices.size(); ++i) {
     const std::int64_t vertex = sharpness.vertices[i];
     const auto where = [&, row = i] {
@@ -122,6 +147,7 @@ void checkVertexSharpness(const ControlMesh& mesh, const VertexSharpness& sharpn
       refuse(where(), ": the mesh has ", mesh.vertexCount(), " vertices");
     }
     checkSharpness(where, sharpness.values[i]);
+    checkAgain(where, first_row[static_cast<std::size_t>(vertex)], i, sharpness.values);
   }
 }
 

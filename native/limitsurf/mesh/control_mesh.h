@@ -19,8 +19,8 @@ enum class Scheme {
 };
 
 /// Sharpness of edges, each given by its two vertices. 0 is smooth; 10 and more (infinity included)
-/// is infinitely sharp. Values are rounded to float, as in OpenSubdiv. Where an edge is given
-/// twice, the last value counts.
+/// is infinitely sharp. Values are rounded to float, as in OpenSubdiv. An edge that is
+/// given again must have the same value.
 struct EdgeSharpness {
   std::vector<std::pair<std::int64_t, std::int64_t>> edges;
   std::vector<double> values;

@@ -3,17 +3,25 @@
 
 #include <sstream>
 #include <string>
+#include <type_traits>
 
 #include "limitsurf/error.h"
+#include "limitsurf/number_text.h"
 
 namespace limitsurf {
 
-/// The parts one after the other, with all digits of numbers.
+/// The parts one after the other, numbers as their callers wrote them.
 template <typename... Parts>
 std::string text(const Parts&... parts) {
   std::ostringstream stream;
-  stream.precision(17);
-  (stream << ... << parts);
+  const auto add = [&](const auto& part) {
+    if constexpr (std::is_floating_point_v<std::decay_t<decltype(part)>>) {
+      stream << numberText(part);
+    } else {
+      stream << part;
+    }
+  };
+  (add(parts), ...);
   return stream.str();
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/path/gap_joiner.h"
 #include "limitsurf/path/surface_distance.h"
@@ -332,7 +333,7 @@ LaidPaths layCurves(const LimitSurface& surface, const SurfaceSearch& search,
   checkThreads(options.threads);
   checkTolerance(options.tolerance);
   if (!(options.max_step > 0)) {
-    throw std::invalid_argument("max_step is " + std::to_string(options.max_step) +
+    throw std::invalid_argument("max_step is " + numberText(options.max_step) +
                                 "; it must be more than 0");
   }
   curves.check();

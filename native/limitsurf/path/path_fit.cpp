@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/path/bezier_fit.h"
 #include "limitsurf/path/space_curves.h"
@@ -306,6 +307,12 @@ PathFit fitPath(const LimitSurface& surface, const SurfaceSearch& search,
   if (options.values.size() != 0 && options.values.size() != rows) {
     throw std::invalid_argument("values has " + std::to_string(options.values.size()) +
                                 " rows; expected " + std::to_string(rows));
+  }
+  for (Eigen::Index row = 0; row < options.values.size(); ++row) {
+    if (!std::isfinite(options.values[row])) {
+      throw std::invalid_argument("values[" + std::to_string(row) + "] is " +
+                                  numberText(options.values[row]) + "; it must be finite");
+    }
   }
   const Evaluation on = surface.evaluate(path, Derivatives::first, true, options.threads);
   if (options.offset == 0) {

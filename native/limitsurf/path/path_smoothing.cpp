@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/path/surface_distance.h"
 
@@ -26,7 +27,7 @@ void checkWeights(const Eigen::VectorXd& weights, std::size_t points) {
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     if (!(weights[i] >= 0 && weights[i] <= 1)) {
       throw std::invalid_argument("weights[" + std::to_string(i) + "] is " +
-                                  std::to_string(weights[i]) + "; it must be between 0 and 1");
+                                  numberText(weights[i]) + "; it must be between 0 and 1");
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "limitsurf/error.h"
+#include "limitsurf/number_text.h"
 
 namespace limitsurf {
 namespace {
@@ -21,7 +22,7 @@ Vector3 pointOf(const Segment& segment, double t) {
 
 void checkTolerance(double tolerance) {
   if (!(tolerance > 0 && std::isfinite(tolerance))) {
-    throw std::invalid_argument("tolerance is " + std::to_string(tolerance) +
+    throw std::invalid_argument("tolerance is " + numberText(tolerance) +
                                 "; it must be more than 0 and finite");
   }
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "limitsurf/interruption_point.h"
+#include "limitsurf/number_text.h"
 #include "limitsurf/project/projector.h"
 #include "limitsurf/search/checks.h"
 
@@ -29,7 +30,7 @@ std::array<Eigen::Matrix4d, 6> boxSides(const Eigen::Matrix4d& matrix) {
 
 BoxWeights boxWeights(const Points& normals, double blend, const Eigen::Matrix4d& matrix) {
   if (!(blend >= 0 && blend <= 1)) {
-    throw std::invalid_argument("blend is " + std::to_string(blend) + "; expected 0 to 1");
+    throw std::invalid_argument("blend is " + numberText(blend) + "; expected 0 to 1");
   }
   const Eigen::Matrix3d to_box = invertibleLinearPart(matrix, "matrix").inverse().transpose();
   checkDirections(normals);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/project/projector.h"
@@ -50,7 +51,7 @@ double partInside(double x, double reach) {
 }
 
 void refuse(const char* name, double value, const char* expected) {
-  throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + "; expected " +
+  throw std::invalid_argument(std::string(name) + " is " + numberText(value) + "; expected " +
                               expected);
 }
 

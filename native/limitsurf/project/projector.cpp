@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/number_text.h"
+
 namespace limitsurf {
 namespace {
 
@@ -41,9 +43,9 @@ void checkFinite(const Eigen::Matrix4d& matrix, const char* name) {
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
       if (!std::isfinite(matrix(row, column))) {
-        throw std::invalid_argument(std::string(name) + " has " +
-                                    std::to_string(matrix(row, column)) + " in row " +
-                                    std::to_string(row) + ", column " + std::to_string(column));
+        throw std::invalid_argument(std::string(name) + " has " + numberText(matrix(row, column)) +
+                                    " in row " + std::to_string(row) + ", column " +
+                                    std::to_string(column));
       }
     }
   }

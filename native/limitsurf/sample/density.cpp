@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/surface/surface_data.h"
 
 namespace limitsurf {
@@ -23,7 +24,7 @@ Density::Density(const LimitSurface& surface, const Eigen::VectorXd& weights, in
   for (Eigen::Index vertex = 0; vertex < vertices; ++vertex) {
     if (!isWeight(weights[vertex])) {
       std::ostringstream message;
-      message << "density is " << weights[vertex] << " at vertex " << vertex
+      message << "density is " << numberText(weights[vertex]) << " at vertex " << vertex
               << "; it must be finite and at least 0";
       throw std::invalid_argument(message.str());
     }

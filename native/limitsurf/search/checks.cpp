@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/pi.h"
 
 namespace limitsurf {
@@ -16,9 +17,8 @@ constexpr double kFarthest = 1e150;
 [[noreturn]] void refuse(const char* name, Eigen::Index row, const Points& rows,
                          const char* reason) {
   std::ostringstream message;
-  message.precision(17);
-  message << "row " << row << ": the " << name << " (" << rows(row, 0) << ", " << rows(row, 1)
-          << ", " << rows(row, 2) << ") " << reason;
+  message << "row " << row << ": the " << name << " (" << numberText(rows(row, 0)) << ", "
+          << numberText(rows(row, 1)) << ", " << numberText(rows(row, 2)) << ") " << reason;
   throw std::invalid_argument(message.str());
 }
 
@@ -55,14 +55,14 @@ void checkRows(const Points& rows, Eigen::Index expected, const char* name) {
 
 void checkDistance(double max_distance) {
   if (!(max_distance >= 0)) {
-    throw std::invalid_argument("max_distance is " + std::to_string(max_distance) +
+    throw std::invalid_argument("max_distance is " + numberText(max_distance) +
                                 "; it must be 0 or more");
   }
 }
 
 void checkAngle(double max_angle) {
   if (!(max_angle >= 0 && max_angle <= std::nextafter(kPi<double>, 4.))) {
-    throw std::invalid_argument("max_angle is " + std::to_string(max_angle) +
+    throw std::invalid_argument("max_angle is " + numberText(max_angle) +
                                 "; it must be between 0 and pi");
   }
 }

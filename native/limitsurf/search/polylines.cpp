@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/search/checks.h"
+
 namespace limitsurf {
 
 void checkPolylines(const Polylines& curves) {
@@ -15,11 +17,7 @@ void checkPolylines(const Polylines& curves) {
         "offsets must begin with 0, must not decrease, and must end with the number of points, " +
         std::to_string(curves.points.rows()));
   }
-  for (Eigen::Index row = 0; row < curves.points.rows(); ++row) {
-    if (!curves.points.row(row).allFinite()) {
-      throw std::invalid_argument("row " + std::to_string(row) + ": the point is not finite");
-    }
-  }
+  checkFinite(curves.points, "point");
 }
 
 }  // namespace limitsurf

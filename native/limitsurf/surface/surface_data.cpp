@@ -7,6 +7,7 @@
 
 #include "limitsurf/mesh/face_varying_mesh.h"
 #include "limitsurf/mesh/limits.h"
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/surface_data_poses.h"
@@ -26,8 +27,8 @@ void checkValues(const DataRows& values) {
     for (Eigen::Index column = 0; column < values.cols(); ++column) {
       if (!std::isfinite(values(row, column))) {
         std::ostringstream message;
-        message << "row " << row << " of values has " << values(row, column) << " in column "
-                << column << "; values must be finite";
+        message << "row " << row << " of values has " << numberText(values(row, column))
+                << " in column " << column << "; values must be finite";
         throw MeshError(message.str());
       }
     }

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -23,7 +24,6 @@ void TiledSurface::check(std::size_t row, const Location& location) const {
     return;
   }
   std::ostringstream message;
-  message.precision(17);
   message << "row " << row << ": ";
   if (!exists) {
     message << "face " << location.face << " is not among the " << table.faces.size()
@@ -31,7 +31,8 @@ void TiledSurface::check(std::size_t row, const Location& location) const {
     throw LocationError(message.str());
   }
   if (!inside(location.u) || !inside(location.v)) {
-    message << "(u, v) = (" << location.u << ", " << location.v << ") is outside [0, 1]";
+    message << "(u, v) = (" << numberText(location.u) << ", " << numberText(location.v)
+            << ") is outside [0, 1]";
     throw LocationError(message.str());
   }
   const int base = ptex.base_face[location.face];

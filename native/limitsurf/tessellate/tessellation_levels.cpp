@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/rules/subdivision_rules.h"
 #include "limitsurf/tessellate/cage_edges.h"
@@ -29,7 +30,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 void check(double size, const char* name, const LevelOptions& options) {
   checkThreads(options.threads);
   if (!(size > 0) || !std::isfinite(size)) {
-    throw std::invalid_argument(std::string(name) + " is " + std::to_string(size) +
+    throw std::invalid_argument(std::string(name) + " is " + numberText(size) +
                                 "; it must be above 0 and finite");
   }
   if (options.most < 1 || options.most > kMostTessellationLevels) {
@@ -283,6 +284,21 @@ void forEachFace(std::size_t count, const LevelOptions& options, double begin, d
   }
 }
 
+void checkView(const PictureView& view) {
+  for (Eigen::Index row = 0; row < 4; ++row) {
+    for (Eigen::Index column = 0; column < 4; ++column) {
+      if (!std::isfinite(view.matrix(row, column))) {
+        throw std::invalid_argument("matrix has " + numberText(view.matrix(row, column)) +
+                                    " in row " + std::to_string(row) + ", column " +
+                                    std::to_string(column) + "; it must be finite");
+      }
+    }
+  }
+  if (!std::isfinite(view.nearest)) {
+    throw std::invalid_argument("nearest is " + numberText(view.nearest) + "; it must be finite");
+  }
+}
+
 }  // namespace
 
 FaceLevels levelsWithin(const LimitSurface& surface, double tolerance,
@@ -312,8 +328,8 @@ FaceLevels levelsWithin(const LimitSurface& surface, double tolerance,
 FaceLevels levelsOfLength(const LimitSurface& surface, double length, const PictureView* view,
                           const LevelOptions& options) {
   check(length, "length", options);
-  if (view && !(view->matrix.allFinite() && std::isfinite(view->nearest))) {
-    throw std::invalid_argument("the view's matrix and nearest must be finite");
+  if (view) {
+    checkView(*view);
   }
   const Squares squares(surface);
   FaceLevels result = lowest(surface, squares);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/surface/complete_normals.h"
 #include "limitsurf/surface/map_derivatives.h"
 
@@ -90,7 +91,7 @@ Eigen::Matrix2d shortened(const Eigen::Matrix2d& footprint) {
 void checkTexel(const Eigen::Vector2d& texel) {
   for (int i = 0; i < 2; ++i) {
     if (!(texel[i] > 0 && std::isfinite(texel[i]))) {
-      throw std::invalid_argument("texel has the size " + std::to_string(texel[i]) +
+      throw std::invalid_argument("texel has the size " + numberText(texel[i]) +
                                   "; it must be finite and above 0");
     }
   }

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/uv/uv_raster.h"
 
@@ -29,9 +30,9 @@ void checkPoints(const PlanePoints& points) {
   for (Eigen::Index row = 0; row < points.rows(); ++row) {
     if (!(points.row(row).cwiseAbs().maxCoeff() <= kFarthest) || !points.row(row).allFinite()) {
       std::ostringstream message;
-      message.precision(17);
-      message << "row " << row << ": the point (" << points(row, 0) << ", " << points(row, 1)
-              << ") " << (points.row(row).allFinite() ? "is too far away" : "is not finite");
+      message << "row " << row << ": the point (" << numberText(points(row, 0)) << ", "
+              << numberText(points(row, 1)) << ") "
+              << (points.row(row).allFinite() ? "is too far away" : "is not finite");
       throw std::invalid_argument(message.str());
     }
   }

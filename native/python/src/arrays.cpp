@@ -3,19 +3,55 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "limitsurf/error.h"
 
 namespace limitsurf::python {
 namespace {
 
-py::array viewed(const py::handle& object, const char* name) {
-  py::array array = py::array::ensure(py::module_::import("numpy").attr("asarray")(object));
-  if (!array) {
-    PyErr_Clear();
-    throw py::type_error(std::string(name) + " is no array");
+bool isMasked(const py::handle& object) {
+  static PyObject* const masked_array =
+      py::object(py::module_::import("numpy.ma").attr("MaskedArray")).release().ptr();  // for good
+  return PyObject_IsInstance(object.ptr(), masked_array) == 1;
+}
+
+void refuseMasked(const py::handle& object, const char* name) {
+  bool masked = isMasked(object);
+  if (!masked && (PyList_Check(object.ptr()) || PyTuple_Check(object.ptr()))) {
+    PyTypeObject* last = nullptr;  // most lists have elements of one type
+    for (const py::handle element : py::reinterpret_borrow<py::sequence>(object)) {
+      masked = masked || (Py_TYPE(element.ptr()) != last && isMasked(element));
+      last = Py_TYPE(element.ptr());
+    }
   }
-  return array;
+  if (masked) {
+    throw py::type_error(std::string(name) +
+                         " is a masked array; give its values, as from filled() or compressed()");
+  }
+}
+
+py::array viewed(const py::handle& object, const char* name) {
+  refuseMasked(object, name);
+  try {
+    return py::cast<py::array>(py::module_::import("numpy").attr("asarray")(object));
+  } catch (py::error_already_set& error) {  // rows of different lengths
+    if (!error.matches(PyExc_ValueError)) {
+      throw;
+    }
+    throw py::value_error(std::string(name) + " is no array: " +
+                          shortened(py::cast<std::string>(py::str(error.value()))));
+  }
+}
+
+/// The name of an element: "uv[3, 1]".
+std::string elementText(const py::array& array, const char* name, py::ssize_t place) {
+  std::string indices;
+  for (py::ssize_t axis = array.ndim() - 1; axis >= 0; --axis) {
+    indices = std::to_string(place % array.shape(axis)) + (indices.empty() ? "" : ", ") + indices;
+    place /= array.shape(axis);
+  }
+  return indices.empty() ? name : name + ("[" + indices + "]");
 }
 
 std::string dtypeText(const py::array& array) {
@@ -24,24 +60,47 @@ std::string dtypeText(const py::array& array) {
 
 }  // namespace
 
+std::string shortened(std::string text) {
+  constexpr std::size_t kMost = 80;
+  std::size_t end = kMost;
+  if (text.size() <= end) {
+    return text;
+  }
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) {
+    --end;  // within a character of several bytes
+  }
+  return text.substr(0, end) + "...";
+}
+
+std::string valueText(const py::handle& value) {
+  if (PyLong_Check(value.ptr()) && !PyBool_Check(value.ptr()) &&
+      py::cast<int>(value.attr("bit_length")()) > 200) {
+    return "an integer of " + py::cast<std::string>(py::str(value.attr("bit_length")())) + " bits";
+  }
+  return shortened(py::cast<std::string>(py::repr(value)));
+}
+
 std::string shapeText(const py::array& array) {
   return py::cast<std::string>(py::str(py::tuple(array.attr("shape"))));
 }
 
 Integers integers(const py::handle& object, const char* name, RaiseText raise) {
-  const py::array array = viewed(object, name);
+  py::array array = viewed(object, name);
+  if (array.dtype().kind() == 'f' && array.size() > 0 && !py::isinstance<py::array>(object)) {
+    // Floats, or integers of which some need more than 63 bits.
+    array = py::module_::import("numpy").attr("asarray")(object, "object");
+  }
   const char kind = array.dtype().kind();
   const auto beyond = [&](const py::handle& value, std::int64_t place) {
-    raise(std::string(name) + " has the value " + py::cast<std::string>(py::str(value)) +
-          " at place " + std::to_string(place) + ", which no index can have");
+    raise(elementText(array, name, place) + " is " + valueText(value) + ", which no index can be");
   };
   if (kind == 'O') {  // Python's own integers, which may be of any size
     Integers result(std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
     std::int64_t* to = result.mutable_data();
     for (const py::handle value : array.attr("ravel")().attr("tolist")()) {
       if (!PyLong_Check(value.ptr()) || PyBool_Check(value.ptr())) {
-        throw py::type_error(std::string(name) + " has the value " +
-                             py::cast<std::string>(py::repr(value)) + "; expected integers");
+        throw py::type_error(elementText(array, name, to - result.data()) + " is " +
+                             valueText(value) + "; expected integers");
       }
       int overflow = 0;
       *to++ = PyLong_AsLongLongAndOverflow(value.ptr(), &overflow);
@@ -59,7 +118,7 @@ Integers integers(const py::handle& object, const char* name, RaiseText raise) {
   if (kind == 'u' && array.itemsize() == 8 && array.size() > 0) {
     const py::object largest = array.attr("max")();
     if (py::cast<std::uint64_t>(largest) > static_cast<std::uint64_t>(INT64_MAX)) {
-      beyond(largest, py::cast<std::int64_t>(array.attr("argmax")()));
+      beyond(py::int_(largest), py::cast<std::int64_t>(array.attr("argmax")()));
     }
   }
   return py::cast<Integers>(array.attr("astype")("int64", py::arg("copy") = false));
@@ -72,6 +131,19 @@ Doubles doubles(const py::handle& object, const char* name) {
     throw py::type_error(std::string(name) + " has dtype " + dtypeText(array) +
                          "; expected real numbers");
   }
+  if (kind == 'O') {  // Python's own numbers
+    Doubles result(std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
+    double* to = result.mutable_data();
+    for (const py::handle value : array.attr("ravel")().attr("tolist")()) {
+      *to++ = PyFloat_AsDouble(value.ptr());
+      if (PyErr_Occurred() != nullptr) {
+        PyErr_Clear();
+        throw py::type_error(elementText(array, name, to - 1 - result.data()) + " is " +
+                             valueText(value) + "; expected real numbers");
+      }
+    }
+    return result;
+  }
   return py::cast<Doubles>(array.attr("astype")("float64", py::arg("copy") = false));
 }
 
@@ -82,21 +154,24 @@ Floats floats(const py::object& object, const char* name) {
                               .attr("astype")("float32", py::arg("copy") = false));
 }
 
+py::array_t<bool> booleans(const py::handle& object, const char* name) {
+  const py::array array = viewed(object, name);
+  if (array.dtype().kind() != 'b' && array.size() > 0) {
+    throw py::type_error(std::string(name) + " has dtype " + dtypeText(array) +
+                         "; expected booleans");
+  }
+  return py::array_t<bool, py::array::c_style | py::array::forcecast>::ensure(array);
+}
+
 Points rowsOfThree(const py::handle& object, const char* name) {
   Doubles array = doubles(object, name);
-  if (array.ndim() == 1 && array.size() == 0) {
-    array = Doubles(std::vector<py::ssize_t>{0, 3});
-  }
   requireRows<std::invalid_argument>(array, name, 3);
   return pointsOf(array);
 }
 
 std::vector<std::pair<std::int64_t, std::int64_t>> pairsOf(const py::handle& object,
                                                            const char* name) {
-  const Integers array = integers<MeshError>(object, name);
-  if (array.ndim() == 1 && array.size() == 0) {
-    return {};
-  }
+  Integers array = integers<MeshError>(object, name);
   requireRows<MeshError>(array, name, 2);
   std::vector<std::pair<std::int64_t, std::int64_t>> pairs;
   pairs.reserve(static_cast<std::size_t>(array.shape(0)));

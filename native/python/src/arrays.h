@@ -28,8 +28,15 @@ std::string shapeText(const py::array& array);
 /// Throws an error with this message.
 using RaiseText = void (*)(const std::string&);
 
-/// An array of anything that numpy can view as integers. Throws TypeError for floats, booleans and
-/// all else, and calls `raise` for integers beyond 64 bits.
+/// Text for a message: a long one ends in dots.
+std::string shortened(std::string text);
+
+/// A value for a message, as Python writes it. Integers of thousands of digits cannot be written.
+std::string valueText(const py::handle& value);
+
+/// An array of anything that numpy can view as integers; [] is an empty one. Masked arrays are
+/// refused, here and below: nothing would become of the mask. Throws TypeError for floats, booleans
+/// and all else, and calls `raise` for integers beyond 64 bits.
 Integers integers(const py::handle& object, const char* name, RaiseText raise);
 
 /// The same; throws Error for integers beyond 64 bits.
@@ -53,9 +60,22 @@ void requireVector(const py::array& array, const char* name) {
   }
 }
 
-/// Throws Error quoting the shape unless the array has two dimensions and `columns` columns.
-template <typename Error>
-void requireRows(const py::array& array, const char* name, int columns) {
+/// An array of booleans; [] is an empty one. Throws TypeError for all else.
+py::array_t<bool> booleans(const py::handle& object, const char* name);
+
+/// Gives [] the shape that an empty array has here.
+template <typename Array>
+void shapeEmpty(Array& array, std::vector<py::ssize_t> shape) {
+  if (array.ndim() == 1 && array.size() == 0) {
+    array = Array(std::move(shape));
+  }
+}
+
+/// Throws Error quoting the shape unless the array has two dimensions and `columns` columns; [] is
+/// given that shape.
+template <typename Error, typename Array>
+void requireRows(Array& array, const char* name, int columns) {
+  shapeEmpty(array, {0, columns});
   if (array.ndim() != 2 || array.shape(1) != columns) {
     throw Error(std::string(name) + " has shape " + shapeText(array) + "; expected (n, " +
                 std::to_string(columns) + ")");

@@ -8,18 +8,15 @@
 
 namespace limitsurf::python {
 
-Locations locationsOf(int face_count, const py::object& face, const py::object& uv,
-                      FaceCheck check) {
-  Doubles uvs = doubles(uv, "uv");
-  if (uvs.ndim() == 1 && uvs.size() == 0) {
-    uvs = Doubles(std::vector<py::ssize_t>{0, 2});  // []
-  }
-  requireRows<LocationError>(uvs, "uv", 2);
-  const Integers faces = integers<LocationError>(face, "face");
+Locations locationsOf(int face_count, const py::object& face, const py::object& uv, FaceCheck check,
+                      const char* face_name, const char* uv_name) {
+  Doubles uvs = doubles(uv, uv_name);
+  requireRows<LocationError>(uvs, uv_name, 2);
+  const Integers faces = integers<LocationError>(face, face_name);
   const std::size_t rows = static_cast<std::size_t>(uvs.shape(0));
   if (faces.ndim() > 1 || (faces.ndim() == 1 && faces.shape(0) != uvs.shape(0))) {
-    throw LocationError("face has shape " + shapeText(faces) + " and uv " + shapeText(uvs) +
-                        "; expected one face, or (n,) and (n, 2)");
+    throw LocationError(std::string(face_name) + " has shape " + shapeText(faces) + " and " +
+                        uv_name + " " + shapeText(uvs) + "; expected one face, or (n,) and (n, 2)");
   }
   const std::int64_t* ids = faces.data();
   const double* parameters = uvs.data();

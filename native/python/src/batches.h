@@ -26,7 +26,8 @@ enum class FaceCheck {
 /// The locations of a batch. Throws LocationError for arrays of other shapes, and naming the first
 /// row whose face id is refused.
 Locations locationsOf(int face_count, const py::object& face, const py::object& uv,
-                      FaceCheck check = FaceCheck::range);
+                      FaceCheck check = FaceCheck::range, const char* face_name = "face",
+                      const char* uv_name = "uv");
 
 /// The rows of a batch on a surface, or on its data. They are checked once, as a whole, so that
 /// errors name rows of the batch, and parts of it need not be checked again.
@@ -52,8 +53,9 @@ class CheckedLocations {
 /// The rows of a batch on a surface, or on its data. Throws the error of the first row that cannot
 /// be evaluated.
 template <typename Surface>
-CheckedLocations locationsOn(const Surface& surface, const py::object& face, const py::object& uv) {
-  Locations at = locationsOf(surface.faceCount(), face, uv, FaceCheck::size);
+CheckedLocations locationsOn(const Surface& surface, const py::object& face, const py::object& uv,
+                             const char* face_name = "face", const char* uv_name = "uv") {
+  Locations at = locationsOf(surface.faceCount(), face, uv, FaceCheck::size, face_name, uv_name);
   const py::gil_scoped_release release;
   return CheckedLocations(surface, std::move(at));
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.h"
 #include "limitsurf/error.h"
 
 namespace limitsurf::python {
@@ -23,7 +24,7 @@ Enum choice(const std::string& value, const char* name, const Choices<Enum>& cho
     }
     known += std::string(known.empty() ? "'" : " or '") + text + "'";
   }
-  throw MeshError(std::string(name) + " is '" + value + "'; expected " + known);
+  throw MeshError(std::string(name) + " is '" + shortened(value) + "'; expected " + known);
 }
 
 }  // namespace limitsurf::python

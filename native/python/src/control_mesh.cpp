@@ -60,13 +60,7 @@ MeshOptions meshOptions(const py::object& edge_sharpness, const py::object& vert
   options.scheme = choice(scheme, "scheme", kSchemes);
   if (!edge_sharpness.is_none()) {
     const auto [edges_object, values] = pairOf(edge_sharpness, "edge_sharpness");
-    const Integers edges = integers<MeshError>(edges_object, "edge_sharpness edges");
-    if (edges.size() > 0) {
-      requireRows<MeshError>(edges, "edge_sharpness edges", 2);
-    }
-    for (py::ssize_t i = 0; 2 * i < edges.size(); ++i) {
-      options.edge_sharpness.edges.emplace_back(edges.data()[2 * i], edges.data()[2 * i + 1]);
-    }
+    options.edge_sharpness.edges = pairsOf(edges_object, "edge_sharpness edges");
     options.edge_sharpness.values = sharpnessValues(values, "edge_sharpness values");
   }
   if (!vertex_sharpness.is_none()) {
@@ -85,7 +79,8 @@ MeshOptions meshOptions(const py::object& edge_sharpness, const py::object& vert
 }
 
 Points positionsOf(const py::object& object) {
-  const Doubles array = doubles(object, "positions");
+  Doubles array = doubles(object, "positions");
+  shapeEmpty(array, {0, 3});
   if (array.ndim() != 2 || array.shape(1) != 3) {
     throw MeshError("positions has shape " + shapeText(array) + "; expected (V, 3)");
   }
@@ -121,8 +116,9 @@ std::pair<py::object, py::object> flattened(const py::object& faces) {
     if (sizes.size() % 4096 == 0 && PyErr_CheckSignals() != 0) {
       throw py::error_already_set();
     }
-    const Integers corner_vertices = integers<MeshError>(face, "a face");
-    requireVector<MeshError>(corner_vertices, "a face");
+    const std::string name = "faces[" + std::to_string(sizes.size()) + "]";
+    const Integers corner_vertices = integers<MeshError>(face, name.c_str());
+    requireVector<MeshError>(corner_vertices, name.c_str());
     sizes.push_back(corner_vertices.size());
     vertices.append(corner_vertices);
   }

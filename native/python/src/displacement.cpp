@@ -42,7 +42,8 @@ FrameRows framesOf(const py::object& frames, std::size_t rows) {
   if (frames.is_none()) {
     return FrameRows(0, 9);
   }
-  const Doubles array = doubles(frames, "frames");
+  Doubles array = doubles(frames, "frames");
+  shapeEmpty(array, {0, 3, 3});
   const auto expected = static_cast<py::ssize_t>(rows);
   if (array.ndim() != 3 || array.shape(0) != expected || array.shape(1) != 3 ||
       array.shape(2) != 3) {
@@ -124,7 +125,10 @@ py::object displaced(const SharedSurface& shared, const py::object& face, const 
   checkThreads(threads);
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
-  const Doubles array = doubles(values, "values");
+  Doubles array = doubles(values, "values");
+  if (!frames.is_none()) {
+    shapeEmpty(array, {0, 3});
+  }
   const bool scalar = array.ndim() == 1;
   if (array.ndim() < 1 || array.ndim() > 2 || array.shape(0) != rows ||
       (!scalar && array.shape(1) != 3)) {

@@ -17,8 +17,8 @@ face_vertices : (sum of face_sizes,) array of int
 edge_sharpness : (edges (E, 2) int, values (E,) float), optional
 vertex_sharpness : (vertices (n,) int, values (n,) float), optional
     0 is smooth, 10 and more (inf included) is infinitely sharp, and a value between is sharp for that
-    many steps of subdivision. Values are rounded to float32. If an edge is given twice, the last value
-    counts.
+    many steps of subdivision. Values are rounded to float32. An edge or a vertex may be given
+    again only with the same value.
 boundary : 'smooth' or 'corners'
     'smooth': every boundary is a uniform cubic B-spline curve (OpenSubdiv's EDGE_ONLY, Blender's
     'ALL'). 'corners': boundary vertices with one face are interpolated.
@@ -35,11 +35,11 @@ holes : (n,) array of int, optional
 Raises
 ------
 MeshError
-    For face sizes that do not add up, indices out of range, positions that are not finite, more than
-    65,535 edges at a vertex, and unknown options. A face that only has no limit surface is no error:
+    For face sizes that do not add up, indices out of range, positions that are not finite, an edge
+    or a vertex with two values of sharpness, more than 65,535 edges at a vertex, and unknown options. A face that only has no limit surface is no error:
     LimitSurface.refused lists it.
 TypeError
-    For arrays of the wrong kind, such as floats instead of indices.
+    For arrays of the wrong kind, such as floats instead of indices, and for masked arrays.
 
 Cost: O(number of corners).
 )";

@@ -48,7 +48,7 @@ struct BoundEdgeCurves {
 
 CurveSide sideOf(const std::string& side) {
   if (side != "left" && side != "right") {
-    throw std::invalid_argument("side is '" + side + "'; expected 'left' or 'right'");
+    throw std::invalid_argument("side is '" + shortened(side) + "'; expected 'left' or 'right'");
   }
   return side == "left" ? CurveSide::left : CurveSide::right;
 }

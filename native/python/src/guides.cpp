@@ -98,7 +98,8 @@ py::object guideWeights(const SharedSurface& shared, const py::object& guide_fac
                         int count, const py::object& cuts, const py::object& cut_points,
                         const py::object& cut_offsets, int threads, const py::object& progress) {
   checkThreads(threads);
-  const CheckedLocations guides = locationsOn(shared.surface(), guide_face, guide_uv);
+  const CheckedLocations guides =
+      locationsOn(shared.surface(), guide_face, guide_uv, "guide_face", "guide_uv");
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   const GuideOptions options{
       count, cuts.is_none() ? EdgeList{} : pairsOf(cuts, "cuts"),
@@ -117,18 +118,9 @@ py::object guideWeights(const SharedSurface& shared, const py::object& guide_fac
                                 table(found.distance, at.size(), count));
 }
 
-Points rowsOfPoints(const py::object& object, const char* name) {
-  const Doubles array = doubles(object, name);
-  if (array.ndim() == 1 && array.size() == 0) {
-    return Points(0, 3);
-  }
-  requireRows<std::invalid_argument>(array, name, 3);
-  return pointsOf(array);
-}
-
 py::object resampleStrands(const py::object& points, const py::object& offsets, int count,
                            int threads) {
-  const Points from = rowsOfPoints(points, "points");
+  const Points from = rowsOfThree(points, "points");
   const Integers array = integers<std::invalid_argument>(offsets, "offsets");
   requireVector<std::invalid_argument>(array, "offsets");
   const std::vector<std::int64_t> starts(array.data(), array.data() + array.size());
@@ -143,7 +135,8 @@ py::object resampleStrands(const py::object& points, const py::object& offsets, 
 }
 
 GuideStrands guideStrands(const py::object& points, const py::object& normals) {
-  const Doubles array = doubles(points, "guide_points");
+  Doubles array = doubles(points, "guide_points");
+  shapeEmpty(array, {0, 1, 3});
   if (array.ndim() != 3 || array.shape(2) != 3) {
     throw py::value_error("guide_points has shape " + shapeText(array) + "; expected (g, p, 3)");
   }
@@ -151,17 +144,19 @@ GuideStrands guideStrands(const py::object& points, const py::object& normals) {
   guides.points_per_strand = static_cast<int>(array.shape(1));
   guides.points =
       Eigen::Map<const Points>(array.data(), array.shape(0) * array.shape(1), Eigen::Index{3});
-  guides.normals = rowsOfPoints(normals, "guide_normals");
+  guides.normals = rowsOfThree(normals, "guide_normals");
   return guides;
 }
 
 ChildRoots childRoots(const py::object& guide, const py::object& weight, const py::object& roots,
                       const py::object& normals) {
   ChildRoots children;
-  children.position = rowsOfPoints(roots, "roots");
-  children.normal = rowsOfPoints(normals, "normals");
-  const Integers numbers = integers<std::invalid_argument>(guide, "guide");
-  const Doubles weights = doubles(weight, "weight");
+  children.position = rowsOfThree(roots, "roots");
+  children.normal = rowsOfThree(normals, "normals");
+  Integers numbers = integers<std::invalid_argument>(guide, "guide");
+  Doubles weights = doubles(weight, "weight");
+  shapeEmpty(numbers, {0, 1});
+  shapeEmpty(weights, {0, 1});
   if (numbers.ndim() != 2 || weights.ndim() != 2 || numbers.shape(0) != weights.shape(0) ||
       numbers.shape(1) != weights.shape(1)) {
     throw py::value_error("guide has shape " + shapeText(numbers) + " and weight " +
@@ -170,8 +165,12 @@ ChildRoots childRoots(const py::object& guide, const py::object& weight, const p
   children.guides = static_cast<int>(numbers.shape(1));
   children.guide.reserve(static_cast<std::size_t>(numbers.size()));
   for (py::ssize_t i = 0; i < numbers.size(); ++i) {
-    children.guide.push_back(static_cast<std::int32_t>(
-        std::clamp<std::int64_t>(numbers.data()[i], INT32_MIN, INT32_MAX)));
+    const std::int64_t number = numbers.data()[i];
+    if (number > INT32_MAX || number < INT32_MIN) {
+      throw py::value_error("row " + std::to_string(i / children.guides) + ": guide " +
+                            std::to_string(number) + " does not exist");
+    }
+    children.guide.push_back(static_cast<std::int32_t>(number));
   }
   children.weight.assign(weights.data(), weights.data() + weights.size());
   return children;

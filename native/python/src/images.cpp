@@ -54,10 +54,9 @@ std::unique_ptr<FilteredImage> makeImage(const py::object& pixels, const std::st
 py::object sample(const FilteredImage& image, const py::object& st, const py::object& footprint,
                   int threads, const py::object& progress) {
   checkThreads(threads);
-  const Doubles places = doubles(st, "st"), steps = doubles(footprint, "footprint");
-  if (places.ndim() != 2 || places.shape(1) != 2) {
-    refuseShape(places, "st", "(n, 2)");
-  }
+  Doubles places = doubles(st, "st"), steps = doubles(footprint, "footprint");
+  requireRows<std::invalid_argument>(places, "st", 2);
+  shapeEmpty(steps, {0, 2, 2});
   if (steps.ndim() != 3 || steps.shape(0) != places.shape(0) || steps.shape(1) != 2 ||
       steps.shape(2) != 2) {
     refuseShape(steps, "footprint",
@@ -85,10 +84,8 @@ py::object sample(const FilteredImage& image, const py::object& st, const py::ob
 }
 
 Colours pixelRows(const py::object& object, const char* name) {
-  const Floats array = floats(object, name);
-  if (array.ndim() != 2 || array.shape(1) != 4) {
-    refuseShape(array, name, "(n, 4)");
-  }
+  Floats array = floats(object, name);
+  requireRows<std::invalid_argument>(array, name, 4);
   return Eigen::Map<const Colours>(array.data(), array.shape(0), 4);
 }
 
@@ -123,7 +120,7 @@ py::object boxSides(const py::object& matrix) {
 }
 
 py::object boxWeights(const py::object& normals, double blend, const py::object& matrix) {
-  const Doubles array = doubles(normals, "normals");
+  Doubles array = doubles(normals, "normals");
   requireRows<std::invalid_argument>(array, "normals", 3);
   const Eigen::Matrix4d to_box = matrixOrNone(matrix, "matrix");
   const Points directions = pointsOf(array);

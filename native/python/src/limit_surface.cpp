@@ -27,7 +27,8 @@ Points currentPositions(const SharedSurface& shared) {
 
 void setPositions(SharedSurface& shared, const py::object& positions, int threads) {
   checkThreads(threads);
-  const Doubles array = doubles(positions, "positions");
+  Doubles array = doubles(positions, "positions");
+  shapeEmpty(array, {0, 3});
   if (array.ndim() != 2 || array.shape(1) != 3 || array.shape(0) != shared.mesh->vertexCount()) {
     throw MeshError("positions has shape " + shapeText(array) + "; expected (" +
                     std::to_string(shared.mesh->vertexCount()) + ", 3)");

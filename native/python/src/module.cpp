@@ -9,6 +9,7 @@
 #include "limit_surface.h"
 #include "limitsurf/error.h"
 #include "ptex_layout.h"
+#include "short_errors.h"
 #include "strand_poser.h"
 #include "strand_turns.h"
 #include "surface_data.h"
@@ -38,6 +39,7 @@ PYBIND11_MODULE(limitsurf_in_main_interpreter, module) {
   limitsurf::python::bindStrandTurns(module);
   limitsurf::python::bindChildStrands(module);
   limitsurf::python::bindLimitSurface(module);
+  limitsurf::python::shortenErrors(module);
 }
 
 /// What Python calls to import the module. In another interpreter of the process pybind11 would

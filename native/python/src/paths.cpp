@@ -127,8 +127,8 @@ SpaceCurves spaceCurves(const py::object& points, const py::object& left, const 
   if (py::isinstance<py::bool_>(closed)) {
     curves.closed.assign(count, closed.cast<bool>());
   } else {
-    const auto flags = py::array_t<bool, py::array::c_style | py::array::forcecast>::ensure(closed);
-    if (!flags || flags.ndim() != 1) {
+    const py::array_t<bool> flags = booleans(closed, "closed");
+    if (flags.ndim() != 1) {
       throw py::type_error("closed must be a bool or an array of bools");
     }
     curves.closed.assign(flags.data(), flags.data() + flags.size());
@@ -165,7 +165,7 @@ py::object layPath(const SharedSurface& shared, const py::object& points, double
 
 FitKind kindOf(const std::string& name) {
   if (name != "bezier" && name != "poly") {
-    throw std::invalid_argument("kind is '" + name + "'; expected 'bezier' or 'poly'");
+    throw std::invalid_argument("kind is '" + shortened(name) + "'; expected 'bezier' or 'poly'");
   }
   return name == "bezier" ? FitKind::bezier : FitKind::poly;
 }

@@ -92,7 +92,7 @@ py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int
     throw std::invalid_argument("pixels has shape " + shapeText(values) +
                                 "; expected (h, w, c), none of them 0");
   }
-  const Doubles places = doubles(st, "st");
+  Doubles places = doubles(st, "st");
   requireRows<std::invalid_argument>(places, "st", 2);
   const BilinearImage image{values.data(), static_cast<int>(values.shape(1)),
                             static_cast<int>(values.shape(0)), static_cast<int>(values.shape(2))};

@@ -123,9 +123,7 @@ using RowsMap = Eigen::Map<Rows<Columns>>;
 template <int Columns>
 Floats floatRows(const py::object& object, const char* name) {
   Floats array = floats(object, name);
-  if (array.ndim() == 1 && array.size() == 0) {
-    array = Floats(std::vector<py::ssize_t>{0, Columns});  // []
-  }
+  shapeEmpty(array, {0, Columns});
   if (array.ndim() != 2 || array.shape(1) != Columns) {
     throw py::value_error(std::string(name) + " has shape " + shapeText(array) + "; expected (n, " +
                           std::to_string(Columns) + ")");
@@ -141,11 +139,10 @@ Eigen::Map<const Rows<Columns>> viewOf(const Floats& array) {
 /// Rest rotations: quaternions (n, 4), or matrices (n, 3, 3), which are converted. A matrix of
 /// zeros becomes the quaternion of zeros.
 FloatRotations floatRotations(const py::object& object) {
-  const py::array any = py::array::ensure(object);
-  if (!any || any.ndim() != 3) {
+  const Doubles array = doubles(object, "rest_rotations");
+  if (array.ndim() != 3) {
     return viewOf<4>(floatRows<4>(object, "rest_rotations"));
   }
-  const Doubles array = doubles(object, "rest_rotations");
   if (array.shape(1) != 3 || array.shape(2) != 3) {
     throw py::value_error("rest_rotations has shape " + shapeText(array) +
                           "; expected (n, 4) or (n, 3, 3)");
@@ -229,10 +226,7 @@ py::object unpose(const BoundStrandPoser& self, const py::object& points, const 
                   const py::object& out, const py::object& only, int threads) {
   std::vector<char> flags;
   if (!only.is_none()) {
-    const py::array array = py::array::ensure(only);
-    if (!array || array.dtype().kind() != 'b') {
-      throw py::type_error("only is no array of bool");
-    }
+    const py::array_t<bool> array = booleans(only, "only");
     if (array.ndim() != 1 || array.shape(0) != static_cast<py::ssize_t>(self.poser().size())) {
       throw py::value_error("only has shape " + shapeText(array) + "; expected (" +
                             std::to_string(self.poser().size()) + ",)");
@@ -240,8 +234,7 @@ py::object unpose(const BoundStrandPoser& self, const py::object& points, const 
     if (out.is_none()) {
       throw py::value_error("only needs out, in which other strands are left as they are");
     }
-    const auto bools = py::cast<py::array_t<bool, py::array::c_style>>(array);
-    flags.assign(bools.data(), bools.data() + bools.size());
+    flags.assign(array.data(), array.data() + array.size());
   }
   return posed<3>(self, points, "points", matrix, out, "out", threads,
                   [&](const auto& from, auto& to, const Eigen::Matrix4d& map) {

@@ -54,7 +54,8 @@ py::array_t<double> turnsBetween(const py::object& source, const py::object& tar
 }
 
 py::array_t<double> rotationMatrices(const py::object& quaternions) {
-  const Doubles array = doubles(quaternions, "quaternions");
+  Doubles array = doubles(quaternions, "quaternions");
+  shapeEmpty(array, {0, 4});
   if (array.ndim() != 2 || array.shape(1) != 4) {
     throw py::value_error("quaternions has shape " + shapeText(array) + "; expected (n, 4)");
   }
@@ -64,7 +65,8 @@ py::array_t<double> rotationMatrices(const py::object& quaternions) {
 py::array_t<double> moveStrands(const py::object& points, const py::object& offsets,
                                 const py::object& roots, const py::object& new_roots,
                                 const py::object& turns) {
-  const Doubles rotations = doubles(turns, "turns");
+  Doubles rotations = doubles(turns, "turns");
+  shapeEmpty(rotations, {0, 3, 3});
   if (rotations.ndim() != 3 || rotations.shape(1) != 3 || rotations.shape(2) != 3) {
     throw py::value_error("turns has shape " + shapeText(rotations) + "; expected (n, 3, 3)");
   }

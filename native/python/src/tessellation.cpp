@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "batches.h"
 #include "docstrings.h"
+#include "limitsurf/tessellate/tessellated_face.h"
 #include "limitsurf/tessellate/tessellation_levels.h"
 #include "progress.h"
 #include "shared_surface.h"
@@ -22,9 +24,21 @@ bool isOneNumber(const py::object& object) {
          !(py::isinstance<py::array>(object) && py::cast<py::array>(object).ndim() > 0);
 }
 
-int levelOf(std::int64_t level) {
-  return static_cast<int>(std::clamp<std::int64_t>(level, std::numeric_limits<int>::min(),
-                                                   std::numeric_limits<int>::max()));
+constexpr std::int64_t kLargestInt = std::numeric_limits<int>::max();
+
+[[noreturn]] void refuseLevel(const std::string& name, const std::string& value, int least) {
+  throw std::invalid_argument(name + " is " + value + "; expected " + std::to_string(least) +
+                              " to " + std::to_string(kMostTessellationLevels));
+}
+
+/// The least level that all faces may have.
+int leastLevel(const ControlMesh& mesh) {
+  for (int face = 0; face < mesh.faceCount(); ++face) {
+    if (mesh.faceSize(face) != 4) {
+      return 1;
+    }
+  }
+  return 0;
 }
 
 Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
@@ -32,8 +46,10 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
   if (isOneNumber(levels)) {
     int overflow = 0;
     const std::int64_t wide = PyLong_AsLongLongAndOverflow(py::int_(levels).ptr(), &overflow);
-    const int level =
-        levelOf(overflow == 0 ? wide : overflow * std::numeric_limits<std::int64_t>::max());
+    if (overflow != 0 || std::abs(wide) > kLargestInt) {
+      refuseLevel("levels", valueText(levels), leastLevel(*shared.mesh));
+    }
+    const int level = static_cast<int>(wide);
     const py::gil_scoped_release release;
     const HeldPose held(shared);
     const InterruptionPoint point = interruptible();
@@ -42,7 +58,16 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
   const Integers each = integers<std::invalid_argument>(levels, "levels");
   requireVector<std::invalid_argument>(each, "levels");
   std::vector<int> of_faces(static_cast<std::size_t>(each.size()));
-  std::transform(each.data(), each.data() + each.size(), of_faces.begin(), levelOf);
+  for (py::ssize_t face = 0; face < each.size(); ++face) {
+    const std::int64_t level = each.data()[face];
+    const int own = static_cast<int>(face);
+    const bool is_int = level >= -kLargestInt && level <= kLargestInt;
+    if (!is_int && own < shared.mesh->faceCount() && !shared.surface().refused().count(own)) {
+      refuseLevel("levels[" + std::to_string(face) + "]", std::to_string(level),
+                  shared.mesh->faceSize(own) == 4 ? 0 : 1);
+    }
+    of_faces[static_cast<std::size_t>(face)] = is_int ? static_cast<int>(level) : 0;
+  }
   const py::gil_scoped_release release;
   const HeldPose held(shared);
   const InterruptionPoint point = interruptible();

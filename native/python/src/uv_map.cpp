@@ -71,9 +71,6 @@ py::object rasterize(const SharedData& shared, int width, int height,
 
 PlanePoints planePoints(const py::object& object) {
   Doubles array = doubles(object, "points");
-  if (array.ndim() == 1 && array.size() == 0) {
-    array = Doubles(std::vector<py::ssize_t>{0, 2});
-  }
   requireRows<std::invalid_argument>(array, "points", 2);
   return Eigen::Map<const PlanePoints>(array.data(), array.shape(0), 2);
 }

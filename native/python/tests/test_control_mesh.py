@@ -146,7 +146,9 @@ def test_no_index_gets_past_the_check(place, bad):
     vertices = VERTICES.tolist()
     vertices[place] = bad
     dtype = np.int64 if bad < 2**63 else np.uint64
-    named = f"face {place // 4} names vertex {bad}" if bad < 2**63 else f"{bad} at place {place}"
+    named = f"face {place // 4} names vertex {bad}"
+    if bad >= 2**63:
+        named = rf"face_vertices\[{place}\] is {bad}"
     with pytest.raises(ls.MeshError, match=named):
         ls.ControlMesh(POSITIONS, SIZES, np.array(vertices, dtype))
 

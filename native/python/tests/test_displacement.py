@@ -284,7 +284,7 @@ def test_bilinear():
         (1 - a) * values[above, i] + a * values[above, right]
     )
     np.testing.assert_allclose(ls.bilinear(pixels, st), expected, atol=1e-15)
-    with pytest.raises(ValueError, match="place 1 is not finite"):
+    with pytest.raises(ValueError, match=r"row 1: st \(nan, 0\) is not finite"):
         ls.bilinear(pixels, [[0, 0], [np.nan, 0]])
     with pytest.raises(ValueError, match=r"pixels has shape \(5, 7\)"):
         ls.bilinear(pixels[..., 0], st)

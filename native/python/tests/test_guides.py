@@ -112,7 +112,7 @@ def test_errors(sheet):
         sheet.guide_weights([36], [[0, 0]], *at)
     with pytest.raises(ValueError, match="cut_points has shape"):
         sheet.guide_weights(*at, *at, cut_points=[0, 1])
-    with pytest.raises(ValueError, match="row 1: the point is not finite"):
+    with pytest.raises(ValueError, match=r"row 1: the point \(nan, 0, 0\) is not finite"):
         sheet.guide_weights(*at, *at, cut_points=[[0, 0, 0], [np.nan, 0, 0]])
     with pytest.raises(ValueError, match="number of points, 2"):
         sheet.guide_weights(*at, *at, cut_points=np.zeros((2, 3)), cut_offsets=[0, 1])

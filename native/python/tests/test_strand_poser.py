@@ -234,7 +234,7 @@ def test_bad_input_is_named(hair):
     points.flags.writeable = False
     with pytest.raises(TypeError, match="read-only"):
         poser.pose(points, out=points)
-    with pytest.raises(TypeError, match="only is no array of bool"):
+    with pytest.raises(TypeError, match="only has dtype float64; expected booleans"):
         poser.unpose(points, out=points.copy(), only=np.zeros(500))
     with pytest.raises(ValueError, match="only needs out"):
         poser.unpose(points, only=np.zeros(500, bool))

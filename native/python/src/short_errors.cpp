@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "short_errors.h"
+
+namespace limitsurf::python {
+namespace {
+
+namespace py = pybind11;
+
+/// The function of pybind11 that calls all others: it is the same for all of them.
+PyCFunction dispatcher = nullptr;
+
+/// Shortens the TypeError that is set, if pybind11 has made it.
+PyObject* shortError() {
+  if (PyErr_ExceptionMatches(PyExc_TypeError) == 0) {
+    return nullptr;
+  }
+  constexpr py::ssize_t kMost = 200;
+  py::error_already_set error;
+  const py::object text = py::str(error.value());
+  const py::str quoting("\nInvoked with: ");
+  const auto at = py::cast<py::ssize_t>(text.attr("find")(quoting));
+  const py::ssize_t most = at + py::len(quoting) + kMost;
+  if (at < 0 || static_cast<py::ssize_t>(py::len(text)) <= most) {
+    error.restore();
+    return nullptr;
+  }
+  const py::object cut = text[py::slice(0, most, 1)];
+  PyErr_SetObject(PyExc_TypeError, cut.attr("__add__")("...").ptr());
+  return nullptr;
+}
+
+PyObject* shortWithTuple(PyObject* self, PyObject* arguments, PyObject* named) {
+  const auto call =
+      reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<void (*)()>(dispatcher));
+  PyObject* const result = call(self, arguments, named);
+  return result != nullptr ? result : shortError();
+}
+
+using FastFunction = PyObject* (*)(PyObject*, PyObject* const*, Py_ssize_t, PyObject*);
+
+PyObject* shortWithArray(PyObject* self, PyObject* const* arguments, Py_ssize_t count,
+                         PyObject* names) {
+  const auto call = reinterpret_cast<FastFunction>(reinterpret_cast<void (*)()>(dispatcher));
+  PyObject* const result = call(self, arguments, count, names);
+  return result != nullptr ? result : shortError();
+}
+
+void shorten(py::handle function) {
+  if (PyInstanceMethod_Check(function.ptr())) {
+    function = PyInstanceMethod_GET_FUNCTION(function.ptr());
+  } else if (Py_TYPE(function.ptr()) == &PyStaticMethod_Type) {
+    const py::object inner = function.attr("__func__");  // which the static method keeps
+    shorten(inner);
+    return;
+  }
+  if (!PyCFunction_Check(function.ptr())) {
+    return;
+  }
+  PyMethodDef& definition = *reinterpret_cast<PyCFunctionObject*>(function.ptr())->m_ml;
+  const bool takes_array = (definition.ml_flags & METH_FASTCALL) != 0;
+  const auto ours =
+      reinterpret_cast<PyCFunction>(takes_array ? reinterpret_cast<void (*)()>(&shortWithArray)
+                                                : reinterpret_cast<void (*)()>(&shortWithTuple));
+  if (definition.ml_meth == ours) {
+    return;
+  }
+  if (dispatcher == nullptr) {
+    dispatcher = definition.ml_meth;
+  }
+  if (definition.ml_meth == dispatcher) {
+    definition.ml_meth = ours;
+  }
+}
+
+}  // namespace
+
+void shortenErrors(const py::module_& module) {
+  const py::dict members = module.attr("__dict__");
+  for (const auto& [name, member] : members) {
+    shorten(member);
+    if (PyType_Check(member.ptr())) {
+      for (const py::handle key : py::list(member.attr("__dict__"))) {
+        shorten(member.attr("__dict__")[key]);
+      }
+    }
+  }
+}
+
+}  // namespace limitsurf::python

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace limitsurf::python {
+
+/// Makes the functions of the module, and those of its classes, quote at most a line of arguments
+/// of wrong types: pybind11 would quote all of them, with all numbers of lists.
+void shortenErrors(const pybind11::module_& module);
+
+}  // namespace limitsurf::python
