@@ -304,20 +304,19 @@ def interrupted(call: Call, after: float) -> float | None:
         os.kill(os.getpid(), signal.SIGINT)
 
     timer = threading.Timer(after, press)
-    timer.start()
+    ended: float | None = None
     try:
-        call()
-    except KeyboardInterrupt:
-        return time.perf_counter() - asked
-    else:
-        return None
-    finally:
-        timer.cancel()
+        timer.start()
         try:
-            timer.join()
-            time.sleep(0.01)
+            call()
+            timer.cancel()
         except KeyboardInterrupt:
-            pass
+            ended = time.perf_counter() - asked
+        timer.join()
+        time.sleep(0.01)  # it may have come after the end
+    except KeyboardInterrupt:
+        pass
+    return ended
 
 
 def main() -> None:
