@@ -140,9 +140,7 @@ void RefinedMesh::makeTwins() {
 SharpnessAround RefinedMesh::subdivided(int parent_vertex) const {
   SharpnessAround around = parent_.sharpnessAround(parent_vertex);
   around.child_vertex = crease_.SubdivideVertexSharpness(around.vertex);
-  around.child_edges.resize(around.edges.size());
-  crease_.SubdivideEdgeSharpnessesAroundVertex(static_cast<int>(around.edges.size()),
-                                               around.edges.data(), around.child_edges.data());
+  around.child_edges = subdividedSharpness(crease_, around.edges);
   return around;
 }
 

@@ -28,19 +28,19 @@ class DecayingSharpness {
 
   /// The weight of the sharp rule in a step after which the first `count` edges are smooth.
   float weight(int count) const {
+    const std::vector<float> first(edges_.begin(), edges_.begin() + count);
+    const std::vector<int> order = sharpnessOrder(first);
+    const std::vector<float> edges = inOrder(first, order);
+    const std::vector<float> next = inOrder({next_.begin(), next_.begin() + count}, order);
     return std::min(
-        1.f, crease_.ComputeFractionalWeightAtVertex(0, 0, count, edges_.data(), next_.data()));
+        1.f, crease_.ComputeFractionalWeightAtVertex(0, 0, count, edges.data(), next.data()));
   }
 
  private:
   static bool anySemiSharp(const std::vector<float>& edges) {
     return std::any_of(edges.begin(), edges.end(), isSemiSharp);
   }
-  void step() {
-    next_.resize(edges_.size());
-    crease_.SubdivideEdgeSharpnessesAroundVertex(static_cast<int>(edges_.size()), edges_.data(),
-                                                 next_.data());
-  }
+  void step() { next_ = subdividedSharpness(crease_, edges_); }
 
   OpenSubdiv::Sdc::Crease crease_;
   std::vector<float> edges_, next_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "limitsurf/rules/sharpness_order.h"
 #include "limitsurf/rules/subdivision_options.h"
 
 namespace limitsurf {
@@ -96,10 +97,18 @@ class SubdivisionRules {
 
   /// A vertex with `face_count` faces that is sharp or has sharp edges.
   VertexMask vertexMask(const SharpnessAround& around, int face_count) const {
-    const Vertex vertex{static_cast<int>(around.edges.size()), face_count, &around};
-    Mask mask(1, vertex.edge_count, vertex.edge_count);
-    scheme_.ComputeVertexVertexMask(vertex, mask);
-    return vertexMaskOf(mask);
+    const std::vector<int> order = sharpnessOrder(around.edges);
+    if (order.empty()) {
+      return vertexMaskOfEdges(around, face_count);
+    }
+    const SharpnessAround ordered{around.vertex, around.child_vertex, inOrder(around.edges, order),
+                                  inOrder(around.child_edges, order)};
+    VertexMask mask = vertexMaskOfEdges(ordered, face_count);  // all faces have the same weight
+    const std::vector<Real> edges = mask.edges;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      mask.edges[order[i]] = edges[i];
+    }
+    return mask;
   }
 
   /// A vertex without semi-sharp edges. Its edges and faces are numbered counter-clockwise; the
@@ -133,6 +142,13 @@ class SubdivisionRules {
   }
 
  private:
+  VertexMask vertexMaskOfEdges(const SharpnessAround& around, int face_count) const {
+    const Vertex vertex{static_cast<int>(around.edges.size()), face_count, &around};
+    Mask mask(1, vertex.edge_count, vertex.edge_count);
+    scheme_.ComputeVertexVertexMask(vertex, mask);
+    return vertexMaskOf(mask);
+  }
+
   /// The largest integer whose square fits into 32 bits.
   static constexpr int kLargestSquarableValence = 46340;
 
