@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 import pytest
+from limit_surface.errors import RefusalError
 from limit_surface.reading import attributes
 
 
@@ -25,7 +26,10 @@ def test_attributes_of_another_kind_or_size_are_not_overwritten():
     mesh = bpy.data.meshes.new("Points")
     mesh.vertices.add(5)
     attributes.write(mesh, "made", "INT", "POINT", np.arange(5))
-    with pytest.raises(RuntimeError, match="with another type or domain"):
+    with pytest.raises(RefusalError, match="an attribute made of another type or domain"):
         attributes.write(mesh, "made", "FLOAT", "POINT", np.arange(5))
     with pytest.raises(ValueError, match="for 5 elements"):
         attributes.write(mesh, "made", "INT", "POINT", np.arange(6))
+    attributes.write(mesh, "limit_made", "INT", "POINT", np.arange(5))
+    attributes.write(mesh, "limit_made", "FLOAT", "POINT", np.arange(5) / 2)  # the extension's own
+    assert np.array_equal(attributes.read(mesh, "limit_made"), np.arange(5) / 2)

@@ -46,7 +46,7 @@ LIMITS = {"per_side": 8, "count": 200, "points": 9, "levels": 3, "most_levels": 
 KEPT = {"width", "height", "allow_large", "decal_resolution", "face_resolution", "density",
         "distance", "folder", "filepath", "rna_type", "replaces", "view_matrix"}  # fmt: skip
 MESHES = (scenes.cross, scenes.grid_with_holes, scenes.mixed_polygons)
-MOST_OBJECTS = 25
+MOST_OBJECTS, MOST_VERTICES = 25, 5000
 #: What Blender itself keeps in a file without objects
 FRAME = {"brushes", "libraries", "palettes", "scenes", "screens", "window_managers", "workspaces",
          "worlds"}  # fmt: skip
@@ -91,6 +91,7 @@ class Session:
             print(f"{i} {step.__name__}", end=" ", flush=True)
             print(step(), flush=True)
             self.check()
+            self.remove_large()
         self.check_end()
 
     # What an artist does
@@ -152,6 +153,13 @@ class Session:
                 ob.select_set(True)
                 bpy.context.view_layer.objects.active = ob
         push("selection")
+
+    def remove_large(self) -> None:
+        """Meshes on the surfaces of other meshes would soon have millions of vertices."""
+        large = [mesh for mesh in bpy.data.meshes if len(mesh.vertices) > MOST_VERTICES]
+        if large and enter_object_mode():
+            bpy.data.batch_remove(large)
+            push("large meshes removed")
 
     def activate(self) -> str:
         if not bpy.context.view_layer.objects or not enter_object_mode():
