@@ -195,9 +195,10 @@ def test_facing(side):
     thing = add_object((2, 2.3, 0.7))
     snap(target, use_facing=True, max_angle=1.0)
     np.testing.assert_allclose(thing.location, (2, 2.3, 0), atol=1e-6)
-    thing.location.z = 0.7
-    snap(target)
-    np.testing.assert_allclose(thing.location, (2, 2.3, 1), atol=1e-6)
+    for all_directions in ({}, {"use_facing": True, "max_angle": np.pi}):
+        thing.location.z = 0.7
+        snap(target, **all_directions)
+        np.testing.assert_allclose(thing.location, (2, 2.3, 1), atol=1e-6)
 
 
 @pytest.mark.every(5)

@@ -209,7 +209,8 @@ class OBJECT_OT_limit_snap(
             orientation=self.orientation,
             direction=self.direction,
             max_distance=self.max_distance or np.inf,
-            max_angle=self.max_angle if self.use_facing else None,
+            # a property in single precision exceeds pi where it is 180 degrees
+            max_angle=min(self.max_angle, np.pi) if self.use_facing else None,
             offset=self.offset,
             view=self._view(context) if by_view else None,
         )
