@@ -16,8 +16,8 @@ namespace limitsurf::python {
 /// - A thread that already holds a lock reads at once unless somebody is changing the object, so
 ///   that a function may read what its own caller reads.
 /// - What would wait for itself raises std::runtime_error, which is RuntimeError in Python: a
-/// change
-///   within a call that reads, anything within a change, and two threads that wait for each other.
+///   change within a call that reads, anything within a change, and two threads that wait for each
+///   other.
 /// - So does what would wait, in a process that was forked, for a thread of the parent.
 /// - Ctrl-C ends the wait.
 ///
