@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+double squareRoot(double a) { return std::sqrt(a); }
+
+#include "limitsurf/surface/batch/unit_normal.inl.h"
+
 /// v over its length; zero where the length is 0 or not finite.
 Vector3 direction(const Vector3& v) {
   const double largest = v.cwiseAbs().maxCoeff();
@@ -33,7 +37,16 @@ Vector3 unitDirection(const Vector3& v) {
 }
 
 Vector3 unitNormal(const Vector3& du, const Vector3& dv) {
+  const UnitNormal<double> normal(du.data(), dv.data());
+  if (normalKeepsDigits(normal.square, normal.lengths, 0)) {
+    return {normal.unit[0], normal.unit[1], normal.unit[2]};
+  }
   return unitDirection(direction(du).cross(direction(dv)));
+}
+
+double sineSquare(const Vector3& du, const Vector3& dv) {
+  const UnitNormal<double> normal(du.data(), dv.data());
+  return normalKeepsDigits(normal.square, normal.lengths, 0) ? normal.square / normal.lengths : kNaN;
 }
 
 Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& normal) {

@@ -16,6 +16,10 @@ Vector3 unitDirection(const Vector3& v);
 /// overflows nor underflows.
 Vector3 unitNormal(const Vector3& du, const Vector3& dv);
 
+/// The squared sine of the angle between du and dv; NaN where a product of their lengths overflows
+/// or underflows.
+double sineSquare(const Vector3& du, const Vector3& dv);
+
 /// A right-handed rotation with columns tangent (along du), normal x tangent, normal. Where du or
 /// the normal vanishes the frame is completed from dv, then from the least aligned world axis.
 /// `normal` may have any length; zero asks for completion.

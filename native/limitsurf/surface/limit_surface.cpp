@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limitsurf/surface/batch/batch_evaluator.h"
 #include "limitsurf/surface/curvature/irregular_curvature.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/limit_surface_data.h"
@@ -72,43 +73,14 @@ Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivativ
     out.dvv.resize(rows, 3);
   }
 
-  const auto put = [](Points& points, Eigen::Index row, const Padded& value) {
-    double* to = points.data() + 3 * row;
-    to[0] = value[0];
-    to[1] = value[1];
-    to[2] = value[2];
-  };
-  const auto putNormal = [&](Eigen::Index row, const TileLocation& place, const Jet& jet,
-                             TileEvaluator& evaluator) {
-    Vector3 normal;
-    if (!place.atVertex()) {
-      normal = evaluator.normalDirection(place, jet);
-    } else if (vertexHasNormal(data_->ringAt(place))) {
-      normal = unitDirection(data_->approachTo(place).normal);
-    } else {
-      normal.setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-    out.normal.row(row) = normal;
-  };
-
-  data_->forEach(at, threads,
-                 [&](Eigen::Index row, const TileLocation& place, TileEvaluator& evaluator) {
-                   Jet jet;
-                   evaluateJet(evaluator, place, derivatives, jet);
-                   put(out.position, row, jet.anchor + jet.patch.value);
-                   if (derivatives >= Derivatives::first) {
-                     put(out.du, row, jet.patch.du);
-                     put(out.dv, row, jet.patch.dv);
-                     if (normals) {
-                       putNormal(row, place, jet, evaluator);
-                     }
-                   }
-                   if (derivatives == Derivatives::second) {
-                     put(out.duu, row, jet.second(jet.patch.duu));
-                     put(out.duv, row, jet.second(jet.patch.duv));
-                     put(out.dvv, row, jet.second(jet.patch.dvv));
-                   }
-                 });
+  const PatchResults<double> results{out.position.data(), out.du.data(),  out.dv.data(),
+                                     out.duu.data(),      out.duv.data(), out.dvv.data(),
+                                     out.normal.data()};
+  const RowOrder order(at, faceCount(), threads);
+  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    BatchEvaluator<double>(data_->table, data_->pose, static_cast<int>(derivatives), results)
+        .evaluate(at, order, begin, end);
+  });
   return out;
 }
 

@@ -102,10 +102,7 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   if (quarter.steps > pose_.gridSteps(tile)) {
     const Eigenbasis& basis = *table_.rings[tile.ring].basis;
     jet.anchor = pose_.ring(tile.ring).limit;
-    // Around a cone the mode with the largest eigenvalue has, by symmetry, no derivative across the
-    // spokes. Its rounding would hide that of the others if control points were added up first.
-    const bool by_modes = Order == 2 || (Order == 1 && basis.ring().kind == RingKind::cone);
-    if (!by_modes) {
+    if (!addsModesAt(basis, Order)) {
       Padded grid[tile_grid::kSlots];
       basis.controlGrid(tile.face, quarter.steps, tile.ring_steps,
                         pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer, grid);
@@ -150,12 +147,13 @@ void TileEvaluator::evaluateByModes(const RingTile& tile, int index, int steps,
 }
 
 Vector3 TileEvaluator::normalDirection(const TileLocation& at, const Jet& jet) {
-  if (needsModeProducts(at)) {
+  const Vector3 du = jet.patch.du.head<3>(), dv = jet.patch.dv.head<3>();
+  if (needsModeProducts(at) && !(sineSquare(du, dv) >= kLowestSineSquare)) {
     ModeProducts products;
     gatherModes(at, 1, products);
     return unitDirection(products.cross());
   }
-  return unitNormal(jet.patch.du.head<3>(), jet.patch.dv.head<3>());
+  return unitNormal(du, dv);
 }
 
 FundamentalForms TileEvaluator::fundamentalForms(const TileLocation& at, const Jet& jet) {

@@ -31,13 +31,20 @@ class TileEvaluator {
   /// At an extraordinary vertex derivatives without a limit are NaN.
   template <int Order>
   void evaluate(const TileLocation& at, Jet& jet);
+  void evaluateUpTo(int order, const TileLocation& at, Jet& jet) {
+    order == 0 ? evaluate<0>(at, jet) : order == 1 ? evaluate<1>(at, jet) : evaluate<2>(at, jet);
+  }
 
   /// The unit normal where the jet was evaluated; NaN where du x dv vanishes. Must not be called at
   /// an extraordinary vertex.
   ///
   /// Deep in a ring tile the leading mode may make du and dv so close to parallel that their cross
-  /// product loses all its digits. There the products of different modes are added up instead.
+  /// product loses all its digits. Where the squared sine of their angle is below
+  /// lowestSineSquare() the products of different modes are added up instead.
   Vector3 normalDirection(const TileLocation& at, const Jet& jet);
+  static double lowestSineSquare(const TileLocation& at) {
+    return needsModeProducts(at) ? kLowestSineSquare : 0;
+  }
 
   /// The forms, for curvature, where the jet was evaluated, with second derivatives.
   ///
@@ -45,11 +52,23 @@ class TileEvaluator {
   /// along the normal are added up from products of three modes each.
   FundamentalForms fundamentalForms(const TileLocation& at, const Jet& jet);
 
+  /// Whether derivatives up to `order`, deep in a tile of this ring, are sums over its modes
+  /// instead of sums over the control points that the modes add up to.
+  ///
+  /// Second derivatives are, because modes of very different size meet in them. So are first ones
+  /// around a cone: the mode with the largest eigenvalue has, by symmetry, no derivative across the
+  /// spokes, and its rounding would hide that of the others.
+  static bool addsModesAt(const Eigenbasis& basis, int order) {
+    return order == 2 || (order == 1 && basis.ring().kind == RingKind::cone);
+  }
+
  private:
   /// Up to so many steps products of the sums themselves are taken. Between du and dv the angle is
   /// then about 2^-steps at least, so that du x dv loses 8 bits at most. Second derivatives are
   /// about 2^steps times their part along the normal at most, which loses as many.
   static constexpr int kStepsToParallel = 8;
+  /// Below those steps du x dv is taken at angles of this size, which cost it 8 bits as well.
+  static constexpr double kLowestSineSquare = 0x1p-16;
 
   /// Whether the location lies so deep in a ring tile that products of modes have to be taken.
   static bool needsModeProducts(const TileLocation& at);

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The arithmetic of a bicubic B-spline patch, for numbers of any type. To be included inside a
+// namespace, and so as often as code is compiled for different instruction sets (see
+// patch_kernels.h): all of them do the same operations in the same order, and round alike.
+
+/// Weights of four uniform cubic B-spline control points at t in [0, 1].
+///
+/// Derivatives are formed from the points' first and second differences, so that equal points give
+/// a derivative of exactly 0 and equally spaced ones a second derivative of exactly 0. Near an
+/// extraordinary vertex derivatives are multiplied by 2^n and 4^n, and their rounding is as well.
+///
+/// At a boundary the missing first (low) or last (high) point is the linear continuation of the two
+/// next to it (Lacewell & Burley 2007, figure 2: p0 = 2 p1 - p2), so that the missing difference
+/// equals its neighbour. The weights contain this; the missing point itself has weight 0.
+template <typename Number>
+struct BSplineWeights {
+  Number value[4];
+  Number first[3];   ///< on the differences p1 - p0, p2 - p1, p3 - p2
+  Number second[2];  ///< on the differences of those
+
+  BSplineWeights(const Number& t, bool low, bool high) {
+    const Number zero{}, s = 1 - t;
+    const double sixth = 1. / 6;
+    first[0] = low ? zero : s * s / 2;
+    first[2] = high ? zero : t * t / 2;
+    first[1] = 1 - first[0] - first[2];
+    second[0] = low ? zero : s;
+    second[1] = high ? zero : t;
+    const Number s3 = low ? zero : s * s * s * sixth, t3 = high ? zero : t * t * t * sixth;
+    // The line through p1 and p2 plus a multiple of the second difference on either side of it.
+    value[0] = s3;
+    value[1] = s - 2 * s3 + t3;
+    value[2] = t - 2 * t3 + s3;
+    value[3] = t3;
+  }
+
+  /// The same derivatives as weights on the points.
+  void firstOnPoints(Number out[4]) const {
+    out[0] = -first[0];
+    out[1] = first[0] - first[1];
+    out[2] = first[1] - first[2];
+    out[3] = first[2];
+  }
+};
+
+/// Position and derivatives of a bicubic patch: value; du, dv; duu, duv, dvv.
+template <typename Point>
+struct PatchValues {
+  Point value, du, dv, duu, duv, dvv;
+};
+
+/// The bicubic patch of a 4 x 4 window of control points; derivatives up to Order. `points(x, y)`,
+/// 0 <= x, y <= 3, returns one of them.
+template <int Order, typename Point, typename Weights, typename Points>
+inline void evaluatePatch(const Points& points, const Weights& u, const Weights& v,
+                          PatchValues<Point>& out) {
+  const auto value = [](const Weights& w, const Point& a, const Point& b, const Point& c,
+                        const Point& d) -> Point {
+    return w.value[0] * a + w.value[1] * b + w.value[2] * c + w.value[3] * d;
+  };
+  Point row[4], row_du[4], row_duu[4];
+  if (Order >= 2) {
+    // dvv is formed from the points themselves: the sums over rows, which have been rounded, are
+    // no longer equally spaced exactly where the points are.
+    Point column[4];
+    for (int x = 0; x < 4; ++x) {
+      const Point p = points(x, 0), q = points(x, 1), r = points(x, 2), s = points(x, 3);
+      column[x] = v.second[0] * ((r - q) - (q - p)) + v.second[1] * ((s - r) - (r - q));
+    }
+    out.dvv = value(u, column[0], column[1], column[2], column[3]);
+  }
+  for (int y = 0; y < 4; ++y) {
+    const Point p = points(0, y), q = points(1, y), r = points(2, y), s = points(3, y);
+    row[y] = value(u, p, q, r, s);
+    if (Order >= 1) {
+      const Point d0 = q - p, d1 = r - q, d2 = s - r;
+      row_du[y] = u.first[0] * d0 + u.first[1] * d1 + u.first[2] * d2;
+      if (Order >= 2) {
+        row_duu[y] = u.second[0] * (d1 - d0) + u.second[1] * (d2 - d1);
+      }
+    }
+  }
+  out.value = value(v, row[0], row[1], row[2], row[3]);
+  if (Order >= 1) {
+    out.du = value(v, row_du[0], row_du[1], row_du[2], row_du[3]);
+    out.dv = v.first[0] * (row[1] - row[0]) + v.first[1] * (row[2] - row[1]) +
+             v.first[2] * (row[3] - row[2]);
+    if (Order >= 2) {
+      out.duu = value(v, row_duu[0], row_duu[1], row_duu[2], row_duu[3]);
+      out.duv = v.first[0] * (row_du[1] - row_du[0]) + v.first[1] * (row_du[2] - row_du[1]) +
+                v.first[2] * (row_du[3] - row_du[2]);
+    }
+  }
+}

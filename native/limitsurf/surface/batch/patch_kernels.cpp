@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/batch/patch_kernels.h"
+
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+
+// GCC for Windows does not align vectors of more than 16 bytes on the stack.
+#if defined(__GNUC__) && defined(__x86_64__) && !(defined(_WIN32) && !defined(__clang__))
+#define LIMITSURF_X86_SETS 1
+#include <immintrin.h>
+#else
+#define LIMITSURF_X86_SETS 0
+#endif
+
+namespace limitsurf {
+namespace {
+
+namespace baseline {
+constexpr int kLanes = 2;
+constexpr std::size_t kFewestLanes = 2;
+inline double squareRoot(double a) { return __builtin_sqrt(a); }
+template <typename Lanes>
+Lanes squareRoot(const Lanes& a) {
+  Lanes result = a;
+  for (int i = 0; i < kLanes; ++i) {
+    result.numbers[i] = std::sqrt(a.numbers[i]);
+  }
+  return result;
+}
+template <typename Lanes>
+inline void interleave(const Lanes xyz[3], Lanes out[3]) {
+  for (int i = 0; i < 3 * kLanes; ++i) {
+    out[i / kLanes].numbers[i % kLanes] = xyz[i % 3].numbers[i / 3];
+  }
+}
+#include "limitsurf/surface/batch/patch_kernels.inl.h"
+}  // namespace baseline
+
+#if LIMITSURF_X86_SETS
+
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#endif
+namespace avx2 {
+constexpr int kLanes = 4;
+constexpr std::size_t kFewestLanes = 3;
+inline double squareRoot(double a) { return __builtin_sqrt(a); }
+template <typename Lanes>
+inline Lanes squareRoot(const Lanes& a) {
+  return {_mm256_sqrt_pd(a.numbers)};
+}
+/// x0 y0 z0 x1 y1 z1 ... from x0 x1 ..., y0 y1 ..., z0 z1 ...
+template <typename Lanes>
+inline void interleave(const Lanes xyz[3], Lanes out[3]) {
+  const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
+  out[0].numbers = __builtin_shufflevector(
+      __builtin_shufflevector(x, y, 0, 4, 0, 1), z, 0, 1, 4, 3);
+  out[1].numbers = __builtin_shufflevector(
+      __builtin_shufflevector(x, y, 5, 0, 2, 6), z, 0, 5, 2, 3);
+  out[2].numbers = __builtin_shufflevector(
+      __builtin_shufflevector(x, y, 0, 3, 7, 0), z, 6, 1, 2, 7);
+}
+#include "limitsurf/surface/batch/patch_kernels.inl.h"
+}  // namespace avx2
+#if defined(__clang__)
+#pragma clang attribute pop
+#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl"))), apply_to = function)
+#else
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512dq,avx512vl")
+#endif
+namespace avx512 {
+constexpr int kLanes = 8;
+constexpr std::size_t kFewestLanes = 3;
+inline double squareRoot(double a) { return __builtin_sqrt(a); }
+template <typename Lanes>
+inline Lanes squareRoot(const Lanes& a) {
+  return {_mm512_maskz_sqrt_pd(0xff, a.numbers)};
+}
+/// x0 y0 z0 x1 y1 z1 ... from x0 x1 ..., y0 y1 ..., z0 z1 ...
+template <typename Lanes>
+inline void interleave(const Lanes xyz[3], Lanes out[3]) {
+  const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
+  out[0].numbers = __builtin_shufflevector(
+      __builtin_shufflevector(x, y, 0, 8, 0, 1, 9, 0, 2, 10), z, 0, 1, 8, 3, 4, 9, 6, 7);
+  out[1].numbers = __builtin_shufflevector(
+      __builtin_shufflevector(x, y, 0, 3, 11, 0, 4, 12, 0, 5), z, 10, 1, 2, 11, 4, 5, 12, 7);
+  out[2].numbers = __builtin_shufflevector(
+      __builtin_shufflevector(x, y, 13, 0, 6, 14, 0, 7, 15, 0), z, 0, 13, 2, 3, 14, 5, 6, 15);
+}
+#include "limitsurf/surface/batch/patch_kernels.inl.h"
+}  // namespace avx512
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+#endif
+
+InstructionSet bestSet() {
+  return isAvailable(InstructionSet::avx512) ? InstructionSet::avx512
+         : isAvailable(InstructionSet::avx2) ? InstructionSet::avx2
+                                             : InstructionSet::baseline;
+}
+
+std::atomic<InstructionSet>& setInUse() {
+  static std::atomic<InstructionSet> set{bestSet()};
+  return set;
+}
+
+}  // namespace
+
+bool isAvailable(InstructionSet set) {
+  if (set == InstructionSet::baseline) {
+    return true;
+  }
+#if LIMITSURF_X86_SETS
+  __builtin_cpu_init();
+  return set == InstructionSet::avx2
+             ? __builtin_cpu_supports("avx2")
+             : __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                   __builtin_cpu_supports("avx512vl");
+#else
+  return false;
+#endif
+}
+
+InstructionSet instructionSet() { return setInUse().load(std::memory_order_relaxed); }
+
+void useInstructionSet(InstructionSet set) { setInUse() = set; }
+
+const PatchKernels& PatchKernels::get() {
+#if LIMITSURF_X86_SETS
+  switch (instructionSet()) {
+    case InstructionSet::avx512:
+      return avx512::kKernels;
+    case InstructionSet::avx2:
+      return avx2::kKernels;
+    case InstructionSet::baseline:
+      break;
+  }
+#endif
+  return baseline::kKernels;
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limitsurf/surface/batch/instruction_sets.h"
+#include "limitsurf/surface/batch/patch_run.h"
+
+namespace limitsurf {
+
+/// The inner loops of batch evaluation, compiled for one instruction set.
+struct PatchKernels {
+  /// Evaluates a run up to a derivative. Where a normal may have lost digits (see
+  /// normalKeepsDigits()) all its numbers are NaN: the caller computes it.
+  template <typename Real>
+  using Evaluate = void (*)(const PatchRun& run, const PatchResults<Real>& results);
+
+  /// The 16 points that `indices` choose, less the sixth of them.
+  using Gather = void (*)(const double (*points)[4], const int indices[16], double window[16][4]);
+
+  Gather gather;
+  Evaluate<double> evaluate_double[3];  ///< by the order of derivatives
+  Evaluate<float> evaluate_float[3];
+
+  template <typename Real>
+  Evaluate<Real> evaluate(int order) const;
+
+  /// For the instruction set in use.
+  static const PatchKernels& get();
+};
+
+template <>
+inline PatchKernels::Evaluate<double> PatchKernels::evaluate(int order) const {
+  return evaluate_double[order];
+}
+template <>
+inline PatchKernels::Evaluate<float> PatchKernels::evaluate(int order) const {
+  return evaluate_float[order];
+}
+
+}  // namespace limitsurf

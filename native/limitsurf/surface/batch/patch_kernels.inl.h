@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The inner loops of batch evaluation. patch_kernels.cpp includes this file once for each
+// instruction set, inside a namespace, after it has defined kLanes, kFewestLanes,
+// squareRoot() and interleave(). Nothing here
+// may call a function that is defined elsewhere: its code could be that of another set.
+
+#include "limitsurf/eigen/bspline_formulas.inl.h"
+#include "limitsurf/surface/batch/unit_normal.inl.h"
+
+/// kLanes numbers on which one instruction works.
+template <int kCount>
+struct Lanes {
+#if defined(__GNUC__)
+  typedef double Numbers __attribute__((vector_size(kCount * sizeof(double))));
+  Numbers numbers;
+
+  friend Lanes operator+(const Lanes& a, const Lanes& b) { return {a.numbers + b.numbers}; }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) { return {a.numbers - b.numbers}; }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) { return {a.numbers * b.numbers}; }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) { return {a.numbers / b.numbers}; }
+  static Lanes of(double a) { return {a - Numbers{}}; }
+#else
+  double numbers[kCount];
+
+  template <typename Operation>
+  static Lanes each(const Lanes& a, const Lanes& b, const Operation& operation) {
+    Lanes result;
+    for (int i = 0; i < kCount; ++i) {
+      result.numbers[i] = operation(a.numbers[i], b.numbers[i]);
+    }
+    return result;
+  }
+  friend Lanes operator+(const Lanes& a, const Lanes& b) {
+    return each(a, b, [](double x, double y) { return x + y; });
+  }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) {
+    return each(a, b, [](double x, double y) { return x - y; });
+  }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) {
+    return each(a, b, [](double x, double y) { return x * y; });
+  }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) {
+    return each(a, b, [](double x, double y) { return x / y; });
+  }
+  static Lanes of(double a) {
+    Lanes result;
+    for (double& number : result.numbers) {
+      number = a;
+    }
+    return result;
+  }
+#endif
+  friend Lanes operator+(const Lanes& a, double b) { return a + of(b); }
+  friend Lanes operator-(const Lanes& a, double b) { return a - of(b); }
+  friend Lanes operator*(const Lanes& a, double b) { return a * of(b); }
+  friend Lanes operator/(const Lanes& a, double b) { return a / of(b); }
+  friend Lanes operator+(double a, const Lanes& b) { return of(a) + b; }
+  friend Lanes operator-(double a, const Lanes& b) { return of(a) - b; }
+  friend Lanes operator*(double a, const Lanes& b) { return of(a) * b; }
+
+  static Lanes load(const double* from) {
+    Lanes result;
+    __builtin_memcpy(&result, from, sizeof result);
+    return result;
+  }
+  void store(double* to) const { __builtin_memcpy(to, this, sizeof *this); }
+  void store(float* to) const {
+    double exact[kCount];
+    store(exact);
+    for (int i = 0; i < kCount; ++i) {
+      to[i] = static_cast<float>(exact[i]);
+    }
+  }
+};
+
+inline void gather(const double (*points)[4], const int indices[16], double window[16][4]) {
+  using Point = Lanes<4>;
+  const Point anchor = Point::load(points[indices[5]]);
+  for (int i = 0; i < 16; ++i) {
+    (Point::load(points[indices[i]]) - anchor).store(window[i]);
+  }
+}
+
+/// kLanes rows at a time.
+using Rows = Lanes<kLanes>;
+
+/// Where the results of up to kLanes rows go.
+struct RowPlaces {
+  RowPlaces(const std::size_t* rows_, int count_)
+      : rows(rows_),
+        count(count_),
+        contiguous(count_ == kLanes && rows_[kLanes - 1] - rows_[0] == kLanes - 1) {}
+
+  template <typename Real>
+  void put(Real* to, const Rows vectors[3]) const {
+    if (contiguous) {
+      Rows interleaved[3];
+      interleave(vectors, interleaved);
+      for (int i = 0; i < 3; ++i) {
+        interleaved[i].store(to + 3 * rows[0] + i * kLanes);
+      }
+      return;
+    }
+    double numbers[3][kLanes];
+    for (int c = 0; c < 3; ++c) {
+      vectors[c].store(numbers[c]);
+    }
+    for (int lane = 0; lane < count; ++lane) {
+      for (int c = 0; c < 3; ++c) {
+        to[3 * rows[lane] + c] = static_cast<Real>(numbers[c][lane]);
+      }
+    }
+  }
+
+  const std::size_t* rows;
+  int count;
+  bool contiguous;  ///< whether there are kLanes rows that follow each other
+};
+
+/// What a run does to the derivatives of its patch, as Jet::turn() does.
+struct Turned {
+  explicit Turned(const PatchRun& run)
+      : swapped(run.turns % 2 == 1),
+        du(run.turns == 1 || run.turns == 2 ? -run.first_scale : run.first_scale),
+        dv(run.turns == 2 || run.turns == 3 ? -run.first_scale : run.first_scale),
+        second(run.second_scale),
+        duv(swapped ? -run.second_scale : run.second_scale) {}
+
+  bool swapped;
+  double du, dv, second, duv;  // factors
+};
+
+template <int Order, typename Real>
+inline void evaluateRows(const PatchRun& run, const Turned& turned, std::size_t begin, int count,
+                         const PatchResults<Real>& results) {
+  Rows u, v;
+  if (count == kLanes) {
+    u = Rows::load(run.u + begin);
+    v = Rows::load(run.v + begin);
+  } else {
+    double some_u[kLanes] = {}, some_v[kLanes] = {};
+    for (int lane = 0; lane < count; ++lane) {
+      some_u[lane] = run.u[begin + lane];
+      some_v[lane] = run.v[begin + lane];
+    }
+    u = Rows::load(some_u);
+    v = Rows::load(some_v);
+  }
+  const BSplineWeights<Rows> u_weights(u, run.u_low, run.u_high);
+  const BSplineWeights<Rows> v_weights(v, run.v_low, run.v_high);
+  Rows position[3], du[3], dv[3], duu[3], duv[3], dvv[3];
+  for (int c = 0; c < 3; ++c) {
+    PatchValues<Rows> patch;
+    evaluatePatch<Order, Rows>(
+        [&](int x, int y) { return Rows::of(run.points[run.stride * y + x][c]); }, u_weights,
+        v_weights, patch);
+    position[c] = run.anchor[c] + (run.value_scale * patch.value + run.offset[c]);
+    if (Order >= 1) {
+      du[c] = (turned.swapped ? patch.dv : patch.du) * turned.du;
+      dv[c] = (turned.swapped ? patch.du : patch.dv) * turned.dv;
+    }
+    if (Order >= 2) {
+      duu[c] = (turned.swapped ? patch.dvv : patch.duu) * turned.second;
+      duv[c] = patch.duv * turned.duv;
+      dvv[c] = (turned.swapped ? patch.duu : patch.dvv) * turned.second;
+    }
+  }
+  const RowPlaces places(run.rows + begin, count);
+  places.put(results.position, position);
+  if (Order >= 1) {
+    places.put(results.du, du);
+    places.put(results.dv, dv);
+    if (results.normal) {
+      UnitNormal<Rows> normal(du, dv);
+      double square[kLanes], lengths[kLanes];
+      normal.square.store(square);
+      normal.lengths.store(lengths);
+      for (int lane = 0; lane < count; ++lane) {
+        if (!normalKeepsDigits(square[lane], lengths[lane], run.lowest_sine_square)) {
+          for (Rows& numbers : normal.unit) {
+            numbers.numbers[lane] = __builtin_nan("");
+          }
+        }
+      }
+      places.put(results.normal, normal.unit);
+    }
+  }
+  if (Order >= 2) {
+    places.put(results.duu, duu);
+    places.put(results.duv, duv);
+    places.put(results.dvv, dvv);
+  }
+}
+
+/// One row, all coordinates at a time.
+template <int Order, typename Real>
+inline void evaluateRow(const PatchRun& run, const Turned& turned, std::size_t i,
+                        const PatchResults<Real>& results) {
+  using Point = Lanes<4>;
+  PatchValues<Point> patch;
+  evaluatePatch<Order, Point>(
+      [&](int x, int y) { return Point::load(run.points[run.stride * y + x]); },
+      BSplineWeights<double>(run.u[i], run.u_low, run.u_high),
+      BSplineWeights<double>(run.v[i], run.v_low, run.v_high), patch);
+  const std::size_t at = 3 * run.rows[i];
+  const auto putPoint = [at](Real* to, const Point& point) {
+    for (int c = 0; c < 3; ++c) {
+      to[at + c] = static_cast<Real>(point.numbers[c]);
+    }
+  };
+  for (int c = 0; c < 3; ++c) {
+    results.position[at + c] = static_cast<Real>(
+        run.anchor[c] + (run.value_scale * patch.value.numbers[c] + run.offset[c]));
+  }
+  if (Order >= 1) {
+    const Point du = (turned.swapped ? patch.dv : patch.du) * turned.du;
+    const Point dv = (turned.swapped ? patch.du : patch.dv) * turned.dv;
+    putPoint(results.du, du);
+    putPoint(results.dv, dv);
+    if (results.normal) {
+      const double x[3] = {du.numbers[0], du.numbers[1], du.numbers[2]};
+      const double y[3] = {dv.numbers[0], dv.numbers[1], dv.numbers[2]};
+      const UnitNormal<double> normal(x, y);
+      const bool keeps = normalKeepsDigits(normal.square, normal.lengths, run.lowest_sine_square);
+      for (int c = 0; c < 3; ++c) {
+        results.normal[at + c] = static_cast<Real>(keeps ? normal.unit[c] : __builtin_nan(""));
+      }
+    }
+  }
+  if (Order >= 2) {
+    putPoint(results.duu, (turned.swapped ? patch.dvv : patch.duu) * turned.second);
+    putPoint(results.duv, patch.duv * turned.duv);
+    putPoint(results.dvv, (turned.swapped ? patch.duu : patch.dvv) * turned.second);
+  }
+}
+
+template <int Order, typename Real>
+void evaluate(const PatchRun& run, const PatchResults<Real>& results) {
+  const Turned turned(run);
+  if (run.count < kFewestLanes) {
+    for (std::size_t i = 0; i < run.count; ++i) {
+      evaluateRow<Order>(run, turned, i, results);
+    }
+    return;
+  }
+  for (std::size_t begin = 0; begin < run.count; begin += kLanes) {
+    const int count = run.count - begin < kLanes ? static_cast<int>(run.count - begin) : kLanes;
+    evaluateRows<Order>(run, turned, begin, count, results);
+  }
+}
+
+inline const PatchKernels kKernels = {
+    gather,
+    {evaluate<0, double>, evaluate<1, double>, evaluate<2, double>},
+    {evaluate<0, float>, evaluate<1, float>, evaluate<2, float>},
+};

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/batch/row_order.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "limitsurf/parallel.h"
+
+namespace limitsurf {
+namespace {
+
+/// Sorting pays where a face has about a row; its cost is that of the rows and of the faces.
+constexpr std::size_t kFewestRows = 256, kMostFacesPerRow = 2;
+/// Rows that are counted by one task.
+constexpr std::size_t kRowsPerPart = std::size_t{1} << 16, kMostParts = 8;
+
+/// Whether at least every other row follows one of another face.
+bool isScattered(const LocationBatch& at) {
+  std::size_t changes = 0;
+  for (std::size_t row = 1; row < at.size(); ++row) {
+    changes += at[row].face != at[row - 1].face ? 1 : 0;
+  }
+  return changes >= at.size() / 2;
+}
+
+}  // namespace
+
+RowOrder::RowOrder(const LocationBatch& at, int faces, int threads) {
+  const std::size_t face_count = static_cast<std::size_t>(faces);
+  if (at.size() < kFewestRows || face_count > kMostFacesPerRow * at.size() ||
+      at.size() > std::numeric_limits<std::uint32_t>::max() || !isScattered(at)) {
+    return;
+  }
+  // A counting sort. Each part of the rows has counts of its own, which become the places where
+  // its rows of each face begin.
+  const std::size_t parts =
+      threads == 1 ? 1 : std::clamp<std::size_t>(at.size() / kRowsPerPart, 1, kMostParts);
+  const auto first = [&](std::size_t part) { return at.size() * part / parts; };
+  std::vector<std::vector<std::uint32_t>> counts(parts);
+  const auto forEachPart = [&](const auto& body) {
+    parallelFor(parts, 1, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t part = begin; part < end; ++part) {
+        body(counts[part], first(part), first(part + 1));
+      }
+    });
+  };
+  forEachPart([&](std::vector<std::uint32_t>& count, std::size_t begin, std::size_t end) {
+    count.assign(face_count, 0);
+    for (std::size_t row = begin; row < end; ++row) {
+      ++count[static_cast<std::size_t>(at[row].face)];
+    }
+  });
+  std::uint32_t next = 0;
+  for (std::size_t face = 0; face < face_count; ++face) {
+    for (std::vector<std::uint32_t>& count : counts) {
+      next += std::exchange(count[face], next);
+    }
+  }
+  rows_.resize(at.size());
+  forEachPart([&](std::vector<std::uint32_t>& place, std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      rows_[place[static_cast<std::size_t>(at[row].face)]++] = static_cast<std::uint32_t>(row);
+    }
+  });
+}
+
+}  // namespace limitsurf

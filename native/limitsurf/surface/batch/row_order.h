@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limitsurf/surface/location_batch.h"
+
+namespace limitsurf {
+
+/// The order in which the rows of a batch are evaluated: as they are given if most rows follow
+/// another one of their face, or if there are far fewer rows than faces, and face by face
+/// otherwise. What a face needs is then read once for all its rows. Cost: O(rows).
+class RowOrder {
+ public:
+  /// The batch must have been checked.
+  RowOrder(const LocationBatch& at, int faces, int threads);
+
+  /// The row that comes at place i.
+  std::size_t operator[](std::size_t i) const { return rows_.empty() ? i : rows_[i]; }
+
+ private:
+  std::vector<std::uint32_t> rows_;
+};
+
+}  // namespace limitsurf
