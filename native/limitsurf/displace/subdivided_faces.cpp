@@ -188,10 +188,10 @@ Location SubdividedFaces::locate(const Location& at) const {
   return {part.first + grid.index(order_, part.corner, i, j), u - i, v - j};
 }
 
-std::vector<Location> SubdividedFaces::locate(Span<Location> at, int threads) const {
+std::vector<Location> SubdividedFaces::locate(const LocationBatch& at, int threads) const {
   checkThreads(threads);
   for (std::size_t row = 0; row < at.size(); ++row) {
-    const Location& place = at[row];
+    const Location place = at[row];
     if (!(place.u >= 0 && place.u <= 1 && place.v >= 0 && place.v <= 1)) {
       throw LocationError("row " + std::to_string(row) + ": (u, v) = (" + numberText(place.u) +
                           ", " + numberText(place.v) + ") is outside [0, 1]");

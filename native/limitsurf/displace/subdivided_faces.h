@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "limitsurf/mesh/control_mesh.h"
+#include "limitsurf/surface/location_batch.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -39,7 +40,7 @@ class SubdividedFaces {
   /// A place between faces is assigned to the face towards (1, 1). `at.face` must be one of the
   /// base's Ptex faces.
   Location locate(const Location& at) const;
-  std::vector<Location> locate(Span<Location> at, int threads = 0) const;
+  std::vector<Location> locate(const LocationBatch& at, int threads = 0) const;
 
  private:
   /// A Ptex face of the base mesh.

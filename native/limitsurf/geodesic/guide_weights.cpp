@@ -34,7 +34,7 @@ Progress partOf(const Progress& progress, double begin, double end) {
   return [&progress, begin, end](double part) { progress(begin + part * (end - begin)); };
 }
 
-std::vector<int> levelsFor(const LimitSurface& surface, Span<Location> guides) {
+std::vector<int> levelsFor(const LimitSurface& surface, const LocationBatch& guides) {
   const ControlMesh& mesh = surface.mesh();
   int level = kLeastLevel;
   while (level < kMostLevel &&
@@ -42,8 +42,8 @@ std::vector<int> levelsFor(const LimitSurface& surface, Span<Location> guides) {
     ++level;
   }
   std::vector<int> guides_of_face(static_cast<std::size_t>(mesh.faceCount()));
-  for (const Location& guide : guides) {
-    ++guides_of_face[surface.baseFace()[guide.face]];
+  for (std::size_t guide = 0; guide < guides.size(); ++guide) {
+    ++guides_of_face[surface.baseFace()[guides[guide].face]];
   }
   std::vector<int> levels(guides_of_face.size(), level);
   for (std::size_t face = 0; face < levels.size(); ++face) {

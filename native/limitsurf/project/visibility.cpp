@@ -31,7 +31,7 @@ Visibility::Visibility(const LimitSurface& surface, const Projector& projector,
       threads_(threads),
       bias_(options.bias ? *options.bias : defaultBias(surface.positions())) {}
 
-void Visibility::apply(Span<Location> at, const TexelPlaces& places,
+void Visibility::apply(const LocationBatch& at, const TexelPlaces& places,
                        Eigen::VectorXd& weight) const {
   std::vector<Eigen::Index> rows;
   for (Eigen::Index row = 0; row < weight.size(); ++row) {
@@ -58,14 +58,14 @@ void Visibility::apply(Span<Location> at, const TexelPlaces& places,
   }
 }
 
-void Visibility::evaluateSamples(Span<Location> at, const TexelPlaces& places,
+void Visibility::evaluateSamples(const LocationBatch& at, const TexelPlaces& places,
                                  const std::vector<Eigen::Index>& rows, Points& position,
                                  Points& normal) const {
   const int side = options_.samples == 4 ? 2 : 4;
   std::vector<Location> samples;
   samples.reserve(rows.size() * static_cast<std::size_t>(options_.samples));
   for (const Eigen::Index row : rows) {
-    const Location& middle = at[static_cast<std::size_t>(row)];
+    const Location middle = at[static_cast<std::size_t>(row)];
     const auto steps = places.parameters.row(row);
     for (int i = 0; i < side * side; ++i) {
       const int column = i % side, row_of_samples = i / side;

@@ -18,11 +18,11 @@ class Visibility {
 
   /// Multiplies each weight by the part of the texel's samples that are visible. Texels of weight 0
   /// are not tested.
-  void apply(Span<Location> at, const TexelPlaces& places, Eigen::VectorXd& weight) const;
+  void apply(const LocationBatch& at, const TexelPlaces& places, Eigen::VectorXd& weight) const;
 
  private:
   /// Evaluates the samples of the texels in these rows: a square grid over each.
-  void evaluateSamples(Span<Location> at, const TexelPlaces& places,
+  void evaluateSamples(const LocationBatch& at, const TexelPlaces& places,
                        const std::vector<Eigen::Index>& rows, Points& position,
                        Points& normal) const;
   /// For each sample whether it is visible.

@@ -5,7 +5,8 @@
 
 namespace limitsurf {
 
-void completeNormals(const LimitSurface& surface, Span<Location> at, Points& normal, int threads) {
+void completeNormals(const LimitSurface& surface, const LocationBatch& at, Points& normal,
+                     int threads) {
   std::vector<Location> without;
   std::vector<Eigen::Index> rows;
   for (Eigen::Index row = 0; row < normal.rows(); ++row) {

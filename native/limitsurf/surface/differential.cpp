@@ -46,7 +46,8 @@ Vector3 unitNormal(const Vector3& du, const Vector3& dv) {
 
 double sineSquare(const Vector3& du, const Vector3& dv) {
   const UnitNormal<double> normal(du.data(), dv.data());
-  return normalKeepsDigits(normal.square, normal.lengths, 0) ? normal.square / normal.lengths : kNaN;
+  return normalKeepsDigits(normal.square, normal.lengths, 0) ? normal.square / normal.lengths
+                                                             : kNaN;
 }
 
 Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& normal) {

@@ -6,7 +6,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "limitsurf/surface/batch/batch_evaluator.h"
 #include "limitsurf/surface/curvature/irregular_curvature.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/limit_surface_data.h"
@@ -52,36 +51,6 @@ bool LimitSurface::isPosed() const { return data_->pose.isSet(); }
 
 LocationBatch LimitSurface::checkLocations(const LocationBatch& at) const {
   return data_->tiles->checked(at);
-}
-
-Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives, bool normals,
-                                  int threads) const {
-  data_->check(at, threads);
-  const auto rows = static_cast<Eigen::Index>(at.size());
-  Evaluation out;
-  out.position.resize(rows, 3);
-  if (derivatives >= Derivatives::first) {
-    out.du.resize(rows, 3);
-    out.dv.resize(rows, 3);
-    if (normals) {
-      out.normal.resize(rows, 3);
-    }
-  }
-  if (derivatives == Derivatives::second) {
-    out.duu.resize(rows, 3);
-    out.duv.resize(rows, 3);
-    out.dvv.resize(rows, 3);
-  }
-
-  const PatchResults<double> results{out.position.data(), out.du.data(),  out.dv.data(),
-                                     out.duu.data(),      out.duv.data(), out.dvv.data(),
-                                     out.normal.data()};
-  const RowOrder order(at, faceCount(), threads);
-  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    BatchEvaluator<double>(data_->table, data_->pose, static_cast<int>(derivatives), results)
-        .evaluate(at, order, begin, end);
-  });
-  return out;
 }
 
 Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> LimitSurface::frames(

@@ -39,6 +39,17 @@ struct Evaluation {
   Points normal;
 };
 
+/// The caller's own memory for an evaluation: contiguous rows of three numbers, one for each
+/// location. Float results are the double ones, rounded.
+template <typename Real>
+struct EvaluationArrays {
+  using Rows = Eigen::Map<Eigen::Matrix<Real, Eigen::Dynamic, 3, Eigen::RowMajor>>;
+  static Rows none() { return Rows(nullptr, 0, 3); }
+
+  Rows position = none(), du = none(), dv = none(), duu = none(), duv = none(), dvv = none();
+  Rows normal = none();  ///< may be none for any derivatives
+};
+
 /// Principal curvatures k1 >= k2 with their unit directions in space; mean = (k1 + k2) / 2,
 /// gaussian = k1 k2. Signs follow the normal: a sphere seen from outside has negative curvatures.
 struct Curvature {
@@ -171,6 +182,13 @@ class LimitSurface {
   /// Cost: O(1) for each location, but O(valence) within 2^-4 of an extraordinary vertex.
   Evaluation evaluate(const LocationBatch& at, Derivatives derivatives = Derivatives::none,
                       bool normals = false, int threads = 0) const;
+
+  /// The same, written to arrays: positions, derivatives up to `derivatives`, and normals if there
+  /// are rows for them. Throws std::invalid_argument for an array that has another number of rows
+  /// than there are locations, and then writes nothing. Real is double or float.
+  template <typename Real>
+  void evaluate(const LocationBatch& at, Derivatives derivatives, EvaluationArrays<Real> results,
+                int threads = 0) const;
 
   // Frames and curvature.
   //

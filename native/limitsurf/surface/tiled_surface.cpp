@@ -18,9 +18,11 @@ void TiledSurface::check(const LocationBatch& at, int threads) const {
   checked(at);
 }
 
-void TiledSurface::check(std::size_t row, const Location& location) const {
+void TiledSurface::check(const LocationBatch& at, std::size_t row) const {
   const auto inside = [](double t) { return t >= 0 && t <= 1; };  // false for NaN
-  const bool exists = location.face >= 0 && location.face < static_cast<int>(table.faces.size());
+  const std::int64_t face = at.face(row);
+  const bool exists = face >= 0 && face < static_cast<std::int64_t>(table.faces.size());
+  const Location location = at[row];
   if (exists && inside(location.u) && inside(location.v) &&
       table.faces[location.face].kind != TileRef::kNone) {
     return;
@@ -28,8 +30,7 @@ void TiledSurface::check(std::size_t row, const Location& location) const {
   std::ostringstream message;
   message << "row " << row << ": ";
   if (!exists) {
-    message << "face " << location.face << " is not among the " << table.faces.size()
-            << " Ptex faces";
+    message << "face " << face << " is not among the " << table.faces.size() << " Ptex faces";
     throw LocationError(message.str());
   }
   if (!inside(location.u) || !inside(location.v)) {
@@ -38,7 +39,7 @@ void TiledSurface::check(std::size_t row, const Location& location) const {
     throw LocationError(message.str());
   }
   const int base = ptex.base_face[location.face];
-  message << "Ptex face " << location.face << " belongs to face " << base
+  message << "Ptex face " << face << " belongs to face " << base
           << ", which has no limit surface: " << refused.at(base);
   throw MeshError(message.str());
 }
@@ -48,7 +49,7 @@ LocationBatch TiledSurface::checked(const LocationBatch& at) const {
     return at;
   }
   // A quick pass, without branches, and another one only where it found something.
-  const std::uint32_t faces = static_cast<std::uint32_t>(table.faces.size());
+  const std::uint64_t faces = table.faces.size();
   const bool all_have_surfaces = refused.empty();
   InterruptionStride stride;
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerTask) {
@@ -56,15 +57,17 @@ LocationBatch TiledSurface::checked(const LocationBatch& at) const {
     const std::size_t end = std::min(at.size(), begin + kRowsPerTask);
     bool good = all_have_surfaces;
     for (std::size_t row = begin; row < end; ++row) {
-      const Location& location = at[row];
-      good &= (static_cast<std::uint32_t>(location.face) < faces) & (location.u >= 0) &
-              (location.u <= 1) & (location.v >= 0) & (location.v <= 1);
+      const double u = at.parameter(row, 0), v = at.parameter(row, 1);
+      good &= (static_cast<std::uint64_t>(at.face(row)) < faces) & (u >= 0) & (u <= 1) & (v >= 0) &
+              (v <= 1);
     }
     for (std::size_t row = begin; row < end && !good; ++row) {
-      check(row, at[row]);
+      check(at, row);
     }
   }
-  return LocationBatch(at, this);
+  LocationBatch result(at);
+  result.checked_on_ = this;
+  return result;
 }
 
 }  // namespace limitsurf

@@ -21,8 +21,8 @@ struct TiledSurface {
   LocationBatch checked(const LocationBatch& at) const;
   /// The same, and throws std::invalid_argument for a negative number of threads.
   void check(const LocationBatch& at, int threads) const;
-  /// The same for the location of one row.
-  void check(std::size_t row, const Location& location) const;
+  /// The same for one row.
+  void check(const LocationBatch& at, std::size_t row) const;
 
   PtexFaces ptex;
   std::map<int, std::string> refused;  ///< faces of the control mesh without a surface -> reason

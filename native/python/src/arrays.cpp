@@ -85,6 +85,9 @@ std::string shapeText(const py::array& array) {
 }
 
 Integers integers(const py::handle& object, const char* name, RaiseText raise) {
+  if (isPlain<std::int64_t>(object)) {
+    return py::reinterpret_borrow<Integers>(object);
+  }
   py::array array = viewed(object, name);
   if (array.dtype().kind() == 'f' && array.size() > 0 && !py::isinstance<py::array>(object)) {
     // Floats, or integers of which some need more than 63 bits.
@@ -125,6 +128,9 @@ Integers integers(const py::handle& object, const char* name, RaiseText raise) {
 }
 
 Doubles doubles(const py::handle& object, const char* name) {
+  if (isPlain<double>(object)) {
+    return py::reinterpret_borrow<Doubles>(object);
+  }
   const py::array array = viewed(object, name);
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b' && kind != 'O') {
@@ -208,6 +214,10 @@ void Output::put(std::size_t offset, const double* from, std::size_t count) {
 }
 
 py::dtype floatType(const py::object& dtype) {
+  static const py::handle usual = py::dtype::of<double>().release();  // for good
+  if (dtype.is(usual)) {
+    return py::reinterpret_borrow<py::dtype>(dtype);
+  }
   const py::dtype result = py::dtype::from_args(dtype);
   if (result.kind() != 'f' || (result.itemsize() != 8 && result.itemsize() != 4) ||
       !py::cast<bool>(result.attr("isnative"))) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,21 @@ namespace py = pybind11;
 using Doubles = py::array_t<double, py::array::c_style>;
 using Integers = py::array_t<std::int64_t, py::array::c_style>;
 using Floats = py::array_t<float, py::array::c_style>;
+
+/// Whether an object is an array that can be read as it is: contiguous and aligned numbers of this
+/// type in the machine's byte order, and numpy's own class, because another one (a masked array)
+/// may mean more than its numbers. This takes a few nanoseconds.
+template <typename T>
+bool isPlain(const py::handle& object) {
+  const auto& api = py::detail::npy_api::get();
+  if (Py_TYPE(object.ptr()) != api.PyArray_Type_ ||
+      !py::detail::check_flags(object.ptr(),
+                               py::array::c_style | py::detail::npy_api::NPY_ARRAY_ALIGNED_)) {
+    return false;
+  }
+  return api.PyArray_EquivTypes_(py::detail::array_proxy(object.ptr())->descr,
+                                 py::dtype::of<T>().ptr());
+}
 
 /// The shape of an array as text, as in "(4, 2)".
 std::string shapeText(const py::array& array);
@@ -150,6 +166,12 @@ class Output {
   void put(std::size_t offset, const double* from, std::size_t count);
   py::object object() const { return array_ ? py::object(*array_) : py::none(); }
   bool wanted() const { return array_.has_value(); }
+  /// The numbers of the array; null without one, or if it has another type.
+  template <typename Real>
+  Real* numbers() const {
+    return single_ == std::is_same_v<Real, float> ? static_cast<Real*>(data_) : nullptr;
+  }
+  bool isSingle() const { return single_; }
 
  private:
   std::optional<py::array> array_;

@@ -7,17 +7,38 @@
 #include "limitsurf/error.h"
 
 namespace limitsurf::python {
+namespace {
 
-Locations locationsOf(int face_count, const py::object& face, const py::object& uv, FaceCheck check,
-                      const char* face_name, const char* uv_name) {
-  Doubles uvs = doubles(uv, uv_name);
+/// Throws LocationError unless there is one face, or one for each row of uv.
+void checkShapes(const py::array& faces, const char* face_name, Doubles& uvs, const char* uv_name) {
   requireRows<LocationError>(uvs, uv_name, 2);
-  const Integers faces = integers<LocationError>(face, face_name);
-  const std::size_t rows = static_cast<std::size_t>(uvs.shape(0));
   if (faces.ndim() > 1 || (faces.ndim() == 1 && faces.shape(0) != uvs.shape(0))) {
     throw LocationError(std::string(face_name) + " has shape " + shapeText(faces) + " and " +
                         uv_name + " " + shapeText(uvs) + "; expected one face, or (n,) and (n, 2)");
   }
+}
+
+}  // namespace
+
+LocationArrays::LocationArrays(const py::object& face, const py::object& uv)
+    : uv_(doubles(uv, "uv")) {
+  const bool is_narrow = isPlain<std::int32_t>(face);
+  face_ = is_narrow ? py::reinterpret_borrow<py::array>(face)
+                    : py::array(integers<LocationError>(face, "face"));
+  checkShapes(face_, "face", uv_, "uv");
+  const auto count = static_cast<std::size_t>(face_.size());
+  const Span<double> parameters(uv_.data(), static_cast<std::size_t>(uv_.size()));
+  batch_ = is_narrow
+               ? LocationBatch({static_cast<const std::int32_t*>(face_.data()), count}, parameters)
+               : LocationBatch({static_cast<const std::int64_t*>(face_.data()), count}, parameters);
+}
+
+Locations locationsOf(int face_count, const py::object& face, const py::object& uv, FaceCheck check,
+                      const char* face_name, const char* uv_name) {
+  Doubles uvs = doubles(uv, uv_name);
+  const Integers faces = integers<LocationError>(face, face_name);
+  checkShapes(faces, face_name, uvs, uv_name);
+  const std::size_t rows = static_cast<std::size_t>(uvs.shape(0));
   const std::int64_t* ids = faces.data();
   const double* parameters = uvs.data();
   const bool one = faces.ndim() == 0;
@@ -61,6 +82,10 @@ py::object locations(const Locations& at) {
   return result("Locations")(face, uv);
 }
 
-py::object result(const char* name) { return py::module_::import("limitsurf._results").attr(name); }
+py::object result(const char* name) {
+  static const py::handle results =
+      py::module_::import("limitsurf._results").release();  // for good
+  return results.attr(name);
+}
 
 }  // namespace limitsurf::python

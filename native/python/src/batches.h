@@ -29,6 +29,22 @@ Locations locationsOf(int face_count, const py::object& face, const py::object& 
                       FaceCheck check = FaceCheck::range, const char* face_name = "face",
                       const char* uv_name = "uv");
 
+/// A batch as it lies in numpy's arrays, which this keeps: contiguous float64, and int32 or int64,
+/// are read in place. Python's threads may change them meanwhile, so it is for calls that read each
+/// location once and look at what they have read. Throws LocationError for arrays of other shapes.
+class LocationArrays {
+ public:
+  LocationArrays(const py::object& face, const py::object& uv);
+  std::size_t size() const { return batch_.size(); }
+  /// What has not been checked.
+  const LocationBatch& batch() const { return batch_; }
+
+ private:
+  py::array face_;
+  Doubles uv_;
+  LocationBatch batch_;
+};
+
 /// The rows of a batch on a surface, or on its data. They are checked once, as a whole, so that
 /// errors name rows of the batch, and parts of it need not be checked again.
 class CheckedLocations {

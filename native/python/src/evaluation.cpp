@@ -13,27 +13,37 @@
 namespace limitsurf::python {
 namespace {
 
+/// Writes an evaluation to arrays of one type.
+template <typename Real>
+void evaluateInto(const LimitSurface& surface, const LocationBatch& at, Derivatives derivatives,
+                  const Output outputs[7], int threads) {
+  using Rows = typename EvaluationArrays<Real>::Rows;
+  const auto rows = [&](int i) {
+    return Rows(outputs[i].numbers<Real>(), outputs[i].wanted() ? Eigen::Index(at.size()) : 0, 3);
+  };
+  surface.evaluate<Real>(at, derivatives,
+                         {rows(0), rows(1), rows(2), rows(4), rows(5), rows(6), rows(3)}, threads);
+}
+
 py::object evaluate(const SharedSurface& shared, const py::object& face, const py::object& uv,
                     int derivatives, int threads, const py::object& dtype) {
   checkDerivatives(derivatives, 2);
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
-  const auto rows = static_cast<py::ssize_t>(at.size());
+  const LocationArrays at(face, uv);
   // position, du, dv, normal, duu, duv, dvv
   Output outputs[7];
   const int wanted = derivatives == 0 ? 1 : derivatives == 1 ? 4 : 7;
   for (int i = 0; i < wanted; ++i) {
-    outputs[i] = Output(type, {rows, 3});
+    outputs[i] = Output(type, {static_cast<py::ssize_t>(at.size()), 3});
   }
-  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
-    const Evaluation e = shared.surface().evaluate(chunk, static_cast<Derivatives>(derivatives),
-                                                   derivatives > 0, threads);
-    const Points* values[7] = {&e.position, &e.du, &e.dv, &e.normal, &e.duu, &e.duv, &e.dvv};
-    for (int i = 0; i < wanted; ++i) {
-      outputs[i].put(3 * begin, values[i]->data(), 3 * chunk.size());
-    }
-  });
+  {
+    const py::gil_scoped_release release;
+    const CallLock::Hold hold(shared.lock);
+    const InterruptionPoint point = interruptible();
+    const auto into = outputs[0].isSingle() ? evaluateInto<float> : evaluateInto<double>;
+    into(shared.surface(), at.batch(), static_cast<Derivatives>(derivatives), outputs, threads);
+  }
   return result("Evaluation")(outputs[0].object(), outputs[1].object(), outputs[2].object(),
                               outputs[4].object(), outputs[5].object(), outputs[6].object(),
                               outputs[3].object());

@@ -1,4 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
+import contextlib
+import threading
+import tracemalloc
+
 import limitsurf as ls
 import numpy as np
 import pytest
@@ -32,6 +36,42 @@ def test_gives_what_was_asked_for(surface, anywhere, derivatives):
             assert values.flags.writeable
         else:
             assert values is None
+
+
+@pytest.mark.parametrize("dtype", [np.int32, np.int64])
+def test_contiguous_locations_are_not_copied(dtype):
+    rows = 100_000
+    face, uv = np.zeros(rows, dtype), np.full((rows, 2), 0.5)
+    tracemalloc.start()
+    try:
+        SURFACE.evaluate(face, uv, 1)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    results = 4 * 3 * 8 * rows
+    assert results <= peak <= results + 10_000
+
+
+def test_locations_that_change_meanwhile_break_nothing():
+    face, uv = np.zeros(20_000, int), np.full((20_000, 2), 0.5)
+    stop = threading.Event()
+
+    def change():
+        while not stop.is_set():
+            face[::7] = 2**31 - 5
+            uv[::5] = np.nan
+            face[::7] = uv[::5] = 0
+
+    worker = threading.Thread(target=change)
+    worker.start()
+    try:
+        for _ in range(200):
+            with contextlib.suppress(ls.LocationError):
+                SURFACE.evaluate(face, uv, 1)
+    finally:
+        stop.set()
+        worker.join()
+    assert np.isfinite(SURFACE.evaluate(face, uv, 1).position).all()
 
 
 @pytest.mark.parametrize("derivatives", [-1, 3, 100])

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "limitsurf/error.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/tile_weights.h"
 #include "limitsurf/surface/vertex_approach.h"
@@ -15,7 +16,7 @@ namespace {
 
 static_assert(sizeof(Padded) == 4 * sizeof(double));
 const double (*numbersOf(const Padded* points))[4] {
-  return reinterpret_cast<const double(*)[4]>(points);
+  return reinterpret_cast<const double (*)[4]>(points);
 }
 
 void copy(const Padded& from, double to[3]) {
@@ -52,35 +53,41 @@ void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& ord
     const int face = at[order[begin]].face;
     const std::size_t stop = std::min<std::size_t>(end, begin + kMostRows);
     unsigned count = 0;
+    bool good = true;
     do {
       const std::size_t row = order[begin];
-      const Location& location = at[row];
+      const Location location = at[row];
       if (location.face != face) {
         break;
       }
+      good &= (location.u >= 0) & (location.u <= 1) & (location.v >= 0) & (location.v <= 1);
       u[count] = location.u;
       v[count] = location.v;
       rows[count] = row;
       ++count;
     } while (++begin < stop);
+    if (!good || static_cast<std::size_t>(face) >= table_.faces.size() ||
+        table_.faces[face].kind == TileRef::kNone) {
+      throw LocationError("the locations were changed while they were evaluated");
+    }
     const TileRef tile = table_.faces[face];
     if (tile.kind == TileRef::kBSpline && !(table_.bsplines[tile.index].crease > 0)) {
       evaluatePatch({tile, u[0], v[0], 0, 0}, u, v, rows, count);
     } else {
-      evaluateFace(at, rows, count);
+      evaluateFace(face, u, v, rows, count);
     }
   }
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluateFace(const LocationBatch& at, const std::size_t* rows,
-                                        unsigned count) {
+void BatchEvaluator<Real>::evaluateFace(int face, const double* u, const double* v,
+                                        const std::size_t* rows, unsigned count) {
   if (count == 1) {
-    const TileLocation place = alone_.locate(at[rows[0]]);
-    double u, v;
+    const TileLocation place = alone_.locate({face, u[0], v[0]});
+    double patch_u, patch_v;
     std::uint64_t key;
-    if (onPatch(place, u, v, key)) {
-      evaluatePatch(place, &u, &v, rows, 1);
+    if (onPatch(place, patch_u, patch_v, key)) {
+      evaluatePatch(place, &patch_u, &patch_v, rows, 1);
     } else {
       evaluateAlone(place, rows[0]);
     }
@@ -93,7 +100,7 @@ void BatchEvaluator<Real>::evaluateFace(const LocationBatch& at, const std::size
   v_.resize(count);
   patch_of_.resize(count);
   for (unsigned i = 0; i < count; ++i) {
-    const TileLocation place = alone_.locate(at[rows[i]]);
+    const TileLocation place = alone_.locate({face, u[i], v[i]});
     std::uint64_t key;
     if (onPatch(place, u_[i], v_[i], key)) {
       patch_of_[i] = patchOf(key, place);
@@ -121,8 +128,7 @@ void BatchEvaluator<Real>::evaluateFace(const LocationBatch& at, const std::size
   }
   for (const Patch& patch : patches_) {
     const unsigned from = patch.first - patch.rows;
-    evaluatePatch(patch.place, &sorted_u_[from], &sorted_v_[from], &sorted_rows_[from],
-                  patch.rows);
+    evaluatePatch(patch.place, &sorted_u_[from], &sorted_v_[from], &sorted_rows_[from], patch.rows);
   }
 }
 
@@ -241,8 +247,8 @@ void BatchEvaluator<Real>::setRing(const TileLocation& place, PatchRun& run) {
     const std::uint64_t key = ringKey(place, quarter.steps);
     if (key != deep_key_) {
       table_.rings[tile.ring].basis->controlGrid(tile.face, quarter.steps, tile.ring_steps,
-                                                      ring.coefficients, pose_.ringTile(index).outer,
-                                                      deep_);
+                                                 ring.coefficients, pose_.ringTile(index).outer,
+                                                 deep_);
       deep_key_ = key;
     }
     grid = deep_;

@@ -22,9 +22,10 @@ class BatchEvaluator {
   BatchEvaluator(const TileTable& table, const Pose& pose, int order,
                  const PatchResults<Real>& results);
 
-  /// The rows at places `begin` to `end` - 1 of an order, of a batch that has been checked.
-  void evaluate(const LocationBatch& at, const RowOrder& order, std::size_t begin,
-                std::size_t end);
+  /// The rows at places `begin` to `end` - 1 of an order, of a batch that has been checked. Each
+  /// location is read once and looked at again, because an array of another program may be changed
+  /// by another of its threads; throws LocationError if that made it invalid.
+  void evaluate(const LocationBatch& at, const RowOrder& order, std::size_t begin, std::size_t end);
 
  private:
   /// At most so many rows are put in order at a time.
@@ -40,7 +41,8 @@ class BatchEvaluator {
   };
 
   /// The rows of one face that splits into tiles, or is a ring tile.
-  void evaluateFace(const LocationBatch& at, const std::size_t* rows, unsigned count);
+  void evaluateFace(int face, const double* u, const double* v, const std::size_t* rows,
+                    unsigned count);
   void evaluatePatch(const TileLocation& place, const double* u, const double* v,
                      const std::size_t* rows, unsigned count);
   void setBSpline(const TileLocation& place, PatchRun& run);
@@ -68,9 +70,9 @@ class BatchEvaluator {
   // Of the rows of one face.
   std::vector<Patch> patches_;
   static constexpr unsigned kSlots = 2 * kMostRows;
-  std::vector<unsigned> slots_;        // a hash table of numbers in patches_, plus 1
-  std::vector<unsigned> patch_of_;     // by row
-  std::vector<double> u_, v_;          // by row
+  std::vector<unsigned> slots_;     // a hash table of numbers in patches_, plus 1
+  std::vector<unsigned> patch_of_;  // by row
+  std::vector<double> u_, v_;       // by row
   std::vector<double> sorted_u_, sorted_v_;
   std::vector<std::size_t> sorted_rows_;
 };

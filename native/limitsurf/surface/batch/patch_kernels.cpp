@@ -57,18 +57,19 @@ inline Lanes squareRoot(const Lanes& a) {
 template <typename Lanes>
 inline void interleave(const Lanes xyz[3], Lanes out[3]) {
   const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
-  out[0].numbers = __builtin_shufflevector(
-      __builtin_shufflevector(x, y, 0, 4, 0, 1), z, 0, 1, 4, 3);
-  out[1].numbers = __builtin_shufflevector(
-      __builtin_shufflevector(x, y, 5, 0, 2, 6), z, 0, 5, 2, 3);
-  out[2].numbers = __builtin_shufflevector(
-      __builtin_shufflevector(x, y, 0, 3, 7, 0), z, 6, 1, 2, 7);
+  out[0].numbers =
+      __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 4, 0, 1), z, 0, 1, 4, 3);
+  out[1].numbers =
+      __builtin_shufflevector(__builtin_shufflevector(x, y, 5, 0, 2, 6), z, 0, 5, 2, 3);
+  out[2].numbers =
+      __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 3, 7, 0), z, 6, 1, 2, 7);
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx2
 #if defined(__clang__)
 #pragma clang attribute pop
-#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl"))), apply_to = function)
+#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl"))), \
+                             apply_to = function)
 #else
 #pragma GCC pop_options
 #pragma GCC push_options
@@ -86,12 +87,12 @@ inline Lanes squareRoot(const Lanes& a) {
 template <typename Lanes>
 inline void interleave(const Lanes xyz[3], Lanes out[3]) {
   const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
-  out[0].numbers = __builtin_shufflevector(
-      __builtin_shufflevector(x, y, 0, 8, 0, 1, 9, 0, 2, 10), z, 0, 1, 8, 3, 4, 9, 6, 7);
-  out[1].numbers = __builtin_shufflevector(
-      __builtin_shufflevector(x, y, 0, 3, 11, 0, 4, 12, 0, 5), z, 10, 1, 2, 11, 4, 5, 12, 7);
-  out[2].numbers = __builtin_shufflevector(
-      __builtin_shufflevector(x, y, 13, 0, 6, 14, 0, 7, 15, 0), z, 0, 13, 2, 3, 14, 5, 6, 15);
+  out[0].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 8, 0, 1, 9, 0, 2, 10),
+                                           z, 0, 1, 8, 3, 4, 9, 6, 7);
+  out[1].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 3, 11, 0, 4, 12, 0, 5),
+                                           z, 10, 1, 2, 11, 4, 5, 12, 7);
+  out[2].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 13, 0, 6, 14, 0, 7, 15, 0),
+                                           z, 0, 13, 2, 3, 14, 5, 6, 15);
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx512

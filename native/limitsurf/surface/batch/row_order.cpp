@@ -19,7 +19,7 @@ constexpr std::size_t kRowsPerPart = std::size_t{1} << 16, kMostParts = 8;
 bool isScattered(const LocationBatch& at) {
   std::size_t changes = 0;
   for (std::size_t row = 1; row < at.size(); ++row) {
-    changes += at[row].face != at[row - 1].face ? 1 : 0;
+    changes += at.face(row) != at.face(row - 1) ? 1 : 0;
   }
   return changes >= at.size() / 2;
 }
@@ -32,6 +32,12 @@ RowOrder::RowOrder(const LocationBatch& at, int faces, int threads) {
       at.size() > std::numeric_limits<std::uint32_t>::max() || !isScattered(at)) {
     return;
   }
+  // Faces may have been changed since they were checked, and between the two passes; the evaluator
+  // finds that out, and nothing may break before.
+  const auto faceOf = [&](std::size_t row) {
+    const auto face = static_cast<std::size_t>(at.face(row));
+    return face < face_count ? face : 0;
+  };
   // A counting sort. Each part of the rows has counts of its own, which become the places where
   // its rows of each face begin.
   const std::size_t parts =
@@ -48,7 +54,7 @@ RowOrder::RowOrder(const LocationBatch& at, int faces, int threads) {
   forEachPart([&](std::vector<std::uint32_t>& count, std::size_t begin, std::size_t end) {
     count.assign(face_count, 0);
     for (std::size_t row = begin; row < end; ++row) {
-      ++count[static_cast<std::size_t>(at[row].face)];
+      ++count[faceOf(row)];
     }
   });
   std::uint32_t next = 0;
@@ -60,7 +66,8 @@ RowOrder::RowOrder(const LocationBatch& at, int faces, int threads) {
   rows_.resize(at.size());
   forEachPart([&](std::vector<std::uint32_t>& place, std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
-      rows_[place[static_cast<std::size_t>(at[row].face)]++] = static_cast<std::uint32_t>(row);
+      const std::uint32_t to = place[faceOf(row)]++;
+      rows_[to < rows_.size() ? to : 0] = static_cast<std::uint32_t>(row);
     }
   });
 }

@@ -24,8 +24,8 @@ struct UnitNormal {
   Number lengths;  ///< the product of the squared lengths of du and dv
 };
 
-/// Whether neither du x dv nor its square has overflowed or underflowed, and the squared sine of the
-/// angle between du and dv is `lowest_sine_square` at least.
+/// Whether neither du x dv nor its square has overflowed or underflowed, and the squared sine of
+/// the angle between du and dv is `lowest_sine_square` at least.
 inline bool normalKeepsDigits(double square, double lengths, double lowest_sine_square) {
   return square >= 0x1p-900 && square <= 0x1p900 && square >= lowest_sine_square * lengths;
 }

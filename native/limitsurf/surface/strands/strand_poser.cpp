@@ -257,7 +257,7 @@ void StrandPoser::Data::bind(Span<Location> at, const RowsIn<FloatPoints>& rest_
     (isBound(row) ? rows : unbound).push_back(static_cast<int>(row));
   }
   for (const int row : rows) {
-    surface.tiles->check(static_cast<std::size_t>(row), at[static_cast<std::size_t>(row)]);
+    surface.tiles->check(at, static_cast<std::size_t>(row));
   }
   for (const int row : rows) {
     checkFinite("rest root", static_cast<std::size_t>(row), rowOf(rest_roots, row), 3);

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// LimitSurface::evaluate().
+#include <stdexcept>
+#include <string>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/surface/batch/batch_evaluator.h"
+#include "limitsurf/surface/limit_surface_data.h"
+
+namespace limitsurf {
+namespace {
+
+/// The batch has been checked, and the results have room for it.
+template <typename Real>
+void evaluateInto(const TileTable& table, const Pose& pose, const LocationBatch& at,
+                  Derivatives derivatives, const PatchResults<Real>& results, int threads) {
+  const RowOrder order(at, static_cast<int>(table.faces.size()), threads);
+  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    BatchEvaluator<Real>(table, pose, static_cast<int>(derivatives), results)
+        .evaluate(at, order, begin, end);
+  });
+}
+
+}  // namespace
+
+Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives, bool normals,
+                                  int threads) const {
+  data_->check(at, threads);
+  const auto rows = static_cast<Eigen::Index>(at.size());
+  Evaluation out;
+  out.position.resize(rows, 3);
+  if (derivatives >= Derivatives::first) {
+    out.du.resize(rows, 3);
+    out.dv.resize(rows, 3);
+    if (normals) {
+      out.normal.resize(rows, 3);
+    }
+  }
+  if (derivatives == Derivatives::second) {
+    out.duu.resize(rows, 3);
+    out.duv.resize(rows, 3);
+    out.dvv.resize(rows, 3);
+  }
+  const PatchResults<double> results{out.position.data(), out.du.data(),  out.dv.data(),
+                                     out.duu.data(),      out.duv.data(), out.dvv.data(),
+                                     out.normal.data()};
+  evaluateInto(data_->table, data_->pose, at, derivatives, results, threads);
+  return out;
+}
+
+template <typename Real>
+void LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives,
+                            EvaluationArrays<Real> results, int threads) const {
+  data_->check(at, threads);
+  const auto of = [&](const char* name, typename EvaluationArrays<Real>::Rows& array, bool wanted) {
+    if (!wanted) {
+      return static_cast<Real*>(nullptr);
+    }
+    if (array.rows() != static_cast<Eigen::Index>(at.size())) {
+      throw std::invalid_argument(std::string(name) + " has " + std::to_string(array.rows()) +
+                                  " rows; expected " + std::to_string(at.size()));
+    }
+    return array.data();
+  };
+  const bool first = derivatives >= Derivatives::first, second = derivatives == Derivatives::second;
+  const PatchResults<Real> into{of("position", results.position, true),
+                                of("du", results.du, first),
+                                of("dv", results.dv, first),
+                                of("duu", results.duu, second),
+                                of("duv", results.duv, second),
+                                of("dvv", results.dvv, second),
+                                of("normal", results.normal, first && results.normal.rows() > 0)};
+  evaluateInto(data_->table, data_->pose, at, derivatives, into, threads);
+}
+
+template void LimitSurface::evaluate(const LocationBatch&, Derivatives, EvaluationArrays<double>,
+                                     int) const;
+template void LimitSurface::evaluate(const LocationBatch&, Derivatives, EvaluationArrays<float>,
+                                     int) const;
+
+}  // namespace limitsurf
