@@ -11,29 +11,24 @@
 
 namespace limitsurf {
 
-TileLocation TileEvaluator::locate(const Location& at) const {
-  TileLocation result;
-  result.tile = table_.faces[at.face];
-  result.u = at.u;
-  result.v = at.v;
-  result.turns = result.depth = 0;
-  while (result.tile.kind == TileRef::kSplit) {
-    const bool right = result.u >= 0.5, top = result.v >= 0.5;
+TileLocation TileEvaluator::locateBelow(TileLocation at) const {
+  while (at.tile.kind == TileRef::kSplit) {
+    const bool right = at.u >= 0.5, top = at.v >= 0.5;
     const int child = top ? (right ? 2 : 3) : (right ? 1 : 0);
-    result.tile = table_.splits[result.tile.index][child];
-    turnParameters(child, result.u, result.v);
-    result.u *= 2;
-    result.v *= 2;
-    result.turns += child;
-    ++result.depth;
+    at.tile = table_.splits[at.tile.index][child];
+    turnParameters(child, at.u, at.v);
+    at.u *= 2;
+    at.v *= 2;
+    at.turns += child;
+    ++at.depth;
   }
-  if (result.tile.kind == TileRef::kRing) {
-    const int corner = table_.ring_tiles[result.tile.index].corner;
-    turnParameters(corner, result.u, result.v);
-    result.turns += corner;
+  if (at.tile.kind == TileRef::kRing) {
+    const int corner = table_.ring_tiles[at.tile.index].corner;
+    turnParameters(corner, at.u, at.v);
+    at.turns += corner;
   }
-  result.turns &= 3;
-  return result;
+  at.turns &= 3;
+  return at;
 }
 
 template <int Order>

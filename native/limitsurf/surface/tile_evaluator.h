@@ -26,7 +26,11 @@ class TileEvaluator {
  public:
   TileEvaluator(const TileTable& table, const Pose& pose) : table_(table), pose_(pose) {}
 
-  TileLocation locate(const Location& at) const;
+  TileLocation locate(const Location& at) const {
+    return locateBelow({table_.faces[at.face], at.u, at.v, 0, 0});
+  }
+  /// The same for a location whose tile may split further.
+  TileLocation locateBelow(TileLocation at) const;
 
   /// At an extraordinary vertex derivatives without a limit are NaN.
   template <int Order>
@@ -42,8 +46,9 @@ class TileEvaluator {
   /// product loses all its digits. Where the squared sine of their angle is below
   /// lowestSineSquare() the products of different modes are added up instead.
   Vector3 normalDirection(const TileLocation& at, const Jet& jet);
-  static double lowestSineSquare(const TileLocation& at) {
-    return needsModeProducts(at) ? kLowestSineSquare : 0;
+  /// For locations that lie in a quarter of a ring tile after so many steps.
+  static double lowestSineSquare(int steps) {
+    return steps > kStepsToParallel ? kLowestSineSquare : 0;
   }
 
   /// The forms, for curvature, where the jet was evaluated, with second derivatives.

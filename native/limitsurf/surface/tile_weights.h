@@ -41,10 +41,7 @@ struct Quarter {
   Quarter(double u_, double v_) {
     const double larger = std::max(u_, v_);
     if (larger >= kEasyExponent) {
-      std::uint64_t bits;
-      std::memcpy(&bits, &larger, sizeof bits);
-      steps =
-          std::max(1, 1023 - static_cast<int>(bits >> 52));  // larger in [2^-steps, 2^(1 - steps))
+      steps = stepsTo(larger);
       const double scale = powerOfTwo(steps);
       u = u_ * scale;
       v = v_ * scale;
@@ -59,6 +56,14 @@ struct Quarter {
     b = v >= 1 ? 1 : 0;
     u -= a;
     v -= b;
+  }
+
+  /// The steps for the larger one of (u, v). Where that is 0 or below 2^-1000 the result is only
+  /// known to be 1000 or more.
+  static int stepsTo(double larger) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &larger, sizeof bits);
+    return std::max(1, 1023 - static_cast<int>(bits >> 52));  // larger in [2^-steps, 2^(1 - steps))
   }
 
   int steps;    ///< >= 1

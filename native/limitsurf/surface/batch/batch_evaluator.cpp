@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "limitsurf/error.h"
 #include "limitsurf/surface/differential.h"
@@ -23,12 +24,6 @@ void copy(const Padded& from, double to[3]) {
   to[0] = from[0];
   to[1] = from[1];
   to[2] = from[2];
-}
-
-/// A ring tile, and by how many steps the quarter of a location lies below it.
-std::uint64_t ringKey(const TileLocation& place, int steps) {
-  return (std::uint64_t{place.tile.index} << 16 | static_cast<std::uint64_t>(steps) << 2) << 2 |
-         TileRef::kRing;
 }
 
 }  // namespace
@@ -70,115 +65,165 @@ void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& ord
         table_.faces[face].kind == TileRef::kNone) {
       throw LocationError("the locations were changed while they were evaluated");
     }
-    const TileRef tile = table_.faces[face];
-    if (tile.kind == TileRef::kBSpline && !(table_.bsplines[tile.index].crease > 0)) {
-      evaluatePatch({tile, u[0], v[0], 0, 0}, u, v, rows, count);
-    } else {
-      evaluateFace(face, u, v, rows, count);
-    }
+    evaluateTile(table_.faces[face], 0, 0, {u, v, rows, count});
   }
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluateFace(int face, const double* u, const double* v,
-                                        const std::size_t* rows, unsigned count) {
-  if (count == 1) {
-    const TileLocation place = alone_.locate({face, u[0], v[0]});
-    double patch_u, patch_v;
-    std::uint64_t key;
-    if (onPatch(place, patch_u, patch_v, key)) {
-      evaluatePatch(place, &patch_u, &patch_v, rows, 1);
-    } else {
-      evaluateAlone(place, rows[0]);
+void BatchEvaluator<Real>::evaluateTile(TileRef tile, int turns, int depth, const Rows& rows) {
+  constexpr unsigned kFewestRows = 3;  // fewer are located faster one by one
+  if (tile.kind == TileRef::kBSpline && !hasCrease(tile)) {
+    evaluatePatch({tile, turns & 3, depth, 0, 0, 0}, rows.u, rows.v, rows.rows, rows.count);
+  } else if (tile.kind == TileRef::kBSpline || rows.count < kFewestRows) {
+    for (unsigned i = 0; i < rows.count; ++i) {
+      evaluateOne(alone_.locateBelow({tile, rows.u[i], rows.v[i], turns, depth}), rows.rows[i]);
     }
-    return;
-  }
-  constexpr unsigned kNone = std::numeric_limits<unsigned>::max();
-  patches_.clear();
-  slots_.assign(kSlots, 0);
-  u_.resize(count);
-  v_.resize(count);
-  patch_of_.resize(count);
-  for (unsigned i = 0; i < count; ++i) {
-    const TileLocation place = alone_.locate({face, u[i], v[i]});
-    std::uint64_t key;
-    if (onPatch(place, u_[i], v_[i], key)) {
-      patch_of_[i] = patchOf(key, place);
-      ++patches_[patch_of_[i]].rows;
-    } else {
-      patch_of_[i] = kNone;
-      evaluateAlone(place, rows[i]);
-    }
-  }
-  unsigned first = 0;
-  for (Patch& patch : patches_) {
-    patch.first = first;
-    first += patch.rows;
-  }
-  sorted_u_.resize(count);
-  sorted_v_.resize(count);
-  sorted_rows_.resize(count);
-  for (unsigned i = 0; i < count; ++i) {
-    if (patch_of_[i] != kNone) {
-      const unsigned to = patches_[patch_of_[i]].first++;
-      sorted_u_[to] = u_[i];
-      sorted_v_[to] = v_[i];
-      sorted_rows_[to] = rows[i];
-    }
-  }
-  for (const Patch& patch : patches_) {
-    const unsigned from = patch.first - patch.rows;
-    evaluatePatch(patch.place, &sorted_u_[from], &sorted_v_[from], &sorted_rows_[from], patch.rows);
-  }
-}
-
-template <typename Real>
-bool BatchEvaluator<Real>::onPatch(const TileLocation& place, double& u, double& v,
-                                   std::uint64_t& key) const {
-  if (place.tile.kind == TileRef::kBSpline) {
-    u = place.u;
-    v = place.v;
-    key = std::uint64_t{place.tile.index} << 2 | TileRef::kBSpline;
-    return !(table_.bsplines[place.tile.index].crease > 0);
-  }
-  if (place.atVertex()) {
-    return false;
-  }
-  const RingTile& tile = table_.ring_tiles[place.tile.index];
-  const Quarter quarter(place.u, place.v);
-  u = quarter.u;
-  v = quarter.v;
-  key = ringKey(place, quarter.steps) | static_cast<std::uint64_t>(quarter.a + 2 * quarter.b) << 2;
-  return quarter.steps <= pose_.gridSteps(tile) ||
-         !TileEvaluator::addsModesAt(*table_.rings[tile.ring].basis, order_);
-}
-
-template <typename Real>
-unsigned BatchEvaluator<Real>::patchOf(std::uint64_t key, const TileLocation& place) {
-  constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15;  // Knuth's multiplicative hashing
-  unsigned slot = static_cast<unsigned>(key * kGoldenRatio >> 32) % kSlots;
-  while (slots_[slot] != 0) {
-    const unsigned patch = slots_[slot] - 1;
-    if (patches_[patch].key == key) {
-      return patch;
-    }
-    slot = (slot + 1) % kSlots;
-  }
-  patches_.push_back({key, place, 0, 0});
-  slots_[slot] = static_cast<unsigned>(patches_.size());
-  return slots_[slot] - 1;
-}
-
-template <typename Real>
-void BatchEvaluator<Real>::evaluatePatch(const TileLocation& place, const double* u,
-                                         const double* v, const std::size_t* rows, unsigned count) {
-  PatchRun run;
-  if (place.tile.kind == TileRef::kBSpline) {
-    setBSpline(place, run);
+  } else if (tile.kind == TileRef::kSplit) {
+    evaluateSplit(tile, turns, depth, rows);
   } else {
-    setRing(place, run);
+    evaluateRingTile(tile, turns, depth, rows);
   }
-  run.turns = place.turns;
+}
+
+template <typename Real>
+typename BatchEvaluator<Real>::Level& BatchEvaluator<Real>::level(int depth, unsigned rows) {
+  while (static_cast<int>(levels_.size()) <= depth) {
+    levels_.emplace_back();
+  }
+  Level& level = levels_[depth];
+  if (level.part.size() < rows) {
+    level.u.resize(rows);
+    level.v.resize(rows);
+    level.rows.resize(rows);
+    level.part.resize(rows);
+  }
+  return level;
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateSplit(TileRef tile, int turns, int depth, const Rows& rows) {
+  Level& parts = level(depth, rows.count);
+  unsigned count[4] = {};
+  for (unsigned i = 0; i < rows.count; ++i) {
+    const unsigned right = rows.u[i] >= 0.5, top = rows.v[i] >= 0.5;
+    parts.part[i] = static_cast<std::uint8_t>(right ^ (3 * top));  // anticlockwise
+    ++count[parts.part[i]];
+  }
+  unsigned end[4] = {0, count[0], count[0] + count[1], count[0] + count[1] + count[2]};
+  for (unsigned i = 0; i < rows.count; ++i) {
+    const unsigned to = end[parts.part[i]]++;
+    parts.u[to] = rows.u[i];
+    parts.v[to] = rows.v[i];
+    parts.rows[to] = rows.rows[i];
+  }
+  for (int child = 0; child < 4; ++child) {
+    const unsigned first = end[child] - count[child];
+    double *const u = &parts.u[first], *const v = &parts.v[first];
+    for (unsigned i = 0; i < count[child]; ++i) {
+      turnParameters(child, u[i], v[i]);
+      u[i] *= 2;
+      v[i] *= 2;
+    }
+    if (count[child] > 0) {
+      evaluateTile(table_.splits[tile.index][child], turns + child, depth + 1,
+                   {u, v, &parts.rows[first], count[child]});
+    }
+  }
+}
+
+template <typename Real>
+int BatchEvaluator<Real>::patchSteps(const RingTile& tile) const {
+  return TileEvaluator::addsModesAt(*table_.rings[tile.ring].basis, order_)
+             ? std::min(kMostSteps, pose_.gridSteps(tile))
+             : kMostSteps;
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth, const Rows& rows) {
+  const RingTile& ring_tile = table_.ring_tiles[tile.index];
+  const int corner = ring_tile.corner;
+  turns = (turns + corner) & 3;
+  const int most_steps = patchSteps(ring_tile);
+  // Parts are numbered 4 steps + a + 2 b; those that are deeper, 0.
+  constexpr unsigned kParts = 4 * (kMostSteps + 1);
+  static_assert(kParts <= 256);
+  Level& parts = level(depth, rows.count);
+  unsigned begin[kParts + 1] = {};
+  int deepest = 0;
+  for (unsigned i = 0; i < rows.count; ++i) {
+    turnParameters(corner, rows.u[i], rows.v[i]);
+    const double larger = std::max(rows.u[i], rows.v[i]);
+    const int steps = Quarter::stepsTo(larger);
+    const double edge = powerOfTwo(-steps);
+    const int a = rows.u[i] >= edge ? 1 : 0, b = rows.v[i] >= edge ? 2 : 0;
+    const int part = steps <= most_steps ? 4 * steps + a + b : 0;
+    parts.part[i] = static_cast<std::uint8_t>(part);
+    deepest = std::max(deepest, part);
+    ++begin[part];
+  }
+  const unsigned last = static_cast<unsigned>(deepest);
+  unsigned next = 0;
+  for (unsigned part = 0; part <= last; ++part) {
+    next += std::exchange(begin[part], next);
+  }
+  for (unsigned i = 0; i < rows.count; ++i) {
+    const unsigned to = begin[parts.part[i]]++;
+    parts.u[to] = rows.u[i];
+    parts.v[to] = rows.v[i];
+    parts.rows[to] = rows.rows[i];
+  }
+  for (unsigned i = 0; i < begin[0]; ++i) {
+    evaluateOne({tile, parts.u[i], parts.v[i], turns, depth}, parts.rows[i]);
+  }
+  for (unsigned part = 4, first = begin[0]; part <= last; first = begin[part++]) {
+    const unsigned count = begin[part] - first;
+    if (count == 0) {
+      continue;
+    }
+    const Patch patch{tile,
+                      turns,
+                      depth,
+                      static_cast<int>(part / 4),
+                      static_cast<int>(part & 1),
+                      static_cast<int>(part >> 1 & 1)};
+    double *const u = &parts.u[first], *const v = &parts.v[first];
+    const double scale = powerOfTwo(patch.steps);
+    for (unsigned i = 0; i < count; ++i) {
+      u[i] = u[i] * scale - patch.a;
+      v[i] = v[i] * scale - patch.b;
+    }
+    evaluatePatch(patch, u, v, &parts.rows[first], count);
+  }
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateOne(const TileLocation& place, std::size_t row) {
+  if (place.tile.kind == TileRef::kBSpline) {
+    if (!hasCrease(place.tile)) {
+      evaluatePatch({place.tile, place.turns, place.depth, 0, 0, 0}, &place.u, &place.v, &row, 1);
+      return;
+    }
+  } else if (!place.atVertex()) {
+    const Quarter quarter(place.u, place.v);
+    if (quarter.steps <= patchSteps(table_.ring_tiles[place.tile.index])) {
+      evaluatePatch({place.tile, place.turns, place.depth, quarter.steps, quarter.a, quarter.b},
+                    &quarter.u, &quarter.v, &row, 1);
+      return;
+    }
+  }
+  evaluateAlone(place, row);
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, const double* u, const double* v,
+                                         const std::size_t* rows, unsigned count) {
+  PatchRun run;
+  if (patch.tile.kind == TileRef::kBSpline) {
+    setBSpline(patch, run);
+  } else {
+    setRing(patch, run);
+  }
+  run.turns = patch.turns;
   run.u = u;
   run.v = v;
   run.rows = rows;
@@ -187,14 +232,8 @@ void BatchEvaluator<Real>::evaluatePatch(const TileLocation& place, const double
   if (order_ >= 1 && results_.normal) {
     for (unsigned i = 0; i < count; ++i) {
       if (std::isnan(results_.normal[3 * rows[i]])) {
-        TileLocation own = place;
-        own.u = u[i];
-        own.v = v[i];
-        if (place.tile.kind == TileRef::kRing) {  // from the quarter's parameters to the tile's
-          const Quarter quarter(place.u, place.v);
-          own.u = std::ldexp(u[i] + quarter.a, -quarter.steps);
-          own.v = std::ldexp(v[i] + quarter.b, -quarter.steps);
-        }
+        const TileLocation own{patch.tile, std::ldexp(u[i] + patch.a, -patch.steps),
+                               std::ldexp(v[i] + patch.b, -patch.steps), patch.turns, patch.depth};
         Jet jet;
         alone_.evaluate<1>(own, jet);
         putNormal(own, jet, rows[i]);
@@ -204,8 +243,8 @@ void BatchEvaluator<Real>::evaluatePatch(const TileLocation& place, const double
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::setBSpline(const TileLocation& place, PatchRun& run) {
-  const BSplineTile& tile = table_.bsplines[place.tile.index];
+void BatchEvaluator<Real>::setBSpline(const Patch& patch, PatchRun& run) {
+  const BSplineTile& tile = table_.bsplines[patch.tile.index];
   if (tile.fine) {
     for (int i = 0; i < 16; ++i) {
       const Padded point = pose_.difference(tile.points[i], tile.points[5]);
@@ -223,47 +262,46 @@ void BatchEvaluator<Real>::setBSpline(const TileLocation& place, PatchRun& run) 
   copy(pose_.point(tile.points[5]), run.anchor);
   run.value_scale = 1;
   run.offset[0] = run.offset[1] = run.offset[2] = 0;
-  run.first_scale = powerOfTwo(place.depth);
-  run.second_scale = powerOfTwo(2 * place.depth);
+  run.first_scale = powerOfTwo(patch.depth);
+  run.second_scale = powerOfTwo(2 * patch.depth);
   run.lowest_sine_square = 0;
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::setRing(const TileLocation& place, PatchRun& run) {
-  const int index = static_cast<int>(place.tile.index);
+void BatchEvaluator<Real>::setRing(const Patch& patch, PatchRun& run) {
+  const int index = static_cast<int>(patch.tile.index);
   const RingTile& tile = table_.ring_tiles[index];
-  const Quarter quarter(place.u, place.v);
   const Padded* grid;
-  if (quarter.steps <= pose_.gridSteps(tile)) {
-    const Pose::Grid& kept = pose_.grid(index, quarter.steps);
+  if (patch.steps <= pose_.gridSteps(tile)) {
+    const Pose::Grid& kept = pose_.grid(index, patch.steps);
     grid = kept.points;
     copy(kept.limit(), run.anchor);
     run.value_scale = 1;
     run.offset[0] = run.offset[1] = run.offset[2] = 0;
-    run.first_scale = powerOfTwo(quarter.steps + place.depth);
-    run.second_scale = powerOfTwo(2 * (quarter.steps + place.depth));
+    run.first_scale = powerOfTwo(patch.steps + patch.depth);
+    run.second_scale = powerOfTwo(2 * (patch.steps + patch.depth));
   } else {
     const Pose::RingPose& ring = pose_.ring(tile.ring);
-    const std::uint64_t key = ringKey(place, quarter.steps);
-    if (key != deep_key_) {
-      table_.rings[tile.ring].basis->controlGrid(tile.face, quarter.steps, tile.ring_steps,
+    if (patch.tile.index != deep_tile_ || patch.steps != deep_steps_) {
+      table_.rings[tile.ring].basis->controlGrid(tile.face, patch.steps, tile.ring_steps,
                                                  ring.coefficients, pose_.ringTile(index).outer,
                                                  deep_);
-      deep_key_ = key;
+      deep_tile_ = patch.tile.index;
+      deep_steps_ = patch.steps;
     }
     grid = deep_;
     copy(ring.limit, run.anchor);
     copy(ring.constant(), run.offset);
-    run.value_scale = std::ldexp(1., 1 - quarter.steps);
-    run.first_scale = powerOfTwo(1 + place.depth);
+    run.value_scale = std::ldexp(1., 1 - patch.steps);
+    run.first_scale = powerOfTwo(1 + patch.depth);
     run.second_scale = 0;  // second derivatives are evaluated alone there
   }
-  run.points = numbersOf(grid + quarter.b * tile_grid::kSize + quarter.a);
+  run.points = numbersOf(grid + patch.b * tile_grid::kSize + patch.a);
   run.stride = tile_grid::kSize;
-  run.u_low = onRight(tile.sides) && quarter.a == 0;
-  run.v_low = onLeft(tile.sides) && quarter.b == 0;
+  run.u_low = onRight(tile.sides) && patch.a == 0;
+  run.v_low = onLeft(tile.sides) && patch.b == 0;
   run.u_high = run.v_high = false;
-  run.lowest_sine_square = TileEvaluator::lowestSineSquare(place);
+  run.lowest_sine_square = TileEvaluator::lowestSineSquare(patch.steps);
 }
 
 template <typename Real>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "limitsurf/surface/batch/patch_kernels.h"
@@ -29,31 +30,49 @@ class BatchEvaluator {
 
  private:
   /// At most so many rows are put in order at a time.
-  static constexpr unsigned kMostRows = 512;
+  static constexpr unsigned kMostRows = 2048;
+  /// Deeper quarters of a ring tile, where few samples lie, are evaluated one by one.
+  static constexpr int kMostSteps = 63;
 
   /// A bicubic patch of a tile: all of a regular tile, or what a quarter of a ring tile is after
   /// some steps.
   struct Patch {
-    std::uint64_t key;
-    TileLocation place;  // of one of its rows
-    unsigned rows;       // how many there are
-    unsigned first;      // where they begin, in order
+    TileRef tile;
+    int turns, depth;
+    int steps, a, b;  // of the quarter; 0 on a regular tile
+  };
+  /// Rows of a batch on one tile, with the tile's parameters.
+  struct Rows {
+    double *u, *v;
+    std::size_t* rows;
+    unsigned count;
+  };
+  /// Memory for rows of each level of splits below a face.
+  struct Level {
+    std::vector<double> u, v;
+    std::vector<std::size_t> rows;
+    std::vector<std::uint8_t>
+        part;  // to which part of the tile each row of the level above belongs
   };
 
-  /// The rows of one face that splits into tiles, or is a ring tile.
-  void evaluateFace(int face, const double* u, const double* v, const std::size_t* rows,
-                    unsigned count);
-  void evaluatePatch(const TileLocation& place, const double* u, const double* v,
-                     const std::size_t* rows, unsigned count);
-  void setBSpline(const TileLocation& place, PatchRun& run);
-  void setRing(const TileLocation& place, PatchRun& run);
-  /// By TileEvaluator, alone.
+  /// The rows of a part of a face, on which the tile lies, split as often as `depth`.
+  void evaluateTile(TileRef tile, int turns, int depth, const Rows& rows);
+  void evaluateSplit(TileRef tile, int turns, int depth, const Rows& rows);
+  void evaluateRingTile(TileRef tile, int turns, int depth, const Rows& rows);
+  void evaluatePatch(const Patch& patch, const double* u, const double* v, const std::size_t* rows,
+                     unsigned count);
+  void setBSpline(const Patch& patch, PatchRun& run);
+  void setRing(const Patch& patch, PatchRun& run);
+  /// A row on its own: by a patch where there is one, otherwise by TileEvaluator.
+  void evaluateOne(const TileLocation& place, std::size_t row);
   void evaluateAlone(const TileLocation& place, std::size_t row);
   void putNormal(const TileLocation& place, const Jet& jet, std::size_t row);
 
-  /// Whether a location belongs to a patch of the kernels; if so, u and v become its parameters.
-  bool onPatch(const TileLocation& place, double& u, double& v, std::uint64_t& key) const;
-  unsigned patchOf(std::uint64_t key, const TileLocation& place);
+  bool hasCrease(TileRef tile) const { return table_.bsplines[tile.index].crease > 0; }
+  /// The steps down to which all of a ring tile's quarters are patches.
+  int patchSteps(const RingTile& tile) const;
+  /// Memory for the parts of a tile of that depth.
+  Level& level(int depth, unsigned rows);
 
   const TileTable& table_;
   const Pose& pose_;
@@ -65,16 +84,9 @@ class BatchEvaluator {
 
   alignas(64) double window_[16][4];
   Padded deep_[tile_grid::kSlots];  // the grid of the last ring tile below those that are kept
-  std::uint64_t deep_key_ = 0;
-
-  // Of the rows of one face.
-  std::vector<Patch> patches_;
-  static constexpr unsigned kSlots = 2 * kMostRows;
-  std::vector<unsigned> slots_;     // a hash table of numbers in patches_, plus 1
-  std::vector<unsigned> patch_of_;  // by row
-  std::vector<double> u_, v_;       // by row
-  std::vector<double> sorted_u_, sorted_v_;
-  std::vector<std::size_t> sorted_rows_;
+  std::uint32_t deep_tile_ = 0;
+  int deep_steps_ = 0;
+  std::deque<Level> levels_;  // their addresses stay
 };
 
 extern template class BatchEvaluator<double>;

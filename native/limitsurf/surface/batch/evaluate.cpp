@@ -11,12 +11,15 @@
 namespace limitsurf {
 namespace {
 
+/// Rows of one task. Those of a face are divided among its patches, which pays if there are many.
+constexpr std::size_t kBatchRowsPerTask = 2048;
+
 /// The batch has been checked, and the results have room for it.
 template <typename Real>
 void evaluateInto(const TileTable& table, const Pose& pose, const LocationBatch& at,
                   Derivatives derivatives, const PatchResults<Real>& results, int threads) {
   const RowOrder order(at, static_cast<int>(table.faces.size()), threads);
-  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+  parallelFor(at.size(), kBatchRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     BatchEvaluator<Real>(table, pose, static_cast<int>(derivatives), results)
         .evaluate(at, order, begin, end);
   });

@@ -34,6 +34,12 @@ inline void interleave(const Lanes xyz[3], Lanes out[3]) {
     out[i / kLanes].numbers[i % kLanes] = xyz[i % 3].numbers[i / 3];
   }
 }
+template <typename Lanes>
+inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
+  for (int i = 0; i < 4 * kLanes; ++i) {
+    out[i / kLanes].numbers[i % kLanes] = xyz[i % 4 < 3 ? i % 4 : 0].numbers[i / 4];
+  }
+}
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace baseline
 
@@ -64,6 +70,19 @@ inline void interleave(const Lanes xyz[3], Lanes out[3]) {
   out[2].numbers =
       __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 3, 7, 0), z, 6, 1, 2, 7);
 }
+/// x0 y0 z0 _ x1 y1 z1 _ ...
+template <typename Lanes>
+inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
+  const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
+  out[0].numbers =
+      __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 4, 0, 0), z, 0, 1, 4, 3);
+  out[1].numbers =
+      __builtin_shufflevector(__builtin_shufflevector(x, y, 1, 5, 0, 0), z, 0, 1, 5, 3);
+  out[2].numbers =
+      __builtin_shufflevector(__builtin_shufflevector(x, y, 2, 6, 0, 0), z, 0, 1, 6, 3);
+  out[3].numbers =
+      __builtin_shufflevector(__builtin_shufflevector(x, y, 3, 7, 0, 0), z, 0, 1, 7, 3);
+}
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx2
 #if defined(__clang__)
@@ -93,6 +112,19 @@ inline void interleave(const Lanes xyz[3], Lanes out[3]) {
                                            z, 10, 1, 2, 11, 4, 5, 12, 7);
   out[2].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 13, 0, 6, 14, 0, 7, 15, 0),
                                            z, 0, 13, 2, 3, 14, 5, 6, 15);
+}
+/// x0 y0 z0 _ x1 y1 z1 _ ...
+template <typename Lanes>
+inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
+  const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
+  out[0].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 8, 0, 0, 1, 9, 0, 0), z,
+                                           0, 1, 8, 3, 4, 5, 9, 7);
+  out[1].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 2, 10, 0, 0, 3, 11, 0, 0),
+                                           z, 0, 1, 10, 3, 4, 5, 11, 7);
+  out[2].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 4, 12, 0, 0, 5, 13, 0, 0),
+                                           z, 0, 1, 12, 3, 4, 5, 13, 7);
+  out[3].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 6, 14, 0, 0, 7, 15, 0, 0),
+                                           z, 0, 1, 14, 3, 4, 5, 15, 7);
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx512

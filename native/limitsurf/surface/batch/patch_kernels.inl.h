@@ -102,14 +102,16 @@ struct RowPlaces {
       }
       return;
     }
-    double numbers[3][kLanes];
-    for (int c = 0; c < 3; ++c) {
-      vectors[c].store(numbers[c]);
+    // With a fourth number in each row, no row is read from memory that two instructions have
+    // written: processors do not read such a row until both have reached the cache.
+    Rows padded[4];
+    interleavePadded(vectors, padded);
+    Real numbers[4 * kLanes];
+    for (int i = 0; i < 4; ++i) {
+      padded[i].store(numbers + i * kLanes);
     }
     for (int lane = 0; lane < count; ++lane) {
-      for (int c = 0; c < 3; ++c) {
-        to[3 * rows[lane] + c] = static_cast<Real>(numbers[c][lane]);
-      }
+      __builtin_memcpy(to + 3 * rows[lane], numbers + 4 * lane, 3 * sizeof(Real));
     }
   }
 
@@ -134,6 +136,7 @@ struct Turned {
 template <int Order, typename Real>
 inline void evaluateRows(const PatchRun& run, const Turned& turned, std::size_t begin, int count,
                          const PatchResults<Real>& results) {
+  const RowPlaces places(run.rows + begin, count);
   Rows u, v;
   if (count == kLanes) {
     u = Rows::load(run.u + begin);
@@ -166,7 +169,6 @@ inline void evaluateRows(const PatchRun& run, const Turned& turned, std::size_t 
       dvv[c] = (turned.swapped ? patch.duu : patch.dvv) * turned.second;
     }
   }
-  const RowPlaces places(run.rows + begin, count);
   places.put(results.position, position);
   if (Order >= 1) {
     places.put(results.du, du);
