@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rotations as quaternions, and frames in world space."""
+"""Frames in world space."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from limit_surface.errors import RefusalError
-from limit_surface.placing.rotations import WorldSpace, quaternions
+from limit_surface.placing.rotations import WorldSpace
 from mathutils import Quaternion
 
 unit_quaternions = (
@@ -19,22 +19,6 @@ unit_quaternions = (
 
 def matrix(q):
     return np.array(q.to_matrix(), np.float64)
-
-
-@given(unit_quaternions)
-def test_quaternions_give_the_matrix_back(q):
-    (found,) = quaternions(matrix(q)[None])
-    assert found[0] >= 0
-    np.testing.assert_allclose(matrix(Quaternion(found)), matrix(q), atol=1e-6)
-
-
-def test_quaternions_of_half_turns():
-    turns = np.array([np.diag(d) for d in ([1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1])])
-    np.testing.assert_array_equal(np.abs(quaternions(turns.astype(float))), np.eye(4))
-
-
-def test_no_quaternions():
-    assert quaternions(np.empty((0, 3, 3))).shape == (0, 4)
 
 
 @given(unit_quaternions, st.tuples(*[st.floats(0.1, 10) | st.floats(-10, -0.1)] * 3))

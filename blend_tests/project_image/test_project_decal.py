@@ -8,7 +8,6 @@ import pytest
 import scenes
 from limit_surface import ids
 from limit_surface.native import limitsurf
-from limit_surface.placing.rotations import quaternions
 from limit_surface.reading import attributes, cage, ragged_rows
 
 SINGLE = 2e-6
@@ -232,7 +231,7 @@ def test_a_decal_can_be_evaluated_again():
     root = attributes.read(decal.data, ids.REST_ROOT)
     np.testing.assert_allclose(root, at.position, atol=SINGLE * 5)
     rotation = attributes.read(decal.data, ids.REST_ROTATION)
-    expected = quaternions(surface.frames(made.face, made.uv))
+    expected = limitsurf.quaternions(surface.frames(made.face, made.uv))
     np.testing.assert_allclose(np.abs(np.einsum("ij,ij->i", rotation, expected)), 1, atol=1e-5)
     assert decal.parent == ob
     assert decal.matrix_world == ob.matrix_world

@@ -11,6 +11,8 @@ using Vector3 = Eigen::Vector3d;
 
 /// One point or vector per row.
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+/// The same in single precision: the form in which applications store the points of hair.
+using FloatPoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 /// A read-only view of contiguous elements. It does not own them.
 template <typename T>

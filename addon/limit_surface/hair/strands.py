@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..placing.rotations import WorldSpace, leaning, within_disc
+from .. import native
+from ..placing.rotations import WorldSpace, within_disc
 
 
 @dataclass(frozen=True)
@@ -29,12 +30,11 @@ class StrandMaker:
 
     def strands(self, root: np.ndarray, frame: np.ndarray, shape: Shape) -> np.ndarray:
         """Returns control points (n, points, 3) in the surface's space, evenly spaced from the
-        roots. The frames (n, 3, 3) are in the world; strands that do not lean follow their last
-        columns.
+        roots, in single precision. The frames (n, 3, 3) are in the world; strands that do not lean
+        follow their last columns.
         """
         shorter = shape.random_length * self._lengths.random((len(root), 1))
         length = shape.length * (1 - shorter)
         lean = shape.lean + shape.random * within_disc(len(frame), self._directions)
-        along = self._space.to_local(length * leaning(frame, lean))
-        steps = np.linspace(0, 1, shape.points)[None, :, None]
-        return root[:, None, :] + steps * along[:, None, :]
+        along = self._space.to_local(length * native.limitsurf.leaning(frame, lean))
+        return native.limitsurf.straight_strands(root, along, shape.points)

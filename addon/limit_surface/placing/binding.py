@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..reading import attributes
 from ..tasks.job import Progress
 from . import roots
 from .posed_surface import PosedSurface
-from .rotations import quaternions
 
 if TYPE_CHECKING:
     import limitsurf
@@ -32,7 +31,8 @@ class Binding:
         """Returns the binding of things whose object has the matrix `space`."""
         binding = cls(locations)
         places = posed.places(locations.face, locations.uv.astype(np.float64), space)
-        binding.root[:], binding.rotation[:] = places.position, quaternions(places.frame)
+        binding.root[:] = places.position
+        binding.rotation[:] = native.limitsurf.quaternions(places.frame)
         return binding
 
     @classmethod
@@ -51,7 +51,7 @@ class Binding:
 
     def fill(self, part: roots.Roots) -> None:
         self.root[part.rows] = part.position
-        self.rotation[part.rows] = quaternions(part.frame)
+        self.rotation[part.rows] = native.limitsurf.quaternions(part.frame)
 
     def put_roots_on(self, surface: limitsurf.LimitSurface) -> None:
         """Replaces the roots by those on the limit surface."""

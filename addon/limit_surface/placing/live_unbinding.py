@@ -9,12 +9,11 @@ from typing import Literal
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..reading import attributes, cage
 from . import followers, following, live, live_binding, live_thing
 from .places import Places
 from .posed_surface import PosedSurface
-from .rotations import quaternions
 
 
 class LiveUnbinding:
@@ -63,7 +62,7 @@ class LiveUnbinding:
         places = posed.places(stored.face, stored.uv, np.array(ob.matrix_world, np.float64))
         for name, kind, values in (
             (ids.REST_ROOT, "FLOAT_VECTOR", places.position),
-            (ids.REST_ROTATION, "QUATERNION", quaternions(places.frame)),
+            (ids.REST_ROTATION, "QUATERNION", native.limitsurf.quaternions(places.frame)),
         ):
             new = attributes.read(data, name)
             new[stored.rows] = values

@@ -11,13 +11,12 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..errors import RefusalError
 from ..reading import cage
 from ..tasks.refused_faces import check_some_left
 from .posed_surface import PosedSurface, at_closest
 from .relocation import Elements, Relocation
-from .rotations import quaternions
 
 _DEFORMERS = {"ARMATURE", "CURVE", "HOOK", "LATTICE", "MESH_DEFORM", "SURFACE_DEFORM"}
 _DEFORM_NODE = "GeometryNodeDeformCurvesOnSurface"
@@ -73,7 +72,7 @@ def put_places(
     relocation.put(ids.FACE, rows, face)
     relocation.put(ids.UV, rows, rounded)
     relocation.put(ids.REST_ROOT, rows, places.position)
-    relocation.put(ids.REST_ROTATION, rows, quaternions(places.frame))
+    relocation.put(ids.REST_ROTATION, rows, native.limitsurf.quaternions(places.frame))
     return places.frame
 
 

@@ -27,7 +27,6 @@ from .newcomers import bound_at_closest, put_places
 from .places import NOWHERE
 from .posed_surface import PosedSurface, transformed
 from .relocation import Elements, Relocation
-from .rotations import quaternions
 
 if TYPE_CHECKING:
     import limitsurf
@@ -311,7 +310,8 @@ def _turn_attributes(relocation: Relocation, rows: np.ndarray, turn: np.ndarray)
             relocation.values[elements.rest_name(name)] = vectors
     if elements.rest_name(ids.ROTATION) in stored:
         rotation = elements.read_shape(ids.ROTATION)
-        rotation[rows] = quaternions(turn @ native.limitsurf.rotation_matrices(rotation[rows]))
+        matrices = native.limitsurf.rotation_matrices(rotation[rows])
+        rotation[rows] = native.limitsurf.quaternions(turn @ matrices)
         relocation.values[elements.rest_name(ids.ROTATION)] = rotation
 
 

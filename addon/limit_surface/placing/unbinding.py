@@ -10,7 +10,7 @@ from typing import Literal
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..errors import CageError, RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE, TILES
@@ -18,7 +18,6 @@ from ..reading import attributes, cage
 from . import followers, following, proxy, tables
 from .places import NOWHERE
 from .posed_surface import PosedSurface
-from .rotations import quaternions
 
 Shape = Literal["SHOWN", "REST"]
 
@@ -133,7 +132,7 @@ def _freeze(
     places = posed.places(face, uv.astype(np.float64), np.array(ob.matrix_world, np.float64))
     for name, values in (
         (ids.REST_ROOT, places.position),
-        (ids.REST_ROTATION, quaternions(places.frame)),
+        (ids.REST_ROTATION, native.limitsurf.quaternions(places.frame)),
     ):
         frozen.values[name] = attributes.read(data, name)
         frozen.values[name][follows] = values

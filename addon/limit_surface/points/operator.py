@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
-from .. import ids
+from .. import ids, native
 from ..errors import RefusalError
 from ..nodes import instances
 from ..nodes.scales import put_scales
@@ -16,7 +16,7 @@ from ..placing import roots
 from ..placing.binding import Binding
 from ..placing.distribution_properties import DENSITY, surface_object
 from ..placing.new_objects import add_on_surface
-from ..placing.rotations import WorldSpace, quaternions
+from ..placing.rotations import WorldSpace
 from ..placing.scatter_operator import Ground, ScatterOperator
 from ..reading import attributes, cage
 from ..reading.named import find_object
@@ -134,7 +134,7 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
                 frame, pose = ground.frames(part, space), posed.of(part.rows)
                 tangent[part.rows] = frame[:, :, 0]
                 normal[part.rows] = frame[:, :, 2]
-                rotation[part.rows] = quaternions(poser.turned(frame, pose))
+                rotation[part.rows] = native.limitsurf.quaternions(poser.turned(frame, pose))
                 scale[part.rows] = poser.scales(pose, len(frame))[:, 0]
             members = posed.members()
             return Points(binding, normal, tangent, rotation, scale, members, space.mean_scale)

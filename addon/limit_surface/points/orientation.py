@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import native
-from ..placing.rotations import leaning, unit, within_disc
+from ..placing.rotations import unit, within_disc
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,8 @@ class Poser:
             lean = lean + np.einsum("nij,ni->nj", frame[:, :, :2], pose.into)
         if not lean.any():
             return frame
-        turn = native.limitsurf.shortest_turns(frame[:, :, 2], leaning(frame, lean))
+        leaning = native.limitsurf.leaning(frame, lean)
+        turn = native.limitsurf.shortest_turns(frame[:, :, 2], leaning)
         return turn @ frame
 
 

@@ -7,7 +7,6 @@ import numpy as np
 from .. import ids, native
 from ..errors import RefusalError
 from ..placing.posed_surface import Places
-from ..placing.rotations import quaternions
 from ..reading import attributes
 from .surface import TargetSurface
 
@@ -61,7 +60,9 @@ class HairBinding:
         self._store(ids.FACE, NOWHERE, curves, face)
         self._store(ids.UV, 0, curves, uv)
         self._store(ids.REST_ROOT, 0, curves, places.position)
-        self._store(ids.REST_ROTATION, (1, 0, 0, 0), curves, quaternions(places.frame))
+        self._store(
+            ids.REST_ROTATION, (1, 0, 0, 0), curves, native.limitsurf.quaternions(places.frame)
+        )
         self._data.surface = self._surface.ob
         without = self._why_no_uvs()
         if without:

@@ -16,6 +16,10 @@ double squareRoot(double a) { return std::sqrt(a); }
 
 /// v over its length; zero where the length is 0 or not finite.
 Vector3 direction(const Vector3& v) {
+  const double square = v.squaredNorm();
+  if (square >= 0x1p-900 && square <= 0x1p900) {  // nothing has been lost
+    return v / std::sqrt(square);
+  }
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0) || !std::isfinite(largest)) {
     return Vector3::Zero();
@@ -52,8 +56,8 @@ double sineSquare(const Vector3& du, const Vector3& dv) {
 
 Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& normal) {
   Vector3 tangent = direction(du), n = direction(normal);
-  const Vector3 across = direction(dv);
   if (n.isZero(0)) {
+    const Vector3 across = direction(dv);
     if (!tangent.isZero(0)) {
       n = direction(tangent.cross(leastAlignedAxis(tangent)));
     } else if (!across.isZero(0)) {
@@ -64,6 +68,7 @@ Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& norma
       n = Vector3::UnitZ();
     }
   } else if (tangent.isZero(0)) {
+    const Vector3 across = direction(dv);
     tangent = across.isZero(0) ? leastAlignedAxis(n) : Vector3(across.cross(n));
   }
   tangent = direction(tangent - tangent.dot(n) * n);

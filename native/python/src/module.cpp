@@ -4,6 +4,7 @@
 #include "control_mesh.h"
 #include "displacement.h"
 #include "edge_curves.h"
+#include "frame_rows.h"
 #include "guides.h"
 #include "images.h"
 #include "limit_surface.h"
@@ -36,6 +37,7 @@ PYBIND11_MODULE(limitsurf_in_main_interpreter, module) {
   limitsurf::python::bindPtexLayout(module);
   limitsurf::python::bindStrandPoser(module);
   limitsurf::python::bindEdgeCurves(module);
+  limitsurf::python::bindFrameRows(module);
   limitsurf::python::bindStrandTurns(module);
   limitsurf::python::bindChildStrands(module);
   limitsurf::python::bindLimitSurface(module);

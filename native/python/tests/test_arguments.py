@@ -203,6 +203,13 @@ CASES = {
         {"matrix": VIEW},
     ),
     "shortest_turns": (ls.shortest_turns, {"source": UP, "target": UP}),
+    "quaternions": (ls.quaternions, {"rotations": TURNS}),
+    "frames_in_world": (ls.frames_in_world, {"frames": TURNS, "matrix": np.eye(3).tolist()}),
+    "leaning": (ls.leaning, {"frames": TURNS, "angles": UV}),
+    "straight_strands": (
+        lambda **given: ls.straight_strands(points=2, **given),
+        {"roots": POINTS, "along": UP},
+    ),
     "rotation_matrices": (ls.rotation_matrices, {"quaternions": [[1.0, 0, 0, 0]]}),
     "move_strands": (
         ls.move_strands,
@@ -340,7 +347,8 @@ def test_empty_lists_are_empty_arrays(name, argument, part):
 ROWS = {"face", "uv", "points", "normals", "facing", "origins", "directions", "st", "footprint"}
 ROWS |= {"below", "above", "weight", "curve", "arc", "source", "target", "vectors", "tangents"}
 ROWS |= {"signs", "frames", "roots", "new_roots", "turns", "guide", "handle_left", "handle_right"}
-ROWS |= {"quaternions", "closed", "values", "rest_roots", "rest_rotations"}
+ROWS |= {"quaternions", "rotations", "angles", "along", "closed", "values"}
+ROWS |= {"rest_roots", "rest_rotations"}
 #: Functions that need one row at least, or that need as many as something has
 NEED_ROWS = {"face_varying", "vertex_data", "varying", "set_values", "smooth_path", "even_path"}
 NEED_ROWS |= {"fit_path", "curve_directions", "pose_rotations", "unpose", "fingerprints"}
@@ -406,6 +414,10 @@ MAY_BE_NAN = {
     ("shortest_turns", "source"),
     ("shortest_turns", "target"),
     ("rotation_matrices", "quaternions"),
+    ("quaternions", "rotations"),
+    *(("frames_in_world", a) for a in ("frames", "matrix")),
+    *(("leaning", a) for a in ("frames", "angles")),
+    *(("straight_strands", a) for a in ("roots", "along")),
     ("LimitSurface.displaced", "values"),
     ("LimitSurface.displaced", "frames"),
     ("LimitSurface.vector_displacement", "frames"),

@@ -12,9 +12,7 @@
 
 namespace limitsurf {
 
-/// One point or vector per row, and one quaternion w, x, y, z per row, in single precision: the
-/// form in which applications store the points of hair.
-using FloatPoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+/// One quaternion w, x, y, z per row, in single precision.
 using FloatRotations = Eigen::Matrix<float, Eigen::Dynamic, 4, Eigen::RowMajor>;
 /// Arguments of these types refer to such matrices, or to memory of their layout (Eigen::Map).
 template <typename Rows>
