@@ -23,6 +23,7 @@
 
 #include "bench/support/agreement.h"
 #include "bench/surface/evaluation_benchmarks.h"
+#include "bench/surface/fixed_benchmarks.h"
 #include "bench/surface/opening_cost.h"
 #include "bench/uv/uv_benchmarks.h"
 #ifdef LIMITSURF_BENCH_EMBREE
@@ -57,6 +58,8 @@ int runTables(int argc, char** argv, int sample_count) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
 
   std::vector<Group> groups = evaluationGroups(sample_count);
+  for (Group& group : depthGroups(sample_count)) groups.push_back(std::move(group));
+  for (Group& group : fixedGroups(sample_count)) groups.push_back(std::move(group));
   for (Group& group : setupGroups()) groups.push_back(std::move(group));
   for (Group& group : strandGroups(sample_count)) groups.push_back(std::move(group));
   for (Group& group : samplingGroups(sample_count)) groups.push_back(std::move(group));
@@ -69,6 +72,10 @@ int runTables(int argc, char** argv, int sample_count) {
       OPENSUBDIV_VERSION_MAJOR, OPENSUBDIV_VERSION_MINOR, OPENSUBDIV_VERSION_PATCH);
   reporter.printTable(kEvaluationTable, "Evaluation, ns per sample", {"face", "order", "result"},
                       groups);
+  reporter.printTable(kDepthTable, "By distance from an extraordinary vertex, ns per sample",
+                      {"face", "distance", "result"}, groups);
+  reporter.printTable(kFixedTable, "Samples that stay while the mesh deforms, ns per sample",
+                      {"samples", "result"}, groups);
   reporter.printTable(kOpeningTable, "Opening a mesh, ns per face", {"mesh", "faces", "irregular"},
                       groups);
   reporter.printTable(kPosingTable, "New positions, ns per irregular face",

@@ -31,12 +31,13 @@ std::vector<Location> uniformSamples(const std::vector<int>& faces, int count) {
 }
 
 std::vector<Location> samplesNearEvs(const std::vector<ClassifiedFace>& classified,
-                                     const std::vector<int>& faces, int count) {
+                                     const std::vector<int>& faces, int count,
+                                     Distances distances) {
   test::BenchmarkRandom random(kSeed);
   std::vector<Location> samples;
   for (const int face : faces) {
     for (int k = perFace(faces, count); k > 0; --k) {
-      const double distance = std::exp2(-random.uniform(5, 12));
+      const double distance = std::exp2(-random.uniform(distances.least, distances.most));
       double s = distance, t = distance * random.uniform();
       if (random.uniform() < 0.5) std::swap(s, t);
       samples.push_back(fromCorner(face, classified[face].ev_corner, s, t));

@@ -11,10 +11,14 @@ namespace limitsurf::bench {
 /// About `count` random locations, uniform in (u, v), the same number on each face, sorted by face.
 std::vector<Location> uniformSamples(const std::vector<int>& faces, int count);
 
-/// The same, but at a distance of 2^-12 to 2^-5 from the face's EV, with a uniformly random
-/// exponent.
+/// Distances 2^-least to 2^-most, with a uniformly random exponent.
+struct Distances {
+  double least, most;
+};
+
+/// The same, but at these distances from the face's EV.
 std::vector<Location> samplesNearEvs(const std::vector<ClassifiedFace>& classified,
-                                     const std::vector<int>& faces, int count);
+                                     const std::vector<int>& faces, int count, Distances distances);
 
 /// The same locations in random order.
 std::vector<Location> shuffled(std::vector<Location> samples);

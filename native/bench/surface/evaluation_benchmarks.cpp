@@ -16,6 +16,9 @@
 namespace limitsurf::bench {
 namespace {
 
+/// Of the rows of faces "near" an EV.
+constexpr Distances kNear = {5, 12};
+
 /// A cage that all libraries open when it is first needed.
 class OpenCage {
  public:
@@ -56,11 +59,11 @@ class OpenCage {
 class Samples {
  public:
   Samples(std::string name, std::shared_ptr<OpenCage> cage, std::optional<FaceClass> face_class,
-          bool is_near_ev, int count)
+          std::optional<Distances> near_ev, int count)
       : name_(std::move(name)),
         cage_(std::move(cage)),
         face_class_(face_class),
-        is_near_ev_(is_near_ev),
+        near_ev_(near_ev),
         count_(count) {}
 
   OpenCage& cage() const { return *cage_; }
@@ -80,8 +83,8 @@ class Samples {
     std::vector<int> faces(classified.size());
     std::iota(faces.begin(), faces.end(), 0);
     if (face_class_) faces = facesOf(classified, *face_class_);
-    sorted_ =
-        is_near_ev_ ? samplesNearEvs(classified, faces, count_) : uniformSamples(faces, count_);
+    sorted_ = near_ev_ ? samplesNearEvs(classified, faces, count_, *near_ev_)
+                       : uniformSamples(faces, count_);
     shuffled_ = bench::shuffled(sorted_);
     noteDifference(
         name_ + " (" + std::to_string(faces.size()) + " faces)",
@@ -91,7 +94,7 @@ class Samples {
   std::string name_;
   std::shared_ptr<OpenCage> cage_;
   std::optional<FaceClass> face_class_;
-  bool is_near_ev_;
+  std::optional<Distances> near_ev_;
   int count_;
   std::vector<Location> sorted_, shuffled_;
 };
@@ -129,11 +132,11 @@ void runBfr(benchmark::State& state, const BfrPeer& bfr, const std::vector<Locat
 
 template <Derivatives kDerivatives>
 void addGroup(std::vector<Group>& groups, const std::string& row, std::shared_ptr<Samples> samples,
-              bool is_random) {
+              bool is_random, const char* table = kEvaluationTable) {
   const auto locations = [samples, is_random]() -> const std::vector<Location>& {
     return is_random ? samples->shuffled() : samples->sorted();
   };
-  Group group{kEvaluationTable, row, {}};
+  Group group{table, row, {}};
   group.columns.push_back({"limitsurf", [=](benchmark::State& state) {
                              runOurs<kDerivatives>(state, samples->cage().ours(), locations());
                            }});
@@ -147,6 +150,23 @@ void addGroup(std::vector<Group>& groups, const std::string& row, std::shared_pt
 
 }  // namespace
 
+std::vector<Group> depthGroups(int sample_count) {
+  const auto every_class = std::make_shared<OpenCage>(test::everyClassCage);
+  std::vector<Group> groups;
+  for (const auto& [name, face_class] : {std::pair("interior-EV", FaceClass::interior_ev),
+                                         std::pair("boundary-EV", FaceClass::boundary_ev)}) {
+    for (const int exponent : {1, 2, 3, 5, 8, 12, 20, 30, 40}) {
+      const std::string row = std::string(name) + "/2^-" + std::to_string(exponent) + "/";
+      const auto samples = std::make_shared<Samples>(
+          row, every_class, face_class, Distances{exponent - 0.5, exponent + 0.5}, sample_count);
+      addGroup<Derivatives::none>(groups, row + "P", samples, false, kDepthTable);
+      addGroup<Derivatives::first>(groups, row + "P,D1", samples, false, kDepthTable);
+      addGroup<Derivatives::second>(groups, row + "P,D1,D2", samples, false, kDepthTable);
+    }
+  }
+  return groups;
+}
+
 std::vector<Group> evaluationGroups(int sample_count) {
   const auto every_class = std::make_shared<OpenCage>(test::everyClassCage);
   const auto crosses = std::make_shared<OpenCage>(test::crossesCage);
@@ -156,24 +176,24 @@ std::vector<Group> evaluationGroups(int sample_count) {
     std::string name;
     std::shared_ptr<OpenCage> cage;
     std::optional<FaceClass> face_class;
-    bool is_near_ev;
+    std::optional<Distances> near_ev;
   };
   const std::vector<Row> rows = {
-      {"regular", every_class, FaceClass::regular, false},
-      {"interior-EV", every_class, FaceClass::interior_ev, false},
-      {"boundary-EV", every_class, FaceClass::boundary_ev, false},
-      {"corner", every_class, FaceClass::corner, false},
-      {"multi-EV", crosses, FaceClass::multi_ev, false},
-      {"n-gon", polygons, FaceClass::polygon, false},
-      {"near-interior-EV", every_class, FaceClass::interior_ev, true},
-      {"near-boundary-EV", every_class, FaceClass::boundary_ev, true},
-      {"near-corner", every_class, FaceClass::corner, true},
-      {"mixed-20k-faces", mixed, std::nullopt, false},
+      {"regular", every_class, FaceClass::regular, {}},
+      {"interior-EV", every_class, FaceClass::interior_ev, {}},
+      {"boundary-EV", every_class, FaceClass::boundary_ev, {}},
+      {"corner", every_class, FaceClass::corner, {}},
+      {"multi-EV", crosses, FaceClass::multi_ev, {}},
+      {"n-gon", polygons, FaceClass::polygon, {}},
+      {"near-interior-EV", every_class, FaceClass::interior_ev, kNear},
+      {"near-boundary-EV", every_class, FaceClass::boundary_ev, kNear},
+      {"near-corner", every_class, FaceClass::corner, kNear},
+      {"mixed-20k-faces", mixed, std::nullopt, {}},
   };
   std::vector<Group> groups;
   for (const Row& row : rows) {
     const auto samples =
-        std::make_shared<Samples>(row.name, row.cage, row.face_class, row.is_near_ev, sample_count);
+        std::make_shared<Samples>(row.name, row.cage, row.face_class, row.near_ev, sample_count);
     for (const bool is_random : {false, true}) {
       const std::string label = row.name + (is_random ? "/random/" : "/sorted/");
       addGroup<Derivatives::none>(groups, label + "P", samples, is_random);

@@ -13,4 +13,9 @@ constexpr char kEvaluationTable[] = "evaluate";
 /// locations and order of derivatives.
 std::vector<Group> evaluationGroups(int sample_count);
 
+constexpr char kDepthTable[] = "depth";
+
+/// The same at distances of 1/2 to 2^-40 from extraordinary vertices, in face order.
+std::vector<Group> depthGroups(int sample_count);
+
 }  // namespace limitsurf::bench
