@@ -93,3 +93,35 @@ inline void evaluatePatch(const Points& points, const Weights& u, const Weights&
     }
   }
 }
+
+/// The same from the differences of the points, which are given (derivative_nets.h): du(x, y) is
+/// that of the points (x + 1, y) and (x, y), and so on.
+template <int Order, typename Point, typename Weights, typename Nets>
+inline void evaluateNets(const Nets& nets, const Weights& u, const Weights& v,
+                         PatchValues<Point>& out) {
+  using namespace derivative_nets;
+  const auto cubic = [](const Weights& w, const auto& p) -> Point {
+    return w.value[0] * p(0) + w.value[1] * p(1) + w.value[2] * p(2) + w.value[3] * p(3);
+  };
+  const auto quadratic = [](const Weights& w, const auto& p) -> Point {
+    return w.first[0] * p(0) + w.first[1] * p(1) + w.first[2] * p(2);
+  };
+  const auto linear = [](const Weights& w, const auto& p) -> Point {
+    return w.second[0] * p(0) + w.second[1] * p(1);
+  };
+  const auto sum = [&](Net net, const auto& along_u, const auto& along_v) -> Point {
+    return along_v(v, [&](int y) -> Point {
+      return along_u(u, [&](int x) -> Point { return nets(net, x, y); });
+    });
+  };
+  out.value = sum(kPoints, cubic, cubic);
+  if (Order >= 1) {
+    out.du = sum(kDu, quadratic, cubic);
+    out.dv = sum(kDv, cubic, quadratic);
+  }
+  if (Order >= 2) {
+    out.duu = sum(kDuu, linear, cubic);
+    out.duv = sum(kDuv, quadratic, quadratic);
+    out.dvv = sum(kDvv, cubic, linear);
+  }
+}

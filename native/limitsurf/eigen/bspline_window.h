@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "limitsurf/eigen/derivative_nets.h"
+
 namespace limitsurf {
 
 #include "limitsurf/eigen/bspline_formulas.inl.h"

@@ -8,6 +8,7 @@
 
 #include "limitsurf/eigen/bspline_window.h"
 #include "limitsurf/eigen/dart_modes.h"
+#include "limitsurf/eigen/derivative_nets.h"
 #include "limitsurf/eigen/mode_table.h"
 #include "limitsurf/eigen/outer_modes.h"
 #include "limitsurf/eigen/ring.h"
@@ -112,16 +113,24 @@ class Eigenbasis {
   Table table(int mode, int face) const;
 
   // Evaluation after any number of steps: controlGrid() gives control points from which positions
-  // and first derivatives keep their digits; weights() serves second derivatives and stencils.
+  // and first derivatives keep their digits; derivativeNets() serves second derivatives, and
+  // weights() stencils.
 
   /// The face's control points after `steps` >= 1 steps less the constant mode, times 2^(steps - 1)
   /// so that they do not underflow.
   ///
   /// `coefficients` and `outer_points` (in the order of the outer slots) are relative to the limit
   /// position. Second derivatives, where modes of very different size meet, lose digits in the
-  /// sum: take weights() for them. Cost: O(faces).
+  /// sum: take derivativeNets() for them. Cost: O(faces).
   void controlGrid(int face, int steps, int ring_steps, const Points& coefficients,
                    const Eigen::Array4d outer_points[], Eigen::Array4d grid[]) const;
+
+  /// The control points in the same scale with their differences (derivative_nets.h), from which
+  /// second derivatives keep their digits, too. Only what is selected is computed. Cost: O(faces),
+  /// about four times that of controlGrid().
+  void derivativeNets(int face, int steps, int ring_steps, const Points& coefficients,
+                      const Eigen::Array4d outer_points[],
+                      const derivative_nets::Selection& selection, Eigen::Array4d nets[]) const;
 
   /// The weights of the ring's modes and of the outer points in the functionals of `window` (values
   /// and derivatives), after `steps` >= 1 steps. `mode_weights` gets a row for each functional and
@@ -155,7 +164,7 @@ class Eigenbasis {
   };
 
   class Builder;
-  class GridSum;        // controlGrid()
+  class GridSum;        // controlGrid(), derivativeNets()
   class WindowWeights;  // weights()
 
   const FaceTables& tables(Sides sides) const { return *face_tables_[static_cast<int>(sides)]; }

@@ -16,11 +16,12 @@ Eigen::Array4d padded(const Points& points, int row) {
 
 }  // namespace
 
-/// Adds up the control points of one face after some steps, mode by mode.
+/// Adds up the control points of one face after some steps, or their nets, mode by mode.
 class Eigenbasis::GridSum {
  public:
   GridSum(const Eigenbasis& basis, int face, int steps, int ring_steps, const Points& coefficients,
-          const Eigen::Array4d outer_points[], Eigen::Array4d grid[])
+          const Eigen::Array4d outer_points[], const derivative_nets::Selection* selection,
+          Eigen::Array4d sums[])
       : basis_(basis),
         tables_(basis.tables(basis.sides(face))),
         outer_(tables_.outer_modes),
@@ -29,8 +30,10 @@ class Eigenbasis::GridSum {
         steps_(steps),
         ring_steps_(ring_steps),
         coefficients_(coefficients),
-        grid_(grid) {
-    std::fill_n(grid_, tile_grid::kSlots, Eigen::Array4d::Zero());
+        selection_(selection),
+        sums_(sums) {
+    std::fill_n(sums_, selection ? derivative_nets::kCount : tile_grid::kSlots,
+                Eigen::Array4d::Zero());
     std::copy_n(outer_points, outer_count_, left_over_);
   }
 
@@ -51,11 +54,23 @@ class Eigenbasis::GridSum {
  private:
   Eigen::Array4d coefficient(int mode) const { return padded(coefficients_, mode); }
 
+  void addGrid(const Table& table, const Eigen::Array4d& coefficient) {
+    if (selection_) {
+      double nets[derivative_nets::kCount];
+      derivative_nets::form(table.grid, nets);
+      for (const int i : *selection_) {
+        sums_[i] += nets[i] * coefficient;
+      }
+    } else {
+      for (int c = 0; c < tile_grid::kSlots; ++c) {
+        sums_[c] += table.grid[c] * coefficient;
+      }
+    }
+  }
+
   /// Adds a mode's table to the grid, and subtracts what the mode holds of the outer points.
   void add(const Table& table, const Eigen::Array4d& in_grid, const Eigen::Array4d& in_outer) {
-    for (int c = 0; c < tile_grid::kSlots; ++c) {
-      grid_[c] += table.grid[c] * in_grid;
-    }
+    addGrid(table, in_grid);
     for (int i = 0; i < outer_count_; ++i) {
       left_over_[i] -= table.outer[i] * in_outer;
     }
@@ -149,9 +164,7 @@ class Eigenbasis::GridSum {
         sum += scaledFeed(lambda, outer_.lambda(q), steps_ - 1) * basis_.rest(face_, q) *
                power(lambda, ring_steps_) * coefficient(basis_.rest_mode_);
       }
-      for (int c = 0; c < tile_grid::kSlots; ++c) {
-        grid_[c] += tables_.outer[q].grid[c] * sum;
-      }
+      addGrid(tables_.outer[q], sum);
     }
   }
 
@@ -160,13 +173,21 @@ class Eigenbasis::GridSum {
   const OuterModes<double>& outer_;
   const int outer_count_, face_, steps_, ring_steps_;
   const Points& coefficients_;
-  Eigen::Array4d* const grid_;
+  const derivative_nets::Selection* const selection_;  // of nets; null for the points alone
+  Eigen::Array4d* const sums_;
   Eigen::Array4d left_over_[tile_grid::kOuter];  // of the outer points, without the ring's modes
 };
 
 void Eigenbasis::controlGrid(int face, int steps, int ring_steps, const Points& coefficients,
                              const Eigen::Array4d outer_points[], Eigen::Array4d grid[]) const {
-  GridSum(*this, face, steps, ring_steps, coefficients, outer_points, grid).compute();
+  GridSum(*this, face, steps, ring_steps, coefficients, outer_points, nullptr, grid).compute();
+}
+
+void Eigenbasis::derivativeNets(int face, int steps, int ring_steps, const Points& coefficients,
+                                const Eigen::Array4d outer_points[],
+                                const derivative_nets::Selection& selection,
+                                Eigen::Array4d nets[]) const {
+  GridSum(*this, face, steps, ring_steps, coefficients, outer_points, &selection, nets).compute();
 }
 
 }  // namespace limitsurf

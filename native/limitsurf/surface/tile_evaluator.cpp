@@ -97,20 +97,35 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
   if (quarter.steps > pose_.gridSteps(tile)) {
     const Eigenbasis& basis = *table_.rings[tile.ring].basis;
     jet.anchor = pose_.ring(tile.ring).limit;
-    if (!addsModesAt(basis, Order)) {
+    if (takesModes(basis, Order, at.u, at.v)) {
+      evaluateByModes(tile, index, quarter.steps, window, patch);
+      jet.exponent = quarter.steps - 1;
+      return;
+    }
+    if (!needsNets(basis, Order)) {
       Padded grid[tile_grid::kSlots];
       basis.controlGrid(tile.face, quarter.steps, tile.ring_steps,
                         pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer, grid);
       evaluateWindow<Order>(grid + window.b * tile_grid::kSize + window.a, tile_grid::kSize,
                             window.u, window.v, patch);
-      patch.value =
-          std::ldexp(1., 1 - quarter.steps) * patch.value + pose_.ring(tile.ring).constant();
-      patch.du *= 2;
-      patch.dv *= 2;
     } else {
-      evaluateByModes(tile, index, quarter.steps, window, patch);
-      jet.exponent = quarter.steps - 1;
+      using derivative_nets::Net, derivative_nets::Selection;
+      Padded nets[derivative_nets::kCount];
+      basis.derivativeNets(tile.face, quarter.steps, tile.ring_steps,
+                           pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer,
+                           Selection::window(quarter.a, quarter.b), nets);
+      const int first = window.b * tile_grid::kSize + window.a;
+      evaluateNets<Order>(
+          [&](Net net, int x, int y) -> const Padded& {
+            return nets[derivative_nets::at(net, first + y * tile_grid::kSize + x)];
+          },
+          window.u, window.v, patch);
+      jet.exponent = quarter.steps + 1;
     }
+    patch.value =
+        std::ldexp(1., 1 - quarter.steps) * patch.value + pose_.ring(tile.ring).constant();
+    patch.du *= 2;
+    patch.dv *= 2;
     return;
   }
   const Pose::Grid& grid = pose_.grid(index, quarter.steps);

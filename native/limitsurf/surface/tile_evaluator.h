@@ -57,14 +57,22 @@ class TileEvaluator {
   /// along the normal are added up from products of three modes each.
   FundamentalForms fundamentalForms(const TileLocation& at, const Jet& jet);
 
-  /// Whether derivatives up to `order`, deep in a tile of this ring, are sums over its modes
-  /// instead of sums over the control points that the modes add up to.
+  /// Whether derivatives up to `order`, deep in a tile of this ring, are formed of the differences
+  /// of each of its modes (derivative_nets.h) instead of those of the control points that the modes
+  /// add up to.
   ///
   /// Second derivatives are, because modes of very different size meet in them. So are first ones
   /// around a cone: the mode with the largest eigenvalue has, by symmetry, no derivative across the
   /// spokes, and its rounding would hide that of the others.
-  static bool addsModesAt(const Eigenbasis& basis, int order) {
+  static bool needsNets(const Eigenbasis& basis, int order) {
     return order == 2 || (order == 1 && basis.ring().kind == RingKind::cone);
+  }
+
+  /// Whether such derivatives at (u, v) of the tile are added up mode by mode instead: on the
+  /// spokes, where by symmetry some derivatives of the largest modes vanish, but not the
+  /// differences of which they are formed.
+  static bool takesModes(const Eigenbasis& basis, int order, double u, double v) {
+    return (u == 0 || v == 0) && needsNets(basis, order);
   }
 
  private:
@@ -88,9 +96,10 @@ class TileEvaluator {
                        Jet& jet);
   template <int Order>
   void evaluateRing(const TileLocation& at, Jet& jet);
-  /// Evaluates by Eigenbasis::weights(), for second derivatives deep in a ring tile.
+  /// Evaluates by Eigenbasis::weights(), where takesModes().
   void evaluateByModes(const RingTile& tile, int index, int steps, const GridWindow& window,
                        PatchValues<Padded>& patch);
+
   const TileTable& table_;
   const Pose& pose_;
   int last_ = -1, loaded_ = -1;  // the last regular tile, and the one whose points are kept

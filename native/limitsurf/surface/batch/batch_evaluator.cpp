@@ -132,18 +132,11 @@ void BatchEvaluator<Real>::evaluateSplit(TileRef tile, int turns, int depth, con
 }
 
 template <typename Real>
-int BatchEvaluator<Real>::patchSteps(const RingTile& tile) const {
-  return TileEvaluator::addsModesAt(*table_.rings[tile.ring].basis, order_)
-             ? std::min(kMostSteps, pose_.gridSteps(tile))
-             : kMostSteps;
-}
-
-template <typename Real>
 void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth, const Rows& rows) {
   const RingTile& ring_tile = table_.ring_tiles[tile.index];
   const int corner = ring_tile.corner;
+  const bool needs_nets = TileEvaluator::needsNets(*table_.rings[ring_tile.ring].basis, order_);
   turns = (turns + corner) & 3;
-  const int most_steps = patchSteps(ring_tile);
   // Parts are numbered 4 steps + a + 2 b; those that are deeper, 0.
   constexpr unsigned kParts = 4 * (kMostSteps + 1);
   static_assert(kParts <= 256);
@@ -156,7 +149,8 @@ void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth, 
     const int steps = Quarter::stepsTo(larger);
     const double edge = powerOfTwo(-steps);
     const int a = rows.u[i] >= edge ? 1 : 0, b = rows.v[i] >= edge ? 2 : 0;
-    const int part = steps <= most_steps ? 4 * steps + a + b : 0;
+    const bool on_spoke = std::min(rows.u[i], rows.v[i]) == 0;
+    const int part = steps <= kMostSteps && !(needs_nets && on_spoke) ? 4 * steps + a + b : 0;
     parts.part[i] = static_cast<std::uint8_t>(part);
     deepest = std::max(deepest, part);
     ++begin[part];
@@ -205,7 +199,11 @@ void BatchEvaluator<Real>::evaluateOne(const TileLocation& place, std::size_t ro
     }
   } else if (!place.atVertex()) {
     const Quarter quarter(place.u, place.v);
-    if (quarter.steps <= patchSteps(table_.ring_tiles[place.tile.index])) {
+    const RingTile& tile = table_.ring_tiles[place.tile.index];
+    const Eigenbasis& basis = *table_.rings[tile.ring].basis;
+    if (quarter.steps <= pose_.gridSteps(tile) ||
+        (quarter.steps <= kMostSteps &&
+         !TileEvaluator::takesModes(basis, order_, place.u, place.v))) {
       evaluatePatch({place.tile, place.turns, place.depth, quarter.steps, quarter.a, quarter.b},
                     &quarter.u, &quarter.v, &row, 1);
       return;
@@ -221,7 +219,7 @@ void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, const double* u, co
   if (patch.tile.kind == TileRef::kBSpline) {
     setBSpline(patch, run);
   } else {
-    setRing(patch, run);
+    setRing(patch, count == 1, run);
   }
   run.turns = patch.turns;
   run.u = u;
@@ -268,7 +266,7 @@ void BatchEvaluator<Real>::setBSpline(const Patch& patch, PatchRun& run) {
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::setRing(const Patch& patch, PatchRun& run) {
+void BatchEvaluator<Real>::setRing(const Patch& patch, bool is_single, PatchRun& run) {
   const int index = static_cast<int>(patch.tile.index);
   const RingTile& tile = table_.ring_tiles[index];
   const Padded* grid;
@@ -282,19 +280,14 @@ void BatchEvaluator<Real>::setRing(const Patch& patch, PatchRun& run) {
     run.second_scale = powerOfTwo(2 * (patch.steps + patch.depth));
   } else {
     const Pose::RingPose& ring = pose_.ring(tile.ring);
-    if (patch.tile.index != deep_tile_ || patch.steps != deep_steps_) {
-      table_.rings[tile.ring].basis->controlGrid(tile.face, patch.steps, tile.ring_steps,
-                                                 ring.coefficients, pose_.ringTile(index).outer,
-                                                 deep_);
-      deep_tile_ = patch.tile.index;
-      deep_steps_ = patch.steps;
-    }
+    setDeep(patch, is_single);
+    run.has_nets = TileEvaluator::needsNets(*table_.rings[tile.ring].basis, order_);
     grid = deep_;
     copy(ring.limit, run.anchor);
     copy(ring.constant(), run.offset);
     run.value_scale = std::ldexp(1., 1 - patch.steps);
     run.first_scale = powerOfTwo(1 + patch.depth);
-    run.second_scale = 0;  // second derivatives are evaluated alone there
+    run.second_scale = powerOfTwo(patch.steps + 1 + 2 * patch.depth);
   }
   run.points = numbersOf(grid + patch.b * tile_grid::kSize + patch.a);
   run.stride = tile_grid::kSize;
@@ -302,6 +295,30 @@ void BatchEvaluator<Real>::setRing(const Patch& patch, PatchRun& run) {
   run.v_low = onLeft(tile.sides) && patch.b == 0;
   run.u_high = run.v_high = false;
   run.lowest_sine_square = TileEvaluator::lowestSineSquare(patch.steps);
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::setDeep(const Patch& patch, bool is_single) {
+  if (patch.tile.index == deep_tile_ && patch.steps == deep_steps_) {
+    return;
+  }
+  const int index = static_cast<int>(patch.tile.index);
+  const RingTile& tile = table_.ring_tiles[index];
+  const Eigenbasis& basis = *table_.rings[tile.ring].basis;
+  const Points& coefficients = pose_.ring(tile.ring).coefficients;
+  const Padded* const outer = pose_.ringTile(index).outer;
+  deep_tile_ = patch.tile.index;
+  deep_steps_ = patch.steps;
+  if (!TileEvaluator::needsNets(basis, order_)) {
+    basis.controlGrid(tile.face, patch.steps, tile.ring_steps, coefficients, outer, deep_);
+    return;
+  }
+  using derivative_nets::Selection;
+  basis.derivativeNets(tile.face, patch.steps, tile.ring_steps, coefficients, outer,
+                       is_single ? Selection::window(patch.a, patch.b) : Selection::whole(), deep_);
+  if (is_single) {
+    deep_steps_ = 0;  // the other quarters are missing
+  }
 }
 
 template <typename Real>

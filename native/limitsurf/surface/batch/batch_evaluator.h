@@ -62,15 +62,16 @@ class BatchEvaluator {
   void evaluatePatch(const Patch& patch, const double* u, const double* v, const std::size_t* rows,
                      unsigned count);
   void setBSpline(const Patch& patch, PatchRun& run);
-  void setRing(const Patch& patch, PatchRun& run);
+  void setRing(const Patch& patch, bool is_single, PatchRun& run);
+  /// Computes the points of a ring tile after more steps than are kept, or their nets: all of them,
+  /// unless they are for a single row.
+  void setDeep(const Patch& patch, bool is_single);
   /// A row on its own: by a patch where there is one, otherwise by TileEvaluator.
   void evaluateOne(const TileLocation& place, std::size_t row);
   void evaluateAlone(const TileLocation& place, std::size_t row);
   void putNormal(const TileLocation& place, const Jet& jet, std::size_t row);
 
   bool hasCrease(TileRef tile) const { return table_.bsplines[tile.index].crease > 0; }
-  /// The steps down to which all of a ring tile's quarters are patches.
-  int patchSteps(const RingTile& tile) const;
   /// Memory for the parts of a tile of that depth.
   Level& level(int depth, unsigned rows);
 
@@ -83,7 +84,7 @@ class BatchEvaluator {
   TileEvaluator alone_;
 
   alignas(64) double window_[16][4];
-  Padded deep_[tile_grid::kSlots];  // the grid of the last ring tile below those that are kept
+  Padded deep_[derivative_nets::kCount];  // of the last ring tile below the grids that are kept
   std::uint32_t deep_tile_ = 0;
   int deep_steps_ = 0;
   std::deque<Level> levels_;  // their addresses stay

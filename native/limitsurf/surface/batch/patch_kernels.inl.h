@@ -133,6 +133,11 @@ struct Turned {
   double du, dv, second, duv;  // factors
 };
 
+/// The place of one number of a net, from the window's first point on.
+inline int netSlot(const PatchRun& run, int net, int x, int y) {
+  return net * run.stride * run.stride + run.stride * y + x;
+}
+
 template <int Order, typename Real>
 inline void evaluateRows(const PatchRun& run, const Turned& turned, std::size_t begin, int count,
                          const PatchResults<Real>& results) {
@@ -155,9 +160,17 @@ inline void evaluateRows(const PatchRun& run, const Turned& turned, std::size_t 
   Rows position[3], du[3], dv[3], duu[3], duv[3], dvv[3];
   for (int c = 0; c < 3; ++c) {
     PatchValues<Rows> patch;
-    evaluatePatch<Order, Rows>(
-        [&](int x, int y) { return Rows::of(run.points[run.stride * y + x][c]); }, u_weights,
-        v_weights, patch);
+    if (run.has_nets) {
+      evaluateNets<Order, Rows>(
+          [&](derivative_nets::Net net, int x, int y) {
+            return Rows::of(run.points[netSlot(run, net, x, y)][c]);
+          },
+          u_weights, v_weights, patch);
+    } else {
+      evaluatePatch<Order, Rows>(
+          [&](int x, int y) { return Rows::of(run.points[run.stride * y + x][c]); }, u_weights,
+          v_weights, patch);
+    }
     position[c] = run.anchor[c] + (run.value_scale * patch.value + run.offset[c]);
     if (Order >= 1) {
       du[c] = (turned.swapped ? patch.dv : patch.du) * turned.du;
@@ -200,11 +213,19 @@ template <int Order, typename Real>
 inline void evaluateRow(const PatchRun& run, const Turned& turned, std::size_t i,
                         const PatchResults<Real>& results) {
   using Point = Lanes<4>;
+  const BSplineWeights<double> u(run.u[i], run.u_low, run.u_high);
+  const BSplineWeights<double> v(run.v[i], run.v_low, run.v_high);
   PatchValues<Point> patch;
-  evaluatePatch<Order, Point>(
-      [&](int x, int y) { return Point::load(run.points[run.stride * y + x]); },
-      BSplineWeights<double>(run.u[i], run.u_low, run.u_high),
-      BSplineWeights<double>(run.v[i], run.v_low, run.v_high), patch);
+  if (run.has_nets) {
+    evaluateNets<Order, Point>(
+        [&](derivative_nets::Net net, int x, int y) {
+          return Point::load(run.points[netSlot(run, net, x, y)]);
+        },
+        u, v, patch);
+  } else {
+    evaluatePatch<Order, Point>(
+        [&](int x, int y) { return Point::load(run.points[run.stride * y + x]); }, u, v, patch);
+  }
   const std::size_t at = 3 * run.rows[i];
   const auto putPoint = [at](Real* to, const Point& point) {
     for (int c = 0; c < 3; ++c) {

@@ -14,6 +14,7 @@ struct PatchRun {
   /// each is 0.
   const double (*points)[4];
   int stride;
+  bool has_nets = false;  ///< the nets of differences follow the points (derivative_nets.h)
   /// Sides with no points beyond them (see BSplineWeights).
   bool u_low, u_high, v_low, v_high;
   int turns;  ///< by how many corners the patch is turned against the face, 0 to 3
