@@ -61,7 +61,9 @@ class Scene {
 };
 
 void runOurs(benchmark::State& state, Scene::Made& scene, bool with_derivatives) {
-  const auto rows = [](Points& p) { return EvaluationArrays<double>::Rows(p.data(), p.rows(), 3); };
+  const auto rows = [&](Points& p) {
+    return EvaluationArrays<double>::Rows{p.data(), scene.at.size()};
+  };
   const EvaluationArrays<double> arrays{rows(scene.out.position), rows(scene.out.du),
                                         rows(scene.out.dv)};
   const LocationBatch at = scene.surface.checkLocations(scene.at);

@@ -43,11 +43,12 @@ struct Evaluation {
 /// location. Float results are the double ones, rounded.
 template <typename Real>
 struct EvaluationArrays {
-  using Rows = Eigen::Map<Eigen::Matrix<Real, Eigen::Dynamic, 3, Eigen::RowMajor>>;
-  static Rows none() { return Rows(nullptr, 0, 3); }
-
-  Rows position = none(), du = none(), dv = none(), duu = none(), duv = none(), dvv = none();
-  Rows normal = none();  ///< may be none for any derivatives
+  struct Rows {
+    Real* numbers = nullptr;  ///< 3 count of them
+    std::size_t count = 0;
+  };
+  Rows position = {}, du = {}, dv = {}, duu = {}, duv = {}, dvv = {};
+  Rows normal = {};  ///< may have no rows for any derivatives
 };
 
 /// Principal curvatures k1 >= k2 with their unit directions in space; mean = (k1 + k2) / 2,
@@ -187,8 +188,8 @@ class LimitSurface {
   /// are rows for them. Throws std::invalid_argument for an array that has another number of rows
   /// than there are locations, and then writes nothing. Real is double or float.
   template <typename Real>
-  void evaluate(const LocationBatch& at, Derivatives derivatives, EvaluationArrays<Real> results,
-                int threads = 0) const;
+  void evaluate(const LocationBatch& at, Derivatives derivatives,
+                const EvaluationArrays<Real>& results, int threads = 0) const;
 
   // Frames and curvature.
   //

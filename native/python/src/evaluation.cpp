@@ -19,7 +19,7 @@ void evaluateInto(const LimitSurface& surface, const LocationBatch& at, Derivati
                   const Output outputs[7], int threads) {
   using Rows = typename EvaluationArrays<Real>::Rows;
   const auto rows = [&](int i) {
-    return Rows(outputs[i].numbers<Real>(), outputs[i].wanted() ? Eigen::Index(at.size()) : 0, 3);
+    return Rows{outputs[i].numbers<Real>(), outputs[i].wanted() ? at.size() : 0};
   };
   surface.evaluate<Real>(at, derivatives,
                          {rows(0), rows(1), rows(2), rows(4), rows(5), rows(6), rows(3)}, threads);

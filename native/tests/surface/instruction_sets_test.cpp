@@ -137,7 +137,9 @@ TEST_P(InstructionSets, RoundToFloatWhatTheyGiveInDouble) {
   for (InstructionSet set : availableSets()) {
     const Using other(set);
     std::vector<Floats> floats(7, Floats(rows, 3));
-    const auto in = [&](int i) { return EvaluationArrays<float>::Rows(floats[i].data(), rows, 3); };
+    const auto in = [&](int i) {
+      return EvaluationArrays<float>::Rows{floats[i].data(), at.size()};
+    };
     surface.evaluate<float>(at, Derivatives::second,
                             {in(0), in(1), in(2), in(3), in(4), in(5), in(6)}, 1);
     for (std::size_t i = 0; i < 7; ++i) {

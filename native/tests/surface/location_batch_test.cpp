@@ -102,7 +102,7 @@ TEST(EvaluationArrays, AreFilled) {
   const std::vector<Location> at = {{3, 0.25, 0.5}, {0, 1, 0}, {4, 0.125, 0.75}};
   const Evaluation expected = surface.evaluate(at, Derivatives::first, true);
   Points position(3, 3), du(3, 3), dv(3, 3), normal = Points::Constant(3, 3, 7);
-  EvaluationArrays<double> arrays{{position.data(), 3, 3}, {du.data(), 3, 3}, {dv.data(), 3, 3}};
+  EvaluationArrays<double> arrays{{position.data(), 3}, {du.data(), 3}, {dv.data(), 3}};
   surface.evaluate(at, Derivatives::first, arrays);
   EXPECT_EQ(position, expected.position);
   EXPECT_EQ(du, expected.du);
@@ -114,12 +114,12 @@ TEST(EvaluationArrays, OfAnotherSizeAreRefused) {
   const LimitSurface surface = limitSurface(cross());
   const std::vector<Location> at = {{3, 0.25, 0.5}, {0, 1, 0}};
   Points position = Points::Constant(2, 3, 7), du(2, 3), short_one(1, 3);
-  const EvaluationArrays<double> without_dv{{position.data(), 2, 3}, {du.data(), 2, 3}};
+  const EvaluationArrays<double> without_dv{{position.data(), 2}, {du.data(), 2}};
   EXPECT_EQ(
       errorOf<std::invalid_argument>([&] { surface.evaluate(at, Derivatives::first, without_dv); }),
       "dv has 0 rows; expected 2");
   EXPECT_EQ(position, Points::Constant(2, 3, 7));
-  const EvaluationArrays<double> too_short{{short_one.data(), 1, 3}};
+  const EvaluationArrays<double> too_short{{short_one.data(), 1}};
   EXPECT_EQ(
       errorOf<std::invalid_argument>([&] { surface.evaluate(at, Derivatives::none, too_short); }),
       "position has 1 rows; expected 2");

@@ -54,17 +54,18 @@ Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivativ
 
 template <typename Real>
 void LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives,
-                            EvaluationArrays<Real> results, int threads) const {
+                            const EvaluationArrays<Real>& results, int threads) const {
   data_->check(at, threads);
-  const auto of = [&](const char* name, typename EvaluationArrays<Real>::Rows& array, bool wanted) {
+  const auto of = [&](const char* name, const typename EvaluationArrays<Real>::Rows& array,
+                      bool wanted) {
     if (!wanted) {
       return static_cast<Real*>(nullptr);
     }
-    if (array.rows() != static_cast<Eigen::Index>(at.size())) {
-      throw std::invalid_argument(std::string(name) + " has " + std::to_string(array.rows()) +
+    if (array.count != at.size()) {
+      throw std::invalid_argument(std::string(name) + " has " + std::to_string(array.count) +
                                   " rows; expected " + std::to_string(at.size()));
     }
-    return array.data();
+    return array.numbers;
   };
   const bool first = derivatives >= Derivatives::first, second = derivatives == Derivatives::second;
   const PatchResults<Real> into{of("position", results.position, true),
@@ -73,13 +74,13 @@ void LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives,
                                 of("duu", results.duu, second),
                                 of("duv", results.duv, second),
                                 of("dvv", results.dvv, second),
-                                of("normal", results.normal, first && results.normal.rows() > 0)};
+                                of("normal", results.normal, first && results.normal.count > 0)};
   evaluateInto(data_->table, data_->pose, at, derivatives, into, threads);
 }
 
-template void LimitSurface::evaluate(const LocationBatch&, Derivatives, EvaluationArrays<double>,
-                                     int) const;
-template void LimitSurface::evaluate(const LocationBatch&, Derivatives, EvaluationArrays<float>,
-                                     int) const;
+template void LimitSurface::evaluate(const LocationBatch&, Derivatives,
+                                     const EvaluationArrays<double>&, int) const;
+template void LimitSurface::evaluate(const LocationBatch&, Derivatives,
+                                     const EvaluationArrays<float>&, int) const;
 
 }  // namespace limitsurf
