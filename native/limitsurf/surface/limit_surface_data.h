@@ -14,18 +14,6 @@
 
 namespace limitsurf {
 
-/// Evaluates a jet with as many derivatives as are asked for.
-inline void evaluateJet(TileEvaluator& evaluator, const TileLocation& at, Derivatives derivatives,
-                        Jet& jet) {
-  if (derivatives == Derivatives::none) {
-    evaluator.evaluate<0>(at, jet);
-  } else if (derivatives == Derivatives::first) {
-    evaluator.evaluate<1>(at, jet);
-  } else {
-    evaluator.evaluate<2>(at, jet);
-  }
-}
-
 struct LimitSurface::Data {
   explicit Data(ControlMesh control_mesh);
 
@@ -42,9 +30,6 @@ struct LimitSurface::Data {
     });
   }
 
-  const Ring& ringAt(const TileLocation& at) const {
-    return table.rings[table.ring_tiles[at.tile.index].ring].basis->ring();
-  }
   VertexApproach approachTo(const TileLocation& at) const;
 
   ControlMesh mesh;

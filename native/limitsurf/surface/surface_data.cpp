@@ -156,7 +156,7 @@ DataEvaluation SurfaceData::evaluate(const LocationBatch& at, Derivatives deriva
       for (std::size_t i = begin; i < end; ++i) {
         row = static_cast<Eigen::Index>(i);
         Jet jet;
-        evaluateJet(evaluator, evaluator.locate(at[i]), derivatives, jet);
+        evaluator.evaluateUpTo(static_cast<int>(derivatives), evaluator.locate(at[i]), jet);
         put(out.value, jet.anchor + jet.patch.value);
         if (derivatives >= Derivatives::first) {
           put(out.du, jet.patch.du);

@@ -7,6 +7,7 @@
 #include "arrays.h"
 #include "limitsurf/surface/strands/frame_rows.h"
 #include "locks/signals.h"
+#include "matrices.h"
 
 namespace limitsurf::python {
 namespace {
@@ -43,16 +44,6 @@ constexpr char kStraightStrandsDoc[] =
 roots and along are (n, 3). A strand of one point is its root. Points are computed in float64 and then rounded.
 Raises ValueError for arrays of other shapes and for points below 1. Cost: O(n points).
 )";
-
-/// The rows of an (n, 3, 3) array, which must live on.
-Eigen::Map<const Rotations> rotationRows(Doubles& array, const char* name) {
-  shapeEmpty(array, {0, 3, 3});
-  if (array.ndim() != 3 || array.shape(1) != 3 || array.shape(2) != 3) {
-    throw py::value_error(std::string(name) + " has shape " + shapeText(array) +
-                          "; expected (n, 3, 3)");
-  }
-  return {array.data(), array.shape(0), 9};
-}
 
 template <typename Rows>
 Eigen::Map<const Rows> rows(Doubles& array, const char* name) {

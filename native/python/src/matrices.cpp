@@ -18,4 +18,13 @@ Eigen::Matrix4d matrixOrNone(const py::object& object, const char* name) {
   return object.is_none() ? Eigen::Matrix4d::Identity() : matrixOf(object, name);
 }
 
+Eigen::Map<const Rotations> rotationRows(Doubles& array, const char* name) {
+  shapeEmpty(array, {0, 3, 3});
+  if (array.ndim() != 3 || array.shape(1) != 3 || array.shape(2) != 3) {
+    throw py::value_error(std::string(name) + " has shape " + shapeText(array) +
+                          "; expected (n, 3, 3)");
+  }
+  return {array.data(), array.shape(0), 9};
+}
+
 }  // namespace limitsurf::python

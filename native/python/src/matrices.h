@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "arrays.h"
+#include "limitsurf/surface/strands/strand_turns.h"
 
 namespace limitsurf::python {
 
@@ -11,5 +12,9 @@ namespace limitsurf::python {
 /// an array of another shape.
 Eigen::Matrix4d matrixOf(const py::object& object, const char* name);
 Eigen::Matrix4d matrixOrNone(const py::object& object, const char* name);
+
+/// The rows of an (n, 3, 3) array, which must live on; [] has none. Throws ValueError for an array
+/// of another shape.
+Eigen::Map<const Rotations> rotationRows(Doubles& array, const char* name);
 
 }  // namespace limitsurf::python

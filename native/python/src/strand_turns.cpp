@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "matrices.h"
 #include "strand_poser.h"
 #include "strand_turns.h"
 
@@ -66,14 +67,10 @@ py::array_t<double> moveStrands(const py::object& points, const py::object& offs
                                 const py::object& roots, const py::object& new_roots,
                                 const py::object& turns) {
   Doubles rotations = doubles(turns, "turns");
-  shapeEmpty(rotations, {0, 3, 3});
-  if (rotations.ndim() != 3 || rotations.shape(1) != 3 || rotations.shape(2) != 3) {
-    throw py::value_error("turns has shape " + shapeText(rotations) + "; expected (n, 3, 3)");
-  }
+  const auto turn = rotationRows(rotations, "turns");
   const std::vector<std::int64_t> begins = strandOffsets(offsets);
   const Points from = rowsOfThree(points, "points"), before = rowsOfThree(roots, "roots"),
                after = rowsOfThree(new_roots, "new_roots");
-  const Eigen::Map<const Rotations> turn(rotations.data(), rotations.shape(0), 9);
   return pointArray(movedStrands(from, begins, before, after, turn));
 }
 

@@ -137,11 +137,11 @@ void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth, 
   const int corner = ring_tile.corner;
   const bool needs_nets = TileEvaluator::needsNets(*table_.rings[ring_tile.ring].basis, order_);
   turns = (turns + corner) & 3;
-  // Parts are numbered 4 steps + a + 2 b; those that are deeper, 0.
+  // Parts are numbered 4 steps + a + 2 b. Rows that are evaluated one by one belong to part 0.
   constexpr unsigned kParts = 4 * (kMostSteps + 1);
   static_assert(kParts <= 256);
   Level& parts = level(depth, rows.count);
-  unsigned begin[kParts + 1] = {};
+  unsigned begin[kParts] = {};
   int deepest = 0;
   for (unsigned i = 0; i < rows.count; ++i) {
     turnParameters(corner, rows.u[i], rows.v[i]);

@@ -51,8 +51,7 @@ class BatchEvaluator {
   struct Level {
     std::vector<double> u, v;
     std::vector<std::size_t> rows;
-    std::vector<std::uint8_t>
-        part;  // to which part of the tile each row of the level above belongs
+    std::vector<std::uint8_t> part;  // by row of the level above: to which part it belongs
   };
 
   /// The rows of a part of a face, on which the tile lies, split as often as `depth`.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The inner loops of batch evaluation. patch_kernels.cpp includes this file once for each
-// instruction set, inside a namespace, after it has defined kLanes, kFewestLanes,
-// squareRoot() and interleave(). Nothing here
-// may call a function that is defined elsewhere: its code could be that of another set.
+// instruction set, inside a namespace, after it has defined kLanes, kFewestLanes, squareRoot(),
+// interleave() and interleavePadded(). Nothing here may call a function that is defined elsewhere:
+// its code could be that of another set.
 
 #include "limitsurf/eigen/bspline_formulas.inl.h"
 #include "limitsurf/surface/batch/unit_normal.inl.h"

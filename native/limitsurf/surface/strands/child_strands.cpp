@@ -7,6 +7,7 @@
 #include <string>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/strands/strand_offsets.h"
 #include "limitsurf/surface/strands/strand_turns.h"
 
 namespace limitsurf {
@@ -61,21 +62,14 @@ void resample(const StrandRef& from, Eigen::Ref<Strand, 0, Eigen::OuterStride<3>
   to.row(to.rows() - 1) = from.row(from.rows() - 1);
 }
 
-void checkRows(Eigen::Index rows, Eigen::Index expected, const char* name) {
-  if (rows != expected) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows) +
-                                " rows; expected " + std::to_string(expected));
-  }
-}
-
 void check(const GuideStrands& guides, const ChildRoots& children) {
   if (guides.points_per_strand < 2) {
     throw std::invalid_argument("guides have " + std::to_string(guides.points_per_strand) +
                                 " points each; expected 2 or more");
   }
   const Eigen::Index count = guides.normals.rows(), rows = children.position.rows();
-  checkRows(guides.points.rows(), count * guides.points_per_strand, "guide_points");
-  checkRows(children.normal.rows(), rows, "normals");
+  checkRows("guide_points", guides.points.rows(), count * guides.points_per_strand);
+  checkRows("normals", children.normal.rows(), rows);
   const auto size = static_cast<std::size_t>(rows) * static_cast<std::size_t>(children.guides);
   if (children.guide.size() != size || children.weight.size() != size) {
     throw std::invalid_argument("guide and weight need a row for each child, and as many columns");

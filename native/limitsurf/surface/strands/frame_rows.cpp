@@ -10,6 +10,7 @@
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/differential.h"
+#include "limitsurf/surface/strands/strand_offsets.h"
 
 namespace limitsurf {
 namespace {
@@ -29,13 +30,6 @@ void forEachRow(Eigen::Index rows, int threads, const Body& body) {
                   body(static_cast<Eigen::Index>(row));
                 }
               });
-}
-
-void requireRows(const char* what, Eigen::Index rows, Eigen::Index expected) {
-  if (rows != expected) {
-    throw std::invalid_argument(std::string(what) + " has " + std::to_string(rows) +
-                                " rows; expected " + std::to_string(expected));
-  }
 }
 
 /// The quaternion times four times one of its own components: the largest one, so that no digits
@@ -95,7 +89,7 @@ Rotations framesInWorld(const Eigen::Ref<const Rotations>& frames, const Eigen::
 
 Points leaning(const Eigen::Ref<const Rotations>& frames, const Eigen::Ref<const Pairs>& angles,
                int threads) {
-  requireRows("angles", angles.rows(), frames.rows());
+  checkRows("angles", angles.rows(), frames.rows());
   Points result(frames.rows(), 3);
   forEachRow(frames.rows(), threads, [&](Eigen::Index row) {
     const Frame frame(frames.row(row).data());
@@ -110,7 +104,7 @@ Points leaning(const Eigen::Ref<const Rotations>& frames, const Eigen::Ref<const
 
 FloatPoints straightStrands(const Eigen::Ref<const Points>& roots,
                             const Eigen::Ref<const Points>& along, int points, int threads) {
-  requireRows("along", along.rows(), roots.rows());
+  checkRows("along", along.rows(), roots.rows());
   if (points < 1) {
     throw std::invalid_argument("points is " + std::to_string(points) + "; expected 1 or more");
   }

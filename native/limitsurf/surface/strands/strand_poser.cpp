@@ -50,13 +50,6 @@ void checkFinite(const char* what, std::size_t row, const float* values, int cou
   }
 }
 
-void checkRows(const char* what, Eigen::Index rows, std::int64_t expected) {
-  if (rows != expected) {
-    throw std::invalid_argument(std::string(what) + " has " + std::to_string(rows) +
-                                " rows; expected " + std::to_string(expected));
-  }
-}
-
 void checkMap(const Eigen::Matrix4d& map) {
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {

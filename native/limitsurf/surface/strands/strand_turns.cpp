@@ -15,13 +15,6 @@ using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr double kNearlyOpposite = 1e-9;
 
-void checkRows(const char* what, Eigen::Index rows, Eigen::Index expected) {
-  if (rows != expected) {
-    throw std::invalid_argument(std::string(what) + " has " + std::to_string(rows) +
-                                " rows; expected " + std::to_string(expected));
-  }
-}
-
 /// NaN for vectors without a direction.
 Vector3 unit(const Vector3& vector) {
   const double length = vector.stableNorm();
