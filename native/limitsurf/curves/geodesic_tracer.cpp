@@ -25,14 +25,16 @@ GeodesicTracer::Path GeodesicTracer::trace(const Location& from, const Vector3& 
                                            const std::vector<bool>* targets) const {
   Path path;
   GeodesicWalk walk(data_->ground, targets);
+  const double scale = data_->ground.patches.scale();
   bool goes_on = walk.start(from, direction);
   for (std::size_t i = 0; i < lengths.size() && goes_on; ++i) {
-    goes_on = walk.go(lengths[i]);
+    goes_on = walk.go(scale * lengths[i]);
     if (goes_on) {
       path.stops.push_back(walk.stop());
+      path.stops.back().position /= scale;
     }
   }
-  path.length = walk.length();
+  path.length = walk.length() / scale;
   path.hit = walk.hit();
   return path;
 }

@@ -91,7 +91,7 @@ bool GeodesicWalk::start(const Location& from, const Vector3& direction) {
   }
   at_.direction = direction;
   if (on_.is_rest) {
-    const Points position = ground_.surface.evaluate(std::vector<Location>{from}).position;
+    const Points position = ground_.positions({from});
     return pass(position.row(0));
   }
   const PatchPlace place = placeOn(on_.patch.on, from);
@@ -275,7 +275,7 @@ bool GeodesicWalk::pass(const Vector3& from) {
                         side.v0 + kPass * (a * side.dv + b * side.du)});
     }
   }
-  const Points positions = ground_.surface.evaluate(around).position;
+  const Points positions = ground_.positions(around);
   const Vector3 center = positions.row(0);
   Eigen::Index best = -1;
   double straightest = kStraightOn;

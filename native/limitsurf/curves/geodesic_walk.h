@@ -11,13 +11,18 @@
 
 namespace limitsurf {
 
-/// What geodesics are followed on.
+/// What geodesics are followed on. Lengths of walks are in the unit of the patches.
 struct GeodesicGround {
   GeodesicGround(const LimitSurface& limit_surface, int threads)
       : surface(limit_surface),
-        patches(limit_surface, threads),
+        patches(limit_surface, threads, PatchUnit::own),
         tiles(patches, limit_surface.faceCount()),
         neighbors(limit_surface) {}
+
+  /// Positions on the surface, in the unit of the patches.
+  Points positions(const std::vector<Location>& at) const {
+    return patches.scale() * surface.evaluate(at).position;
+  }
 
   const LimitSurface& surface;
   SurfacePatches patches;

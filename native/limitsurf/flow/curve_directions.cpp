@@ -157,7 +157,7 @@ std::size_t holdToCurves(const LimitSurface& surface, const FlowMesh& mesh, cons
                          int threads, Equations& equations) {
   const Hits hits = SurfaceSearch(surface, threads).closest(samples.middle, {}, threads);
   const auto frames = surface.frames(hits.at, threads);
-  const double strength = kHold / mesh.meanSide();
+  const double strength = kHold / mesh.meanSide() * mesh.scale();
   std::size_t held = 0;
   for (std::size_t row = 0; row < hits.at.size(); ++row) {
     const Vector3 normal = normalOf(frames.row(static_cast<Eigen::Index>(row)).data());
@@ -214,7 +214,7 @@ Points curveDirections(const LimitSurface& surface, const Polylines& curves,
   report(0.1);
   Equations equations(mesh);
   equations.addChange();
-  const Samples samples = sample(curves, mesh.meanSide() / kSamplesPerSide);
+  const Samples samples = sample(curves, mesh.meanSide() / mesh.scale() / kSamplesPerSide);
   if (holdToCurves(surface, mesh, samples, threads, equations) == 0) {
     throw std::invalid_argument("no part of a curve runs along the surface");
   }

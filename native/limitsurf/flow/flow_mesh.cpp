@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/own_unit.h"
 #include "limitsurf/surface/differential.h"
 
 namespace limitsurf {
@@ -43,6 +44,11 @@ FlowMesh::FlowMesh(const LimitSurface& surface, std::int64_t wanted, int threads
   for (const std::size_t count : counts) {
     side_.push_back(static_cast<int>(std::lround(std::sqrt(static_cast<double>(count)))));
   }
+  Points& points = polygons_.positions;
+  scale_ = scaleToOwnUnit(
+      points.rows() > 0 ? (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff()
+                        : 0);
+  points *= scale_;
   computeNormals();
 }
 

@@ -30,6 +30,8 @@ class FlowMesh {
   int vertexCount() const { return static_cast<int>(normals_.size()); }
   std::size_t quadCount() const { return polygons_.face_sizes.size(); }
   std::array<int, 4> quad(std::size_t number) const;
+  /// What the surface's lengths are multiplied by in this mesh: a power of two.
+  double scale() const { return scale_; }
   Vector3 position(int vertex) const { return polygons_.positions.row(vertex); }
   const Vector3& normal(int vertex) const { return normals_[vertex]; }
   const PlaneBasis& basis(int vertex) const { return bases_[vertex]; }
@@ -48,7 +50,7 @@ class FlowMesh {
   std::vector<int> side_;                // per Ptex face: quads along its side, 0 where refused
   std::vector<Vector3> normals_;
   std::vector<PlaneBasis> bases_;
-  double area_ = 0;
+  double scale_ = 1, area_ = 0;
 };
 
 }  // namespace limitsurf

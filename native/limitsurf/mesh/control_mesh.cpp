@@ -201,11 +201,24 @@ void checkPositions(const Points& positions, int vertex_count) {
   if (positions.rows() != vertex_count) {
     refuse("positions has ", positions.rows(), " rows; the mesh has ", vertex_count, " vertices");
   }
+  using Row = Eigen::Array<double, 1, 3>;
+  Row low = Row::Constant(kLargestCoordinate), high = -low;
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (!positions.row(v).allFinite()) {
       refuse("vertex ", v, " has position (", positions(v, 0), ", ", positions(v, 1), ", ",
              positions(v, 2), "); positions must be finite");
     }
+    if (positions.row(v).cwiseAbs().maxCoeff() > kLargestCoordinate) {
+      refuse("vertex ", v, " has position (", positions(v, 0), ", ", positions(v, 1), ", ",
+             positions(v, 2), "); coordinates may be at most ", kLargestCoordinate);
+    }
+    low = low.min(positions.row(v).array());
+    high = high.max(positions.row(v).array());
+  }
+  const double extent = (high - low).maxCoeff();  // negative if there are no positions
+  if (extent > 0 && extent < kLeastExtent) {
+    refuse("the mesh measures ", extent, " along its longest axis; it must measure at least ",
+           kLeastExtent, ", or 0");
   }
 }
 

@@ -48,7 +48,8 @@ struct MeshOptions : SubdivisionOptions {
 ///   - face_sizes that do not add up to the number of face_vertices, or a size below 3 or above
 ///     OpenSubdiv's limit of 65,535;
 ///   - a vertex index below 0 or past the last position;
-///   - a position that is NaN or infinite;
+///   - a position that is NaN or infinite, or beyond kLargestCoordinate;
+///   - positions that differ, but by less than kLeastExtent;
 ///   - more than 65,535 edges at one vertex;
 ///   - sharpness that is negative or NaN, or on an edge or vertex that the mesh does not have;
 ///   - a hole that is no face of the mesh.
@@ -85,8 +86,15 @@ class ControlMesh {
   MeshOptions options_;
 };
 
-/// Throws MeshError for another number of rows than vertices, and for the first row that is not
-/// finite, which it names.
+/// Coordinates reach so far at most: 2^400, about 2.6e120. Squares of lengths, and what is computed
+/// from them, then neither overflow nor underflow.
+constexpr double kLargestCoordinate = 0x1p400;
+/// The longest side of the positions' bounding box is 0, or at least so long.
+constexpr double kLeastExtent = 0x1p-400;
+
+/// Throws MeshError for another number of rows than vertices, for the first row that is not finite
+/// or beyond kLargestCoordinate, which it names, and for positions closer together than
+/// kLeastExtent.
 void checkPositions(const Points& positions, int vertex_count);
 
 }  // namespace limitsurf

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "limitsurf/number_text.h"
+#include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/path/bezier_fit.h"
 #include "limitsurf/path/space_curves.h"
@@ -44,11 +45,13 @@ struct Probes {
   }
 };
 
+/// Fits a path whose lengths, as those of the options, are `scale` times those of the surface.
 class Fitter {
  public:
   Fitter(const SurfaceSearch& search, const Points& path, const Points& normals,
-         const FitOptions& options)
+         const FitOptions& options, double scale)
       : search_(search),
+        scale_(scale),
         path_(path),
         options_(options),
         tangents_(path, normals, kApart * options.tolerance, options.closed) {}
@@ -188,11 +191,15 @@ class Fitter {
   /// than the one from which the offset is counted: then the distance from the path itself counts,
   /// which is not smaller than that.
   Eigen::VectorXd distances(const Probes& probes) const {
-    const Hits hits = feet(search_, probes.points, options_.threads);
+    std::vector<Vector3> places = probes.points;
+    for (Vector3& place : places) {
+      place /= scale_;
+    }
+    const Eigen::VectorXd distance = scale_ * feet(search_, places, options_.threads).distance;
     const double offset = std::abs(options_.offset);
-    Eigen::VectorXd off = (hits.distance.array() - offset).abs();
+    Eigen::VectorXd off = (distance.array() - offset).abs();
     for (Eigen::Index i = 0; i < off.size(); ++i) {
-      if (hits.distance[i] < offset && off[i] > kForSegments * options_.tolerance) {
+      if (distance[i] < offset && off[i] > kForSegments * options_.tolerance) {
         const auto probe = static_cast<std::size_t>(i);
         off[i] = std::min(off[i], fromPath(probes.points[probe], probes.rows[probe]));
       }
@@ -286,6 +293,7 @@ class Fitter {
   }
 
   const SurfaceSearch& search_;
+  double scale_;
   const Points& path_;
   const FitOptions& options_;
   PathTangents tangents_;
@@ -315,16 +323,26 @@ PathFit fitPath(const LimitSurface& surface, const SurfaceSearch& search,
     }
   }
   const Evaluation on = surface.evaluate(path, Derivatives::first, true, options.threads);
-  if (options.offset == 0) {
-    return Fitter(search, on.position, on.normal, options).fit();
+  Points points = on.position;
+  if (options.offset != 0) {
+    // Frames have a normal where the surface has none.
+    const auto normals = surface.frames(path, options.threads);
+    for (int axis = 0; axis < 3; ++axis) {
+      points.col(axis) += options.offset * normals.col(3 * axis + 2);
+    }
   }
-  // Frames have a normal where the surface has none.
-  const auto normals = surface.frames(path, options.threads);
-  Points beside = on.position;
-  for (int axis = 0; axis < 3; ++axis) {
-    beside.col(axis) += options.offset * normals.col(3 * axis + 2);
-  }
-  return Fitter(search, beside, on.normal, options).fit();
+  const double scale =
+      scaleToOwnUnit((points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff());
+  points *= scale;
+  FitOptions scaled = options;
+  scaled.tolerance *= scale;
+  scaled.offset *= scale;
+  PathFit fit = Fitter(search, points, on.normal, scaled, scale).fit();
+  fit.before /= scale;
+  fit.after /= scale;
+  fit.deviation /= scale;
+  fit.error /= scale;
+  return fit;
 }
 
 }  // namespace limitsurf

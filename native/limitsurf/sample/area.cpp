@@ -37,7 +37,7 @@ struct Effort {
 /// underflow.
 class TileArea {
  public:
-  TileArea(const SurfacePatches& patches, double scale) : patches_(patches), scale_(scale) {}
+  explicit TileArea(const SurfacePatches& patches) : patches_(patches) {}
 
   SurfaceArea operator()(int tile, const Effort& effort) {
     pieces_.clear();
@@ -64,7 +64,7 @@ class TileArea {
     quadrature_.clear();
     quadrature_.keepSquares(effort.most_squares > 0);
     for (int i = 0; i < count; ++i) {
-      quadrature_.add(patches[i], scale_, effort.relative, effort.absolute);
+      quadrature_.add(patches[i], effort.relative, effort.absolute);
     }
     quadrature_.refine(effort.absolute, effort.most_squares);
     return quadrature_.result();
@@ -101,7 +101,6 @@ class TileArea {
   }
 
   const SurfacePatches& patches_;
-  double scale_;
   std::vector<SurfacePiece> pieces_;
   AreaQuadrature quadrature_;
 };
@@ -138,14 +137,10 @@ std::vector<std::size_t> worstTiles(const std::vector<SurfaceArea>& areas, doubl
 
 SurfaceArea measuredArea(const LimitSurface& surface, int threads) {
   checkThreads(threads);
-  const SurfacePatches patches(surface, threads);
-  const double diagonal = patches.diagonal();
-  const int unit = diagonal > 0 && std::isfinite(diagonal) ? std::ilogb(diagonal) : 0;
-  const double scale = std::ldexp(1., -unit);
-
+  const SurfacePatches patches(surface, threads, PatchUnit::own);
   std::vector<SurfaceArea> areas(static_cast<std::size_t>(patches.tileCount()));
   parallelFor(areas.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    TileArea area(patches, scale);
+    TileArea area(patches);
     for (std::size_t tile = begin; tile < end; ++tile) {
       areas[tile] = area(static_cast<int>(tile), {kFirstTolerance, 0, 0});
     }
@@ -157,7 +152,7 @@ SurfaceArea measuredArea(const LimitSurface& surface, int threads) {
     const Effort effort = {0, kTolerance / 2 * sum.value / count,
                            std::max(kFewSquares, kMostSquares / count)};
     parallelFor(worst.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
-      TileArea area(patches, scale);
+      TileArea area(patches);
       for (std::size_t i = begin; i < end; ++i) {
         const std::int64_t before = areas[worst[i]].evaluations;
         areas[worst[i]] = area(static_cast<int>(worst[i]), effort);
@@ -166,8 +161,8 @@ SurfaceArea measuredArea(const LimitSurface& surface, int threads) {
     });
     sum = sumOf(areas);
   }
-  sum.value = std::ldexp(sum.value, 2 * unit);
-  sum.error = std::ldexp(sum.error, 2 * unit);
+  sum.value = sum.value / patches.scale() / patches.scale();
+  sum.error = sum.error / patches.scale() / patches.scale();
   return sum;
 }
 

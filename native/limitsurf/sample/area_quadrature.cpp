@@ -83,11 +83,11 @@ void AreaQuadrature::measure(Square& square, double relative, double absolute) {
   }
 }
 
-void AreaQuadrature::add(const BezierPatch& patch, double scale, double relative, double absolute) {
+void AreaQuadrature::add(const BezierPatch& patch, double relative, double absolute) {
   Square square;
   for (int i = 0; i < 16; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      square.points[axis][i] = scale * patch.points[i][axis];
+      square.points[axis][i] = patch.points[i][axis];
     }
   }
   measure(square, relative, absolute);

@@ -18,9 +18,9 @@ class AreaQuadrature {
  public:
   void clear();
 
-  /// Adds a patch, of which each coordinate is multiplied by `scale` first. The rules end where the
-  /// error is at most the larger one of `absolute` and this part of the patch's own area.
-  void add(const BezierPatch& patch, double scale, double relative, double absolute);
+  /// Adds a patch, in its own unit (PatchUnit). The rules end where the error is at most the larger
+  /// one of `absolute` and this part of the patch's own area.
+  void add(const BezierPatch& patch, double relative, double absolute);
 
   /// Quarters squares until the sum of all errors is below `tolerance`, or until this has made
   /// `most` squares. The squares must have been kept since clear().

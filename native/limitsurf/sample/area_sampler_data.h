@@ -10,11 +10,11 @@
 
 namespace limitsurf {
 
-/// What an AreaSampler keeps: the surface's patches, cut into cells.
+/// What an AreaSampler keeps: the surface's patches, in their own unit, cut into cells.
 struct AreaSampler::Data {
   Data(const LimitSurface& limit_surface, int threads)
       : surface(limit_surface),
-        patches(limit_surface, threads),
+        patches(limit_surface, threads, PatchUnit::own),
         cells(areaCells(patches, threads)),
         uniform(patches, cells, DensityField(), threads) {}
 

@@ -47,9 +47,10 @@ std::string text(double value) {
   return out.str();
 }
 
-/// For each face that has a surface its largest extent along u or v, roughly; -1 for others.
+/// For each face that has a surface its largest extent along u or v, times `scale`, roughly; -1 for
+/// others.
 std::vector<double> faceSizes(const LimitSurface& surface, const std::vector<bool>& has_surface,
-                              int threads) {
+                              double scale, int threads) {
   constexpr int kSteps = 2, kSide = kSteps + 1;
   std::vector<Location> at;
   for (std::size_t face = 0; face < has_surface.size(); ++face) {
@@ -59,7 +60,7 @@ std::vector<double> faceSizes(const LimitSurface& surface, const std::vector<boo
                     static_cast<double>(row) / kSteps});
     }
   }
-  const Points points = surface.evaluate(at, Derivatives::none, false, threads).position;
+  const Points points = scale * surface.evaluate(at, Derivatives::none, false, threads).position;
   std::vector<double> sizes(has_surface.size(), -1);
   for (Eigen::Index first = 0; first < points.rows(); first += kSide * kSide) {
     double& size = sizes[static_cast<std::size_t>(at[static_cast<std::size_t>(first)].face)];
@@ -76,7 +77,8 @@ std::vector<double> faceSizes(const LimitSurface& surface, const std::vector<boo
   return sizes;
 }
 
-/// Makes blue noise: once for a radius, repeatedly for a count until there are enough points.
+/// Makes blue noise, with lengths in the unit of the patches: once for a radius, repeatedly for a
+/// count until there are enough points.
 class BlueNoiseMaker {
  public:
   BlueNoiseMaker(const LimitSurface& surface, const SurfacePatches& patches,
@@ -92,7 +94,7 @@ class BlueNoiseMaker {
         margin_(2 * kPositionError * patches.diagonal()) {
     const Points& cage = surface.positions();
     for (Eigen::Index i = 0; i < cage.rows(); ++i) {
-      box_.include(cage.row(i).transpose());
+      box_.include(patches.scale() * cage.row(i).transpose());
     }
     if (!options.density.function()) {
       density_ = DensityField(options.density);
@@ -106,7 +108,8 @@ class BlueNoiseMaker {
     }
     expected_ = pointsOf(radius);
     if (expected_ > kMostPoints || radius < DiscGrid::smallestRadius(box_)) {
-      throw std::invalid_argument("radius is " + text(radius) + ": about " + text(expected_) +
+      throw std::invalid_argument("radius is " + text(radius / patches_.scale()) + ": about " +
+                                  text(expected_) +
                                   " points would come out; at most 2147483647 can");
     }
     return result(sampled(radius), radius);
@@ -172,7 +175,7 @@ class BlueNoiseMaker {
   /// on the number of values allow it.
   void readFunction(double radius) {
     if (sizes_.empty()) {
-      sizes_ = faceSizes(surface_, has_surface_, threads_);
+      sizes_ = faceSizes(surface_, has_surface_, patches_.scale(), threads_);
     }
     int fewest = 0;
     while (fewest < kFewestLevels && (sizes_.size() << (2 * fewest)) < kFewestValues) {
@@ -242,7 +245,7 @@ class BlueNoiseMaker {
     noise.at.resize(points.size());
     std::transform(points.begin(), points.end(), noise.at.begin(),
                    [](const NoisePoint& point) { return point.at; });
-    noise.radius = radius;
+    noise.radius = radius / patches_.scale();
     if (progress_) {
       progress_(1);
     }
@@ -289,7 +292,7 @@ BlueNoise AreaSampler::blueNoise(const BlueNoiseOptions& options, int threads,
   const std::vector<bool> has_surface = data_->hasSurface();
   BlueNoiseMaker maker(data_->surface, data_->patches, data_->cells, has_surface, options, threads,
                        progress);
-  return options.radius ? maker.ofRadius(*options.radius)
+  return options.radius ? maker.ofRadius(*options.radius * data_->patches.scale())
                         : maker.ofCount(static_cast<std::size_t>(count));
 }
 

@@ -24,13 +24,14 @@ constexpr double kFarthest = 1e150;
 
 }  // namespace
 
-void checkFinite(const Points& rows, const char* name) {
+void checkFinite(const Points& rows, const char* name, double scale) {
   for (Eigen::Index row = 0; row < rows.rows(); ++row) {
     if (!rows.row(row).allFinite()) {
       refuse(name, row, rows, "is not finite");
     }
-    if (rows.row(row).cwiseAbs().maxCoeff() > kFarthest) {
-      refuse(name, row, rows, "is too far away: coordinates may go up to 1e150");
+    if (scale * rows.row(row).cwiseAbs().maxCoeff() > kFarthest) {
+      const std::string most = numberText(kFarthest / scale);
+      refuse(name, row, rows, ("is too far away: coordinates may go up to " + most).c_str());
     }
   }
 }

@@ -7,9 +7,9 @@ namespace limitsurf {
 
 // Checks of arguments. Each throws std::invalid_argument naming the first wrong row or value.
 
-/// Coordinates must be finite, and so small that their squares do not overflow. `name` is what a
-/// row is called in the message, as in "point".
-void checkFinite(const Points& rows, const char* name);
+/// Coordinates must be finite and, times `scale`, so small that their squares do not overflow.
+/// `name` is what a row is called in the message, as in "point".
+void checkFinite(const Points& rows, const char* name, double scale = 1);
 /// Directions must be finite and not 0.
 void checkDirections(const Points& rows);
 /// There must be as many rows as `expected`.

@@ -72,7 +72,8 @@ class ClosestSearch {
   /// Whether the last search has met so many leaves in vain that it is to be made again with cones.
   bool gaveUp() const { return gave_up_; }
 
-  /// The location of the closest point, with face -1 if none is within `max_distance`.
+  /// The location of the closest point, with face -1 if none is within `max_distance`. Lengths are
+  /// in the unit of the tree.
   Location find(const Vector3& point, double max_distance, const Facing* facing) {
     gave_up_ = false;
     last_leaf_ = facing && !cones_ ? leaves_ + kPatience : kForever;
@@ -98,9 +99,6 @@ class ClosestSearch {
   static constexpr std::int64_t kPatience = 64;
   static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-  /// ClosestSoFar::enough() in the coordinates of boxes.
-  double enoughInBoxes() const { return best_.enough() * (data_.scale * data_.scale); }
-
   /// Walks down the tree, nearer boxes first. `point` is in the coordinates of boxes.
   void descend(const Vector3& point) {
     struct Entry {
@@ -112,7 +110,7 @@ class ClosestSearch {
     int height = 0;
     Entry next{0, 0};
     while (true) {
-      if (next.squared < enoughInBoxes()) {
+      if (next.squared < best_.enough()) {
         if (!BoxTree::isLeaf(next.node)) {
           const BoxTree::Node& node = data_.tree->node(next.node);
           float near[2] = {box_point.squaredDistance(node.boxes[0]),
@@ -130,7 +128,7 @@ class ClosestSearch {
           continue;
         }
         const std::int32_t leaf = BoxTree::leaf(next.node);
-        if (data_.leaves[leaf].box.squaredDistance(point) < enoughInBoxes()) {
+        if (data_.leaves[leaf].box.squaredDistance(point) < best_.enough()) {
           if (leaves_ == last_leaf_) {
             gave_up_ = true;
             return;
@@ -204,7 +202,8 @@ class ClosestSearch {
 Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
                             int threads) const {
   checkThreads(threads);
-  checkFinite(points, "point");
+  const double scale = data_->scale;
+  checkFinite(points, "point", scale);
   checkDistance(options.max_distance);
   const bool facing = options.facing.rows() > 0;
   if (facing) {
@@ -232,7 +231,7 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
           filter.emplace(
               Facing{data_->surface, inUnit(options.facing.row(row).transpose()), least_cosine});
         }
-        at[open[i]] = search.find(points.row(row).transpose(), options.max_distance,
+        at[open[i]] = search.find(scale * points.row(row).transpose(), scale * options.max_distance,
                                   filter ? &*filter : nullptr);
         gave_up[i] = search.gaveUp();
       }
@@ -256,7 +255,7 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
   Hits hits = hitsAt(data_->surface, std::move(at), threads);
   hits.distance.resize(points.rows());
   for (Eigen::Index row = 0; row < points.rows(); ++row) {
-    hits.distance[row] = (hits.position.row(row) - points.row(row)).norm();
+    hits.distance[row] = (scale * (hits.position.row(row) - points.row(row))).norm() / scale;
   }
   return hits;
 }

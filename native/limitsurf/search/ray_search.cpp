@@ -49,7 +49,8 @@ class RaySearch {
     found_.tolerance = tree.tolerance;
   }
 
-  /// The hits between the distances 0 and `max_distance`: the first, or all in order.
+  /// The hits between the distances 0 and `max_distance`: the first, or all in order. Lengths are
+  /// in the unit of the tree.
   std::vector<RayHit>& find(const Vector3& origin, const Vector3& direction, double max_distance,
                             bool first_only) {
     found_.hits.clear();
@@ -69,7 +70,6 @@ class RaySearch {
     found_.nearest = start + max_distance;
     RayFrame frame(ray);
     frame.origin += data_.middle;
-    ray.origin *= data_.scale;
     descend(ray, frame);
     for (RayHit& hit : found_.hits) {
       hit.distance = std::max(0., hit.distance - start);
@@ -81,13 +81,12 @@ class RaySearch {
   }
 
  private:
-  /// The tolerance, and the two ends of the ray, in the coordinates of boxes.
-  double margin() const { return found_.tolerance * data_.scale; }
-  double start() const { return (found_.from - found_.tolerance) * data_.scale; }
-  double end() const { return found_.nearest * data_.scale; }
+  double margin() const { return found_.tolerance; }
+  double start() const { return found_.from - found_.tolerance; }
+  double end() const { return found_.nearest; }
 
   /// Walks down the tree, nearer boxes first. `ray` is in the coordinates of boxes, `frame` in
-  /// those of the surface.
+  /// those of patches.
   void descend(const Ray& ray, const RayFrame& frame) {
     struct Entry {
       std::int32_t node;
@@ -212,9 +211,10 @@ class RaySearch {
 };
 
 /// Checks the arguments of rayCast() and rayCastAll().
-void checkRays(const Points& origins, const Points& directions, double max_distance, int threads) {
+void checkRays(const Points& origins, const Points& directions, double max_distance, double scale,
+               int threads) {
   checkThreads(threads);
-  checkFinite(origins, "origin");
+  checkFinite(origins, "origin", scale);
   checkRows(directions, origins.rows(), "directions");
   checkDirections(directions);
   checkDistance(max_distance);
@@ -224,17 +224,20 @@ void checkRays(const Points& origins, const Points& directions, double max_dista
 
 Hits SurfaceSearch::rayCast(const Points& origins, const Points& directions, double max_distance,
                             int threads) const {
-  checkRays(origins, directions, max_distance, threads);
+  const double scale = data_->scale;
+  checkRays(origins, directions, max_distance, scale, threads);
   std::vector<Location> at(static_cast<std::size_t>(origins.rows()));
   Eigen::VectorXd distance(origins.rows());
   parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     RaySearch search(*data_);
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      const std::vector<RayHit>& hits = search.find(
-          origins.row(row).transpose(), directions.row(row).transpose(), max_distance, true);
+      const std::vector<RayHit>& hits =
+          search.find(scale * origins.row(row).transpose(), directions.row(row).transpose(),
+                      scale * max_distance, true);
       at[i] = hits.empty() ? Location{} : hits[0].at;
-      distance[row] = hits.empty() ? std::numeric_limits<double>::quiet_NaN() : hits[0].distance;
+      distance[row] =
+          hits.empty() ? std::numeric_limits<double>::quiet_NaN() : hits[0].distance / scale;
     }
   });
   Hits result = hitsAt(data_->surface, std::move(at), threads);
@@ -244,15 +247,16 @@ Hits SurfaceSearch::rayCast(const Points& origins, const Points& directions, dou
 
 RayHits SurfaceSearch::rayCastAll(const Points& origins, const Points& directions,
                                   double max_distance, int threads) const {
-  checkRays(origins, directions, max_distance, threads);
+  const double scale = data_->scale;
+  checkRays(origins, directions, max_distance, scale, threads);
   const std::size_t rays = static_cast<std::size_t>(origins.rows());
   std::vector<std::vector<RayHit>> hits(rays);
   parallelFor(rays, kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     RaySearch search(*data_);
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      hits[i] = search.find(origins.row(row).transpose(), directions.row(row).transpose(),
-                            max_distance, false);
+      hits[i] = search.find(scale * origins.row(row).transpose(), directions.row(row).transpose(),
+                            scale * max_distance, false);
     }
   });
   RayHits result;
@@ -262,7 +266,7 @@ RayHits SurfaceSearch::rayCastAll(const Points& origins, const Points& direction
   for (const std::vector<RayHit>& of_ray : hits) {
     for (const RayHit& hit : of_ray) {
       at.push_back(hit.at);
-      distance.push_back(hit.distance);
+      distance.push_back(hit.distance / scale);
     }
     result.offsets.push_back(static_cast<std::int64_t>(at.size()));
   }

@@ -21,21 +21,20 @@ struct SearchLeaf {
 
 class NormalCones;
 
-/// The patches of a surface under a tree of boxes. Boxes have coordinates of their own, whose
-/// squares single precision can hold: relative to `middle` and times `scale`, so that the diagonal
-/// of the control mesh is about 1.
+/// The patches of a surface under a tree of boxes, and their common unit: `scale` times lengths of
+/// the surface, so that the diagonal of the control mesh is about 1. Boxes are in that unit and
+/// relative to `middle`, so that single precision can hold squares of their coordinates.
 struct SearchTree {
   SearchTree(const LimitSurface& limit_surface, int threads);
   ~SearchTree();
 
   const LimitSurface& surface;
   SurfacePatches patches;
-  Vector3 middle;
-  double diagonal;
   double scale;  ///< a power of two
+  Vector3 middle;
   /// The error that a search may leave: a tenth of kSearchError.
   double tolerance;
-  Vector3 inBoxes(const Vector3& point) const { return scale * (point - middle); }
+  Vector3 inBoxes(const Vector3& point) const { return point - middle; }
   Box inBoxes(const Box& box) const { return {inBoxes(box.low), inBoxes(box.high)}; }
 
   std::vector<SearchLeaf> leaves;  ///< in the order of the tree

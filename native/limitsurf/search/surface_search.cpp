@@ -18,11 +18,11 @@ constexpr int kStepsForBox = 2;
 using PatchPoints = Eigen::Matrix<double, 16, 3, Eigen::RowMajor>;
 
 /// The control points of a patch in the coordinates of boxes.
-PatchPoints pointsOf(const BezierPatch& patch, const Vector3& middle, double scale) {
+PatchPoints pointsOf(const BezierPatch& patch, const Vector3& middle) {
   PatchPoints points;
   const Vector3 anchor = patch.anchor.head<3>().matrix() - middle;
   for (int i = 0; i < 16; ++i) {
-    points.row(i) = scale * (patch.points[i].head<3>().matrix() + anchor).transpose();
+    points.row(i) = (patch.points[i].head<3>().matrix() + anchor).transpose();
   }
   return points;
 }
@@ -42,11 +42,10 @@ OrientedBox orientedBox(const PatchPoints& points) {
 
 SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
     : surface(limit_surface),
-      patches(limit_surface, threads),
+      patches(limit_surface, threads, PatchUnit::own),
+      scale(patches.scale()),
       middle(patches.middle()),
-      diagonal(patches.diagonal()),
-      scale(diagonal > 0 ? std::ldexp(1., -std::ilogb(diagonal)) : 1),
-      tolerance(kSearchError / 10 * diagonal) {
+      tolerance(kSearchError / 10 * patches.diagonal()) {
   const std::size_t tiles = static_cast<std::size_t>(patches.tileCount());
   struct Block {
     std::vector<SearchLeaf> leaves;
@@ -96,7 +95,7 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
   std::vector<SurfacePiece> pieces;
   patches.appendPieces(tile, pieces);
   const auto addPatch = [&](const SurfacePiece& piece, const BezierPatch& patch) {
-    const PatchPoints points = pointsOf(patch, middle, scale);
+    const PatchPoints points = pointsOf(patch, middle);
     out.push_back({orientedBox(points), piece});
     boxes.emplace_back(boxOf(points));
   };
@@ -119,7 +118,7 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
         if (step <= steps) {
           addPatch(split.pieces[quarter], split.patches[quarter]);
         } else {
-          box.include(boxOf(pointsOf(split.patches[quarter], middle, scale)));
+          box.include(boxOf(pointsOf(split.patches[quarter], middle)));
         }
       }
       if (step == steps) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "limitsurf/own_unit.h"
+
 namespace limitsurf {
 namespace {
 
@@ -42,16 +44,32 @@ Vector3 unitDirection(const Vector3& v) {
 
 Vector3 unitNormal(const Vector3& du, const Vector3& dv) {
   const UnitNormal<double> normal(du.data(), dv.data());
-  if (normalKeepsDigits(normal.square, normal.lengths, 0)) {
+  if (normalKeepsDigits(normal.square, normal.lengths, normal.squares, 0, 0)) {
     return {normal.unit[0], normal.unit[1], normal.unit[2]};
   }
-  return unitDirection(direction(du).cross(direction(dv)));
+  // Scaled by powers of two, the product keeps its digits to the bit.
+  const Vector3 a = scaleToOwnUnit(du.cwiseAbs().maxCoeff()) * du,
+                b = scaleToOwnUnit(dv.cwiseAbs().maxCoeff()) * dv;
+  const UnitNormal<double> scaled(a.data(), b.data());
+  return normalKeepsDigits(scaled.square, scaled.lengths, scaled.squares, 0, 0)
+             ? Vector3(scaled.unit[0], scaled.unit[1], scaled.unit[2])
+             : unitDirection(direction(du).cross(direction(dv)));
 }
 
-double sineSquare(const Vector3& du, const Vector3& dv) {
+bool meetsLimits(const Vector3& du, const Vector3& dv, const NormalLimits& limits) {
   const UnitNormal<double> normal(du.data(), dv.data());
-  return normalKeepsDigits(normal.square, normal.lengths, 0) ? normal.square / normal.lengths
-                                                             : kNaN;
+  return normalKeepsDigits(normal.square, normal.lengths, normal.squares, limits.sine_square,
+                           limits.square);
+}
+
+bool isWellConditioned(const Vector3& du, const Vector3& dv, double size) {
+  const double largest = std::max(du.cwiseAbs().maxCoeff(), dv.cwiseAbs().maxCoeff());
+  if (!(largest > 0) || !std::isfinite(largest)) {
+    return false;
+  }
+  const Vector3 a = du / largest, b = dv / largest;
+  const double lengths = a.squaredNorm() + b.squaredNorm();
+  return std::sqrt(2 * lengths) * (size / largest) <= kMostNormalCondition * a.cross(b).norm();
 }
 
 Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& normal) {

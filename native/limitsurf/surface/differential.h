@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 
+#include "limitsurf/surface/batch/normal_limits.h"
 #include "limitsurf/surface/jet.h"
+#include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -16,9 +18,12 @@ Vector3 unitDirection(const Vector3& v);
 /// overflows nor underflows.
 Vector3 unitNormal(const Vector3& du, const Vector3& dv);
 
-/// The squared sine of the angle between du and dv; NaN where a product of their lengths overflows
-/// or underflows.
-double sineSquare(const Vector3& du, const Vector3& dv);
+/// Whether du x dv meets the limits, and no product of lengths overflows or underflows.
+bool meetsLimits(const Vector3& du, const Vector3& dv, const NormalLimits& limits);
+
+/// Whether the condition number of the normal is at most kMostNormalCondition. `size` is what the
+/// rounding of du and dv is relative to.
+bool isWellConditioned(const Vector3& du, const Vector3& dv, double size);
 
 /// A right-handed rotation with columns tangent (along du), normal x tangent, normal. Where du or
 /// the normal vanishes the frame is completed from dv, then from the least aligned world axis.

@@ -25,9 +25,14 @@ constexpr double kPositionError = 1e-13;
 /// derivative at least 1/16 away from its corners.
 constexpr double kFirstDerivativeError = 1e-12;
 constexpr double kSecondDerivativeError = 1e-11;
-/// Normals: in radians. At a smooth corner of one face, where du and dv are antiparallel at the
-/// vertex, it holds only outside 2^-20 of the vertex.
+/// Normals: in radians, times the condition number or 1, whichever is larger. The condition number
+/// is S sqrt(2 (|du|^2 + |dv|^2)) / |du x dv|, where S is the size of the patch's control polygon,
+/// in the units of du: how much the rounding of du and dv turns their product. On faces of ordinary
+/// shape it is between 2 and 100. It is large on slivers, and grows without bound towards places
+/// where du x dv vanishes, as on a fold or at a smooth corner of one face.
 constexpr double kNormalError = 1e-11;
+/// Where the condition number is larger, the normal is NaN.
+constexpr double kMostNormalCondition = 0x1p30;
 
 /// How many derivatives an evaluation gives.
 enum class Derivatives { none = 0, first = 1, second = 2 };
@@ -175,8 +180,8 @@ class LimitSurface {
   /// sharp edge that bounds the face, du, dv and second derivatives are those of the limit curve.
   /// At interior valence 2 and 3, du = dv = 0. All other derivatives have no limit and are NaN. The
   /// normal is NaN where approaches to the vertex within the face's sector do not agree on one
-  /// (interior valence 2, boundaries with four and more faces). Use frames() where a direction is
-  /// needed.
+  /// (interior valence 2, boundaries with four and more faces), and anywhere its condition number
+  /// exceeds kMostNormalCondition. Use frames() where a direction is needed.
   ///
   /// `normals` asks for unit normals (and needs derivatives >= first).
   ///

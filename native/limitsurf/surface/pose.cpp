@@ -81,6 +81,19 @@ Pose::Pose(const TileTable& table) : table_(&table), first_tile_(table.rings.siz
   }
 }
 
+namespace {
+
+double extentOf(const Padded* points, std::size_t count) {
+  Padded low = count > 0 ? points[0] : Padded(Padded::Zero()), high = low;
+  for (std::size_t i = 1; i < count; ++i) {
+    low = low.min(points[i]);
+    high = high.max(points[i]);
+  }
+  return (high - low).maxCoeff();
+}
+
+}  // namespace
+
 void Pose::set(const Points& cage, int threads) {
   is_set_ = false;
   const RefinedPoints& refined = table_->points;
@@ -91,6 +104,7 @@ void Pose::set(const Points& cage, int threads) {
                   points_[i] = padded(cage.row(static_cast<Eigen::Index>(i)).transpose());
                 }
               });
+  extent_ = extentOf(points_.data(), static_cast<std::size_t>(cage.rows()));
   refinePoints();
   parallelFor(rings_.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {

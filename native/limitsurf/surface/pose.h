@@ -50,6 +50,9 @@ class Pose {
   void set(const Points& cage, int threads);
   bool isSet() const { return is_set_; }
 
+  /// The longest side of the bounding box of the control points.
+  double extent() const { return extent_; }
+
   const Padded& point(int i) const { return points_[i]; }
   /// The rounding error of a point: point(i) + residual(i) has twice the digits. It is 0 unless the
   /// table is fine.
@@ -76,6 +79,7 @@ class Pose {
 
   const TileTable* table_;
   bool is_set_ = false;
+  double extent_ = 0;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
   std::vector<Padded> residuals_;  // of the refined points

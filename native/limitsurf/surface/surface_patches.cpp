@@ -8,12 +8,27 @@
 
 namespace limitsurf {
 
-SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads)
-    : data_(std::make_unique<Data>(surface.data_->table, surface.data_->pose)) {
+namespace {
+
+void multiply(BezierPatch& patch, double scale) {
+  if (scale == 1) {
+    return;
+  }
+  patch.anchor *= scale;
+  for (BezierPatch::Point& point : patch.points) {
+    point *= scale;
+  }
+}
+
+}  // namespace
+
+SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads, PatchUnit unit)
+    : data_(std::make_unique<Data>(surface.data_->table, surface.data_->pose, unit)) {
   data_->setLevels(threads);
 }
 SurfacePatches::SurfacePatches(const SurfaceData& data, int threads)
-    : data_(std::make_unique<Data>(data.data_->tiles->table, data.data_->poses.front())) {
+    : data_(std::make_unique<Data>(data.data_->tiles->table, data.data_->poses.front(),
+                                   PatchUnit::coordinates)) {
   data_->setLevels(threads);
 }
 SurfacePatches::~SurfacePatches() = default;
@@ -51,6 +66,7 @@ BezierPatch SurfacePatches::patch(const SurfacePiece& piece) const {
   } else {
     data_->regularPatch(piece, out);
   }
+  multiply(out, data_->scale);
   out.on = data_->rectangle(piece);
   return out;
 }
@@ -68,15 +84,16 @@ void SurfacePatches::split(const SurfacePiece& core, SplitCore& out) const {
     BezierPatch& patch = out.patches[quarter];
     patch.anchor = anchor;
     data_->quarterPatch(tile, grid, steps, quarter, patch);
+    multiply(patch, data_->scale);
     patch.on = data_->rectangle(out.pieces[quarter]);
   }
   out.core = {core.tile, static_cast<std::int16_t>(steps), SurfacePiece::kCore};
   // The rest lies in the convex hull of the ring's points and of the slots around its own square.
-  const Vector3 vertex = coreVertex(core), reach = Vector3::Constant(data_->radius(out.core));
+  const Vector3 vertex = coreVertex(core), reach = Vector3::Constant(coreRadius(out.core));
   out.core_box = {vertex - reach, vertex + reach};
   for (const int c : tile_grid::kOuterSlots) {
     if (tile_grid::exists(tile.sides, c)) {
-      out.core_box.include((anchor + grid[c]).head<3>().matrix());
+      out.core_box.include(data_->scale * (anchor + grid[c]).head<3>().matrix());
     }
   }
 }
@@ -94,19 +111,29 @@ Box SurfacePatches::coreBox(const SurfacePiece& core) const {
   for (std::size_t i = 0; i < count; ++i) {
     box.include((pose.ring(tile.ring).limit + outer.outer[i]).head<3>().matrix());
   }
+  box.low *= data_->scale;
+  box.high *= data_->scale;
   return box;
 }
 
-double SurfacePatches::coreRadius(const SurfacePiece& core) const { return data_->radius(core); }
+double SurfacePatches::coreRadius(const SurfacePiece& core) const {
+  return data_->scale * data_->radius(core);
+}
 
 Vector3 SurfacePatches::coreVertex(const SurfacePiece& core) const {
-  return data_->pose.ring(data_->ringTile(core).ring).limit.head<3>().matrix();
+  return data_->scale * data_->pose.ring(data_->ringTile(core).ring).limit.head<3>().matrix();
 }
 
 double SurfacePatches::diagonal() const {
-  return data_->table.faces.empty() ? 0 : (data_->cage_box.high - data_->cage_box.low).norm();
+  return data_->table.faces.empty()
+             ? 0
+             : (data_->scale * (data_->cage_box.high - data_->cage_box.low)).norm();
 }
 
-Vector3 SurfacePatches::middle() const { return (data_->cage_box.low + data_->cage_box.high) / 2; }
+Vector3 SurfacePatches::middle() const {
+  return data_->scale * (data_->cage_box.low / 2 + data_->cage_box.high / 2);
+}
+
+double SurfacePatches::scale() const { return data_->scale; }
 
 }  // namespace limitsurf

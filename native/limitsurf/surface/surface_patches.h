@@ -38,6 +38,14 @@ struct SurfacePiece {
   bool isCore() const { return part == kCore; }
 };
 
+/// The unit of length of patches.
+enum class PatchUnit {
+  coordinates,  ///< that of the control points
+  /// The largest power of two that is no longer than the diagonal of the control points' bounding
+  /// box, so that products of lengths neither overflow nor underflow. All digits stay the same.
+  own
+};
+
 /// The limit surface in its present pose as bicubic patches, for searches and integrals.
 ///
 /// A face without extraordinary vertices is one patch, or a few strips along a semi-sharp edge. A
@@ -57,7 +65,8 @@ class SurfacePatches {
   /// Around vertices with more faces than this, the ring's points are kept for all steps.
   static constexpr int kFewFaces = 16;
 
-  explicit SurfacePatches(const LimitSurface& surface, int threads = 0);
+  explicit SurfacePatches(const LimitSurface& surface, int threads = 0,
+                          PatchUnit unit = PatchUnit::coordinates);
   /// The first three columns of data, as if they were positions. Missing columns are 0.
   explicit SurfacePatches(const SurfaceData& data, int threads = 0);
   ~SurfacePatches();
@@ -102,6 +111,10 @@ class SurfacePatches {
   double diagonal() const;
   /// The middle of that box.
   Vector3 middle() const;
+
+  /// What coordinates were multiplied by: a power of two. All lengths here are multiples of its
+  /// inverse.
+  double scale() const;
 
  private:
   struct Data;

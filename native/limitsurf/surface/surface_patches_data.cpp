@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/bezier_conversion.h"
 #include "limitsurf/surface/tile_weights.h"
@@ -33,11 +34,15 @@ constexpr int kQuarters[3][2] = {{1, 0}, {1, 1}, {0, 1}};
 
 }  // namespace
 
-SurfacePatches::Data::Data(const TileTable& tile_table, const Pose& control_points)
+SurfacePatches::Data::Data(const TileTable& tile_table, const Pose& control_points,
+                           PatchUnit patch_unit)
     : table(tile_table), pose(control_points) {
   for (int i = 0; i < table.points.cagePoints(); ++i) {
     cage_box.include(pose.point(i).head<3>().matrix());
   }
+  const double diagonal = table.faces.empty() ? 0 : (cage_box.high - cage_box.low).norm();
+  unit = 1 / scaleToOwnUnit(diagonal);
+  scale = patch_unit == PatchUnit::own ? 1 / unit : 1;
   tiles.reserve(table.faces.size());
   for (std::size_t face = 0; face < table.faces.size(); ++face) {
     FaceRectangle whole;
@@ -97,7 +102,7 @@ void SurfacePatches::Data::setRingLevels(int ring_index) {
     for (const Padded& point : points) {
       squared = std::max(squared, point.square().sum());
     }
-    out[step] = static_cast<float>(std::sqrt(squared) * (1 + kFloatMargin));
+    out[step] = static_cast<float>(std::sqrt(squared) / unit * (1 + kFloatMargin));
     if (step <= kept_steps) {
       std::copy(points.begin(), points.end(),
                 &levels[first_level[ring_index] + points.size() * step]);
@@ -110,8 +115,8 @@ void SurfacePatches::Data::setRingLevels(int ring_index) {
 
 double SurfacePatches::Data::radius(const SurfacePiece& core) const {
   const RingTile& tile = ringTile(core);
-  return radii[static_cast<std::size_t>(tile.ring) * (kMostSteps + 1) +
-               std::min(core.steps + tile.ring_steps, kMostSteps)];
+  return unit * radii[static_cast<std::size_t>(tile.ring) * (kMostSteps + 1) +
+                      std::min(core.steps + tile.ring_steps, kMostSteps)];
 }
 
 FaceRectangle SurfacePatches::Data::rectangle(const SurfacePiece& piece) const {
@@ -178,9 +183,9 @@ Padded SurfacePatches::Data::ringGrid(const SurfacePiece& piece, int steps,
   const Pose::RingPose& ring = pose.ring(tile.ring);
   table.rings[tile.ring].basis->controlGrid(tile.face, steps, tile.ring_steps, ring.coefficients,
                                             pose.ringTile(index).outer, grid);
-  const double scale = powerOfTwo(1 - steps);
+  const double shrinkage = powerOfTwo(1 - steps);
   for (int c = 0; c < tile_grid::kSlots; ++c) {
-    grid[c] = scale * grid[c] + ring.constant();
+    grid[c] = shrinkage * grid[c] + ring.constant();
   }
   return ring.limit;
 }

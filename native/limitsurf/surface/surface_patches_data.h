@@ -15,7 +15,7 @@ struct SurfacePatches::Data {
     FaceRectangle on;  ///< of a ring tile turned so that its vertex is (0, 0)
   };
 
-  Data(const TileTable& tile_table, const Pose& control_points);
+  Data(const TileTable& tile_table, const Pose& control_points, PatchUnit patch_unit);
 
   /// Fills `radii` and `levels`.
   void setLevels(int threads);
@@ -41,10 +41,12 @@ struct SurfacePatches::Data {
   const TileTable& table;
   const Pose& pose;
   std::vector<Tile> tiles;
-  std::vector<float> radii;              // kMostSteps + 1 for each ring
+  std::vector<float> radii;              // kMostSteps + 1 for each ring, in `unit`
   std::vector<std::size_t> first_level;  // for each ring
   std::vector<Padded> levels;            // relative to the rings' limits
   Box cage_box;
+  double unit = 1;   ///< the patches' own, as in PatchUnit
+  double scale = 1;  ///< SurfacePatches::scale(); what is kept here is in the pose's unit
 
  private:
   /// Radii are rounded to float: this makes them upper bounds again.

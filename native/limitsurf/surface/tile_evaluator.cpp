@@ -4,12 +4,23 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/tile_weights.h"
 #include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// 16 / kMostNormalCondition. Relative to the size of the whole mesh, this is far above the
+/// rounding of derivatives; the factor leaves room for coefficients of modes that are larger than
+/// the mesh, and for 8 steps.
+constexpr double kFarAboveRounding = 16 / kMostNormalCondition;
+
+}  // namespace
 
 TileLocation TileEvaluator::locateBelow(TileLocation at) const {
   while (at.tile.kind == TileRef::kSplit) {
@@ -158,17 +169,54 @@ void TileEvaluator::evaluateByModes(const RingTile& tile, int index, int steps,
 
 Vector3 TileEvaluator::normalDirection(const TileLocation& at, const Jet& jet) {
   const Vector3 du = jet.patch.du.head<3>(), dv = jet.patch.dv.head<3>();
-  if (needsModeProducts(at) && !(sineSquare(du, dv) >= kLowestSineSquare)) {
-    ModeProducts products;
-    gatherModes(at, 1, products);
-    return unitDirection(products.cross());
+  if (hasPlainNormal(at, jet)) {
+    return unitNormal(du, dv);
   }
-  return unitNormal(du, dv);
+  if (!needsModeProducts(at)) {
+    return isWellConditioned(du, dv, sizeOf(at)) ? unitNormal(du, dv) : Vector3::Constant(kNaN);
+  }
+  ModeProducts products;
+  gatherModes(at, 1, products);
+  const Vector3 cross = products.cross();
+  if (!(products.condition(cross) <= kMostNormalCondition)) {
+    return Vector3::Constant(kNaN);
+  }
+  return meetsLimits(du, dv, {kLowestSineSquare, 0}) ? unitNormal(du, dv) : unitDirection(cross);
+}
+
+NormalLimits TileEvaluator::normalLimits(int steps, int depth) const {
+  // With n, the rounding of du and dv grows as (2 lambda)^n, which is less than 2^(2n/5 + 1).
+  const int growth = steps > kStepsToParallel ? 2 * steps / 5 + 1 : 0;
+  const double least = std::ldexp(kFarAboveRounding * pose_.extent(), depth + growth);
+  return {steps > kStepsToParallel ? kLowestSineSquare : 0, least * least};
+}
+
+bool TileEvaluator::hasPlainNormal(const TileLocation& at, const Jet& jet) const {
+  const int steps = at.tile.kind == TileRef::kRing ? Quarter(at.u, at.v).steps : 0;
+  return meetsLimits(jet.patch.du.head<3>(), jet.patch.dv.head<3>(), normalLimits(steps, at.depth));
+}
+
+double TileEvaluator::sizeOf(const TileLocation& at) const {
+  double size = 0;
+  if (at.tile.kind == TileRef::kBSpline) {
+    const BSplineTile& tile = table_.bsplines[at.tile.index];
+    for (const int point : tile.points) {
+      size = std::max(size, pose_.difference(point, tile.points[5]).abs().maxCoeff());
+    }
+  } else {
+    const Points& modes = pose_.ring(table_.ring_tiles[at.tile.index].ring).coefficients;
+    size = modes.bottomRows(modes.rows() - 1).cwiseAbs().maxCoeff();
+  }
+  return std::ldexp(size, at.depth);
 }
 
 FundamentalForms TileEvaluator::fundamentalForms(const TileLocation& at, const Jet& jet) {
   if (!needsModeProducts(at)) {
-    return limitsurf::fundamentalForms(jet);
+    FundamentalForms forms = limitsurf::fundamentalForms(jet);
+    if (!normalDirection(at, jet).allFinite()) {
+      forms.cross.setZero();
+    }
+    return forms;
   }
   ModeProducts products;
   gatherModes(at, 2, products);

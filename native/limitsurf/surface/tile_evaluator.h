@@ -39,17 +39,19 @@ class TileEvaluator {
     order == 0 ? evaluate<0>(at, jet) : order == 1 ? evaluate<1>(at, jet) : evaluate<2>(at, jet);
   }
 
-  /// The unit normal where the jet was evaluated; NaN where du x dv vanishes. Must not be called at
-  /// an extraordinary vertex.
+  /// The unit normal where the jet was evaluated; NaN where its condition number exceeds
+  /// kMostNormalCondition. Must not be called at an extraordinary vertex.
   ///
   /// Deep in a ring tile the leading mode may make du and dv so close to parallel that their cross
-  /// product loses all its digits. Where the squared sine of their angle is below
-  /// lowestSineSquare() the products of different modes are added up instead.
+  /// product loses all its digits. Where the squared sine of their angle is below kLowestSineSquare
+  /// the products of different modes are added up instead.
   Vector3 normalDirection(const TileLocation& at, const Jet& jet);
-  /// For locations that lie in a quarter of a ring tile after so many steps.
-  static double lowestSineSquare(int steps) {
-    return steps > kStepsToParallel ? kLowestSineSquare : 0;
-  }
+  /// Whether normalDirection() is just du x dv, because the jet meets normalLimits().
+  bool hasPlainNormal(const TileLocation& at, const Jet& jet) const;
+  /// Where du and dv meet these limits, normalDirection() is their product. For locations that lie
+  /// in a quarter of a ring tile after so many steps, or in a regular tile (0), and whose tile is
+  /// so many splits below the face.
+  NormalLimits normalLimits(int steps, int depth) const;
 
   /// The forms, for curvature, where the jet was evaluated, with second derivatives.
   ///
@@ -85,6 +87,9 @@ class TileEvaluator {
 
   /// Whether the location lies so deep in a ring tile that products of modes have to be taken.
   static bool needsModeProducts(const TileLocation& at);
+  /// What the rounding of du and dv is relative to, unless needsModeProducts(): the size of the
+  /// tile's control points.
+  double sizeOf(const TileLocation& at) const;
   /// The modes of a ring tile and its outer points, with their weights at a location: first
   /// derivatives, for order 2 second ones as well.
   void gatherModes(const TileLocation& at, int order, ModeProducts& products);

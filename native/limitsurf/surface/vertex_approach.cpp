@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "limitsurf/own_unit.h"
 #include "limitsurf/surface/tile_weights.h"
 
 namespace limitsurf {
@@ -224,7 +225,10 @@ Vector3 leadingNormal(const std::vector<Term>& terms, double least) {
 
 VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring_tile, int turns) {
   const RingTile& tile = table.ring_tiles[ring_tile];
-  const Points& coefficients = pose.ring(tile.ring).coefficients;
+  const Points& in_pose = pose.ring(tile.ring).coefficients;
+  // Only directions are wanted. In a unit near their own size, products of lengths can be formed.
+  const double largest = in_pose.bottomRows(in_pose.rows() - 1).cwiseAbs().maxCoeff();
+  const Points coefficients = scaleToOwnUnit(largest) * in_pose;
   std::vector<Term> terms =
       ApproachTerms(*table.rings[tile.ring].basis, tile.face, coefficients).sorted();
   turnBack(terms, turns);

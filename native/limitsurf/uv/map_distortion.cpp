@@ -33,7 +33,7 @@ MapDistortion mapDistortion(const LimitSurface& surface, const SurfaceData& uv_m
     const double determinant = d.determinant(row);
     const Vector3 du = d.on_surface.du.row(row).transpose(),
                   dv = d.on_surface.dv.row(row).transpose();
-    out.area(row) = du.cross(dv).norm() / std::abs(determinant);
+    out.area(row) = du.cross(dv).stableNorm() / std::abs(determinant);
     if (determinant == 0) {
       out.stretch_high(row) = std::numeric_limits<double>::infinity();
       out.stretch_low(row) = std::numeric_limits<double>::quiet_NaN();

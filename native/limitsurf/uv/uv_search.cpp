@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "limitsurf/number_text.h"
+#include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/uv/uv_raster.h"
 
@@ -41,8 +42,7 @@ void checkPoints(const PlanePoints& points) {
 UvSearch::UvSearch(const UvPatches& map)
     : map_(map),
       middle_(map.patches().middle().head<2>().array()),
-      scale_(map.patches().diagonal() > 0 ? std::ldexp(1., -std::ilogb(map.patches().diagonal()))
-                                          : 1) {
+      scale_(scaleToOwnUnit(map.patches().diagonal())) {
   std::vector<BoxF> boxes;
   boxes.reserve(map.pieces().size());
   for (const UvPiece& piece : map.pieces()) {

@@ -9,7 +9,9 @@ constexpr const char* kControlMeshDoc =
 Parameters
 ----------
 positions : (V, 3) array of float
-    The vertices. All coordinates must be finite; the unit of length is arbitrary.
+    The vertices. Any unit of length will do: results in another unit are the same numbers, scaled.
+    All coordinates must be finite and at most 2^400 (2.6e120). Unless all vertices are in one place,
+    the longest side of their bounding box must be at least 2^-400.
 face_sizes : (F,) array of int
     The number of vertices of each face, 3 to 65,535.
 face_vertices : (sum of face_sizes,) array of int
@@ -35,9 +37,9 @@ holes : (n,) array of int, optional
 Raises
 ------
 MeshError
-    For face sizes that do not add up, indices out of range, positions that are not finite, an edge
-    or a vertex with two values of sharpness, more than 65,535 edges at a vertex, and unknown options. A face that only has no limit surface is no error:
-    LimitSurface.refused lists it.
+    For face sizes that do not add up, indices out of range, positions that are not finite or out of
+    range, an edge or a vertex with two values of sharpness, more than 65,535 edges at a vertex, and
+    unknown options. A face that only has no limit surface is no error: LimitSurface.refused lists it.
 TypeError
     For arrays of the wrong kind, such as floats instead of indices, and for masked arrays.
 
@@ -69,7 +71,7 @@ Catmull-Clark Subdivision Surfaces Near B-Spline Boundaries", 2007) at boundarie
 constexpr const char* kSetPositionsDoc =
     R"(Sets new positions, (V, 3) float, under the same topology.
 
-Raises MeshError for an array of another shape and for values that are not finite; the positions do
+Raises MeshError for an array of another shape and for values that ControlMesh refuses; the positions do
 not change then, nor if Ctrl-C ends the call. Raises RuntimeError in a function that a call on the same surface has called. Waits
 for evaluations that run in other threads. Cost: O(V), plus O(valence^2) for each irregular vertex.
 )";
@@ -96,11 +98,14 @@ Evaluation
     Those that are not wanted are None. Exactly at an irregular vertex the position is always finite,
     derivatives along a boundary of the face are those of the limit curve, and du = dv = 0 at interior
     valence 2 and 3. All other derivatives are NaN there, and so is the normal if it depends on the
-    direction from which the vertex is approached.
+    direction from which the vertex is approached. The normal is also NaN where du x dv is nothing but
+    rounding, as on a fold or on a face without area.
 
 Error bounds: positions 1e-13 of the bounding box's diagonal; du and dv 1e-12, and second derivatives
-1e-11, of the larger of the value itself and the largest on the face; normals 1e-11 radians (at a
-smooth corner of one face only farther than 2^-20 from the vertex).
+1e-11, of the larger of the value itself and the largest on the face; normals 1e-11 radians, times
+their condition number. It is the ratio of S sqrt(2 (du^2 + dv^2)) to the length of du x dv, where S
+is the size of the patch's control polygon, and large on slivers only. Where it exceeds 2^30, the
+normal is NaN.
 
 Cost: O(1) a location, O(valence) within about 1/16 of an irregular vertex.
 

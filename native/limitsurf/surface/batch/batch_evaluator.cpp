@@ -233,7 +233,7 @@ void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, const double* u, co
         const TileLocation own{patch.tile, std::ldexp(u[i] + patch.a, -patch.steps),
                                std::ldexp(v[i] + patch.b, -patch.steps), patch.turns, patch.depth};
         Jet jet;
-        alone_.evaluate<1>(own, jet);
+        alone_.evaluateUpTo(order_, own, jet);  // the same du and dv as those in the results
         putNormal(own, jet, rows[i]);
       }
     }
@@ -262,7 +262,7 @@ void BatchEvaluator<Real>::setBSpline(const Patch& patch, PatchRun& run) {
   run.offset[0] = run.offset[1] = run.offset[2] = 0;
   run.first_scale = powerOfTwo(patch.depth);
   run.second_scale = powerOfTwo(2 * patch.depth);
-  run.lowest_sine_square = 0;
+  run.normal_limits = alone_.normalLimits(0, patch.depth);
 }
 
 template <typename Real>
@@ -294,7 +294,7 @@ void BatchEvaluator<Real>::setRing(const Patch& patch, bool is_single, PatchRun&
   run.u_low = onRight(tile.sides) && patch.a == 0;
   run.v_low = onLeft(tile.sides) && patch.b == 0;
   run.u_high = run.v_high = false;
-  run.lowest_sine_square = TileEvaluator::lowestSineSquare(patch.steps);
+  run.normal_limits = alone_.normalLimits(patch.steps, patch.depth);
 }
 
 template <typename Real>

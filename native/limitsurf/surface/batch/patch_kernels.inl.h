@@ -188,11 +188,13 @@ inline void evaluateRows(const PatchRun& run, const Turned& turned, std::size_t 
     places.put(results.dv, dv);
     if (results.normal) {
       UnitNormal<Rows> normal(du, dv);
-      double square[kLanes], lengths[kLanes];
+      double square[kLanes], lengths[kLanes], squares[kLanes];
       normal.square.store(square);
       normal.lengths.store(lengths);
+      normal.squares.store(squares);
       for (int lane = 0; lane < count; ++lane) {
-        if (!normalKeepsDigits(square[lane], lengths[lane], run.lowest_sine_square)) {
+        if (!normalKeepsDigits(square[lane], lengths[lane], squares[lane],
+                               run.normal_limits.sine_square, run.normal_limits.square)) {
           for (Rows& numbers : normal.unit) {
             numbers.numbers[lane] = __builtin_nan("");
           }
@@ -245,7 +247,8 @@ inline void evaluateRow(const PatchRun& run, const Turned& turned, std::size_t i
       const double x[3] = {du.numbers[0], du.numbers[1], du.numbers[2]};
       const double y[3] = {dv.numbers[0], dv.numbers[1], dv.numbers[2]};
       const UnitNormal<double> normal(x, y);
-      const bool keeps = normalKeepsDigits(normal.square, normal.lengths, run.lowest_sine_square);
+      const bool keeps = normalKeepsDigits(normal.square, normal.lengths, normal.squares,
+                                           run.normal_limits.sine_square, run.normal_limits.square);
       for (int c = 0; c < 3; ++c) {
         results.normal[at + c] = static_cast<Real>(keeps ? normal.unit[c] : __builtin_nan(""));
       }

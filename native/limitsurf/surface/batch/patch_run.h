@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "limitsurf/surface/batch/normal_limits.h"
+
 namespace limitsurf {
 
 /// Locations on one bicubic patch, which are evaluated together.
@@ -22,8 +24,8 @@ struct PatchRun {
   double value_scale;
   double offset[3];
   double first_scale, second_scale;
-  /// Where the angle between du and dv is smaller, the normal is left to the caller.
-  double lowest_sine_square;
+  /// Where a normal does not meet these limits, it is NaN: it is left to the caller.
+  NormalLimits normal_limits;
 
   const double *u, *v;      ///< parameters of the patch, `count` each
   const std::size_t* rows;  ///< the rows that get the results

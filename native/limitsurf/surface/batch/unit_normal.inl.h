@@ -11,8 +11,10 @@ struct UnitNormal {
     const Number y = du[2] * dv[0] - du[0] * dv[2];
     const Number z = du[0] * dv[1] - du[1] * dv[0];
     square = x * x + y * y + z * z;
-    lengths = (du[0] * du[0] + du[1] * du[1] + du[2] * du[2]) *
-              (dv[0] * dv[0] + dv[1] * dv[1] + dv[2] * dv[2]);
+    const Number du_square = du[0] * du[0] + du[1] * du[1] + du[2] * du[2];
+    const Number dv_square = dv[0] * dv[0] + dv[1] * dv[1] + dv[2] * dv[2];
+    lengths = du_square * dv_square;
+    squares = du_square + dv_square;
     const Number length = squareRoot(square);
     unit[0] = x / length;
     unit[1] = y / length;
@@ -22,10 +24,14 @@ struct UnitNormal {
   Number unit[3];
   Number square;   ///< of the length of du x dv
   Number lengths;  ///< the product of the squared lengths of du and dv
+  Number squares;  ///< their sum
 };
 
-/// Whether neither du x dv nor its square has overflowed or underflowed, and the squared sine of
-/// the angle between du and dv is `lowest_sine_square` at least.
-inline bool normalKeepsDigits(double square, double lengths, double lowest_sine_square) {
-  return square >= 0x1p-900 && square <= 0x1p900 && square >= lowest_sine_square * lengths;
+/// Whether neither du x dv nor its square has overflowed or underflowed, the squared sine of the
+/// angle between du and dv is `lowest_sine_square` at least, and the rounding of du and dv is small
+/// beside du x dv (see NormalLimits).
+inline bool normalKeepsDigits(double square, double lengths, double squares,
+                              double lowest_sine_square, double least_square) {
+  return square >= 0x1p-900 && square <= 0x1p900 && square >= lowest_sine_square * lengths &&
+         square >= least_square * squares;
 }

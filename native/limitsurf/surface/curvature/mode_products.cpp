@@ -52,6 +52,10 @@ void ModeProducts::sort() {
       rest_[d] += mode->weights[d] * mode->vector;
     }
   }
+  for (auto mode = apart; mode != modes_.end(); ++mode) {
+    rest_weights_[0] += std::abs(mode->weights[0]);
+    rest_weights_[1] += std::abs(mode->weights[1]);
+  }
   modes_.erase(apart, modes_.end());
 }
 
@@ -73,6 +77,22 @@ Vector3 ModeProducts::cross() const {
     }
   }
   return result;
+}
+
+double ModeProducts::condition(const Vector3& cross) const {
+  // Each vector errs by a share of 1, whatever its length is: of vectors this is the unit here.
+  const double *rest = rest_weights_, rest_length = std::max(rest_[0].norm(), rest_[1].norm());
+  double error = rest[0] * rest_[1].norm() + rest[1] * rest_[0].norm();
+  for (auto i = modes_.begin(); i != modes_.end(); ++i) {
+    const double length = i->vector.norm();
+    error += (std::abs(i->weights[0]) * rest[1] + std::abs(i->weights[1]) * rest[0]) *
+             (length + rest_length);
+    for (auto j = i + 1; j != modes_.end(); ++j) {
+      error += std::abs(minor(i->weights[0], j->weights[0], i->weights[1], j->weights[1])) *
+               (length + j->vector.norm());
+    }
+  }
+  return error / cross.stableNorm();  // deep in a tile its square underflows
 }
 
 Vector3 ModeProducts::determinants() const {
@@ -114,6 +134,9 @@ FundamentalForms ModeProducts::fundamentalForms() const {
   forms.du = sum(0);
   forms.dv = sum(1);
   forms.cross = cross();
+  if (!(condition(forms.cross) <= kMostNormalCondition)) {
+    forms.cross.setZero();
+  }
   const Vector3 bends = determinants() / forms.cross.norm();
   forms.uu = bends[0];
   forms.uv = bends[1];

@@ -47,7 +47,12 @@ class ModeProducts {
   /// du x dv, up to a positive factor. Zero if all modes are.
   Vector3 cross() const;
 
-  /// For order 2.
+  /// The condition number of the direction of cross(), which is given: what multiplies errors of
+  /// the modes' vectors that are relative to the longest of them.
+  double condition(const Vector3& cross) const;
+
+  /// For order 2. The cross product is zero where its condition number exceeds
+  /// kMostNormalCondition.
   FundamentalForms fundamentalForms() const;
 
  private:
@@ -61,9 +66,10 @@ class ModeProducts {
   /// The determinants of du, dv and each of duu, duv, dvv.
   Vector3 determinants() const;
 
-  int count_;                                   // how many derivatives
-  std::vector<Mode> modes_;                     // after sort(): the largest ones
-  Vector3 rest_[5];                             // the sums over all other modes
+  int count_;                        // how many derivatives
+  std::vector<Mode> modes_;          // after sort(): the largest ones
+  Vector3 rest_[5];                  // the sums over all other modes
+  double rest_weights_[2] = {0, 0};  // the sums of the sizes of their weights, for du, dv
   double first_ = 1, second_ = 1, length_ = 1;  // the units of weights and vectors
 };
 

@@ -29,8 +29,9 @@ RootPose RootFinder::operator()(const TileLocation& at) {
   const double du_square = squaredLength(du), dv_square = squaredLength(dv),
                normal_square = squaredLength(normal);
   // Comparisons with NaN are false.
-  if (!at.atVertex() && du_square > kSmallSquare && du_square < kLargeSquare &&
-      dv_square < kLargeSquare && normal_square > kSafeSine * kSafeSine * du_square * dv_square &&
+  if (!at.atVertex() && evaluator_.hasPlainNormal(at, jet) && du_square > kSmallSquare &&
+      du_square < kLargeSquare && dv_square < kLargeSquare &&
+      normal_square > kSafeSine * kSafeSine * du_square * dv_square &&
       normal_square > kSmallSquare) {
     root.frame[0] = (1 / std::sqrt(du_square)) * du;
     root.frame[2] = (side_ / std::sqrt(normal_square)) * normal;
