@@ -51,7 +51,10 @@ def pack(target: str, folder: Path) -> None:
     smallest.mkdir(exist_ok=True)
     for old in smallest.iterdir():
         old.unlink()
-    start(target, ["-merge=1", smallest, folder]).communicate()
+    merging = start(target, ["-merge=1", smallest, folder])
+    report = merging.communicate()[1]
+    if merging.returncode != 0:
+        sys.exit(f"{report[-6000:]}\nThe inputs of {target} could not be merged; nothing is kept.")
     lines = corpus_lines(target)
     begin = next((i for i, line in enumerate(lines) if line.startswith("# Findings")), len(lines))
     findings = lines[begin:]

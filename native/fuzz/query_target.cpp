@@ -45,7 +45,7 @@ void checkClosest(ByteReader& bytes, const LimitSurface& surface, const SurfaceS
   const Points others = surface.evaluate(at, Derivatives::none, false, 1).position;
   const double diagonal = diagonalOf(surface);
   for (Eigen::Index row = 0; row < points.rows(); ++row) {
-    require((hits.at[static_cast<std::size_t>(row)].face >= 0) == !at.empty() || at.empty(),
+    require(at.empty() || hits.at[static_cast<std::size_t>(row)].face >= 0,
             "a surface has a closest point");
     for (Eigen::Index i = 0; i < others.rows(); ++i) {
       const double distance = (points.row(row) - others.row(i)).stableNorm();
