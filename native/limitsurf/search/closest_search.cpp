@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -44,10 +45,6 @@ struct BoxPoint {
   static constexpr float kNearlyOne = 1 - 1e-6f;
 };
 
-double squaredDistance(const Box& box, const Vector3& point) {
-  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.).squaredNorm();
-}
-
 /// A direction in a unit of its own, a power of two, so that its square can be formed.
 Vector3 inUnit(const Vector3& direction) {
   const double largest = direction.cwiseAbs().maxCoeff();
@@ -76,6 +73,7 @@ class ClosestSearch {
   /// in the unit of the tree.
   Location find(const Vector3& point, double max_distance, const Facing* facing) {
     gave_up_ = false;
+    open_.clear();
     last_leaf_ = facing && !cones_ ? leaves_ + kPatience : kForever;
     if (facing && cones_) {
       unit_ = facing->direction.normalized();
@@ -88,7 +86,9 @@ class ClosestSearch {
     // Points at max_distance itself count, in spite of rounding.
     best_.distance = max_distance * (1 + kDistanceRounding) + 2 * data_.tolerance;
     if (!data_.tree->empty()) {
-      descend(data_.inBoxes(point));
+      const Vector3 in_boxes = data_.inBoxes(point);
+      descend(in_boxes);
+      visitCores(in_boxes);
     }
     return best_.at;
   }
@@ -128,13 +128,14 @@ class ClosestSearch {
           continue;
         }
         const std::int32_t leaf = BoxTree::leaf(next.node);
-        if (data_.leaves[leaf].box.squaredDistance(point) < best_.enough()) {
+        const double squared = data_.leaves[leaf].box.squaredDistance(point);
+        if (squared < best_.enough()) {
           if (leaves_ == last_leaf_) {
             gave_up_ = true;
             return;
           }
           ++leaves_;
-          visitLeaf(leaf);
+          visitLeaf(leaf, squared);
         }
       }
       if (height == 0) {
@@ -144,36 +145,65 @@ class ClosestSearch {
     }
   }
 
-  void visitLeaf(std::int32_t leaf) {
+  void visitLeaf(std::int32_t leaf, double squared) {
     const SearchLeaf& found = data_.leaves[leaf];
     if (found.piece.isCore()) {
-      visitCore(found.piece);
+      putOff(found.piece, squared);
     } else {
       closestOnPatch(cache_.patch(leaf), point_, facing_, best_);
     }
   }
 
-  void visitCore(SurfacePiece core) {
-    const Vector3 vertex = data_.patches.coreVertex(core);
-    if (!facing_) {
-      best_.offer(vertex - point_, data_.patches.rectangle(core).at(0, 0));
+  /// A core that is left for later, or what is left of one.
+  struct OpenCore {
+    double squared;  ///< a lower bound of its squared distance
+    std::size_t split;
+    SurfacePiece core;
+
+    bool operator<(const OpenCore& other) const {  // the nearest one becomes the top of a heap
+      return squared != other.squared ? squared > other.squared : split > other.split;
     }
-    SurfacePatches::SplitCore split;
-    while (true) {
-      data_.patches.split(core, split);
+  };
+
+  /// Cores are split after all patches have been searched. The vertex of a core is a first guess,
+  /// and if it stayed the best one while its own core is split, no bound of the rest, which always
+  /// contains the vertex, would end that.
+  void putOff(const SurfacePiece& core, double squared) {
+    if (!facing_) {
+      best_.offer(data_.patches.coreVertex(core) - point_, data_.patches.rectangle(core).at(0, 0));
+    }
+    if (open_.size() == splits_.size()) {
+      splits_.emplace_back(new SurfacePatches::SplitCore);
+    }
+    open_.push_back({squared, open_.size(), core});
+  }
+
+  /// Splits the cores that were put off, always the nearest one first.
+  void visitCores(const Vector3& point) {
+    std::make_heap(open_.begin(), open_.end());
+    while (!open_.empty() && open_.front().squared < best_.enough()) {
+      std::pop_heap(open_.begin(), open_.end());
+      const OpenCore next = open_.back();
+      open_.pop_back();
+      SurfacePatches::SplitCore& split = *splits_[next.split];
+      data_.patches.split(next.core, split);
       for (const BezierPatch& patch : split.patches) {
         closestOnPatch(patch, point_, facing_, best_);
       }
-      core = split.core;
-      if (!(squaredDistance(split.core_box, point_) < best_.enough())) {
-        return;
+      const CoreBox rest(data_.patches.restHull(split), data_.middle);
+      const double squared = rest.squaredDistance(point);
+      if (!(squared < best_.enough())) {
+        continue;
       }
-      if (data_.patches.coreRadius(core) <= data_.tolerance ||
-          core.steps >= SurfacePatches::kMostSteps) {
-        offerVertex(core, vertex);
-        return;
+      if (data_.patches.coreRadius(split.core) <= data_.tolerance ||
+          split.core.steps >= SurfacePatches::kMostSteps) {
+        offerVertex(split.core, data_.patches.coreVertex(split.core));
+        continue;
       }
+      open_.push_back({std::max(squared, next.squared), next.split, split.core});
+      std::push_heap(open_.begin(), open_.end());
     }
+    open_.clear();
   }
 
   /// Offers the vertex in place of the rest of a core, which is smaller than the tolerance.
@@ -195,6 +225,8 @@ class ClosestSearch {
   Vector3 point_;
   const Facing* facing_ = nullptr;
   ClosestSoFar best_;
+  std::vector<OpenCore> open_;
+  std::vector<std::unique_ptr<SurfacePatches::SplitCore>> splits_;  // of open cores
 };
 
 }  // namespace

@@ -4,8 +4,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "limitsurf/float_rounding.h"
-
 namespace limitsurf {
 namespace {
 
@@ -13,10 +11,26 @@ namespace {
 /// instead.
 constexpr double kLeastSine = 1e-6;
 
+template <typename Real>
+Real roundedUpTo(double value) {
+  return std::nextafter(static_cast<Real>(value), std::numeric_limits<Real>::infinity());
+}
+
 }  // namespace
 
-OrientedBox::OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& along,
-                         const Vector3& across) {
+template <typename Real>
+void OrientedBox<Real>::place(const Vector3& centre, const Eigen::Matrix3d& frame) {
+  for (int i = 0; i < 3; ++i) {
+    centre_[i] = static_cast<Real>(centre[i]);
+    for (int j = 0; j < 3; ++j) {
+      axes_[i][j] = static_cast<Real>(frame(i, j));
+    }
+  }
+}
+
+template <typename Real>
+OrientedBox<Real>::OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& along,
+                               const Vector3& across) {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  // an axis in each row
   const Vector3 normal = along.cross(across);
   if (normal.norm() > kLeastSine * along.norm() * across.norm() && along.allFinite() &&
@@ -27,32 +41,30 @@ OrientedBox::OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& 
   }
   const Eigen::Matrix<double, Eigen::Dynamic, 3> turned = points * frame.transpose();
   const Eigen::RowVector3d low = turned.colwise().minCoeff(), high = turned.colwise().maxCoeff();
-  const Vector3 centre = frame.transpose() * (0.5 * (low + high)).transpose();
-  for (int i = 0; i < 3; ++i) {
-    centre_[i] = static_cast<float>(centre[i]);
-    for (int j = 0; j < 3; ++j) {
-      axes_[i][j] = static_cast<float>(frame(i, j));
-    }
-  }
+  place(frame.transpose() * (0.5 * (low + high)).transpose(), frame);
   // Extents are measured along the axes as they were rounded.
   for (int i = 0; i < 3; ++i) {
     double half = 0;
     for (Eigen::Index p = 0; p < points.rows(); ++p) {
       half = std::max(half, std::abs(coordinate(i, points.row(p).transpose())));
     }
-    half_[i] = roundedUp(half);
+    half_[i] = roundedUpTo<Real>(half);
   }
 }
 
-OrientedBox::OrientedBox(const Box& box) {
-  const Vector3 centre = box.low + (box.high - box.low) / 2;
+template <typename Real>
+OrientedBox<Real>::OrientedBox(const CoreHull& hull, const Vector3& middle) {
+  static_assert(std::numeric_limits<Real>::digits >= 53, "the axes are not rounded");
+  const Vector3 centre = hull.axes.transpose() * (0.5 * (hull.low + hull.high));
+  place((hull.vertex - middle) + centre, hull.axes);
+  const Vector3 half = 0.5 * (hull.high - hull.low);
   for (int i = 0; i < 3; ++i) {
-    centre_[i] = static_cast<float>(centre[i]);
-    for (int j = 0; j < 3; ++j) {
-      axes_[i][j] = i == j ? 1.f : 0.f;
-    }
-    half_[i] = roundedUp(std::max(box.high[i] - centre_[i], centre_[i] - box.low[i]));
+    half_[i] = roundedUpTo<Real>(half[i]);
   }
 }
+
+template OrientedBox<float>::OrientedBox(const Eigen::Ref<const Points>&, const Vector3&,
+                                         const Vector3&);
+template OrientedBox<double>::OrientedBox(const CoreHull&, const Vector3&);
 
 }  // namespace limitsurf

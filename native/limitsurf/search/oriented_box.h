@@ -15,13 +15,14 @@ struct Ray {
 };
 
 /// An oriented box: it has axes of its own and fits a patch closely whichever way the patch lies.
-/// It is kept in single precision; its extents include the rounding.
+/// Its numbers are kept as Real, float or double; its extents include their rounding.
+template <typename Real>
 class OrientedBox {
  public:
   /// A box around points, one a row, whose axes are as close as possible to the two directions.
   OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& along, const Vector3& across);
-  /// A box with the coordinate axes.
-  explicit OrientedBox(const Box& box);
+  /// A hull, relative to `middle`.
+  OrientedBox(const CoreHull& hull, const Vector3& middle);
 
   /// A lower bound of the squared distance of the box from a point.
   double squaredDistance(const Vector3& point) const {
@@ -59,7 +60,7 @@ class OrientedBox {
  private:
   /// A ray counts as perpendicular to an axis if the cosine of their angle is below this.
   static constexpr double kParallel = 1e-12;
-  /// Axes rounded to single precision are orthonormal to 3e-7.
+  /// Axes in single precision are orthonormal to 3e-7.
   static constexpr double kNearlyOne = 1 - 1e-6;
 
   double coordinate(int i, const Vector3& point) const {
@@ -67,7 +68,15 @@ class OrientedBox {
            axes_[i][2] * (point[2] - centre_[2]);
   }
 
-  float centre_[3], axes_[3][3], half_[3];
+  /// Sets the centre and the axes, the rows of `frame`.
+  void place(const Vector3& centre, const Eigen::Matrix3d& frame);
+
+  Real centre_[3], axes_[3][3], half_[3];
 };
+
+/// The boxes of leaves.
+using LeafBox = OrientedBox<float>;
+/// Boxes that are exact also far below the rounding of single precision.
+using CoreBox = OrientedBox<double>;
 
 }  // namespace limitsurf

@@ -143,7 +143,8 @@ class RaySearch {
       }
       core = split.core;
       double from = start();
-      if (!OrientedBox(data_.inBoxes(split.core_box)).meets(ray, margin(), from, end())) {
+      const CoreBox rest(data_.patches.restHull(split), data_.middle);
+      if (!rest.meets(ray, margin(), from, end())) {
         return;
       }
       if (data_.patches.coreRadius(core) <= found_.tolerance ||

@@ -15,7 +15,7 @@ namespace limitsurf {
 
 /// A leaf of the search tree: a bicubic patch, or a core, which searches split when they reach it.
 struct SearchLeaf {
-  OrientedBox box;
+  LeafBox box;
   SurfacePiece piece;
 };
 
@@ -54,6 +54,8 @@ struct SearchTree {
   /// Appends the pieces of a tile and boxes around them. Cores are split so far that their boxes
   /// fit closely.
   void addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
+  void addCore(const SurfacePiece& core, SurfacePatches::SplitCore& split,
+               std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
 };
 
 /// The patches of leaves: kept by the tree, or else in a cache, since neighbouring searches need

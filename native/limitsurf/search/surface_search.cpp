@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/surface_search.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "limitsurf/parallel.h"
@@ -12,9 +13,6 @@ namespace {
 
 /// The number of tiles whose leaves one task finds, and of leaves whose patches it keeps.
 constexpr std::size_t kTilesPerTask = 1024, kLeavesPerTask = 1024;
-/// A core's box is found from the patches of so many further steps.
-constexpr int kStepsForBox = 2;
-
 using PatchPoints = Eigen::Matrix<double, 16, 3, Eigen::RowMajor>;
 
 /// The control points of a patch in the coordinates of boxes.
@@ -27,11 +25,11 @@ PatchPoints pointsOf(const BezierPatch& patch, const Vector3& middle) {
   return points;
 }
 
-Box boxOf(const PatchPoints& points) {
+Box boxOf(const Eigen::Ref<const Points>& points) {
   return {points.colwise().minCoeff().transpose(), points.colwise().maxCoeff().transpose()};
 }
 
-OrientedBox orientedBox(const PatchPoints& points) {
+LeafBox orientedBox(const PatchPoints& points) {
   const auto side = [&](int to, int from) -> Vector3 {
     return (points.row(to) - points.row(from)).transpose();
   };
@@ -104,31 +102,44 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
       addPatch(piece, patches.patch(piece));
       continue;
     }
-    // The cores of small tiles are split once, those of whole faces twice. Further steps only make
-    // the core's box smaller.
+    // The cores of small tiles are split once, those of whole faces twice.
     const FaceRectangle on = patches.rectangle(piece);
     const int steps = std::abs(on.us + on.ut) == 1 ? 2 : 1;
     SurfacePatches::SplitCore split;
-    SurfacePiece core = piece, rest = piece;
-    Box box;
-    for (int step = 1; step <= steps + kStepsForBox; ++step) {
-      patches.split(rest, split);
-      rest = split.core;
+    SurfacePiece core = piece;
+    for (int step = 1; step <= steps; ++step) {
+      patches.split(core, split);
+      core = split.core;
       for (int quarter = 0; quarter < 3; ++quarter) {
-        if (step <= steps) {
-          addPatch(split.pieces[quarter], split.patches[quarter]);
-        } else {
-          box.include(boxOf(pointsOf(split.patches[quarter], middle)));
-        }
-      }
-      if (step == steps) {
-        core = rest;
+        addPatch(split.pieces[quarter], split.patches[quarter]);
       }
     }
-    box.include(inBoxes(split.core_box));
-    out.push_back({OrientedBox(box), core});
-    boxes.emplace_back(box);
+    addCore(core, split, out, boxes);
   }
+}
+
+void SearchTree::addCore(const SurfacePiece& core, SurfacePatches::SplitCore& split,
+                         std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const {
+  // The box is found from the patches of one more step and the hull of the rest.
+  patches.split(core, split);
+  Eigen::Matrix<double, 3 * 16 + 8, 3, Eigen::RowMajor> points;
+  for (int quarter = 0; quarter < 3; ++quarter) {
+    points.middleRows<16>(16 * quarter) = pointsOf(split.patches[quarter], middle);
+  }
+  const CoreHull rest = patches.restHull(split);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 turned((corner & 1 ? rest.high : rest.low)[0],
+                         (corner & 2 ? rest.high : rest.low)[1],
+                         (corner & 4 ? rest.high : rest.low)[2]);
+    points.row(3 * 16 + corner) =
+        inBoxes(rest.vertex).transpose() + (rest.axes.transpose() * turned).transpose();
+  }
+  // The core's opposite corner, the last point of the second patch, gives the first axis.
+  const Vector3 normal = rest.axes.row(2);
+  const Vector3 along = points.row(2 * 16 - 1).transpose() - inBoxes(rest.vertex);
+  const Vector3 tangent = along - along.dot(normal) * normal;
+  out.push_back({LeafBox(points, tangent, normal.cross(tangent)), core});
+  boxes.emplace_back(boxOf(points));
 }
 
 SurfaceSearch::SurfaceSearch(const LimitSurface& surface, int threads)

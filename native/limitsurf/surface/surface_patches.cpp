@@ -98,6 +98,14 @@ void SurfacePatches::split(const SurfacePiece& core, SplitCore& out) const {
   }
 }
 
+CoreHull SurfacePatches::restHull(const SplitCore& split) const {
+  CoreHull hull = data_->hull(split.core, split.grid_);
+  hull.vertex *= data_->scale;
+  hull.low *= data_->scale;
+  hull.high *= data_->scale;
+  return hull;
+}
+
 Box SurfacePatches::coreBox(const SurfacePiece& core) const {
   const RingTile& tile = data_->ringTile(core);
   const Pose& pose = data_->pose;

@@ -38,6 +38,13 @@ struct SurfacePiece {
   bool isCore() const { return part == kCore; }
 };
 
+/// A box with axes of its own around the surface on a core.
+struct CoreHull {
+  Vector3 vertex;        ///< the limit of the core's vertex
+  Eigen::Matrix3d axes;  ///< a unit vector in each row; the last is nearly normal to the surface
+  Vector3 low, high;     ///< along the axes, relative to the vertex
+};
+
 /// The unit of length of patches.
 enum class PatchUnit {
   coordinates,  ///< that of the control points
@@ -54,8 +61,8 @@ enum class PatchUnit {
 /// they need to; the patches are computed anew each time.
 ///
 /// Refers to the surface or the data, which must live on and keep their pose. All members may be
-/// called from many threads at once. Memory: 60 bytes for each tile; 800 bytes for each face around
-/// an extraordinary vertex, or 4,600 if there are more than kFewFaces of them.
+/// called from many threads at once. Memory: 60 bytes for each tile; 900 bytes for each face around
+/// an extraordinary vertex, or 4,800 if there are more than kFewFaces of them.
 class SurfacePatches {
  public:
   /// The most steps of a core. A step shrinks a core's points by the largest eigenvalue below 1,
@@ -99,6 +106,10 @@ class SurfacePatches {
   /// Cost: O(1) for the first few steps, then O(valence) for valences to kFewFaces; for larger ones
   /// O(1) if `out` holds the split of which `core` is the rest.
   void split(const SurfacePiece& core, SplitCore& out) const;
+
+  /// A box around the rest of a split. Its axes are those of the ring, so that it is as flat as the
+  /// ring is, whichever way the surface lies.
+  CoreHull restHull(const SplitCore& split) const;
 
   /// A box around the surface on a tile's whole core (steps = 0).
   Box coreBox(const SurfacePiece& core) const;

@@ -3,6 +3,7 @@
 // The tiles of a surface, their rings' points after every step, and patches made from both.
 #include "limitsurf/surface/surface_patches_data.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +29,9 @@ FaceRectangle turned(const FaceRectangle& on, int corner) {
       return {on.face, on.u0 + on.ut, -on.ut, on.us, on.v0 + on.vt, -on.vt, on.vs};
   }
 }
+
+/// If the sine of the angle between two vectors is smaller, they do not span a plane well enough.
+constexpr double kLeastSine = 1e-6;
 
 /// The quarters of a core in the order of SplitCore.
 constexpr int kQuarters[3][2] = {{1, 0}, {1, 1}, {0, 1}};
@@ -75,17 +79,105 @@ int SurfacePatches::Data::keptSteps(int ring) const {
 void SurfacePatches::Data::setLevels(int threads) {
   radii.resize(table.rings.size() * (kMostSteps + 1));
   first_level.resize(table.rings.size());
-  std::size_t size = 0;
+  first_extent.resize(table.rings.size());
+  frames.resize(table.rings.size());
+  std::size_t size = 0, steps = 0;
   for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
     first_level[ring] = size;
-    size += table.rings[ring].points.size() * (keptSteps(static_cast<int>(ring)) + 1);
+    first_extent[ring] = steps;
+    const std::size_t kept = static_cast<std::size_t>(keptSteps(static_cast<int>(ring))) + 1;
+    size += table.rings[ring].points.size() * kept;
+    steps += kept;
   }
   levels.resize(size);
+  extents.resize(steps);
   parallelFor(table.rings.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
       setRingLevels(static_cast<int>(ring));
+      setExtents(static_cast<int>(ring));
     }
   });
+}
+
+Eigen::Matrix3d SurfacePatches::Data::frameOf(int ring) const {
+  const std::size_t count = table.rings[ring].points.size();
+  const Padded* points =
+      &levels[first_level[ring] + count * static_cast<std::size_t>(keptSteps(ring))];
+  const auto farthest = [&](const auto& measure) {
+    std::size_t found = 0;
+    double most = -1;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double value = measure(Vector3(points[i].head<3>()));
+      if (value > most) {
+        most = value;
+        found = i;
+      }
+    }
+    return Vector3(points[found].head<3>());
+  };
+  const Vector3 along =
+      farthest([](const Vector3& p) { return p.cwiseAbs().maxCoeff(); }).stableNormalized();
+  const Vector3 across = farthest([&](const Vector3& p) {
+                           return along.cross(p).cwiseAbs().maxCoeff();
+                         }).stableNormalized();
+  const Vector3 normal = along.cross(across);
+  const double sine = normal.norm();
+  if (!(sine > kLeastSine)) {
+    return Eigen::Matrix3d::Identity();
+  }
+  Eigen::Matrix3d axes;
+  axes.row(0) = along;
+  axes.row(2) = normal / sine;
+  axes.row(1) = axes.row(2).cross(axes.row(0));
+  return axes;
+}
+
+void SurfacePatches::Data::setExtents(int ring) {
+  frames[ring] = frameOf(ring);
+  const std::size_t count = table.rings[ring].points.size();
+  const Padded* points = &levels[first_level[ring]];
+  for (int step = 0; step <= keptSteps(ring); ++step) {
+    // The limit, 0, is in the hull, but for rounding.
+    Vector3 low = Vector3::Zero(), high = low;
+    for (std::size_t i = 0; i < count; ++i, ++points) {
+      const Vector3 turned = frames[ring] * points->head<3>().matrix();
+      low = low.cwiseMin(turned);
+      high = high.cwiseMax(turned);
+    }
+    Extent& extent = extents[first_extent[ring] + static_cast<std::size_t>(step)];
+    const double margin = kFloatMargin * std::max(-low.minCoeff(), high.maxCoeff());
+    for (int axis = 0; axis < 3; ++axis) {
+      extent.low[axis] = static_cast<float>((low[axis] - margin) / unit);
+      extent.high[axis] = static_cast<float>((high[axis] + margin) / unit);
+    }
+  }
+}
+
+CoreHull SurfacePatches::Data::hull(const SurfacePiece& core, const Padded* grid) const {
+  const RingTile& tile = ringTile(core);
+  CoreHull hull;
+  hull.vertex = pose.ring(tile.ring).limit.head<3>();
+  hull.axes = frames[tile.ring];
+  const int step = core.steps + tile.ring_steps;
+  if (step <= keptSteps(tile.ring)) {
+    const Extent& extent = extents[first_extent[tile.ring] + static_cast<std::size_t>(step)];
+    for (int axis = 0; axis < 3; ++axis) {
+      hull.low[axis] = unit * extent.low[axis];
+      hull.high[axis] = unit * extent.high[axis];
+    }
+  } else {
+    hull.high = Vector3::Constant(radius(core));
+    hull.low = -hull.high;
+  }
+  // Grids are relative to the vertex.
+  for (const int c : tile_grid::kOuterSlots) {
+    if (tile_grid::exists(tile.sides, c)) {
+      const Vector3 turned = hull.axes * grid[c].head<3>().matrix();
+      hull.low = hull.low.cwiseMin(turned);
+      hull.high = hull.high.cwiseMax(turned);
+    }
+  }
+  return hull;
 }
 
 void SurfacePatches::Data::setRingLevels(int ring_index) {

@@ -17,7 +17,7 @@ struct SurfacePatches::Data {
 
   Data(const TileTable& tile_table, const Pose& control_points, PatchUnit patch_unit);
 
-  /// Fills `radii` and `levels`.
+  /// Fills `radii`, `levels`, `frames` and `extents`.
   void setLevels(int threads);
 
   const RingTile& ringTile(const SurfacePiece& piece) const {
@@ -31,6 +31,8 @@ struct SurfacePatches::Data {
   void regularPatch(const SurfacePiece& piece, BezierPatch& out) const;
   /// A ring tile's control grid after `steps` >= 1 steps, relative to the anchor that is returned.
   Padded ringGrid(const SurfacePiece& piece, int steps, Padded grid[tile_grid::kSlots]) const;
+  /// A box around what is left of a core after its steps, of which `grid` is the control grid.
+  CoreHull hull(const SurfacePiece& core, const Padded* grid) const;
   /// The grid after one step more than the core's. If `chained`, `grid` holds the one after the
   /// core's steps.
   Padded nextGrid(const SurfacePiece& core, bool chained, Padded grid[tile_grid::kSlots]) const;
@@ -41,9 +43,17 @@ struct SurfacePatches::Data {
   const TileTable& table;
   const Pose& pose;
   std::vector<Tile> tiles;
-  std::vector<float> radii;              // kMostSteps + 1 for each ring, in `unit`
-  std::vector<std::size_t> first_level;  // for each ring
-  std::vector<Padded> levels;            // relative to the rings' limits
+  /// The extent of a ring's points along the axes of its frame, in `unit`.
+  struct Extent {
+    float low[3], high[3];
+  };
+
+  std::vector<float> radii;               // kMostSteps + 1 for each ring, in `unit`
+  std::vector<std::size_t> first_level;   // for each ring
+  std::vector<Padded> levels;             // relative to the rings' limits
+  std::vector<Eigen::Matrix3d> frames;    // for each ring, an axis in each row
+  std::vector<std::size_t> first_extent;  // for each ring
+  std::vector<Extent> extents;            // for each kept level
   Box cage_box;
   double unit = 1;   ///< the patches' own, as in PatchUnit
   double scale = 1;  ///< SurfacePatches::scale(); what is kept here is in the pose's unit
@@ -59,6 +69,9 @@ struct SurfacePatches::Data {
   static constexpr std::size_t kRingsPerTask = 16;
 
   void addTiles(const TileRef& ref, const FaceRectangle& on);
+  /// Axes along which the ring's points after the last kept step are as flat as can be.
+  Eigen::Matrix3d frameOf(int ring) const;
+  void setExtents(int ring);
   /// The last step for which a ring's points are kept.
   int keptSteps(int ring) const;
   void setRingLevels(int ring);
