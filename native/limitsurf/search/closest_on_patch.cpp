@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/search/distance_convexity.h"
 #include "limitsurf/search/foot_iteration.h"
 
 namespace limitsurf {
@@ -18,11 +19,11 @@ struct Cell : ParameterSquare {
 /// The search for the closest point of one patch.
 class PatchSearch {
  public:
-  PatchSearch(const BezierPatch& patch, const Vector3& point, const Facing* facing,
-              ClosestSoFar& best)
-      : patch_(patch), facing_(facing), best_(best) {
+  PatchSearch(const BezierPatch& patch, const Facing* facing, ClosestSoFar& best)
+      : patch_(patch), facing_(facing), best_(best), away_(best.from.paddedAway()) {
+    const Vector3& place = best.from.place;
     const BezierPatch::Point offset =
-        patch.anchor - BezierPatch::Point(point[0], point[1], point[2], 0);
+        patch.anchor - BezierPatch::Point(place[0], place[1], place[2], 0);
     relative_.anchor.setZero();
     for (int i = 0; i < 16; ++i) {
       relative_.points[i] = patch.points[i] + offset;
@@ -35,11 +36,24 @@ class PatchSearch {
       low = low.min(relative_.points[i]);
       high = high.max(relative_.points[i]);
     }
-    const BezierPatch::Point beyond = low.max(-high).max(0.);
-    if (!isBetter(beyond.square().sum()) || isBehindFoot() || facesAway()) {
+    const BezierPatch::Point nearest = away_.max(low).min(high);
+    if (!isBetter((nearest * (nearest - 2 * away_)).sum()) || isBehindFoot() || facesAway()) {
       return;
     }
-    const SquaredDistance f(relative_.points);
+    if (!facing_ && isConvexDistance(relative_.points, away_)) {
+      double s, t;
+      nearestControlPoint(s, t);
+      switch (minimizeDistance(relative_, away_, {0, 0, 1}, 0, best_.enough(), s, t)) {
+        case FootSearch::arrived:
+          offer(s, t);
+          return;
+        case FootSearch::beyond:
+          return;
+        case FootSearch::failed:
+          break;
+      }
+    }
+    const SquaredDistance f(relative_.points, away_);
     const double noise = noiseOf(f);
     if (isBetter(f.least() - noise)) {
       visit(f, noise, {{0, 0, 1}, 0});
@@ -69,7 +83,7 @@ class PatchSearch {
   /// to the direction of that point. This is the tightest bound for flat patches and for those of
   /// no area.
   bool isBehindFoot() const {
-    const double enough = best_.distance - best_.tolerance;
+    const double enough = best_.plane - best_.tolerance;
     const Vector3& n = best_.direction;
     for (const BezierPatch::Point& q : relative_.points) {
       if (n[0] * q[0] + n[1] * q[1] + n[2] * q[2] < enough) {
@@ -122,7 +136,7 @@ class PatchSearch {
   }
 
   /// Bound on the rounding of the coefficients, and of those of the quarters.
-  static double noiseOf(const SquaredDistance& f) { return kRounding * f.largest(); }
+  static double noiseOf(const SquaredDistance& f) { return kRounding * f.magnitude(); }
 
   /// The control points of the patch on a cell, relative to the searching point.
   void pointsOf(const Cell& cell, BezierPatch::Point out[16]) const {
@@ -138,7 +152,9 @@ class PatchSearch {
   /// Searches a cell: finds the minimum on it if the squared distance is convex there, else divides
   /// the cell.
   void visit(const SquaredDistance& f, double noise, const Cell& cell) {
-    const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., f.least())));
+    const double range = best_.from.range;
+    const double reach =
+        std::max(best_.tolerance, std::sqrt(std::max(0., f.least() + range * range)));
     const double least_slack = reach * best_.tolerance;
     const double slack = noise <= 4 * least_slack ? 5 * least_slack : least_slack;
     const SquaredDistance::Shape shape = f.shape(slack);
@@ -151,8 +167,16 @@ class PatchSearch {
     s = cell.s + sideOr(shape.s_side, s) * cell.size;
     t = cell.t + sideOr(shape.t_side, t) * cell.size;
     const bool corner = shape.s_side != 0 && shape.t_side != 0;
-    if (cell.depth == kMostDepth || ++cells_ > kMostCells || corner ||
-        (shape.convex && minimizeDistance(relative_, cell, slack, s, t))) {
+    bool done = cell.depth == kMostDepth || ++cells_ > kMostCells || corner;
+    if (!done && shape.convex) {
+      const FootSearch search =
+          minimizeDistance(relative_, away_, cell, slack, best_.enough() + noise, s, t);
+      if (search == FootSearch::beyond) {
+        return;
+      }
+      done = search == FootSearch::arrived;
+    }
+    if (done) {
       if (!facing_ || isFoot(cell, s, t)) {
         offer(s, t);
       }
@@ -182,12 +206,25 @@ class PatchSearch {
         // Quarters inherit the rounding of the whole; points computed for the cell have less.
         BezierPatch::Point points[16];
         pointsOf(next, points);
-        const SquaredDistance fresh(points);
+        const SquaredDistance fresh(points, away_);
         visit(fresh, noiseOf(fresh), next);
       } else {
         visit(quarters[q], noise, next);
       }
     }
+  }
+
+  /// The place that belongs to the control point nearest to the searching point.
+  void nearestControlPoint(double& s, double& t) const {
+    double least = std::numeric_limits<double>::infinity();
+    int nearest = 0;
+    for (int i = 0; i < 16; ++i) {
+      const double squared = dot(relative_.points[i], relative_.points[i] - 2 * away_);
+      nearest = squared < least ? i : nearest;
+      least = std::min(least, squared);
+    }
+    s = (nearest & 3) / 3.;
+    t = (nearest >> 2) / 3.;
   }
 
   static double sideOr(int side, double other) { return side < 0 ? 0 : side > 0 ? 1 : other; }
@@ -207,6 +244,7 @@ class PatchSearch {
     Values at, to_foot;
     patch_.evaluate<1>(s, t, at);
     relative_.evaluate<0>(s, t, to_foot);
+    to_foot.value -= away_;
     const double value = std::sqrt(dot(to_foot.value, to_foot.value));
     const auto falls = [&](const BezierPatch::Point& tangent, double outwards) {
       const double slope = outwards * dot(to_foot.value, tangent);
@@ -236,15 +274,26 @@ class PatchSearch {
   const BezierPatch& patch_;
   const Facing* facing_;
   ClosestSoFar& best_;
-  BezierPatch relative_;
+  const BezierPatch::Point away_;
+  BezierPatch relative_;  // to the place of the searching point
   int cells_ = 0;
 };
 
 }  // namespace
 
-void closestOnPatch(const BezierPatch& patch, const Vector3& point, const Facing* facing,
-                    ClosestSoFar& best) {
-  PatchSearch(patch, point, facing, best).run();
+SearchPoint::SearchPoint(const Vector3& point, const Vector3& middle, double diagonal)
+    : place(point) {
+  const Vector3 from_middle = point - middle;
+  const double length = from_middle.norm();
+  if (length > kFarAway * diagonal && diagonal > 0) {
+    place = middle;
+    away = from_middle * std::min(1., kFarthest * diagonal / length);
+    range = away.norm();
+  }
+}
+
+void closestOnPatch(const BezierPatch& patch, const Facing* facing, ClosestSoFar& best) {
+  PatchSearch(patch, facing, best).run();
 }
 
 }  // namespace limitsurf

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -15,34 +14,60 @@
 #include "limitsurf/search/hit_evaluation.h"
 #include "limitsurf/search/normal_cones.h"
 #include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/spatial_order.h"
 
 namespace limitsurf {
 namespace {
 
-/// A point in single precision, for distances from the boxes of the tree: a box that contains the
-/// point in spite of rounding.
-struct BoxPoint {
-  explicit BoxPoint(const Vector3& point) {
+/// A searching point in single precision, for distances from the boxes of the tree: a box that
+/// contains the point in spite of rounding.
+class BoxPoint {
+ public:
+  /// `point` is in the coordinates of boxes.
+  BoxPoint(const SearchPoint& from, const Vector3& point) : is_far_(from.isFar()) {
+    if (is_far_) {
+      const Vector3& away = from.away;
+      low_ << static_cast<float>(away[0]), static_cast<float>(away[1]), static_cast<float>(away[2]),
+          0;
+      high_ = low_;
+      twice_range_ = static_cast<float>(2 * from.range);
+      return;
+    }
     const double margin = kRounding * (point.cwiseAbs().maxCoeff() + 1);
-    low << static_cast<float>(point[0] - margin), static_cast<float>(point[1] - margin),
+    low_ << static_cast<float>(point[0] - margin), static_cast<float>(point[1] - margin),
         static_cast<float>(point[2] - margin), 0;
-    high << static_cast<float>(point[0] + margin), static_cast<float>(point[1] + margin),
+    high_ << static_cast<float>(point[0] + margin), static_cast<float>(point[1] + margin),
         static_cast<float>(point[2] + margin), 0;
   }
 
-  /// A lower bound of the squared distance from a box.
+  /// A lower bound of the squared distance from a box, less the square of the range.
   float squaredDistance(const BoxF& box) const {
-    const float squared = (box.low - high).max(low - box.high).max(0.f).square().sum();
+    if (is_far_) {
+      return squaredDistanceLess(box);
+    }
+    const float squared = (box.low - high_).max(low_ - box.high).max(0.f).square().sum();
     return std::min(squared * kNearlyOne, std::numeric_limits<float>::max());
   }
 
-  BoxF::Corner low, high;
-
  private:
+  float squaredDistanceLess(const BoxF& box) const {
+    if (box.low[0] > box.high[0]) {  // empty
+      return std::numeric_limits<float>::infinity();
+    }
+    const BoxF::Corner nearest = low_.max(box.low).min(box.high);
+    const float reach = box.low.abs().max(box.high.abs()).sum();
+    return (nearest * (nearest - 2 * low_)).sum() -
+           (1 - kNearlyOne) * reach * (reach + twice_range_);
+  }
+
   /// Four units in the last place of single precision, 2^-24 each, and a little more.
   static constexpr double kRounding = 2.5e-7;
   /// Less than 1 by more than the relative rounding of the squared distance.
   static constexpr float kNearlyOne = 1 - 1e-6f;
+
+  bool is_far_;
+  BoxF::Corner low_, high_;  // of a far point both are the way to it
+  float twice_range_ = 0;
 };
 
 /// A direction in a unit of its own, a power of two, so that its square can be formed.
@@ -64,7 +89,7 @@ class ClosestSearch {
   explicit ClosestSearch(const SearchTree& data, const NormalCones* cones = nullptr)
       : data_(data), cones_(cones), cache_(data) {}
 
-  /// The number of leaves visited so far.
+  /// The number of leaves visited so far, and of cores split.
   std::int64_t leaves() const { return leaves_; }
   /// Whether the last search has met so many leaves in vain that it is to be made again with cones.
   bool gaveUp() const { return gave_up_; }
@@ -79,16 +104,18 @@ class ClosestSearch {
       unit_ = facing->direction.normalized();
       reach_ = facing->least_cosine < -1 ? kPi<double> : std::acos(facing->least_cosine);
     }
-    point_ = point;
     facing_ = facing;
     best_ = {};
+    best_.from = SearchPoint(point, data_.middle, data_.patches.diagonal());
     best_.tolerance = data_.tolerance;
     // Points at max_distance itself count, in spite of rounding.
-    best_.distance = max_distance * (1 + kDistanceRounding) + 2 * data_.tolerance;
+    best_.excess = max_distance * (1 + kDistanceRounding) + 2 * data_.tolerance - best_.from.range;
     if (!data_.tree->empty()) {
-      const Vector3 in_boxes = data_.inBoxes(point);
-      descend(in_boxes);
-      visitCores(in_boxes);
+      point_in_boxes_ = data_.inBoxes(point);
+      descend();
+      if (!gave_up_) {
+        visitCores();
+      }
     }
     return best_.at;
   }
@@ -96,19 +123,26 @@ class ClosestSearch {
  private:
   static constexpr double kDistanceRounding = 1e-15;
   /// A search with a condition on normals ends after this many leaves if it has no cones.
-  static constexpr std::int64_t kPatience = 64;
+  static constexpr std::int64_t kPatience = 8;
   static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-  /// Walks down the tree, nearer boxes first. `point` is in the coordinates of boxes.
-  void descend(const Vector3& point) {
+  /// A lower bound of the squared distance of a box, less the square of the range.
+  template <typename Real>
+  double squaredDistance(const OrientedBox<Real>& box) const {
+    return best_.from.isFar() ? box.squaredDistanceLess(best_.from.away)
+                              : box.squaredDistance(point_in_boxes_);
+  }
+
+  /// Walks down the tree, nearer boxes first.
+  void descend() {
     struct Entry {
       std::int32_t node;
       float squared;
     };
-    const BoxPoint box_point(point);
+    const BoxPoint box_point(best_.from, point_in_boxes_);
     Entry stack[BoxTree::kMostDepth + 1];
     int height = 0;
-    Entry next{0, 0};
+    Entry next{0, -std::numeric_limits<float>::infinity()};
     while (true) {
       if (next.squared < best_.enough()) {
         if (!BoxTree::isLeaf(next.node)) {
@@ -128,7 +162,7 @@ class ClosestSearch {
           continue;
         }
         const std::int32_t leaf = BoxTree::leaf(next.node);
-        const double squared = data_.leaves[leaf].box.squaredDistance(point);
+        const double squared = squaredDistance(data_.leaves[leaf].box);
         if (squared < best_.enough()) {
           if (leaves_ == last_leaf_) {
             gave_up_ = true;
@@ -150,7 +184,7 @@ class ClosestSearch {
     if (found.piece.isCore()) {
       putOff(found.piece, squared);
     } else {
-      closestOnPatch(cache_.patch(leaf), point_, facing_, best_);
+      closestOnPatch(cache_.patch(leaf), facing_, best_);
     }
   }
 
@@ -170,7 +204,8 @@ class ClosestSearch {
   /// contains the vertex, would end that.
   void putOff(const SurfacePiece& core, double squared) {
     if (!facing_) {
-      best_.offer(data_.patches.coreVertex(core) - point_, data_.patches.rectangle(core).at(0, 0));
+      best_.offer(data_.patches.coreVertex(core) - best_.from.place,
+                  data_.patches.rectangle(core).at(0, 0));
     }
     if (open_.size() == splits_.size()) {
       splits_.emplace_back(new SurfacePatches::SplitCore);
@@ -179,7 +214,7 @@ class ClosestSearch {
   }
 
   /// Splits the cores that were put off, always the nearest one first.
-  void visitCores(const Vector3& point) {
+  void visitCores() {
     std::make_heap(open_.begin(), open_.end());
     while (!open_.empty() && open_.front().squared < best_.enough()) {
       std::pop_heap(open_.begin(), open_.end());
@@ -187,11 +222,12 @@ class ClosestSearch {
       open_.pop_back();
       SurfacePatches::SplitCore& split = *splits_[next.split];
       data_.patches.split(next.core, split);
+      ++leaves_;
       for (const BezierPatch& patch : split.patches) {
-        closestOnPatch(patch, point_, facing_, best_);
+        closestOnPatch(patch, facing_, best_);
       }
       const CoreBox rest(data_.patches.restHull(split), data_.middle);
-      const double squared = rest.squaredDistance(point);
+      const double squared = squaredDistance(rest);
       if (!(squared < best_.enough())) {
         continue;
       }
@@ -212,7 +248,7 @@ class ClosestSearch {
     if (facing_ && !facing_->accepts(at)) {
       return;
     }
-    best_.offer(vertex - point_, at);
+    best_.offer(vertex - best_.from.place, at);
   }
 
   const SearchTree& data_;
@@ -222,7 +258,7 @@ class ClosestSearch {
   bool gave_up_ = false;
   Vector3 unit_;      // the direction in which the surface must face
   double reach_ = 0;  // the largest angle between them
-  Vector3 point_;
+  Vector3 point_in_boxes_;
   const Facing* facing_ = nullptr;
   ClosestSoFar best_;
   std::vector<OpenCore> open_;
@@ -249,8 +285,7 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
   std::vector<Location> at(static_cast<std::size_t>(points.rows()));
   // A search that finds nothing that faces the right way would look at the whole surface. It is
   // made again, with the help of cones.
-  std::vector<std::size_t> open(at.size());
-  std::iota(open.begin(), open.end(), std::size_t{0});
+  std::vector<std::size_t> open = spatialOrder(points, threads);
   std::atomic<std::int64_t> leaves{0};
   const auto searchOpen = [&](const NormalCones* cones) {
     std::vector<char> gave_up(open.size(), 0);

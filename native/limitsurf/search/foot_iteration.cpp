@@ -34,7 +34,7 @@ struct Step {
   double s = 0, t = 0;
 };
 
-/// The derivatives of half the squared distance.
+/// The derivatives of half the squared distance. The value is the offset from the point.
 struct Gradient {
   explicit Gradient(const Values& at) : s(dot(at.value, at.ds)), t(dot(at.value, at.dt)) {}
   double s, t;
@@ -92,8 +92,10 @@ bool leadsOut(double x, double step, double low, double high) {
 /// minimizeDistance(), as steps from the present (s, t).
 class FootIteration {
  public:
-  FootIteration(const BezierPatch& patch, const ParameterSquare& square, double& s, double& t)
+  FootIteration(const BezierPatch& patch, const BezierPatch::Point& away,
+                const ParameterSquare& square, double& s, double& t)
       : patch_(patch),
+        away_(away),
         size_(square.size),
         s0_(square.s),
         s1_(square.s + square.size),
@@ -101,17 +103,19 @@ class FootIteration {
         t1_(square.t + square.size),
         s_(s),
         t_(t) {
-    patch_.evaluate<2>(s_, t_, at_);
-    squared_ = dot(at_.value, at_.value);
+    squared_ = evaluate(s_, t_, at_);
   }
 
-  bool run(double slack) {
+  FootSearch run(double slack, double enough) {
     for (int i = 0; i < kMostIterations; ++i) {
       const Gradient g(at_);
       const bool free_s = !((s_ <= s0_ && g.s >= 0) || (s_ >= s1_ && g.s <= 0));
       const bool free_t = !((t_ <= t0_ && g.t >= 0) || (t_ >= t1_ && g.t <= 0));
       if (!free_s && !free_t) {
-        return true;
+        return FootSearch::arrived;
+      }
+      if (isBeyond(g, slack, enough)) {
+        return FootSearch::beyond;
       }
       Hessian h(at_);
       const Step step = activeStep(g, h, free_s, free_t);
@@ -120,22 +124,40 @@ class FootIteration {
           h.is_newton && part == 1 && std::abs(step.s) + std::abs(step.t) < kLastStep;
       switch (descend(step, part, is_last)) {
         case Descent::kNoMove:
-          return true;
+          return FootSearch::arrived;
         case Descent::kNoDescent:
           return is_last ||
-                 (std::abs(free_s ? g.s : 0) + std::abs(free_t ? g.t : 0)) * size_ <= slack;
+                         (std::abs(free_s ? g.s : 0) + std::abs(free_t ? g.t : 0)) * size_ <= slack
+                     ? FootSearch::arrived
+                     : FootSearch::failed;
         case Descent::kDescended:
           break;
       }
       if (is_last && !fallsFromSide()) {
-        return true;
+        return FootSearch::arrived;
       }
     }
-    return false;
+    return FootSearch::failed;
   }
 
  private:
   enum class Descent { kDescended, kNoDescent, kNoMove };
+
+  /// Returns the squared distance less that of `away`, and sets the value to the offset.
+  double evaluate(double s, double t, Values& at) const {
+    patch_.evaluate<2>(s, t, at);
+    const BezierPatch::Point offset = at.value - away_;
+    const double squared = dot(at.value, offset - away_);
+    at.value = offset;
+    return squared;
+  }
+
+  /// A convex function lies above its tangents.
+  bool isBeyond(const Gradient& g, double slack, double enough) const {
+    const double falls =
+        std::max(g.s * (s_ - s0_), g.s * (s_ - s1_)) + std::max(g.t * (t_ - t0_), g.t * (t_ - t1_));
+    return squared_ - 2 * falls - slack - kStepRounding * std::abs(squared_) >= enough;
+  }
 
   /// A step that respects the active sides. A side on which the iteration stands, and out of which
   /// the step would lead, stays active for this step: the other parameter moves or, if that has
@@ -182,9 +204,9 @@ class FootIteration {
       if (next_s == s_ && next_t == t_) {
         return Descent::kNoMove;
       }
-      patch_.evaluate<2>(next_s, next_t, next);
-      const double next_squared = dot(next.value, next.value);
-      if (next_squared <= squared_ || (is_last && next_squared <= squared_ * (1 + kStepRounding))) {
+      const double next_squared = evaluate(next_s, next_t, next);
+      if (next_squared <= squared_ ||
+          (is_last && next_squared <= squared_ + kStepRounding * std::abs(squared_))) {
         s_ = next_s;
         t_ = next_t;
         squared_ = next_squared;
@@ -203,6 +225,7 @@ class FootIteration {
   }
 
   const BezierPatch& patch_;
+  const BezierPatch::Point away_;
   const double size_, s0_, s1_, t0_, t1_;
   double &s_, &t_;
   Values at_;
@@ -211,9 +234,10 @@ class FootIteration {
 
 }  // namespace
 
-bool minimizeDistance(const BezierPatch& patch, const ParameterSquare& square, double slack,
-                      double& s, double& t) {
-  return FootIteration(patch, square, s, t).run(slack);
+FootSearch minimizeDistance(const BezierPatch& patch, const BezierPatch::Point& away,
+                            const ParameterSquare& square, double slack, double enough, double& s,
+                            double& t) {
+  return FootIteration(patch, away, square, s, t).run(slack, enough);
 }
 
 }  // namespace limitsurf

@@ -6,13 +6,22 @@
 
 namespace limitsurf {
 
-/// Minimises the distance of a patch from the origin over a square of the patch's parameters, by
+enum class FootSearch {
+  arrived,  ///< a minimum was reached
+  beyond,   ///< all of the square is so far away that it does not matter
+  failed,
+};
+
+/// Minimises the distance of a patch from a point over a square of the patch's parameters, by
 /// Newton's iteration with an active set of the square's sides. `patch` must have no anchor: its
-/// points are relative to the origin. The iteration starts and ends at (s, t).
+/// points and `away`, the point, are relative to the same place. The iteration starts and ends at
+/// (s, t).
 ///
-/// Returns whether a minimum was reached: if the squared distance is convex, then it is nowhere on
-/// the square less by more than `slack`.
-bool minimizeDistance(const BezierPatch& patch, const ParameterSquare& square, double slack,
-                      double& s, double& t);
+/// Where it arrives, the following holds if the squared distance is convex: it is nowhere on the
+/// square less by more than `slack`. It ends early if convexity, up to `slack`, shows that the
+/// squared distance, less that of `away` itself, is at least `enough` on the whole square.
+FootSearch minimizeDistance(const BezierPatch& patch, const BezierPatch::Point& away,
+                            const ParameterSquare& square, double slack, double enough, double& s,
+                            double& t);
 
 }  // namespace limitsurf

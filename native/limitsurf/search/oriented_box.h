@@ -34,6 +34,20 @@ class OrientedBox {
     return sum * kNearlyOne;
   }
 
+  /// A lower bound of the squared distance of the box from the point `away`, less that of the
+  /// origin from it, without the cancellation of the two.
+  double squaredDistanceLess(const Vector3& away) const {
+    double sum = 0, reach = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double towards = axes_[i][0] * away[0] + axes_[i][1] * away[1] + axes_[i][2] * away[2];
+      const double middle = -coordinate(i, Vector3::Zero());
+      const double nearest = std::clamp(towards, middle - half_[i], middle + half_[i]);
+      sum += nearest * (nearest - 2 * towards);
+      reach += std::abs(middle) + half_[i];
+    }
+    return sum - (1 - kNearlyOne) * reach * (reach + 2 * away.norm());
+  }
+
   /// Whether the ray meets the box, widened by `margin` (1e-13 of a diagonal), between the
   /// distances `from` and `to`. Raises `from` to where the ray enters.
   bool meets(const Ray& ray, double margin, double& from, double to) const {

@@ -20,8 +20,10 @@ constexpr double kInverse6[7] = {1,       1. / 6, 1. / 15, 1. / 20,  // of the b
 
 }  // namespace
 
-SquaredDistance::SquaredDistance(const BezierPatch::Point points[16]) {
-  // With the binomials multiplied in, the product of two polynomials is a convolution.
+SquaredDistance::SquaredDistance(const BezierPatch::Point points[16],
+                                 const BezierPatch::Point& away) {
+  // |P|^2 - 2 P away. With the binomials multiplied in, the product of two polynomials is a
+  // convolution.
   double x[3][16];
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
@@ -47,6 +49,19 @@ SquaredDistance::SquaredDistance(const BezierPatch::Point points[16]) {
     addRows(a, a, 1);
     for (int b = a + 1; b < 4; ++b) {
       addRows(a, b, 2);
+    }
+  }
+  if (!(away == 0).all()) {
+    for (int a = 0; a < 4; ++a) {
+      for (int i = 0; i < 4; ++i) {
+        const double linear = -2 * (x[0][4 * a + i] * away[0] + x[1][4 * a + i] * away[1] +
+                                    x[2][4 * a + i] * away[2]);
+        for (int b = 0; b < 4; ++b) {
+          for (int k = 0; k < 4; ++k) {
+            sum[7 * (a + b) + i + k] += linear * kBinomial3[b] * kBinomial3[k];
+          }
+        }
+      }
     }
   }
   for (int j = 0; j < 7; ++j) {
@@ -88,7 +103,7 @@ SquaredDistance::Shape SquaredDistance::shape(double slack) const {
       high = std::max(high, d);
     }
   }
-  const double rounding = kRounding * f_.largest();
+  const double rounding = kRounding * magnitude();
   shape.s_side = low >= 0 ? -1 : high <= 0 ? 1 : 0;
   shape.s_strictly = low > rounding || high < -rounding;
   low = kInfinity;
@@ -170,7 +185,7 @@ bool SquaredDistance::isNowhereConvex() const {
       high = std::max(high, st);
     }
   }
-  const double rounding = kRounding * f_.largest();
+  const double rounding = kRounding * magnitude();
   const double st = kMixed * std::max({0., low, -high});
   return ss < -rounding || tt < -rounding ||
          kSecond * (ss + rounding) * kSecond * (tt + rounding) < st * st;

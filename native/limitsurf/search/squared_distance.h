@@ -1,23 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "limitsurf/bernstein.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
 
-/// The squared distance of a bicubic patch from a point, as a polynomial of degree 6.
+/// The squared distance of a bicubic patch from a point, less that of the point from a place near
+/// the patch, as a polynomial of degree 6. For points far away the difference keeps the digits that
+/// tell places of the patch apart.
 ///
 /// The polynomial has Bezier form, so its coefficients bound it. They do so far better than a box
 /// around the patch: where the patch bends around the point they are nearly equal.
 class SquaredDistance {
  public:
   SquaredDistance() = default;
-  /// `points` are the Bezier points of the patch, relative to the point.
-  explicit SquaredDistance(const BezierPatch::Point points[16]);
+  /// `points` are the Bezier points of the patch, `away` is the point, both relative to the place.
+  SquaredDistance(const BezierPatch::Point points[16], const BezierPatch::Point& away);
 
   double least() const { return f_.least(); }
-  double largest() const { return f_.largest(); }
+  /// The largest coefficient, by its absolute value.
+  double magnitude() const { return std::max(f_.largest(), -f_.least()); }
   /// The value at a corner: i and j are 0 or 1.
   double corner(int i, int j) const { return f_.at(6 * i, 6 * j); }
   /// The polynomial on the quarters of the square.

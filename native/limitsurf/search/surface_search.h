@@ -26,8 +26,9 @@ struct RayHits : Hits {
 
 /// Bound on the error of a distance, relative to the diagonal of the control mesh's bounding box:
 /// by how much the distance of the closest point exceeds the true minimum, and by how much a hit is
-/// off the ray and along it. It holds for points and origins within 1,000 diagonals of the mesh;
-/// beyond, the rounding of the distance itself is larger.
+/// off the ray and along it. For rays it holds for origins within 1,000 diagonals of the mesh.
+/// Closest points are found as exactly from any distance, although the rounding of a number as
+/// large as the distance itself may exceed the bound.
 constexpr double kSearchError = 1e-12;
 
 struct ClosestOptions {
@@ -38,8 +39,8 @@ struct ClosestOptions {
   /// boundaries and infinitely sharp edges end a sheet.
   Points facing;
   double max_angle = 1.5707963267948966;  ///< radians, 0 to pi
-  /// Unless null, receives the number of patches and cores that all searches together looked into:
-  /// what the cost is proportional to.
+  /// Unless null, receives the number of patches and cores that all searches together looked into,
+  /// and of cores that they split: what the cost is proportional to.
   std::int64_t* leaves = nullptr;
 };
 

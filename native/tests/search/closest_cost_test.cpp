@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What searches for closest points cost, counted in patches and cores that they look into, and
+// that points far away are answered as exactly as near ones.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "limitsurf/search/surface_search.h"
+#include "support/cages/meshes.h"
+#include "support/random.h"
+
+namespace limitsurf::test {
+namespace {
+
+Cage bumpyGrid(int side) {
+  Cage cage = fullGrid(side, side);
+  for (int vertex = 0; vertex < cage.vertexCount(); ++vertex) {
+    const double x = cage.positions(vertex, 0) / side, y = cage.positions(vertex, 1) / side;
+    cage.positions(vertex, 2) = 0.1 * side * std::sin(5 * x) * std::sin(4 * y);
+  }
+  return cage;
+}
+
+Cage inTriangles(Cage cage) {
+  std::vector<std::vector<int>> halves;
+  for (const std::vector<int>& f : cage.faces) {
+    halves.push_back({f[0], f[1], f[2]});
+    halves.push_back({f[0], f[2], f[3]});
+  }
+  cage.faces = halves;
+  return cage;
+}
+
+/// The mean number of patches and cores for points as near the middle of the bumpy grid as `reach`.
+double meanLeaves(const Cage& cage, int side, double reach) {
+  constexpr int kCount = 400;
+  const LimitSurface surface = limitSurface(cage);
+  const SurfaceSearch search(surface);
+  Random random(1);
+  Points points(kCount, 3);
+  for (int i = 0; i < kCount; ++i) {
+    const double x = random.uniform(0.1, 0.9), y = random.uniform(0.1, 0.9);
+    points.row(i) << side * x, side * y, 0.1 * side * std::sin(5 * x) * std::sin(4 * y);
+    points.row(i) += random.vector(reach).transpose();
+  }
+  std::int64_t leaves = 0;
+  ClosestOptions options;
+  options.leaves = &leaves;
+  search.closest(points, options);
+  return static_cast<double>(leaves) / kCount;
+}
+
+TEST(ClosestCost, TrianglesCostFewTimesWhatQuadsCost) {
+  constexpr int kSide = 40;
+  const Cage quads = bumpyGrid(kSide), triangles = inTriangles(bumpyGrid(kSide * 7 / 10));
+  for (const double reach : {0.01, 1., 4.}) {
+    const double of_quads = meanLeaves(quads, kSide, reach);
+    EXPECT_LE(meanLeaves(triangles, kSide * 7 / 10, reach), 8 * of_quads) << reach;
+  }
+}
+
+/// The cost does not grow with the distance, and the result is at least as close as any of many
+/// places of the surface. Squared distances are compared less that of the middle: distances
+/// themselves could not tell the places apart.
+TEST(ClosestCost, FarPointsCostNoMoreAndAreAnsweredAsExactly) {
+  for (const Cage& cage : {cube(), torus(12, 8), bumpyGrid(10), inTriangles(bumpyGrid(10)), cross(),
+                           pole(40), fan(5, false, 3)}) {
+    const LimitSurface surface = limitSurface(cage);
+    const SurfaceSearch search(surface);
+    const Eigen::RowVector3d low = cage.positions.colwise().minCoeff(),
+                             high = cage.positions.colwise().maxCoeff();
+    const Vector3 middle = 0.5 * (low + high).transpose();
+    const double diagonal = (high - low).norm();
+    std::vector<Location> places;
+    for (int face = 0; face < surface.faceCount(); ++face) {
+      for (int i = 0; i <= 8; ++i) {
+        for (int j = 0; j <= 8; ++j) places.push_back({face, i / 8., j / 8.});
+      }
+    }
+    const Points samples = surface.evaluate(places).position;
+    Random random(2);
+    for (const double far : {10., 15.9, 16.1, 1e3, 1e8, 1e15, 1e40, 1e140}) {
+      constexpr int kCount = 25;
+      Points points(kCount, 3);
+      for (int i = 0; i < kCount; ++i) {
+        points.row(i) = (middle + far * diagonal * random.vector(1).normalized()).transpose();
+      }
+      std::int64_t leaves = 0;
+      ClosestOptions options;
+      options.leaves = &leaves;
+      const Hits hits = search.closest(points, options);
+      EXPECT_LE(leaves, 60 * kCount) << far;
+      for (int i = 0; i < kCount; ++i) {
+        ASSERT_GE(hits.at[static_cast<std::size_t>(i)].face, 0) << far;
+        const Vector3 away = points.row(i).transpose() - middle;
+        const double range = away.norm();
+        // The distance less that of the middle.
+        const auto excess = [&](const Eigen::RowVector3d& p) {
+          const Vector3 offset = p.transpose() - middle;
+          return offset.dot(offset / (2 * range) - away / range);
+        };
+        const double found = excess(hits.position.row(i));
+        for (Eigen::Index k = 0; k < samples.rows(); ++k) {
+          ASSERT_LE(found, excess(samples.row(k)) + 1e-12 * diagonal) << far;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limitsurf::test
