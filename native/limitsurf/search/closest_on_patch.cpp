@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limitsurf/search/distance_convexity.h"
 #include "limitsurf/search/foot_iteration.h"
 
 namespace limitsurf {
@@ -40,20 +39,7 @@ class PatchSearch {
     if (!isBetter((nearest * (nearest - 2 * away_)).sum()) || isBehindFoot() || facesAway()) {
       return;
     }
-    if (!facing_ && isConvexDistance(relative_.points, away_)) {
-      double s, t;
-      nearestControlPoint(s, t);
-      switch (minimizeDistance(relative_, away_, {0, 0, 1}, 0, best_.enough(), s, t)) {
-        case FootSearch::arrived:
-          offer(s, t);
-          return;
-        case FootSearch::beyond:
-          return;
-        case FootSearch::failed:
-          break;
-      }
-    }
-    const SquaredDistance f(relative_.points, away_);
+    const SquaredDistance f(kernels_, relative_.points, away_);
     const double noise = noiseOf(f);
     if (isBetter(f.least() - noise)) {
       visit(f, noise, {{0, 0, 1}, 0});
@@ -170,7 +156,7 @@ class PatchSearch {
     bool done = cell.depth == kMostDepth || ++cells_ > kMostCells || corner;
     if (!done && shape.convex) {
       const FootSearch search =
-          minimizeDistance(relative_, away_, cell, slack, best_.enough() + noise, s, t);
+          minimizeDistance(kernels_, relative_, away_, cell, slack, best_.enough() + noise, s, t);
       if (search == FootSearch::beyond) {
         return;
       }
@@ -206,25 +192,12 @@ class PatchSearch {
         // Quarters inherit the rounding of the whole; points computed for the cell have less.
         BezierPatch::Point points[16];
         pointsOf(next, points);
-        const SquaredDistance fresh(points, away_);
+        const SquaredDistance fresh(kernels_, points, away_);
         visit(fresh, noiseOf(fresh), next);
       } else {
         visit(quarters[q], noise, next);
       }
     }
-  }
-
-  /// The place that belongs to the control point nearest to the searching point.
-  void nearestControlPoint(double& s, double& t) const {
-    double least = std::numeric_limits<double>::infinity();
-    int nearest = 0;
-    for (int i = 0; i < 16; ++i) {
-      const double squared = dot(relative_.points[i], relative_.points[i] - 2 * away_);
-      nearest = squared < least ? i : nearest;
-      least = std::min(least, squared);
-    }
-    s = (nearest & 3) / 3.;
-    t = (nearest >> 2) / 3.;
   }
 
   static double sideOr(int side, double other) { return side < 0 ? 0 : side > 0 ? 1 : other; }
@@ -271,6 +244,7 @@ class PatchSearch {
   /// product too far, and the surface's frame decides about the normal.
   static constexpr double kParallel = 1e-3;
 
+  const SearchKernels& kernels_ = SearchKernels::get();
   const BezierPatch& patch_;
   const Facing* facing_;
   ClosestSoFar& best_;

@@ -92,9 +92,10 @@ bool leadsOut(double x, double step, double low, double high) {
 /// minimizeDistance(), as steps from the present (s, t).
 class FootIteration {
  public:
-  FootIteration(const BezierPatch& patch, const BezierPatch::Point& away,
-                const ParameterSquare& square, double& s, double& t)
-      : patch_(patch),
+  FootIteration(const SearchKernels& kernels, const BezierPatch& patch,
+                const BezierPatch::Point& away, const ParameterSquare& square, double& s, double& t)
+      : kernels_(kernels),
+        patch_(patch),
         away_(away),
         size_(square.size),
         s0_(square.s),
@@ -145,7 +146,9 @@ class FootIteration {
 
   /// Returns the squared distance less that of `away`, and sets the value to the offset.
   double evaluate(double s, double t, Values& at) const {
-    patch_.evaluate<2>(s, t, at);
+    static_assert(sizeof(Values) == sizeof(double[6][4]), "the kernel writes the values");
+    kernels_.evaluate(reinterpret_cast<const double (*)[4]>(patch_.points), s, t,
+                      reinterpret_cast<double (*)[4]>(&at));
     const BezierPatch::Point offset = at.value - away_;
     const double squared = dot(at.value, offset - away_);
     at.value = offset;
@@ -224,6 +227,7 @@ class FootIteration {
            (t_ == t1_ && g.t > 0);
   }
 
+  const SearchKernels& kernels_;
   const BezierPatch& patch_;
   const BezierPatch::Point away_;
   const double size_, s0_, s1_, t0_, t1_;
@@ -234,10 +238,10 @@ class FootIteration {
 
 }  // namespace
 
-FootSearch minimizeDistance(const BezierPatch& patch, const BezierPatch::Point& away,
-                            const ParameterSquare& square, double slack, double enough, double& s,
-                            double& t) {
-  return FootIteration(patch, away, square, s, t).run(slack, enough);
+FootSearch minimizeDistance(const SearchKernels& kernels, const BezierPatch& patch,
+                            const BezierPatch::Point& away, const ParameterSquare& square,
+                            double slack, double enough, double& s, double& t) {
+  return FootIteration(kernels, patch, away, square, s, t).run(slack, enough);
 }
 
 }  // namespace limitsurf

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "limitsurf/search/parameter_square.h"
+#include "limitsurf/search/search_kernels.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
@@ -20,8 +21,8 @@ enum class FootSearch {
 /// Where it arrives, the following holds if the squared distance is convex: it is nowhere on the
 /// square less by more than `slack`. It ends early if convexity, up to `slack`, shows that the
 /// squared distance, less that of `away` itself, is at least `enough` on the whole square.
-FootSearch minimizeDistance(const BezierPatch& patch, const BezierPatch::Point& away,
-                            const ParameterSquare& square, double slack, double enough, double& s,
-                            double& t);
+FootSearch minimizeDistance(const SearchKernels& kernels, const BezierPatch& patch,
+                            const BezierPatch::Point& away, const ParameterSquare& square,
+                            double slack, double enough, double& s, double& t);
 
 }  // namespace limitsurf

@@ -14,69 +14,26 @@ constexpr double kRounding = 1e-14;
 /// A polynomial of degree 6 has second derivatives of 6 * 5 = 30 times the second differences of
 /// its coefficients, and mixed ones of 6 * 6 = 36 times the mixed differences.
 constexpr double kSecond = 30, kMixed = 36;
-constexpr double kBinomial3[4] = {1, 3, 3, 1};
-constexpr double kInverse6[7] = {1,       1. / 6, 1. / 15, 1. / 20,  // of the binomials
-                                 1. / 15, 1. / 6, 1};
 
 }  // namespace
 
-SquaredDistance::SquaredDistance(const BezierPatch::Point points[16],
-                                 const BezierPatch::Point& away) {
-  // |P|^2 - 2 P away. With the binomials multiplied in, the product of two polynomials is a
-  // convolution.
-  double x[3][16];
-  for (int j = 0; j < 4; ++j) {
-    for (int i = 0; i < 4; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        x[axis][4 * j + i] = kBinomial3[i] * kBinomial3[j] * points[4 * j + i][axis];
-      }
-    }
-  }
-  double sum[7 * 7] = {};
-  const auto addRows = [&](int a, int b, double factor) {
-    double* out = sum + 7 * (a + b);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double *p = x[axis] + 4 * a, *q = x[axis] + 4 * b;
-      for (int i = 0; i < 4; ++i) {
-        const double scaled = factor * p[i];
-        for (int k = 0; k < 4; ++k) {
-          out[i + k] += scaled * q[k];
-        }
-      }
-    }
-  };
-  for (int a = 0; a < 4; ++a) {
-    addRows(a, a, 1);
-    for (int b = a + 1; b < 4; ++b) {
-      addRows(a, b, 2);
-    }
-  }
-  if (!(away == 0).all()) {
-    for (int a = 0; a < 4; ++a) {
-      for (int i = 0; i < 4; ++i) {
-        const double linear = -2 * (x[0][4 * a + i] * away[0] + x[1][4 * a + i] * away[1] +
-                                    x[2][4 * a + i] * away[2]);
-        for (int b = 0; b < 4; ++b) {
-          for (int k = 0; k < 4; ++k) {
-            sum[7 * (a + b) + i + k] += linear * kBinomial3[b] * kBinomial3[k];
-          }
-        }
-      }
-    }
-  }
-  for (int j = 0; j < 7; ++j) {
-    for (int i = 0; i < 7; ++i) {
-      f_.at(i, j) = sum[7 * j + i] * (kInverse6[i] * kInverse6[j]);
-    }
-  }
-  f_.pad();
+SquaredDistance::SquaredDistance(const SearchKernels& kernels, const BezierPatch::Point points[16],
+                                 const BezierPatch::Point& away)
+    : kernels_(&kernels) {
+  static_assert(
+      Bernstein<6>::kStride == kDistanceStride && sizeof f_ == sizeof(double[kDistanceSize]),
+      "the kernels write the coefficients");
+  kernels.squaredDistance(reinterpret_cast<const double (*)[4]>(points), away.data(), f_.data());
+  kernels.differenceBounds(f_.data(), bounds_);
 }
 
 void SquaredDistance::quarter(SquaredDistance out[4]) const {
   Bernstein<6> parts[4];
   f_.quarter(parts);
   for (int i = 0; i < 4; ++i) {
+    out[i].kernels_ = kernels_;
     out[i].f_ = parts[i];
+    kernels_->differenceBounds(out[i].f_.data(), out[i].bounds_);
   }
 }
 
@@ -95,28 +52,12 @@ void SquaredDistance::guess(double& s, double& t) const {
 
 SquaredDistance::Shape SquaredDistance::shape(double slack) const {
   Shape shape;
-  double low = kInfinity, high = -kInfinity;
-  for (int j = 0; j < 7; ++j) {
-    for (int i = 0; i < 6; ++i) {
-      const double d = f_.at(i + 1, j) - f_.at(i, j);
-      low = std::min(low, d);
-      high = std::max(high, d);
-    }
-  }
   const double rounding = kRounding * magnitude();
-  shape.s_side = low >= 0 ? -1 : high <= 0 ? 1 : 0;
-  shape.s_strictly = low > rounding || high < -rounding;
-  low = kInfinity;
-  high = -kInfinity;
-  for (int j = 0; j < 6; ++j) {
-    for (int i = 0; i < 7; ++i) {
-      const double d = f_.at(i, j + 1) - f_.at(i, j);
-      low = std::min(low, d);
-      high = std::max(high, d);
-    }
-  }
-  shape.t_side = low >= 0 ? -1 : high <= 0 ? 1 : 0;
-  shape.t_strictly = low > rounding || high < -rounding;
+  const DifferenceBounds& d = bounds_;
+  shape.s_side = d.least_s >= 0 ? -1 : d.largest_s <= 0 ? 1 : 0;
+  shape.s_strictly = d.least_s > rounding || d.largest_s < -rounding;
+  shape.t_side = d.least_t >= 0 ? -1 : d.largest_t <= 0 ? 1 : 0;
+  shape.t_strictly = d.least_t > rounding || d.largest_t < -rounding;
 
   if (shape.s_side != 0 && shape.t_side != 0) {
     shape.convex = true;
@@ -141,54 +82,18 @@ SquaredDistance::Shape SquaredDistance::shape(double slack) const {
 }
 
 bool SquaredDistance::isConvex(double slack) const {
-  double ss = kInfinity, tt = kInfinity, st = 0;
-  for (int j = 0; j < 7; ++j) {
-    for (int i = 0; i < 5; ++i) {
-      ss = std::min(ss, f_.at(i, j) - 2 * f_.at(i + 1, j) + f_.at(i + 2, j));
-    }
-  }
-  ss = kSecond * ss + slack;
-  if (!(ss > 0)) {
-    return false;
-  }
-  for (int j = 0; j < 5; ++j) {
-    for (int i = 0; i < 7; ++i) {
-      tt = std::min(tt, f_.at(i, j) - 2 * f_.at(i, j + 1) + f_.at(i, j + 2));
-    }
-  }
-  tt = kSecond * tt + slack;
-  if (!(tt > 0)) {
-    return false;
-  }
-  for (int j = 0; j < 6; ++j) {
-    for (int i = 0; i < 6; ++i) {
-      st = std::max(
-          st, std::abs((f_.at(i + 1, j + 1) - f_.at(i, j + 1)) - (f_.at(i + 1, j) - f_.at(i, j))));
-    }
-  }
-  st *= kMixed;
-  return ss * tt >= st * st;
+  const DifferenceBounds& d = bounds_;
+  const double ss = kSecond * d.least_ss + slack, tt = kSecond * d.least_tt + slack;
+  const double st = kMixed * std::max(std::abs(d.least_st), std::abs(d.largest_st));
+  return ss > 0 && tt > 0 && ss * tt >= st * st;
 }
 
 bool SquaredDistance::isNowhereConvex() const {
-  double ss = -kInfinity, tt = -kInfinity, low = kInfinity, high = -kInfinity;
-  for (int j = 0; j < 7; ++j) {
-    for (int i = 0; i < 5; ++i) {
-      ss = std::max(ss, f_.at(i, j) - 2 * f_.at(i + 1, j) + f_.at(i + 2, j));
-      tt = std::max(tt, f_.at(j, i) - 2 * f_.at(j, i + 1) + f_.at(j, i + 2));
-    }
-  }
-  for (int j = 0; j < 6; ++j) {
-    for (int i = 0; i < 6; ++i) {
-      const double st = (f_.at(i + 1, j + 1) - f_.at(i, j + 1)) - (f_.at(i + 1, j) - f_.at(i, j));
-      low = std::min(low, st);
-      high = std::max(high, st);
-    }
-  }
+  const DifferenceBounds& d = bounds_;
   const double rounding = kRounding * magnitude();
-  const double st = kMixed * std::max({0., low, -high});
-  return ss < -rounding || tt < -rounding ||
-         kSecond * (ss + rounding) * kSecond * (tt + rounding) < st * st;
+  const double st = kMixed * std::max({0., d.least_st, -d.largest_st});
+  return d.largest_ss < -rounding || d.largest_tt < -rounding ||
+         kSecond * (d.largest_ss + rounding) * kSecond * (d.largest_tt + rounding) < st * st;
 }
 
 }  // namespace limitsurf

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "limitsurf/bernstein.h"
+#include "limitsurf/search/search_kernels.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
@@ -18,11 +19,12 @@ class SquaredDistance {
  public:
   SquaredDistance() = default;
   /// `points` are the Bezier points of the patch, `away` is the point, both relative to the place.
-  SquaredDistance(const BezierPatch::Point points[16], const BezierPatch::Point& away);
+  SquaredDistance(const SearchKernels& kernels, const BezierPatch::Point points[16],
+                  const BezierPatch::Point& away);
 
-  double least() const { return f_.least(); }
+  double least() const { return bounds_.least; }
   /// The largest coefficient, by its absolute value.
-  double magnitude() const { return std::max(f_.largest(), -f_.least()); }
+  double magnitude() const { return std::max(bounds_.largest, -bounds_.least); }
   /// The value at a corner: i and j are 0 or 1.
   double corner(int i, int j) const { return f_.at(6 * i, 6 * j); }
   /// The polynomial on the quarters of the square.
@@ -51,7 +53,9 @@ class SquaredDistance {
   /// Whether the smaller eigenvalue of the Hessian is at least -slack everywhere.
   bool isConvex(double slack) const;
 
+  const SearchKernels* kernels_;
   Bernstein<6> f_;
+  DifferenceBounds bounds_;
 };
 
 }  // namespace limitsurf

@@ -6,73 +6,8 @@
 // its code could be that of another set.
 
 #include "limitsurf/eigen/bspline_formulas.inl.h"
+#include "limitsurf/surface/batch/lanes.inl.h"
 #include "limitsurf/surface/batch/unit_normal.inl.h"
-
-/// kLanes numbers on which one instruction works.
-template <int kCount>
-struct Lanes {
-#if defined(__GNUC__)
-  typedef double Numbers __attribute__((vector_size(kCount * sizeof(double))));
-  Numbers numbers;
-
-  friend Lanes operator+(const Lanes& a, const Lanes& b) { return {a.numbers + b.numbers}; }
-  friend Lanes operator-(const Lanes& a, const Lanes& b) { return {a.numbers - b.numbers}; }
-  friend Lanes operator*(const Lanes& a, const Lanes& b) { return {a.numbers * b.numbers}; }
-  friend Lanes operator/(const Lanes& a, const Lanes& b) { return {a.numbers / b.numbers}; }
-  static Lanes of(double a) { return {a - Numbers{}}; }
-#else
-  double numbers[kCount];
-
-  template <typename Operation>
-  static Lanes each(const Lanes& a, const Lanes& b, const Operation& operation) {
-    Lanes result;
-    for (int i = 0; i < kCount; ++i) {
-      result.numbers[i] = operation(a.numbers[i], b.numbers[i]);
-    }
-    return result;
-  }
-  friend Lanes operator+(const Lanes& a, const Lanes& b) {
-    return each(a, b, [](double x, double y) { return x + y; });
-  }
-  friend Lanes operator-(const Lanes& a, const Lanes& b) {
-    return each(a, b, [](double x, double y) { return x - y; });
-  }
-  friend Lanes operator*(const Lanes& a, const Lanes& b) {
-    return each(a, b, [](double x, double y) { return x * y; });
-  }
-  friend Lanes operator/(const Lanes& a, const Lanes& b) {
-    return each(a, b, [](double x, double y) { return x / y; });
-  }
-  static Lanes of(double a) {
-    Lanes result;
-    for (double& number : result.numbers) {
-      number = a;
-    }
-    return result;
-  }
-#endif
-  friend Lanes operator+(const Lanes& a, double b) { return a + of(b); }
-  friend Lanes operator-(const Lanes& a, double b) { return a - of(b); }
-  friend Lanes operator*(const Lanes& a, double b) { return a * of(b); }
-  friend Lanes operator/(const Lanes& a, double b) { return a / of(b); }
-  friend Lanes operator+(double a, const Lanes& b) { return of(a) + b; }
-  friend Lanes operator-(double a, const Lanes& b) { return of(a) - b; }
-  friend Lanes operator*(double a, const Lanes& b) { return of(a) * b; }
-
-  static Lanes load(const double* from) {
-    Lanes result;
-    __builtin_memcpy(&result, from, sizeof result);
-    return result;
-  }
-  void store(double* to) const { __builtin_memcpy(to, this, sizeof *this); }
-  void store(float* to) const {
-    double exact[kCount];
-    store(exact);
-    for (int i = 0; i < kCount; ++i) {
-      to[i] = static_cast<float>(exact[i]);
-    }
-  }
-};
 
 inline void gather(const double (*points)[4], const int indices[16], double window[16][4]) {
   using Point = Lanes<4>;
