@@ -11,4 +11,7 @@ inline float roundedUp(double value) {
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
 
+/// A float that is not above `value`.
+inline float roundedDown(double value) { return -roundedUp(-value); }
+
 }  // namespace limitsurf

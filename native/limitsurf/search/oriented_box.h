@@ -64,7 +64,8 @@ class OrientedBox {
         }
         continue;
       }
-      const double a = (-half - start) / rate, b = (half - start) / rate;
+      const double inverse = 1 / rate;
+      const double a = (-half - start) * inverse, b = (half - start) * inverse;
       from = std::max(from, std::min(a, b));
       to = std::min(to, std::max(a, b));
     }

@@ -39,7 +39,7 @@ struct Precondition {
     ys = mean(cell.y, true);
     yt = mean(cell.y, false);
     determinant = xs * yt - xt * ys;
-    scale = std::hypot(xs, ys) * std::hypot(xt, yt);
+    scale = std::sqrt((xs * xs + ys * ys) * (xt * xt + yt * yt));
   }
 
   /// The derivatives are linearly dependent if the sine of their angle is at most kSingularSine.

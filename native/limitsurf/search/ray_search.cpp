@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/float_rounding.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/hit_evaluation.h"
@@ -11,35 +12,45 @@
 namespace limitsurf {
 namespace {
 
-/// A ray prepared for intersections with axis-aligned boxes.
+/// A ray prepared for intersections with axis-aligned boxes, in single precision. Whatever is lost
+/// by rounding is added to the boxes: a ray may be said to meet a box that it only just misses.
 class BoxRay {
  public:
-  BoxRay(const Ray& ray, double margin) : ray_(ray), margin_(margin) {
+  explicit BoxRay(const Ray& ray) {
+    const float margin = static_cast<float>(kMargin * (1 + ray.origin.cwiseAbs().maxCoeff()));
     for (int i = 0; i < 3; ++i) {
-      inverse_[i] = 1 / (std::abs(ray.direction[i]) > kLeast ? ray.direction[i] : kLeast);
+      const double rate = ray.direction[i];
+      inverse_[i] = static_cast<float>(1 / (std::abs(rate) > kLeast ? rate : kLeast));
+      const float origin = static_cast<float>(ray.origin[i]);
+      above_[i] = origin + margin;
+      below_[i] = origin - margin;
     }
+    // The fourth coordinate of all boxes is 0. It excludes nothing.
+    inverse_[3] = 1;
+    above_[3] = kUnbounded;
+    below_[3] = -kUnbounded;
   }
 
-  /// Whether the ray meets the box between `from` and `to`. Raises `from` to where it enters.
-  bool meets(const BoxF& box, double& from, double to) const {
-    for (int i = 0; i < 3; ++i) {
-      const double a = (box.low[i] - margin_ - ray_.origin[i]) * inverse_[i],
-                   b = (box.high[i] + margin_ - ray_.origin[i]) * inverse_[i];
-      from = std::max(from, std::min(a, b));
-      to = std::min(to, std::max(a, b));
-    }
-    // The second condition excludes empty boxes.
-    return from <= to && box.low[0] <= box.high[0];
+  /// Whether the ray meets the box between `from` and `to`. Raises `from` to where it enters, or a
+  /// little less.
+  bool meets(const BoxF& box, float& from, float to) const {
+    const BoxF::Corner a = (box.low - above_) * inverse_, b = (box.high - below_) * inverse_;
+    from = std::max(from, a.min(b).maxCoeff());
+    to = std::min(to, a.max(b).minCoeff());
+    return from <= to;
   }
 
  private:
+  /// Boxes lie within 4 units of the middle, so that the rounding of a difference is at most
+  /// 2^-24 (4 + |origin|) for each of three roundings, and that of the product at most 2^-22 times
+  /// a difference of at most 4 + |origin|: less than this part of 1 + |origin| in all.
+  static constexpr double kMargin = 4e-6;
   /// Smaller components of the direction are replaced by this one: along such an axis a ray does
   /// not leave a box within any distance that matters.
-  static constexpr double kLeast = 1e-30;
+  static constexpr double kLeast = 1e-20;
+  static constexpr float kUnbounded = 1e30f;
 
-  const Ray& ray_;
-  double margin_;
-  double inverse_[3];
+  BoxF::Corner above_, below_, inverse_;
 };
 
 /// Searches for one ray after the other.
@@ -90,12 +101,17 @@ class RaySearch {
   void descend(const Ray& ray, const RayFrame& frame) {
     struct Entry {
       std::int32_t node;
-      double from;
+      float from;
     };
-    const BoxRay box_ray(ray, margin());
+    if (data_.leaves.size() == 1) {
+      visitLeaf(0, ray, frame);
+      return;
+    }
+    const BoxRay box_ray(ray);
+    const float begin = roundedDown(start());
     Entry stack[BoxTree::kMostDepth + 1];
     int height = 0;
-    stack[height++] = {0, start()};
+    stack[height++] = {0, begin};
     while (height > 0) {
       const Entry next = stack[--height];
       if (next.from > end()) {
@@ -106,11 +122,12 @@ class RaySearch {
         continue;
       }
       const BoxTree::Node& node = data_.tree->node(next.node);
-      double from[2];
+      const float last = roundedUp(end());
+      float from[2];
       bool met[2];
       for (int side = 0; side < 2; ++side) {
-        from[side] = start();
-        met[side] = box_ray.meets(node.boxes[side], from[side], end());
+        from[side] = begin;
+        met[side] = box_ray.meets(node.boxes[side], from[side], last);
       }
       const int first = met[1] && (!met[0] || from[1] < from[0]) ? 1 : 0;
       for (const int side : {1 - first, first}) {
