@@ -54,6 +54,8 @@ struct SearchTree {
   /// Appends the pieces of a tile and boxes around them. Cores are split so far that their boxes
   /// fit closely.
   void addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
+  /// The number of steps that a core is split before searches.
+  int stepsBefore(const SurfacePiece& core) const;
   void addCore(const SurfacePiece& core, SurfacePatches::SplitCore& split,
                std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
 };

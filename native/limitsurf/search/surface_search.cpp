@@ -13,6 +13,9 @@ namespace {
 
 /// The number of tiles whose leaves one task finds, and of leaves whose patches it keeps.
 constexpr std::size_t kTilesPerTask = 1024, kLeavesPerTask = 1024;
+/// The cores around a vertex are split into no more than about so many patches.
+constexpr int kMostRingLeaves = 1 << 16;
+
 using PatchPoints = Eigen::Matrix<double, 16, 3, Eigen::RowMajor>;
 
 /// The control points of a patch in the coordinates of boxes.
@@ -102,9 +105,7 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
       addPatch(piece, patches.patch(piece));
       continue;
     }
-    // The cores of small tiles are split once, those of whole faces twice.
-    const FaceRectangle on = patches.rectangle(piece);
-    const int steps = std::abs(on.us + on.ut) == 1 ? 2 : 1;
+    const int steps = stepsBefore(piece);
     SurfacePatches::SplitCore split;
     SurfacePiece core = piece;
     for (int step = 1; step <= steps; ++step) {
@@ -116,6 +117,20 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
     }
     addCore(core, split, out, boxes);
   }
+}
+
+int SearchTree::stepsBefore(const SurfacePiece& core) const {
+  // The cores of small tiles are split once, those of whole faces twice.
+  const FaceRectangle on = patches.rectangle(core);
+  int steps = std::abs(on.us + on.ut) == 1 ? 2 : 1;
+  // The faces around a pole are so thin that the boxes of their cores overlap. A step takes two
+  // thirds of a core's length.
+  const int faces = patches.coreValence(core);
+  for (int thin = faces; thin > SurfacePatches::kFewFaces && 3 * faces * steps < kMostRingLeaves;
+       thin = 2 * thin / 3) {
+    ++steps;
+  }
+  return steps;
 }
 
 void SearchTree::addCore(const SurfacePiece& core, SurfacePatches::SplitCore& split,

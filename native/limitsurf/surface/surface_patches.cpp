@@ -61,7 +61,9 @@ BezierPatch SurfacePatches::patch(const SurfacePiece& piece) const {
   BezierPatch out;
   if (piece.steps > 0) {
     Padded grid[tile_grid::kSlots];
-    out.anchor = data_->ringGrid(piece, piece.steps, grid);
+    const SurfacePiece core{piece.tile, static_cast<std::int16_t>(piece.steps - 1),
+                            SurfacePiece::kCore};
+    out.anchor = data_->nextGrid(core, false, grid);
     data_->quarterPatch(data_->ringTile(piece), grid, piece.steps, piece.part, out);
   } else {
     data_->regularPatch(piece, out);
@@ -126,6 +128,10 @@ Box SurfacePatches::coreBox(const SurfacePiece& core) const {
 
 double SurfacePatches::coreRadius(const SurfacePiece& core) const {
   return data_->scale * data_->radius(core);
+}
+
+int SurfacePatches::coreValence(const SurfacePiece& core) const {
+  return data_->table.rings[data_->ringTile(core).ring].basis->ring().faces;
 }
 
 Vector3 SurfacePatches::coreVertex(const SurfacePiece& core) const {

@@ -115,6 +115,8 @@ class SurfacePatches {
   Box coreBox(const SurfacePiece& core) const;
   /// The largest distance of the ring's points from the core's vertex after the core's steps.
   double coreRadius(const SurfacePiece& core) const;
+  /// The number of faces around the core's vertex.
+  int coreValence(const SurfacePiece& core) const;
   /// The limit position of the core's vertex.
   Vector3 coreVertex(const SurfacePiece& core) const;
 
