@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "limitsurf/pi.h"
 #include "limitsurf/precision/elementary.h"
@@ -20,11 +22,35 @@ class Circle {
 
   /// Both at the angle 2 pi i / period.
   SineCosine<Real> at(std::int64_t i) const {
+    return folded(i, [&](std::int64_t part) { return firstEighth(part); });
+  }
+
+  /// at(i) for i = 0, ..., count - 1. What several angles share is computed once.
+  std::vector<SineCosine<Real>> first(std::int64_t count) const {
+    std::vector<SineCosine<Real>> eighth(static_cast<std::size_t>(period_ / 2 + 1)), result;
+    std::vector<bool> known(eighth.size(), false);
+    for (std::int64_t i = 0; i < count; ++i) {
+      result.push_back(folded(i, [&](std::int64_t part) {
+        const auto place = static_cast<std::size_t>(part);
+        if (!known[place]) {
+          known[place] = true;
+          eighth[place] = firstEighth(part);
+        }
+        return eighth[place];
+      }));
+    }
+    return result;
+  }
+
+ private:
+  /// The values at an angle, by its symmetry to an angle of the first eighth of the circle.
+  template <typename FirstEighth>
+  SineCosine<Real> folded(std::int64_t i, const FirstEighth& first_eighth) const {
     const std::int64_t full = 4 * period_, turn = ((4 * i) % full + full) % full;
     const std::int64_t in_quarter = turn % period_;  // of period_ parts
     SineCosine<Real> result = 2 * in_quarter > period_
-                                  ? exchanged(firstEighth(period_ - in_quarter))
-                                  : firstEighth(in_quarter);
+                                  ? exchanged(first_eighth(period_ - in_quarter))
+                                  : first_eighth(in_quarter);
     switch (turn / period_) {
       case 1:
         return {result.cos, -result.sin};
@@ -37,7 +63,6 @@ class Circle {
     }
   }
 
- private:
   static SineCosine<Real> exchanged(const SineCosine<Real>& x) { return {x.cos, x.sin}; }
 
   /// At the angle (pi / 2) i / period, i <= period / 2.

@@ -12,6 +12,7 @@
 #include "limitsurf/eigen/mode_table.h"
 #include "limitsurf/eigen/outer_modes.h"
 #include "limitsurf/eigen/ring.h"
+#include "limitsurf/eigen/ring_waves.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -94,7 +95,8 @@ class Eigenbasis {
 
   // From the ring's points to coefficients of the modes: once for each vertex and pose.
 
-  /// Coefficients (one row per mode) of the ring's points. O(faces^2).
+  /// Coefficients (one row per mode) of the ring's points. O(faces log faces), or O(faces^2) for
+  /// a dart.
   void project(const Points& ring_points, Points& coefficients) const;
 
   /// The transpose of project(): weights on modes (rows) become weights on the ring's points.
@@ -205,6 +207,7 @@ class Eigenbasis {
   RingStep<double> step_;
   std::int64_t period_;  // of the tables cos_ and sin_
   std::vector<double> cos_, sin_;
+  std::unique_ptr<const RingWaves> waves_;
   std::vector<double> lambda_;
   std::vector<Spoke> spokes_;  // by pairIndex
   std::vector<Chain> chains_;

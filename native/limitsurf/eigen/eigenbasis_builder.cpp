@@ -41,12 +41,12 @@ void Eigenbasis::Builder::build() {
 /// face j likewise.
 void Eigenbasis::Builder::buildCircle() {
   basis_.period_ = (ring_.closed() ? 2 : 4) * std::int64_t{ring_.faces};
-  const Circle<Real> circle(basis_.period_);
-  for (std::int64_t i = 0; i < basis_.period_; ++i) {
-    circle_.push_back(circle.at(i));
-    basis_.cos_.push_back(static_cast<double>(circle_.back().cos));
-    basis_.sin_.push_back(static_cast<double>(circle_.back().sin));
+  circle_ = Circle<Real>(basis_.period_).first(basis_.period_);
+  for (const SineCosine<Real>& at : circle_) {
+    basis_.cos_.push_back(static_cast<double>(at.cos));
+    basis_.sin_.push_back(static_cast<double>(at.sin));
   }
+  basis_.waves_ = std::make_unique<const RingWaves>(ring_, basis_.cos_, basis_.sin_);
 }
 
 void Eigenbasis::Builder::buildOuterTables(Sides sides) {

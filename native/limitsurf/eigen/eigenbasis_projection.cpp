@@ -22,40 +22,6 @@ RingMeans meansFrom(const Vector3& v, const Ring& ring, const Points& points) {
   return means;
 }
 
-struct WaveSums {
-  Vector3 edge_cos = Vector3::Zero(), edge_sin = Vector3::Zero(), face_cos = Vector3::Zero(),
-          face_sin = Vector3::Zero();
-};
-
-/// The sums of a ring's points times the cosines and the sines of spoke mode m. The tables hold one
-/// period.
-WaveSums waveSums(const Ring& ring, const Points& points, int m, const std::vector<double>& cos,
-                  const std::vector<double>& sin) {
-  const std::int64_t period = static_cast<std::int64_t>(cos.size()), step = 2 * std::int64_t{m};
-  const auto advance = [&](std::int64_t& angle) {
-    angle += step;
-    while (angle >= period) {
-      angle -= period;
-    }
-  };
-  WaveSums sums;
-  std::int64_t edge_angle = 0, face_angle = m;
-  while (face_angle >= period) {
-    face_angle -= period;
-  }
-  for (int i = 0; i < ring.edges(); ++i, advance(edge_angle)) {
-    const Vector3 e = points.row(ring.edge(i));
-    sums.edge_cos += cos[edge_angle] * e;
-    sums.edge_sin += sin[edge_angle] * e;
-  }
-  for (int j = 0; j < ring.faces; ++j, advance(face_angle)) {
-    const Vector3 f = points.row(ring.face(j));
-    sums.face_cos += cos[face_angle] * f;
-    sums.face_sin += sin[face_angle] * f;
-  }
-  return sums;
-}
-
 }  // namespace
 
 void Eigenbasis::project(const Points& ring_points, Points& coefficients) const {
@@ -93,24 +59,27 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
     }
   }
 
-  for (int m = 1; m <= spokeCount(); ++m) {
-    const WaveSums sums = waveSums(ring_, rest, m, cos_, sin_);
+  const auto at = [&](int point) -> Eigen::Array4d {
+    return {rest(point, 0), rest(point, 1), rest(point, 2), 0};
+  };
+  waves_->sums<Eigen::Array4d>(spokeCount(), at, [&](int m, const auto& sums) {
     // 2 / faces normalises sines and cosines, 1 / faces those that alternate.
     const double norm = (alternates(m) ? 1. : 2.) / faces;
     for (const bool plus : {true, false}) {
       const Spoke& spoke = spokes_[pairIndex(m, plus)];
       const double scale = norm * spoke.scale;
       const double e = scale * spoke.edge, f = scale * spoke.face / 4;
-      const Vector3 cosine = e * sums.edge_cos + f * sums.face_cos,
-                    sine = e * sums.edge_sin + f * sums.face_sin;
+      const Eigen::Array4d cosine = e * sums.edge_cos + f * sums.face_cos,
+                           sine = e * sums.edge_sin + f * sums.face_sin;
       // On face 0 the parts of the pair are the cosine mode and the sine mode themselves.
       Part part[2];
       const int count = parts(m, plus, 0, part);
       for (int i = 0; i < count; ++i) {
-        coefficients.row(part[i].mode) = part[i].cosine != 0 ? cosine : sine;
+        const Eigen::Array4d& value = part[i].cosine != 0 ? cosine : sine;
+        coefficients.row(part[i].mode) = value.head<3>();
       }
     }
-  }
+  });
 }
 
 Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weights) const {

@@ -10,7 +10,10 @@ namespace limitsurf {
 namespace {
 
 /// A point takes a small part of the time of an evaluation, a ring much more than one.
-constexpr std::size_t kPointsPerTask = 16384, kRingsPerTask = 16;
+constexpr std::size_t kPointsPerTask = 16384, kRingsPerTask = 16, kTilesPerTask = 64;
+
+/// Rings with more faces are set one after the other, each on all cores.
+constexpr int kManyFaces = 512;
 
 Padded padded(const Vector3& v) { return {v[0], v[1], v[2], 0}; }
 
@@ -20,11 +23,52 @@ Padded rounding(const Padded& a, const Padded& b, const Padded& sum) {
   return (a - (sum - added)) + (b - added);
 }
 
-const TileStep<double>& tileStep(Sides sides) {
-  static const TileStep<double> steps[4] = {
-      TileStep<double>(Sides::inner), TileStep<double>(Sides::left), TileStep<double>(Sides::right),
-      TileStep<double>(Sides::both)};
-  return steps[static_cast<int>(sides)];
+/// The rules for a cubic B-spline's new control points at an old one and between two.
+Padded atVertex(const Padded& before, const Padded& here, const Padded& after) {
+  return (before + 6 * here + after) / 8;
+}
+Padded betweenVertices(const Padded& a, const Padded& b) { return (a + b) / 2; }
+
+/// The slots from `from` on, `step` apart: those at -1 to 3 along one side of a strip that is one
+/// step away from the vertex. `column(i)` returns the points of the coarser strip from -1 to 2.
+/// Where the strip begins at a boundary there is nothing at -1, and the points at 0 follow the
+/// curve.
+template <typename Column>
+void stepStrip(bool from_boundary, const Column& column, Padded* from, int step, int last) {
+  if (from_boundary) {
+    from[step] = column(0);
+  } else {
+    from[0] = betweenVertices(column(-1), column(0));
+    from[step] = atVertex(column(-1), column(0), column(1));
+  }
+  from[2 * step] = betweenVertices(column(0), column(1));
+  if (last > 1) {
+    from[3 * step] = atVertex(column(0), column(1), column(2));
+    from[4 * step] = betweenVertices(column(1), column(2));
+  }
+}
+
+/// The slots with x or y above 1 after a step. Around them all is regular, so that a step is a
+/// product of the rule of a cubic B-spline along u and the same along v.
+void stepOutsideRing(Sides sides, const Padded before[], Padded after[]) {
+  using tile_grid::slot;
+  constexpr int kAlongU = slot(1, 0) - slot(0, 0), kAlongV = slot(0, 1) - slot(0, 0);
+  Padded vertices[4], edges[4];  // of the strip's lines, from -1 to 2
+  const auto stepAcross = [&](int first, int across, int count, bool skips_first) {
+    for (int i = skips_first ? 1 : 0; i < count; ++i) {
+      // `first` is at 0 across the strip.
+      const Padded* const at = &before[first + i * (across == kAlongU ? kAlongV : kAlongU)];
+      vertices[i] = atVertex(at[0], at[across], at[2 * across]);
+      edges[i] = betweenVertices(at[across], at[2 * across]);
+    }
+  };
+  stepAcross(slot(0, -1), kAlongU, 4, onLeft(sides));
+  stepStrip(onLeft(sides), [&](int y) { return vertices[y + 1]; }, &after[slot(2, -1)], kAlongV, 3);
+  stepStrip(onLeft(sides), [&](int y) { return edges[y + 1]; }, &after[slot(3, -1)], kAlongV, 3);
+  stepAcross(slot(-1, 0), kAlongV, 3, onRight(sides));
+  stepStrip(
+      onRight(sides), [&](int x) { return vertices[x + 1]; }, &after[slot(-1, 2)], kAlongU, 1);
+  stepStrip(onRight(sides), [&](int x) { return edges[x + 1]; }, &after[slot(-1, 3)], kAlongU, 1);
 }
 
 void setRingValues(const Ring& ring, int face, const Padded points[], Padded grid[]) {
@@ -47,7 +91,7 @@ void fill(std::vector<T>& values, std::size_t count, const Value&... value) {
 
 void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
               Padded after[]) {
-  tileStep(ring.sides(face)).apply(before, after);
+  stepOutsideRing(ring.sides(face), before, after);
   setRingValues(ring, face, ring_points, after);
 }
 
@@ -106,11 +150,22 @@ void Pose::set(const Points& cage, int threads) {
               });
   extent_ = extentOf(points_.data(), static_cast<std::size_t>(cage.rows()));
   refinePoints();
+  std::vector<int> large;
+  for (std::size_t ring = 0; ring < rings_.size(); ++ring) {
+    if (table_->rings[ring].basis->ring().faces > kManyFaces) {
+      large.push_back(static_cast<int>(ring));
+    }
+  }
   parallelFor(rings_.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
-      setRing(static_cast<int>(ring));
+      if (table_->rings[ring].basis->ring().faces <= kManyFaces) {
+        setRing(static_cast<int>(ring), 1);
+      }
     }
   });
+  for (const int ring : large) {
+    setRing(ring, threads);
+  }
   is_set_ = true;
 }
 
@@ -151,7 +206,7 @@ void Pose::refinePoints() {
   }
 }
 
-void Pose::setRing(int ring_index) {
+void Pose::setRing(int ring_index, int threads) {
   const RingPoints& ring = table_->rings[ring_index];
   RingPose& pose = rings_[ring_index];
   const Padded vertex = points_[ring.points[0]];
@@ -172,19 +227,25 @@ void Pose::setRing(int ring_index) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
     levels[i] = padded(points.row(static_cast<Eigen::Index>(i)).transpose() - to_limit);
   }
-  for (int t = first_tile_[ring_index]; t < first_tile_[ring_index + 1]; ++t) {
+  const int first = first_tile_[ring_index], end = first_tile_[ring_index + 1];
+  int steps = 0;
+  for (int t = first; t < end; ++t) {
     const RingTile& tile = table_->ring_tiles[t];
-    const int steps = tile.ring_steps + gridSteps(tile);
-    while (levels.size() <= ring.points.size() * static_cast<std::size_t>(steps)) {
-      const std::size_t size = levels.size();
-      levels.resize(size + ring.points.size());
-      const Padded* before = &levels[size - ring.points.size()];
-      Padded* after = &levels[size];
-      ring.basis->step().apply([=](int i) -> const Padded& { return before[i]; },
-                               [=](int i) -> Padded& { return after[i]; });
-    }
-    setRingTile(t, levels);
+    steps = std::max(steps, tile.ring_steps + gridSteps(tile));
   }
+  levels.resize(ring.points.size() * (static_cast<std::size_t>(steps) + 1));
+  for (int step = 0; step < steps; ++step) {
+    const Padded* before = &levels[ring.points.size() * static_cast<std::size_t>(step)];
+    Padded* after = &levels[ring.points.size() * (static_cast<std::size_t>(step) + 1)];
+    ring.basis->step().apply([=](int i) -> const Padded& { return before[i]; },
+                             [=](int i) -> Padded& { return after[i]; });
+  }
+  parallelFor(static_cast<std::size_t>(end - first), kTilesPerTask, threads,
+              [&](std::size_t begin_tile, std::size_t end_tile) {
+                for (std::size_t t = begin_tile; t < end_tile; ++t) {
+                  setRingTile(first + static_cast<int>(t), levels);
+                }
+              });
 }
 
 void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {

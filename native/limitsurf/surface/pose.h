@@ -74,7 +74,7 @@ class Pose {
 
  private:
   void refinePoints();
-  void setRing(int ring);
+  void setRing(int ring, int threads);
   void setRingTile(int tile, const std::vector<Padded>& ring_levels);
 
   const TileTable* table_;

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "limitsurf/eigen/chirp_transform.h"
+#include "limitsurf/eigen/ring.h"
+
+namespace limitsurf {
+
+/// The sums of a ring's points times the values of its spoke modes (spoke_mode.h): cosines and
+/// sines around the vertex, at the angles that Eigenbasis::edgeAngle() and faceAngle() state.
+class RingWaves {
+ public:
+  /// `cos` and `sin` hold one period, and must outlive the object: 2 N values on a closed ring of N
+  /// faces, 4 k in a sector of k.
+  RingWaves(const Ring& ring, const std::vector<double>& cos, const std::vector<double>& sin)
+      : ring_(ring), cos_(cos), sin_(sin) {
+    if (ring.faces > kFewFaces) {
+      transform_ = std::make_unique<const ChirpTransform>(cos, sin);
+    }
+  }
+
+  template <typename Value>
+  struct Sums {
+    Value edge_cos, edge_sin, face_cos, face_sin;
+  };
+
+  /// Calls visit(m, sums) for the modes m = 1, ..., count. `at(i)` returns point i of the ring; a
+  /// Value is a number or an array of numbers. Sectors have no cosines. Their values on the first
+  /// and the last spoke do not matter.
+  /// Cost: O(faces log faces) together.
+  template <typename Value, typename At, typename Visit>
+  void sums(int count, const At& at, const Visit& visit) const {
+    if (!transform_) {
+      for (int m = 1; m <= count; ++m) {
+        visit(m, directSums<Value>(m, at));
+      }
+      return;
+    }
+    // Spokes and faces are transformed together, as the real and the imaginary part.
+    const std::size_t n = transform_->count();
+    std::vector<Value> re, im;
+    gather(at, re, im);
+    transform_->apply(re, im);
+    const double scale = ring_.closed() ? 0.5 : 0.25;  // a sector and its mirror image are summed
+    for (int m = 1; m <= count; ++m) {
+      const std::size_t i = static_cast<std::size_t>(m), j = n - i;
+      const Value face_re = scale * (im[i] + im[j]), face_im = scale * (re[j] - re[i]);
+      visit(m, Sums<Value>{scale * (re[i] + re[j]), scale * (im[j] - im[i]),
+                           cos_[i] * face_re + sin_[i] * face_im,
+                           sin_[i] * face_re - cos_[i] * face_im});
+    }
+  }
+
+ private:
+  /// Up to here the transform would take longer.
+  static constexpr int kFewFaces = 128;
+
+  template <typename Value, typename At>
+  Sums<Value> directSums(int m, const At& at) const {
+    const std::int64_t period = static_cast<std::int64_t>(cos_.size()), step = 2 * std::int64_t{m};
+    const auto advance = [&](std::int64_t& angle) {
+      angle += step;
+      while (angle >= period) {
+        angle -= period;
+      }
+    };
+    const Value zero = 0 * at(0);
+    Sums<Value> sums{zero, zero, zero, zero};
+    std::int64_t edge_angle = 0, face_angle = m;
+    while (face_angle >= period) {
+      face_angle -= period;
+    }
+    for (int i = 0; i < ring_.edges(); ++i, advance(edge_angle)) {
+      const Value e = at(ring_.edge(i));
+      sums.edge_cos += cos_[edge_angle] * e;
+      sums.edge_sin += sin_[edge_angle] * e;
+    }
+    for (int j = 0; j < ring_.faces; ++j, advance(face_angle)) {
+      const Value f = at(ring_.face(j));
+      sums.face_cos += cos_[face_angle] * f;
+      sums.face_sin += sin_[face_angle] * f;
+    }
+    return sums;
+  }
+
+  /// One period of the spoke points and of the face points. A sector's are continued as odd
+  /// functions, whose sums with cosines are 0.
+  template <typename Value, typename At>
+  void gather(const At& at, std::vector<Value>& re, std::vector<Value>& im) const {
+    const int k = ring_.faces;
+    for (int i = 0; i < k; ++i) {
+      re.push_back(at(ring_.edge(i)));
+      im.push_back(at(ring_.face(i)));
+    }
+    if (ring_.closed()) {
+      return;
+    }
+    re[0] = 0 * re[0];
+    for (int i = k; i < 2 * k; ++i) {
+      re.push_back(i == k ? re[0] : -re[2 * k - i]);
+      im.push_back(-im[2 * k - 1 - i]);
+    }
+  }
+
+  const Ring ring_;
+  const std::vector<double>& cos_;
+  const std::vector<double>& sin_;
+  std::unique_ptr<const ChirpTransform> transform_;  // of rings with many faces
+};
+
+}  // namespace limitsurf
