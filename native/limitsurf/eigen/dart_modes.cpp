@@ -68,7 +68,7 @@ std::vector<double> DartModes::ringVector(int mode) const {
   return ring;
 }
 
-void DartModes::project(const Points& ring, int first, Points& coefficients) const {
+void DartModes::project(const Eigen::Ref<Points>& ring, int first, Points& coefficients) const {
   Points places = Points::Zero(faces_ + 1, 3);
   forEachPoint(faces_, [&](int point, int n) { places.row(n) += ring.row(point); });
   const auto onPlaces = [&](const std::vector<double>& left) -> Vector3 {

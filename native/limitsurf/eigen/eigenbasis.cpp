@@ -12,6 +12,9 @@ namespace limitsurf {
 std::shared_ptr<const Eigenbasis> Eigenbasis::get(const Ring& ring) {
   static std::mutex mutex;
   static std::map<Ring, std::weak_ptr<const Eigenbasis>> bases;
+  // Small ones stay, because most surfaces have the same ones. Together they take 3 MB.
+  constexpr int kFewFaces = 16;
+  static std::vector<std::shared_ptr<const Eigenbasis>> kept;
   const auto find = [&]() -> std::weak_ptr<const Eigenbasis>& { return bases[ring]; };
   {
     const std::lock_guard<std::mutex> lock(mutex);
@@ -26,6 +29,9 @@ std::shared_ptr<const Eigenbasis> Eigenbasis::get(const Ring& ring) {
   std::shared_ptr<const Eigenbasis> known = find().lock();
   if (!known) {
     find() = known = std::move(made);
+    if (ring.faces <= kFewFaces) {
+      kept.push_back(known);
+    }
   }
   return known;
 }

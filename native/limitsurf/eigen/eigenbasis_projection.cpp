@@ -13,7 +13,7 @@ struct RingMeans {
 };
 
 /// The means of the spoke points and of the face points of a closed ring, relative to v.
-RingMeans meansFrom(const Vector3& v, const Ring& ring, const Points& points) {
+RingMeans meansFrom(const Vector3& v, const Ring& ring, const Eigen::Ref<Points>& points) {
   RingMeans means{Vector3::Zero(), Vector3::Zero()};
   for (int i = 0; i < ring.faces; ++i) {
     means.edge += (points.row(ring.edge(i)).transpose() - v) / ring.faces;
@@ -24,14 +24,13 @@ RingMeans meansFrom(const Vector3& v, const Ring& ring, const Points& points) {
 
 }  // namespace
 
-void Eigenbasis::project(const Points& ring_points, Points& coefficients) const {
+void Eigenbasis::projectInPlace(Eigen::Ref<Points> ring_points, Points& coefficients) const {
   const int faces = ring_.faces;
   coefficients.setZero(modeCount(), 3);
-  Points rest = ring_points;
   if (dart_) {
     const Vector3 v = ring_points.row(0);
-    rest.rowwise() -= v.transpose();
-    dart_->project(rest, firstSymmetric(), coefficients);
+    ring_points.rowwise() -= v.transpose();
+    dart_->project(ring_points, firstSymmetric(), coefficients);
     coefficients.row(0) += v.transpose();
   } else if (ring_.closed()) {
     const Vector3 v = ring_points.row(0);
@@ -44,7 +43,7 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
       constant -= radial_vertex_[i] * coefficient;
     }
     coefficients.row(0) = constant;
-    rest.rowwise() -= v.transpose();
+    ring_points.rowwise() -= v.transpose();
   } else {
     const Vector3 v = ring_points.row(0), e_0 = ring_points.row(ring_.edge(0)),
                   e_k = ring_points.row(ring_.edge(faces));
@@ -53,14 +52,14 @@ void Eigenbasis::project(const Points& ring_points, Points& coefficients) const 
     coefficients.row(1) = curve.first;
     coefficients.row(2) = curve.second;
     for (int i = 0; i < ring_.size(); ++i) {
-      rest.row(i) -=
+      ring_points.row(i) -=
           (curve.constant + curve_ring_[0][i] * curve.first + curve_ring_[1][i] * curve.second)
               .transpose();
     }
   }
 
   const auto at = [&](int point) -> Eigen::Array4d {
-    return {rest(point, 0), rest(point, 1), rest(point, 2), 0};
+    return {ring_points(point, 0), ring_points(point, 1), ring_points(point, 2), 0};
   };
   waves_->sums<Eigen::Array4d>(spokeCount(), at, [&](int m, const auto& sums) {
     // 2 / faces normalises sines and cosines, 1 / faces those that alternate.

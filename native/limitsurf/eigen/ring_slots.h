@@ -18,12 +18,12 @@ void forEachRingSlot(const Ring& ring, int face, const Visit& visit) {
   visit(slot(0, 1), ring.nextEdge(face));
   const Sides sides = ring.sides(face);
   if (!onLeft(sides)) {
-    const int before = (face + k - 1) % k;
+    const int before = face == 0 ? k - 1 : face - 1;
     visit(slot(0, -1), ring.edge(before));
     visit(slot(1, -1), ring.face(before));
   }
   if (!onRight(sides)) {
-    const int after = (face + 1) % k;
+    const int after = face + 1 == k ? 0 : face + 1;
     visit(slot(-1, 1), ring.face(after));
     visit(slot(-1, 0), ring.nextEdge(after));
   }

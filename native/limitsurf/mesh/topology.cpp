@@ -107,38 +107,131 @@ struct FarInput {
 
 }  // namespace
 
-Topology::Topology(const ControlMesh& mesh) {
-  FarInput input(mesh);
-  has_sharpness_ = input.sharpness.any();
-  if (InterruptionPoint::any() && mesh.faceVertices().size() > kCornersAside) {
-    refiner_ = workAside([input = std::move(input)] { return input.refiner(); });
-  } else {
-    refiner_ = input.refiner();
-  }
-  if (!refiner_) {
-    throw MeshError("OpenSubdiv cannot represent the topology of the mesh");
-  }
-  refuseFaces(mesh);
-  splitNonManifoldVertices(mesh);
-}
-
-void Topology::refuseFaces(const ControlMesh& mesh) {
+Topology::Topology(const ControlMesh& mesh) : mesh_(mesh) {
   for (const std::int64_t hole : mesh.options().holes) {
     refused_.emplace(static_cast<int>(hole), "it is a hole");
   }
+  has_sharpness_ = Sharpness(mesh).any();
+  if (std::optional<Adjacency> adjacency = Adjacency::ofManifold(mesh)) {
+    adjacency_ = std::move(*adjacency);
+    setSharpness();
+    return;
+  }
+  is_manifold_ = false;
+  readAdjacencyFromFar();
+  readSharpnessFromFar();
+  refuseRepeatedVertices();
+  splitNonManifoldVertices();
+}
+
+const Far::TopologyLevel& Topology::level() const {
+  if (!refiner_) {
+    FarInput input(mesh_);
+    if (InterruptionPoint::any() && mesh_.faceVertices().size() > kCornersAside) {
+      refiner_ = workAside([input = std::move(input)] { return input.refiner(); });
+    } else {
+      refiner_ = input.refiner();
+    }
+    if (!refiner_) {
+      throw MeshError("OpenSubdiv cannot represent the topology of the mesh");
+    }
+  }
+  return refiner_->GetLevel(0);
+}
+
+void Topology::readAdjacencyFromFar() {
+  const Far::TopologyLevel& far = level();
+  adjacency_ = {};
+  adjacency_.twins.assign(mesh_.faceVertices().size(), -1);
   InterruptionStride stride;
-  for (int face = 0; face < mesh.faceCount(); ++face) {
+  for (int face = 0; face < mesh_.faceCount(); ++face) {
     stride.step();
-    const int twice = repeatedVertex(mesh.faceVertices(face));
+    const auto edges = far.GetFaceEdges(face);
+    for (int side = 0; side < edges.size(); ++side) {
+      const auto faces = far.GetEdgeFaces(edges[side]);
+      if (faces.size() == 2 && !far.IsEdgeNonManifold(edges[side])) {
+        const auto sides = far.GetEdgeFaceLocalIndices(edges[side]);
+        const int other = faces[0] == face && sides[0] == side ? 1 : 0;
+        adjacency_.twins[mesh_.firstCorner(face) + side] =
+            mesh_.firstCorner(faces[other]) + sides[other];
+      }
+    }
+  }
+  adjacency_.fans.resize(static_cast<std::size_t>(mesh_.vertexCount()));
+  for (int vertex = 0; vertex < mesh_.vertexCount(); ++vertex) {
+    stride.step();
+    const auto faces = far.GetVertexFaces(vertex);
+    Adjacency::Fan& fan = adjacency_.fans[vertex];
+    fan.faces = faces.size();
+    fan.closed = !far.IsVertexBoundary(vertex);
+    if (!faces.empty()) {
+      fan.first = mesh_.firstCorner(faces[0]) + far.GetVertexFaceLocalIndices(vertex)[0];
+    }
+  }
+  adjacency_.findFaces(mesh_);
+}
+
+/// As Far does.
+void Topology::setSharpness() {
+  const Sharpness given(mesh_);
+  const MeshOptions& options = mesh_.options();
+  if (has_sharpness_) {
+    side_sharpness_.assign(mesh_.faceVertices().size(), 0);
+  }
+  InterruptionStride stride;
+  for (std::size_t i = 0; has_sharpness_ && i < given.edge_values.size(); ++i) {
+    stride.step();
+    // The first vertex is the one with fewer faces.
+    const int side = adjacency_.side(mesh_, given.edges[2 * i], given.edges[2 * i + 1]);
+    side_sharpness_[side] = given.edge_values[i];
+    if (adjacency_.twins[side] >= 0) {
+      side_sharpness_[adjacency_.twins[side]] = given.edge_values[i];
+    }
+  }
+  if (given.vertices.empty() && options.boundary == Boundary::smooth) {
+    return;
+  }
+  vertex_sharpness_.assign(adjacency_.fans.size(), 0);
+  for (std::size_t i = 0; i < given.vertices.size(); ++i) {
+    vertex_sharpness_[given.vertices[i]] = given.vertex_values[i];
+  }
+  for (std::size_t v = 0; v < adjacency_.fans.size(); ++v) {
+    const Adjacency::Fan& fan = adjacency_.fans[v];
+    if (options.boundary == Boundary::corners && fan.faces == 1 && !fan.closed) {
+      vertex_sharpness_[v] = kInfinitelySharp;
+    }
+  }
+}
+
+void Topology::readSharpnessFromFar() {
+  const Far::TopologyLevel& far = level();
+  InterruptionStride stride;
+  for (int vertex = 0; vertex < mesh_.vertexCount(); ++vertex) {
+    stride.step();
+    vertex_sharpness_.push_back(far.GetVertexSharpness(vertex));
+  }
+  for (int face = 0; has_sharpness_ && face < mesh_.faceCount(); ++face) {
+    stride.step();
+    for (const int edge : far.GetFaceEdges(face)) {
+      side_sharpness_.push_back(far.GetEdgeSharpness(edge));
+    }
+  }
+}
+
+void Topology::refuseRepeatedVertices() {
+  InterruptionStride stride;
+  for (int face = 0; face < mesh_.faceCount(); ++face) {
+    stride.step();
+    const int twice = repeatedVertex(mesh_.faceVertices(face));
     if (twice >= 0) {
       refused_.emplace(face, text("it uses vertex ", twice, " twice"));
     }
   }
 }
 
-void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
+void Topology::splitNonManifoldVertices() {
   std::map<int, std::vector<std::pair<int, int>>> corners;  // vertex -> (face, corner) of each face
-  for (int vertex = 0; vertex < mesh.vertexCount(); ++vertex) {
+  for (int vertex = 0; vertex < mesh_.vertexCount(); ++vertex) {
     if (level().IsVertexNonManifold(vertex)) {
       corners[vertex];
     }
@@ -147,9 +240,9 @@ void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
     return;
   }
   InterruptionStride stride;
-  for (int face = 0; face < mesh.faceCount(); ++face) {
+  for (int face = 0; face < mesh_.faceCount(); ++face) {
     stride.step();
-    const Span<int> vertices = mesh.faceVertices(face);
+    const Span<int> vertices = mesh_.faceVertices(face);
     for (int corner = 0; corner < static_cast<int>(vertices.size()); ++corner) {
       if (level().IsVertexNonManifold(vertices[corner])) {
         corners[vertices[corner]].emplace_back(face, corner);
@@ -158,12 +251,11 @@ void Topology::splitNonManifoldVertices(const ControlMesh& mesh) {
   }
   for (const auto& [vertex, at] : corners) {
     stride.step();
-    splitIntoFans(mesh, vertex, at);
+    splitIntoFans(vertex, at);
   }
 }
 
-void Topology::splitIntoFans(const ControlMesh& mesh, int vertex,
-                             const std::vector<std::pair<int, int>>& corners) {
+void Topology::splitIntoFans(int vertex, const std::vector<std::pair<int, int>>& corners) {
   // Manifold edge -> the corner from which it leaves, and the corner at which it arrives.
   std::map<int, int> leaving, arriving;
   std::vector<std::pair<int, int>> edges;  // of each corner: leaving, arriving
@@ -191,7 +283,7 @@ void Topology::splitIntoFans(const ControlMesh& mesh, int vertex,
       }
       i = next->second;
     }
-    if (mesh.options().scheme == Scheme::catmark) {
+    if (mesh_.options().scheme == Scheme::catmark) {
       refuseBesideCrease(fan);
     }
     split_fans_.push_back(std::move(fan));

@@ -9,20 +9,43 @@
 #include <utility>
 #include <vector>
 
+#include "limitsurf/mesh/adjacency.h"
 #include "limitsurf/mesh/control_mesh.h"
 
 namespace limitsurf {
 
-/// The adjacency and sharpness of a control mesh, from OpenSubdiv's Far, and the decision which of
-/// its faces have a limit surface.
+/// The adjacency and sharpness of a control mesh, and the decision which of its faces have a limit
+/// surface. It refers to the mesh.
+///
+/// What is not manifold is decided by OpenSubdiv's Far, so that the surface is the one that
+/// OpenSubdiv means. Most meshes are manifold, and need no Far, which takes more time and memory
+/// than all the rest.
 class Topology {
  public:
-  /// Throws MeshError where OpenSubdiv cannot represent the mesh.
+  /// Throws MeshError where OpenSubdiv cannot represent a mesh that is not manifold.
   explicit Topology(const ControlMesh& mesh);
 
-  /// The mesh in Far's form. Sharpness is the mesh's, except that boundary edges, non-manifold
-  /// edges and vertices, and pinned corners are infinitely sharp.
-  const OpenSubdiv::Far::TopologyLevel& level() const { return refiner_->GetLevel(0); }
+  /// An edge that is not manifold has no twins. The fan of a vertex that is not manifold has no
+  /// meaning: splitFans() takes its place.
+  const Adjacency& adjacency() const { return adjacency_; }
+
+  /// The sharpness of the edge from each corner to the next one of its face; empty if
+  /// hasSharpness() is false. Where a side has no twin, the edge is infinitely sharp anyway.
+  const std::vector<float>& sideSharpness() const { return side_sharpness_; }
+  /// The sharpness of each vertex; null if none is sharp. Pinned corners and most vertices that are
+  /// not manifold are infinitely sharp.
+  const float* vertexSharpness() const {
+    return vertex_sharpness_.empty() ? nullptr : vertex_sharpness_.data();
+  }
+
+  /// Whether the mesh is manifold, so that splitFans() is empty.
+  bool isManifold() const { return is_manifold_; }
+
+  /// The mesh in Far's form, which is made when it is first asked for, by one thread at a time.
+  /// Sharpness is the mesh's, except that boundary edges, non-manifold edges and vertices, and
+  /// pinned corners are infinitely sharp. Throws MeshError where OpenSubdiv cannot represent the
+  /// mesh.
+  const OpenSubdiv::Far::TopologyLevel& level() const;
 
   /// Whether any edge between two faces is sharp, or any vertex other than the corners of
   /// boundaries.
@@ -44,14 +67,19 @@ class Topology {
   const std::vector<SplitFan>& splitFans() const { return split_fans_; }
 
  private:
-  void refuseFaces(const ControlMesh& mesh);
-  void splitNonManifoldVertices(const ControlMesh& mesh);
-  void splitIntoFans(const ControlMesh& mesh, int vertex,
-                     const std::vector<std::pair<int, int>>& corners);
+  void readAdjacencyFromFar();
+  void setSharpness();
+  void readSharpnessFromFar();
+  void refuseRepeatedVertices();
+  void splitNonManifoldVertices();
+  void splitIntoFans(int vertex, const std::vector<std::pair<int, int>>& corners);
   void refuseBesideCrease(const SplitFan& fan);
 
-  std::unique_ptr<const OpenSubdiv::Far::TopologyRefiner> refiner_;
-  bool has_sharpness_ = false;
+  const ControlMesh& mesh_;
+  Adjacency adjacency_;
+  bool is_manifold_ = true, has_sharpness_ = false;
+  std::vector<float> side_sharpness_, vertex_sharpness_;
+  mutable std::unique_ptr<const OpenSubdiv::Far::TopologyRefiner> refiner_;
   std::map<int, std::string> refused_;
   std::vector<SplitFan> split_fans_;
 };

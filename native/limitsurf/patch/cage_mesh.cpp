@@ -8,113 +8,122 @@
 namespace limitsurf {
 namespace {
 
-/// A vertex takes a small part of the time of an evaluation.
-constexpr std::size_t kVerticesPerTask = 16384;
+/// A vertex or a face takes a small part of the time of an evaluation.
+constexpr std::size_t kPerTask = 16384;
+
+/// Calls visit(i) for i from 0 to count - 1, on all cores.
+template <typename Visit>
+void forEach(int count, const Visit& visit) {
+  parallelFor(static_cast<std::size_t>(count), kPerTask, 0,
+              [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                  visit(static_cast<int>(i));
+                }
+              });
+}
 
 }  // namespace
 
-CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology)
-    : mesh_(mesh),
-      level_(topology.level()),
-      fans_(topology.splitFans()),
-      has_sharpness_(topology.hasSharpness()),
-      any_non_manifold_(!fans_.empty()),
-      marks_(static_cast<std::size_t>(vertexCount())) {
-  for (std::size_t fan = 0; fan < fans_.size(); ++fan) {
-    for (const auto& [face, corner] : fans_[fan].faces) {
-      fan_of_[cornerNumber({face, corner})] = static_cast<int>(fan);
+CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology) : topology_(topology) {
+  const Adjacency& adjacency = topology.adjacency();
+  own_points_ = mesh.vertexCount();
+  vertex_count_ = own_points_ + static_cast<int>(topology.splitFans().size());
+  points_.assign(topology.splitFans().size(), -1);
+  corner_vertices_ = mesh.faceVertices().data();
+  corner_count_ = static_cast<int>(mesh.faceVertices().size());
+  twins_ = adjacency.twins.data();
+  if (!adjacency.face_of_corner.empty()) {
+    for (int face = 0; face < mesh.faceCount(); ++face) {
+      own_first_corners_.push_back(mesh.firstCorner(face));
+    }
+    own_first_corners_.push_back(corner_count_);
+    first_corners_ = own_first_corners_.data();
+    face_of_corner_ = adjacency.face_of_corner.data();
+  }
+  if (topology.hasSharpness()) {
+    side_sharpness_ = topology.sideSharpness().data();
+  }
+  cage_fans_ = adjacency.fans.data();
+  cage_sharpness_ = topology.vertexSharpness();
+  fans_.resize(topology.splitFans().size());
+  marks_.resize(static_cast<std::size_t>(vertex_count_));
+  if (!topology.splitFans().empty()) {
+    own_corner_vertices_ = mesh.faceVertices();
+    splitVertices();
+    corner_vertices_ = own_corner_vertices_.data();
+  }
+  forEach(vertex_count_, [&](int vertex) { mark(vertex); });
+}
+
+void CageMesh::splitVertices() {
+  for (int vertex = own_points_; vertex < vertex_count_; ++vertex) {
+    for (const auto& [face, corner] : topology_.splitFans()[vertex - own_points_].faces) {
+      own_corner_vertices_[cornerNumber({face, corner})] = vertex;
+    }
+    setSplitFan(vertex);
+  }
+}
+
+void CageMesh::setSplitFan(int vertex) {
+  const Topology::SplitFan& split = topology_.splitFans()[vertex - own_points_];
+  fans_[vertex - own_points_] = {{split.faces[0].first, split.faces[0].second},
+                                 static_cast<int>(split.faces.size()),
+                                 split.closed,
+                                 cage_sharpness_ ? cage_sharpness_[split.vertex] : 0};
+  const auto& level = topology_.level();
+  std::vector<int> own;
+  for (const auto& [face, corner] : split.faces) {
+    const auto edges = level.GetFaceEdges(face);
+    own.push_back(edges[corner]);
+    own.push_back(edges[(corner + edges.size() - 1) % edges.size()]);
+  }
+  std::vector<float>& others = other_fans_edges_[vertex];
+  for (const int edge : level.GetVertexEdges(split.vertex)) {
+    if (std::find(own.begin(), own.end(), edge) == own.end()) {
+      others.push_back(level.GetEdgeSharpness(edge));
     }
   }
-  parallelFor(marks_.size(), kVerticesPerTask, 0, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      mark(static_cast<int>(v));
-    }
-  });
 }
 
 void CageMesh::mark(int vertex) {
-  if (!isSplit(vertex) && any_non_manifold_ && level_.IsVertexNonManifold(vertex)) {
+  const bool is_split = vertex >= own_points_;
+  if (!is_split && !topology_.isManifold() && topology_.level().IsVertexNonManifold(vertex)) {
     return;  // it is represented by its fans
   }
-  const VertexFan around = fan(vertex);
   std::uint8_t marks = kQuads;
-  const auto look = [&](int face) {
-    if (faceSize(face) != 4) {
-      marks = 0;
-    }
-  };
-  if (isSplit(vertex)) {
-    for (const auto& [face, corner] : splitFan(vertex).faces) {
-      look(face);
-    }
-  } else {
-    for (const int face : level_.GetVertexFaces(vertex)) {
-      look(face);
-    }
-    if (isRegular(vertex, around)) {
-      marks |= kRegular;
-    }
+  if (first_corners_) {
+    forEachAround(fan(vertex), [&](FaceCorner at) {
+      if (faceSize(at.face) != 4) {
+        marks = 0;
+      }
+    });
+  }
+  if (!is_split && isRegular(vertex)) {
+    marks |= kRegular;
   }
   marks_[vertex] = marks;
 }
 
-bool CageMesh::isRegular(int vertex, const VertexFan& around) const {
+bool CageMesh::isRegular(int vertex) const {
+  const VertexFan around = fan(vertex);
   const int edges = around.closed ? 4 : isInfinitelySharp(around.sharpness) ? 2 : 3;
   if (around.edges() != edges) {
     return false;
   }
-  if (!has_sharpness_) {
+  if (!side_sharpness_) {
     return true;
   }
   if (edges != 2 && isSharp(around.sharpness)) {
     return false;
   }
-  // The first and the last edge of a boundary are infinitely sharp anyway.
-  const auto of_vertex = level_.GetVertexEdges(vertex);
-  const int skipped = around.closed ? 0 : 1;
-  for (int i = skipped; i < of_vertex.size() - skipped; ++i) {
-    if (isSharp(level_.GetEdgeSharpness(of_vertex[i]))) {
-      return false;
-    }
-  }
-  return true;
-}
-
-VertexFan CageMesh::fan(int vertex) const {
-  if (isSplit(vertex)) {
-    const Topology::SplitFan& fan = splitFan(vertex);
-    return {{fan.faces[0].first, fan.faces[0].second},
-            static_cast<int>(fan.faces.size()),
-            fan.closed,
-            level_.GetVertexSharpness(fan.vertex)};
-  }
-  const auto faces = level_.GetVertexFaces(vertex);
-  VertexFan result{
-      {}, faces.size(), !level_.IsVertexBoundary(vertex), level_.GetVertexSharpness(vertex)};
-  if (!faces.empty()) {
-    result.first = {faces[0], level_.GetVertexFaceLocalIndices(vertex)[0]};
-  }
-  return result;
-}
-
-std::vector<float> CageMesh::edgesOfOtherFans(int vertex) const {
-  std::vector<float> result;
-  if (!isSplit(vertex)) {
-    return result;
-  }
-  const Topology::SplitFan& fan = splitFan(vertex);
-  std::vector<int> own;
-  for (const auto& [face, corner] : fan.faces) {
-    const auto edges = level_.GetFaceEdges(face);
-    own.push_back(edges[corner]);
-    own.push_back(edges[(corner + edges.size() - 1) % edges.size()]);
-  }
-  for (const int edge : level_.GetVertexEdges(fan.vertex)) {
-    if (std::find(own.begin(), own.end(), edge) == own.end()) {
-      result.push_back(level_.GetEdgeSharpness(edge));
-    }
-  }
-  return result;
+  bool smooth = true;
+  int i = 0;
+  forEachAround(around, [&](FaceCorner at) {
+    // The first and the last edge of a boundary are infinitely sharp anyway.
+    smooth = smooth && !((around.closed || i > 0) && isSharp(sharpness(at)));
+    ++i;
+  });
+  return smooth;
 }
 
 bool CageMesh::regularFace(int face) const {
@@ -132,9 +141,11 @@ bool CageMesh::regularFace(int face) const {
 std::array<bool, 4> CageMesh::diagonals(int face) const {
   std::array<bool, 4> result;
   for (int corner = 0; corner < 4; ++corner) {
-    result[corner] = !level_.IsVertexBoundary(level_.GetFaceVertices(face)[corner]);
+    result[corner] = fan(vertex({face, corner})).closed;
   }
   return result;
 }
+
+int CageMesh::makePoint(int vertex) { return topology_.splitFans()[vertex - own_points_].vertex; }
 
 }  // namespace limitsurf

@@ -3,21 +3,21 @@
 
 namespace limitsurf {
 
-SharpnessAround FaceMesh::sharpnessAround(int vertex) const {
-  const VertexFan around = fan(vertex);
-  SharpnessAround result;
-  result.vertex = around.sharpness;
+void FaceMesh::getSharpnessAround(int vertex, SharpnessAround& around) const {
+  const VertexFan fan = this->fan(vertex);
+  around.vertex = fan.sharpness;
+  around.edges.clear();
   FaceCorner last;
-  forEachAround(around, [&](FaceCorner at) {
-    result.edges.push_back(sharpness(at));
+  forEachAround(fan, [&](FaceCorner at) {
+    around.edges.push_back(sharpness(at));
     last = at;
   });
-  if (!around.closed) {
-    result.edges.push_back(sharpness(before(last)));
+  if (!fan.closed) {
+    around.edges.push_back(sharpness(before(last)));
   }
-  const std::vector<float> others = edgesOfOtherFans(vertex);
-  result.edges.insert(result.edges.end(), others.begin(), others.end());
-  return result;
+  if (const std::vector<float>* others = edgesOfOtherFans(vertex)) {
+    around.edges.insert(around.edges.end(), others->begin(), others->end());
+  }
 }
 
 }  // namespace limitsurf

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "limitsurf/mesh/adjacency.h"
 #include "limitsurf/rules/subdivision_rules.h"
 
 namespace limitsurf {
@@ -26,33 +31,77 @@ struct VertexFan {
   int edges() const { return closed ? faces : faces + 1; }
 };
 
-/// One level of refinement: its topology and its sharpness.
+/// One level of refinement: its topology and its sharpness, in arrays that CageMesh and RefinedMesh
+/// fill.
 class FaceMesh {
  public:
   virtual ~FaceMesh() = default;
+  FaceMesh(const FaceMesh&) = delete;
+  FaceMesh& operator=(const FaceMesh&) = delete;
 
-  virtual int faceSize(int face) const = 0;
-  virtual int vertex(FaceCorner at) const = 0;
+  int faceSize(int face) const {
+    return first_corners_ ? first_corners_[face + 1] - first_corners_[face] : 4;
+  }
   /// Consecutive numbers for all corners of all faces.
-  virtual int cornerNumber(FaceCorner at) const = 0;
-  virtual int cornerCount() const = 0;
-  virtual int vertexCount() const = 0;
+  int cornerNumber(FaceCorner at) const {
+    return (first_corners_ ? first_corners_[at.face] : 4 * at.face) + at.corner;
+  }
+  FaceCorner cornerAt(int number) const {
+    if (!first_corners_) {
+      return {number / 4, number % 4};
+    }
+    const int face = face_of_corner_[number];
+    return {face, number - first_corners_[face]};
+  }
+  int cornerCount() const { return corner_count_; }
+  int vertexCount() const { return vertex_count_; }
+  int vertex(FaceCorner at) const { return corner_vertices_[cornerNumber(at)]; }
+
   /// The same edge as a side of the face beyond it. There is none on a boundary and at an edge that
   /// is not manifold.
-  virtual FaceCorner twin(FaceCorner side) const = 0;
+  FaceCorner twin(FaceCorner side) const {
+    const int twin = twins_[cornerNumber(side)];
+    return twin < 0 ? FaceCorner{} : cornerAt(twin);
+  }
   /// The sharpness of the edge; infinite where the side has no twin.
-  virtual float sharpness(FaceCorner side) const = 0;
+  float sharpness(FaceCorner side) const {
+    const int number = cornerNumber(side);
+    return twins_[number] < 0 ? kInfinitelySharp : side_sharpness_ ? side_sharpness_[number] : 0;
+  }
 
-  virtual VertexFan fan(int vertex) const = 0;
-  virtual bool onlyQuadsAround(int vertex) const = 0;
-  /// The sharpness of those edges at the vertex that belong to none of its fan's faces.
-  virtual std::vector<float> edgesOfOtherFans(int vertex) const = 0;
+  VertexFan fan(int vertex) const {
+    if (vertex >= own_points_) {
+      return fans_[vertex - own_points_];
+    }
+    const Adjacency::Fan& fan = cage_fans_[vertex];
+    return {fan.first < 0 ? FaceCorner{} : cornerAt(fan.first), fan.faces, fan.closed,
+            cage_sharpness_ ? cage_sharpness_[vertex] : 0};
+  }
+  /// The sharpness of those edges at the vertex that belong to none of its fan's faces; null if
+  /// there are none.
+  const std::vector<float>* edgesOfOtherFans(int vertex) const {
+    if (other_fans_edges_.empty()) {
+      return nullptr;
+    }
+    const auto known = other_fans_edges_.find(vertex);
+    return known == other_fans_edges_.end() ? nullptr : &known->second;
+  }
 
-  /// The number of the vertex's control point.
-  virtual int point(int vertex) = 0;
+  /// The number of the vertex's control point, which is made when it is first asked for.
+  int point(int vertex) {
+    if (vertex < own_points_) {
+      return vertex;
+    }
+    int& point = points_[vertex - own_points_];
+    if (point < 0) {
+      point = makePoint(vertex);
+    }
+    return point;
+  }
 
   FaceCorner after(FaceCorner at, int steps) const {
-    return {at.face, (at.corner + steps) % faceSize(at.face)};
+    const int size = faceSize(at.face), corner = at.corner + steps;
+    return {at.face, corner < size ? corner : corner - size};
   }
   FaceCorner before(FaceCorner at) const {
     return {at.face, (at.corner == 0 ? faceSize(at.face) : at.corner) - 1};
@@ -65,7 +114,10 @@ class FaceMesh {
   /// The edge as a side of the face beyond it, if the surface is smooth across it: there is none at
   /// a boundary and at an infinitely sharp edge.
   FaceCorner across(FaceCorner side) const {
-    return isInfinitelySharp(sharpness(side)) ? FaceCorner{} : twin(side);
+    if (side_sharpness_ && isInfinitelySharp(sharpness(side))) {
+      return {};
+    }
+    return twin(side);
   }
 
   /// Calls visit(corner) for the faces around a vertex, counter-clockwise.
@@ -80,9 +132,31 @@ class FaceMesh {
     }
   }
 
-  /// The sharpness around a vertex: that of its fan's edges, counter-clockwise, then that of the
-  /// other edges at the vertex.
-  SharpnessAround sharpnessAround(int vertex) const;
+  /// Sets the sharpness of a vertex and of the edges at it: those of its fan, counter-clockwise,
+  /// then the others. The memory of `around` is used again.
+  void getSharpnessAround(int vertex, SharpnessAround& around) const;
+
+ protected:
+  FaceMesh() = default;
+
+  /// Makes the point of a vertex that has none yet.
+  virtual int makePoint(int vertex) = 0;
+
+  int vertex_count_ = 0, corner_count_ = 0;
+  // Where quads only, the first two are null. Per face, and one more entry; the others per corner.
+  const int* first_corners_ = nullptr;
+  const int* face_of_corner_ = nullptr;
+  const int* corner_vertices_ = nullptr;
+  const int* twins_ = nullptr;             ///< the twin's number; -1: none
+  const float* side_sharpness_ = nullptr;  ///< null if nothing is sharp
+  // Of the first so many vertices the point has the vertex's number; the next two are about them.
+  int own_points_ = 0;
+  const Adjacency::Fan* cage_fans_ = nullptr;
+  const float* cage_sharpness_ = nullptr;  ///< null if none is sharp
+  // Of the other vertices.
+  std::vector<VertexFan> fans_;
+  std::vector<int> points_;  ///< -1: not made yet
+  std::map<int, std::vector<float>> other_fans_edges_;
 };
 
 }  // namespace limitsurf

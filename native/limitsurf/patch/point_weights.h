@@ -34,7 +34,7 @@ void moveToVertices(const RefinedPoints& points, PointWeights<Weight>& weights) 
     const auto [point, weight] = *weights.begin();
     weights.erase(weights.begin());
     const Span<int> sources = points.sources(point);
-    const std::vector<double>& mask = points.weights(point);
+    const Span<double> mask = points.weights(point);
     for (std::size_t i = 0; i < sources.size(); ++i) {
       addWeight(weights, sources[i], mask[i] * weight);
     }

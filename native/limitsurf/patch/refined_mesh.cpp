@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/patch/refined_mesh.h"
 
-#include <algorithm>
-
 #include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
@@ -13,7 +11,7 @@ RefinedMesh::RefinedMesh(FaceMesh& parent, const std::vector<int>& faces,
     : parent_(parent),
       has_sharpness_(has_sharpness),
       crease_(sdcOptions(options)),
-      points_(points),
+      refined_points_(points),
       child_of_corner_(static_cast<std::size_t>(parent.cornerCount()), -1) {
   // Under Chaikin's rule the sharpness of a child edge depends on the edges at both its ends.
   markVertices(faces, has_sharpness && !crease_.IsUniform());
@@ -23,7 +21,8 @@ RefinedMesh::RefinedMesh(FaceMesh& parent, const std::vector<int>& faces,
   if (has_sharpness_) {
     subdivideSharpness();
   }
-  point_.assign(refined_vertices_.size() + new_vertices_.size(), -1);
+  vertex_count_ = static_cast<int>(fans_.size());
+  points_.assign(fans_.size(), -1);
 }
 
 void RefinedMesh::markVertices(const std::vector<int>& faces, bool with_neighbours) {
@@ -52,6 +51,11 @@ void RefinedMesh::markVertices(const std::vector<int>& faces, bool with_neighbou
 }
 
 void RefinedMesh::makeChildren() {
+  // Where all faces of a mesh of quads are refined, each vertex has four corners, two edges and one
+  // face for its own.
+  origin_.reserve(4 * refined_vertices_.size());
+  fans_.reserve(4 * refined_vertices_.size());
+  new_vertices_.reserve(3 * refined_vertices_.size());
   InterruptionStride stride;
   for (const int vertex : refined_vertices_) {
     stride.step();
@@ -67,59 +71,75 @@ void RefinedMesh::makeChildren() {
   }
 }
 
-int RefinedMesh::newVertex(Origin origin, FaceCorner at) {
+int RefinedMesh::newVertex(Origin origin, FaceCorner at, const VertexFan& fan) {
   new_vertices_.push_back({origin, at});
-  return static_cast<int>(refined_vertices_.size() + new_vertices_.size()) - 1;
+  fans_.push_back(fan);
+  return static_cast<int>(fans_.size()) - 1;
+}
+
+/// Makes the midpoint of a side, and sets it at the corners of the children beside that side.
+void RefinedMesh::setMidpoint(FaceCorner side) {
+  const FaceCorner beyond = parent_.twin(side);
+  const bool closed = beyond.exists();
+  const int vertex =
+      newVertex(kEdge, side, {{child(parent_.after(side, 1)), 3}, closed ? 4 : 2, closed, 0});
+  const auto set = [&](FaceCorner half) {
+    const int begin = child(half), end = child(parent_.after(half, 1));
+    if (begin >= 0) {
+      corner_vertices_own_[4 * begin + 1] = vertex;
+    }
+    if (end >= 0) {
+      corner_vertices_own_[4 * end + 3] = vertex;
+    }
+  };
+  set(side);
+  if (closed) {
+    set(beyond);
+  }
+}
+
+/// Makes the vertex in the middle of a face, and sets it at its children.
+void RefinedMesh::setMiddle(int face) {
+  const int size = parent_.faceSize(face);
+  const int vertex = newVertex(kFace, {face, 0}, {{child({face, 0}), 2}, size, true, 0});
+  for (int corner = 0; corner < size; ++corner) {
+    if (const int at = child({face, corner}); at >= 0) {
+      corner_vertices_own_[4 * at + 2] = vertex;
+    }
+  }
 }
 
 void RefinedMesh::makeVertices() {
-  corner_vertex_.assign(4 * origin_.size(), -1);
-  const auto corner = [&](int child, int i) -> int& { return corner_vertex_[4 * child + i]; };
-  // Makes the midpoint of a side, and sets it at the corners of the children beside that side.
-  const auto setMidpoint = [&](FaceCorner side) {
-    const int vertex = newVertex(kEdge, side);
-    const auto set = [&](FaceCorner half) {
-      const int begin = child(half), end = child(parent_.after(half, 1));
-      if (begin >= 0) {
-        corner(begin, 1) = vertex;
-      }
-      if (end >= 0) {
-        corner(end, 3) = vertex;
-      }
-    };
-    set(side);
-    if (const FaceCorner beyond = parent_.twin(side); beyond.exists()) {
-      set(beyond);
-    }
-  };
+  corner_vertices_own_.assign(4 * origin_.size(), -1);
+  corner_vertices_ = corner_vertices_own_.data();
+  corner_count_ = static_cast<int>(corner_vertices_own_.size());
   InterruptionStride stride;
   for (std::size_t v = 0; v < refined_vertices_.size(); ++v) {
     stride.step();
     const int first = fans_[v].first.face;
     for (int c = first; c < first + fans_[v].faces; ++c) {
-      const FaceCorner at = origin_[c];
-      corner(c, 0) = static_cast<int>(v);
-      if (corner(c, 1) < 0) {
-        setMidpoint(at);
+      int* const corners = &corner_vertices_own_[4 * c];
+      corners[0] = static_cast<int>(v);
+      if (corners[1] < 0) {
+        setMidpoint(origin_[c]);
       }
-      if (corner(c, 3) < 0) {
-        setMidpoint(parent_.before(at));
+      if (corners[3] < 0) {
+        setMidpoint(parent_.before(origin_[c]));
       }
-      const auto [face, is_new] = face_vertex_.try_emplace(at.face, 0);
-      if (is_new) {
-        face->second = newVertex(kFace, {at.face, 0});
+      if (corners[2] < 0) {
+        setMiddle(origin_[c].face);
       }
-      corner(c, 2) = face->second;
     }
   }
 }
 
 void RefinedMesh::makeTwins() {
-  twin_.assign(corner_vertex_.size(), -1);
+  twins_own_.assign(corner_vertices_own_.size(), -1);
+  twins_ = twins_own_.data();
   const auto link = [&](int child, int side, FaceCorner other_origin, int other_side) {
     if (other_origin.exists()) {
       if (const int other = this->child(other_origin); other >= 0) {
-        twin_[4 * child + side] = 4 * other + other_side;
+        twins_own_[4 * child + side] = 4 * other + other_side;
       }
     }
   };
@@ -131,28 +151,30 @@ void RefinedMesh::makeTwins() {
     if (beyond.exists()) {
       link(c, 0, parent_.after(beyond, 1), 3);
     }
+    const FaceCorner before = parent_.before(at);
     link(c, 1, parent_.after(at, 1), 2);
-    link(c, 2, parent_.before(at), 1);
-    link(c, 3, parent_.turned(at), 0);
+    link(c, 2, before, 1);
+    link(c, 3, parent_.twin(before), 0);
   }
 }
 
-SharpnessAround RefinedMesh::subdivided(int parent_vertex) const {
-  SharpnessAround around = parent_.sharpnessAround(parent_vertex);
+void RefinedMesh::getSubdivided(int parent_vertex, SharpnessAround& around) const {
+  parent_.getSharpnessAround(parent_vertex, around);
   around.child_vertex = crease_.SubdivideVertexSharpness(around.vertex);
-  around.child_edges = subdividedSharpness(crease_, around.edges);
-  return around;
+  limitsurf::subdivideSharpness(crease_, around.edges, around.child_edges);
 }
 
 void RefinedMesh::subdivideSharpness() {
-  side_sharpness_.assign(corner_vertex_.size(), 0);
+  side_sharpness_own_.assign(corner_vertices_own_.size(), 0);
+  side_sharpness_ = side_sharpness_own_.data();
   InterruptionStride stride;
+  SharpnessAround around;
   for (std::size_t v = 0; v < refined_vertices_.size(); ++v) {
     stride.step();
     const VertexFan& fan = fans_[v];
-    const SharpnessAround around = subdivided(refined_vertices_[v]);
+    getSubdivided(refined_vertices_[v], around);
     for (int i = 0; i < fan.faces; ++i) {
-      float* const sides = &side_sharpness_[4 * static_cast<std::size_t>(fan.first.face + i)];
+      float* const sides = &side_sharpness_own_[4 * static_cast<std::size_t>(fan.first.face + i)];
       sides[0] = around.child_edges[i];
       sides[3] = around.child_edges[fan.closed && i + 1 == fan.faces ? 0 : i + 1];
     }
@@ -161,31 +183,6 @@ void RefinedMesh::subdivideSharpness() {
                                                     around.child_edges.end());
     }
   }
-}
-
-float RefinedMesh::sharpness(FaceCorner side) const {
-  if (twin_[cornerNumber(side)] < 0) {
-    return kInfinitelySharp;
-  }
-  return has_sharpness_ ? side_sharpness_[cornerNumber(side)] : 0;
-}
-
-VertexFan RefinedMesh::fan(int vertex) const {
-  const int refined = static_cast<int>(refined_vertices_.size());
-  if (vertex < refined) {
-    return fans_[vertex];
-  }
-  const NewVertex& made = new_vertices_[vertex - refined];
-  if (made.origin == kFace) {
-    return {{child(made.at), 2}, parent_.faceSize(made.at.face), true, 0};
-  }
-  const bool closed = parent_.twin(made.at).exists();
-  return {{child(parent_.after(made.at, 1)), 3}, closed ? 4 : 2, closed, 0};
-}
-
-std::vector<float> RefinedMesh::edgesOfOtherFans(int vertex) const {
-  const auto known = other_fans_edges_.find(vertex);
-  return known == other_fans_edges_.end() ? std::vector<float>() : known->second;
 }
 
 }  // namespace limitsurf

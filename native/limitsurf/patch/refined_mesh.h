@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
-#include <unordered_map>
 #include <vector>
 
 #include "limitsurf/patch/face_mesh.h"
@@ -30,21 +28,6 @@ class RefinedMesh final : public FaceMesh {
     return vertex < static_cast<int>(refined_vertices_.size()) ? refined_vertices_[vertex] : -1;
   }
 
-  int faceSize(int) const override { return 4; }
-  int vertex(FaceCorner at) const override { return corner_vertex_[cornerNumber(at)]; }
-  int cornerNumber(FaceCorner at) const override { return 4 * at.face + at.corner; }
-  int cornerCount() const override { return static_cast<int>(corner_vertex_.size()); }
-  int vertexCount() const override { return static_cast<int>(point_.size()); }
-  FaceCorner twin(FaceCorner side) const override {
-    const int twin = twin_[cornerNumber(side)];
-    return twin < 0 ? FaceCorner{} : FaceCorner{twin / 4, twin % 4};
-  }
-  float sharpness(FaceCorner side) const override;
-  VertexFan fan(int vertex) const override;
-  bool onlyQuadsAround(int) const override { return true; }
-  std::vector<float> edgesOfOtherFans(int vertex) const override;
-  int point(int vertex) override;
-
  private:
   enum Origin { kEdge, kFace };
   struct NewVertex {
@@ -55,46 +38,41 @@ class RefinedMesh final : public FaceMesh {
   void markVertices(const std::vector<int>& faces, bool with_neighbours);
   void makeChildren();
   void makeVertices();
+  void setMidpoint(FaceCorner side);
+  void setMiddle(int face);
   void makeTwins();
   void subdivideSharpness();
-  int newVertex(Origin origin, FaceCorner at);
+  int newVertex(Origin origin, FaceCorner at, const VertexFan& fan);
 
-  /// The sharpness around one of the parent's vertices, before and after a step.
-  SharpnessAround subdivided(int parent_vertex) const;
+  /// Sets the sharpness around one of the parent's vertices, before and after a step.
+  void getSubdivided(int parent_vertex, SharpnessAround& around) const;
   /// The sharpness of that half of the parent's edge that begins at the side's first vertex.
   float childSharpness(FaceCorner side) const;
 
-  /// A vertex of the parent, and its corners in the faces around it.
-  struct VertexNeighbours {
-    int vertex;
-    VertexFan fan;
-    std::vector<FaceCorner> corners;
-  };
-  VertexNeighbours neighbours(int parent_vertex, const VertexFan& fan) const;
-  /// The parent's point at the far end of an edge of the vertex.
-  int farEnd(const VertexNeighbours& around, int edge);
-
+  int makePoint(int vertex) override;
   int facePoint(int face);
   int edgePoint(FaceCorner side);
-  int vertexPoint(int parent_vertex);
-  int smoothVertexPoint(const VertexNeighbours& around);
-  int sharpVertexPoint(const VertexNeighbours& around, const SharpnessAround& sharpness);
+  int vertexPoint(int vertex);
+  int smoothVertexPoint(int vertex, const VertexFan& parent_fan);
+  int sharpVertexPoint(int vertex, const VertexFan& parent_fan);
+  /// The parent's point at the far end of an edge of the vertex.
+  int farEnd(int vertex, const VertexFan& parent_fan, int edge);
+  /// The point of the parent's face at whose corner the child stands.
+  int middle(int child) { return point(corner_vertices_own_[4 * child + 2]); }
 
   FaceMesh& parent_;
   const bool has_sharpness_;
   const OpenSubdiv::Sdc::Crease crease_;
-  RefinedPoints& points_;
+  RefinedPoints& refined_points_;
 
   std::vector<int> refined_vertices_;  // of the parent; they are the first vertices here
-  std::vector<VertexFan> fans_;        // of these; the children around one have successive numbers
-  std::vector<FaceCorner> origin_;     // per child: the parent's corner
+  std::vector<FaceCorner> origin_;     // per child: the parent's corner. The children around a
+                                       // refined vertex have successive numbers
   std::vector<int> child_of_corner_;   // by the parent's corner; -1: none
-  std::vector<int> corner_vertex_, twin_;  // per corner
-  std::vector<float> side_sharpness_;      // per corner; none if nothing is sharp
+  std::vector<int> corner_vertices_own_, twins_own_;
+  std::vector<float> side_sharpness_own_;
   std::vector<NewVertex> new_vertices_;
-  std::unordered_map<int, int> face_vertex_;  // parent's face -> vertex
-  std::map<int, std::vector<float>> other_fans_edges_;
-  std::vector<int> point_;  // per vertex; -1: not made yet
+  SharpnessAround around_;  // of the vertex whose point is being made
 };
 
 }  // namespace limitsurf

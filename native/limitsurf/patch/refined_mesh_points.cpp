@@ -8,26 +8,21 @@
 
 namespace limitsurf {
 
-int RefinedMesh::point(int vertex) {
-  if (point_[vertex] < 0) {
-    const int refined = static_cast<int>(refined_vertices_.size());
-    if (vertex < refined) {
-      point_[vertex] = vertexPoint(refined_vertices_[vertex]);
-    } else {
-      const NewVertex& made = new_vertices_[vertex - refined];
-      point_[vertex] = made.origin == kFace ? facePoint(made.at.face) : edgePoint(made.at);
-    }
+int RefinedMesh::makePoint(int vertex) {
+  const int refined = static_cast<int>(refined_vertices_.size());
+  if (vertex < refined) {
+    return vertexPoint(vertex);
   }
-  return point_[vertex];
+  const NewVertex& made = new_vertices_[vertex - refined];
+  return made.origin == kFace ? facePoint(made.at.face) : edgePoint(made.at);
 }
 
 int RefinedMesh::facePoint(int face) {
-  std::vector<int> sources;
-  sources.reserve(static_cast<std::size_t>(parent_.faceSize(face)));
+  RefinedPoints::Sources sources(refined_points_);
   for (int corner = 0; corner < parent_.faceSize(face); ++corner) {
     sources.push_back(parent_.point(parent_.vertex({face, corner})));
   }
-  return points_.addFacePoint(sources);
+  return refined_points_.addFacePoint(sources);
 }
 
 float RefinedMesh::childSharpness(FaceCorner side) const {
@@ -42,91 +37,104 @@ float RefinedMesh::childSharpness(FaceCorner side) const {
     }
     ++i;
   });
-  return subdivided(vertex).child_edges[index];
+  SharpnessAround around;
+  getSubdivided(vertex, around);
+  return around.child_edges[index];
 }
 
 int RefinedMesh::edgePoint(FaceCorner side) {
-  std::vector<int> sources = {parent_.point(parent_.vertex(side)),
-                              parent_.point(parent_.vertexAfter(side, 1))};
+  const int end_0 = parent_.point(parent_.vertex(side)),
+            end_1 = parent_.point(parent_.vertexAfter(side, 1));
   const FaceCorner beyond = parent_.twin(side);
   const float sharpness = parent_.sharpness(side);
   if (!beyond.exists() || sharpness >= 1) {
-    return points_.addMidpoint(sources[0], sources[1]);
+    return refined_points_.addMidpoint(end_0, end_1);
   }
-  sources.push_back(point(face_vertex_.at(side.face)));
-  sources.push_back(point(face_vertex_.at(beyond.face)));
+  // A face beside the side has a child at one of its ends at least.
+  const auto childBeside = [&](FaceCorner at) {
+    const int begin = child(at);
+    return begin >= 0 ? begin : child(parent_.after(at, 1));
+  };
+  const int face_0 = middle(childBeside(side)), face_1 = middle(childBeside(beyond));
   const int sizes[] = {parent_.faceSize(side.face), parent_.faceSize(beyond.face)};
   if (!isSharp(sharpness)) {
-    return points_.addEdgePoint(sources, sizes[0], sizes[1]);
+    return refined_points_.addEdgePoint({end_0, end_1, face_0, face_1}, sizes[0], sizes[1]);
   }
   const float child_sharpness[] = {childSharpness(side), childSharpness(beyond)};
-  return points_.addEdgePoint(sources, sharpness, child_sharpness, sizes[0], sizes[1]);
+  return refined_points_.addEdgePoint({end_0, end_1, face_0, face_1}, sharpness, child_sharpness,
+                                      sizes[0], sizes[1]);
 }
 
 int RefinedMesh::vertexPoint(int vertex) {
-  const VertexFan fan = parent_.fan(vertex);
+  const int parent_vertex = refined_vertices_[vertex];
+  const VertexFan fan = parent_.fan(parent_vertex);
   if (isInfinitelySharp(fan.sharpness)) {
-    return points_.addVertexPoint({parent_.point(vertex)}, VertexRule::corner, 0);
+    const int source = parent_.point(parent_vertex);
+    return refined_points_.addVertexPoint({&source, 1}, VertexRule::corner, 0);
   }
-  const VertexNeighbours around = neighbours(vertex, fan);
-  const SharpnessAround sharpness = has_sharpness_ ? subdivided(vertex) : SharpnessAround{};
-  const int boundary_edges = fan.closed || sharpness.edges.empty() ? 0 : 1;  // at each end
-  const bool sharp_inside =
-      isSharp(sharpness.vertex) || std::any_of(sharpness.edges.begin() + boundary_edges,
-                                               sharpness.edges.end() - boundary_edges, isSharp);
-  return sharp_inside ? sharpVertexPoint(around, sharpness) : smoothVertexPoint(around);
+  if (has_sharpness_) {
+    getSubdivided(parent_vertex, around_);
+    const int boundary_edges = fan.closed ? 0 : 1;  // at each end
+    if (isSharp(around_.vertex) || std::any_of(around_.edges.begin() + boundary_edges,
+                                               around_.edges.end() - boundary_edges, isSharp)) {
+      return sharpVertexPoint(vertex, fan);
+    }
+  }
+  return smoothVertexPoint(vertex, fan);
 }
 
-RefinedMesh::VertexNeighbours RefinedMesh::neighbours(int vertex, const VertexFan& fan) const {
-  VertexNeighbours result{vertex, fan, {}};
-  parent_.forEachAround(fan, [&](FaceCorner at) { result.corners.push_back(at); });
-  return result;
+int RefinedMesh::farEnd(int vertex, const VertexFan& parent_fan, int edge) {
+  const int first = fans_[vertex].first.face;
+  return edge < parent_fan.faces
+             ? parent_.point(parent_.vertexAfter(origin_[first + edge], 1))
+             : parent_.point(parent_.vertex(parent_.before(origin_[first + parent_fan.faces - 1])));
 }
 
-int RefinedMesh::farEnd(const VertexNeighbours& around, int edge) {
-  return edge < around.fan.faces
-             ? parent_.point(parent_.vertexAfter(around.corners[edge], 1))
-             : parent_.point(parent_.vertex(parent_.before(around.corners.back())));
+int RefinedMesh::smoothVertexPoint(int vertex, const VertexFan& parent_fan) {
+  RefinedPoints::Sources sources(refined_points_);
+  sources.push_back(parent_.point(refined_vertices_[vertex]));
+  if (!parent_fan.closed) {
+    sources.push_back(farEnd(vertex, parent_fan, 0));
+    sources.push_back(farEnd(vertex, parent_fan, parent_fan.faces));
+    return refined_points_.addVertexPoint(sources, VertexRule::crease, parent_fan.edges());
+  }
+  for (int i = 0; i < parent_fan.faces; ++i) {
+    sources.push_back(farEnd(vertex, parent_fan, i));
+  }
+  const int first = fans_[vertex].first.face;
+  for (int i = 0; i < parent_fan.faces; ++i) {
+    sources.push_back(middle(first + i));
+  }
+  return refined_points_.addVertexPoint(sources, VertexRule::smooth, parent_fan.faces);
 }
 
-int RefinedMesh::smoothVertexPoint(const VertexNeighbours& around) {
-  const VertexFan& fan = around.fan;
-  std::vector<int> sources = {parent_.point(around.vertex)};
-  if (!fan.closed) {
-    sources.push_back(farEnd(around, 0));
-    sources.push_back(farEnd(around, fan.faces));
-    return points_.addVertexPoint(sources, VertexRule::crease, fan.edges());
-  }
-  for (int i = 0; i < fan.faces; ++i) {
-    sources.push_back(farEnd(around, i));
-  }
-  for (const FaceCorner at : around.corners) {
-    sources.push_back(point(face_vertex_.at(at.face)));
-  }
-  return points_.addVertexPoint(sources, VertexRule::smooth, fan.faces);
-}
-
-int RefinedMesh::sharpVertexPoint(const VertexNeighbours& around,
-                                  const SharpnessAround& sharpness) {
-  const auto mask = points_.rules().vertexMask(sharpness, around.fan.faces);
-  std::vector<int> sources = {parent_.point(around.vertex)};
-  std::vector<double> weights = {mask.vertex};
+/// The sharpness around the vertex is `around_`.
+int RefinedMesh::sharpVertexPoint(int vertex, const VertexFan& parent_fan) {
+  const auto mask = refined_points_.rules().vertexMask(around_, parent_fan.faces);
+  // `around_` serves other points from here on.
+  RefinedPoints::Sources sources(refined_points_);
+  SmallArray<double> weights(1 + mask.edges.size() + mask.faces.size());
+  std::size_t count = 0;
+  const auto add = [&](int point, double weight) {
+    sources.push_back(point);
+    weights[count++] = weight;
+  };
+  add(parent_.point(refined_vertices_[vertex]), mask.vertex);
   for (std::size_t i = 0; i < mask.edges.size(); ++i) {
     if (mask.edges[i] != 0) {
-      if (static_cast<int>(i) >= around.fan.edges()) {
+      if (static_cast<int>(i) >= parent_fan.edges()) {
         throw std::logic_error("the mask of a vertex has weights on edges of another fan");
       }
-      sources.push_back(farEnd(around, static_cast<int>(i)));
-      weights.push_back(mask.edges[i]);
+      add(farEnd(vertex, parent_fan, static_cast<int>(i)), mask.edges[i]);
     }
   }
+  const int first = fans_[vertex].first.face;
   for (std::size_t i = 0; i < mask.faces.size(); ++i) {
     if (mask.faces[i] != 0) {
-      sources.push_back(point(face_vertex_.at(around.corners[i].face)));
-      weights.push_back(mask.faces[i]);
+      add(middle(first + static_cast<int>(i)), mask.faces[i]);
     }
   }
-  return points_.addPoint(sources, weights);
+  return refined_points_.addPoint(sources, {weights.data(), count});
 }
 
 }  // namespace limitsurf

@@ -1,99 +1,115 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/patch/refined_points.h"
 
+#include <algorithm>
+#include <cstring>
+
+#include "limitsurf/random_bits.h"
+
 namespace limitsurf {
-namespace {
 
-// The first entry of a MaskKey.
-constexpr int kReflection = 0, kFace = 1, kMidpoint = 2, kEdge = 3, kVertex = 4;
-
-}  // namespace
-
-int RefinedPoints::addFacePoint(const std::vector<int>& sources) {
-  return add(sources, MaskKey{kFace, static_cast<int>(sources.size()), 0});
+int RefinedPoints::addFacePoint(Span<int> sources) {
+  const int size = static_cast<int>(sources.size());
+  return add(sources, known(face_masks_, size, [&](std::vector<double>& mask) {
+               mask.assign(sources.size(), rules_.faceMask(size));
+             }));
 }
 
 int RefinedPoints::addMidpoint(int end_0, int end_1) {
-  return add({end_0, end_1}, MaskKey{kMidpoint, 0, 0});
+  const int sources[] = {end_0, end_1};
+  return add({sources, 2}, known(midpoints_, 0, [&](std::vector<double>& mask) {
+               const auto m = rules_.edgeMask(true);
+               mask = {m.vertices[0], m.vertices[1]};
+             }));
 }
 
-int RefinedPoints::addEdgePoint(const std::vector<int>& sources, int face_size_0, int face_size_1) {
+int RefinedPoints::addEdgePoint(const int (&sources)[4], int face_size_0, int face_size_1) {
   // The rules tell triangles from all other faces, and nothing else.
-  return add(sources, MaskKey{kEdge, face_size_0 == 3 ? 3 : 4, face_size_1 == 3 ? 3 : 4});
+  const int triangles = (face_size_0 == 3 ? 1 : 0) + (face_size_1 == 3 ? 2 : 0);
+  return add({sources, 4}, known(edge_masks_, triangles, [&](std::vector<double>& mask) {
+               const auto m = rules_.edgeMask(false, face_size_0, face_size_1);
+               mask = {m.vertices[0], m.vertices[1], m.faces[0], m.faces[1]};
+             }));
 }
 
-int RefinedPoints::addEdgePoint(const std::vector<int>& sources, float sharpness,
+int RefinedPoints::addEdgePoint(const int (&sources)[4], float sharpness,
                                 const float child_sharpness[2], int face_size_0, int face_size_1) {
   const auto m = rules_.edgeMask(sharpness, child_sharpness, face_size_0, face_size_1);
-  return addPoint(sources, {m.vertices[0], m.vertices[1], m.faces[0], m.faces[1]});
+  const double weights[] = {m.vertices[0], m.vertices[1], m.faces[0], m.faces[1]};
+  return addPoint({sources, 4}, {weights, 4});
 }
 
-int RefinedPoints::addVertexPoint(const std::vector<int>& sources, VertexRule rule,
-                                  int edge_count) {
-  return add(sources, MaskKey{kVertex + static_cast<int>(rule), edge_count, 0});
+int RefinedPoints::addVertexPoint(Span<int> sources, VertexRule rule, int edge_count) {
+  return add(sources, known(vertex_masks_[static_cast<int>(rule)], edge_count,
+                            [&](std::vector<double>& mask) {
+                              const auto m = rules_.vertexMask(rule, edge_count);
+                              mask = {m.vertex};
+                              if (rule == VertexRule::crease) {
+                                mask.insert(mask.end(), {m.edges.front(), m.edges.back()});
+                              } else if (rule == VertexRule::smooth) {
+                                mask.insert(mask.end(), m.edges.begin(), m.edges.end());
+                                mask.insert(mask.end(), m.faces.begin(), m.faces.end());
+                              }
+                            }));
 }
 
-int RefinedPoints::addPoint(const std::vector<int>& sources, const std::vector<double>& weights) {
-  std::vector<int> kept;
-  std::vector<double> mask;
+int RefinedPoints::addPoint(Span<int> sources, Span<double> weights) {
+  SmallArray<int> kept(sources.size());
+  SmallArray<double> mask(sources.size());
+  std::size_t count = 0;
+  std::uint64_t key = 0;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     if (weights[i] != 0) {
-      kept.push_back(sources[i]);
-      mask.push_back(weights[i]);
+      kept[count] = sources[i];
+      mask[count++] = weights[i];
+      std::uint64_t bits;
+      std::memcpy(&bits, &weights[i], sizeof bits);
+      key = mixed(key + bits);
     }
   }
-  const auto [known, is_new] = other_masks_.try_emplace(mask, static_cast<int>(masks_.size()));
-  if (is_new) {
-    masks_.push_back(std::move(mask));
+  const Span<double> wanted(mask.data(), count);
+  const auto [begin, end] = other_masks_.equal_range(key);
+  const auto same = std::find_if(begin, end, [&](const auto& entry) {
+    const Span<double> other = this->mask(entry.second);
+    return std::equal(other.begin(), other.end(), wanted.begin(), wanted.end());
+  });
+  const int number = same != end ? same->second : addMask(wanted);
+  if (same == end) {
+    other_masks_.emplace(key, number);
   }
-  return add(kept, known->second);
+  return add({kept.data(), count}, number);
 }
 
 int RefinedPoints::addReflection(int inner, int next) {
-  return add({inner, next}, MaskKey{kReflection, 0, 0});
+  const int sources[] = {inner, next};
+  return add({sources, 2},
+             known(reflections_, 0, [](std::vector<double>& mask) { mask = {2, -1}; }));
 }
 
-int RefinedPoints::add(const std::vector<int>& sources, const MaskKey& key) {
-  const auto [known, is_new] = known_masks_.try_emplace(key, static_cast<int>(masks_.size()));
-  if (is_new) {
-    masks_.push_back(mask(key, sources.size()));
-  }
-  return add(sources, known->second);
-}
-
-int RefinedPoints::add(const std::vector<int>& sources, int mask) {
+int RefinedPoints::add(Span<int> sources, int mask) {
   mask_of_.push_back(mask);
   sources_.insert(sources_.end(), sources.begin(), sources.end());
   offsets_.push_back(sources_.size());
   return size() - 1;
 }
 
-std::vector<double> RefinedPoints::mask(const MaskKey& key, std::size_t source_count) const {
-  const auto& [kind, a, b] = key;
-  if (kind == kReflection) {
-    return {2, -1};
+template <typename Make>
+int RefinedPoints::known(KnownMasks& masks, int number, const Make& make) {
+  if (number >= static_cast<int>(masks.size())) {
+    masks.resize(static_cast<std::size_t>(number) + 1, -1);
   }
-  if (kind == kFace) {
-    return std::vector<double>(source_count, rules_.faceMask(a));
+  if (masks[number] < 0) {
+    std::vector<double> weights;
+    make(weights);
+    masks[number] = addMask(weights);
   }
-  if (kind == kMidpoint || kind == kEdge) {
-    const auto m = rules_.edgeMask(kind == kMidpoint, a, b);
-    std::vector<double> weights = {m.vertices[0], m.vertices[1]};
-    if (kind == kEdge) {
-      weights.insert(weights.end(), {m.faces[0], m.faces[1]});
-    }
-    return weights;
-  }
-  const VertexRule rule = static_cast<VertexRule>(kind - kVertex);
-  const auto m = rules_.vertexMask(rule, a);
-  std::vector<double> weights = {m.vertex};
-  if (rule == VertexRule::crease) {
-    weights.insert(weights.end(), {m.edges.front(), m.edges.back()});
-  } else if (rule == VertexRule::smooth) {
-    weights.insert(weights.end(), m.edges.begin(), m.edges.end());
-    weights.insert(weights.end(), m.faces.begin(), m.faces.end());
-  }
-  return weights;
+  return masks[number];
+}
+
+int RefinedPoints::addMask(Span<double> weights) {
+  weights_.insert(weights_.end(), weights.begin(), weights.end());
+  mask_offsets_.push_back(weights_.size());
+  return static_cast<int>(mask_offsets_.size()) - 2;
 }
 
 }  // namespace limitsurf

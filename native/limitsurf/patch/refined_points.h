@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
-#include <tuple>
+#include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "limitsurf/rules/subdivision_rules.h"
@@ -24,22 +24,39 @@ class RefinedPoints {
   int cagePoints() const { return cage_points_; }
   int size() const { return cage_points_ + static_cast<int>(mask_of_.size()); }
 
+  /// The sources of a new point, while they are gathered. Meanwhile other points may be made, of
+  /// which some may become sources of this one.
+  class Sources {
+   public:
+    explicit Sources(RefinedPoints& points) : stack_(points.gathered_), first_(stack_.size()) {}
+    ~Sources() { stack_.resize(first_); }
+    Sources(const Sources&) = delete;
+    Sources& operator=(const Sources&) = delete;
+
+    void push_back(int point) { stack_.push_back(point); }
+    operator Span<int>() const { return Span<int>(stack_).subspan(first_, stack_.size() - first_); }
+
+   private:
+    std::vector<int>& stack_;
+    std::size_t first_;
+  };
+
   /// The new point of a face. The sources are its vertices.
-  int addFacePoint(const std::vector<int>& sources);
+  int addFacePoint(Span<int> sources);
   /// The midpoint, which is the new point of a boundary or of an infinitely sharp edge.
   int addMidpoint(int end_0, int end_1);
   /// The new point of a smooth edge. The sources are its ends and the new points of its two faces,
   /// which have the sizes given.
-  int addEdgePoint(const std::vector<int>& sources, int face_size_0, int face_size_1);
+  int addEdgePoint(const int (&sources)[4], int face_size_0, int face_size_1);
   /// The new point of a semi-sharp edge, from the same sources.
-  int addEdgePoint(const std::vector<int>& sources, float sharpness, const float child_sharpness[2],
+  int addEdgePoint(const int (&sources)[4], float sharpness, const float child_sharpness[2],
                    int face_size_0, int face_size_1);
   /// The new point of a vertex. The sources are the vertex, the far ends of its edges and the new
   /// points of its faces, as far as the rule needs them: a crease takes the first and the last
   /// edge, a corner takes none.
-  int addVertexPoint(const std::vector<int>& sources, VertexRule rule, int edge_count);
+  int addVertexPoint(Span<int> sources, VertexRule rule, int edge_count);
   /// A point with any mask. Sources whose weight is 0 are left out.
-  int addPoint(const std::vector<int>& sources, const std::vector<double>& weights);
+  int addPoint(Span<int> sources, Span<double> weights);
 
   /// 2 inner - next: the surface's linear continuation past a boundary (Lacewell &
   /// Burley 2007, figure 2).
@@ -49,26 +66,35 @@ class RefinedPoints {
     const std::size_t i = static_cast<std::size_t>(point - cage_points_);
     return Span<int>(sources_).subspan(offsets_[i], offsets_[i + 1] - offsets_[i]);
   }
-  const std::vector<double>& weights(int point) const {
-    return masks_[mask_of_[static_cast<std::size_t>(point - cage_points_)]];
-  }
+  Span<double> weights(int point) const { return mask(mask_of_[point - cage_points_]); }
 
   const SubdivisionRules<double>& rules() const { return rules_; }
 
  private:
-  using MaskKey = std::tuple<int, int, int>;
-  int add(const std::vector<int>& sources, const MaskKey& key);
-  int add(const std::vector<int>& sources, int mask);
-  std::vector<double> mask(const MaskKey& key, std::size_t source_count) const;
+  /// The mask of a rule that depends on one number, by that number; -1: not made yet.
+  using KnownMasks = std::vector<int>;
+
+  Span<double> mask(int i) const {
+    return Span<double>(weights_).subspan(mask_offsets_[i],
+                                          mask_offsets_[i + 1] - mask_offsets_[i]);
+  }
+  int add(Span<int> sources, int mask);
+  /// The known mask to a number, or the one that make(out) writes.
+  template <typename Make>
+  int known(KnownMasks& masks, int number, const Make& make);
+  int addMask(Span<double> weights);
 
   int cage_points_;
   SubdivisionRules<double> rules_;
   std::vector<std::size_t> offsets_ = {0};
   std::vector<int> sources_;
   std::vector<int> mask_of_;
-  std::vector<std::vector<double>> masks_;
-  std::map<MaskKey, int> known_masks_;
-  std::map<std::vector<double>, int> other_masks_;
+  std::vector<int> gathered_;  // by Sources
+
+  std::vector<double> weights_;  // of all masks
+  std::vector<std::size_t> mask_offsets_ = {0};
+  KnownMasks reflections_, face_masks_, midpoints_, edge_masks_, vertex_masks_[3];
+  std::unordered_multimap<std::uint64_t, int> other_masks_;  // by a number made of the weights
 };
 
 }  // namespace limitsurf

@@ -12,18 +12,24 @@ namespace limitsurf {
 
 /// A level of refinement, with what is known of its vertices.
 struct RefinementLevel {
-  /// One of the pointers is `face_mesh` itself; the other one is null.
-  RefinementLevel(FaceMesh& face_mesh, const CageMesh* cage_mesh, RefinedMesh* refined_mesh,
-                  bool is_sharp)
-      : mesh(face_mesh),
-        cage(cage_mesh),
-        refined(refined_mesh),
-        sectors(face_mesh, is_sharp),
+  /// The cage; the other arguments are those of Sectors.
+  RefinementLevel(CageMesh& cage_mesh, bool is_sharp, const std::vector<int>& first_places,
+                  int place_count)
+      : mesh(cage_mesh),
+        cage(&cage_mesh),
+        sectors(cage_mesh, is_sharp, first_places.data(), place_count),
+        has_sharpness(is_sharp) {}
+  RefinementLevel(RefinedMesh& refined_mesh, bool is_sharp)
+      : mesh(refined_mesh),
+        refined(&refined_mesh),
+        sectors(refined_mesh, is_sharp),
         has_sharpness(is_sharp) {}
 
+  bool onlyQuadsAround(int vertex) const { return !cage || cage->onlyQuadsAround(vertex); }
+
   FaceMesh& mesh;
-  const CageMesh* cage;
-  RefinedMesh* refined;
+  const CageMesh* cage = nullptr;  ///< the mesh, if it is the cage, or
+  RefinedMesh* refined = nullptr;  ///< if it is not
   Sectors sectors;
   bool has_sharpness;
 

@@ -15,7 +15,7 @@ RingTile RingTileMaker::make(int level, FaceCorner at, const std::array<bool, 4>
   tile.ring_steps = age.steps;
   tile.face = here.sectors.positionOf(at);
   tile.sides = table_.rings[tile.ring].basis->sides(tile.face);
-  const Window<FaceMesh> window(here.mesh, at.face, at.corner, diagonal);
+  const Window window(here.mesh, at.face, at.corner, diagonal);
   const std::vector<int>& slots = table_.rings[tile.ring].basis->outerModes(tile.face).slots();
   tile.u_high = window.at(2, 0) < 0 && window.at(2, 1) < 0;
   tile.v_high = window.at(0, 2) < 0 && window.at(1, 2) < 0;
@@ -29,7 +29,7 @@ RingTile RingTileMaker::make(int level, FaceCorner at, const std::array<bool, 4>
 
 /// A point of the window, continued linearly past the surface's boundary (Lacewell & Burley 2007,
 /// figure 2), which the vertices there, being regular, allow.
-int RingTileMaker::outerPoint(FaceMesh& mesh, const Window<FaceMesh>& window, int x, int y) {
+int RingTileMaker::outerPoint(FaceMesh& mesh, const Window& window, int x, int y) {
   if (const int vertex = window.at(x, y); vertex >= 0) {
     return mesh.point(vertex);
   }
@@ -56,7 +56,7 @@ RefinementLevel::RingAge RingTileMaker::ringOf(int level, int sector) {
   RefinementLevel::RingAge age;
   const int vertex = at.mesh.vertex(at.sectors.sector(sector).first);
   const int above = at.refined ? at.refined->parentVertex(vertex) : -1;
-  if (above >= 0 && at.refined->parent().onlyQuadsAround(above) &&
+  if (above >= 0 && levels_[level - 1]->onlyQuadsAround(above) &&
       levels_[level - 1]->sectors.state(above) == Sectors::State::settled) {
     const int which = sector - at.sectors.firstSector(vertex);
     age = ringOf(level - 1, levels_[level - 1]->sectors.firstSector(above) + which);
@@ -93,17 +93,16 @@ RingPoints RingTileMaker::makeRing(FaceMesh& mesh, const Sector& sector) {
 }
 
 void groupByRing(TileTable& table) {
-  std::vector<int> order(table.ring_tiles.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return table.ring_tiles[a].ring < table.ring_tiles[b].ring;
-  });
-  std::vector<RingTile> sorted;
-  sorted.reserve(order.size());
-  std::vector<std::uint32_t> place(order.size());
-  for (const int old : order) {
-    place[old] = static_cast<std::uint32_t>(sorted.size());
-    sorted.push_back(table.ring_tiles[old]);
+  std::vector<std::uint32_t> next(table.rings.size() + 1, 0);  // the place of a ring's next tile
+  for (const RingTile& tile : table.ring_tiles) {
+    ++next[tile.ring + 1];
+  }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<RingTile> sorted(table.ring_tiles.size());
+  std::vector<std::uint32_t> place(table.ring_tiles.size());
+  for (std::size_t old = 0; old < place.size(); ++old) {
+    place[old] = next[table.ring_tiles[old].ring]++;
+    sorted[place[old]] = table.ring_tiles[old];
   }
   table.ring_tiles = std::move(sorted);
   const auto renumber = [&](TileRef& ref) {

@@ -23,7 +23,7 @@ class RingTileMaker {
   RingTile make(int level, FaceCorner at, const std::array<bool, 4>& diagonal);
 
  private:
-  int outerPoint(FaceMesh& mesh, const Window<FaceMesh>& window, int x, int y);
+  int outerPoint(FaceMesh& mesh, const Window& window, int x, int y);
   RefinementLevel::RingAge ringOf(int level, int sector);
   RingPoints makeRing(FaceMesh& mesh, const Sector& sector);
 

@@ -19,9 +19,8 @@ namespace {
 constexpr std::size_t kFacesPerTask = 4096;
 
 /// The tile of a quad that is regular at all corners.
-template <typename Mesh>
-BSplineTile bsplineTile(Mesh& mesh, int face, const std::array<bool, 4>& diagonal) {
-  const Window<Mesh> window(mesh, face, 0, diagonal);
+BSplineTile bsplineTile(FaceMesh& mesh, int face, const std::array<bool, 4>& diagonal) {
+  const Window window(mesh, face, 0, diagonal);
   BSplineTile tile;
   tile.x_low = window.at(-1, 0) < 0;
   tile.x_high = window.at(2, 0) < 0;
@@ -50,15 +49,9 @@ class Builder {
   TileTable build() {
     table_.faces.assign(ptex_.base_face.size(), TileRef{TileRef::kNone, 0});
     findKinds();
-    addRegularFaces();
+    regular_count_ = static_cast<std::size_t>(std::count(kinds_.begin(), kinds_.end(), kRegular));
     addIrregularFaces();
-    groupByRing(table_);
-    for (; !levels_.empty(); levels_.pop_back()) {  // which takes long where there is much in them
-      InterruptionPoint::pass();
-    }
-    for (; !meshes_.empty(); meshes_.pop_back()) {
-      InterruptionPoint::pass();
-    }
+    addRegularFaces();
     return std::move(table_);
   }
 
@@ -85,15 +78,18 @@ class Builder {
   }
 
   /// Quads among quads without extraordinary or sharp vertices, which most meshes mainly consist
-  /// of, on all cores.
+  /// of, on all cores. They come first in the table, but are made last, so that the memory of the
+  /// levels serves them.
   void addRegularFaces() {
     std::vector<int> regular_faces;
+    regular_faces.reserve(regular_count_);
     for (int face = 0; face < mesh_.faceCount(); ++face) {
       if (kinds_[face] == kRegular) {
         regular_faces.push_back(face);
       }
     }
-    table_.bsplines.resize(regular_faces.size());
+    table_.bsplines.reserve(regular_count_ + irregular_bsplines_.size());
+    table_.bsplines.resize(regular_count_);
     parallelFor(regular_faces.size(), kFacesPerTask, 0, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const int face = regular_faces[i];
@@ -101,6 +97,8 @@ class Builder {
         table_.faces[ptex_.first[face]] = {TileRef::kBSpline, static_cast<std::uint32_t>(i)};
       }
     });
+    table_.bsplines.insert(table_.bsplines.end(), irregular_bsplines_.begin(),
+                           irregular_bsplines_.end());
   }
 
   /// The other faces, level by level.
@@ -108,8 +106,16 @@ class Builder {
     if (std::find(kinds_.begin(), kinds_.end(), kIrregular) == kinds_.end()) {
       return;
     }
+    std::vector<int> first_places(kinds_.size(), -1);
+    int places = 0;
+    for (int face = 0; face < mesh_.faceCount(); ++face) {
+      if (kinds_[face] != kRegular) {
+        first_places[face] = places;
+        places += mesh_.faceSize(face);
+      }
+    }
     levels_.push_back(
-        std::make_unique<RefinementLevel>(cage_, &cage_, nullptr, topology_.hasSharpness()));
+        std::make_unique<RefinementLevel>(cage_, topology_.hasSharpness(), first_places, places));
     std::vector<Split> splits;
     for (int face = 0; face < mesh_.faceCount(); ++face) {
       stride_.step();
@@ -121,6 +127,13 @@ class Builder {
     }
     while (!splits.empty()) {
       splits = refine(splits);
+    }
+    groupByRing(table_);
+    for (; !levels_.empty(); levels_.pop_back()) {  // which takes long where there is much in them
+      InterruptionPoint::pass();
+    }
+    for (; !meshes_.empty(); meshes_.pop_back()) {
+      InterruptionPoint::pass();
     }
   }
 
@@ -138,8 +151,7 @@ class Builder {
     meshes_.push_back(std::make_unique<RefinedMesh>(levels_.back()->mesh, faces, mesh_.options(),
                                                     topology_.hasSharpness(), table_.points));
     RefinedMesh& mesh = *meshes_.back();
-    levels_.push_back(
-        std::make_unique<RefinementLevel>(mesh, nullptr, &mesh, topology_.hasSharpness()));
+    levels_.push_back(std::make_unique<RefinementLevel>(mesh, topology_.hasSharpness()));
     std::vector<Split> next;
     for (const Split& split : splits) {
       stride_.step();
@@ -173,13 +185,15 @@ class Builder {
       table_.ring_tiles.back().depth = depth;
       return {TileRef::kRing, static_cast<std::uint32_t>(table_.ring_tiles.size() - 1)};
     }
-    table_.bsplines.push_back(bsplineTile(mesh, face, corners.diagonal));
-    table_.bsplines.back().fine = fine;
+    irregular_bsplines_.push_back(bsplineTile(mesh, face, corners.diagonal));
+    BSplineTile& tile = irregular_bsplines_.back();
+    tile.fine = fine;
     if (corners.creases > 0) {
-      table_.bsplines.back().crease = mesh.sharpness({face, corners.crease_side});
-      table_.bsplines.back().crease_side = static_cast<std::int8_t>(corners.crease_side);
+      tile.crease = mesh.sharpness({face, corners.crease_side});
+      tile.crease_side = static_cast<std::int8_t>(corners.crease_side);
     }
-    return {TileRef::kBSpline, static_cast<std::uint32_t>(table_.bsplines.size() - 1)};
+    return {TileRef::kBSpline,
+            static_cast<std::uint32_t>(regular_count_ + irregular_bsplines_.size() - 1)};
   }
 
   const ControlMesh& mesh_;
@@ -191,6 +205,8 @@ class Builder {
   std::vector<std::unique_ptr<RefinementLevel>> levels_;
   RingTileMaker ring_tiles_;
   std::vector<FaceKind> kinds_;
+  std::size_t regular_count_ = 0;
+  std::vector<BSplineTile> irregular_bsplines_;  // which follow those of regular faces
   InterruptionStride stride_;
 };
 

@@ -28,10 +28,10 @@ class DecayingSharpness {
 
   /// The weight of the sharp rule in a step after which the first `count` edges are smooth.
   float weight(int count) const {
-    const std::vector<float> first(edges_.begin(), edges_.begin() + count);
-    const std::vector<int> order = sharpnessOrder(first);
-    const std::vector<float> edges = inOrder(first, order);
-    const std::vector<float> next = inOrder({next_.begin(), next_.begin() + count}, order);
+    const Span<float> first(edges_.data(), static_cast<std::size_t>(count));
+    const SmallArray<int> order = sharpnessOrder(first);
+    const SmallArray<float> edges = inOrder(first, order);
+    const SmallArray<float> next = inOrder({next_.data(), first.size()}, order);
     return std::min(
         1.f, crease_.ComputeFractionalWeightAtVertex(0, 0, count, edges.data(), next.data()));
   }
@@ -40,7 +40,7 @@ class DecayingSharpness {
   static bool anySemiSharp(const std::vector<float>& edges) {
     return std::any_of(edges.begin(), edges.end(), isSemiSharp);
   }
-  void step() { next_ = subdividedSharpness(crease_, edges_); }
+  void step() { subdivideSharpness(crease_, edges_, next_); }
 
   OpenSubdiv::Sdc::Crease crease_;
   std::vector<float> edges_, next_;

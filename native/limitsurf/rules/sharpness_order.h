@@ -7,6 +7,9 @@
 #include <numeric>
 #include <vector>
 
+#include "limitsurf/rules/small_array.h"
+#include "limitsurf/types.h"
+
 namespace limitsurf {
 
 /// OpenSubdiv's Sdc adds the sharpness of the edges around a vertex in single precision, where the
@@ -16,7 +19,7 @@ namespace limitsurf {
 ///
 /// Returns the edges in that order, and nothing if all sharp edges are equally sharp, so that the
 /// sums do not depend on it.
-inline std::vector<int> sharpnessOrder(const std::vector<float>& edges) {
+inline SmallArray<int> sharpnessOrder(Span<float> edges) {
   float first = 0;
   const bool matters = std::any_of(edges.begin(), edges.end(), [&](float sharpness) {
     if (!OpenSubdiv::Sdc::Crease::IsSharp(sharpness)) {
@@ -30,42 +33,40 @@ inline std::vector<int> sharpnessOrder(const std::vector<float>& edges) {
   if (!matters) {
     return {};
   }
-  std::vector<int> order(edges.size());
+  SmallArray<int> order(edges.size());
   std::iota(order.begin(), order.end(), 0);
   // Equal ones need no order among them: their children are equally sharp, too.
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return edges[a] < edges[b]; });
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return edges[a] != edges[b] ? edges[a] < edges[b] : a < b; });
   return order;
 }
 
 /// The values in the given order; all of them as they are if there is none.
-inline std::vector<float> inOrder(const std::vector<float>& values, const std::vector<int>& order) {
-  if (order.empty()) {
-    return values;
-  }
-  std::vector<float> result;
-  result.reserve(order.size());
-  for (const int i : order) {
-    result.push_back(values[i]);
+inline SmallArray<float> inOrder(Span<float> values, const SmallArray<int>& order) {
+  SmallArray<float> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    result[i] = values[order.empty() ? i : static_cast<std::size_t>(order[i])];
   }
   return result;
 }
 
-/// The sharpness that each edge around a vertex has after a step.
-inline std::vector<float> subdividedSharpness(const OpenSubdiv::Sdc::Crease& crease,
-                                              const std::vector<float>& edges) {
-  const std::vector<int> order = sharpnessOrder(edges);
-  const std::vector<float> from = inOrder(edges, order);
-  std::vector<float> children(from.size());
+/// Sets the sharpness that each edge around a vertex has after a step.
+inline void subdivideSharpness(const OpenSubdiv::Sdc::Crease& crease,
+                               const std::vector<float>& edges, std::vector<float>& children) {
+  children.resize(edges.size());
+  if (crease.IsUniform()) {  // each edge by itself
+    std::transform(edges.begin(), edges.end(), children.begin(),
+                   [&](float sharpness) { return crease.SubdivideUniformSharpness(sharpness); });
+    return;
+  }
+  const SmallArray<int> order = sharpnessOrder(edges);
+  const SmallArray<float> from = inOrder(edges, order);
+  SmallArray<float> result(edges.size());
   crease.SubdivideEdgeSharpnessesAroundVertex(static_cast<int>(from.size()), from.data(),
-                                              children.data());
-  if (order.empty()) {
-    return children;
+                                              result.data());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    children[order.empty() ? i : static_cast<std::size_t>(order[i])] = result[i];
   }
-  std::vector<float> result(children.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    result[order[i]] = children[i];
-  }
-  return result;
 }
 
 }  // namespace limitsurf

@@ -58,8 +58,8 @@ class SubdivisionRules {
 
   struct VertexMask {
     Real vertex = 0;
-    std::vector<Real> edges;  ///< for the far ends of the vertex's edges; empty if all are 0
-    std::vector<Real> faces;  ///< for the new points of the vertex's faces; empty if all are 0
+    SmallArray<Real> edges;  ///< for the far ends of the vertex's edges; empty if all are 0
+    SmallArray<Real> faces;  ///< for the new points of the vertex's faces; empty if all are 0
   };
 
   struct EdgeMask {
@@ -97,16 +97,16 @@ class SubdivisionRules {
 
   /// A vertex with `face_count` faces that is sharp or has sharp edges.
   VertexMask vertexMask(const SharpnessAround& around, int face_count) const {
-    const std::vector<int> order = sharpnessOrder(around.edges);
-    if (order.empty()) {
-      return vertexMaskOfEdges(around, face_count);
-    }
-    const SharpnessAround ordered{around.vertex, around.child_vertex, inOrder(around.edges, order),
-                                  inOrder(around.child_edges, order)};
-    VertexMask mask = vertexMaskOfEdges(ordered, face_count);  // all faces have the same weight
-    const std::vector<Real> edges = mask.edges;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      mask.edges[order[i]] = edges[i];
+    const SmallArray<int> order = sharpnessOrder(around.edges);
+    const SmallArray<float> edges = inOrder(around.edges, order),
+                            child_edges = inOrder(around.child_edges, order);
+    const Mask sdc = maskOf({static_cast<int>(edges.size()), face_count, around.vertex,
+                             around.child_vertex, edges.data(), child_edges.data()});
+    VertexMask mask = vertexMaskOf(sdc);  // all faces have the same weight
+    if (!order.empty()) {
+      for (std::size_t i = 0; i < mask.edges.size(); ++i) {
+        mask.edges[static_cast<std::size_t>(order[i])] = sdc.edges[i];
+      }
     }
     return mask;
   }
@@ -120,7 +120,7 @@ class SubdivisionRules {
       // Sdc squares the valence in an int, which would overflow.
       const Real n = static_cast<Real>(edge_count);
       result.vertex = (n - 2) / n;
-      result.edges.assign(edge_count, 1 / (n * n));
+      result.edges = SmallArray<Real>(static_cast<std::size_t>(edge_count), 1 / (n * n));
       result.faces = result.edges;
       return result;
     }
@@ -129,26 +129,17 @@ class SubdivisionRules {
                                   : rule == VertexRule::crease ? Crease::RULE_CREASE
                                                                : Crease::RULE_CORNER;
     const bool smooth = rule == VertexRule::smooth;
-    SharpnessAround around;
+    SmallArray<float> edges(static_cast<std::size_t>(edge_count), 0);
     if (rule == VertexRule::crease) {
-      around.edges.assign(edge_count, 0);
-      around.edges.front() = around.edges.back() = kInfinitelySharp;
-      around.child_edges = around.edges;
+      edges[0] = edges[edges.size() - 1] = kInfinitelySharp;
     }
     scheme_.ComputeVertexVertexMask(
-        Vertex{edge_count, smooth ? edge_count : edge_count - 1, &around}, mask, sdc_rule,
-        sdc_rule);
+        Vertex{edge_count, smooth ? edge_count : edge_count - 1, 0, 0, edges.data(), edges.data()},
+        mask, sdc_rule, sdc_rule);
     return vertexMaskOf(mask);
   }
 
  private:
-  VertexMask vertexMaskOfEdges(const SharpnessAround& around, int face_count) const {
-    const Vertex vertex{static_cast<int>(around.edges.size()), face_count, &around};
-    Mask mask(1, vertex.edge_count, vertex.edge_count);
-    scheme_.ComputeVertexVertexMask(vertex, mask);
-    return vertexMaskOf(mask);
-  }
-
   /// The largest integer whose square fits into 32 bits.
   static constexpr int kLargestSquarableValence = 46340;
 
@@ -177,25 +168,30 @@ class SubdivisionRules {
 
   struct Vertex {
     int edge_count, face_count;
-    const SharpnessAround* around;
+    float sharpness, child_sharpness;
+    const float* edges;
+    const float* child_edges;
     int GetNumEdges() const { return edge_count; }
     int GetNumFaces() const { return face_count; }
-    float GetSharpness() const { return around->vertex; }
+    float GetSharpness() const { return sharpness; }
     float* GetSharpnessPerEdge(float out[]) const {
-      return std::copy(around->edges.begin(), around->edges.end(), out), out;
+      return std::copy_n(edges, edge_count, out), out;
     }
-    float GetChildSharpness(const OpenSubdiv::Sdc::Crease&) const { return around->child_vertex; }
+    float GetChildSharpness(const OpenSubdiv::Sdc::Crease&) const { return child_sharpness; }
     float* GetChildSharpnessPerEdge(const OpenSubdiv::Sdc::Crease&, float out[]) const {
-      return std::copy(around->child_edges.begin(), around->child_edges.end(), out), out;
+      return std::copy_n(child_edges, edge_count, out), out;
     }
   };
 
   struct Mask {
     using Weight = Real;
-    std::vector<Real> vertices, edges, faces;
+    SmallArray<Real> vertices, edges, faces;
     bool vertex_count = false, edge_count = false, face_count = false, centers = false;
 
-    Mask(int v, int e, int f) : vertices(v), edges(e), faces(f) {}
+    Mask(int v, int e, int f)
+        : vertices(static_cast<std::size_t>(v)),
+          edges(static_cast<std::size_t>(e)),
+          faces(static_cast<std::size_t>(f)) {}
     int GetNumVertexWeights() const { return vertex_count ? int(vertices.size()) : 0; }
     int GetNumEdgeWeights() const { return edge_count ? int(edges.size()) : 0; }
     int GetNumFaceWeights() const { return face_count ? int(faces.size()) : 0; }
@@ -211,6 +207,12 @@ class SubdivisionRules {
     const Real& EdgeWeight(int i) const { return edges[i]; }
     const Real& FaceWeight(int i) const { return faces[i]; }
   };
+
+  Mask maskOf(const Vertex& vertex) const {
+    Mask mask(1, vertex.edge_count, vertex.edge_count);
+    scheme_.ComputeVertexVertexMask(vertex, mask);
+    return mask;
+  }
 
   static EdgeMask edgeMaskOf(const Mask& mask) {
     EdgeMask result;

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "limitsurf/eigen/ring_slots.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/grid_step.h"
 
 namespace limitsurf {
 namespace {
@@ -23,58 +23,6 @@ Padded rounding(const Padded& a, const Padded& b, const Padded& sum) {
   return (a - (sum - added)) + (b - added);
 }
 
-/// The rules for a cubic B-spline's new control points at an old one and between two.
-Padded atVertex(const Padded& before, const Padded& here, const Padded& after) {
-  return (before + 6 * here + after) / 8;
-}
-Padded betweenVertices(const Padded& a, const Padded& b) { return (a + b) / 2; }
-
-/// The slots from `from` on, `step` apart: those at -1 to 3 along one side of a strip that is one
-/// step away from the vertex. `column(i)` returns the points of the coarser strip from -1 to 2.
-/// Where the strip begins at a boundary there is nothing at -1, and the points at 0 follow the
-/// curve.
-template <typename Column>
-void stepStrip(bool from_boundary, const Column& column, Padded* from, int step, int last) {
-  if (from_boundary) {
-    from[step] = column(0);
-  } else {
-    from[0] = betweenVertices(column(-1), column(0));
-    from[step] = atVertex(column(-1), column(0), column(1));
-  }
-  from[2 * step] = betweenVertices(column(0), column(1));
-  if (last > 1) {
-    from[3 * step] = atVertex(column(0), column(1), column(2));
-    from[4 * step] = betweenVertices(column(1), column(2));
-  }
-}
-
-/// The slots with x or y above 1 after a step. Around them all is regular, so that a step is a
-/// product of the rule of a cubic B-spline along u and the same along v.
-void stepOutsideRing(Sides sides, const Padded before[], Padded after[]) {
-  using tile_grid::slot;
-  constexpr int kAlongU = slot(1, 0) - slot(0, 0), kAlongV = slot(0, 1) - slot(0, 0);
-  Padded vertices[4], edges[4];  // of the strip's lines, from -1 to 2
-  const auto stepAcross = [&](int first, int across, int count, bool skips_first) {
-    for (int i = skips_first ? 1 : 0; i < count; ++i) {
-      // `first` is at 0 across the strip.
-      const Padded* const at = &before[first + i * (across == kAlongU ? kAlongV : kAlongU)];
-      vertices[i] = atVertex(at[0], at[across], at[2 * across]);
-      edges[i] = betweenVertices(at[across], at[2 * across]);
-    }
-  };
-  stepAcross(slot(0, -1), kAlongU, 4, onLeft(sides));
-  stepStrip(onLeft(sides), [&](int y) { return vertices[y + 1]; }, &after[slot(2, -1)], kAlongV, 3);
-  stepStrip(onLeft(sides), [&](int y) { return edges[y + 1]; }, &after[slot(3, -1)], kAlongV, 3);
-  stepAcross(slot(-1, 0), kAlongV, 3, onRight(sides));
-  stepStrip(
-      onRight(sides), [&](int x) { return vertices[x + 1]; }, &after[slot(-1, 2)], kAlongU, 1);
-  stepStrip(onRight(sides), [&](int x) { return edges[x + 1]; }, &after[slot(-1, 3)], kAlongU, 1);
-}
-
-void setRingValues(const Ring& ring, int face, const Padded points[], Padded grid[]) {
-  forEachRingSlot(ring, face, [&](int slot, int point) { grid[slot] = points[point]; });
-}
-
 /// Appends values until there are `count`. The system hands out memory when it is first written to,
 /// which may take seconds: that can be interrupted.
 template <typename T, typename... Value>
@@ -88,12 +36,6 @@ void fill(std::vector<T>& values, std::size_t count, const Value&... value) {
 }
 
 }  // namespace
-
-void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
-              Padded after[]) {
-  stepOutsideRing(ring.sides(face), before, after);
-  setRingValues(ring, face, ring_points, after);
-}
 
 Pose::Pose(const TileTable& table) : table_(&table), first_tile_(table.rings.size() + 1, 0) {
   fill(rings_, table.rings.size());
@@ -113,9 +55,8 @@ Pose::Pose(const TileTable& table) : table_(&table), first_tile_(table.rings.siz
       break;
     }
   }
-  Grid empty;  // slots without a point stay 0
-  std::fill_n(empty.points, tile_grid::kSlots, Padded::Zero());
-  fill(grids_, grids, empty);
+  // The system hands out their memory, page by page, when set() first writes to it.
+  grids_.reset(new Grid[grids]);
   std::size_t next = 0;
   for (std::size_t t = 0; t < ring_tiles_.size(); ++t) {
     const RingTile& tile = table.ring_tiles[t];
@@ -157,16 +98,58 @@ void Pose::set(const Points& cage, int threads) {
     }
   }
   parallelFor(rings_.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    RingMemory memory;
     for (std::size_t ring = begin; ring < end; ++ring) {
       if (table_->rings[ring].basis->ring().faces <= kManyFaces) {
-        setRing(static_cast<int>(ring), 1);
+        setRing(static_cast<int>(ring), 1, memory);
       }
     }
   });
+  RingMemory memory;
   for (const int ring : large) {
-    setRing(ring, threads);
+    setRing(ring, threads, memory);
   }
   is_set_ = true;
+}
+
+template <bool kFine>
+void Pose::refinePoint(int i) {
+  const RefinedPoints& refined = table_->points;
+  const Span<int> sources = refined.sources(i);
+  const Span<double> weights = refined.weights(i);
+  const auto residualOf = [&](int point) {
+    return kFine ? residual(point) : Padded(Padded::Zero());
+  };
+  Padded base, sum;
+  if (sources.size() == 2 && weights[0] == weights[1]) {
+    // A midpoint, with the same bits from either end: faces on different sides of a sharp edge may
+    // each have made one.
+    base = points_[sources[0]] / 2;
+    sum = points_[sources[1]] / 2;
+    points_[i] = base + sum;
+    if (kFine) {
+      residuals_[i - refined.cagePoints()] =
+          rounding(base, sum, points_[i]) +
+          (residualOf(sources[0]) / 2 + residualOf(sources[1]) / 2);
+    }
+    return;
+  }
+  // The sum is taken relative to one of the sources, to keep the digits of small faces far from the
+  // origin.
+  base = points_[sources[0]];
+  const Padded base_residual = residualOf(sources[0]);
+  sum = base_residual;
+  for (std::size_t s = 1; s < sources.size(); ++s) {
+    Padded difference = points_[sources[s]] - base;
+    if (kFine) {
+      difference += residualOf(sources[s]) - base_residual;
+    }
+    sum += weights[s] * difference;
+  }
+  points_[i] = base + sum;
+  if (kFine) {
+    residuals_[i - refined.cagePoints()] = rounding(base, sum, points_[i]);
+  }
 }
 
 void Pose::refinePoints() {
@@ -176,56 +159,37 @@ void Pose::refinePoints() {
   InterruptionStride stride;
   for (int i = cage; i < refined.size(); ++i) {  // a point's sources have smaller numbers
     stride.step();
-    const Span<int> sources = refined.sources(i);
-    const std::vector<double>& weights = refined.weights(i);
-    Padded base, sum;
-    if (sources.size() == 2 && weights[0] == weights[1]) {
-      // A midpoint, with the same bits from either end: faces on different sides of a sharp edge
-      // may each have made one.
-      base = points_[sources[0]] / 2;
-      sum = points_[sources[1]] / 2;
-      if (table_->fine) {
-        const Padded rest = residual(sources[0]) / 2 + residual(sources[1]) / 2;
-        points_[i] = base + sum;
-        residuals_[i - cage] = rounding(base, sum, points_[i]) + rest;
-        continue;
-      }
-    } else {
-      // The sum is taken relative to one of the sources, to keep the digits of small faces far from
-      // the origin.
-      base = points_[sources[0]];
-      sum = residual(sources[0]);
-      for (std::size_t s = 1; s < sources.size(); ++s) {
-        sum += weights[s] * difference(sources[s], sources[0]);
-      }
-    }
-    points_[i] = base + sum;
     if (table_->fine) {
-      residuals_[i - cage] = rounding(base, sum, points_[i]);
+      refinePoint<true>(i);
+    } else {
+      refinePoint<false>(i);
     }
   }
 }
 
-void Pose::setRing(int ring_index, int threads) {
+void Pose::setRing(int ring_index, int threads, RingMemory& memory) {
   const RingPoints& ring = table_->rings[ring_index];
   RingPose& pose = rings_[ring_index];
   const Padded vertex = points_[ring.points[0]];
-  Points points(ring.points.size(), 3);
-  for (std::size_t i = 0; i < ring.points.size(); ++i) {
-    points.row(static_cast<Eigen::Index>(i)) =
-        difference(ring.points[i], ring.points[0]).head<3>().transpose();
+  const std::size_t size = ring.points.size();
+  memory.points.resize(3 * size);
+  memory.levels.resize(size);
+  Eigen::Map<Points> points(memory.points.data(), static_cast<Eigen::Index>(size), 3);
+  for (std::size_t i = 0; i < size; ++i) {
+    const Padded point = difference(ring.points[i], ring.points[0]);
+    points.row(static_cast<Eigen::Index>(i)) = point.head<3>().transpose();
+    memory.levels[i] = {point[0], point[1], point[2], 0};
   }
-  ring.basis->project(points, pose.coefficients);
-  const Vector3 to_limit = pose.coefficients.row(0);
-  pose.limit = vertex + padded(to_limit);
+  ring.basis->projectInPlace(points, pose.coefficients);
+  const Padded to_limit = padded(pose.coefficients.row(0));
+  pose.limit = vertex + to_limit;
   // The coefficient of the constant mode relative to the limit as it is stored: its rounding error.
   pose.coefficients.row(0) =
-      ((vertex - pose.limit) + (padded(to_limit) + residual(ring.points[0]))).head<3>().transpose();
+      ((vertex - pose.limit) + (to_limit + residual(ring.points[0]))).head<3>().transpose();
 
-  // The ring's points after 0, 1, 2, ... steps, one ring after the other.
-  std::vector<Padded> levels(ring.points.size());
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    levels[i] = padded(points.row(static_cast<Eigen::Index>(i)).transpose() - to_limit);
+  std::vector<Padded>& levels = memory.levels;
+  for (Padded& point : levels) {
+    point -= to_limit;
   }
   const int first = first_tile_[ring_index], end = first_tile_[ring_index + 1];
   int steps = 0;
@@ -233,10 +197,10 @@ void Pose::setRing(int ring_index, int threads) {
     const RingTile& tile = table_->ring_tiles[t];
     steps = std::max(steps, tile.ring_steps + gridSteps(tile));
   }
-  levels.resize(ring.points.size() * (static_cast<std::size_t>(steps) + 1));
+  levels.resize(size * (static_cast<std::size_t>(steps) + 1));
   for (int step = 0; step < steps; ++step) {
-    const Padded* before = &levels[ring.points.size() * static_cast<std::size_t>(step)];
-    Padded* after = &levels[ring.points.size() * (static_cast<std::size_t>(step) + 1)];
+    const Padded* before = &levels[size * static_cast<std::size_t>(step)];
+    Padded* after = &levels[size * (static_cast<std::size_t>(step) + 1)];
     ring.basis->step().apply([=](int i) -> const Padded& { return before[i]; },
                              [=](int i) -> Padded& { return after[i]; });
   }
@@ -257,11 +221,9 @@ void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
   const Padded* ring = &ring_levels[ring_size * static_cast<std::size_t>(tile.ring_steps)];
   RingTilePose& pose = ring_tiles_[t];
 
-  Grid start;
-  for (Padded& point : start.points) {
-    point.setZero();
-  }
-  setRingValues(basis.ring(), tile.face, ring, start.points);
+  const GridStep step(basis.ring(), tile.face);
+  Grid start;  // what has no slot there is not read
+  step.setRing(ring, start.points);
   const std::vector<int>& slots = basis.outerModes(tile.face).slots();
   for (std::size_t i = 0; i < slots.size(); ++i) {
     pose.outer[i] = (points_[tile.outer[i]] - limit) + residual(tile.outer[i]);
@@ -271,7 +233,8 @@ void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
   for (int n = 1; n <= gridSteps(tile); ++n) {
     Padded* after = grids_[pose.first_grid + n - 1].points;
     ring += ring_size;
-    stepGrid(basis.ring(), tile.face, ring, before, after);
+    step.apply(ring, before, after);
+    step.clearUnused(after);
     after[tile_grid::slot(-1, -1)] = limit;
     before = after;
   }

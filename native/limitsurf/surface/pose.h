@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "limitsurf/eigen/tile_grid.h"
@@ -73,8 +74,15 @@ class Pose {
   int gridSteps(const RingTile& tile) const { return grid_steps_[tile.depth]; }
 
  private:
+  template <bool kFine>
+  void refinePoint(int point);
   void refinePoints();
-  void setRing(int ring, int threads);
+  /// Working memory that one ring after the other uses.
+  struct RingMemory {
+    std::vector<double> points;
+    std::vector<Padded> levels;  // the ring's points after 0, 1, 2, ... steps
+  };
+  void setRing(int ring, int threads, RingMemory& memory);
   void setRingTile(int tile, const std::vector<Padded>& ring_levels);
 
   const TileTable* table_;
@@ -86,12 +94,7 @@ class Pose {
   std::vector<RingPose> rings_;
   std::vector<RingTilePose> ring_tiles_;
   std::vector<int> first_tile_;  // per ring, and one more entry
-  std::vector<Grid> grids_;
+  std::unique_ptr<Grid[]> grids_;
 };
-
-/// One subdivision of the control grid of a ring's face. `ring_points` are the ring's points after
-/// it. SlotValues that do not exist are left as they are.
-void stepGrid(const Ring& ring, int face, const Padded ring_points[], const Padded before[],
-              Padded after[]);
 
 }  // namespace limitsurf

@@ -10,6 +10,7 @@
 #include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/bezier_conversion.h"
+#include "limitsurf/surface/grid_step.h"
 #include "limitsurf/surface/tile_weights.h"
 
 namespace limitsurf {
@@ -299,10 +300,10 @@ Padded SurfacePatches::Data::nextGrid(const SurfacePiece& core, bool chained,
   }
   Padded after[tile_grid::kSlots];
   std::fill_n(after, tile_grid::kSlots, Padded::Zero());
+  const GridStep step(ring.basis->ring(), tile.face);
   for (; done < steps; ++done) {
     const std::size_t level = std::min(done + 1 + tile.ring_steps, kMostSteps);
-    stepGrid(ring.basis->ring(), tile.face, &levels[first + ring.points.size() * level], grid,
-             after);
+    step.apply(&levels[first + ring.points.size() * level], grid, after);
     std::copy(after, after + tile_grid::kSlots, grid);
   }
   return pose.ring(tile.ring).limit;

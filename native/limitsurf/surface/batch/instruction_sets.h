@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+/// Whether code is compiled for AVX2 and AVX-512, too.
+/// GCC for Windows does not align vectors of more than 16 bytes on the stack.
+#if defined(__GNUC__) && defined(__x86_64__) && !(defined(_WIN32) && !defined(__clang__))
+#define LIMITSURF_X86_SETS 1
+#else
+#define LIMITSURF_X86_SETS 0
+#endif
+
 namespace limitsurf {
 
 /// The instruction sets for which batches of locations are compiled. All of them give the same

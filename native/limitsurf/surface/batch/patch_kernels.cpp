@@ -7,12 +7,8 @@
 
 #include "limitsurf/eigen/derivative_nets.h"
 
-// GCC for Windows does not align vectors of more than 16 bytes on the stack.
-#if defined(__GNUC__) && defined(__x86_64__) && !(defined(_WIN32) && !defined(__clang__))
-#define LIMITSURF_X86_SETS 1
+#if LIMITSURF_X86_SETS
 #include <immintrin.h>
-#else
-#define LIMITSURF_X86_SETS 0
 #endif
 
 namespace limitsurf {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/surface/grid_step.h"
+
+#include "limitsurf/eigen/ring_slots.h"
+#include "limitsurf/surface/batch/instruction_sets.h"
+
+namespace limitsurf {
+namespace {
+
+namespace baseline {
+using Point = Padded;
+#include "limitsurf/surface/grid_step.inl.h"
+}
+
+#if LIMITSURF_X86_SETS
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#endif
+namespace avx2 {
+/// A Padded, which is aligned to 16 bytes.
+typedef double Point __attribute__((vector_size(32), aligned(16), may_alias));
+#include "limitsurf/surface/grid_step.inl.h"
+}
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif
+
+}  // namespace
+
+GridStep::Kernel GridStep::kernel() {
+#if LIMITSURF_X86_SETS
+  if (instructionSet() != InstructionSet::baseline) {
+    return avx2::stepOutsideRing;
+  }
+#endif
+  return baseline::stepOutsideRing;
+}
+
+GridStep::GridStep(const Ring& ring, int face)
+    : left_(onLeft(ring.sides(face))), right_(onRight(ring.sides(face))), kernel_(kernel()) {
+  forEachRingSlot(ring, face, [&](int slot, int point) {
+    slots_[count_] = slot;
+    points_[count_++] = point;
+  });
+}
+
+void GridStep::clearUnused(Padded grid[]) const {
+  for (int i = 0; i < tile_grid::kSize; ++i) {
+    if (left_ && i > 0) {
+      grid[i].setZero();
+    }
+    if (right_ && i > 0) {
+      grid[i * tile_grid::kSize].setZero();
+    }
+  }
+}
+
+}  // namespace limitsurf
