@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 
+#include "limitsurf/interruption_point.h"
+
 namespace limitsurf {
 namespace {
 
@@ -79,11 +81,13 @@ void DartModes::project(const Eigen::Ref<Points>& ring, int first, Points& coeff
     coefficients.row(first + static_cast<int>(i)) = onPlaces(given_[i].left);
   }
 
+  InterruptionStride stride;
   Vector3 sums[2] = {Vector3::Zero(), Vector3::Zero()};  // over spokes, over faces
   for (int n = 0; n < faces_; ++n) {
     sums[(faces_ - n) % 2] += places.row(n).transpose();
   }
   for (int mode = static_cast<int>(given_.size()); mode < count(); ++mode) {
+    stride.step();
     const Wave& w = wave(mode);
     Vector3 waves[2] = {Vector3::Zero(), Vector3::Zero()};
     forEachCosine(w.powers, faces_, [&](int n, double cosine) {

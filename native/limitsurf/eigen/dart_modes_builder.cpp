@@ -5,6 +5,7 @@
 #include "limitsurf/eigen/dart_modes.h"
 #include "limitsurf/eigen/dart_places.h"
 #include "limitsurf/eigen/ring_slots.h"
+#include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
 
@@ -32,7 +33,9 @@ class DartModes::Builder {
       spectrum.waves.erase(met);
     }
     modes_.waves_.reserve(spectrum.waves.size());
+    InterruptionStride stride;
     for (const CircleWave<Real>& wave : spectrum.waves) {
+      stride.step();
       addWave(wave);
     }
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/pi.h"
 
 namespace limitsurf {
@@ -224,7 +225,9 @@ DartSpectrum::DartSpectrum(int faces) : lowest(lowestEigenvalue(faces)) {
   const auto lambdaOfPole = [&](int k) {
     return CircleWave<Real>(faces, multipleOfPole(k), 0).lambda();
   };
+  InterruptionStride stride;
   for (int k = 0; k + 1 < faces; ++k) {
+    stride.step();
     if (lambdaOfPole(k) > kNoSignChange && lambdaOfPole(k + 1) < kNoSignChange) {
       continue;
     }

@@ -5,11 +5,19 @@
 #include <cstdint>
 
 #include "limitsurf/eigen/ring_slots.h"
+#include "limitsurf/parallel.h"
 
 namespace limitsurf {
 
 using tile_grid::kSlots;
 using tile_grid::slot;
+
+namespace {
+
+/// The tables of a mode take some 20 microseconds.
+constexpr std::size_t kModesPerTask = 64;
+
+}  // namespace
 
 void Eigenbasis::Builder::build() {
   buildCircle();
@@ -112,24 +120,39 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeTable(Sides sides, int m,
 }
 
 void Eigenbasis::Builder::buildSpokes() {
-  for (int m = 1; m <= basis_.spokeCount(); ++m) {
-    const SpokeMode<Real> mode = spokeMode(m);
-    for (const bool plus : {true, false}) {
-      const auto& vector = mode.vector(plus);
-      basis_.spokes_.push_back({static_cast<double>(vector.edge), static_cast<double>(vector.face),
-                                static_cast<double>(1 / vector.square)});
-      Part part[2];
-      const int parts = basis_.parts(m, plus, 0, part);
-      for (int i = 0; i < parts; ++i) {
-        basis_.lambda_[part[i].mode] = static_cast<double>(mode.lambda(plus));
-      }
-      for (const Sides sides : {Sides::inner, Sides::left, Sides::right, Sides::both}) {
-        if (FaceTables* tables = basis_.face_tables_[static_cast<int>(sides)].get()) {
-          tables->sine.push_back(ModeContinuation::rounded(spokeTable(sides, m, mode, plus, true)));
-          if (sides == Sides::inner) {
-            tables->cosine.push_back(
-                ModeContinuation::rounded(spokeTable(sides, m, mode, plus, false)));
-          }
+  const auto pairs = static_cast<std::size_t>(2 * basis_.spokeCount());
+  basis_.spokes_.resize(pairs);
+  for (const Sides sides : {Sides::inner, Sides::left, Sides::right, Sides::both}) {
+    if (FaceTables* tables = basis_.face_tables_[static_cast<int>(sides)].get()) {
+      tables->sine.resize(pairs);
+      tables->cosine.resize(sides == Sides::inner ? pairs : 0);
+    }
+  }
+  parallelFor(static_cast<std::size_t>(basis_.spokeCount()), kModesPerTask, 0,
+              [&](std::size_t begin, std::size_t end) {
+                for (std::size_t m = begin; m < end; ++m) {
+                  buildSpoke(static_cast<int>(m) + 1);
+                }
+              });
+}
+
+void Eigenbasis::Builder::buildSpoke(int m) {
+  const SpokeMode<Real> mode = spokeMode(m);
+  for (const bool plus : {true, false}) {
+    const auto& vector = mode.vector(plus);
+    const int pair = basis_.pairIndex(m, plus);
+    basis_.spokes_[pair] = {static_cast<double>(vector.edge), static_cast<double>(vector.face),
+                            static_cast<double>(1 / vector.square)};
+    Part part[2];
+    const int parts = basis_.parts(m, plus, 0, part);
+    for (int i = 0; i < parts; ++i) {
+      basis_.lambda_[part[i].mode] = static_cast<double>(mode.lambda(plus));
+    }
+    for (const Sides sides : {Sides::inner, Sides::left, Sides::right, Sides::both}) {
+      if (FaceTables* tables = basis_.face_tables_[static_cast<int>(sides)].get()) {
+        tables->sine[pair] = ModeContinuation::rounded(spokeTable(sides, m, mode, plus, true));
+        if (sides == Sides::inner) {
+          tables->cosine[pair] = ModeContinuation::rounded(spokeTable(sides, m, mode, plus, false));
         }
       }
     }
@@ -220,6 +243,7 @@ Eigenbasis::Builder::Wide Eigenbasis::Builder::spokeOnFace(int m, const SpokeMod
 void Eigenbasis::Builder::buildCurves() {
   const std::vector<CurveMode<Real>> modes = curveModes<Real>(ring_);
   basis_.fixed_.resize(ring_.faces);
+  InterruptionStride stride;
   for (int i = 0; i < 2; ++i) {
     const CurveMode<Real>& mode = modes[i];
     basis_.lambda_[1 + i] = static_cast<double>(mode.lambda);
@@ -228,6 +252,7 @@ void Eigenbasis::Builder::buildCurves() {
     }
     const SpokeMode<Real> fed_mode = spokeMode(std::max(mode.fed_mode, 1));
     for (int j = 0; j < ring_.faces; ++j) {
+      stride.step();
       const SlotValues values = ringValues(mode.ring, j);
       const Sides sides = basis_.sides(j);
       Wide wide;

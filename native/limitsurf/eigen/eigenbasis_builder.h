@@ -22,6 +22,7 @@ class Eigenbasis::Builder {
 
   void buildCircle();
   void buildSpokes();
+  void buildSpoke(int m);
   void buildRadial();
   void buildCurves();
   void buildDart();

@@ -53,6 +53,27 @@ CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology) : topology
     corner_vertices_ = own_corner_vertices_.data();
   }
   forEach(vertex_count_, [&](int vertex) { mark(vertex); });
+  if (side_sharpness_) {
+    findSmoothVertices();
+  }
+}
+
+void CageMesh::findSmoothVertices() {
+  InterruptionStride stride;
+  for (int vertex = 0; vertex < vertex_count_; ++vertex) {
+    stride.step();
+    smooth_.push_back(fan(vertex).closed && fan(vertex).sharpness == 0);
+  }
+  for (int corner = 0; corner < corner_count_; ++corner) {
+    stride.step();
+    if (isSharp(side_sharpness_[corner])) {
+      const FaceCorner side = cornerAt(corner);
+      smooth_[vertex(side)] = smooth_[vertexAfter(side, 1)] = false;
+    }
+  }
+  for (const auto& [vertex, edges] : other_fans_edges_) {
+    smooth_[vertex] = smooth_[vertex] && edges.empty();
+  }
 }
 
 void CageMesh::splitVertices() {

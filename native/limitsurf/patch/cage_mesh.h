@@ -30,6 +30,7 @@ class CageMesh final : public FaceMesh {
   void splitVertices();
   void setSplitFan(int vertex);
   void mark(int vertex);
+  void findSmoothVertices();
   bool isRegular(int vertex) const;
 
   int makePoint(int vertex) override;

@@ -87,6 +87,10 @@ class FaceMesh {
     return known == other_fans_edges_.end() ? nullptr : &known->second;
   }
 
+  /// Whether the vertex has faces all around, and neither it nor an edge at it is sharp. It is
+  /// known where the mesh has any sharpness.
+  bool isSmooth(int vertex) const { return smooth_[vertex]; }
+
   /// The number of the vertex's control point, which is made when it is first asked for.
   int point(int vertex) {
     if (vertex < own_points_) {
@@ -149,6 +153,7 @@ class FaceMesh {
   const int* corner_vertices_ = nullptr;
   const int* twins_ = nullptr;             ///< the twin's number; -1: none
   const float* side_sharpness_ = nullptr;  ///< null if nothing is sharp
+  std::vector<bool> smooth_;               ///< per vertex; empty if nothing is sharp
   // Of the first so many vertices the point has the vertex's number; the next two are about them.
   int own_points_ = 0;
   const Adjacency::Fan* cage_fans_ = nullptr;

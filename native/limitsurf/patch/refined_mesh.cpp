@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/patch/refined_mesh.h"
 
+#include <algorithm>
+
 #include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
@@ -167,16 +169,29 @@ void RefinedMesh::getSubdivided(int parent_vertex, SharpnessAround& around) cons
 void RefinedMesh::subdivideSharpness() {
   side_sharpness_own_.assign(corner_vertices_own_.size(), 0);
   side_sharpness_ = side_sharpness_own_.data();
+  // Of new vertices, only those in the middle of a sharp edge are not smooth.
+  for (const VertexFan& fan : fans_) {
+    smooth_.push_back(fan.closed);
+  }
   InterruptionStride stride;
   SharpnessAround around;
   for (std::size_t v = 0; v < refined_vertices_.size(); ++v) {
     stride.step();
+    if (parent_.isSmooth(refined_vertices_[v])) {
+      continue;
+    }
     const VertexFan& fan = fans_[v];
     getSubdivided(refined_vertices_[v], around);
+    smooth_[v] = fan.closed && fan.sharpness == 0 &&
+                 std::none_of(around.child_edges.begin(), around.child_edges.end(), isSharp);
     for (int i = 0; i < fan.faces; ++i) {
-      float* const sides = &side_sharpness_own_[4 * static_cast<std::size_t>(fan.first.face + i)];
+      const int child = fan.first.face + i;
+      float* const sides = &side_sharpness_own_[4 * static_cast<std::size_t>(child)];
       sides[0] = around.child_edges[i];
       sides[3] = around.child_edges[fan.closed && i + 1 == fan.faces ? 0 : i + 1];
+      if (isSharp(sides[0])) {
+        smooth_[corner_vertices_own_[4 * child + 1]] = false;
+      }
     }
     if (static_cast<int>(around.edges.size()) > fan.edges()) {
       other_fans_edges_[static_cast<int>(v)].assign(around.child_edges.begin() + fan.edges(),

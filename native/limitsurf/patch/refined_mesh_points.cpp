@@ -72,7 +72,7 @@ int RefinedMesh::vertexPoint(int vertex) {
     const int source = parent_.point(parent_vertex);
     return refined_points_.addVertexPoint({&source, 1}, VertexRule::corner, 0);
   }
-  if (has_sharpness_) {
+  if (has_sharpness_ && !parent_.isSmooth(parent_vertex)) {
     getSubdivided(parent_vertex, around_);
     const int boundary_edges = fan.closed ? 0 : 1;  // at each end
     if (isSharp(around_.vertex) || std::any_of(around_.edges.begin() + boundary_edges,

@@ -68,14 +68,11 @@ int RefinedPoints::addPoint(Span<int> sources, Span<double> weights) {
     }
   }
   const Span<double> wanted(mask.data(), count);
-  const auto [begin, end] = other_masks_.equal_range(key);
-  const auto same = std::find_if(begin, end, [&](const auto& entry) {
-    const Span<double> other = this->mask(entry.second);
-    return std::equal(other.begin(), other.end(), wanted.begin(), wanted.end());
-  });
-  const int number = same != end ? same->second : addMask(wanted);
-  if (same == end) {
-    other_masks_.emplace(key, number);
+  recent_masks_.resize(kRecentMasks, -1);
+  int& number = recent_masks_[key % kRecentMasks];
+  const Span<double> known = number < 0 ? Span<double>() : this->mask(number);
+  if (!std::equal(known.begin(), known.end(), wanted.begin(), wanted.end())) {
+    number = addMask(wanted);
   }
   return add({kept.data(), count}, number);
 }
@@ -84,6 +81,14 @@ int RefinedPoints::addReflection(int inner, int next) {
   const int sources[] = {inner, next};
   return add({sources, 2},
              known(reflections_, 0, [](std::vector<double>& mask) { mask = {2, -1}; }));
+}
+
+void RefinedPoints::shrink() {
+  offsets_.shrink_to_fit();
+  sources_.shrink_to_fit();
+  mask_of_.shrink_to_fit();
+  weights_.shrink_to_fit();
+  mask_offsets_.shrink_to_fit();
 }
 
 int RefinedPoints::add(Span<int> sources, int mask) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "limitsurf/rules/subdivision_rules.h"
@@ -62,6 +61,9 @@ class RefinedPoints {
   /// Burley 2007, figure 2).
   int addReflection(int inner, int next);
 
+  /// Gives back memory that was reserved for more points.
+  void shrink();
+
   Span<int> sources(int point) const {
     const std::size_t i = static_cast<std::size_t>(point - cage_points_);
     return Span<int>(sources_).subspan(offsets_[i], offsets_[i + 1] - offsets_[i]);
@@ -94,7 +96,10 @@ class RefinedPoints {
   std::vector<double> weights_;  // of all masks
   std::vector<std::size_t> mask_offsets_ = {0};
   KnownMasks reflections_, face_masks_, midpoints_, edge_masks_, vertex_masks_[3];
-  std::unordered_multimap<std::uint64_t, int> other_masks_;  // by a number made of the weights
+  // Some of the masks that were made lately, each at a place that follows from its weights. Most
+  // masks of fractional sharpness occur once, so that it would not pay to know all.
+  static constexpr std::size_t kRecentMasks = 1024;
+  std::vector<int> recent_masks_;
 };
 
 }  // namespace limitsurf

@@ -27,6 +27,7 @@ QuadCorners cornersOf(RefinementLevel& level, int quad) {
         }
         break;
       }
+      case Sectors::State::regular:
       case Sectors::State::crease:
         result.diagonal[c] = true;
         break;

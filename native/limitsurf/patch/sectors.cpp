@@ -15,7 +15,10 @@ Sectors::Sectors(const FaceMesh& mesh, bool has_sharpness, const int* first_plac
 
 Sectors::State Sectors::classify(int vertex) {
   const VertexFan fan = mesh_.fan(vertex);
-  if (!has_sharpness_) {
+  if (!has_sharpness_ || mesh_.isSmooth(vertex)) {
+    if (fan.closed && fan.faces == 4 && fan.sharpness == 0) {
+      return State::regular;
+    }
     first_sector_[vertex] = sectorCount();
     gatherCorners(fan);
     const bool pinned = isSharp(fan.sharpness);

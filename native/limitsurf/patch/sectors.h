@@ -42,6 +42,7 @@ class Sectors {
 
   enum class State : std::uint8_t {
     unknown,
+    regular,    ///< four faces all around, and nothing is sharp: one sector, which has no number
     settled,    ///< nothing at the vertex is semi-sharp, so that it consists of sectors
     crease,     ///< of four edges two opposite ones are equally semi-sharp; nothing else is sharp
     unsettled,  ///< anything else

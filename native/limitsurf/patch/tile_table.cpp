@@ -15,8 +15,8 @@
 namespace limitsurf {
 namespace {
 
-/// A face takes less time than an evaluation, so that a task has more of them than kRowsPerTask.
-constexpr std::size_t kFacesPerTask = 4096;
+/// So many faces take 100 microseconds and more: to look at them, and to make their tiles.
+constexpr std::size_t kLookedAtPerTask = 32768, kFacesPerTask = 4096;
 
 /// The tile of a quad that is regular at all corners.
 BSplineTile bsplineTile(FaceMesh& mesh, int face, const std::array<bool, 4>& diagonal) {
@@ -67,7 +67,7 @@ class Builder {
 
   void findKinds() {
     kinds_.assign(mesh_.faceCount(), kRefused);
-    parallelFor(mesh_.faceCount(), kFacesPerTask, 0, [&](std::size_t begin, std::size_t end) {
+    parallelFor(mesh_.faceCount(), kLookedAtPerTask, 0, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
         const int face = static_cast<int>(f);
         if (topology_.refused().empty() || !topology_.refused().count(face)) {
@@ -99,6 +99,7 @@ class Builder {
     });
     table_.bsplines.insert(table_.bsplines.end(), irregular_bsplines_.begin(),
                            irregular_bsplines_.end());
+    irregular_bsplines_ = {};
   }
 
   /// The other faces, level by level.
@@ -135,6 +136,9 @@ class Builder {
     for (; !meshes_.empty(); meshes_.pop_back()) {
       InterruptionPoint::pass();
     }
+    table_.points.shrink();
+    table_.splits.shrink_to_fit();
+    table_.rings.shrink_to_fit();
   }
 
   /// Makes the children of the faces, and returns those of them that are to be split in their turn.

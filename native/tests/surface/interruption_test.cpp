@@ -3,6 +3,7 @@
 // What an interruption leaves behind, whenever it comes.
 #include <gtest/gtest.h>
 
+#include "limitsurf/eigen/eigenbasis.h"
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/surface/surface_data.h"
@@ -57,6 +58,17 @@ TEST(Interruption, OfTheConstructorLeavesTheMeshUsable) {
   const ControlMesh mesh = controlMesh(creasedGrid());
   EXPECT_GT(interruptedAtAll([&] { LimitSurface surface(mesh); }, [] {}), 3);
   EXPECT_EQ(LimitSurface(mesh).faceCount(), 1600);
+}
+
+// A basis takes some 20 microseconds a face, and more than a second where many thousand faces meet.
+TEST(Interruption, IsPossibleWhileABasisIsMade) {
+  for (const RingKind kind : {RingKind::interior, RingKind::pinned, RingKind::dart}) {
+    const Ring ring{kind, 3000};
+    long passes = 0;
+    const InterruptionPoint point([&] { ++passes; });
+    const Eigenbasis basis(ring);
+    EXPECT_GE(passes, ring.faces / 2 / 256) << static_cast<int>(kind);
+  }
 }
 
 TEST(Interruption, OfAPoseIsToldAndHealedByTheNextPose) {
