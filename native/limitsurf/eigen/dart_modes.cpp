@@ -70,9 +70,11 @@ std::vector<double> DartModes::ringVector(int mode) const {
   return ring;
 }
 
-void DartModes::project(const Eigen::Ref<Points>& ring, int first, Points& coefficients) const {
+void DartModes::project(const Eigen::Array4d ring[], int first, Points& coefficients) const {
   Points places = Points::Zero(faces_ + 1, 3);
-  forEachPoint(faces_, [&](int point, int n) { places.row(n) += ring.row(point); });
+  forEachPoint(faces_, [&](int point, int n) {
+    places.row(n) += ring[point].head<3>().matrix().transpose();
+  });
   const auto onPlaces = [&](const std::vector<double>& left) -> Vector3 {
     return places.transpose() * Eigen::Map<const Eigen::VectorXd>(left.data(), faces_ + 1);
   };

@@ -49,7 +49,7 @@ class DartModes {
 
   /// Coefficients of the ring's points, which are relative to the vertex: row 0 gets the
   /// constant's, the rows from `first` on get those of the modes.
-  void project(const Eigen::Ref<Points>& ring, int first, Points& coefficients) const;
+  void project(const Eigen::Array4d ring[], int first, Points& coefficients) const;
   /// Adds the transpose of project() to `ring`.
   void projectTransposed(const Eigen::MatrixXd& mode_weights, int first,
                          Eigen::MatrixXd& ring) const;

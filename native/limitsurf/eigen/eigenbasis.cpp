@@ -12,7 +12,7 @@ namespace limitsurf {
 std::shared_ptr<const Eigenbasis> Eigenbasis::get(const Ring& ring) {
   static std::mutex mutex;
   static std::map<Ring, std::weak_ptr<const Eigenbasis>> bases;
-  // Small ones stay, because most surfaces have the same ones. Together they take 3 MB.
+  // Small ones stay, because most surfaces have the same ones. Together they take less than 1 MB.
   constexpr int kFewFaces = 16;
   static std::vector<std::shared_ptr<const Eigenbasis>> kept;
   const auto find = [&]() -> std::weak_ptr<const Eigenbasis>& { return bases[ring]; };

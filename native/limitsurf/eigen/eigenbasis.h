@@ -97,12 +97,9 @@ class Eigenbasis {
 
   /// Coefficients (one row per mode) of the ring's points. O(faces log faces), or O(faces^2) for
   /// a dart.
-  void project(const Points& ring_points, Points& coefficients) const {
-    Points changed = ring_points;
-    projectInPlace(changed, coefficients);
-  }
-  /// The same, with `ring_points` as working memory.
-  void projectInPlace(Eigen::Ref<Points> ring_points, Points& coefficients) const;
+  void project(const Points& ring_points, Points& coefficients) const;
+  /// The same. The fourth numbers of the points are 0; `ring_points` is working memory afterwards.
+  void projectInPlace(Eigen::Array4d ring_points[], Points& coefficients) const;
 
   /// The transpose of project(): weights on modes (rows) become weights on the ring's points.
   Eigen::MatrixXd projectTransposed(const Eigen::MatrixXd& mode_weights) const;

@@ -8,74 +8,83 @@
 namespace limitsurf {
 namespace {
 
+using Padded = Eigen::Array4d;
+
 struct RingMeans {
-  Vector3 edge, face;
+  Padded edge, face;
 };
 
 /// The means of the spoke points and of the face points of a closed ring, relative to v.
-RingMeans meansFrom(const Vector3& v, const Ring& ring, const Eigen::Ref<Points>& points) {
-  RingMeans means{Vector3::Zero(), Vector3::Zero()};
+RingMeans meansFrom(const Padded& v, const Ring& ring, const Padded points[]) {
+  RingMeans means{Padded::Zero(), Padded::Zero()};
   for (int i = 0; i < ring.faces; ++i) {
-    means.edge += (points.row(ring.edge(i)).transpose() - v) / ring.faces;
-    means.face += (points.row(ring.face(i)).transpose() - v) / ring.faces;
+    means.edge += (points[ring.edge(i)] - v) / ring.faces;
+    means.face += (points[ring.face(i)] - v) / ring.faces;
   }
   return means;
 }
 
 }  // namespace
 
-void Eigenbasis::projectInPlace(Eigen::Ref<Points> ring_points, Points& coefficients) const {
+void Eigenbasis::project(const Points& ring_points, Points& coefficients) const {
+  std::vector<Padded> points;
+  for (Eigen::Index i = 0; i < ring_points.rows(); ++i) {
+    points.emplace_back(ring_points(i, 0), ring_points(i, 1), ring_points(i, 2), 0);
+  }
+  projectInPlace(points.data(), coefficients);
+}
+
+void Eigenbasis::projectInPlace(Padded ring_points[], Points& coefficients) const {
   const int faces = ring_.faces;
   coefficients.setZero(modeCount(), 3);
-  if (dart_) {
-    const Vector3 v = ring_points.row(0);
-    ring_points.rowwise() -= v.transpose();
-    dart_->project(ring_points, firstSymmetric(), coefficients);
-    coefficients.row(0) += v.transpose();
-  } else if (ring_.closed()) {
-    const Vector3 v = ring_points.row(0);
-    const auto [edge_mean, face_mean] = meansFrom(v, ring_, ring_points);
-    Vector3 constant = v;
-    for (int i = 0; i < 2; ++i) {
-      const Vector3 coefficient =
-          radial_inverse_(i, 0) * edge_mean + radial_inverse_(i, 1) * face_mean;
-      coefficients.row(1 + i) = coefficient;
-      constant -= radial_vertex_[i] * coefficient;
+  const auto coefficient = [&](int mode) { return coefficients.row(mode).transpose().array(); };
+  const Padded v = ring_points[0];
+  if (ring_.closed()) {
+    if (!dart_) {
+      const auto [edge_mean, face_mean] = meansFrom(v, ring_, ring_points);
+      Padded constant = v;
+      for (int i = 0; i < 2; ++i) {
+        const Padded value = radial_inverse_(i, 0) * edge_mean + radial_inverse_(i, 1) * face_mean;
+        coefficient(1 + i) = value.head<3>();
+        constant -= radial_vertex_[i] * value;
+      }
+      coefficient(0) = constant.head<3>();
     }
-    coefficients.row(0) = constant;
-    ring_points.rowwise() -= v.transpose();
-  } else {
-    const Vector3 v = ring_points.row(0), e_0 = ring_points.row(ring_.edge(0)),
-                  e_k = ring_points.row(ring_.edge(faces));
-    const auto curve = curveCoefficients<Vector3>(ring_.kind, v, e_0, e_k);
-    coefficients.row(0) = curve.constant;
-    coefficients.row(1) = curve.first;
-    coefficients.row(2) = curve.second;
     for (int i = 0; i < ring_.size(); ++i) {
-      ring_points.row(i) -=
-          (curve.constant + curve_ring_[0][i] * curve.first + curve_ring_[1][i] * curve.second)
-              .transpose();
+      ring_points[i] -= v;
+    }
+    if (dart_) {
+      dart_->project(ring_points, firstSymmetric(), coefficients);
+      coefficient(0) += v.head<3>();
+    }
+  } else {
+    const auto curve = curveCoefficients<Padded>(ring_.kind, v, ring_points[ring_.edge(0)],
+                                                 ring_points[ring_.edge(faces)]);
+    coefficient(0) = curve.constant.head<3>();
+    coefficient(1) = curve.first.head<3>();
+    coefficient(2) = curve.second.head<3>();
+    for (int i = 0; i < ring_.size(); ++i) {
+      ring_points[i] -=
+          curve.constant + curve_ring_[0][i] * curve.first + curve_ring_[1][i] * curve.second;
     }
   }
 
-  const auto at = [&](int point) -> Eigen::Array4d {
-    return {ring_points(point, 0), ring_points(point, 1), ring_points(point, 2), 0};
-  };
-  waves_->sums<Eigen::Array4d>(spokeCount(), at, [&](int m, const auto& sums) {
+  const auto at = [&](int point) -> const Padded& { return ring_points[point]; };
+  waves_->sums<Padded>(spokeCount(), at, [&](int m, const auto& sums) {
     // 2 / faces normalises sines and cosines, 1 / faces those that alternate.
     const double norm = (alternates(m) ? 1. : 2.) / faces;
     for (const bool plus : {true, false}) {
       const Spoke& spoke = spokes_[pairIndex(m, plus)];
       const double scale = norm * spoke.scale;
       const double e = scale * spoke.edge, f = scale * spoke.face / 4;
-      const Eigen::Array4d cosine = e * sums.edge_cos + f * sums.face_cos,
-                           sine = e * sums.edge_sin + f * sums.face_sin;
+      const Padded cosine = e * sums.edge_cos + f * sums.face_cos,
+                   sine = e * sums.edge_sin + f * sums.face_sin;
       // On face 0 the parts of the pair are the cosine mode and the sine mode themselves.
       Part part[2];
       const int count = parts(m, plus, 0, part);
       for (int i = 0; i < count; ++i) {
-        const Eigen::Array4d& value = part[i].cosine != 0 ? cosine : sine;
-        coefficients.row(part[i].mode) = value.head<3>();
+        const Padded& value = part[i].cosine != 0 ? cosine : sine;
+        coefficient(part[i].mode) = value.head<3>();
       }
     }
   });

@@ -29,14 +29,15 @@ class RingWaves {
   };
 
   /// Calls visit(m, sums) for the modes m = 1, ..., count. `at(i)` returns point i of the ring; a
-  /// Value is a number or an array of numbers. Sectors have no cosines. Their values on the first
-  /// and the last spoke do not matter.
+  /// Value is a number or an array of numbers. Only rings that a turn by one face maps onto
+  /// themselves have cosines. A sector's values on the first and the last spoke do not matter.
   /// Cost: O(faces log faces) together.
   template <typename Value, typename At, typename Visit>
   void sums(int count, const At& at, const Visit& visit) const {
     if (!transform_) {
+      const bool rotates = ring_.closed() && ring_.kind != RingKind::dart;
       for (int m = 1; m <= count; ++m) {
-        visit(m, directSums<Value>(m, at));
+        visit(m, rotates ? directSums<true, Value>(m, at) : directSums<false, Value>(m, at));
       }
       return;
     }
@@ -59,7 +60,7 @@ class RingWaves {
   /// Up to here the transform would take longer.
   static constexpr int kFewFaces = 128;
 
-  template <typename Value, typename At>
+  template <bool kCosines, typename Value, typename At>
   Sums<Value> directSums(int m, const At& at) const {
     const std::int64_t period = static_cast<std::int64_t>(cos_.size()), step = 2 * std::int64_t{m};
     const auto advance = [&](std::int64_t& angle) {
@@ -76,12 +77,16 @@ class RingWaves {
     }
     for (int i = 0; i < ring_.edges(); ++i, advance(edge_angle)) {
       const Value e = at(ring_.edge(i));
-      sums.edge_cos += cos_[edge_angle] * e;
+      if (kCosines) {
+        sums.edge_cos += cos_[edge_angle] * e;
+      }
       sums.edge_sin += sin_[edge_angle] * e;
     }
     for (int j = 0; j < ring_.faces; ++j, advance(face_angle)) {
       const Value f = at(ring_.face(j));
-      sums.face_cos += cos_[face_angle] * f;
+      if (kCosines) {
+        sums.face_cos += cos_[face_angle] * f;
+      }
       sums.face_sin += sin_[face_angle] * f;
     }
     return sums;

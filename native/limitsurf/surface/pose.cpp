@@ -2,6 +2,7 @@
 #include "limitsurf/surface/pose.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/grid_step.h"
@@ -9,8 +10,9 @@
 namespace limitsurf {
 namespace {
 
-/// A point takes a small part of the time of an evaluation, a ring much more than one.
-constexpr std::size_t kPointsPerTask = 16384, kRingsPerTask = 16, kTilesPerTask = 64;
+/// Tasks take 100 microseconds and more. Small meshes are one task, because waking other cores
+/// would take as long.
+constexpr std::size_t kPointsPerTask = 65536, kRingsPerTask = 256, kTilesPerTask = 256;
 
 /// Rings with more faces are set one after the other, each on all cores.
 constexpr int kManyFaces = 512;
@@ -68,14 +70,23 @@ Pose::Pose(const TileTable& table) : table_(&table), first_tile_(table.rings.siz
 
 namespace {
 
-double extentOf(const Padded* points, std::size_t count) {
-  Padded low = count > 0 ? points[0] : Padded(Padded::Zero()), high = low;
-  for (std::size_t i = 1; i < count; ++i) {
-    low = low.min(points[i]);
-    high = high.max(points[i]);
+/// The bounding box of some points.
+struct Box {
+  Padded low = Padded::Zero(), high = Padded::Zero();
+
+  Box(const Padded* points, std::size_t count) {
+    if (count > 0) {
+      low = high = points[0];
+    }
+    for (std::size_t i = 1; i < count; ++i) {
+      low = low.min(points[i]);
+      high = high.max(points[i]);
+    }
   }
-  return (high - low).maxCoeff();
-}
+};
+
+/// The largest power of two that is no larger.
+double powerOfTwo(double size) { return size > 0 ? std::ldexp(1, std::ilogb(size)) : 1; }
 
 }  // namespace
 
@@ -89,7 +100,9 @@ void Pose::set(const Points& cage, int threads) {
                   points_[i] = padded(cage.row(static_cast<Eigen::Index>(i)).transpose());
                 }
               });
-  extent_ = extentOf(points_.data(), static_cast<std::size_t>(cage.rows()));
+  const Box box(points_.data(), static_cast<std::size_t>(cage.rows()));
+  extent_ = (box.high - box.low).maxCoeff();
+  residual_unit_ = powerOfTwo(box.low.abs().max(box.high.abs()).maxCoeff());
   refinePoints();
   std::vector<int> large;
   for (std::size_t ring = 0; ring < rings_.size(); ++ring) {
@@ -120,6 +133,9 @@ void Pose::refinePoint(int i) {
   const auto residualOf = [&](int point) {
     return kFine ? residual(point) : Padded(Padded::Zero());
   };
+  const auto setResidual = [&](const Padded& value) {
+    residuals_[i - refined.cagePoints()] = (value / residual_unit_).cast<float>();
+  };
   Padded base, sum;
   if (sources.size() == 2 && weights[0] == weights[1]) {
     // A midpoint, with the same bits from either end: faces on different sides of a sharp edge may
@@ -128,9 +144,8 @@ void Pose::refinePoint(int i) {
     sum = points_[sources[1]] / 2;
     points_[i] = base + sum;
     if (kFine) {
-      residuals_[i - refined.cagePoints()] =
-          rounding(base, sum, points_[i]) +
-          (residualOf(sources[0]) / 2 + residualOf(sources[1]) / 2);
+      setResidual(rounding(base, sum, points_[i]) +
+                  (residualOf(sources[0]) / 2 + residualOf(sources[1]) / 2));
     }
     return;
   }
@@ -148,7 +163,7 @@ void Pose::refinePoint(int i) {
   }
   points_[i] = base + sum;
   if (kFine) {
-    residuals_[i - refined.cagePoints()] = rounding(base, sum, points_[i]);
+    setResidual(rounding(base, sum, points_[i]));
   }
 }
 
@@ -172,15 +187,12 @@ void Pose::setRing(int ring_index, int threads, RingMemory& memory) {
   RingPose& pose = rings_[ring_index];
   const Padded vertex = points_[ring.points[0]];
   const std::size_t size = ring.points.size();
-  memory.points.resize(3 * size);
-  memory.levels.resize(size);
-  Eigen::Map<Points> points(memory.points.data(), static_cast<Eigen::Index>(size), 3);
+  memory.points.resize(size);
   for (std::size_t i = 0; i < size; ++i) {
-    const Padded point = difference(ring.points[i], ring.points[0]);
-    points.row(static_cast<Eigen::Index>(i)) = point.head<3>().transpose();
-    memory.levels[i] = {point[0], point[1], point[2], 0};
+    memory.points[i] = difference(ring.points[i], ring.points[0]);
   }
-  ring.basis->projectInPlace(points, pose.coefficients);
+  memory.levels = memory.points;
+  ring.basis->projectInPlace(memory.points.data(), pose.coefficients);
   const Padded to_limit = padded(pose.coefficients.row(0));
   pose.limit = vertex + to_limit;
   // The coefficient of the constant mode relative to the limit as it is stored: its rounding error.

@@ -55,11 +55,13 @@ class Pose {
   double extent() const { return extent_; }
 
   const Padded& point(int i) const { return points_[i]; }
-  /// The rounding error of a point: point(i) + residual(i) has twice the digits. It is 0 unless the
-  /// table is fine.
+  /// The rounding error of a point, so that point(i) + residual(i) has 24 bits more. It is 0 unless
+  /// the table is fine.
   Padded residual(int i) const {
     const int refined = i - table_->points.cagePoints();
-    return refined < 0 || residuals_.empty() ? Padded(Padded::Zero()) : residuals_[refined];
+    return refined < 0 || residuals_.empty()
+               ? Padded(Padded::Zero())
+               : Padded(residual_unit_ * residuals_[refined].cast<double>());
   }
   /// The vector between two points, rounded relative to its own size.
   Padded difference(int to, int from) const {
@@ -79,7 +81,7 @@ class Pose {
   void refinePoints();
   /// Working memory that one ring after the other uses.
   struct RingMemory {
-    std::vector<double> points;
+    std::vector<Padded> points;
     std::vector<Padded> levels;  // the ring's points after 0, 1, 2, ... steps
   };
   void setRing(int ring, int threads, RingMemory& memory);
@@ -90,7 +92,8 @@ class Pose {
   double extent_ = 0;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
-  std::vector<Padded> residuals_;  // of the refined points
+  std::vector<Eigen::Array4f> residuals_;  // of the refined points, over residual_unit_
+  double residual_unit_ = 1;               // a power of two of about the size of the coordinates
   std::vector<RingPose> rings_;
   std::vector<RingTilePose> ring_tiles_;
   std::vector<int> first_tile_;  // per ring, and one more entry

@@ -83,7 +83,7 @@ TEST(RingWaves, AreSummedToTheirLastDigits) {
               const auto exact = exactSums(ring, tables, points, m);
               EXPECT_NEAR(sums.edge_sin, exact.edge_sin, bound) << ring.faces << ", mode " << m;
               EXPECT_NEAR(sums.face_sin, exact.face_sin, bound) << ring.faces << ", mode " << m;
-              if (ring.closed()) {
+              if (ring.closed() && ring.kind != RingKind::dart) {
                 EXPECT_NEAR(sums.edge_cos, exact.edge_cos, bound) << ring.faces << ", mode " << m;
                 EXPECT_NEAR(sums.face_cos, exact.face_cos, bound) << ring.faces << ", mode " << m;
               }
