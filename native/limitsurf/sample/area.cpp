@@ -15,102 +15,184 @@ namespace limitsurf {
 namespace {
 
 /// At first each patch is integrated until its error is this part of its area.
-constexpr double kFirstTolerance = kAreaError / 5;
+constexpr double kFirstTolerance = kAreaError / 20;
 /// The patches with the largest errors are refined until the sum of all errors is this part of the
 /// area.
-constexpr double kTolerance = kAreaError / 2;
+constexpr double kTolerance = kAreaError / 8;
 /// Refinement makes so many squares of all patches together, and at least so many of each patch
 /// that it takes up.
 constexpr int kMostSquares = 1 << 17, kFewSquares = 64;
 /// The parts of a core may have this part of its tolerance each.
 constexpr double kCoreShare = 4;
-/// The number of tiles that one task integrates.
-constexpr std::size_t kTilesPerTask = 16;
+/// The number of tiles that one task integrates side by side.
+constexpr std::size_t kTilesPerTask = 32;
 
 /// How exactly a tile is to be integrated.
 struct Effort {
   double relative, absolute;  ///< error: part of the area, or in units of area; the larger counts
-  int most_squares;           ///< refinement makes so many squares
 };
 
-/// Integrates tiles. Lengths are in a unit of their own, so that areas neither overflow nor
-/// underflow.
-class TileArea {
- public:
-  explicit TileArea(const SurfacePatches& patches) : patches_(patches) {}
+void add(const SurfaceArea& part, SurfaceArea& sum) {
+  sum.value += part.value;
+  sum.error += part.error;
+  sum.evaluations += part.evaluations;
+}
 
-  SurfaceArea operator()(int tile, const Effort& effort) {
-    pieces_.clear();
-    patches_.appendPieces(tile, pieces_);
-    SurfaceArea sum;
-    for (const SurfacePiece& piece : pieces_) {
-      if (piece.isCore()) {
-        return ofCore(piece, effort);
-      }
-      const BezierPatch patch = patches_.patch(piece);
-      add(ofPatches(&patch, 1, effort), sum);
+/// The area of a core, which is a sequence of triples of patches towards the extraordinary vertex.
+/// Their areas become a sum of geometric sequences, so that the areas of the first steps tell the
+/// rest.
+class CoreSum {
+ public:
+  explicit CoreSum(const Effort& effort)
+      : tolerance_(effort.absolute), step_{effort.relative, effort.absolute / kCoreShare} {}
+
+  /// How exactly the patches of the next step are to be integrated.
+  const Effort& step() const { return step_; }
+
+  /// Adds the three patches of a step. Returns whether the rest needs no more steps.
+  bool add(const SurfaceArea& area) {
+    limitsurf::add(area, sum_);
+    series_.add(area.value);
+    if (step_.relative > 0) {
+      const double share = step_.relative * area.value;
+      tolerance_ = std::max(tolerance_, 8 * share);
+      step_ = {0, std::max(step_.absolute, share / kCoreShare)};
     }
-    return sum;
+    return series_.error() <= tolerance_ || !(area.value > 0);
+  }
+
+  SurfaceArea result() const {
+    return {series_.limit(), sum_.error + series_.error(), sum_.evaluations};
   }
 
  private:
-  static void add(const SurfaceArea& part, SurfaceArea& sum) {
-    sum.value += part.value;
-    sum.error += part.error;
-    sum.evaluations += part.evaluations;
-  }
+  double tolerance_;
+  Effort step_;
+  SurfaceArea sum_;
+  GeometricSeries series_;
+};
 
-  SurfaceArea ofPatches(const BezierPatch* patches, int count, const Effort& effort) {
-    quadrature_.clear();
-    quadrature_.keepSquares(effort.most_squares > 0);
-    for (int i = 0; i < count; ++i) {
-      quadrature_.add(patches[i], effort.relative, effort.absolute);
+/// The areas of tiles. Their patches are integrated side by side: all regular ones and the first
+/// patches of all cores, then the next patches of those cores that need more, and so on.
+class TileAreas {
+ public:
+  explicit TileAreas(const SurfacePatches& patches) : patches_(patches) {}
+
+  void measure(std::size_t begin, std::size_t end, double relative, SurfaceArea* areas) {
+    cores_.clear();
+    squares_.clear();
+    tiles_.clear();
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      areas[tile] = {};
+      pieces_.clear();
+      patches_.appendPieces(static_cast<int>(tile), pieces_);
+      for (const SurfacePiece& piece : pieces_) {
+        if (piece.isCore()) {
+          cores_.emplace_back(piece, relative);
+        } else {
+          squares_.emplace_back(patches_.patch(piece), relative, 0);
+          tiles_.push_back(tile);
+        }
+      }
     }
-    quadrature_.refine(effort.absolute, effort.most_squares);
-    return quadrature_.result();
+    quadrature_.measure(squares_);
+    for (std::size_t i = 0; i < squares_.size(); ++i) {
+      add(squares_[i].result(), areas[tiles_[i]]);
+    }
+    while (!cores_.empty()) {
+      measureStep(areas);
+    }
   }
 
-  /// A core is a sequence of triples of patches towards the extraordinary vertex. Their areas
-  /// become a sum of geometric sequences, so that the areas of the first steps tell the rest.
-  SurfaceArea ofCore(SurfacePiece core, Effort effort) {
+ private:
+  struct Core {
+    Core(const SurfacePiece& piece, double relative) : sum(Effort{relative, 0}) {
+      split.core = piece;
+    }
+
+    CoreSum sum;
     SurfacePatches::SplitCore split;
-    SurfaceArea sum;
-    GeometricSeries series;
-    double tolerance = effort.absolute;
-    effort.absolute /= kCoreShare;
-    while (core.steps < SurfacePatches::kMostSteps) {
-      patches_.split(core, split);
-      core = split.core;
-      const SurfaceArea step = ofPatches(split.patches, 3, effort);
-      add(step, sum);
-      series.add(step.value);
-      if (core.steps == 1) {
-        tolerance = std::max(tolerance, effort.relative * step.value);
-        effort.absolute = std::max(effort.absolute, effort.relative * step.value / kCoreShare);
-        effort.relative = 0;
-      }
-      // The shares of later steps in the area fall by a factor of 4 or so.
-      effort.most_squares /= 2;
-      if (series.error() <= tolerance || !(step.value > 0)) {
-        break;
+  };
+
+  /// Integrates the next patches of all cores, and finishes those that need no more.
+  void measureStep(SurfaceArea* areas) {
+    squares_.clear();
+    for (Core& core : cores_) {
+      const SurfacePiece whole = core.split.core;
+      patches_.split(whole, core.split);
+      const Effort& effort = core.sum.step();
+      for (const BezierPatch& patch : core.split.patches) {
+        squares_.emplace_back(patch, effort.relative, effort.absolute);
       }
     }
-    sum.value = series.limit();
-    sum.error += series.error();
-    return sum;
+    quadrature_.measure(squares_);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < cores_.size(); ++i) {
+      SurfaceArea step;
+      for (std::size_t quarter = 0; quarter < 3; ++quarter) {
+        add(squares_[3 * i + quarter].result(), step);
+      }
+      Core& core = cores_[i];
+      const SurfacePiece& rest = core.split.core;
+      if (core.sum.add(step) || rest.steps >= SurfacePatches::kMostSteps) {
+        areas[rest.tile] = core.sum.result();
+      } else {
+        if (left != i) {
+          cores_[left] = core;
+        }
+        ++left;
+      }
+    }
+    cores_.erase(cores_.begin() + static_cast<std::ptrdiff_t>(left), cores_.end());
   }
 
   const SurfacePatches& patches_;
-  std::vector<SurfacePiece> pieces_;
   AreaQuadrature quadrature_;
+  std::vector<SurfacePiece> pieces_;
+  std::vector<AreaSquare> squares_;
+  std::vector<std::size_t> tiles_;  // of each square that is a regular patch
+  std::vector<Core> cores_;
 };
+
+/// The area of a tile in which squares are quartered. At most `most_squares` are made.
+SurfaceArea refinedArea(const SurfacePatches& patches, int tile, double tolerance,
+                        int most_squares) {
+  RefinedArea refined;
+  std::vector<AreaSquare> squares;
+  std::vector<SurfacePiece> pieces;
+  patches.appendPieces(tile, pieces);
+  if (!pieces.front().isCore()) {
+    for (const SurfacePiece& piece : pieces) {
+      squares.emplace_back(patches.patch(piece), 0, tolerance);
+    }
+    refined.start(squares);
+    refined.refine(tolerance, most_squares);
+    return refined.result();
+  }
+  CoreSum sum({0, tolerance});
+  SurfacePatches::SplitCore split;
+  split.core = pieces.front();
+  bool is_done = false;
+  while (!is_done && split.core.steps < SurfacePatches::kMostSteps) {
+    const SurfacePiece whole = split.core;
+    patches.split(whole, split);
+    squares.clear();
+    for (const BezierPatch& patch : split.patches) {
+      squares.emplace_back(patch, 0, sum.step().absolute);
+    }
+    refined.start(squares);
+    refined.refine(sum.step().absolute, most_squares);
+    is_done = sum.add(refined.result());
+    // The shares of later steps in the area fall by a factor of 4 or so.
+    most_squares /= 2;
+  }
+  return sum.result();
+}
 
 SurfaceArea sumOf(const std::vector<SurfaceArea>& areas) {
   SurfaceArea sum;
   for (const SurfaceArea& area : areas) {
-    sum.value += area.value;
-    sum.error += area.error;
-    sum.evaluations += area.evaluations;
+    add(area, sum);
   }
   return sum;
 }
@@ -140,22 +222,21 @@ SurfaceArea measuredArea(const LimitSurface& surface, int threads) {
   const SurfacePatches patches(surface, threads, PatchUnit::own);
   std::vector<SurfaceArea> areas(static_cast<std::size_t>(patches.tileCount()));
   parallelFor(areas.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    TileArea area(patches);
-    for (std::size_t tile = begin; tile < end; ++tile) {
-      areas[tile] = area(static_cast<int>(tile), {kFirstTolerance, 0, 0});
+    TileAreas tiles(patches);
+    for (; begin < end; begin += kTilesPerTask) {
+      tiles.measure(begin, std::min(end, begin + kTilesPerTask), kFirstTolerance, areas.data());
     }
   });
   SurfaceArea sum = sumOf(areas);
   if (sum.error > kTolerance * sum.value) {
     const std::vector<std::size_t> worst = worstTiles(areas, kTolerance / 2 * sum.value);
     const int count = static_cast<int>(worst.size());
-    const Effort effort = {0, kTolerance / 2 * sum.value / count,
-                           std::max(kFewSquares, kMostSquares / count)};
+    const double tolerance = kTolerance / 2 * sum.value / count;
+    const int squares = std::max(kFewSquares, kMostSquares / count);
     parallelFor(worst.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
-      TileArea area(patches);
       for (std::size_t i = begin; i < end; ++i) {
         const std::int64_t before = areas[worst[i]].evaluations;
-        areas[worst[i]] = area(static_cast<int>(worst[i]), effort);
+        areas[worst[i]] = refinedArea(patches, static_cast<int>(worst[i]), tolerance, squares);
         areas[worst[i]].evaluations += before;
       }
     });

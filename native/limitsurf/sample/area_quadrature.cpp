@@ -2,6 +2,10 @@
 #include "limitsurf/sample/area_quadrature.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "limitsurf/sample/area_folds.h"
+#include "limitsurf/sample/area_kernels.h"
 
 namespace limitsurf {
 namespace {
@@ -9,7 +13,9 @@ namespace {
 /// Differences shrink by the same factor from rule to rule where the integrand is smooth. The error
 /// of a rule is estimated by its last difference times the factor of its last two, times this, so
 /// that an accidental agreement does less harm.
-constexpr double kCaution = 8;
+constexpr double kCaution = 32;
+/// Points of a rule that find less than one part in so many of what is turned over have missed it.
+constexpr double kFewFound = 8;
 
 double errorAfter(double before, double last) {
   return before > 0 ? last * std::min(1., kCaution * last / before) : last;
@@ -18,7 +24,10 @@ double errorAfter(double before, double last) {
 /// The difference that follows these two, `steps` rules later.
 double continued(double before, double last, int steps) {
   const double factor = before > 0 ? std::min(1., last / before) : 1;
-  return last * std::pow(factor, steps);
+  for (int step = 0; step < steps; ++step) {
+    last *= factor;
+  }
+  return last;
 }
 
 /// The halves of four cubics; the points of each are `stride` apart, and the cubics are `step`
@@ -38,109 +47,175 @@ void halve(const double* p, int stride, int step, double* low, double* high) {
   }
 }
 
-}  // namespace
-
-void AreaQuadrature::clear() {
-  sum_ = {};
-  kept_.clear();
+double tolerance(const AreaSquare& square) {
+  return std::max({square.absolute, square.relative * square.area, square.rounding});
 }
 
-void AreaQuadrature::measure(Square& square, double relative, double absolute) {
-  const AreaIntegrand integrand(square.points);
-  square.rounding = integrand.rounding();
-  const double one = integrand.quadrature(kGauss1), two = integrand.quadrature(kGauss2),
-               three = integrand.quadrature(kGauss3);
-  sum_.evaluations += 1 + 4 + 9;
-  const double first = std::abs(three - two);
-  const double tolerance = std::max({absolute, relative * three, square.rounding});
-  square.area = three;
-  square.error = first;
-  const bool upright = integrand.isUpright();
-  if (upright && square.error <= tolerance) {
-    return;
-  }
-  square.area = integrand.quadrature(kGauss4);
-  sum_.evaluations += 16;
-  const double second = std::abs(square.area - three);
-  square.error = std::max(errorAfter(first, second), continued(std::abs(two - one), first, 2));
-  if (upright && square.error <= tolerance) {
-    return;
-  }
-  const double six = integrand.quadrature(kGauss6);
-  sum_.evaluations += 36;
-  const double third = std::abs(six - square.area);
-  square.error = std::max(errorAfter(second, third), continued(first, second, 3));
-  square.area = six;
-  if (upright) {
-    return;
-  }
-  const AreaIntegrand::Folds folds = integrand.folds();
-  if (folds.turned > 0) {
-    // In a plane, the area is signed_area + 2 x the part that is turned over. The rule's points
-    // have found that part, or they have not.
-    const double found = (six - folds.signed_area) / 2;
-    square.error = found > folds.turned / kCaution ? third : std::max(third, 2 * folds.turned);
-  }
-}
-
-void AreaQuadrature::add(const BezierPatch& patch, double relative, double absolute) {
-  Square square;
-  for (int i = 0; i < 16; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      square.points[axis][i] = patch.points[i][axis];
+/// Puts a square into a block.
+void put(const AreaSquare& square, int place, SquareBlock& block) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 16; ++i) {
+      block.points[axis][i][place] = square.points[axis][i];
     }
   }
-  measure(square, relative, absolute);
-  if (keep_) {
-    kept_.push_back(square);
-  } else {
-    sum_.value += square.area;
-    sum_.error += square.error + square.rounding;
+}
+
+}  // namespace
+
+AreaSquare::AreaSquare(const BezierPatch& patch, double relative_error, double absolute_error)
+    : relative(relative_error), absolute(absolute_error) {
+  for (int i = 0; i < 16; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      points[axis][i] = patch.points[i][axis];
+    }
   }
 }
 
-void AreaQuadrature::refine(double tolerance, int most) {
-  if (most == 0) {
-    return;
+struct AreaQuadrature::NextRule {
+  AreaKernels::Rule rule;
+  int points;      ///< of the rule
+  int difference;  ///< the number of the difference between the rule before and this one
+  /// The error is at least what would be the difference if the last two went on falling for so many
+  /// rules.
+  int rules;
+};
+
+void AreaQuadrature::measure(std::vector<AreaSquare>& squares) {
+  open_.clear();
+  constexpr std::size_t kBlock = SquareBlock::kCount;
+  for (std::size_t first = 0; first < squares.size(); first += kBlock) {
+    measureFirst(squares, first, std::min(kBlock, squares.size() - first));
   }
-  std::make_heap(kept_.begin(), kept_.end());
+  const AreaKernels& kernels = AreaKernels::get();
+  measureOpen(squares, {kernels.four, 16, 2, 2});
+  measureOpen(squares, {kernels.six, 36, 3, 3});
+  open_.erase(std::remove_if(open_.begin(), open_.end(),
+                             [&](const Open& open) { return isDone(squares[open.square], open); }),
+              open_.end());
+  measureOpen(squares, {kernels.eight, 64, 4, 3});
+}
+
+bool AreaQuadrature::isDone(AreaSquare& square, const Open& open) {
+  const double before = open.differences[2], last = open.differences[3];
+  if (open.upright) {
+    return continued(before, last, 3) > tolerance(square);
+  }
+  const AreaFolds::Parts parts = AreaFolds(square.points).parts();
+  if (parts.turned > 0) {
+    // In a plane, the area is signed_area + 2 x the part that is turned over. The rule's points
+    // have found that part, or they have not.
+    const double found = (square.area - parts.signed_area) / 2;
+    square.error = found > parts.turned / kFewFound ? last : std::max(last, 2 * parts.turned);
+  }
+  return true;
+}
+
+void AreaQuadrature::measureFirst(std::vector<AreaSquare>& squares, std::size_t first,
+                                  std::size_t count) {
+  SquareBlock block;
+  for (std::size_t i = 0; i < SquareBlock::kCount; ++i) {
+    put(squares[first + std::min(i, count - 1)], static_cast<int>(i), block);
+  }
+  FirstRules rules;
+  AreaKernels::get().first_rules(block, rules);
+  for (std::size_t i = 0; i < count; ++i) {
+    AreaSquare& square = squares[first + i];
+    square.rounding = rules.rounding[i];
+    square.area = rules.three[i];
+    square.evaluations = 1 + 4 + 9;
+    Open open;
+    open.square = first + i;
+    open.upright = rules.upright[i] > 0 || AreaFolds(square.points).isUpright();
+    open.differences[0] = std::abs(rules.two[i] - rules.one[i]);
+    open.differences[1] = std::abs(rules.three[i] - rules.two[i]);
+    square.error = open.differences[1];
+    if (!(open.upright && square.error <= tolerance(square))) {
+      open_.push_back(open);
+    }
+  }
+}
+
+void AreaQuadrature::measureOpen(std::vector<AreaSquare>& squares, const NextRule& next) {
+  std::size_t still_open = 0;
+  SquareBlock block;
+  double areas[SquareBlock::kCount];
+  for (std::size_t first = 0; first < open_.size(); first += SquareBlock::kCount) {
+    const std::size_t count = std::min<std::size_t>(SquareBlock::kCount, open_.size() - first);
+    for (std::size_t i = 0; i < SquareBlock::kCount; ++i) {
+      put(squares[open_[first + std::min(i, count - 1)].square], static_cast<int>(i), block);
+    }
+    next.rule(block, areas);
+    for (std::size_t i = 0; i < count; ++i) {
+      Open open = open_[first + i];
+      AreaSquare& square = squares[open.square];
+      square.evaluations += next.points;
+      double* const d = open.differences + next.difference;
+      d[0] = std::abs(areas[i] - square.area);
+      square.area = areas[i];
+      square.error = std::max(errorAfter(d[-1], d[0]), continued(d[-2], d[-1], next.rules));
+      if (!(open.upright && square.error <= tolerance(square))) {
+        open_[still_open++] = open;
+      }
+    }
+  }
+  open_.resize(still_open);
+}
+
+void RefinedArea::start(const std::vector<AreaSquare>& squares) {
+  squares_ = squares;
+  quadrature_.measure(squares_);
+  evaluations_ = 0;
+  for (const AreaSquare& square : squares_) {
+    evaluations_ += square.evaluations;
+  }
+}
+
+void RefinedArea::refine(double tolerance, int most) {
+  std::make_heap(squares_.begin(), squares_.end());
   double error = 0;
-  for (const Square& square : kept_) {
+  for (const AreaSquare& square : squares_) {
     error += square.error;
   }
   for (int made = 0; made + 4 <= most && error > tolerance; made += 4) {
-    const Square whole = kept_.front();
+    const AreaSquare whole = squares_.front();
     if (!(whole.error > whole.rounding)) {
       return;
     }
-    std::pop_heap(kept_.begin(), kept_.end());
-    kept_.pop_back();
+    std::pop_heap(squares_.begin(), squares_.end());
+    squares_.pop_back();
     error -= whole.error;
-    Square strips[2], quarters[4];
+    AreaSquare strips[2];
+    quarters_.resize(4);
     for (int axis = 0; axis < 3; ++axis) {
       halve(whole.points[axis], 4, 1, strips[0].points[axis], strips[1].points[axis]);
     }
-    for (int quarter = 0; quarter < 4; quarter += 2) {
+    for (std::size_t quarter = 0; quarter < 4; quarter += 2) {
       for (int axis = 0; axis < 3; ++axis) {
-        halve(strips[quarter / 2].points[axis], 1, 4, quarters[quarter].points[axis],
-              quarters[quarter + 1].points[axis]);
+        halve(strips[quarter / 2].points[axis], 1, 4, quarters_[quarter].points[axis],
+              quarters_[quarter + 1].points[axis]);
       }
     }
-    for (Square& quarter : quarters) {
-      measure(quarter, 0, tolerance / kShare);
+    for (AreaSquare& quarter : quarters_) {
+      quarter.relative = 0;
+      quarter.absolute = tolerance / kShare;
+    }
+    quadrature_.measure(quarters_);
+    for (const AreaSquare& quarter : quarters_) {
       error += quarter.error;
-      kept_.push_back(quarter);
-      std::push_heap(kept_.begin(), kept_.end());
+      evaluations_ += quarter.evaluations;
+      squares_.push_back(quarter);
+      std::push_heap(squares_.begin(), squares_.end());
     }
   }
 }
 
-SurfaceArea AreaQuadrature::result() const {
-  SurfaceArea result = sum_;
-  for (const Square& square : kept_) {
+SurfaceArea RefinedArea::result() const {
+  SurfaceArea result;
+  for (const AreaSquare& square : squares_) {
     result.value += square.area;
     result.error += square.error + square.rounding;
   }
+  result.evaluations = evaluations_;
   return result;
 }
 

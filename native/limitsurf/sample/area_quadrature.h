@@ -1,52 +1,78 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "limitsurf/sample/area.h"
-#include "limitsurf/sample/area_rules.h"
+#include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
 
-/// The area of a sum of bicubic patches, each of which is halved in both directions where that pays
-/// most.
-///
-/// A square is integrated by rules of more and more points, until two of them agree. The errors of
+/// A square of a bicubic patch's parameters, of which the area is wanted.
+struct AreaSquare {
+  double points[3][16];  ///< the coordinates of its Bezier points, axis by axis
+  /// The rules end where the error is at most the larger one of `absolute` and this part of the
+  /// square's own area.
+  double relative, absolute;
+
+  double area, error, rounding;
+  std::int64_t evaluations;
+
+  /// Of a whole patch, in its own unit (PatchUnit).
+  AreaSquare(const BezierPatch& patch, double relative, double absolute);
+  AreaSquare() = default;
+
+  SurfaceArea result() const { return {area, error + rounding, evaluations}; }
+  bool operator<(const AreaSquare& other) const { return error < other.error; }
+};
+
+/// The areas of squares, by rules of more and more points, until two of them agree. The errors of
 /// Gauss's rules fall geometrically with the number of points where the integrand is smooth; the
-/// last two differences tell the ratio, and with it the error of the last rule.
+/// last two differences tell the ratio, and with it the error of the last rule. Squares are
+/// measured side by side; none has any influence on another.
 class AreaQuadrature {
  public:
-  void clear();
+  void measure(std::vector<AreaSquare>& squares);
 
-  /// Adds a patch, in its own unit (PatchUnit). The rules end where the error is at most the larger
-  /// one of `absolute` and this part of the patch's own area.
-  void add(const BezierPatch& patch, double relative, double absolute);
+ private:
+  /// A square, and the differences between the results of one rule and the next.
+  struct Open {
+    std::size_t square;
+    bool upright;
+    double differences[5];
+  };
 
+  void measureFirst(std::vector<AreaSquare>& squares, std::size_t first, std::size_t count);
+  /// Applies the next rule to all open squares. Those that are exact enough are open no longer.
+  struct NextRule;
+  void measureOpen(std::vector<AreaSquare>& squares, const NextRule& next);
+  /// Whether a square whose rule of 6 points is not exact enough has to be left so: where there are
+  /// folds, which count as errors then, or where 8 points do not promise to be enough.
+  static bool isDone(AreaSquare& square, const Open& open);
+
+  std::vector<Open> open_;
+};
+
+/// The area of a sum of squares, each of which is halved in both directions where that pays most.
+class RefinedArea {
+ public:
+  /// Starts anew with these squares.
+  void start(const std::vector<AreaSquare>& squares);
   /// Quarters squares until the sum of all errors is below `tolerance`, or until this has made
-  /// `most` squares. The squares must have been kept since clear().
+  /// `most` squares.
   void refine(double tolerance, int most);
-  /// Whether squares are kept for refine(); they are not at first.
-  void keepSquares(bool keep) { keep_ = keep; }
-
   /// All squares together.
   SurfaceArea result() const;
 
  private:
-  struct Square {
-    double points[3][16];
-    double area, error, rounding;
-
-    bool operator<(const Square& other) const { return error < other.error; }
-  };
-
   /// A quarter of a square needs no smaller error than this part of the tolerance of all squares.
   static constexpr double kShare = 64;
 
-  void measure(Square& square, double relative, double absolute);
-
-  bool keep_ = false;
-  SurfaceArea sum_;           // of the squares that are not kept, and of all evaluations
-  std::vector<Square> kept_;  // a heap once refine() has been called
+  AreaQuadrature quadrature_;
+  std::vector<AreaSquare> squares_;  // a heap once refine() has been called
+  std::vector<AreaSquare> quarters_;
+  std::int64_t evaluations_ = 0;
 };
 
 }  // namespace limitsurf

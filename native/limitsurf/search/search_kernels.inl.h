@@ -64,8 +64,8 @@ struct Extremes {
   Four low = Four::of(__builtin_inf()), high = Four::of(-__builtin_inf());
 
   void include(const Four& numbers) {
-    low = least(low, numbers);
-    high = largest(high, numbers);
+    low = Four::smaller(low, numbers);
+    high = Four::larger(high, numbers);
   }
   void store(double& out_low, double& out_high) const {
     double lows[4], highs[4];

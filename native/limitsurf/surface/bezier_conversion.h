@@ -8,11 +8,15 @@ namespace limitsurf {
 /// Replaces the uniform B-spline control points p0..p3, which are `stride` apart, by the Bezier
 /// points of the middle span.
 inline void toBezier(Padded* p, int stride) {
+  // Products with rounded numbers take a fifth of the time of divisions, and are as exact beside p1
+  // and p2, which lie close together.
+  constexpr double kThird = 1. / 3, kSixth = 1. / 6;
   const Padded p0 = p[0], p1 = p[stride], p2 = p[2 * stride], p3 = p[3 * stride];
-  p[0] = p1 + ((p0 - p1) + (p2 - p1)) / 6;
-  p[stride] = p1 + (p2 - p1) / 3;
-  p[2 * stride] = p2 + (p1 - p2) / 3;
-  p[3 * stride] = p2 + ((p1 - p2) + (p3 - p2)) / 6;
+  const Padded side = p2 - p1;
+  p[0] = p1 + kSixth * ((p0 - p1) + side);
+  p[stride] = p1 + kThird * side;
+  p[2 * stride] = p2 - kThird * side;
+  p[3 * stride] = p2 + kSixth * ((p3 - p2) - side);
 }
 
 /// Replaces the values of a cubic at 0, 1/3, 2/3 and 1 by its Bezier coefficients.

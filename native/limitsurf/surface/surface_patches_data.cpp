@@ -11,6 +11,7 @@
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/bezier_conversion.h"
 #include "limitsurf/surface/grid_step.h"
+#include "limitsurf/surface/ring_shrinkage.h"
 #include "limitsurf/surface/tile_weights.h"
 
 namespace limitsurf {
@@ -86,9 +87,13 @@ void SurfacePatches::Data::setLevels(int threads) {
   for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
     first_level[ring] = size;
     first_extent[ring] = steps;
-    const std::size_t kept = static_cast<std::size_t>(keptSteps(static_cast<int>(ring))) + 1;
-    size += table.rings[ring].points.size() * kept;
-    steps += kept;
+    const int kept = keptSteps(static_cast<int>(ring));
+    size += table.rings[ring].points.size() * static_cast<std::size_t>(kept + 1);
+    steps += static_cast<std::size_t>(kept + 1);
+    const Eigenbasis* basis = table.rings[ring].basis.get();
+    if (kept < kMostSteps && shrinkages_.count(basis) == 0) {
+      shrinkages_[basis] = ringShrinkage(*basis, kMostSteps - kept);
+    }
   }
   levels.resize(size);
   extents.resize(steps);
@@ -190,19 +195,27 @@ void SurfacePatches::Data::setRingLevels(int ring_index) {
   }
   const int kept_steps = keptSteps(ring_index);
   float* out = &radii[static_cast<std::size_t>(ring_index) * (kMostSteps + 1)];
-  for (int step = 0; step <= kMostSteps; ++step) {
+  double radius = 0;
+  for (int step = 0; step <= kept_steps; ++step) {
+    if (step > 0) {
+      ring.basis->step().apply([&](int i) -> const Padded& { return points[i]; },
+                               [&](int i) -> Padded& { return next[i]; });
+      points.swap(next);
+    }
     double squared = 0;
     for (const Padded& point : points) {
       squared = std::max(squared, point.square().sum());
     }
-    out[step] = static_cast<float>(std::sqrt(squared) / unit * (1 + kFloatMargin));
-    if (step <= kept_steps) {
-      std::copy(points.begin(), points.end(),
-                &levels[first_level[ring_index] + points.size() * step]);
+    radius = std::sqrt(squared) / unit * (1 + kFloatMargin);
+    out[step] = static_cast<float>(radius);
+    std::copy(points.begin(), points.end(),
+              &levels[first_level[ring_index] + points.size() * step]);
+  }
+  if (kept_steps < kMostSteps) {
+    const std::vector<double>& shrinkage = shrinkages_.at(ring.basis.get());
+    for (int step = kept_steps + 1; step <= kMostSteps; ++step) {
+      out[step] = static_cast<float>(radius * shrinkage[step - kept_steps]);
     }
-    ring.basis->step().apply([&](int i) -> const Padded& { return points[i]; },
-                             [&](int i) -> Padded& { return next[i]; });
-    points.swap(next);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "limitsurf/patch/tile_table.h"
@@ -76,6 +77,9 @@ struct SurfacePatches::Data {
   int keptSteps(int ring) const;
   void setRingLevels(int ring);
   void stripPatch(const BSplineTile& tile, int strip, BezierPatch& out) const;
+
+  /// ringShrinkage() of rings with few faces, for the steps of which no points are kept.
+  std::map<const Eigenbasis*, std::vector<double>> shrinkages_;
 };
 
 }  // namespace limitsurf

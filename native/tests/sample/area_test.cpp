@@ -9,13 +9,14 @@
 #include <cmath>
 #include <random>
 
+#include "limitsurf/surface/batch/instruction_sets.h"
 #include "support/cages/meshes.h"
 
 namespace limitsurf::test {
 namespace {
 
 /// No tile takes more evaluations than this at first: cores take 66 for each patch of at most 72
-/// steps, and far fewer on ordinary meshes.
+/// steps, or 130 where so many promise to be enough, and far fewer on ordinary meshes.
 constexpr std::int64_t kMostFirst = 66 * 3 * 72;
 /// All squares that refinement makes, if it takes up fewer than 2048 tiles: 66 places each.
 constexpr std::int64_t kMostRefined = std::int64_t{66} << 17;
@@ -135,6 +136,35 @@ TEST(Area, OfTrianglesTakesFewEvaluations) {
   // 12 tiles for each triangle, 6 of which are cores.
   EXPECT_LE(area.evaluations, 800 * 12 * 800);
   EXPECT_LE(measuredArea(limitSurface(quads)).evaluations, 400 * 130);
+}
+
+/// One rule of 8 points a side is enough where quarters with 6 each took twice as many.
+TEST(Area, OfUnevenQuadsTakesOneRuleForMost) {
+  Cage cage = perturbed(grid(40, 40), 0.1, 1);
+  for (int vertex = 0; vertex < cage.vertexCount(); ++vertex) {
+    auto p = cage.positions.row(vertex);
+    p[2] = std::sin(0.9 * p[0]) * std::sin(p[1]);
+  }
+  EXPECT_LE(measuredArea(limitSurface(cage)).evaluations, 1600 * 150);
+}
+
+TEST(Area, HasTheSameBitsWithAllInstructionSets) {
+  const InstructionSet before = instructionSet();
+  const LimitSurface even = limitSurface(perturbed(pole(7), 0.1, 1)),
+                     surface = limitSurface(folded(5, 5, 0.5, 1));
+  useInstructionSet(InstructionSet::baseline);
+  const SurfaceArea first = measuredArea(even), second = measuredArea(surface);
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!isAvailable(set)) continue;
+    useInstructionSet(set);
+    const SurfaceArea same_first = measuredArea(even), same_second = measuredArea(surface);
+    EXPECT_EQ(first.value, same_first.value);
+    EXPECT_EQ(first.error, same_first.error);
+    EXPECT_EQ(second.value, same_second.value);
+    EXPECT_EQ(second.error, same_second.error);
+    EXPECT_EQ(second.evaluations, same_second.evaluations);
+  }
+  useInstructionSet(before);
 }
 
 TEST(Area, DoesNotDependOnThreads) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Numbers for vector instructions. Included once for each instruction set, inside a namespace.
+// Arithmetic on several numbers at once. To be included inside a namespace that is compiled for one
+// instruction set, as patch_kernels.cpp does.
 
-/// kCount numbers on which one instruction works, or a few that each work on a part of them.
+/// kCount numbers on which one instruction works.
 template <int kCount>
 struct Lanes {
 #if defined(__GNUC__)
@@ -14,6 +15,12 @@ struct Lanes {
   friend Lanes operator*(const Lanes& a, const Lanes& b) { return {a.numbers * b.numbers}; }
   friend Lanes operator/(const Lanes& a, const Lanes& b) { return {a.numbers / b.numbers}; }
   static Lanes of(double a) { return {a - Numbers{}}; }
+  static Lanes larger(const Lanes& a, const Lanes& b) {
+    return {a.numbers > b.numbers ? a.numbers : b.numbers};
+  }
+  static Lanes smaller(const Lanes& a, const Lanes& b) {
+    return {a.numbers < b.numbers ? a.numbers : b.numbers};
+  }
 #else
   double numbers[kCount];
 
@@ -44,6 +51,12 @@ struct Lanes {
     }
     return result;
   }
+  static Lanes larger(const Lanes& a, const Lanes& b) {
+    return each(a, b, [](double x, double y) { return x > y ? x : y; });
+  }
+  static Lanes smaller(const Lanes& a, const Lanes& b) {
+    return each(a, b, [](double x, double y) { return x < y ? x : y; });
+  }
 #endif
   friend Lanes operator+(const Lanes& a, double b) { return a + of(b); }
   friend Lanes operator-(const Lanes& a, double b) { return a - of(b); }
@@ -57,21 +70,6 @@ struct Lanes {
     Lanes result;
     __builtin_memcpy(&result, from, sizeof result);
     return result;
-  }
-  /// The smaller and the larger of each two numbers.
-  friend Lanes least(const Lanes& a, const Lanes& b) {
-#if defined(__GNUC__)
-    return {b.numbers < a.numbers ? b.numbers : a.numbers};
-#else
-    return each(a, b, [](double x, double y) { return y < x ? y : x; });
-#endif
-  }
-  friend Lanes largest(const Lanes& a, const Lanes& b) {
-#if defined(__GNUC__)
-    return {a.numbers < b.numbers ? b.numbers : a.numbers};
-#else
-    return each(a, b, [](double x, double y) { return x < y ? y : x; });
-#endif
   }
   void store(double* to) const { __builtin_memcpy(to, this, sizeof *this); }
   void store(float* to) const {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/sample/area_rules.h"
+#include "limitsurf/sample/area_folds.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace limitsurf {
 namespace {
@@ -34,7 +35,23 @@ bool findExtremes(const double (&vectors)[12][2], const double middle[2], Extrem
 
 }  // namespace
 
-bool AreaIntegrand::isUpright() const {
+AreaFolds::AreaFolds(const Points& points) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double* p = points[axis];
+    for (int row = 0; row < 4; ++row) {
+      for (int i = 0; i < 3; ++i) {
+        ds_[axis][row][i] = 3 * (p[4 * row + i + 1] - p[4 * row + i]);
+      }
+    }
+    for (int row = 0; row < 3; ++row) {
+      for (int i = 0; i < 4; ++i) {
+        dt_[axis][row][i] = 3 * (p[4 * row + 4 + i] - p[4 * row + i]);
+      }
+    }
+  }
+}
+
+bool AreaFolds::isUpright() const {
   const auto middle = [](const double* p, int count) {
     // The middle ones of a row of four, or of three, count most.
     return count == 4 ? p[0] + 3 * (p[1] + p[2]) + p[3] : p[0] + 2 * p[1] + p[2];
@@ -72,7 +89,7 @@ bool AreaIntegrand::isUpright() const {
          crossProduct(extreme_s.clockwise, extreme_t.counter_clockwise) > 0;
 }
 
-AreaIntegrand::Folds AreaIntegrand::folds() const {
+AreaFolds::Parts AreaFolds::parts() const {
   // ds x dt in Bezier form, of degree 5 in both directions: the binomials of the factors over those
   // of the product.
   constexpr double kTwo[3] = {1, 2, 1}, kThree[4] = {1, 3, 3, 1};
@@ -98,7 +115,7 @@ AreaIntegrand::Folds AreaIntegrand::folds() const {
       sum += form[6 * b + a];
     }
   }
-  Folds result = {sum.norm(), 0};
+  Parts result = {sum.norm(), 0};
   if (result.signed_area > 0) {
     const Vector3 normal = sum / result.signed_area;
     for (const Vector3& c : form) {

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Quadratures of |ds x dt| on several squares at once. area_kernels.cpp includes this file once for
+// each instruction set, inside a namespace, after it has defined kLanes and squareRoot(). Nothing
+// here may call a function that is defined elsewhere: its code could be that of another set.
+
+#include "limitsurf/surface/batch/lanes.inl.h"
+
+/// kLanes squares at a time.
+using Squares = Lanes<kLanes>;
+
+struct SquareVector {
+  Squares axis[3];
+};
+
+inline Squares squaredLength(const SquareVector& a) {
+  return a.axis[0] * a.axis[0] + a.axis[1] * a.axis[1] + a.axis[2] * a.axis[2];
+}
+
+inline SquareVector crossProduct(const SquareVector& a, const SquareVector& b) {
+  return {{a.axis[1] * b.axis[2] - a.axis[2] * b.axis[1],
+           a.axis[2] * b.axis[0] - a.axis[0] * b.axis[2],
+           a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
+}
+
+/// The derivatives of bicubic patches, in Bezier form.
+struct SquareDerivatives {
+  SquareDerivatives(const SquareBlock& squares, int first) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Squares p[16];
+      for (int i = 0; i < 16; ++i) {
+        p[i] = Squares::load(squares.points[axis][i] + first);
+      }
+      for (int row = 0; row < 4; ++row) {
+        for (int i = 0; i < 3; ++i) {
+          ds[axis][row][i] = 3 * (p[4 * row + i + 1] - p[4 * row + i]);
+        }
+      }
+      for (int row = 0; row < 3; ++row) {
+        for (int i = 0; i < 4; ++i) {
+          dt[axis][row][i] = 3 * (p[4 * row + 4 + i] - p[4 * row + i]);
+        }
+      }
+    }
+  }
+
+  Squares ds[3][4][3], dt[3][3][4];
+};
+
+template <int N>
+inline Squares quadrature(const SquareDerivatives& d, const GaussRule<N>& rule) {
+  Squares sum = Squares::of(0);
+  for (int j = 0; j < N; ++j) {
+    Squares p[3][3], q[3][4];
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < 3; ++i) {
+        p[axis][i] = (rule.cubic[j][0] * d.ds[axis][0][i] + rule.cubic[j][1] * d.ds[axis][1][i]) +
+                     (rule.cubic[j][2] * d.ds[axis][2][i] + rule.cubic[j][3] * d.ds[axis][3][i]);
+      }
+      for (int i = 0; i < 4; ++i) {
+        q[axis][i] = rule.quadratic[j][0] * d.dt[axis][0][i] +
+                     rule.quadratic[j][1] * d.dt[axis][1][i] +
+                     rule.quadratic[j][2] * d.dt[axis][2][i];
+      }
+    }
+    Squares row = Squares::of(0);
+    for (int i = 0; i < N; ++i) {
+      SquareVector s, t;
+      for (int axis = 0; axis < 3; ++axis) {
+        s.axis[axis] = rule.quadratic[i][0] * p[axis][0] + rule.quadratic[i][1] * p[axis][1] +
+                       rule.quadratic[i][2] * p[axis][2];
+        t.axis[axis] = (rule.cubic[i][0] * q[axis][0] + rule.cubic[i][1] * q[axis][1]) +
+                       (rule.cubic[i][2] * q[axis][2] + rule.cubic[i][3] * q[axis][3]);
+      }
+      row = row + rule.weight[i] * squareRoot(squaredLength(crossProduct(s, t)));
+    }
+    sum = sum + rule.weight[j] * row;
+  }
+  return sum;
+}
+
+/// The largest coordinate of vectors, without its sign.
+template <int kRows, int kColumns>
+inline Squares largestCoordinate(const Squares (&vectors)[3][kRows][kColumns]) {
+  Squares largest = Squares::of(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int row = 0; row < kRows; ++row) {
+      for (int i = 0; i < kColumns; ++i) {
+        const Squares& a = vectors[axis][row][i];
+        largest = Squares::larger(largest, Squares::larger(a, Squares::of(0) - a));
+      }
+    }
+  }
+  return largest;
+}
+
+/// The mean of Bezier points in which those in the middle count most, as in the derivative in the
+/// middle of the square, and the largest squared distance of one of them from it.
+template <int kRows, int kColumns>
+inline void meanAndSpread(const Squares (&vectors)[3][kRows][kColumns], SquareVector& mean,
+                          Squares& spread) {
+  constexpr double kThree[3] = {0.25, 0.5, 0.25}, kFour[4] = {0.125, 0.375, 0.375, 0.125};
+  for (int axis = 0; axis < 3; ++axis) {
+    mean.axis[axis] = Squares::of(0);
+    for (int row = 0; row < kRows; ++row) {
+      for (int i = 0; i < kColumns; ++i) {
+        const double weight = kRows == 4 ? kFour[row] * kThree[i] : kThree[row] * kFour[i];
+        mean.axis[axis] = mean.axis[axis] + weight * vectors[axis][row][i];
+      }
+    }
+  }
+  spread = Squares::of(0);
+  for (int row = 0; row < kRows; ++row) {
+    for (int i = 0; i < kColumns; ++i) {
+      const SquareVector off = {{vectors[0][row][i] - mean.axis[0],
+                                 vectors[1][row][i] - mean.axis[1],
+                                 vectors[2][row][i] - mean.axis[2]}};
+      spread = Squares::larger(spread, squaredLength(off));
+    }
+  }
+}
+
+/// |s x t| in the middle, less a bound on how far ds x dt differs from it: if that is above 0, ds x
+/// dt turns nowhere.
+inline Squares uprightness(const SquareDerivatives& d) {
+  SquareVector s, t;
+  Squares s_spread, t_spread;
+  meanAndSpread(d.ds, s, s_spread);
+  meanAndSpread(d.dt, t, t_spread);
+  const Squares a = squareRoot(s_spread), b = squareRoot(t_spread);
+  const Squares change =
+      a * squareRoot(squaredLength(t)) + b * squareRoot(squaredLength(s)) + a * b;
+  constexpr double kMoreThanRounding = 1 + 1e-9;
+  return squareRoot(squaredLength(crossProduct(s, t))) - kMoreThanRounding * change;
+}
+
+inline void firstRules(const SquareBlock& squares, FirstRules& out) {
+  constexpr double kRounding = 4e-15;
+  for (int first = 0; first < SquareBlock::kCount; first += kLanes) {
+    const SquareDerivatives d(squares, first);
+    quadrature(d, kGauss1).store(out.one + first);
+    quadrature(d, kGauss2).store(out.two + first);
+    quadrature(d, kGauss3).store(out.three + first);
+    (kRounding * largestCoordinate(d.ds) * largestCoordinate(d.dt)).store(out.rounding + first);
+    uprightness(d).store(out.upright + first);
+  }
+}
+
+template <int N>
+inline void areas(const SquareBlock& squares, const GaussRule<N>& rule,
+                  double out[SquareBlock::kCount]) {
+  for (int first = 0; first < SquareBlock::kCount; first += kLanes) {
+    quadrature(SquareDerivatives(squares, first), rule).store(out + first);
+  }
+}
+
+inline void fourPoints(const SquareBlock& squares, double out[SquareBlock::kCount]) {
+  areas(squares, kGauss4, out);
+}
+inline void sixPoints(const SquareBlock& squares, double out[SquareBlock::kCount]) {
+  areas(squares, kGauss6, out);
+}
+inline void eightPoints(const SquareBlock& squares, double out[SquareBlock::kCount]) {
+  areas(squares, kGauss8, out);
+}
+
+constexpr AreaKernels kKernels = {firstRules, fourPoints, sixPoints, eightPoints};
