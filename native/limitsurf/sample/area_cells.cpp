@@ -3,6 +3,7 @@
 
 #include "limitsurf/float_rounding.h"
 #include "limitsurf/sample/area_form.h"
+#include "limitsurf/sample/area_kernels.h"
 #include "limitsurf/sample/concatenation.h"
 #include "limitsurf/sample/core_tail.h"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr double kLoose = 1.3, kNoticeable = 0.02;
 constexpr int kMostLevels = 6;
 /// A core is split until the bound on its area is this part of the bounds of the patches around it.
-constexpr double kTail = 0.05;
+constexpr double kTail = 0.25;
 /// The number of tiles that one task cuts into cells.
 constexpr std::size_t kTilesPerTask = 64;
 
@@ -24,28 +25,58 @@ class CellMaker {
  public:
   CellMaker(const SurfacePatches& patches, std::vector<AreaCell>& cells)
       : patches_(patches), cells_(cells) {}
+  ~CellMaker() { addWaiting(); }
 
   void add(const SurfacePiece& piece) {
     if (piece.isCore()) {
+      addWaiting();
       addCore(piece);
     } else {
-      addPatch(piece, patches_.patch(piece));
+      wait(piece, patches_.patch(piece));
     }
   }
 
  private:
-  void addPatch(const SurfacePiece& piece, const BezierPatch& patch) {
-    const AreaForm form(patch);
-    AreaCell cell;
-    cell.piece = piece;
-    addCell(cell, form, 1, form.mean());
+  /// Patches wait until there are enough to be bounded side by side.
+  void wait(const SurfacePiece& piece, const BezierPatch& patch) {
+    pieces_[waiting_] = piece;
+    block_.put(patch, waiting_);
+    if (++waiting_ == SquareBlock::kCount) {
+      addWaiting();
+    }
   }
+
+  /// Adds the cells of all patches that wait. Returns the sum of their bounds.
+  double addWaiting() {
+    double bounds[SquareBlock::kCount], means[SquareBlock::kCount];
+    for (int place = waiting_; waiting_ > 0 && place < SquareBlock::kCount; ++place) {
+      block_.copy(0, place);
+    }
+    AreaKernels::get().bounds(block_, waiting_, bounds, means);
+    sum_ = 0;
+    for (int i = 0; i < waiting_; ++i) {
+      AreaCell cell;
+      cell.piece = pieces_[i];
+      if (isLoose(bounds[i], means[i])) {
+        BezierPatch patch;
+        block_.get(i, patch);
+        const AreaForm form(patch);
+        addCell(cell, form, 1, form.mean());
+      } else {
+        addCell(cell, bounds[i], means[i]);
+      }
+    }
+    waiting_ = 0;
+    return sum_;
+  }
+
+  static bool isLoose(double bound, double mean) { return bound > kLoose * mean; }
 
   /// `size` is the part of the patch's parameter square that the cell covers, `whole` the patch's
   /// area.
   void addCell(AreaCell cell, const AreaForm& form, double size, double whole) {
     const double bound = form.bound(), mean = form.mean();
-    if (cell.level < kMostLevels && bound > kLoose * mean &&
+    if (cell.level < kMostLevels && isLoose(bound, mean) &&
         (bound - mean) * size > kNoticeable * whole) {
       for (int t = 0; t < 2; ++t) {
         const AreaForm strip = form.half(true, t);
@@ -59,35 +90,44 @@ class CellMaker {
       }
       return;
     }
+    addCell(cell, bound * size, mean * size);
+  }
+
+  void addCell(AreaCell& cell, double bound, double area) {
     if (bound > 0) {
-      cell.bound = roundedUp(bound * size);
-      cell.area = static_cast<float>(mean * size);
-      bounds_ += cell.bound;
+      cell.bound = roundedUp(bound);
+      cell.area = static_cast<float>(area);
+      sum_ += cell.bound;
       cells_.push_back(cell);
     }
   }
 
   void addCore(SurfacePiece core) {
-    bounds_ = 0;
+    double bounds = 0;
     SurfacePatches::SplitCore split;
+    RingPitches pitches(patches_, core);
     while (core.steps < SurfacePatches::kMostSteps) {
       patches_.split(core, split);
       for (int quarter = 0; quarter < 3; ++quarter) {
-        addPatch(split.pieces[quarter], split.patches[quarter]);
+        wait(split.pieces[quarter], split.patches[quarter]);
       }
+      bounds += addWaiting();
       core = split.core;
-      const CoreTail tail(patches_, core, split.core_box);
-      const double area = tail.area();
-      if (!(area > kTail * bounds_)) {
-        if (area > 0) {
-          AreaCell cell;
-          cell.piece = core;
-          // The bound is summed up from the rounded number, as samplers will do it, to the last
-          // bit.
-          cell.outer = roundedUp(tail.outer());
-          cell.bound = roundedUp(CoreTail(patches_, core, cell.outer).area());
-          cells_.push_back(cell);
+      const Vector3 outer = patches_.outerPitch(split, pitches.frame());
+      const double area = CoreTail(pitches, core.steps, outer).area();
+      if (!(area > kTail * bounds)) {
+        if (!(area > 0)) {
+          return;
         }
+        AreaCell cell;
+        cell.piece = core;
+        // The bound is summed up from the rounded numbers, as samplers will do it, to the last bit.
+        Vector3 rounded;
+        for (int axis = 0; axis < 3; ++axis) {
+          rounded[axis] = cell.outer[axis] = roundedUp(outer[axis]);
+        }
+        cell.bound = roundedUp(CoreTail(pitches, core.steps, rounded).area());
+        cells_.push_back(cell);
         return;
       }
     }
@@ -95,7 +135,10 @@ class CellMaker {
 
   const SurfacePatches& patches_;
   std::vector<AreaCell>& cells_;
-  double bounds_ = 0;  // the sum of the bounds of a core's cells so far
+  SquareBlock block_;
+  SurfacePiece pieces_[SquareBlock::kCount];
+  int waiting_ = 0;
+  double sum_ = 0;  // of the bounds of the cells made together
 };
 
 }  // namespace

@@ -17,8 +17,8 @@ struct AreaCell {
   /// On a patch, an upper bound of |ds x dt| with respect to the cell's own (s, t) in [0, 1]^2. Of
   /// a core, the sum of such bounds over its patches, by CoreTail.
   float bound = 0;
-  float area = 0;   ///< estimated
-  float outer = 0;  ///< of a core: what CoreTail starts from
+  float area = 0;       ///< estimated
+  float outer[3] = {};  ///< of a core: what CoreTail starts from
 };
 
 /// The surface cut into cells so small that the area of each is close to its bound, in face order.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "limitsurf/surface/bezier_patch.h"
+
 namespace limitsurf {
 
 /// Squares of bicubic patches, side by side, for quadratures of |ds x dt|.
@@ -8,6 +10,28 @@ struct SquareBlock {
   static constexpr int kCount = 8;
 
   double points[3][16][kCount];  ///< the coordinates of each square's Bezier points, axis by axis
+
+  void put(const BezierPatch& patch, int place) {
+    for (int i = 0; i < 16; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        points[axis][i][place] = patch.points[i][axis];
+      }
+    }
+  }
+  /// The opposite of put(): sets the points of a patch.
+  void get(int place, BezierPatch& patch) const {
+    for (int i = 0; i < 16; ++i) {
+      patch.points[i] = {points[0][i][place], points[1][i][place], points[2][i][place], 0};
+    }
+  }
+  /// Fills a place with the square of another, since every place has to hold numbers.
+  void copy(int from, int to) {
+    for (int i = 0; i < 16; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        points[axis][i][to] = points[axis][i][from];
+      }
+    }
+  }
 };
 
 /// What is computed of each square of a block at first.
@@ -18,7 +42,7 @@ struct FirstRules {
   double upright[SquareBlock::kCount];
 };
 
-/// The quadratures of area(), compiled for one instruction set. A square's results do not depend on
+/// Quadratures and bounds, compiled for one instruction set. A square's results do not depend on
 /// the set, nor on the other squares of its block.
 struct AreaKernels {
   /// Gauss's rules with 1, 2 and 3 points a side.
@@ -26,6 +50,10 @@ struct AreaKernels {
   /// The rules with 4, 6 and 8 points a side.
   using Rule = void (*)(const SquareBlock& squares, double areas[SquareBlock::kCount]);
   Rule four, six, eight;
+
+  /// Of the first `count` squares, an upper bound of |ds x dt| and an estimate of its mean.
+  void (*bounds)(const SquareBlock& squares, int count, double bounds[SquareBlock::kCount],
+                 double means[SquareBlock::kCount]);
 
   /// For the instruction set in use.
   static const AreaKernels& get();

@@ -164,4 +164,50 @@ inline void eightPoints(const SquareBlock& squares, double out[SquareBlock::kCou
   areas(squares, kGauss8, out);
 }
 
-constexpr AreaKernels kKernels = {firstRules, fourPoints, sixPoints, eightPoints};
+/// The largest squared length of the Bezier points of ds x dt, which is of degree 5 in both
+/// directions.
+inline Squares largestSquare(const SquareDerivatives& d) {
+  // Product of Bernstein polynomials: the binomials of the factors over those of the product.
+  constexpr double kTwo[3] = {1, 2, 1}, kThree[4] = {1, 3, 3, 1};
+  constexpr double kFive[6] = {1, 5, 10, 10, 5, 1};
+  Squares largest = Squares::of(0);
+  for (int row = 0; row < 6; ++row) {
+    SquareVector form[6];
+    for (SquareVector& point : form) {
+      point = {{Squares::of(0), Squares::of(0), Squares::of(0)}};
+    }
+    for (int j = row < 2 ? 0 : row - 2; j < 4 && j <= row; ++j) {
+      const int l = row - j;
+      for (int i = 0; i < 3; ++i) {
+        const double s_weight = kThree[j] * kTwo[i] * kTwo[l];
+        const SquareVector s = {
+            {s_weight * d.ds[0][j][i], s_weight * d.ds[1][j][i], s_weight * d.ds[2][j][i]}};
+        for (int k = 0; k < 4; ++k) {
+          const SquareVector t = {
+              {kThree[k] * d.dt[0][l][k], kThree[k] * d.dt[1][l][k], kThree[k] * d.dt[2][l][k]}};
+          const SquareVector product = crossProduct(s, t);
+          for (int axis = 0; axis < 3; ++axis) {
+            form[i + k].axis[axis] = form[i + k].axis[axis] + product.axis[axis];
+          }
+        }
+      }
+    }
+    for (int i = 0; i < 6; ++i) {
+      const double weight = 1 / (kFive[i] * kFive[row]);
+      largest = Squares::larger(largest, (weight * weight) * squaredLength(form[i]));
+    }
+  }
+  return largest;
+}
+
+inline void boundsAndMeans(const SquareBlock& squares, int count,
+                           double bounds[SquareBlock::kCount], double means[SquareBlock::kCount]) {
+  constexpr double kMoreThanRounding = 1 + 1e-12;
+  for (int first = 0; first < count; first += kLanes) {
+    const SquareDerivatives d(squares, first);
+    (kMoreThanRounding * squareRoot(largestSquare(d))).store(bounds + first);
+    quadrature(d, kGauss3).store(means + first);
+  }
+}
+
+constexpr AreaKernels kKernels = {firstRules, fourPoints, sixPoints, eightPoints, boundsAndMeans};

@@ -77,7 +77,8 @@ class Candidates {
   /// beyond the last patch: the candidate is rejected then.
   bool pickFromCore(const AreaCell& cell, double number, SurfacePiece& piece, double& bound) const {
     double rest = number * cell.bound;
-    CoreTail tail(patches_, cell.piece, cell.outer);
+    RingPitches pitches(patches_, cell.piece);
+    CoreTail tail(pitches, cell.piece.steps, Vector3(cell.outer[0], cell.outer[1], cell.outer[2]));
     for (; !tail.ended() && rest >= 3 * tail.bound(); tail.step()) {
       rest -= 3 * tail.bound();
     }
@@ -85,7 +86,8 @@ class Candidates {
     if (tail.ended() || !(bound > 0)) {
       return false;
     }
-    piece = tail.piece(std::min(static_cast<int>(rest / bound), 2));
+    piece.steps = static_cast<std::int16_t>(tail.steps() + 1);
+    piece.part = static_cast<std::int16_t>(std::min(static_cast<int>(rest / bound), 2));
     return true;
   }
 

@@ -4,10 +4,14 @@
 #include <vector>
 
 #include "limitsurf/sample/bounded_patch.h"
-#include "limitsurf/sample/core_tail.h"
 #include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
+
+/// The largest distance of a point of the box from `from`.
+inline double farthestDistance(const Vector3& from, const Box& box) {
+  return length(Vector3((box.high - from).cwiseMax(from - box.low)));
+}
 
 /// A core, split patch by patch towards its vertex, as far inwards as a query needs.
 class CoreDescent {
@@ -22,7 +26,7 @@ class CoreDescent {
         box.include((patch.anchor + p).head<3>().matrix());
       }
     }
-    reach_ = CoreTail::farthest(vertex_, box);
+    reach_ = farthestDistance(vertex_, box);
     append(first_);
   }
 
@@ -48,7 +52,7 @@ class CoreDescent {
       extents_.push_back(BoundedPatch(patch).extent(TrialCell()));
     }
     core_ = split.core;
-    rest_ = CoreTail::farthest(vertex_, split.core_box);
+    rest_ = farthestDistance(vertex_, split.core_box);
   }
 
   /// Splits the remaining core once more. Returns false if it is too small for that.

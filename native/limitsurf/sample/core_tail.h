@@ -2,61 +2,74 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
 
+/// Distances of neighbouring points of a ring after each number of steps, coordinate by coordinate
+/// in the core's own frame. They are computed when they are first asked for.
+class RingPitches {
+ public:
+  RingPitches(const SurfacePatches& patches, const SurfacePiece& core)
+      : patches_(patches), core_(core), frame_(patches.coreFrame(core)) {}
+
+  const Eigen::Matrix3d& frame() const { return frame_; }
+  const Vector3& after(int steps) {
+    if (!is_known_[steps]) {
+      core_.steps = static_cast<std::int16_t>(steps);
+      pitches_[steps] = patches_.ringPitch(core_, frame_);
+      is_known_[steps] = true;
+    }
+    return pitches_[steps];
+  }
+
+ private:
+  const SurfacePatches& patches_;
+  SurfacePiece core_;
+  Eigen::Matrix3d frame_;
+  Vector3 pitches_[SurfacePatches::kMostSteps + 1];
+  bool is_known_[SurfacePatches::kMostSteps + 1] = {};
+};
+
 /// Bounds on the area of the patches that a core consists of, step after step, without splitting
 /// it.
 ///
-/// After n steps the control points of a core are those of the ring, within r(n) of the vertex
-/// (SurfacePatches::coreRadius()), and those beyond the ring, within o(n). A step replaces the
-/// latter by means of both, in which the points beyond the ring weigh 1/4 at most, so that o(n + 1)
-/// <= 3/4 r(n) + 1/4 o(n). The first derivatives of a B-spline are means of the differences of
-/// neighbouring control points, so that |ds x dt| <= (2 max(r, o))^2 on each patch of the next
-/// step.
+/// The first derivatives of a B-spline are means of the differences of neighbouring control points.
+/// After n steps, the coordinates of such a difference are at most those of d(n) where both points
+/// are the ring's (RingPitches), and those of o(n) for all others. A step applies regular rules to
+/// all points but the vertex itself. It makes of neighbours' differences means of halves of such
+/// differences, so that o(n + 1) <= max(d(n), o(n)) / 2.
 class CoreTail {
  public:
-  /// `box` contains the core.
-  CoreTail(const SurfacePatches& patches, const SurfacePiece& core, const Box& box)
-      : CoreTail(patches, core, farthest(patches.coreVertex(core), box)) {}
-  /// `outer` is o(core.steps).
-  CoreTail(const SurfacePatches& patches, const SurfacePiece& core, double outer)
-      : patches_(patches), core_(core), outer_(outer), radius_(patches.coreRadius(core)) {}
+  /// The part of a core that is left after `steps` steps. `outer` is o(steps).
+  CoreTail(RingPitches& pitches, int steps, const Vector3& outer)
+      : pitches_(pitches), steps_(steps), outer_(outer) {}
 
-  /// The largest distance of a point of the box from `from`.
-  static double farthest(const Vector3& from, const Box& box) {
-    const Vector3 d = (box.high - from).cwiseMax(from - box.low);
-    return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  }
-
-  bool ended() const { return core_.steps >= SurfacePatches::kMostSteps; }
+  bool ended() const { return steps_ >= SurfacePatches::kMostSteps; }
+  /// How many steps are done.
+  int steps() const { return steps_; }
   /// Upper bound of |ds x dt| on each of the three patches of the next step.
   double bound() const {
-    const double reach = std::max(radius_, outer_);
-    return 4 * reach * reach;
+    const Vector3 p = pitches_.after(steps_ + 1).cwiseMax(nextOuter());
+    return kMargin * 2 *
+           std::sqrt(p[0] * p[0] * (p[1] * p[1] + p[2] * p[2]) + p[1] * p[1] * p[2] * p[2]);
   }
-  /// One of these three patches.
-  SurfacePiece piece(int quarter) const {
-    return {core_.tile, static_cast<std::int16_t>(core_.steps + 1),
-            static_cast<std::int16_t>(quarter)};
-  }
-  double outer() const { return outer_; }
-
   void step() {
-    outer_ = 0.75 * radius_ + 0.25 * outer_;
-    ++core_.steps;
-    radius_ = patches_.coreRadius(core_);
+    outer_ = nextOuter();
+    ++steps_;
   }
 
   /// The sum of the bounds on the areas of all patches from here on.
   double area() const {
     CoreTail tail = *this;
     double sum = 0;
-    for (; !tail.ended() && 3 * tail.bound() > kNegligible * sum; tail.step()) {
-      sum += 3 * tail.bound();
+    for (; !tail.ended(); tail.step()) {
+      const double step = 3 * tail.bound();
+      if (!(step > kNegligible * sum)) {
+        break;
+      }
+      sum += step;
     }
     return sum;
   }
@@ -64,10 +77,14 @@ class CoreTail {
  private:
   /// Bounds below this part of the sum do not change it any more.
   static constexpr double kNegligible = 1e-18;
+  /// More than the rounding errors of patches and of distances.
+  static constexpr double kMargin = 1 + 1e-9;
 
-  const SurfacePatches& patches_;
-  SurfacePiece core_;
-  double outer_, radius_;
+  Vector3 nextOuter() const { return outer_.cwiseMax(pitches_.after(steps_)) / 2; }
+
+  RingPitches& pitches_;
+  int steps_;
+  Vector3 outer_;
 };
 
 }  // namespace limitsurf

@@ -9,7 +9,6 @@
 #include "limitsurf/parallel.h"
 #include "limitsurf/sample/concatenation.h"
 #include "limitsurf/sample/core_descent.h"
-#include "limitsurf/sample/core_tail.h"
 
 namespace limitsurf {
 namespace {
@@ -204,7 +203,7 @@ class PoissonDiscSampling::CellTrials {
       begin(cell, BoundedPatch(split.patches[quarter]), cells);
     }
     cell.piece = split.core;
-    const double reach = CoreTail::farthest(all_.patches_.coreVertex(split.core), split.core_box);
+    const double reach = farthestDistance(all_.patches_.coreVertex(split.core), split.core_box);
     if (reach > kFirstReach * smallest) {
       beginCore(cell, cells);
     } else if (2 * reach > all_.gap_ * smallest) {

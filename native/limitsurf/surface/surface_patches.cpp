@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/surface/surface_patches.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/surface_data_poses.h"
 #include "limitsurf/surface/surface_patches_data.h"
@@ -61,8 +66,8 @@ BezierPatch SurfacePatches::patch(const SurfacePiece& piece) const {
   BezierPatch out;
   if (piece.steps > 0) {
     Padded grid[tile_grid::kSlots];
-    const SurfacePiece core{piece.tile, static_cast<std::int16_t>(piece.steps - 1),
-                            SurfacePiece::kCore};
+    SurfacePiece core = piece;
+    --core.steps;
     out.anchor = data_->nextGrid(core, false, grid);
     data_->quarterPatch(data_->ringTile(piece), grid, piece.steps, piece.part, out);
   } else {
@@ -132,6 +137,72 @@ double SurfacePatches::coreRadius(const SurfacePiece& core) const {
 
 int SurfacePatches::coreValence(const SurfacePiece& core) const {
   return data_->table.rings[data_->ringTile(core).ring].basis->ring().faces;
+}
+
+Vector3 SurfacePatches::ringPitch(const SurfacePiece& core, const Eigen::Matrix3d& frame) const {
+  const RingTile& tile = data_->ringTile(core);
+  const int steps = core.steps + tile.ring_steps;
+  if (steps > data_->keptSteps(tile.ring)) {
+    return Vector3::Constant(2 * coreRadius(core));
+  }
+  const Padded* points = data_->ringPoints(tile.ring, steps);
+  const Ring& ring = data_->table.rings[tile.ring].basis->ring();
+  Vector3 pitch = Vector3::Zero();
+  const auto include = [&](int a, int b) {
+    pitch = pitch.cwiseMax((frame * (points[a] - points[b]).head<3>().matrix()).cwiseAbs());
+  };
+  const auto includeFace = [&](int face) {
+    const int e = ring.edge(face), f = ring.face(face), next = ring.nextEdge(face);
+    include(0, e);
+    include(e, f);
+    include(f, next);
+    include(next, 0);
+  };
+  includeFace(tile.face);
+  if (!onLeft(tile.sides)) {
+    includeFace((tile.face + ring.faces - 1) % ring.faces);
+  }
+  if (!onRight(tile.sides)) {
+    includeFace((tile.face + 1) % ring.faces);
+  }
+  return data_->scale * pitch;
+}
+
+Vector3 SurfacePatches::outerPitch(const SplitCore& split, const Eigen::Matrix3d& frame) const {
+  using namespace tile_grid;
+  const Sides sides = data_->ringTile(split.core).sides;
+  Vector3 pitch = Vector3::Zero();
+  for (const int c : kOuterSlots) {
+    if (!exists(sides, c)) {
+      continue;
+    }
+    for (const auto& [dx, dy] : {std::pair{-1, 0}, {0, -1}, {1, 0}, {0, 1}}) {
+      const int x = xOf(c) + dx, y = yOf(c) + dy;
+      if (std::min(x, y) >= -1 && std::max(x, y) <= 2 && exists(sides, slot(x, y))) {
+        const Padded difference = split.grid_[c] - split.grid_[slot(x, y)];
+        pitch = pitch.cwiseMax((frame * difference.head<3>().matrix()).cwiseAbs());
+      }
+    }
+  }
+  return data_->scale * pitch;
+}
+
+Eigen::Matrix3d SurfacePatches::coreFrame(const SurfacePiece& core) const {
+  const RingTile& tile = data_->ringTile(core);
+  const Ring& ring = data_->table.rings[tile.ring].basis->ring();
+  const Padded* points = data_->ringPoints(tile.ring, tile.ring_steps);
+  const auto along = [&](int edge) -> Vector3 {
+    return ((points[edge] - points[0]) / data_->unit).head<3>().matrix();
+  };
+  const Vector3 s = along(ring.edge(tile.face)), t = along(ring.nextEdge(tile.face));
+  const Vector3 between = s + t, normal = s.cross(t);
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  if (between.squaredNorm() > 0 && normal.squaredNorm() > 0) {
+    frame.row(0) = between.normalized();
+    frame.row(2) = normal.normalized();
+    frame.row(1) = frame.row(2).cross(frame.row(0));
+  }
+  return frame;
 }
 
 Vector3 SurfacePatches::coreVertex(const SurfacePiece& core) const {

@@ -117,6 +117,16 @@ class SurfacePatches {
   double coreRadius(const SurfacePiece& core) const;
   /// The number of faces around the core's vertex.
   int coreValence(const SurfacePiece& core) const;
+  /// The largest difference, coordinate by coordinate, of two neighbours among those of the ring's
+  /// points that belong to the core after its steps, in a frame (a rotation, whose rows are axes).
+  /// Beyond the steps for which points are kept it is a bound, larger by some factor.
+  Vector3 ringPitch(const SurfacePiece& core, const Eigen::Matrix3d& frame) const;
+  /// The same of two neighbours among the control points from which the rest can be split, at least
+  /// one of which is none of the ring's.
+  Vector3 outerPitch(const SplitCore& split, const Eigen::Matrix3d& frame) const;
+  /// A frame for ringPitch(), in which the core is about as long as wide: its first axis runs
+  /// between the sides of the core, the last one across both.
+  Eigen::Matrix3d coreFrame(const SurfacePiece& core) const;
   /// The limit position of the core's vertex.
   Vector3 coreVertex(const SurfacePiece& core) const;
 

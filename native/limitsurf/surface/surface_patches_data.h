@@ -28,6 +28,14 @@ struct SurfacePatches::Data {
   double radius(const SurfacePiece& core) const;
   FaceRectangle rectangle(const SurfacePiece& piece) const;
 
+  /// The last step for which a ring's points are kept.
+  int keptSteps(int ring) const;
+
+  /// A ring's points after so many steps, at most keptSteps().
+  const Padded* ringPoints(int ring, int steps) const {
+    return &levels[first_level[ring] + table.rings[ring].points.size() * steps];
+  }
+
   /// A piece of a regular tile.
   void regularPatch(const SurfacePiece& piece, BezierPatch& out) const;
   /// A ring tile's control grid after `steps` >= 1 steps, relative to the anchor that is returned.
@@ -73,8 +81,6 @@ struct SurfacePatches::Data {
   /// Axes along which the ring's points after the last kept step are as flat as can be.
   Eigen::Matrix3d frameOf(int ring) const;
   void setExtents(int ring);
-  /// The last step for which a ring's points are kept.
-  int keptSteps(int ring) const;
   void setRingLevels(int ring);
   void stripPatch(const BSplineTile& tile, int strip, BezierPatch& out) const;
 

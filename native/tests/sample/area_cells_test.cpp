@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The cells that uniform samples are drawn from: their bounds hold, and there are few of them.
+#include "limitsurf/sample/area_cells.h"
+
+#include <gtest/gtest.h>
+
+#include "limitsurf/sample/area_form.h"
+#include "limitsurf/sample/core_tail.h"
+#include "support/cages/meshes.h"
+#include "support/cages/query_cages.h"
+
+namespace limitsurf::test {
+namespace {
+
+/// |ds x dt| at a random place of a rectangle of a patch's parameters, by the rectangle's own.
+double areaAt(const BezierPatch& patch, double s0, double t0, double side, Random& random) {
+  BezierPatch::Values values;
+  patch.evaluate<1>(s0 + side * random.uniform(), t0 + side * random.uniform(), values);
+  return length(limitsurf::cross(values.ds, values.dt)) * side * side;
+}
+
+Cage halved(const Cage& quads) {
+  Cage triangles = quads;
+  triangles.faces.clear();
+  for (const std::vector<int>& f : quads.faces) {
+    triangles.faces.push_back({f[0], f[1], f[2]});
+    triangles.faces.push_back({f[0], f[2], f[3]});
+  }
+  return triangles;
+}
+
+TEST(AreaCells, NoAreaExceedsItsBound) {
+  Random random(3);
+  NamedCages cages = everyNth(queryCages(), 2);
+  Cage stretched = perturbed(halved(grid(4, 4)), 0.2, 1);
+  stretched.positions.col(0) *= 1e4;
+  cages.push_back({"stretched triangles", stretched});
+  for (const auto& [name, cage] : cages) {
+    SCOPED_TRACE(name);
+    const LimitSurface surface = limitSurface(cage);
+    const SurfacePatches patches(surface, 0, PatchUnit::own);
+    for (const AreaCell& cell : areaCells(patches, 0)) {
+      if (!cell.piece.isCore()) {
+        const double side = std::ldexp(1., -cell.level);
+        for (int i = 0; i < 4; ++i) {
+          EXPECT_LE(
+              areaAt(patches.patch(cell.piece), side * cell.column, side * cell.row, side, random),
+              cell.bound);
+        }
+        continue;
+      }
+      RingPitches pitches(patches, cell.piece);
+      CoreTail tail(pitches, cell.piece.steps,
+                    Vector3(cell.outer[0], cell.outer[1], cell.outer[2]));
+      double sum = 0;
+      for (int step = 1; step < 20 && !tail.ended(); ++step, tail.step()) {
+        for (std::int16_t quarter = 0; quarter < 3; ++quarter) {
+          const SurfacePiece piece = {cell.piece.tile, static_cast<std::int16_t>(tail.steps() + 1),
+                                      quarter};
+          for (int i = 0; i < 4; ++i) {
+            EXPECT_LE(areaAt(patches.patch(piece), 0, 0, 1, random), tail.bound())
+                << "after " << tail.steps() << " steps";
+          }
+          sum += tail.bound();
+        }
+      }
+      EXPECT_LE(sum, cell.bound);
+    }
+  }
+}
+
+TEST(AreaCells, AreFewAndTight) {
+  const auto expectFew = [](const Cage& cage, double most) {
+    const LimitSurface surface = limitSurface(cage);
+    const SurfacePatches patches(surface, 0, PatchUnit::own);
+    const std::vector<AreaCell> cells = areaCells(patches, 0);
+    EXPECT_LE(static_cast<double>(cells.size()), most * static_cast<double>(cage.faces.size()));
+    double area = 0, bound = 0;
+    for (const AreaCell& cell : cells) {
+      area += cell.area;
+      bound += cell.bound;
+    }
+    EXPECT_LE(bound, 1.4 * area);
+  };
+  const Cage quads = perturbed(grid(20, 20), 0.1, 7);
+  expectFew(quads, 1.1);
+  expectFew(halved(quads), 64);  // in 12 tiles
+  expectFew(pole(512), 96);
+}
+
+}  // namespace
+}  // namespace limitsurf::test
