@@ -23,6 +23,13 @@ struct CellExtent {
   Vector3 normal;
   double normal_reach;      ///< ds x dt differs by at most this from `normal`, the middle's
   double along_s, along_t;  ///< the parts of the reach that s and t contribute
+  BezierPatch::Point half_s, half_t;  ///< from the middle to that of a side, where the cell is flat
+  double bend;                        ///< no point is farther from where it were then
+
+  /// How far the corner of a parallelogram is from its middle.
+  static double cornerReach(const BezierPatch::Point& s, const BezierPatch::Point& t) {
+    return std::max(length(BezierPatch::Point(s + t)), length(BezierPatch::Point(s - t)));
+  }
 
   /// Whether the angle between `unit`, a unit vector, and every normal of the cell is below 90
   /// degrees.
@@ -89,9 +96,10 @@ class BoundedPatch {
     // The second derivatives count as well: ds may vanish in the middle and be large elsewhere.
     result.along_s = length(s) + a * a / 2 * dss_ + a * b / 2 * dst_;
     result.along_t = length(t) + b * b / 2 * dtt_ + a * b / 2 * dst_;
-    const double corner =
-        std::max(length(BezierPatch::Point(s + t)), length(BezierPatch::Point(s - t)));
-    result.reach = corner + a * a / 2 * dss_ + a * b * dst_ + b * b / 2 * dtt_;
+    result.half_s = s;
+    result.half_t = t;
+    result.bend = a * a / 2 * dss_ + a * b * dst_ + b * b / 2 * dtt_;
+    result.reach = CellExtent::cornerReach(s, t) + result.bend;
     result.normal_reach = a * (dss_ * dt_ + ds_ * dst_) + b * (dst_ * dt_ + ds_ * dtt_);
     if (result.normal_reach > kLoose * length(result.normal)) {
       const Slopes& slopes = normalSlopes();

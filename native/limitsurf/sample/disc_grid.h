@@ -21,6 +21,8 @@ namespace limitsurf {
 /// below it.
 class DiscGrid {
  public:
+  class Finder;
+
   /// All positions must lie in `box`, and all radii between `smallest` and `largest`.
   DiscGrid(const Box& box, double smallest, double largest) : origin_(box.low) {
     sides_.push_back(2 * smallest);
@@ -85,8 +87,8 @@ class DiscGrid {
       for (int i = 0; i < 8; ++i) {
         // The position's own cube comes first, since a disc in it often ends the search.
         const int corner = i ^ own_corner;
-        const Index at[3] = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
-                             low[2] + (corner >> 2)};
+        Index at[3];
+        cornerOf(low, corner, at);
         if (anyIn(level, at, level == own, position, radius, visit)) {
           return true;
         }
@@ -110,6 +112,8 @@ class DiscGrid {
     std::int32_t first = -1;  // the disc added last
   };
   static constexpr std::size_t kFewestCubes = 1024;
+  /// Blocks of 2^kBlockBits cubes a side are hashed as a whole.
+  static constexpr int kBlockBits = 2;
   /// The sides of cubes are rounded; distances to them are enlarged by more than that.
   static constexpr double kSideRounding = 1e-9;
 
@@ -128,16 +132,29 @@ class DiscGrid {
     }
   }
 
+  /// Where the search for a cube begins: neighbouring cubes are close to each other in the table,
+  /// since one is rarely looked for alone.
   std::size_t slot(int level, const Index at[3]) const {
+    std::uint32_t block[3], within = 0;
+    for (int i = 0; i < 3; ++i) {
+      block[i] = static_cast<std::uint32_t>(at[i]) >> kBlockBits;
+      within |= (static_cast<std::uint32_t>(at[i]) & ((1u << kBlockBits) - 1)) << (kBlockBits * i);
+    }
     const std::uint64_t bits =
-        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[0])) |
-         static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[1])) << 32) ^
-        (static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[2])) * 0x9e3779b97f4a7c15u +
+        (static_cast<std::uint64_t>(block[0]) | static_cast<std::uint64_t>(block[1]) << 32) ^
+        (static_cast<std::uint64_t>(block[2]) * 0x9e3779b97f4a7c15u +
          static_cast<std::uint64_t>(level));
-    return mixed(bits) & (cubes_.size() - 1);
+    return (mixed(bits) << (3 * kBlockBits) | within) & (cubes_.size() - 1);
   }
   static bool isSame(const Cube& cube, int level, const Index at[3]) {
     return cube.level == level && cube.at[0] == at[0] && cube.at[1] == at[1] && cube.at[2] == at[2];
+  }
+
+  /// The cubes around a position on its own level: bit i of `corner` adds 1 to the index of axis i.
+  static void cornerOf(const Index low[3], int corner, Index at[3]) {
+    for (int i = 0; i < 3; ++i) {
+      at[i] = low[i] + (corner >> i & 1);
+    }
   }
 
   const Cube* find(int level, const Index at[3]) const {
@@ -232,6 +249,87 @@ class DiscGrid {
   std::vector<Disc> discs_;
   std::vector<Cube> cubes_;  // a hash table with open addressing
   std::size_t used_ = 0;
+};
+
+/// Searches a grid that does not change meanwhile. Where all discs are on one level it remembers
+/// those around the last positions, since one search after the other is in the same cubes.
+class DiscGrid::Finder {
+ public:
+  explicit Finder(const DiscGrid& grid) : grid_(grid) {}
+
+  /// What DiscGrid::any() does, in another order.
+  template <typename Visit>
+  bool any(const Vector3& position, double radius, const Visit& visit) {
+    if (grid_.sides_.size() > 1) {
+      return grid_.any(position, radius, visit);
+    }
+    search(position);
+    return anyIn(*last_, position, radius, visit);
+  }
+
+  /// The same, but where all discs are on one level it visits only those that the last search has
+  /// met, in the cubes around the position that was searched then: most of them, if both are close
+  /// to each other.
+  template <typename Visit>
+  bool anyAgain(const Vector3& position, double radius, const Visit& visit) const {
+    return grid_.sides_.size() > 1 ? grid_.any(position, radius, visit)
+                                   : anyIn(*last_, position, radius, visit);
+  }
+
+  /// Prepares anyAgain().
+  void search(const Vector3& position) {
+    Index low[3];
+    grid_.indexOf(position, 0, 0.5, low);
+    Place& place = places_[(low[0] & 3) | (low[1] & 3) << 2 | (low[2] & 3) << 4];
+    if (!place.is_known || !std::equal(low, low + 3, place.low)) {
+      gather(low, place);
+    }
+    last_ = &place;
+  }
+
+ private:
+  struct Near {
+    Disc disc;
+    std::int32_t number;
+  };
+  /// The discs in the eight cubes from `low` on.
+  struct Place {
+    bool is_known = false;
+    Index low[3];
+    std::vector<Near> near;
+  };
+  static constexpr int kPlaces = 64;
+
+  void gather(const Index low[3], Place& place) const {
+    place.is_known = true;
+    std::copy(low, low + 3, place.low);
+    place.near.clear();
+    for (int corner = 0; corner < 8; ++corner) {
+      Index at[3];
+      cornerOf(low, corner, at);
+      if (const Cube* cube = grid_.find(0, at)) {
+        for (std::int32_t i = cube->first; i >= 0; i = grid_.discs_[i].next) {
+          place.near.push_back({grid_.discs_[i], i});
+        }
+      }
+    }
+  }
+
+  template <typename Visit>
+  static bool anyIn(const Place& place, const Vector3& position, double radius,
+                    const Visit& visit) {
+    for (const Near& near : place.near) {
+      const double reach = (near.disc.radius + radius) / 2;
+      if (squaredDistance(position, near.disc.position) < reach * reach && visit(near.number)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  const DiscGrid& grid_;
+  Place places_[kPlaces];
+  const Place* last_ = places_;
 };
 
 }  // namespace limitsurf

@@ -30,7 +30,7 @@ constexpr double kOblong = 1.5;
 /// The trials of cells. It keeps the patch of the last cell, because cells come sorted by patch.
 class PoissonDiscSampling::CellTrials {
  public:
-  explicit CellTrials(const PoissonDiscSampling& all) : all_(all) {}
+  explicit CellTrials(const PoissonDiscSampling& all) : all_(all), accepted_(all.accepted_) {}
 
   /// Appends the first cells of a piece.
   void begin(const SurfacePiece& piece, std::vector<TrialCell>& cells) {
@@ -67,6 +67,7 @@ class PoissonDiscSampling::CellTrials {
     if (patch.vanishes(area) || !(weight > 0)) {
       const CellExtent extent = patch.extent(cell);
       if (!patch.vanishes(extent)) {
+        accepted_.search(point.position);
         split(cell, extent, smallest, out.parts);
       }
       return;
@@ -75,7 +76,7 @@ class PoissonDiscSampling::CellTrials {
     point.radius = all_.radiusOf(weight);
     std::optional<CellExtent> extent;
     bool conflict = false;
-    const bool covered = all_.accepted_.any(point.position, point.radius, [&](int other) {
+    const bool covered = accepted_.any(point.position, point.radius, [&](int other) {
       const NoisePoint& disc = all_.points_[other];
       if (!seeEachOther(disc.normal, point.normal)) {
         return false;
@@ -138,8 +139,9 @@ class PoissonDiscSampling::CellTrials {
     return isCloser(disc, extent.middle, extent.reach, smallest) && extent.facesAll(disc.normal);
   }
 
+  /// Appends the parts of a cell, but for those that a disc covers which the last search has met.
   void split(const TrialCell& cell, const CellExtent& extent, double smallest,
-             std::vector<TrialCell>& parts) const {
+             std::vector<TrialCell>& parts) {
     if (2 * extent.reach <= all_.gap_ * smallest) {
       return;
     }
@@ -150,16 +152,30 @@ class PoissonDiscSampling::CellTrials {
     if (!along_s && !along_t) {
       return;
     }
+    const double s_part = along_s ? 0.5 : 0, t_part = along_t ? 0.5 : 0;
+    const BezierPatch::Point s_off = s_part * extent.half_s, t_off = t_part * extent.half_t;
+    const double reach =
+        CellExtent::cornerReach((1 - s_part) * extent.half_s, (1 - t_part) * extent.half_t) +
+        extent.bend;
+    const auto isCovered = [&](unsigned s, unsigned t) {
+      const BezierPatch::Point off = (s == 0 ? -1. : 1.) * s_off + (t == 0 ? -1. : 1.) * t_off;
+      const Vector3 middle = extent.middle + off.head<3>().matrix();
+      return accepted_.anyAgain(middle, smallest, [&](int other) {
+        const NoisePoint& disc = all_.points_[other];
+        return isCloser(disc, middle, reach, smallest) && extent.facesAll(disc.normal);
+      });
+    };
     for (unsigned t = 0; t < (along_t ? 2 : 1); ++t) {
       const TrialCell strip = along_t ? cell.halfOfT(t) : cell;
       for (unsigned s = 0; s < (along_s ? 2 : 1); ++s) {
-        parts.push_back(along_s ? strip.halfOfS(s) : strip);
+        if (!isCovered(s, t)) {
+          parts.push_back(along_s ? strip.halfOfS(s) : strip);
+        }
       }
     }
   }
 
-  void begin(const TrialCell& cell, const BoundedPatch& patch,
-             std::vector<TrialCell>& cells) const {
+  void begin(const TrialCell& cell, const BoundedPatch& patch, std::vector<TrialCell>& cells) {
     double smallest;
     if (!smallestRadius(patch.rectangle(cell), smallest)) {
       return;
@@ -182,7 +198,7 @@ class PoissonDiscSampling::CellTrials {
     }
   }
 
-  void beginCore(const TrialCell& cell, std::vector<TrialCell>& cells) const {
+  void beginCore(const TrialCell& cell, std::vector<TrialCell>& cells) {
     double smallest;
     if (!smallestRadius(all_.patches_.rectangle(cell.piece), smallest)) {
       return;
@@ -196,7 +212,7 @@ class PoissonDiscSampling::CellTrials {
 
   /// Appends the first cells of a split core: those of its patches, and those of the smaller core.
   void beginSplit(const SurfacePatches::SplitCore& split, double smallest,
-                  std::vector<TrialCell>& cells) const {
+                  std::vector<TrialCell>& cells) {
     TrialCell cell;
     for (int quarter = 0; quarter < 3; ++quarter) {
       cell.piece = split.pieces[quarter];
@@ -211,14 +227,14 @@ class PoissonDiscSampling::CellTrials {
     }
   }
 
-  void splitCore(const TrialCell& cell, std::vector<TrialCell>& parts) const {
+  void splitCore(const TrialCell& cell, std::vector<TrialCell>& parts) {
     double smallest;
     if (cell.piece.steps >= SurfacePatches::kMostSteps ||
         !smallestRadius(all_.patches_.rectangle(cell.piece), smallest)) {
       return;
     }
     CoreDescent descent(all_.patches_, cell.piece, all_.gap_ * smallest);
-    const bool covered = all_.accepted_.any(descent.vertex(), smallest, [&](int other) {
+    const bool covered = accepted_.any(descent.vertex(), smallest, [&](int other) {
       const NoisePoint& disc = all_.points_[other];
       return isCloser(disc, descent.vertex(), descent.reach(), smallest) &&
              descent.facesAll(disc.normal);
@@ -229,6 +245,7 @@ class PoissonDiscSampling::CellTrials {
   }
 
   const PoissonDiscSampling& all_;
+  DiscGrid::Finder accepted_;
   SurfacePiece piece_;
   std::optional<BoundedPatch> patch_;
 };
@@ -314,9 +331,10 @@ void PoissonDiscSampling::accept(const std::vector<Candidate>& candidates,
   std::vector<Fate> fates(candidates.size());
   parallelFor(candidates.size(), kCellsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
     CellTrials trials(*this);
+    DiscGrid::Finder others(candidates_);
     for (std::size_t i = begin; i < end; ++i) {
       const Candidate& own = candidates[i];
-      const bool lost = candidates_.any(own.point.position, own.point.radius, [&](int number) {
+      const bool lost = others.any(own.point.position, own.point.radius, [&](int number) {
         const std::size_t j = static_cast<std::size_t>(number);
         const Candidate& other = candidates[j];
         return (other.rank < own.rank || (other.rank == own.rank && j < i)) &&
