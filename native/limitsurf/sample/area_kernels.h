@@ -42,6 +42,12 @@ struct FirstRules {
   double upright[SquareBlock::kCount];
 };
 
+/// The mean of ds x dt on each square of a block, and how far it differs from that at most.
+struct NormalBounds {
+  double mean[3][SquareBlock::kCount];
+  double reach[SquareBlock::kCount];
+};
+
 /// Quadratures and bounds, compiled for one instruction set. A square's results do not depend on
 /// the set, nor on the other squares of its block.
 struct AreaKernels {
@@ -54,6 +60,7 @@ struct AreaKernels {
   /// Of the first `count` squares, an upper bound of |ds x dt| and an estimate of its mean.
   void (*bounds)(const SquareBlock& squares, int count, double bounds[SquareBlock::kCount],
                  double means[SquareBlock::kCount]);
+  void (*normals)(const SquareBlock& squares, int count, NormalBounds& out);
 
   /// For the instruction set in use.
   static const AreaKernels& get();

@@ -164,13 +164,12 @@ inline void eightPoints(const SquareBlock& squares, double out[SquareBlock::kCou
   areas(squares, kGauss8, out);
 }
 
-/// The largest squared length of the Bezier points of ds x dt, which is of degree 5 in both
-/// directions.
-inline Squares largestSquare(const SquareDerivatives& d) {
+/// Calls visit() for the 36 Bezier points of ds x dt, which is of degree 5 in both directions.
+template <typename Visit>
+inline void forEachNormal(const SquareDerivatives& d, const Visit& visit) {
   // Product of Bernstein polynomials: the binomials of the factors over those of the product.
   constexpr double kTwo[3] = {1, 2, 1}, kThree[4] = {1, 3, 3, 1};
   constexpr double kFive[6] = {1, 5, 10, 10, 5, 1};
-  Squares largest = Squares::of(0);
   for (int row = 0; row < 6; ++row) {
     SquareVector form[6];
     for (SquareVector& point : form) {
@@ -194,10 +193,44 @@ inline Squares largestSquare(const SquareDerivatives& d) {
     }
     for (int i = 0; i < 6; ++i) {
       const double weight = 1 / (kFive[i] * kFive[row]);
-      largest = Squares::larger(largest, (weight * weight) * squaredLength(form[i]));
+      visit(SquareVector{
+          {weight * form[i].axis[0], weight * form[i].axis[1], weight * form[i].axis[2]}});
     }
   }
+}
+
+/// The largest squared length of these points.
+inline Squares largestSquare(const SquareDerivatives& d) {
+  Squares largest = Squares::of(0);
+  forEachNormal(d, [&](const SquareVector& normal) {
+    largest = Squares::larger(largest, squaredLength(normal));
+  });
   return largest;
+}
+
+inline void normalBounds(const SquareBlock& squares, int count, NormalBounds& out) {
+  constexpr double kMoreThanRounding = 1 + 1e-9;
+  for (int first = 0; first < count; first += kLanes) {
+    SquareVector normals[36], mean = {{Squares::of(0), Squares::of(0), Squares::of(0)}};
+    int number = 0;
+    forEachNormal(SquareDerivatives(squares, first), [&](const SquareVector& normal) {
+      normals[number++] = normal;
+      for (int axis = 0; axis < 3; ++axis) {
+        mean.axis[axis] = mean.axis[axis] + normal.axis[axis];
+      }
+    });
+    for (int axis = 0; axis < 3; ++axis) {
+      mean.axis[axis] = mean.axis[axis] / 36;
+      mean.axis[axis].store(out.mean[axis] + first);
+    }
+    Squares farthest = Squares::of(0);
+    for (const SquareVector& normal : normals) {
+      const SquareVector off = {{normal.axis[0] - mean.axis[0], normal.axis[1] - mean.axis[1],
+                                 normal.axis[2] - mean.axis[2]}};
+      farthest = Squares::larger(farthest, squaredLength(off));
+    }
+    (kMoreThanRounding * squareRoot(farthest)).store(out.reach + first);
+  }
 }
 
 inline void boundsAndMeans(const SquareBlock& squares, int count,
@@ -210,4 +243,5 @@ inline void boundsAndMeans(const SquareBlock& squares, int count,
   }
 }
 
-constexpr AreaKernels kKernels = {firstRules, fourPoints, sixPoints, eightPoints, boundsAndMeans};
+constexpr AreaKernels kKernels = {firstRules,  fourPoints,     sixPoints,
+                                  eightPoints, boundsAndMeans, normalBounds};

@@ -16,13 +16,23 @@ namespace limitsurf {
 constexpr double kRightAngle = 1e-9;
 inline bool seeEachOther(const Vector3& a, const Vector3& b) { return a.dot(b) > kRightAngle; }
 
-/// Bounds on the surface over a whole cell.
-struct CellExtent {
-  Vector3 middle;
-  double reach;  ///< no point of the cell is farther from the middle
+/// A bound on the normals of a part of the surface.
+struct NormalBound {
   Vector3 normal;
-  double normal_reach;      ///< ds x dt differs by at most this from `normal`, the middle's
-  double along_s, along_t;  ///< the parts of the reach that s and t contribute
+  double normal_reach;  ///< ds x dt differs by at most this from `normal`
+
+  /// Whether the angle between `unit`, a unit vector, and every normal of the part is below 90
+  /// degrees.
+  bool facesAll(const Vector3& unit) const {
+    return unit.dot(normal) - normal_reach > kRightAngle * (length(normal) + normal_reach);
+  }
+};
+
+/// Bounds on the surface over a whole cell. The normal is the middle's.
+struct CellExtent : NormalBound {
+  Vector3 middle;
+  double reach;                       ///< no point of the cell is farther from the middle
+  double along_s, along_t;            ///< the parts of the reach that s and t contribute
   BezierPatch::Point half_s, half_t;  ///< from the middle to that of a side, where the cell is flat
   double bend;                        ///< no point is farther from where it were then
 
@@ -30,17 +40,15 @@ struct CellExtent {
   static double cornerReach(const BezierPatch::Point& s, const BezierPatch::Point& t) {
     return std::max(length(BezierPatch::Point(s + t)), length(BezierPatch::Point(s - t)));
   }
-
-  /// Whether the angle between `unit`, a unit vector, and every normal of the cell is below 90
-  /// degrees.
-  bool facesAll(const Vector3& unit) const {
-    return unit.dot(normal) - normal_reach > kRightAngle * (length(normal) + normal_reach);
-  }
 };
 
 /// A patch with bounds on its derivatives.
 class BoundedPatch {
  public:
+  /// |ds x dt| relative to bounds on |ds| and |dt|, below which cancellation leaves no correct
+  /// digits: some thousand times the rounding of the products. Chosen, not derived.
+  static constexpr double kCrossRounding = 1e-12;
+
   explicit BoundedPatch(const BezierPatch& patch) : patch_(patch) {
     const BezierPatch::Point* p = patch.points;
     for (int i = 0; i < 16; ++i) {
@@ -118,10 +126,6 @@ class BoundedPatch {
   /// Products of the bounds on derivatives are cheaper than the derivatives of ds x dt itself. They
   /// serve as long as they prove that ds x dt changes by no more than this part of its length.
   static constexpr double kLoose = 0.25;
-  /// |ds x dt| relative to bounds on |ds| and |dt|, below which cancellation leaves no correct
-  /// digits: some thousand times the rounding of the products. Chosen, not derived.
-  static constexpr double kCrossRounding = 1e-12;
-
   const Slopes& normalSlopes() const {
     if (!slopes_) {
       const AreaForm form(patch_);

@@ -46,35 +46,28 @@ class PoissonDiscSampling::CellTrials {
   /// Makes the trial of one cell: its outcome is a candidate, parts of the cell, or nothing if the
   /// cell is discarded.
   void makeTrial(const TrialCell& cell, Outcome& out) {
-    if (cell.piece.isCore()) {
-      splitCore(cell, out.parts);
-      return;
-    }
-    const BoundedPatch& patch = patchOf(cell);
     double smallest;
-    if (!smallestRadius(patch.rectangle(cell), smallest)) {
+    if (isEmpty(cell, smallest)) {
       return;
     }
     const std::uint64_t bits =
         cell.bits(all_.key_ ^ mixed(static_cast<std::uint64_t>(all_.round_)));
+    const double s = uniformIn01(mixed(bits)), t = uniformIn01(mixed(bits + 1));
     Candidate candidate;
     NoisePoint& point = candidate.point;
-    const double s = (cell.column + uniformIn01(mixed(bits))) * cell.width();
-    const double t = (cell.row + uniformIn01(mixed(bits + 1))) * cell.height();
-    patch.evaluate(s, t, point.position, point.normal);
-    point.at = patch.patch().on.at(s, t);
-    const double area = length(point.normal), weight = all_.density_.at(point.at);
-    if (patch.vanishes(area) || !(weight > 0)) {
-      const CellExtent extent = patch.extent(cell);
-      if (!patch.vanishes(extent)) {
-        accepted_.search(point.position);
-        split(cell, extent, smallest, out.parts);
-      }
+    // |ds x dt| of the cell's own parameters.
+    const double area =
+        cell.piece.isCore() ? findInCore(cell.piece, s, t, point) : findInPatch(cell, s, t, point);
+    const double weight = all_.density_.at(point.at);
+    extent_.reset();
+    descent_.reset();
+    if (!(area > 0 && weight > 0)) {
+      accepted_.search(point.position);
+      split(cell, smallest, out.parts);
       return;
     }
-    point.normal /= area;
+    point.normal /= length(point.normal);
     point.radius = all_.radiusOf(weight);
-    std::optional<CellExtent> extent;
     bool conflict = false;
     const bool covered = accepted_.any(point.position, point.radius, [&](int other) {
       const NoisePoint& disc = all_.points_[other];
@@ -82,32 +75,28 @@ class PoissonDiscSampling::CellTrials {
         return false;
       }
       conflict = true;
-      if (!extent) {
-        extent = patch.extent(cell);
-      }
-      return covers(disc, *extent, smallest);
+      return covers(disc, cell, smallest);
     });
     if (covered) {
       return;
     }
     if (conflict) {
-      split(cell, *extent, smallest, out.parts);
+      split(cell, smallest, out.parts);
       return;
     }
     // Ranks are the times at which candidates would arrive if points fell on the whole surface one
     // after the other: a large cell is hit sooner than a small one.
-    candidate.rank = uniformIn01(mixed(bits + 2)) * point.radius * point.radius /
-                     (area * cell.width() * cell.height());
+    candidate.rank = uniformIn01(mixed(bits + 2)) * point.radius * point.radius / area;
     candidate.cell = cell;
     out.candidates.push_back(candidate);
   }
 
   /// Whether the disc of the cell's own point covers the whole cell.
-  bool covers(const NoisePoint& disc, const TrialCell& cell) {
-    const BoundedPatch& patch = patchOf(cell);
+  bool coversAll(const NoisePoint& disc, const TrialCell& cell) {
     double smallest;
-    return !smallestRadius(patch.rectangle(cell), smallest) ||
-           covers(disc, patch.extent(cell), smallest);
+    extent_.reset();
+    descent_.reset();
+    return isEmpty(cell, smallest) || covers(disc, cell, smallest);
   }
 
  private:
@@ -131,12 +120,103 @@ class PoissonDiscSampling::CellTrials {
     return weight > 0;
   }
 
+  /// Whether the cell has no room for points. If not, computes the smallest radius in it.
+  bool isEmpty(const TrialCell& cell, double& smallest) {
+    if (!cell.piece.isCore()) {
+      return !smallestRadius(patchOf(cell).rectangle(cell), smallest);
+    }
+    return cell.piece.steps >= SurfacePatches::kMostSteps ||
+           !smallestRadius(all_.patches_.rectangle(cell.piece), smallest);
+  }
+
+  /// Sets the position, normal and location of a point at (s, t) of the cell. The normal is ds x dt
+  /// of the patch. Returns its length with respect to the cell, or 0 if it vanishes.
+  double findInPatch(const TrialCell& cell, double s, double t, NoisePoint& point) {
+    const BoundedPatch& patch = patchOf(cell);
+    s = (cell.column + s) * cell.width();
+    t = (cell.row + t) * cell.height();
+    patch.evaluate(s, t, point.position, point.normal);
+    point.at = patch.patch().on.at(s, t);
+    const double area = length(point.normal);
+    return patch.vanishes(area) ? 0 : area * cell.width() * cell.height();
+  }
+  double findInCore(const SurfacePiece& core, double s, double t, NoisePoint& point) const {
+    SurfacePiece piece = core;
+    double size = 1;
+    do {
+      ++piece.steps;
+      size /= 2;
+      s *= 2;
+      t *= 2;
+    } while (std::max(s, t) < 1 && piece.steps < SurfacePatches::kMostSteps);
+    const bool right = s >= 1, top = t >= 1;
+    piece.part = static_cast<std::int16_t>(right && top ? 1 : top ? 2 : 0);
+    const BezierPatch patch = all_.patches_.patch(piece);
+    BezierPatch::Values values;
+    s = std::clamp(piece.part == 2 ? s : s - 1, 0., 1.);
+    t = std::clamp(piece.part == 0 ? t : t - 1, 0., 1.);
+    patch.evaluate<1>(s, t, values);
+    point.position = (values.value + patch.anchor).head<3>().matrix();
+    point.normal = cross(values.ds, values.dt);
+    point.at = patch.on.at(s, t);
+    const double area = length(point.normal);
+    const bool vanishes =
+        !(area > BoundedPatch::kCrossRounding * length(values.ds) * length(values.dt));
+    return vanishes ? 0 : area / (size * size);
+  }
+
   static bool isCloser(const NoisePoint& disc, const Vector3& middle, double reach,
                        double smallest) {
     return length(Vector3(disc.position - middle)) + reach < (disc.radius + smallest) / 2;
   }
   static bool covers(const NoisePoint& disc, const CellExtent& extent, double smallest) {
     return isCloser(disc, extent.middle, extent.reach, smallest) && extent.facesAll(disc.normal);
+  }
+  /// Whether a disc covers the cell that is being tried.
+  bool covers(const NoisePoint& disc, const TrialCell& cell, double smallest) {
+    if (!cell.piece.isCore()) {
+      return covers(disc, extentOf(cell), smallest);
+    }
+    const CoreExtent& extent = coreExtentOf(cell, smallest);
+    return isCloser(disc, extent.middle, extent.reach, smallest) &&
+           (extent.cone.isFacedBy(disc.normal) || descentOf(cell, smallest).facesAll(disc.normal));
+  }
+
+  const CellExtent& extentOf(const TrialCell& cell) {
+    if (!extent_) {
+      extent_ = patchOf(cell).extent(cell);
+    }
+    return *extent_;
+  }
+  CoreDescent& descentOf(const TrialCell& cell, double smallest) {
+    if (!descent_) {
+      descent_.emplace(all_.patches_, cell.piece, all_.gap_ * smallest);
+    }
+    return *descent_;
+  }
+  const CoreExtent& coreExtentOf(const TrialCell& cell, double smallest) {
+    CoreExtent& extent = all_.cores_[static_cast<std::size_t>(cell.piece.tile)];
+    if (extent.steps != cell.piece.steps) {
+      CoreDescent& descent = descentOf(cell, smallest);
+      // The cone of a larger core serves the smaller ones in it as well.
+      if (!extent.cone.isKnown()) {
+        extent.cone = descent.cone();
+      }
+      descent.findReach();
+      extent.steps = cell.piece.steps;
+      extent.middle = descent.middle();
+      extent.reach = descent.reach();
+    }
+    return extent;
+  }
+
+  /// Appends the parts of the cell that is being tried.
+  void split(const TrialCell& cell, double smallest, std::vector<TrialCell>& parts) {
+    if (cell.piece.isCore()) {
+      beginSplit(descentOf(cell, smallest).firstSplit(), smallest, parts);
+    } else if (!patchOf(cell).vanishes(extentOf(cell))) {
+      split(cell, extentOf(cell), smallest, parts);
+    }
   }
 
   /// Appends the parts of a cell, but for those that a disc covers which the last search has met.
@@ -181,6 +261,11 @@ class PoissonDiscSampling::CellTrials {
       return;
     }
     const CellExtent extent = patch.extent(cell);
+    if (accepted_.anyAgain(extent.middle, smallest, [&](int other) {
+          return covers(all_.points_[other], extent, smallest);
+        })) {
+      return;
+    }
     if (extent.reach <= kFirstReach * smallest) {
       cells.push_back(cell);
       if (static_cast<double>(cells.size()) + static_cast<double>(all_.first_cells_) >
@@ -200,14 +285,16 @@ class PoissonDiscSampling::CellTrials {
 
   void beginCore(const TrialCell& cell, std::vector<TrialCell>& cells) {
     double smallest;
-    if (!smallestRadius(all_.patches_.rectangle(cell.piece), smallest)) {
+    if (isEmpty(cell, smallest)) {
       return;
     }
-    if (cell.piece.steps < SurfacePatches::kMostSteps) {
-      SurfacePatches::SplitCore parts;
-      all_.patches_.split(cell.piece, parts);
-      beginSplit(parts, smallest, cells);
+    descent_.reset();
+    if (coreExtentOf(cell, smallest).reach <= kFirstReach * smallest) {
+      cells.push_back(cell);
+      return;
     }
+    const SurfacePatches::SplitCore split = descentOf(cell, smallest).firstSplit();
+    beginSplit(split, smallest, cells);
   }
 
   /// Appends the first cells of a split core: those of its patches, and those of the smaller core.
@@ -227,27 +314,13 @@ class PoissonDiscSampling::CellTrials {
     }
   }
 
-  void splitCore(const TrialCell& cell, std::vector<TrialCell>& parts) {
-    double smallest;
-    if (cell.piece.steps >= SurfacePatches::kMostSteps ||
-        !smallestRadius(all_.patches_.rectangle(cell.piece), smallest)) {
-      return;
-    }
-    CoreDescent descent(all_.patches_, cell.piece, all_.gap_ * smallest);
-    const bool covered = accepted_.any(descent.vertex(), smallest, [&](int other) {
-      const NoisePoint& disc = all_.points_[other];
-      return isCloser(disc, descent.vertex(), descent.reach(), smallest) &&
-             descent.facesAll(disc.normal);
-    });
-    if (!covered) {
-      beginSplit(descent.firstSplit(), smallest, parts);
-    }
-  }
-
   const PoissonDiscSampling& all_;
   DiscGrid::Finder accepted_;
   SurfacePiece piece_;
   std::optional<BoundedPatch> patch_;
+  // Of the cell that is being tried, once they are needed.
+  std::optional<CellExtent> extent_;
+  std::optional<CoreDescent> descent_;
 };
 
 PoissonDiscSampling::PoissonDiscSampling(const SurfacePatches& patches, const Box& box,
@@ -262,6 +335,7 @@ PoissonDiscSampling::PoissonDiscSampling(const SurfacePatches& patches, const Bo
       most_cells_(kMostCellsPerPoint * expected + kSpareCells),
       key_(mixed(seed)),
       threads_(threads),
+      cores_(static_cast<std::size_t>(patches.tileCount())),
       accepted_(box, radius_, largest_radius_),
       candidates_(box, radius_, largest_radius_) {}
 
@@ -293,6 +367,7 @@ void PoissonDiscSampling::run(const std::function<void(std::size_t points)>& rep
     std::vector<Candidate> candidates;
     std::vector<TrialCell> parts;
     makeTrials(report, candidates, parts);
+    trials_ += cells_.size();
     accept(candidates, parts);
     cells_.swap(parts);
   }
@@ -340,7 +415,7 @@ void PoissonDiscSampling::accept(const std::vector<Candidate>& candidates,
         return (other.rank < own.rank || (other.rank == own.rank && j < i)) &&
                seeEachOther(other.point.normal, own.point.normal);
       });
-      fates[i] = lost ? kLost : trials.covers(own.point, own.cell) ? kWonAll : kWon;
+      fates[i] = lost ? kLost : trials.coversAll(own.point, own.cell) ? kWonAll : kWon;
     }
   });
   for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limitsurf/sample/bounded_patch.h"
+#include "limitsurf/sample/core_descent.h"
 #include "limitsurf/sample/density_field.h"
 #include "limitsurf/sample/disc_grid.h"
 #include "limitsurf/sample/trial_cell.h"
@@ -47,6 +48,8 @@ class PoissonDiscSampling {
   void run(const std::function<void(std::size_t points)>& report);
 
   std::vector<NoisePoint>& points() { return points_; }
+  /// The number of trials that run() has made: what its cost is proportional to.
+  std::size_t trials() const { return trials_; }
 
  private:
   struct Candidate {
@@ -76,7 +79,11 @@ class PoissonDiscSampling {
   int threads_;
 
   int round_ = 0;
+  std::size_t trials_ = 0;
   std::atomic<std::size_t> first_cells_{0};
+  /// Of the one cell of each tile that is a core, once it is needed. Only what tries this cell
+  /// writes to it.
+  mutable std::vector<CoreExtent> cores_;
   std::vector<TrialCell> cells_;
   std::vector<NoisePoint> points_;
   DiscGrid accepted_, candidates_;
