@@ -31,6 +31,9 @@ constexpr double kLeastShrinking = 0.98;
 /// The number of points is taken to be at least this part of the count when the next radius is
 /// chosen: an estimate from few points is poor.
 constexpr double kLeastExcess = 0.25;
+/// The length of a row of points along which no more fit, as a part of their number times the
+/// radius (Renyi's parking constant).
+constexpr double kRow = 0.7476;
 /// A density function is read on a regular grid of each face with at most 2^kMostLevels squares a
 /// side and at most kMostValues values in all, unless one square a face is more already.
 constexpr int kMostLevels = 10;
@@ -126,7 +129,14 @@ class BlueNoiseMaker {
         break;
       }
     }
+    const double of_area = radius;
+    if (density_.isConstant()) {
+      // The points on a surface that is narrower than the radius lie one behind the other.
+      radius =
+          std::max(radius, kRow * (box_.high - box_.low).maxCoeff() / static_cast<double>(count));
+    }
     expected_ = kSurplus * static_cast<double>(count);
+    double last_radius = 0, last_excess = 0, dimensions = 2;
     for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
       if (!(radius >= DiscGrid::smallestRadius(box_))) {
         break;
@@ -142,7 +152,19 @@ class BlueNoiseMaker {
         const double held = radius * slack * (1 - kRadiusRounding) - margin_;
         return result(std::move(crowding.points()), std::max(held, 0.));
       }
-      const double step = std::sqrt(std::max(excess, kLeastExcess) / kSurplus);
+      if (excess < kLeastExcess && radius > of_area) {
+        radius = of_area;
+        continue;
+      }
+      if (last_excess > 0 && excess > 0 && radius != last_radius) {
+        // The number of points is a power of the radius: of 2 dimensions, or of 1 on a narrow
+        // strip.
+        dimensions =
+            std::clamp(std::log(excess / last_excess) / std::log(last_radius / radius), 1., 2.);
+      }
+      last_radius = radius;
+      last_excess = excess;
+      const double step = std::pow(std::max(excess, kLeastExcess) / kSurplus, 1 / dimensions);
       radius *= is_enough ? step : std::min(step, kLeastShrinking);
     }
     throw std::invalid_argument("count is " + std::to_string(count) +

@@ -159,6 +159,37 @@ TEST(BlueNoise, GivesExactlyTheCountAndTheDistanceItKeeps) {
   EXPECT_EQ(none.radius, INFINITY);
 }
 
+/// Points on a strip that is narrower than their distance are as far apart as cars that park at
+/// random.
+TEST(BlueNoise, OnANarrowStripIsARow) {
+  Cage cage = grid(30, 5);
+  cage.positions.col(0) *= 1e4;
+  const LimitSurface surface = limitSurface(cage);
+  const int count = 400;
+  int reports = 0;
+  const BlueNoise noise =
+      AreaSampler(surface).blueNoise(byCount(count), 0, [&](double) { ++reports; });
+  ASSERT_EQ(noise.at.size(), 400u);
+  EXPECT_GT(noise.radius, 0.97 * 0.7476 * 30e4 / count);
+  EXPECT_LE(reports, 40);  // one for each round of each attempt, and for the end
+}
+
+TEST(BlueNoise, OnDistantIslandsIsAsDenseAsElsewhere) {
+  Cage cage = grid(4, 4);
+  const Cage other = placed(cage, 1, Vector3(1e5, 0, 0));
+  Points all(2 * cage.vertexCount(), 3);
+  all << cage.positions, other.positions;
+  for (const std::vector<int>& face : other.faces) {
+    cage.faces.push_back(face);
+    for (int& vertex : cage.faces.back()) vertex += other.vertexCount();
+  }
+  cage.positions = all;
+  const LimitSurface surface = limitSurface(cage);
+  const BlueNoise noise = AreaSampler(surface).blueNoise(byCount(1000));
+  ASSERT_EQ(noise.at.size(), 1000u);
+  EXPECT_GT(noise.radius, 0.93 * radiusFor(surface, 1000));
+}
+
 TEST(BlueNoise, IsEvenlySpreadOverArea) {
   const LimitSurface surface = limitSurface(scatteredCage());
   const std::vector<double> expected = areas(surface, 1, 64);
@@ -312,8 +343,13 @@ TEST(SlowBlueNoise, EndsOnDegenerateSurfaces) {
   }
   spike.positions(12, 2) = 1e6;
   const LimitSurface needle = limitSurface(spike);
-  expectThrow<std::invalid_argument>([&] { AreaSampler(needle).blueNoise(byCount(500)); },
+  const double radius = radiusFor(needle, 500);
+  expectThrow<std::invalid_argument>([&] { AreaSampler(needle).blueNoise(byRadius(radius)); },
                                      {"sheared"});
+  const BlueNoise sparse = AreaSampler(needle).blueNoise(byCount(500));
+  EXPECT_EQ(sparse.at.size(), 500u);
+  EXPECT_GE(smallestDistance(needle, sparse.at, [&](auto&) { return sparse.radius; }), 1);
+  EXPECT_GT(sparse.radius, radius);
 }
 
 TEST(BlueNoise, RefusesWhatHasNoMeaning) {
