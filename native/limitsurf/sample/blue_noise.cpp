@@ -146,6 +146,7 @@ class BlueNoiseMaker {
       const bool is_enough = points.size() >= count;
       if (is_enough &&
           (excess <= kMostSurplus || points.size() <= count + 2 || attempt > kPatientAttempts)) {
+        sortByFace(points);  // neighbours shall be close to each other in memory
         Crowding crowding(box_, std::move(points), threads_);
         crowding.thin(count);
         const double slack = crowding.slack();
@@ -258,11 +259,19 @@ class BlueNoiseMaker {
     points.resize(kept);
   }
 
-  /// The points in the order of their faces, those of a face in the order of their acceptance.
-  BlueNoise result(std::vector<NoisePoint> points, double radius) const {
-    std::stable_sort(points.begin(), points.end(), [](const NoisePoint& a, const NoisePoint& b) {
+  /// Those of a face stay in the order of their acceptance.
+  static void sortByFace(std::vector<NoisePoint>& points) {
+    const auto before = [](const NoisePoint& a, const NoisePoint& b) {
       return a.at.face < b.at.face;
-    });
+    };
+    if (!std::is_sorted(points.begin(), points.end(), before)) {
+      std::stable_sort(points.begin(), points.end(), before);
+    }
+  }
+
+  /// The points in the order of their faces.
+  BlueNoise result(std::vector<NoisePoint> points, double radius) const {
+    sortByFace(points);
     BlueNoise noise;
     noise.at.resize(points.size());
     std::transform(points.begin(), points.end(), noise.at.begin(),
