@@ -77,7 +77,7 @@ class AreaSampler {
   ///
   /// Throws std::invalid_argument as uniform() does; for a radius that is not finite and above 0,
   /// or so small that there would be more than 2^31 points; and for faces sheared so strongly that
-  /// there would be far more cells of (u, v) than points. Cost: O(points + faces), about 12
+  /// there would be far more cells of (u, v) than points. Cost: O(points + faces), about 8
   /// microseconds a point on all threads together.
   BlueNoise blueNoise(const BlueNoiseOptions& options, int threads = 0,
                       const Progress& progress = {}) const;
