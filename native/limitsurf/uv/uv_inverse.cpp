@@ -47,6 +47,55 @@ class RowRange {
   const Point2 tolerance_;
 };
 
+/// A strip along the longer diagonal of a cell's image that contains the image, grown by the
+/// tolerance. An axis-aligned box around a slanted, thin image would contain many points that the
+/// image does not.
+class Strip {
+ public:
+  Strip(const UvCell& cell, const Point2& tolerance) : origin_(cell.points[0]) {
+    const Point2 *p = cell.points, one = p[15] - p[0], other = p[12] - p[3];
+    along_ = (one * one).sum() > (other * other).sum() ? one : other;
+    for (int i = 0; i < 16; ++i) {
+      const double across = acrossOf(p[i]);
+      low_ = std::min(low_, across);
+      high_ = std::max(high_, across);
+    }
+    const double grown = (along_.abs() * tolerance.reverse()).sum();
+    low_ -= grown;
+    high_ += grown;
+  }
+
+  bool contains(const Point2& point) const {
+    const double across = acrossOf(point);
+    return across >= low_ && across <= high_;
+  }
+
+  /// Whether all points lie beside the strip. Of many points only the corners are looked at.
+  bool isBeside(const Lattice& points) const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const int y : {points.y0, points.y1}) {
+      for (const int x : {points.x0, points.x1}) {
+        const double across = acrossOf(Point2(x, y));
+        low = std::min(low, across);
+        high = std::max(high, across);
+      }
+    }
+    const bool are_corners_all = points.x1 - points.x0 < 2 && points.y1 - points.y0 < 2;
+    return low > high_ || high < low_ || (are_corners_all && containsNone(points));
+  }
+
+ private:
+  double acrossOf(const Point2& point) const { return cross(along_, point - origin_); }
+
+  bool containsNone(const Lattice& points) const {
+    return !contains(Point2(points.x0, points.y0)) && !contains(Point2(points.x1, points.y0)) &&
+           !contains(Point2(points.x0, points.y1)) && !contains(Point2(points.x1, points.y1));
+  }
+
+  Point2 origin_, along_;
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+};
+
 /// The place in a cell whose image is nearest to a point, by the Levenberg-Marquardt iteration from
 /// the middle of the cell.
 class LeastSquares {
@@ -62,7 +111,11 @@ class LeastSquares {
       const Point2 move =
           Point2((tt + added) * right[0] - st * right[1], (ss + added) * right[1] - st * right[0]) /
           determinant;
-      const Point2 next = (at_ + move).max(0.).min(1.);
+      const Point2 beyond = at_ + move;
+      const Point2 next = beyond.max(0.).min(1.);
+      if (isStill(beyond, next, right)) {
+        break;
+      }
       Point2 rest, ds, dt;
       evaluate(next, rest, ds, dt);
       if (rest.matrix().squaredNorm() < rest_.matrix().squaredNorm()) {
@@ -89,6 +142,18 @@ class LeastSquares {
   static constexpr int kMostSteps = 60;
   static constexpr double kFirstDamping = 1e-3, kLessDamping = 0.1, kMoreDamping = 10;
 
+  /// Whether no step leads anywhere: each coordinate stays by rounding, or because this step and
+  /// the steepest descent both lead out of the cell.
+  bool isStill(const Point2& beyond, const Point2& next, const Point2& descent) const {
+    for (int i = 0; i < 2; ++i) {
+      const bool is_outside = beyond[i] != next[i] && (beyond[i] > next[i]) == (descent[i] > 0);
+      if (next[i] != at_[i] || (beyond[i] != at_[i] && !is_outside)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   void evaluate(const Point2& at, Point2& rest, Point2& ds, Point2& dt) const {
     Point2 value;
     cell_.evaluate(at[0], at[1], value, ds, dt);
@@ -110,29 +175,19 @@ bool LatticeInverse::isFlat(const UvCell& patch) const {
   return !(area > tolerance_.maxCoeff() * (box.high - box.low).maxCoeff());
 }
 
-bool LatticeInverse::isBeside(const UvCell& cell, const Lattice& inside) const {
-  const Point2 *p = cell.points, one = p[15] - p[0], other = p[12] - p[3];
-  const Point2 along = (one * one).sum() > (other * other).sum() ? one : other;
-  const double tolerance = (along.abs() * tolerance_.reverse()).sum();
-  for (int y = inside.y0; y <= inside.y1; ++y) {
-    for (int x = inside.x0; x <= inside.x1; ++x) {
-      double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (int i = 0; i < 16; ++i) {
-        const double across = cross(along, p[i] - Point2(x, y));
-        low = std::min(low, across);
-        high = std::max(high, across);
-      }
-      if (low <= tolerance && high >= -tolerance) {
-        return false;
-      }
-    }
-  }
-  return true;
+void LatticeInverse::begin(const Lattice& inside) {
+  const std::int64_t points = static_cast<std::int64_t>(inside.x1 - inside.x0 + 1) *
+                              static_cast<std::int64_t>(inside.y1 - inside.y0 + 1);
+  limit_.quartered = work_.quartered + kMostCells + points;
+  limit_.searches = work_.searches + kMostSearches + 2 * points;
+  limit_.trials = work_.trials + kMostTrials + 64 * points;
+  deep_cells_ = 0;
 }
 
 void LatticeInverse::add(const UvCell& patch) {
-  if (!within(patch.box()).empty() && !isFlat(patch)) {
-    deep_cells_ = 0;
+  const Lattice inside = within(patch.box());
+  if (!inside.empty() && !isFlat(patch)) {
+    begin(inside);
     addCell(patch, 0);
   }
 }
@@ -142,12 +197,19 @@ void LatticeInverse::addPart(const UvCell& part) {
   if (inside.empty()) {
     return;
   }
+  begin(inside);
   if (isFlat(part)) {
     addNearest(part, inside);
   } else {
-    deep_cells_ = 0;
     addCell(part, 0);
   }
+}
+
+bool LatticeInverse::isLast(const Box2& box, int depth) {
+  if (((box.high - box.low) <= kTiny * tolerance_).all() || work_.quartered == limit_.quartered) {
+    return true;
+  }
+  return depth >= kQuarterings && (depth == kMostQuarterings || deep_cells_++ > kMostDeepCells);
 }
 
 void LatticeInverse::addCell(const UvCell& cell, int depth) {
@@ -161,16 +223,14 @@ void LatticeInverse::addCell(const UvCell& cell, int depth) {
     addRows(cell, inverse, inside);
     return;
   }
-  if (depth > 0 && inside.x1 - inside.x0 < 2 && inside.y1 - inside.y0 < 2 &&
-      isBeside(cell, inside)) {
+  if (depth > 0 && Strip(cell, tolerance_).isBeside(inside)) {
     return;
   }
-  const bool is_last =
-      depth >= kQuarterings && (depth == kMostQuarterings || deep_cells_++ > kMostDeepCells);
-  if (is_last || ((box.high - box.low) <= kTiny * tolerance_).all()) {
+  if (isLast(box, depth)) {
     addNearest(cell, inside);
     return;
   }
+  ++work_.quartered;
   UvCell quarters[4];
   cell.quarter(quarters);
   for (const UvCell& quarter : quarters) {
@@ -242,8 +302,17 @@ void LatticeInverse::addPlace(const UvCell& cell, const CellInverse& inverse,
 }
 
 void LatticeInverse::addNearest(const UvCell& cell, const Lattice& inside) {
+  const Strip strip(cell, tolerance_);
   for (int y = inside.y0; y <= inside.y1; ++y) {
     for (int x = inside.x0; x <= inside.x1; ++x) {
+      if (work_.searches == limit_.searches || work_.trials == limit_.trials) {
+        return;
+      }
+      ++work_.trials;
+      if (!strip.contains(Point2(x, y)) || !sink_.wants(x, y, cell)) {
+        continue;
+      }
+      ++work_.searches;
       LeastSquares search(cell, Point2(x, y));
       if ((search.rest().abs() <= tolerance_).all()) {
         Find find;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "limitsurf/uv/uv_cell_inverse.h"
 
 namespace limitsurf {
@@ -27,6 +29,8 @@ struct Find {
 class FindSink {
  public:
   virtual void add(const Find& find) = 0;
+  /// Whether a find in a cell of the patch would be used if no wedges are known around it.
+  virtual bool wants(int x, int y, const UvCell& cell) const = 0;
 
  protected:
   ~FindSink() = default;
@@ -39,6 +43,12 @@ class FindSink {
 /// ends at the size of the tolerance or after kMostDeepCells cells (a whole edge of a patch that is
 /// mapped to one lattice point takes more), and a least-squares iteration searches for one place in
 /// each remaining cell. Patches whose image has no area take no values.
+///
+/// The cost of a patch is bounded, whatever its points are: for n lattice points in its box, at
+/// most kMostCells + n cells are quartered, kMostSearches + 2n searches are made, and remaining
+/// cells are compared with points kMostTrials + 64n times. A patch that needs more is degenerate
+/// nearly everywhere, or tolerances are larger than the distances of lattice points; places on it
+/// may be missed.
 class LatticeInverse {
  public:
   LatticeInverse(const Lattice& lattice, const Point2& tolerance, FindSink& sink)
@@ -56,6 +66,16 @@ class LatticeInverse {
   /// The lattice points within the tolerance of a box.
   Lattice within(const Box2& box) const { return lattice_.within(box.grown(tolerance_)); }
 
+  static constexpr std::int64_t kMostCells = 1 << 14, kMostSearches = 1 << 14,
+                                kMostTrials = 1 << 22;
+  /// What has been done so far, for all patches.
+  struct Work {
+    std::int64_t quartered = 0;  ///< cells
+    std::int64_t searches = 0;   ///< by least squares
+    std::int64_t trials = 0;     ///< pairs of a remaining cell and a point
+  };
+  const Work& work() const { return work_; }
+
  private:
   /// Every patch may be quartered kQuarterings times; beyond, at most kMostDeepCells cells of a
   /// patch are, down to kMostQuarterings times. Chosen, not derived.
@@ -68,11 +88,11 @@ class LatticeInverse {
   /// cell is too small for directions.
   static constexpr double kWidestBorder = 1. / 8;
 
+  /// Begins with a patch or a part of one.
+  void begin(const Lattice& inside);
   void addCell(const UvCell& cell, int depth);
-  /// Whether all points lie beside a cell's image, as seen along its longer diagonal. An
-  /// axis-aligned box around a slanted, thin image would contain many points that the image does
-  /// not.
-  bool isBeside(const UvCell& cell, const Lattice& inside) const;
+  /// Whether a cell that cannot be inverted is searched instead of quartered.
+  bool isLast(const Box2& box, int depth);
   /// Inverts a cell row by row, each point starting from its neighbours.
   void addRows(const UvCell& cell, const CellInverse& inverse, const Lattice& inside);
   void addPlace(const UvCell& cell, const CellInverse& inverse, const CellInverse::Place& place,
@@ -83,6 +103,8 @@ class LatticeInverse {
   const Lattice lattice_;
   const Point2 tolerance_;
   FindSink& sink_;
+  Work work_;
+  Work limit_;          // what work_ may be after the present patch
   int deep_cells_ = 0;  // cells of the present patch quartered more than kQuarterings times
 };
 

@@ -66,6 +66,10 @@ struct RasterOptions {
 /// An inverse refers to its map, which must outlive it and keep its values. All const members may
 /// be called from many threads at once, and return the same bits for any number of threads.
 ///
+/// The cost of a face is bounded, whatever its image is. On a face so stretched that its image is
+/// degenerate nearly everywhere (a value of the map lies a million times as far away as the
+/// others), places may be missed, and the points count as not covered by it.
+///
 /// Cost of making it: O(faces log faces). Memory: 100 bytes a face, several times as much around an
 /// extraordinary vertex.
 class UvMap {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "limitsurf/pi.h"
 
@@ -13,41 +14,53 @@ constexpr double kTurn = 2 * kPi<double>;
 /// Wedges that have at most this angle in common only touch. Radians.
 constexpr double kTouching = 1e-4;
 
-/// A wedge as the angle at which it begins and its width.
-struct Angles {
-  explicit Angles(const Wedge& wedge) : begin(std::atan2(wedge.first[1], wedge.first[0])) {
-    width = std::atan2(wedge.last[1], wedge.last[0]) - begin;
-    width += width < 0 ? kTurn : 0;
-    // A corner or a side of a cell spans half a turn at most: a wider wedge is an empty one that
-    // rounding has turned inside out.
-    width = width > kMostWidth ? 0 : width;
-  }
-  double begin, width;
+/// A corner or a side of a cell spans half a turn at most: a wider wedge is an empty one that
+/// rounding has turned inside out.
+constexpr double kMostWidth = 0.75 * kTurn;
 
- private:
-  static constexpr double kMostWidth = 0.75 * kTurn;
-};
-
-bool overlap(const Angles& a, const Angles& b) {
-  double from = b.begin - a.begin;
-  from += from < 0 ? kTurn : 0;
-  const double common = std::max(0., std::min(a.width, from + b.width) - from) +
-                        std::max(0., std::min(a.width, from + b.width - kTurn));
-  return common > kTouching;
-}
+double angleOf(const Point2& direction) { return std::atan2(direction[1], direction[0]); }
 
 }  // namespace
 
-bool doWedgesOverlap(const BorderFind* begin, const BorderFind* end) {
-  for (const BorderFind* one = begin; one != end; ++one) {
-    for (const BorderFind* other = begin; other != one; ++other) {
-      for (int i = 0; i < one->wedge_count; ++i) {
-        for (int j = 0; j < other->wedge_count; ++j) {
-          if (overlap(Angles(one->wedges[i]), Angles(other->wedges[j]))) {
-            return true;
-          }
-        }
-      }
+void WedgeOverlap::add(const BorderFind& find) {
+  for (int i = 0; i < find.wedge_count; ++i) {
+    const double begin = angleOf(find.wedges[i].first);
+    double width = angleOf(find.wedges[i].last) - begin;
+    width += width < 0 ? kTurn : 0;
+    width = width > kMostWidth ? 0 : width;
+    // Twice, a turn apart: a later wedge may reach over the end of the turn into an earlier one.
+    arcs_.push_back({begin, begin + width, &find});
+    arcs_.push_back({begin + kTurn, begin + kTurn + width, &find});
+  }
+}
+
+bool WedgeOverlap::of(const BorderFind* begin, const BorderFind* end) {
+  if (end - begin < 2) {
+    return false;
+  }
+  arcs_.clear();
+  for (const BorderFind* find = begin; find != end; ++find) {
+    add(*find);
+  }
+  std::sort(arcs_.begin(), arcs_.end(), [](const Arc& a, const Arc& b) {
+    return a.begin < b.begin || (a.begin == b.begin && a.end < b.end);
+  });
+  // Of the arcs so far: the one that reaches farthest, and the one of another find that does.
+  Arc first = arcs_[0];
+  double second_end = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < arcs_.size(); ++i) {
+    const Arc& arc = arcs_[i];
+    const double reached = arc.find == first.find ? second_end : first.end;
+    if (std::min(reached, arc.end) - arc.begin > kTouching) {
+      return true;
+    }
+    if (arc.find == first.find) {
+      first.end = std::max(first.end, arc.end);
+    } else if (arc.end > first.end) {
+      second_end = first.end;
+      first = arc;
+    } else {
+      second_end = std::max(second_end, arc.end);
     }
   }
   return false;

@@ -213,17 +213,14 @@ Texels concatenate(std::vector<Texels>& parts, int threads) {
 void LatticeFinds::add(const Find& find) {
   const std::int64_t point = (find.y - lattice_.y0) * width_ + (find.x - lattice_.x0);
   Slot& slot = slots_[static_cast<std::size_t>(point)];
-  if (find.on_border) {
+  if (find.on_border && find.wedge_count > 0) {
     border_finds_.push_back({point, find.wedge_count, {find.wedges[0], find.wedges[1]}});
-  } else {
+  } else if (!find.on_border) {
     slot.overlap |= slot.within_cell;
     slot.within_cell = true;
   }
   const Location at = on_.at(find.s, find.t);
-  const bool better =
-      slot.face < 0 || at.face < slot.face ||
-      (at.face == slot.face && (at.v < slot.v || (at.v == slot.v && at.u < slot.u)));
-  if (better) {
+  if (isBefore(at, slot)) {
     slot.face = at.face;
     slot.u = at.u;
     slot.v = at.v;
@@ -231,19 +228,29 @@ void LatticeFinds::add(const Find& find) {
   }
 }
 
+bool LatticeFinds::wants(int x, int y, const UvCell& cell) const {
+  const FaceRectangle on = on_.part(cell.s0, cell.t0, cell.size, cell.size);
+  const double s = on.us < 0 || on.vs < 0 ? 1 : 0, t = on.ut < 0 || on.vt < 0 ? 1 : 0;
+  return isBefore(on.at(s, t), at(x, y));
+}
+
+bool LatticeFinds::isBefore(const Location& at, const Slot& slot) {
+  return slot.face < 0 || at.face < slot.face ||
+         (at.face == slot.face && (at.v < slot.v || (at.v == slot.v && at.u < slot.u)));
+}
+
 void LatticeFinds::finish() {
   std::stable_sort(border_finds_.begin(), border_finds_.end(),
                    [](const BorderFind& a, const BorderFind& b) { return a.point < b.point; });
   const BorderFind* const end = border_finds_.data() + border_finds_.size();
+  WedgeOverlap overlap;
   for (const BorderFind* first = border_finds_.data(); first != end;) {
     const BorderFind* last = first + 1;
-    bool known = first->wedge_count > 0;
     while (last != end && last->point == first->point) {
-      known |= last->wedge_count > 0;
       ++last;
     }
     Slot& slot = slots_[static_cast<std::size_t>(first->point)];
-    slot.overlap |= (slot.within_cell && known) || doWedgesOverlap(first, last);
+    slot.overlap |= slot.within_cell || overlap.of(first, last);
     first = last;
   }
   border_finds_.clear();

@@ -29,6 +29,7 @@ class LatticeFinds : public UvPatches::Sink {
 
   void enter(const FaceRectangle& on) override { on_ = on; }
   void add(const Find& find) override;
+  bool wants(int x, int y, const UvCell& cell) const override;
   /// Decides about overlaps. It must be called after all finds have been added.
   void finish();
 
@@ -37,6 +38,9 @@ class LatticeFinds : public UvPatches::Sink {
   }
 
  private:
+  /// Whether a location comes before that of a slot.
+  static bool isBefore(const Location& at, const Slot& slot);
+
   const Lattice lattice_;
   const std::int64_t width_;
   FaceRectangle on_;
