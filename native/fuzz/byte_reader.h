@@ -9,6 +9,9 @@
 namespace limitsurf::fuzz {
 
 /// Reads the bytes of a fuzzer's input as numbers. After the last byte everything is 0.
+///
+/// No expression may read twice: compilers differ in which operand they evaluate first, and an
+/// input must mean the same for all of them.
 class ByteReader {
  public:
   ByteReader(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -26,7 +29,8 @@ class ByteReader {
       return kind / 159.;
     }
     if (kind < 240) {
-      return std::ldexp(1 + byte() / 256., -below(80));
+      const int mantissa = byte();
+      return std::ldexp(1 + mantissa / 256., -below(80));
     }
     return kind < 248 ? 1 - std::ldexp(1., -below(54)) : anyDouble();
   }
@@ -37,7 +41,11 @@ class ByteReader {
     if (kind < 240) {
       return (kind - 120) / 32.;
     }
-    return kind < 250 ? std::ldexp((byte() - 128) / 64., byte() - 128) : anyDouble();
+    if (kind >= 250) {
+      return anyDouble();
+    }
+    const int mantissa = byte();
+    return std::ldexp((mantissa - 128) / 64., byte() - 128);
   }
 
   /// Any bits at all.

@@ -86,7 +86,9 @@ void checkArea(const LimitSurface& surface) {
 
 void checkPoses(ByteReader& bytes, LimitSurface& surface) {
   Points moved = surface.positions();
-  moved(bytes.byte() % moved.rows(), bytes.below(3)) = bytes.coordinate();
+  const double coordinate = bytes.coordinate();
+  const Eigen::Index row = bytes.byte() % moved.rows();
+  moved(row, bytes.below(3)) = coordinate;
   const Points before = surface.positions();
   if (!accepts([&] { surface.setPositions(moved, 1); })) {
     require(surface.positions() == before, "a pose that is refused changes nothing");

@@ -103,8 +103,9 @@ void checkRays(ByteReader& bytes, const LimitSurface& surface, const SurfaceSear
 
 void checkScattering(ByteReader& bytes, const LimitSurface& surface) {
   accepts([&] {
-    checkLocations(surface, scatterJittered(surface, 1 + bytes.below(3),
-                                            static_cast<std::uint64_t>(bytes.byte()), 1));
+    const int per_side = 1 + bytes.below(3);
+    const auto seed = static_cast<std::uint64_t>(bytes.byte());
+    checkLocations(surface, scatterJittered(surface, per_side, seed, 1));
     const AreaSampler sampler(surface, 1);
     const auto count = static_cast<std::int64_t>(bytes.below(40));
     const std::vector<Location> uniform = sampler.uniform(count, 1, {}, 1);

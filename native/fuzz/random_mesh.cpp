@@ -71,7 +71,8 @@ struct Draft {
     for (int i = 0; i < count; ++i) {
       std::vector<std::int64_t> face(static_cast<std::size_t>(2 + bytes.below(8)));
       for (std::int64_t& vertex : face) {
-        vertex = bytes.below(vertices + 1) - (bytes.below(64) == 63 ? 1 : 0);
+        vertex = bytes.below(vertices + 1);
+        vertex -= bytes.below(64) == 63 ? 1 : 0;
       }
       faces.push_back(std::move(face));
     }
