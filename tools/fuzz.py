@@ -7,11 +7,13 @@
 Each fuzzer runs for --seconds on each of the machine's cores. A finding ends the program with an
 error and with the input's digits: append them to native/fuzz/corpus/TARGET.hex, below a line
 "# Findings". --keep takes the new inputs that reach other parts of the library into these files.
+Where Clang 19 is not installed, the program says so and ends with 77.
 """
 
 import argparse
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -23,6 +25,8 @@ TARGETS = ("mesh", "query", "map")
 LONGEST_INPUT = 512  # bytes
 SECONDS_FOR_ONE = 30  # an input that takes longer is a finding
 MEGABYTES = 4096
+COMPILER = "clang++-19"  # that of the preset fuzz
+CANNOT_RUN = 77
 
 
 def build() -> None:
@@ -119,6 +123,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", action="store_true", help="take new inputs into the corpus")
     options = parser.parse_args()
+    if not shutil.which(COMPILER):
+        print(f"Fuzzers: not run, since there is no {COMPILER} here (Debian: clang-19).")
+        return CANNOT_RUN
     build()
     results = [
         fuzz(target, options.seconds, options.seed, options.keep)

@@ -7,8 +7,8 @@
 #   tools/test.sh --sanitize address | undefined | thread
 #
 # --quick     only the C++ and Python tests and the style: no Blender, no window
-# --slow      also the tests that take minutes, the benchmark programs and tools, and clang-tidy over
-#             all files
+# --slow      also the tests that take minutes, the benchmark programs and tools, the fuzzers for a
+#             minute (where Clang 19 is installed), and clang-tidy over all files
 # --blender   only the Python and Blender tests, under another version of the `bpy` wheel (4.2.23 or
 #             5.0.1, say) in an environment of its own
 # --sanitize  only the C++ tests, and the Python module's own ones, under a sanitizer of the
@@ -134,6 +134,7 @@ else
   if $default && ! $quick; then
     part "Types and spelling" tools/types.sh || true
   fi
+  $default && $slow && { part "Fuzzers" tools/fuzz.py || true; }
   $default && $slow && { part "Lint" tools/lint.sh || true; }
 fi
 
