@@ -222,13 +222,22 @@ void bindOptions(MeshClass& type) {
           "int64: the faces that are holes and have no surface.");
 }
 
+std::string ruleOfState(const py::handle& part) {
+  try {
+    return py::cast<std::string>(part);
+  } catch (const py::cast_error&) {
+    throw py::value_error("no state of a ControlMesh: the name of a rule is no text");
+  }
+}
+
 std::shared_ptr<BoundMesh> meshOfState(const py::tuple& s) {
   if (s.size() != 10) {
-    throw py::value_error("no state of a ControlMesh");
+    throw py::value_error("no state of a ControlMesh: it has " + std::to_string(s.size()) +
+                          " parts instead of 10");
   }
   return makeMesh(s[0], s[1], s[2],
-                  meshOptions(s[3], s[4], py::cast<std::string>(s[5]), py::cast<std::string>(s[6]),
-                              py::cast<std::string>(s[7]), py::cast<std::string>(s[8]), s[9]));
+                  meshOptions(s[3], s[4], ruleOfState(s[5]), ruleOfState(s[6]), ruleOfState(s[7]),
+                              ruleOfState(s[8]), s[9]));
 }
 
 std::string description(const BoundMesh& mesh) {
