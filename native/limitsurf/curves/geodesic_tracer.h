@@ -18,7 +18,8 @@ constexpr double kGeodesicError = 1e-6;
 
 /// Follows geodesics, the straightest curves, over a limit surface, across the borders of faces. At
 /// an infinitely sharp edge a geodesic goes on at the same angle to the edge, as if the faces lay
-/// in a plane.
+/// in a plane. Along a fold of the surface, where it has no tangent plane, a geodesic ends; its
+/// cost is bounded there too.
 ///
 /// The geodesic equation is integrated by the method of Dormand & Prince on each bicubic patch. The
 /// tracer is made for one pose of the surface, to which it refers. All const members may be called

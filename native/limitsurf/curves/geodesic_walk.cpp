@@ -120,7 +120,7 @@ bool GeodesicWalk::go(double length) {
 /// patch. Returns false where the walk ends.
 bool GeodesicWalk::step(double most) {
   const GeodesicRate rate = geodesicRate(on_.patch, at_);
-  if (!rate.exists) {
+  if (!rate.exists || ++steps_ - kSpareSteps > kStepsAPatch * changes_) {
     return false;
   }
   const double across_patch = 1 / std::max(std::abs(rate.s), std::abs(rate.t));

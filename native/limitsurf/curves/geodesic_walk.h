@@ -49,6 +49,10 @@ class GeodesicWalk {
   /// A walk ends after so many changes of the patch in a row without progress, and so many in all.
   static constexpr int kMostChangesOnSpot = 64;
   static constexpr int kMostChanges = 1000000;
+  /// So many steps a walk may take on average on each patch, and so many more in all. Most patches
+  /// need one to ten; along a fold, where the surface has no tangent plane, steps become shorter
+  /// than any bound.
+  static constexpr int kStepsAPatch = 64, kSpareSteps = 4096;
 
   bool step(double most);
   bool cross(int side);
@@ -61,7 +65,7 @@ class GeodesicWalk {
   FoundPatch on_;
   GeodesicState at_;
   double length_ = 0, next_step_ = 0;
-  int changes_ = 0, changes_on_spot_ = 0;
+  int steps_ = 0, changes_ = 0, changes_on_spot_ = 0;
   bool hit_ = false;
 };
 
