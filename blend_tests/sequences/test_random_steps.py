@@ -79,3 +79,31 @@ def test_unbinding_after_the_modifier_of_a_hidden_table_was_removed():
             removed += 1
     assert removed
     assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+
+
+def test_hair_on_a_surface_that_was_linked_for_something_else(tmp_path):
+    """Blender itself does not save such a parent: nothing counts it as used."""
+    scenes.cross()
+    bpy.ops.object.limit_points_add(per_side=2, follow="NONE")
+    points = bpy.context.object.name
+    library, file = str(tmp_path / "library.blend"), str(tmp_path / "file.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=library, copy=True)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    with bpy.data.libraries.load(library, link=True) as (_, linked):
+        linked.objects = [points]
+    bpy.context.collection.objects.link(linked.objects[0])
+    linked.objects[0].select_set(True)
+    bpy.context.view_layer.objects.active = linked.objects[0]
+    bpy.ops.ed.undo_push(message="link")
+    assert bpy.ops.object.limit_hair_add("EXEC_DEFAULT", True, per_side=2, follow="NONE") == {
+        "FINISHED"
+    }
+    hair, surface = bpy.context.object.name, bpy.context.object.parent.name
+    bpy.ops.ed.undo()
+    bpy.ops.ed.redo()
+    assert bpy.data.objects[hair].parent == bpy.data.objects[surface]
+    assert bpy.data.objects[hair].data.surface == bpy.data.objects[surface]
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.open_mainfile(filepath=file)
+    assert bpy.data.objects[hair].parent == bpy.data.objects[surface]
+    assert bpy.data.objects[hair].data.surface == bpy.data.objects[surface]

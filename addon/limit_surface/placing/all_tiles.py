@@ -93,7 +93,7 @@ class AllTiles:
     def _write_faces(self) -> None:
         assert self._levels is not None
         ob = faces_of(self._surface) or tables.new_object(ids.FACES_TABLE, self._surface)
-        ob.parent = self._surface  # shares its transform
+        new_objects.put_on_surface(ob, self._surface)
         ob[ids.FACES_MARK] = self._levels
         mesh = ob.data
         mesh.clear_geometry()

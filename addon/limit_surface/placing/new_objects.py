@@ -17,7 +17,7 @@ def add_on_surface(
 ) -> bpy.types.Object:
     """Adds an object that shares the surface's transform, makes it active and selects it alone."""
     ob = bpy.data.objects.new(name, data)
-    ob.parent = surface
+    put_on_surface(ob, surface)
     _collection(context).objects.link(ob)
     if context.space_data and getattr(context.space_data, "local_view", None):
         ob.local_view_set(context.space_data, True)
@@ -27,6 +27,18 @@ def add_on_surface(
     context.view_layer.objects.active = ob
     context.view_layer.update()
     return ob
+
+
+def put_on_surface(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
+    """Has an object share the surface's transform.
+
+    Blender saves, and restores by undo, only those linked objects that have users, and a parent is
+    none: a surface that was linked only because something else needs it would be lost. A custom
+    property is a user.
+    """
+    ob.parent = surface
+    if surface.library is not None and surface.users == 0:
+        ob[ids.LINKED_SURFACE] = surface
 
 
 def add_polygons(
