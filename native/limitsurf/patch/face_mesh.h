@@ -69,6 +69,21 @@ class FaceMesh {
     return twins_[number] < 0 ? kInfinitelySharp : side_sharpness_ ? side_sharpness_[number] : 0;
   }
 
+  bool onlyQuads() const { return !first_corners_; }
+  // The same by the numbers of corners, for what is looked at most.
+  int vertexAt(int corner) const { return corner_vertices_[corner]; }
+  /// The number of across(), or -1.
+  int acrossAt(int corner) const {
+    return side_sharpness_ && isInfinitelySharp(side_sharpness_[corner]) ? -1 : twins_[corner];
+  }
+  /// The corner so many steps further around a face that is a quad. `kOnlyQuads`: all faces of the
+  /// mesh are.
+  template <bool kOnlyQuads>
+  int aroundQuad(int corner, int steps) const {
+    const int first = kOnlyQuads ? corner & ~3 : first_corners_[face_of_corner_[corner]];
+    return first + ((corner - first + steps) & 3);
+  }
+
   VertexFan fan(int vertex) const {
     if (vertex >= own_points_) {
       return fans_[vertex - own_points_];

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "limitsurf/parallel.h"
-#include "limitsurf/surface/grid_step.h"
+#include "limitsurf/surface/batch/grid_step.h"
 
 namespace limitsurf {
 namespace {

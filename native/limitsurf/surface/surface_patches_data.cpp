@@ -9,8 +9,8 @@
 
 #include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/batch/grid_step.h"
 #include "limitsurf/surface/bezier_conversion.h"
-#include "limitsurf/surface/grid_step.h"
 #include "limitsurf/surface/ring_shrinkage.h"
 #include "limitsurf/surface/tile_weights.h"
 

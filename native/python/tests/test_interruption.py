@@ -171,9 +171,22 @@ def test_a_second_interruption_while_the_pose_is_mended(surface):
 
 
 def large_mesh():
-    """More corners than OpenSubdiv connects at once without being heard meanwhile."""
-    positions, faces = shapes.grid(400, 400)
+    positions, faces = shapes.grid(800, 800)
     return ls.ControlMesh.from_faces(positions * 1.0, faces)
+
+
+def large_mesh_with_fin():
+    """It is not manifold, and has more corners than OpenSubdiv connects at once without being heard
+    meanwhile."""
+    positions, faces = shapes.grid(400, 400)
+    middle = faces[400 * 200 + 200]
+    fin = [middle[0], middle[1], len(positions), len(positions) + 1]
+    return ls.ControlMesh.from_faces(
+        np.vstack(
+            [positions * 1.0, positions[middle[1]] + [0, 0, 1], positions[middle[0]] + [0, 0, 1]]
+        ),
+        np.vstack([faces, fin]),
+    )
 
 
 def stored(surface):
@@ -193,6 +206,7 @@ def tiling(surface):
 CALLS = {
     "LimitSurface": lambda s: opening(s.mesh),
     "LimitSurface, large": lambda _: opening(large_mesh()),
+    "LimitSurface, not manifold": lambda _: opening(large_mesh_with_fin()),
     "pickle": stored,
     "vertex_data": lambda s: lambda: s.vertex_data(np.ones((len(s.positions), 6)), threads=1),
     "face_varying": lambda s: (

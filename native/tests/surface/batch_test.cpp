@@ -139,6 +139,19 @@ TEST_P(Batch, SettingPositionsEqualsANewSurface) {
 
 INSTANTIATE_TEST_SUITE_P(Cages, Batch, testing::Values(0, 1, 2));
 
+// Where so many faces meet, all cores share the work on one vertex.
+TEST(Batch, ThreadsDoNotChangeTheFacesAroundALargePole) {
+  const Cage pole = fan(700, true, 1);
+  LimitSurface surface = limitSurface(pole);
+  const std::vector<Location> at = manyLocations(pole, 2000);
+  surface.setPositions(pole.positions, 1);
+  const Evaluation one = surface.evaluate(at, Derivatives::second, true);
+  for (int threads : {0, 2, 7}) {
+    surface.setPositions(pole.positions, threads);
+    EXPECT_TRUE(sameBits(one, surface.evaluate(at, Derivatives::second, true)));
+  }
+}
+
 TEST(Batch, EmptyOnesGiveEmptyResults) {
   const LimitSurface surface = limitSurface(cross());
   const std::vector<Location> none;

@@ -100,6 +100,23 @@ TEST_P(InstructionSets, GiveTheSameBits) {
   }
 }
 
+TEST_P(InstructionSets, PoseTheSameBits) {
+  LimitSurface surface = limitSurface(cage());
+  const Points positions = surface.positions();
+  const std::vector<Location> at = runs(cage());
+  const auto posedWith = [&](InstructionSet set) {
+    {
+      const Using posing(set);
+      surface.setPositions(positions);
+    }
+    return surface.evaluate(at, Derivatives::second, true, 1);
+  };
+  const Evaluation expected = posedWith(InstructionSet::baseline);
+  for (InstructionSet set : availableSets()) {
+    expectSameBits(expected, posedWith(set), at);
+  }
+}
+
 TEST_P(InstructionSets, GiveWhatOneAtATimeGives) {
   const Cage input = cage();
   const LimitSurface surface = limitSurface(input);

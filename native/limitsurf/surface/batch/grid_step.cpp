@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/surface/grid_step.h"
+#include "limitsurf/surface/batch/grid_step.h"
 
 #include "limitsurf/eigen/ring_slots.h"
 #include "limitsurf/surface/batch/instruction_sets.h"
@@ -9,8 +9,8 @@ namespace {
 
 namespace baseline {
 using Point = Padded;
-#include "limitsurf/surface/grid_step.inl.h"
-}
+#include "limitsurf/surface/batch/grid_step.inl.h"
+}  // namespace baseline
 
 #if LIMITSURF_X86_SETS
 #if defined(__clang__)
@@ -22,8 +22,8 @@ using Point = Padded;
 namespace avx2 {
 /// A Padded, which is aligned to 16 bytes.
 typedef double Point __attribute__((vector_size(32), aligned(16), may_alias));
-#include "limitsurf/surface/grid_step.inl.h"
-}
+#include "limitsurf/surface/batch/grid_step.inl.h"
+}  // namespace avx2
 #if defined(__clang__)
 #pragma clang attribute pop
 #else
