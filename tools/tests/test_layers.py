@@ -92,7 +92,7 @@ def test_the_library_knows_neither_python_nor_blender():
 
 def test_the_tests_have_the_folders_of_the_library():
     folders = {path.name for path in (NATIVE / "tests").iterdir() if path.is_dir()}
-    assert folders - set(LAYERS) == {"consumer", "data", "truth"}
+    assert folders - set(LAYERS) == {"consumer", "data", "fuzz", "truth"}
 
 
 def test_no_folder_is_overfull():

@@ -97,6 +97,7 @@ def test_positions_do_not_depend_on_the_order(cage, seed):
     before, after = cage.surface(), other.surface()
     assert {int(number[face]) for face in before.refused} == set(after.refused)
     face, uv = places(before, PLACES, seed)
+    uv = np.round(uv * 2.0**52) / 2.0**52  # so that 1 - u is exact: near a cone's tip it matters
     first = {int(base): i for i, base in reversed(list(enumerate(after.base_face)))}
     there, there_uv = np.empty_like(face), uv.copy()
     for row, ptex in enumerate(face):
