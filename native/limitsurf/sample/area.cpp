@@ -24,6 +24,9 @@ constexpr double kTolerance = kAreaError / 8;
 constexpr int kMostSquares = 1 << 17, kFewSquares = 64;
 /// The parts of a core may have this part of its tolerance each.
 constexpr double kCoreShare = 4;
+/// The last change of a core's extrapolated area may be this many times its tolerance: it is far
+/// larger than the error that is left.
+constexpr double kSeriesShare = 8;
 /// The number of tiles that one task integrates side by side.
 constexpr std::size_t kTilesPerTask = 32;
 
@@ -55,7 +58,7 @@ class CoreSum {
     series_.add(area.value);
     if (step_.relative > 0) {
       const double share = step_.relative * area.value;
-      tolerance_ = std::max(tolerance_, 8 * share);
+      tolerance_ = std::max(tolerance_, kSeriesShare * share);
       step_ = {0, std::max(step_.absolute, share / kCoreShare)};
     }
     return series_.error() <= tolerance_ || !(area.value > 0);

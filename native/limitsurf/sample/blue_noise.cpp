@@ -136,7 +136,8 @@ class BlueNoiseMaker {
           std::max(radius, kRow * (box_.high - box_.low).maxCoeff() / static_cast<double>(count));
     }
     expected_ = kSurplus * static_cast<double>(count);
-    double last_radius = 0, last_excess = 0, dimensions = 2;
+    double last_radius = 0, last_excess = 0;
+    bool is_strip = radius > of_area;
     for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
       if (!(radius >= DiscGrid::smallestRadius(box_))) {
         break;
@@ -155,17 +156,21 @@ class BlueNoiseMaker {
       }
       if (excess < kLeastExcess && radius > of_area) {
         radius = of_area;
+        is_strip = false;
         continue;
       }
-      if (last_excess > 0 && excess > 0 && radius != last_radius) {
-        // The number of points is a power of the radius: of 2 dimensions, or of 1 on a narrow
-        // strip.
-        dimensions =
-            std::clamp(std::log(excess / last_excess) / std::log(last_radius / radius), 1., 2.);
+      // The number of points is a power of the radius: -2 on a wide surface, -1 on a narrow strip.
+      // Whether it is closer to -1 the last two attempts tell, without functions whose rounding
+      // depends on the machine.
+      const double fewer = excess / last_excess, wider = last_radius / radius;
+      if (last_excess > 0 && wider != 1) {
+        is_strip = wider > 1 ? fewer * fewer < wider * wider * wider
+                             : fewer * fewer > wider * wider * wider;
       }
       last_radius = radius;
       last_excess = excess;
-      const double step = std::pow(std::max(excess, kLeastExcess) / kSurplus, 1 / dimensions);
+      const double ratio = std::max(excess, kLeastExcess) / kSurplus;
+      const double step = is_strip ? ratio : std::sqrt(ratio);
       radius *= is_enough ? step : std::min(step, kLeastShrinking);
     }
     throw std::invalid_argument("count is " + std::to_string(count) +

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/eigen/ring_shrinkage.h"
 #include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/batch/grid_step.h"
 #include "limitsurf/surface/bezier_conversion.h"
-#include "limitsurf/surface/ring_shrinkage.h"
 #include "limitsurf/surface/tile_weights.h"
 
 namespace limitsurf {

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "limitsurf/sample/area_form.h"
+#include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/sample/core_tail.h"
+#include "limitsurf/surface/batch/instruction_sets.h"
 #include "support/cages/meshes.h"
 #include "support/cages/query_cages.h"
 
@@ -87,6 +89,32 @@ TEST(AreaCells, AreFewAndTight) {
   expectFew(quads, 1.1);
   expectFew(halved(quads), 64);  // in 12 tiles
   expectFew(pole(512), 96);
+}
+
+TEST(AreaCells, HaveTheSameBitsWithAllInstructionSets) {
+  const InstructionSet before = instructionSet();
+  const LimitSurface surface = limitSurface(perturbed(halved(grid(6, 6)), 0.2, 1));
+  const SurfacePatches patches(surface, 0, PatchUnit::own);
+  useInstructionSet(InstructionSet::baseline);
+  const std::vector<AreaCell> cells = areaCells(patches, 0);
+  const std::vector<Location> noise = AreaSampler(surface).blueNoise({500, {}, 3, {}}).at;
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!isAvailable(set)) continue;
+    useInstructionSet(set);
+    const std::vector<AreaCell> same = areaCells(patches, 0);
+    ASSERT_EQ(same.size(), cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      EXPECT_EQ(same[i].bound, cells[i].bound);
+      EXPECT_EQ(same[i].area, cells[i].area);
+    }
+    const std::vector<Location> same_noise = AreaSampler(surface).blueNoise({500, {}, 3, {}}).at;
+    ASSERT_EQ(same_noise.size(), noise.size());
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+      EXPECT_EQ(same_noise[i].u, noise[i].u);
+      EXPECT_EQ(same_noise[i].v, noise[i].v);
+    }
+  }
+  useInstructionSet(before);
 }
 
 }  // namespace

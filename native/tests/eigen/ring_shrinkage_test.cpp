@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/surface/ring_shrinkage.h"
+#include "limitsurf/eigen/ring_shrinkage.h"
 
 #include <gtest/gtest.h>
 
