@@ -27,13 +27,16 @@ CellTable::CellTable(const SurfacePatches& patches, const std::vector<AreaCell>&
     });
   }
   double sum = 0;
+  InterruptionStride stride;
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    stride.step();
     sum += cells[i].bound * largest(i);
     sums_[i] = sum;
   }
   first_.resize(cells.size() + 1);
   std::size_t cell = 0;
   for (std::size_t part = 0; part < first_.size(); ++part) {
+    stride.step();
     const double end = static_cast<double>(part) / static_cast<double>(cells.size()) * sum;
     while (cell + 1 < cells.size() && sums_[cell] < end) {
       ++cell;

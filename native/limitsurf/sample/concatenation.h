@@ -29,6 +29,7 @@ std::vector<T> concatenated(std::size_t count, std::size_t block, int threads, c
   all.reserve(size);
   for (const std::vector<T>& part : parts) {
     all.insert(all.end(), part.begin(), part.end());
+    InterruptionPoint::pass();
   }
   return all;
 }

@@ -34,6 +34,8 @@ FaceRectangle turned(const FaceRectangle& on, int corner) {
 
 /// If the sine of the angle between two vectors is smaller, they do not span a plane well enough.
 constexpr double kLeastSine = 1e-6;
+/// The number of points for which memory is taken between two interruption points.
+constexpr std::size_t kPointsPerPass = std::size_t{1} << 18;
 
 /// The quarters of a core in the order of SplitCore.
 constexpr int kQuarters[3][2] = {{1, 0}, {1, 1}, {0, 1}};
@@ -50,7 +52,9 @@ SurfacePatches::Data::Data(const TileTable& tile_table, const Pose& control_poin
   unit = 1 / scaleToOwnUnit(diagonal);
   scale = patch_unit == PatchUnit::own ? 1 / unit : 1;
   tiles.reserve(table.faces.size());
+  InterruptionStride stride;
   for (std::size_t face = 0; face < table.faces.size(); ++face) {
+    stride.step();
     FaceRectangle whole;
     whole.face = static_cast<int>(face);
     addTiles(table.faces[face], whole);
@@ -95,8 +99,13 @@ void SurfacePatches::Data::setLevels(int threads) {
       shrinkages_[basis] = ringShrinkage(*basis, kMostSteps - kept);
     }
   }
-  levels.resize(size);
   extents.resize(steps);
+  // The system hands out memory when it is first written to, which may take long.
+  levels.reserve(size);
+  while (levels.size() < size) {
+    levels.resize(std::min(size, levels.size() + kPointsPerPass));
+    InterruptionPoint::pass();
+  }
   parallelFor(table.rings.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
       setRingLevels(static_cast<int>(ring));
