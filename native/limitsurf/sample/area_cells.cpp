@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/sample/area_cells.h"
 
+#include <algorithm>
+
 #include "limitsurf/float_rounding.h"
 #include "limitsurf/sample/area_form.h"
 #include "limitsurf/sample/area_kernels.h"
@@ -17,6 +19,9 @@ constexpr double kLoose = 1.3, kNoticeable = 0.02;
 constexpr int kMostLevels = 6;
 /// A core is split until the bound on its area is this part of the bounds of the patches around it.
 constexpr double kTail = 0.25;
+/// By what the areas of a core's steps shrink at least, for an estimate, and by what they do around
+/// a regular vertex.
+constexpr double kSlowest = 0.5, kUsual = 0.25;
 /// The number of tiles that one task cuts into cells.
 constexpr std::size_t kTilesPerTask = 64;
 
@@ -53,7 +58,7 @@ class CellMaker {
       block_.copy(0, place);
     }
     AreaKernels::get().bounds(block_, waiting_, bounds, means);
-    sum_ = 0;
+    sum_ = area_ = 0;
     for (int i = 0; i < waiting_; ++i) {
       AreaCell cell;
       cell.piece = pieces_[i];
@@ -98,12 +103,13 @@ class CellMaker {
       cell.bound = roundedUp(bound);
       cell.area = static_cast<float>(area);
       sum_ += cell.bound;
+      area_ += cell.area;
       cells_.push_back(cell);
     }
   }
 
   void addCore(SurfacePiece core) {
-    double bounds = 0;
+    double bounds = 0, last = 0;
     SurfacePatches::SplitCore split;
     RingPitches pitches(patches_, core);
     while (core.steps < SurfacePatches::kMostSteps) {
@@ -111,7 +117,9 @@ class CellMaker {
       for (int quarter = 0; quarter < 3; ++quarter) {
         wait(split.pieces[quarter], split.patches[quarter]);
       }
+      const double before = last;
       bounds += addWaiting();
+      last = area_;
       core = split.core;
       const Vector3 outer = patches_.outerPitch(split, pitches.frame());
       const double area = CoreTail(pitches, core.steps, outer).area();
@@ -127,6 +135,9 @@ class CellMaker {
           rounded[axis] = cell.outer[axis] = roundedUp(outer[axis]);
         }
         cell.bound = roundedUp(CoreTail(pitches, core.steps, rounded).area());
+        // The areas of further steps shrink by about the same factor.
+        const double factor = before > 0 ? std::min(last / before, kSlowest) : kUsual;
+        cell.area = std::min(cell.bound, static_cast<float>(last * factor / (1 - factor)));
         cells_.push_back(cell);
         return;
       }
@@ -138,7 +149,7 @@ class CellMaker {
   SquareBlock block_;
   SurfacePiece pieces_[SquareBlock::kCount];
   int waiting_ = 0;
-  double sum_ = 0;  // of the bounds of the cells made together
+  double sum_ = 0, area_ = 0;  // of the cells made together: all bounds, and the whole area
 };
 
 }  // namespace

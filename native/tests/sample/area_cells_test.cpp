@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limitsurf/sample/area.h"
 #include "limitsurf/sample/area_form.h"
 #include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/sample/core_tail.h"
@@ -84,6 +85,9 @@ TEST(AreaCells, AreFewAndTight) {
       bound += cell.bound;
     }
     EXPECT_LE(bound, 1.4 * area);
+    // The first radius of blue noise by count is chosen by this estimate.
+    const double truth = surfaceArea(surface) * patches.scale() * patches.scale();
+    EXPECT_NEAR(area, truth, 0.005 * truth);
   };
   const Cage quads = perturbed(grid(20, 20), 0.1, 7);
   expectFew(quads, 1.1);
