@@ -3,8 +3,7 @@
 
 import limitsurf as ls
 import numpy as np
-from hypothesis import strategies as st
-from random_meshes import cages, holds_for, kept_faces, places, seeds
+from random_meshes import cages, holds_for, kept_faces, one_of, places, seeds, whole
 
 PLACES, DENSE = 60, 24
 
@@ -88,7 +87,7 @@ def test_varying_data_are_bilinear(cage, seed):
         assert np.abs(found[row] - expected).max() <= 1e-13 * np.abs(values).max()
 
 
-@holds_for(cage=cages(sharp=False), seed=seeds, interpolation=st.sampled_from(INTERPOLATIONS))
+@holds_for(cage=cages(sharp=False), seed=seeds, interpolation=one_of(INTERPOLATIONS))
 def test_face_varying_data_without_seams_are_vertex_data(cage, seed, interpolation):
     """On a closed mesh; at boundaries the two have rules of their own."""
     surface = cage.surface()
@@ -178,7 +177,7 @@ def test_rays_hit_what_dense_triangles_say(cage, seed):
             assert np.abs(own - distance).min() <= step, "a triangle is hit where nothing else is"
 
 
-@holds_for(cage=cages(), seed=seeds, level=st.integers(1, 5))
+@holds_for(cage=cages(), seed=seeds, level=whole(1, 5))
 def test_polygons_have_the_positions_of_their_locations(cage, seed, level):
     surface = cage.surface()
     rng = np.random.default_rng(seed)
@@ -191,7 +190,7 @@ def test_polygons_have_the_positions_of_their_locations(cage, seed, level):
     assert made.face_sizes.sum() == len(made.face_vertices)
 
 
-@holds_for(cage=cages(), seed=seeds, edges=st.sampled_from(["boundary", "creases"]))
+@holds_for(cage=cages(), seed=seeds, edges=one_of(["boundary", "creases"]))
 def test_curves_of_edges_lie_on_the_surface(cage, seed, edges):
     surface = cage.surface()
     curves = surface.edge_curves(edges)

@@ -8,7 +8,7 @@ import limitsurf as ls
 import numpy as np
 import pytest
 from hypothesis import strategies as st
-from random_meshes import cages, holds_for, places, same_bits, seeds
+from random_meshes import cages, holds_for, one_of, places, same_bits, seeds, whole
 
 PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)
 
@@ -58,7 +58,7 @@ def check_use(mesh):
     assert np.isfinite(surface.evaluate(face, uv).position).all()
 
 
-@holds_for(cage=cages(), seed=seeds, protocol=st.sampled_from(PROTOCOLS))
+@holds_for(cage=cages(), seed=seeds, protocol=one_of(PROTOCOLS))
 def test_pickles_come_back_to_the_bit(cage, seed, protocol):
     surface = cage.surface()
     surface.set_positions(cage.positions[::-1].copy() * 1.25)
@@ -76,7 +76,7 @@ def test_pickles_come_back_to_the_bit(cage, seed, protocol):
         assert all(np.array_equal(one, other) for one, other in parts)
 
 
-@holds_for(cage=cages(), place=st.integers(0, 9), part=strange)
+@holds_for(cage=cages(), place=whole(0, 9), part=strange)
 def test_a_mesh_of_a_changed_state_is_refused_or_whole(cage, place, part):
     state = list(cage.mesh().__getstate__())
     state[place] = part
@@ -85,9 +85,7 @@ def test_a_mesh_of_a_changed_state_is_refused_or_whole(cage, place, part):
         check_use(mesh)
 
 
-@holds_for(
-    cage=cages(), place=st.integers(0, 4), index=seeds, value=st.integers(-(2**63), 2**63 - 1)
-)
+@holds_for(cage=cages(), place=whole(0, 4), index=seeds, value=st.integers(-(2**63), 2**63 - 1))
 def test_a_mesh_with_a_changed_number_is_refused_or_whole(cage, place, index, value):
     state = list(copy.deepcopy(cage.mesh().__getstate__()))
     array = state[place][index % 2] if isinstance(state[place], tuple) else state[place]
