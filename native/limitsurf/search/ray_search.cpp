@@ -109,6 +109,8 @@ class RaySearch {
     }
     const BoxRay box_ray(ray);
     const float begin = roundedDown(start());
+    double end_of_last = end();
+    float last = roundedUp(end_of_last);
     Entry stack[BoxTree::kMostDepth + 1];
     int height = 0;
     stack[height++] = {0, begin};
@@ -122,7 +124,10 @@ class RaySearch {
         continue;
       }
       const BoxTree::Node& node = data_.tree->node(next.node);
-      const float last = roundedUp(end());
+      if (end() != end_of_last) {
+        end_of_last = end();
+        last = roundedUp(end_of_last);
+      }
       float from[2];
       bool met[2];
       for (int side = 0; side < 2; ++side) {
