@@ -326,8 +326,8 @@ raises ends the call.
 Returns Hits: .face (n,) int32, .uv (n, 2), .position and .normal (n, 3), those of evaluate() at the
 location, and .distance (n,). Where no point is found face is -1 and everything else NaN.
 
-Error bound: the distance exceeds the true minimum by at most 1e-12 of the control mesh's diagonal, for
-points within 1,000 diagonals of it. The method is branch and bound over control hulls, with Newton's
+Error bound: the point found is farther away than the true minimum by at most 1e-12 of the control
+mesh's diagonal, at any distance. The method is branch and bound over control hulls, with Newton's
 iteration where the distance is convex. Cost: some microseconds a point. The first call builds a search
 tree that is kept until set_positions().
 
