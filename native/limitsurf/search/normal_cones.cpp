@@ -16,6 +16,9 @@ constexpr double kMargin = 1e-7;
 /// If the sine of the angle between two tangents of a patch may be smaller, nothing is known of its
 /// normals: there the search asks for the surface's frame.
 constexpr double kLeastSine = 0.01;
+/// The axes of two cones count as parallel if the sine of their angle is at most this: then the
+/// rounding of the direction from one to the other would exceed kMargin.
+constexpr double kLeastTurn = 1e-8;
 /// The number of leaves that one task looks at.
 constexpr std::size_t kLeavesPerTask = 64;
 
@@ -135,8 +138,9 @@ NormalCone NormalCone::around(const NormalCone& a, const NormalCone& b) {
   // The axis is turned towards the narrow one's.
   const Vector3 across = narrow.axis - wide.axis.dot(narrow.axis) * wide.axis;
   const double length = across.norm(), turn = angle - wide.angle;
-  if (!(length > 0)) {
-    return apart < 1 ? NormalCone{wide.axis, angle} : everything();
+  if (!(length > kLeastTurn)) {
+    // Rounding decides where `across` points. Axes that are opposite have no direction in between.
+    return apart < 1 ? NormalCone{wide.axis, apart + narrow.angle + kMargin} : everything();
   }
   return {(std::cos(turn) * wide.axis + std::sin(turn) / length * across).normalized(),
           angle + kMargin};
