@@ -63,7 +63,8 @@ struct ClosestSoFar {
       excess = found;
       at = where;
       direction = distance > 0 ? Vector3(way / distance) : Vector3::Zero();
-      // direction . offset, without the cancellation of `range`.
+      // direction . offset = found + (range + direction . away), where direction . away is nearly
+      // -range: the sum in brackets is (range found + offset . away) / distance.
       plane =
           from.isFar() ? found + (from.range * found + offset.dot(from.away)) / distance : distance;
     }

@@ -108,8 +108,10 @@ class ClosestSearch {
     best_ = {};
     best_.from = SearchPoint(point, data_.middle, data_.patches.diagonal());
     best_.tolerance = data_.tolerance;
-    // Points at max_distance itself count, in spite of rounding.
-    best_.excess = max_distance * (1 + kDistanceRounding) + 2 * data_.tolerance - best_.from.range;
+    // Points at max_distance itself count, in spite of rounding. The range may be shorter than the
+    // way that it stands for.
+    best_.excess = max_distance * (1 + kDistanceRounding) + 2 * data_.tolerance -
+                   (best_.from.isFar() ? (point - data_.middle).norm() : 0);
     if (!data_.tree->empty()) {
       point_in_boxes_ = data_.inBoxes(point);
       descend();

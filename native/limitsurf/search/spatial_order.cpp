@@ -2,6 +2,7 @@
 #include "limitsurf/search/spatial_order.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <utility>
@@ -40,10 +41,10 @@ std::vector<std::size_t> spatialOrder(const Points& points, int threads) {
   const Eigen::RowVector3d low = 0.5 * points.colwise().minCoeff(),
                            size = 0.5 * points.colwise().maxCoeff() - low;
   const double widest = size.maxCoeff();
-  if (!(widest > 0)) {
+  const double scale = ((1 << kBits) - 1) / widest;
+  if (!(widest > 0 && std::isfinite(scale))) {
     return order;
   }
-  const double scale = ((1 << kBits) - 1) / widest;
   const auto cell = [&](std::size_t row, int axis) {
     const double at = (0.5 * points(static_cast<Eigen::Index>(row), axis) - low[axis]) * scale;
     return spread(static_cast<std::uint32_t>(at));

@@ -25,6 +25,13 @@ SquaredDistance::SquaredDistance(const SearchKernels& kernels, const BezierPatch
       "the kernels write the coefficients");
   kernels.squaredDistance(reinterpret_cast<const double (*)[4]>(points), away.data(), f_.data());
   kernels.differenceBounds(f_.data(), bounds_);
+  const double range = std::sqrt(away.square().sum());
+  if (range > 0) {
+    for (int i = 0; i < 16; ++i) {
+      const double length = std::sqrt(points[i].square().sum());
+      summands_ = std::max(summands_, length * (length + 2 * range));
+    }
+  }
 }
 
 void SquaredDistance::quarter(SquaredDistance out[4]) const {
@@ -33,6 +40,7 @@ void SquaredDistance::quarter(SquaredDistance out[4]) const {
   for (int i = 0; i < 4; ++i) {
     out[i].kernels_ = kernels_;
     out[i].f_ = parts[i];
+    out[i].summands_ = summands_;
     kernels_->differenceBounds(out[i].f_.data(), out[i].bounds_);
   }
 }

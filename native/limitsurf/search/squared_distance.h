@@ -23,8 +23,8 @@ class SquaredDistance {
                   const BezierPatch::Point& away);
 
   double least() const { return bounds_.least; }
-  /// The largest coefficient, by its absolute value.
-  double magnitude() const { return std::max(bounds_.largest, -bounds_.least); }
+  /// The size of the numbers that the coefficients are sums of: their rounding is relative to it.
+  double magnitude() const { return std::max({bounds_.largest, -bounds_.least, summands_}); }
   /// The value at a corner: i and j are 0 or 1.
   double corner(int i, int j) const { return f_.at(6 * i, 6 * j); }
   /// The polynomial on the quarters of the square.
@@ -56,6 +56,9 @@ class SquaredDistance {
   const SearchKernels* kernels_;
   Bernstein<6> f_;
   DifferenceBounds bounds_;
+  /// The largest |P| (|P| + 2 |away|) of a point P, or 0 for points that are not far away: there
+  /// nothing cancels.
+  double summands_ = 0;
 };
 
 }  // namespace limitsurf

@@ -4,6 +4,7 @@
 // that points far away are answered as exactly as near ones.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "limitsurf/search/surface_search.h"
@@ -106,6 +107,58 @@ TEST(ClosestCost, FarPointsCostNoMoreAndAreAnsweredAsExactly) {
         }
       }
     }
+  }
+}
+
+/// Points on normals of a flat grid, above its vertices and edges: of the faces that meet there at
+/// least one has the foot, although rounding decides towards which side the distance falls.
+TEST(ClosestFar, FacingFindsFeetOnEdges) {
+  Random random(3);
+  int feet = 0;
+  for (int round = 0; round < 40; ++round) {
+    Cage cage = grid(4, 4);
+    const Eigen::Matrix3d turn =
+        Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), 2)
+            .normalized()
+            .toRotationMatrix();
+    for (int v = 0; v < cage.vertexCount(); ++v) {
+      const Vector3 flat(cage.positions(v, 0), cage.positions(v, 1), 0);
+      cage.positions.row(v) = (0.25 * turn * flat).transpose();
+    }
+    const LimitSurface surface = limitSurface(cage);
+    const SurfaceSearch search(surface);
+    std::vector<Location> places;
+    for (int face = 0; face < surface.faceCount(); ++face) {
+      for (int i = 0; i < 9; ++i) places.push_back({face, (i % 3) / 2., (i / 3) / 2.});
+    }
+    const Points on = surface.evaluate(places).position;
+    const Vector3 normal = turn.col(2);
+    for (const double far : {30., 141., 424., 1e4, 1e9}) {
+      ClosestOptions options;
+      options.facing = normal.transpose().replicate(on.rows(), 1);
+      options.max_angle = 1.2;
+      const Points points = on.rowwise() + far * normal.transpose();
+      const Hits all = search.closest(points), hits = search.closest(points, options);
+      for (Eigen::Index i = 0; i < on.rows(); ++i) {
+        ASSERT_GE(hits.at[static_cast<std::size_t>(i)].face, 0) << far;
+        EXPECT_LE(hits.distance[i], all.distance[i] + 1e-12 + 4e-16 * far) << far;
+        ++feet;
+      }
+    }
+  }
+  EXPECT_GT(feet, 10000);
+}
+
+TEST(ClosestFar, TheGreatestDistanceCountsBeyondAllMeasure) {
+  const LimitSurface surface = limitSurface(grid(2, 2));
+  const SurfaceSearch search(surface);
+  for (const double far : {1e3, 1e17, 1e20, 1e30, 1e100}) {
+    const Points point = Eigen::RowVector3d(0, 0, far);
+    ClosestOptions options;
+    options.max_distance = far / 2;
+    EXPECT_EQ(search.closest(point, options).at[0].face, -1) << far;
+    options.max_distance = 2 * far;
+    EXPECT_GE(search.closest(point, options).at[0].face, 0) << far;
   }
 }
 
