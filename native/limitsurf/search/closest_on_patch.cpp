@@ -47,6 +47,8 @@ class PatchSearch {
   }
 
  private:
+  /// No squared distance is large enough to end an iteration early.
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
   /// At this depth the distance over a cell varies by less than rounding.
   static constexpr int kMostDepth = 40;
   /// A search ends after this many cells: on degenerate patches, as of no area, many points may be
@@ -167,6 +169,11 @@ class PatchSearch {
         offer(s, t);
       }
       return;
+    }
+    if (!facing_ && cell.depth == 0) {
+      // A minimum that may be none of the whole patch is a guess that leaves out most cells.
+      minimizeDistance(kernels_, relative_, away_, cell, slack, kNever, s, t);
+      offer(s, t);
     }
     if (!facing_) {
       for (int i = 0; i < 4; ++i) {

@@ -110,6 +110,24 @@ TEST(ClosestCost, FarPointsCostNoMoreAndAreAnsweredAsExactly) {
   }
 }
 
+/// On a long and narrow mesh the tangents of a patch are nearly parallel, so that no bound shows
+/// where the squared distance is convex.
+TEST(ClosestStretched, PointsOfTheSurfaceAreFound) {
+  for (const double length : {1e2, 1e3, 1e4}) {
+    Cage cage = grid(1, 1);
+    cage.positions << 0, 0, 0, length, 0, 0.2, 0, 1, 0.3, length, 1, -0.1;
+    const LimitSurface surface = limitSurface(inTriangles(cage));
+    const SurfaceSearch search(surface);
+    Random random(4);
+    std::vector<Location> places;
+    for (int i = 0; i < 12; ++i) {
+      places.push_back({random.below(surface.faceCount()), random.uniform(), random.uniform()});
+    }
+    const Hits hits = search.closest(surface.evaluate(places).position);
+    EXPECT_LE(hits.distance.maxCoeff(), 1e-12 * length) << length;
+  }
+}
+
 /// Points on normals of a flat grid, above its vertices and edges: of the faces that meet there at
 /// least one has the foot, although rounding decides towards which side the distance falls.
 TEST(ClosestFar, FacingFindsFeetOnEdges) {
