@@ -6,12 +6,8 @@
 #include "limitsurf/sample/gauss_rules.h"
 #include "limitsurf/surface/batch/instruction_sets.h"
 
-// GCC for Windows does not align vectors of more than 16 bytes on the stack.
-#if defined(__GNUC__) && defined(__x86_64__) && !(defined(_WIN32) && !defined(__clang__))
-#define LIMITSURF_X86_SETS 1
+#if LIMITSURF_X86_SETS
 #include <immintrin.h>
-#else
-#define LIMITSURF_X86_SETS 0
 #endif
 
 namespace limitsurf {
@@ -31,13 +27,7 @@ Lanes squareRoot(const Lanes& a) {
 }  // namespace baseline
 
 #if LIMITSURF_X86_SETS
-
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
+#include "limitsurf/surface/batch/target_avx2.inl.h"
 namespace avx2 {
 constexpr int kLanes = 4;
 template <typename Lanes>
@@ -46,15 +36,11 @@ inline Lanes squareRoot(const Lanes& a) {
 }
 #include "limitsurf/sample/area_kernels.inl.h"
 }  // namespace avx2
-#if defined(__clang__)
-#pragma clang attribute pop
-#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl"))), \
-                             apply_to = function)
-#else
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl")
+#include "limitsurf/surface/batch/target_end.inl.h"
 #endif
+
+#if LIMITSURF_X86_SETS
+#include "limitsurf/surface/batch/target_avx512.inl.h"
 namespace avx512 {
 constexpr int kLanes = 8;
 template <typename Lanes>
@@ -63,12 +49,7 @@ inline Lanes squareRoot(const Lanes& a) {
 }
 #include "limitsurf/sample/area_kernels.inl.h"
 }  // namespace avx512
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-
+#include "limitsurf/surface/batch/target_end.inl.h"
 #endif
 
 }  // namespace

@@ -170,12 +170,12 @@ class PatchSearch {
       }
       return;
     }
-    if (!facing_ && cell.depth == 0) {
-      // A minimum that may be none of the whole patch is a guess that leaves out most cells.
-      minimizeDistance(kernels_, relative_, away_, cell, slack, kNever, s, t);
-      offer(s, t);
-    }
     if (!facing_) {
+      if (cell.depth == 0) {
+        // A minimum that may be none of the whole patch is a guess that leaves out most cells.
+        minimizeDistance(kernels_, relative_, away_, cell, slack, kNever, s, t);
+        offer(s, t);
+      }
       for (int i = 0; i < 4; ++i) {
         const double squared = f.corner(i & 1, i >> 1);
         if (isBetter(squared)) {

@@ -3,13 +3,6 @@
 
 #include "limitsurf/surface/batch/instruction_sets.h"
 
-// GCC for Windows does not align vectors of more than 16 bytes on the stack.
-#if defined(__GNUC__) && defined(__x86_64__) && !(defined(_WIN32) && !defined(__clang__))
-#define LIMITSURF_X86_SETS 1
-#else
-#define LIMITSURF_X86_SETS 0
-#endif
-
 namespace limitsurf {
 namespace {
 
@@ -18,20 +11,11 @@ namespace baseline {
 }  // namespace baseline
 
 #if LIMITSURF_X86_SETS
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
+#include "limitsurf/surface/batch/target_avx2.inl.h"
 namespace avx2 {
 #include "limitsurf/search/search_kernels.inl.h"
 }  // namespace avx2
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+#include "limitsurf/surface/batch/target_end.inl.h"
 #endif
 
 }  // namespace

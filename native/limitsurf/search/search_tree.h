@@ -35,7 +35,6 @@ struct SearchTree {
   /// The error that a search may leave: a tenth of kSearchError.
   double tolerance;
   Vector3 inBoxes(const Vector3& point) const { return point - middle; }
-  Box inBoxes(const Box& box) const { return {inBoxes(box.low), inBoxes(box.high)}; }
 
   std::vector<SearchLeaf> leaves;  ///< in the order of the tree
   std::unique_ptr<BoxTree> tree;

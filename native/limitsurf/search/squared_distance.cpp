@@ -46,7 +46,7 @@ void SquaredDistance::quarter(SquaredDistance out[4]) const {
 }
 
 void SquaredDistance::guess(double& s, double& t) const {
-  const double least = f_.least();
+  const double least = bounds_.least;
   for (int j = 0; j < 7; ++j) {
     for (int i = 0; i < 7; ++i) {
       if (f_.at(i, j) == least) {

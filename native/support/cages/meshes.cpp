@@ -257,4 +257,14 @@ Cage reversed(Cage cage) {
   return cage;
 }
 
+Cage inTriangles(Cage cage) {
+  std::vector<std::vector<int>> halves;
+  for (const std::vector<int>& f : cage.faces) {
+    halves.push_back({f[0], f[1], f[2]});
+    halves.push_back({f[0], f[2], f[3]});
+  }
+  cage.faces = halves;
+  return cage;
+}
+
 }  // namespace limitsurf::test

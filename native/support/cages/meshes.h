@@ -57,4 +57,7 @@ Cage compacted(const Cage& cage);
 /// The same surface with every face's vertices in the opposite order.
 Cage reversed(Cage cage);
 
+/// Each of its quads cut into two triangles.
+Cage inTriangles(Cage cage);
+
 }  // namespace limitsurf::test

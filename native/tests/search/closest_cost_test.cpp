@@ -23,16 +23,6 @@ Cage bumpyGrid(int side) {
   return cage;
 }
 
-Cage inTriangles(Cage cage) {
-  std::vector<std::vector<int>> halves;
-  for (const std::vector<int>& f : cage.faces) {
-    halves.push_back({f[0], f[1], f[2]});
-    halves.push_back({f[0], f[2], f[3]});
-  }
-  cage.faces = halves;
-  return cage;
-}
-
 /// The mean number of patches and cores for points as near the middle of the bumpy grid as `reach`.
 double meanLeaves(const Cage& cage, int side, double reach) {
   constexpr int kCount = 400;

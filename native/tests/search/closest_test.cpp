@@ -399,17 +399,11 @@ TEST(Closest, FacingTakesTheSideOfASheetThatIsAskedFor) {
 /// Where nothing faces the right way, cones around normals tell so without a look at every patch.
 TEST(Closest, FacingCostsLittleWhereNothingFaces) {
   const Cage quads = fullGrid(60, 60);
-  Cage bumpy = quads, triangles = fullGrid(12, 12);
+  Cage bumpy = quads;
   for (int vertex = 0; vertex < bumpy.vertexCount(); ++vertex) {
     bumpy.positions(vertex, 2) = 2 * std::sin(bumpy.positions(vertex, 0) / 5);
   }
-  std::vector<std::vector<int>> halves;
-  for (const std::vector<int>& f : triangles.faces) {
-    halves.push_back({f[0], f[1], f[2]});
-    halves.push_back({f[0], f[2], f[3]});
-  }
-  triangles.faces = halves;
-  for (const Cage& cage : {quads, bumpy, triangles}) {
+  for (const Cage& cage : {quads, bumpy, inTriangles(fullGrid(12, 12))}) {
     const LimitSurface surface = limitSurface(cage);
     const SurfaceSearch search(surface);
     const int count = 20;

@@ -13,22 +13,13 @@ using Point = Padded;
 }  // namespace baseline
 
 #if LIMITSURF_X86_SETS
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
+#include "limitsurf/surface/batch/target_avx2.inl.h"
 namespace avx2 {
 /// A Padded, which is aligned to 16 bytes.
 typedef double Point __attribute__((vector_size(32), aligned(16), may_alias));
 #include "limitsurf/surface/batch/grid_step.inl.h"
 }  // namespace avx2
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+#include "limitsurf/surface/batch/target_end.inl.h"
 #endif
 
 }  // namespace

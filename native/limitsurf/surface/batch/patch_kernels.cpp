@@ -42,13 +42,7 @@ inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
 }  // namespace baseline
 
 #if LIMITSURF_X86_SETS
-
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
+#include "limitsurf/surface/batch/target_avx2.inl.h"
 namespace avx2 {
 constexpr int kLanes = 4;
 constexpr std::size_t kFewestLanes = 3;
@@ -83,15 +77,11 @@ inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx2
-#if defined(__clang__)
-#pragma clang attribute pop
-#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl"))), \
-                             apply_to = function)
-#else
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl")
+#include "limitsurf/surface/batch/target_end.inl.h"
 #endif
+
+#if LIMITSURF_X86_SETS
+#include "limitsurf/surface/batch/target_avx512.inl.h"
 namespace avx512 {
 constexpr int kLanes = 8;
 constexpr std::size_t kFewestLanes = 3;
@@ -126,12 +116,7 @@ inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx512
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-
+#include "limitsurf/surface/batch/target_end.inl.h"
 #endif
 
 InstructionSet bestSet() {
