@@ -100,19 +100,6 @@ double Accuracy::error(const Location& at, int quantity, const Vector3& got,
   return difference == 0 ? 0 : difference / std::max(length(truth), largest);
 }
 
-/// What one rounding of sharpness in single precision may change: 2^-24 of derivatives, which are
-/// compared with the largest ones of the face, and less of positions, which are compared with the
-/// diagonal of the whole mesh. Second derivatives of the last step's patches are twice as
-/// sensitive.
-double Accuracy::allowed(int quantity) const {
-  if (!is_sharpness_rounded_) {
-    return allowedError(quantity);
-  }
-  return quantity == kPosition                   ? 0x1p-30
-         : quantity > kDv && quantity != kNormal ? 0x1p-23
-                                                 : 0x1p-24;
-}
-
 void Accuracy::check(const Location& at, const Truth& got, const Truth& truth) {
   for (int quantity = 0; quantity < kQuantities; ++quantity) {
     if (truth[quantity].hasNaN()) continue;
@@ -123,11 +110,11 @@ void Accuracy::check(const Location& at, const Truth& got, const Truth& truth) {
       worst.error = e;
       worst.where = describe(at);
     }
-    if (!(e <= allowed(quantity)) && worst.failed++ < kFailuresShown) {
+    if (!(e <= allowedError(quantity)) && worst.failed++ < kFailuresShown) {
       ADD_FAILURE() << name_ << ", " << describe(at) << ": " << kQuantityNames[quantity]
                     << "\n  is        " << text(got[quantity]) << "\n  should be "
                     << text(truth[quantity]) << "\n  error " << e << ", allowed "
-                    << allowed(quantity);
+                    << allowedError(quantity);
     }
   }
 }

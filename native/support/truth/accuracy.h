@@ -49,9 +49,6 @@ class Accuracy {
   /// and the error. Quantities whose truth is NaN are left out.
   void check(const Location& at, const Truth& got, const Truth& truth);
 
-  /// For references that round the sharpness of edges otherwise than the surface does.
-  void allowRoundedSharpness() { is_sharpness_rounded_ = true; }
-
   double worst(int quantity) const { return worst_[quantity].error; }
   /// Includes the worst errors of another surface.
   void merge(const Accuracy& other);
@@ -69,11 +66,9 @@ class Accuracy {
     std::string where;
   };
   double error(const Location& at, int quantity, const Vector3& got, const Vector3& truth) const;
-  double allowed(int quantity) const;
 
   std::string name_;
   double diagonal_;
-  bool is_sharpness_rounded_ = false;
   std::map<int, std::array<double, 2>> scales_;  // face -> largest first, second derivative
   std::array<Worst, kQuantities> worst_;
 };

@@ -3,11 +3,20 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <numeric>
+#include <set>
 
 namespace limitsurf::test {
 namespace {
 
 bool isSemiSharp(float sharpness) { return sharpness > 0 && !isInfinitelySharp(sharpness); }
+
+/// The sum of float32s, in the order of their values. (docs/accuracy.md promises that order: sums
+/// of three and more depend on it, and the surface must not depend on the order of the mesh.)
+float sumInOrder(std::multiset<float> values, float first = 0) {
+  return std::accumulate(values.begin(), values.end(), first);
+}
 
 }  // namespace
 
@@ -21,13 +30,11 @@ float decayed(float sharpness) {
 }
 
 std::vector<float> childSharpness(const std::vector<float>& edges, Creasing creasing) {
-  float sum = 0;
-  int count = 0;
-  for (const float sharpness : edges) {
-    if (!isSemiSharp(sharpness)) continue;
-    sum += sharpness;
-    ++count;
-  }
+  std::multiset<float> semi_sharp;
+  std::copy_if(edges.begin(), edges.end(), std::inserter(semi_sharp, semi_sharp.end()),
+               isSemiSharp);
+  const float sum = sumInOrder(semi_sharp);
+  const std::size_t count = semi_sharp.size();
   std::vector<float> child;
   for (const float sharpness : edges) {
     if (creasing == Creasing::uniform || !isSemiSharp(sharpness) || count == 1) {
@@ -57,19 +64,16 @@ Rule vertexRule(float vertex, const std::vector<float>& edges) {
 
 float parentsShare(float vertex, const std::vector<float>& edges,
                    const std::vector<float>& child_edges, Creasing creasing) {
-  float sum = 0;
-  int count = 0;
-  if (vertex > 0 && decayed(vertex) == 0) {
-    sum = vertex;
-    count = 1;
-  }
+  const bool vertex_decays = vertex > 0 && decayed(vertex) == 0;
+  std::multiset<float> decaying;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const bool decays = creasing == Creasing::uniform ? edges[i] <= 1 : child_edges[i] == 0;
-    if (edges[i] == 0 || !decays) continue;
-    sum += edges[i];
-    ++count;
+    if (edges[i] > 0 && decays) decaying.insert(edges[i]);
   }
-  return count == 0 ? 0 : std::min(sum / static_cast<float>(count), 1.0f);
+  const std::size_t count = decaying.size() + (vertex_decays ? 1 : 0);
+  if (count == 0) return 0;
+  const float sum = sumInOrder(decaying, vertex_decays ? vertex : 0);
+  return std::min(sum / static_cast<float>(count), 1.0f);
 }
 
 }  // namespace limitsurf::test

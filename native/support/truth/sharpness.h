@@ -22,15 +22,16 @@ float enteredSharpness(double value);
 float decayed(float sharpness);
 
 /// What remains of the edges around a vertex, each at that vertex' end: decayed; under Chaikin's
-/// rule after mixing each with a quarter of the mean of the other semi-sharp ones. The order of the
-/// edges matters to the last bit of a float32.
+/// rule after mixing each with a quarter of the mean of the other semi-sharp ones, added in the
+/// order of their values.
 std::vector<float> childSharpness(const std::vector<float>& edges, Creasing creasing);
 
 /// By a vertex' own sharpness and that of the sharp edges around it.
 Rule vertexRule(float vertex, const std::vector<float>& edges);
 
 /// How much of the parent's rule there is in the new vertex where the child's is another one: the
-/// mean of all sharpness that decays to 0 in this step, at most 1.
+/// mean of all sharpness that decays to 0 in this step, at most 1. The vertex' own is added first,
+/// then the edges' in the order of their values.
 float parentsShare(float vertex, const std::vector<float>& edges,
                    const std::vector<float>& child_edges, Creasing creasing);
 

@@ -13,7 +13,6 @@ namespace limitsurf::test {
 namespace {
 
 struct Edge {
-  int created = 0;                ///< when, as the faces are walked through in order
   int forward = 0, backward = 0;  ///< faces by direction, forward being from the lower end
   float sharpness = 0;
 
@@ -53,8 +52,7 @@ class Splitter {
     for (int i = 0; i < n; ++i) {
       const int vertex = face[i], next = face[(i + 1) % n], previous = face[(i + n - 1) % n];
       corners_[vertex].push_back({f, i, next, previous});
-      const int created = static_cast<int>(edges_.size());
-      Edge& edge = edges_.try_emplace(std::minmax(vertex, next), Edge{created}).first->second;
+      Edge& edge = edges_[std::minmax(vertex, next)];
       ++(vertex < next ? edge.forward : edge.backward);
     }
   }
@@ -114,7 +112,7 @@ class Splitter {
   }
 
   void sharpen(int v) {
-    const std::vector<int> around = neighbours(v);
+    const std::set<int> around = neighbours(v);
     const float sharpness = vertexSharpness(v, around);
     for (std::size_t i = 0; i < fans_[v].size(); ++i) {
       const int vertex = copies_[v][i];
@@ -139,25 +137,13 @@ class Splitter {
            });
   }
 
-  /// The vertex' neighbours in the order in which OpenSubdiv has its edges: counter-clockwise, from
-  /// a boundary or in the first face; around non-manifold vertices as the edges were created.
-  std::vector<int> neighbours(int v) {
-    std::vector<int> result;
-    if (manifold(v)) {
-      const Fan& fan = fans_[v][0];
-      for (const Corner& corner : fan.corners) result.push_back(corner.next);
-      if (!fan.closed) result.push_back(fan.corners.back().previous);
-      return result;
-    }
-    std::map<int, int> by_creation;
-    for (const Corner& corner : corners_[v]) {
-      for (int other : {corner.next, corner.previous}) by_creation[edge(v, other).created] = other;
-    }
-    for (const auto& [created, other] : by_creation) result.push_back(other);
+  std::set<int> neighbours(int v) const {
+    std::set<int> result;
+    for (const Corner& corner : corners_[v]) result.insert({corner.next, corner.previous});
     return result;
   }
 
-  float vertexSharpness(int v, const std::vector<int>& around) {
+  float vertexSharpness(int v, const std::set<int>& around) {
     const int faces = static_cast<int>(corners_[v].size()), edges = static_cast<int>(around.size());
     if (cage_.options.boundary == Boundary::corners && faces == 1) return kInfinitelySharp;
     if (faces > 0 && !manifold(v)) {

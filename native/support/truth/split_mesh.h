@@ -27,7 +27,7 @@ struct SplitMesh : SharpTopology {
   };
   std::vector<Vertex> vertices;
 
-  /// `sharp` is in OpenSubdiv's order and includes the edges of a vertex' other fans.
+  /// `sharp` includes the edges of a vertex' other fans.
   explicit SplitMesh(const Cage& cage);
 };
 

@@ -6,9 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
-#include <utility>
 
 #include "support/truth/corner_points.h"
 
@@ -43,41 +41,6 @@ bool almostParallel(const Vector3& du, const Vector3& dv) {
   return shorter < 1e-3 * longer || du.normalized().cross(dv.normalized()).norm() < 1e-3;
 }
 
-/// Whether Chaikin's rule adds the sharpness of three and more edges around a vertex that are not
-/// equally sharp. Far adds them in the order of the mesh, the surface in that of their sharpness,
-/// and in single precision the sums differ.
-bool sharpnessDependsOnOrder(const Cage& cage) {
-  if (cage.options.creasing != Creasing::chaikin) {
-    return false;
-  }
-  std::map<std::pair<std::int64_t, std::int64_t>, double> sharpness;
-  std::map<std::pair<std::int64_t, std::int64_t>, int> faces_of_edge;
-  for (const std::vector<int>& face : cage.faces) {
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      ++faces_of_edge[std::minmax<std::int64_t>(face[i], face[(i + 1) % face.size()])];
-    }
-  }
-  for (const auto& [edge, count] : faces_of_edge) {
-    sharpness[edge] = count == 2 ? 0 : INFINITY;
-  }
-  const EdgeSharpness& given = cage.options.edge_sharpness;
-  for (std::size_t i = 0; i < given.edges.size(); ++i) {
-    double& value = sharpness[std::minmax(given.edges[i].first, given.edges[i].second)];
-    value = std::max(value, given.values[i]);
-  }
-  std::map<std::int64_t, std::vector<double>> around;
-  for (const auto& [edge, value] : sharpness) {
-    if (value > 0) {
-      around[edge.first].push_back(value);
-      around[edge.second].push_back(value);
-    }
-  }
-  return std::any_of(around.begin(), around.end(), [](const auto& vertex) {
-    const auto [least, most] = std::minmax_element(vertex.second.begin(), vertex.second.end());
-    return vertex.second.size() > 2 && *least < *most;
-  });
-}
-
 }  // namespace
 
 void compareWithSubdivision(const std::string& name, const Cage& cage,
@@ -86,9 +49,6 @@ void compareWithSubdivision(const std::string& name, const Cage& cage,
   const CornerPoints corners(cage);
   DeepSubdivision deep(cage);
   Accuracy accuracy(name, diagonal(cage.positions));
-  if (sharpnessDependsOnOrder(cage)) {
-    accuracy.allowRoundedSharpness();
-  }
 
   std::set<int> faces;
   for (const Location& location : at) faces.insert(location.face);
