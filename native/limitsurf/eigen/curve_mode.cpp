@@ -89,6 +89,11 @@ std::vector<CurveMode<Real>> curveModes(const Ring& ring) {
       return {halfMode<Real>(ring, -1), quarterMode<Real>(ring)};
     case RingKind::pinned:
       return {halfMode<Real>(ring, -1), halfMode<Real>(ring, 1)};
+    case RingKind::loop: {
+      CurveMode<Real> tangent = halfMode<Real>(ring, 1);
+      tangent.ring[ring.edge(ring.faces)] = -1;  // of the crease, no spoke of a face
+      return {tangent, quarterMode<Real>(ring)};
+    }
     default:
       return {};
   }

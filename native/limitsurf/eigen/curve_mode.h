@@ -15,7 +15,8 @@ namespace limitsurf {
 /// is a generalised eigenvector instead: S g = lambda g + `feeds` w, where w is the spoke mode
 /// number `fed_mode` (Lacewell & Burley 2007, section 3.1). On boundaries, whose valence N is k + 1
 /// for k faces, this happens at 1/4 for even N and at 1/2 for N = 5, 9, 13, ..., as their figure 4
-/// says; in pinned corners at 1/2 for odd N.
+/// says; in pinned corners at 1/2 for odd N; in loops of k faces at 1/4 for odd k and at 1/2 for
+/// k = 2, 6, 10, ...
 template <typename Real>
 struct CurveMode {
   Real lambda = 0;
@@ -27,7 +28,9 @@ struct CurveMode {
 
 /// The sector's curve modes without the constant one.
 ///   boundary: tangent (1/2; v = 0, e_0 = 1, e_k = -1) and bend (1/4; v = -1, e_0 = e_k = 2);
-///   pinned: difference (1/2; e_0 = 1, e_k = -1) and sum (1/2; e_0 = e_k = 1), both with v = 0.
+///   pinned: difference (1/2; e_0 = 1, e_k = -1) and sum (1/2; e_0 = e_k = 1), both with v = 0;
+///   loop: those of a boundary, where e_k is the crease's other far end. Its last face has e_0 for
+///   that spoke, so that its tangent is continued like the sum of a pinned corner.
 template <typename Real>
 std::vector<CurveMode<Real>> curveModes(const Ring& ring);
 

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "limitsurf/eigen/eigenbasis_builder.h"
+#include "limitsurf/eigen/tip_bend.h"
 
 namespace limitsurf {
 
@@ -78,6 +79,18 @@ std::vector<double> Eigenbasis::ringVector(int mode) const {
   }
   if (mode <= fixedCount() && !ring_.closed()) {
     return curve_ring_[mode - 1];
+  }
+  if (ring_.kind == RingKind::tip) {
+    if (mode == TipBend::kMode) {
+      for (int i = 0; i < ring_.faces; ++i) {
+        ring[ring_.edge(i)] = TipBend::kEdge;
+        ring[ring_.face(i)] = TipBend::kFace;
+      }
+      ring[0] = TipBend::kVertex;
+      ring[ring_.creaseMean()] = TipBend::kMean;
+      return ring;
+    }
+    ring[ring_.creaseMean()] = 0;
   }
   if (mode <= fixedCount()) {
     const double v = radial_vertex_[mode - 1];

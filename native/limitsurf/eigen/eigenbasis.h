@@ -39,14 +39,16 @@ struct GridWindow {
 ///     B-spline boundaries", journal of graphics tools 12 (3), 2007.
 /// Comments in this library name them "Stam" and "Lacewell & Burley". The eigenvectors are closed
 /// forms here, while Lacewell & Burley (section 3.1) compute them numerically. Pinned corners,
-/// cones and darts, which neither paper treats, are additions.
+/// cones, darts, tips and loops, which neither paper treats, are additions.
 ///
 /// The points of a ring are sums of modes. A subdivision step multiplies each mode by its
 /// eigenvalue; a defective mode also feeds another one (the Jordan normal form of Lacewell &
 /// Burley, section 2). The modes are, in this order:
 ///   0          the constant one, eigenvalue 1: its coefficient is the limit position;
-///   1, 2       interior, cone: the two other rotation-symmetric ones; sector: the curve modes
-///              (curve_mode.h);
+///   1, 2       interior, cone, tip: the two other rotation-symmetric ones; sector: the curve
+///              modes (curve_mode.h);
+///   3          of a tip: the bend of the crease, eigenvalue 1/4; its function is the paraboloid
+///              3/2 (u^2 + v^2) on each face;
 ///   then       spoke modes, each a sine or cosine around the vertex (spoke_mode.h); a dart has
 ///              only the sines about its sharp spoke;
 ///   the rest   of a dart: the modes that are symmetric about the sharp spoke (dart_modes.h).
@@ -159,8 +161,8 @@ class Eigenbasis {
     std::vector<Table> cosine;  // per spoke pair: 2 i for lambda+, 2 i + 1 for lambda-
     std::vector<Table> sine;
   };
-  struct Fixed {  // modes 1 and 2 on one face
-    Table tables[2];
+  struct Fixed {  // modes 1 and 2 on one face; of a tip, mode 3 as well
+    Table tables[3];
   };
   struct Spoke {
     double edge, face;  // (x_e, x_f)
@@ -179,8 +181,10 @@ class Eigenbasis {
   bool rotates() const { return ring_.closed() && ring_.kind != RingKind::dart; }
   /// Whether the values of mode m change their sign from one spoke or face to the next.
   bool alternates(int m) const { return ring_.closed() ? 2 * m == ring_.faces : m == ring_.faces; }
-  /// How many of the modes 1 and 2 are neither spoke modes nor symmetric ones of a dart.
-  int fixedCount() const { return ring_.kind == RingKind::dart ? 0 : 2; }
+  /// How many of the modes 1 to 3 are neither spoke modes nor symmetric ones of a dart.
+  int fixedCount() const {
+    return ring_.kind == RingKind::dart ? 0 : ring_.kind == RingKind::tip ? 3 : 2;
+  }
   /// The first of a dart's symmetric modes.
   int firstSymmetric() const { return ring_.faces; }
   /// Where spoke e_i and face point f_j of mode m stand in the tables cos_ and sin_, before they

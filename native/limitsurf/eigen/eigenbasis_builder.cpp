@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "limitsurf/eigen/ring_slots.h"
+#include "limitsurf/eigen/tip_bend.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -39,6 +40,9 @@ void Eigenbasis::Builder::build() {
     buildDart();
   } else if (ring_.closed()) {
     buildRadial();
+    if (ring_.kind == RingKind::tip) {
+      buildBend();
+    }
   } else {
     buildCurves();
   }
@@ -162,6 +166,7 @@ void Eigenbasis::Builder::buildSpoke(int m) {
 /// Modes 1 and 2 of a closed ring: (a, b) = (mean e - v, mean f - v) moves v by (p, q) (a, b) and
 /// goes to Q (a, b), Q = B(0) - [p q; p q], B as in spoke_mode.h. The eigenvalues of Q are
 /// (3 N - 7 +- sqrt(5 N^2 - 30 N + 49)) / (8 N), those of B(0), where v stays, (3 +- sqrt 5) / 8.
+/// At a tip v stays but for the bend of its crease.
 void Eigenbasis::Builder::buildRadial() {
   const Real n = ring_.faces;
   const bool moves = ring_.kind == RingKind::interior;
@@ -201,6 +206,17 @@ void Eigenbasis::Builder::buildRadial() {
   Eigen::Matrix<Real, 2, 2> inverse;
   inverse << vectors(1, 1), -vectors(0, 1), -vectors(1, 0), vectors(0, 0);
   basis_.radial_inverse_ = (inverse / determinant).cast<double>();
+}
+
+void Eigenbasis::Builder::buildBend() {
+  SlotValues values{};
+  for (const int c : tile_grid::kRingSlots) {
+    const bool on_spoke = tile_grid::xOf(c) == 0 || tile_grid::yOf(c) == 0;
+    values[c] = c == slot(0, 0) ? TipBend::kVertex : on_spoke ? TipBend::kEdge : TipBend::kFace;
+  }
+  const Wide wide = ModeContinuation::of(Sides::inner).continued(TipBend::kEigenvalue, values);
+  basis_.lambda_[TipBend::kMode] = TipBend::kEigenvalue;
+  basis_.fixed_[0].tables[TipBend::kMode - 1] = ModeContinuation::rounded(wide);
 }
 
 void Eigenbasis::Builder::buildDart() {

@@ -24,6 +24,7 @@ class Eigenbasis::Builder {
   void buildSpokes();
   void buildSpoke(int m);
   void buildRadial();
+  void buildBend();
   void buildCurves();
   void buildDart();
   void buildOuterTables(Sides sides);

@@ -4,6 +4,7 @@
 // 3.2), and the transpose of that.
 #include "limitsurf/eigen/curve_mode.h"
 #include "limitsurf/eigen/eigenbasis.h"
+#include "limitsurf/eigen/tip_bend.h"
 
 namespace limitsurf {
 namespace {
@@ -24,6 +25,18 @@ RingMeans meansFrom(const Padded& v, const Ring& ring, const Padded points[]) {
   return means;
 }
 
+/// What projectTransposed() of a cone lacks to be that of a tip.
+void addBendTransposed(const Ring& ring, const Eigen::MatrixXd& mode_weights,
+                       Eigen::MatrixXd& weights) {
+  Eigen::RowVectorXd bend = mode_weights.row(TipBend::kMode) + mode_weights.row(0);
+  for (int i = 0; i < ring.faces; ++i) {
+    bend -= (TipBend::kEdge - TipBend::kVertex) * weights.row(ring.edge(i)) +
+            (TipBend::kFace - TipBend::kVertex) * weights.row(ring.face(i));
+  }
+  weights.row(ring.creaseMean()) += TipBend::kOfMean * bend;
+  weights.row(0) -= TipBend::kOfMean * bend;
+}
+
 }  // namespace
 
 void Eigenbasis::project(const Points& ring_points, Points& coefficients) const {
@@ -40,9 +53,19 @@ void Eigenbasis::projectInPlace(Padded ring_points[], Points& coefficients) cons
   const auto coefficient = [&](int mode) { return coefficients.row(mode).transpose().array(); };
   const Padded v = ring_points[0];
   if (ring_.closed()) {
+    Padded limit = v;
+    if (ring_.kind == RingKind::tip) {  // without its bend, the vertex stays where it is
+      const Padded bend = TipBend::kOfMean * (ring_points[ring_.creaseMean()] - v);
+      coefficient(TipBend::kMode) = bend.head<3>();
+      limit += bend;
+      for (int i = 0; i < faces; ++i) {
+        ring_points[ring_.edge(i)] -= (TipBend::kEdge - TipBend::kVertex) * bend;
+        ring_points[ring_.face(i)] -= (TipBend::kFace - TipBend::kVertex) * bend;
+      }
+    }
     if (!dart_) {
       const auto [edge_mean, face_mean] = meansFrom(v, ring_, ring_points);
-      Padded constant = v;
+      Padded constant = limit;
       for (int i = 0; i < 2; ++i) {
         const Padded value = radial_inverse_(i, 0) * edge_mean + radial_inverse_(i, 1) * face_mean;
         coefficient(1 + i) = value.head<3>();
@@ -132,6 +155,9 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
       ring.row(ring_.face(i)) += means.row(1) / faces;
     }
     ring.row(0) += constant - means.row(0) - means.row(1);
+    if (ring_.kind == RingKind::tip) {
+      addBendTransposed(ring_, mode_weights, ring);
+    }
     return ring;
   }
 

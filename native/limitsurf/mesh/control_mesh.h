@@ -55,10 +55,11 @@ struct MeshOptions : SubdivisionOptions {
 ///   - a hole that is no face of the mesh.
 ///
 /// Errors that concern some faces only are accepted here and reported by LimitSurface::refused(): a
-/// face that uses a vertex twice, or that touches a crease between other faces. As in OpenSubdiv,
-/// edges of three and more faces, or of two faces of opposite winding, are infinitely sharp, and so
-/// are vertices at which such edges end or at which sheets of faces meet. Isolated vertices belong
-/// to no face and have no effect.
+/// face that uses a vertex twice. As in OpenSubdiv, edges of three and more faces, or of two faces
+/// of opposite winding, are infinitely sharp, and so are vertices at which such edges end or at
+/// which sheets of faces meet. Where two such edges run through a vertex as a crease, all its faces
+/// follow the crease, those that touch it there alone as well. Isolated vertices belong to no face
+/// and have no effect.
 class ControlMesh {
  public:
   ControlMesh(Points positions, const std::vector<std::int64_t>& face_sizes,

@@ -284,7 +284,7 @@ void Topology::splitIntoFans(int vertex, const std::vector<std::pair<int, int>>&
       i = next->second;
     }
     if (mesh_.options().scheme == Scheme::catmark) {
-      refuseBesideCrease(fan);
+      setCreaseEnds(fan);
     }
     split_fans_.push_back(std::move(fan));
   };
@@ -300,23 +300,30 @@ void Topology::splitIntoFans(int vertex, const std::vector<std::pair<int, int>>&
   }
 }
 
-/// Refuses the faces of a fan at a vertex on a crease unless the fan is a sector of that crease.
-void Topology::refuseBesideCrease(const SplitFan& fan) {
-  if (isInfinitelySharp(level().GetVertexSharpness(fan.vertex))) {
+/// A vertex that is not manifold and not infinitely sharp lies on a crease of exactly two edges
+/// that are not manifold.
+void Topology::setCreaseEnds(SplitFan& fan) const {
+  const Far::TopologyLevel& far = level();
+  if (isInfinitelySharp(far.GetVertexSharpness(fan.vertex))) {
     return;
   }
   const auto edgeOf = [&](const std::pair<int, int>& at, int back) {
-    const auto edges = level().GetFaceEdges(at.first);
+    const auto edges = far.GetFaceEdges(at.first);
     return edges[(at.second + edges.size() - back) % edges.size()];
   };
-  const bool between_two =
-      !fan.closed && edgeOf(fan.faces.front(), 0) != edgeOf(fan.faces.back(), 1);
-  if (between_two) {
+  const int first = edgeOf(fan.faces.front(), 0), last = edgeOf(fan.faces.back(), 1);
+  if (!fan.closed && first != last) {
     return;
   }
-  for (const auto& [face, corner] : fan.faces) {
-    refused_.emplace(face, text("at vertex ", fan.vertex,
-                                ", it touches a crease that runs between other faces"));
+  int count = 0;
+  for (const int edge : far.GetVertexEdges(fan.vertex)) {
+    if (far.IsEdgeNonManifold(edge) && count < 2) {
+      const auto ends = far.GetEdgeVertices(edge);
+      fan.crease_ends[count++] = ends[0] == fan.vertex ? ends[1] : ends[0];
+      if (count == 2 && !fan.closed && edge == first) {
+        std::swap(fan.crease_ends[0], fan.crease_ends[1]);
+      }
+    }
   }
 }
 

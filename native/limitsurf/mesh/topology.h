@@ -3,6 +3,7 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -51,9 +52,7 @@ class Topology {
   /// boundaries.
   bool hasSharpness() const { return has_sharpness_; }
 
-  /// Faces without a limit surface, with the reason: holes, and faces that use a vertex twice. Some
-  /// others have a limit surface, but this library does not support them: closed fans of faces, and
-  /// fans that begin and end at the same edge, at a vertex on a crease between other faces.
+  /// Faces without a limit surface, with the reason: holes, and faces that use a vertex twice.
   const std::map<int, std::string>& refused() const { return refused_; }
 
   /// Faces around a non-manifold vertex that manifold edges link. As in OpenSubdiv, non-manifold
@@ -63,6 +62,12 @@ class Topology {
     int vertex;
     bool closed;                             ///< faces all around
     std::vector<std::pair<int, int>> faces;  ///< (face, corner), counter-clockwise
+    /// The far ends of the crease that runs through the vertex, if it is not the fan's own boundary
+    /// on both sides, else -1. Where the fan begins and ends at the same edge of the crease, that
+    /// edge is the first.
+    std::array<int, 2> crease_ends = {-1, -1};
+
+    bool followsCrease() const { return crease_ends[0] >= 0; }
   };
   const std::vector<SplitFan>& splitFans() const { return split_fans_; }
 
@@ -73,7 +78,7 @@ class Topology {
   void refuseRepeatedVertices();
   void splitNonManifoldVertices();
   void splitIntoFans(int vertex, const std::vector<std::pair<int, int>>& corners);
-  void refuseBesideCrease(const SplitFan& fan);
+  void setCreaseEnds(SplitFan& fan) const;
 
   const ControlMesh& mesh_;
   Adjacency adjacency_;

@@ -98,9 +98,14 @@ void CageMesh::setSplitFan(int vertex) {
     own.push_back(edges[corner]);
     own.push_back(edges[(corner + edges.size() - 1) % edges.size()]);
   }
+  if (split.followsCrease()) {
+    crease_ends_[vertex] = split.crease_ends;
+  }
+  const bool last_stands_for_crease = split.followsCrease() && !split.closed;
   std::vector<float>& others = other_fans_edges_[vertex];
   for (const int edge : level.GetVertexEdges(split.vertex)) {
-    if (std::find(own.begin(), own.end(), edge) == own.end()) {
+    if (std::find(own.begin(), own.end(), edge) == own.end() &&
+        !(last_stands_for_crease && level.IsEdgeNonManifold(edge))) {
       others.push_back(level.GetEdgeSharpness(edge));
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <vector>
@@ -30,6 +31,8 @@ struct VertexFan {
 
   int edges() const { return closed ? faces : faces + 1; }
 };
+
+using CreaseEnds = std::array<int, 2>;
 
 /// One level of refinement: its topology and its sharpness, in arrays that CageMesh and RefinedMesh
 /// fill.
@@ -100,6 +103,19 @@ class FaceMesh {
     }
     const auto known = other_fans_edges_.find(vertex);
     return known == other_fans_edges_.end() ? nullptr : &known->second;
+  }
+
+  /// The points at the far ends of the crease that a vertex follows, where the crease is not its
+  /// fan's boundary on both sides (Topology::SplitFan); null at all other vertices. The crease's
+  /// edges are among edgesOfOtherFans() of a closed fan; of an open fan, the last edge stands for
+  /// the second one.
+  bool hasCreaseEnds() const { return !crease_ends_.empty(); }
+  const CreaseEnds* creaseEnds(int vertex) const {
+    if (!hasCreaseEnds()) {
+      return nullptr;
+    }
+    const auto known = crease_ends_.find(vertex);
+    return known == crease_ends_.end() ? nullptr : &known->second;
   }
 
   /// Whether the vertex has faces all around, and neither it nor an edge at it is sharp. It is
@@ -177,6 +193,7 @@ class FaceMesh {
   std::vector<VertexFan> fans_;
   std::vector<int> points_;  ///< -1: not made yet
   std::map<int, std::vector<float>> other_fans_edges_;
+  std::map<int, CreaseEnds> crease_ends_;
 };
 
 }  // namespace limitsurf

@@ -23,6 +23,7 @@ RefinedMesh::RefinedMesh(FaceMesh& parent, const std::vector<int>& faces,
   if (has_sharpness_) {
     subdivideSharpness();
   }
+  followCreases();
   vertex_count_ = static_cast<int>(fans_.size());
   points_.assign(fans_.size(), -1);
 }
@@ -157,6 +158,21 @@ void RefinedMesh::makeTwins() {
     link(c, 1, parent_.after(at, 1), 2);
     link(c, 2, before, 1);
     link(c, 3, parent_.twin(before), 0);
+  }
+}
+
+/// A crease between faces of other fans has no edges here: the new points of those that a vertex
+/// follows are made for the vertex.
+void RefinedMesh::followCreases() {
+  if (!parent_.hasCreaseEnds()) {
+    return;
+  }
+  for (std::size_t v = 0; v < refined_vertices_.size(); ++v) {
+    if (const CreaseEnds* ends = parent_.creaseEnds(refined_vertices_[v])) {
+      const int vertex = parent_.point(refined_vertices_[v]);
+      crease_ends_[static_cast<int>(v)] = {refined_points_.addMidpoint(vertex, (*ends)[0]),
+                                           refined_points_.addMidpoint(vertex, (*ends)[1])};
+    }
   }
 }
 

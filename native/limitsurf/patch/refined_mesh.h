@@ -42,6 +42,7 @@ class RefinedMesh final : public FaceMesh {
   void setMiddle(int face);
   void makeTwins();
   void subdivideSharpness();
+  void followCreases();
   int newVertex(Origin origin, FaceCorner at, const VertexFan& fan);
 
   /// Sets the sharpness around one of the parent's vertices, before and after a step.
@@ -55,7 +56,8 @@ class RefinedMesh final : public FaceMesh {
   int vertexPoint(int vertex);
   int smoothVertexPoint(int vertex, const VertexFan& parent_fan);
   int sharpVertexPoint(int vertex, const VertexFan& parent_fan);
-  /// The parent's point at the far end of an edge of the vertex.
+  /// The parent's point at the far end of an edge of the vertex, or at one of the crease that it
+  /// follows.
   int farEnd(int vertex, const VertexFan& parent_fan, int edge);
   /// The point of the parent's face at whose corner the child stands.
   int middle(int child) { return point(corner_vertices_own_[4 * child + 2]); }

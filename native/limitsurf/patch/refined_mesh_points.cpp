@@ -84,6 +84,11 @@ int RefinedMesh::vertexPoint(int vertex) {
 }
 
 int RefinedMesh::farEnd(int vertex, const VertexFan& parent_fan, int edge) {
+  if (edge >= parent_fan.faces) {
+    if (const CreaseEnds* ends = parent_.creaseEnds(refined_vertices_[vertex])) {
+      return (*ends)[parent_fan.closed ? edge - parent_fan.faces : 1];
+    }
+  }
   const int first = fans_[vertex].first.face;
   return edge < parent_fan.faces
              ? parent_.point(parent_.vertexAfter(origin_[first + edge], 1))
@@ -93,9 +98,11 @@ int RefinedMesh::farEnd(int vertex, const VertexFan& parent_fan, int edge) {
 int RefinedMesh::smoothVertexPoint(int vertex, const VertexFan& parent_fan) {
   RefinedPoints::Sources sources(refined_points_);
   sources.push_back(parent_.point(refined_vertices_[vertex]));
-  if (!parent_fan.closed) {
-    sources.push_back(farEnd(vertex, parent_fan, 0));
-    sources.push_back(farEnd(vertex, parent_fan, parent_fan.faces));
+  const bool follows_crease = parent_.creaseEnds(refined_vertices_[vertex]) != nullptr;
+  if (!parent_fan.closed || follows_crease) {
+    const int first = parent_fan.closed ? parent_fan.faces : 0;
+    sources.push_back(farEnd(vertex, parent_fan, first));
+    sources.push_back(farEnd(vertex, parent_fan, parent_fan.closed ? first + 1 : parent_fan.faces));
     return refined_points_.addVertexPoint(sources, VertexRule::crease, parent_fan.edges());
   }
   for (int i = 0; i < parent_fan.faces; ++i) {
@@ -115,6 +122,7 @@ int RefinedMesh::sharpVertexPoint(int vertex, const VertexFan& parent_fan) {
   RefinedPoints::Sources sources(refined_points_);
   SmallArray<double> weights(1 + mask.edges.size() + mask.faces.size());
   std::size_t count = 0;
+  int crease_edges = 0;  // of the crease between other faces that the vertex follows
   const auto add = [&](int point, double weight) {
     sources.push_back(point);
     weights[count++] = weight;
@@ -122,10 +130,14 @@ int RefinedMesh::sharpVertexPoint(int vertex, const VertexFan& parent_fan) {
   add(parent_.point(refined_vertices_[vertex]), mask.vertex);
   for (std::size_t i = 0; i < mask.edges.size(); ++i) {
     if (mask.edges[i] != 0) {
-      if (static_cast<int>(i) >= parent_fan.edges()) {
-        throw std::logic_error("the mask of a vertex has weights on edges of another fan");
+      int edge = static_cast<int>(i);
+      if (edge >= parent_fan.edges()) {
+        if (!parent_fan.closed || !parent_.creaseEnds(refined_vertices_[vertex])) {
+          throw std::logic_error("the mask of a vertex has weights on edges of another fan");
+        }
+        edge = parent_fan.faces + crease_edges++;
       }
-      add(farEnd(vertex, parent_fan, static_cast<int>(i)), mask.edges[i]);
+      add(farEnd(vertex, parent_fan, edge), mask.edges[i]);
     }
   }
   const int first = fans_[vertex].first.face;

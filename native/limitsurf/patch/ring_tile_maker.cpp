@@ -89,6 +89,14 @@ RingPoints RingTileMaker::makeRing(FaceMesh& mesh, const Sector& sector) {
       result.points[ring.edge(j + 1)] = mesh.point(mesh.vertexAfter(at, 3));
     }
   }
+  if (ring.kind == RingKind::tip || ring.kind == RingKind::loop) {
+    const CreaseEnds& ends = *mesh.creaseEnds(mesh.vertex(sector.first));
+    if (ring.kind == RingKind::tip) {
+      result.points[ring.creaseMean()] = table_.points.addMidpoint(ends[0], ends[1]);
+    } else {
+      result.points[ring.edge(ring.faces)] = ends[1];
+    }
+  }
   return result;
 }
 

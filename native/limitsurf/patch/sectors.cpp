@@ -16,17 +16,12 @@ Sectors::Sectors(const FaceMesh& mesh, bool has_sharpness, const int* first_plac
 Sectors::State Sectors::classify(int vertex) {
   const VertexFan fan = mesh_.fan(vertex);
   if (!has_sharpness_ || mesh_.isSmooth(vertex)) {
-    if (fan.closed && fan.faces == 4 && fan.sharpness == 0) {
+    if (fan.closed && fan.faces == 4 && fan.sharpness == 0 && !mesh_.creaseEnds(vertex)) {
       return State::regular;
     }
     first_sector_[vertex] = sectorCount();
     gatherCorners(fan);
-    const bool pinned = isSharp(fan.sharpness);
-    if (fan.closed) {
-      addSector(pinned ? RingKind::cone : RingKind::interior, 0, fan.faces);
-    } else {
-      addSector(pinned ? RingKind::pinned : RingKind::boundary, 0, fan.faces);
-    }
+    addSector(wholeKind(vertex, fan, isSharp(fan.sharpness)), 0, fan.faces);
     return State::settled;
   }
   mesh_.getSharpnessAround(vertex, sharpness_);
@@ -38,6 +33,17 @@ Sectors::State Sectors::classify(int vertex) {
   }
   settle(vertex, fan);
   return State::settled;
+}
+
+/// The kind of a sector that has all faces of a fan.
+RingKind Sectors::wholeKind(int vertex, const VertexFan& fan, bool pinned) const {
+  if (pinned) {
+    return fan.closed ? RingKind::cone : RingKind::pinned;
+  }
+  if (mesh_.creaseEnds(vertex)) {
+    return fan.closed ? RingKind::tip : RingKind::loop;
+  }
+  return fan.closed ? RingKind::interior : RingKind::boundary;
 }
 
 void Sectors::gatherCorners(const VertexFan& fan) {
@@ -58,8 +64,8 @@ void Sectors::settle(int vertex, const VertexFan& fan) {
   }
   const auto sharp_edges = std::count_if(edges.begin(), edges.end(), isSharp);
   const bool pinned = isSharp(sharpness_.vertex) || sharp_edges > 2;
-  if (fan.closed && cuts_.empty()) {
-    addSector(pinned ? RingKind::cone : RingKind::interior, 0, fan.faces);
+  if (fan.closed ? cuts_.empty() : cuts_.size() == 2) {
+    addSector(wholeKind(vertex, fan, pinned), 0, fan.faces);
   } else if (fan.closed && cuts_.size() == 1) {
     addSector(pinned ? RingKind::pinned : RingKind::dart, cuts_[0], fan.faces);
   } else {

@@ -67,6 +67,7 @@ class Sectors {
  private:
   State classify(int vertex);
   void settle(int vertex, const VertexFan& fan);
+  RingKind wholeKind(int vertex, const VertexFan& fan, bool pinned) const;
   void gatherCorners(const VertexFan& fan);
   void addSector(RingKind kind, int first, int faces);
 

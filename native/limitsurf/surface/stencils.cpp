@@ -119,7 +119,7 @@ class Row {
     undefined_[1] = !onRight(tile.sides);
     w(1, 1) = first;
     w(1, 2) = sum;
-    w(2, 1) = -first;
+    w(2, 1) = basis.ring().kind == RingKind::loop ? first : -first;
     w(2, 2) = sum;
     return w;
   }

@@ -64,10 +64,11 @@ class TileEvaluator {
   /// add up to.
   ///
   /// Second derivatives are, because modes of very different size meet in them. So are first ones
-  /// around a cone: the mode with the largest eigenvalue has, by symmetry, no derivative across the
-  /// spokes, and its rounding would hide that of the others.
+  /// around a cone or a tip: the mode with the largest eigenvalue has, by symmetry, no derivative
+  /// across the spokes, and its rounding would hide that of the others.
   static bool needsNets(const Eigenbasis& basis, int order) {
-    return order == 2 || (order == 1 && basis.ring().kind == RingKind::cone);
+    const RingKind kind = basis.ring().kind;
+    return order == 2 || (order == 1 && (kind == RingKind::cone || kind == RingKind::tip));
   }
 
   /// Whether such derivatives at (u, v) of the tile are added up mode by mode instead: on the

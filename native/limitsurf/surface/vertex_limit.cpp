@@ -29,7 +29,8 @@ void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet
     return;
   }
   // The boundary is a cubic B-spline curve e_k, v, e_0, with first and second derivatives
-  // (e_0 - e_k) / 2 and e_0 - 2 v + e_k at v. At a pinned vertex they are e_0 - v and 0.
+  // (e_0 - e_k) / 2 and e_0 - 2 v + e_k at v. At a pinned vertex they are e_0 - v and 0. Both ends
+  // of a loop run along e_0.
   const double first = std::ldexp(1., -tile.ring_steps), second = first * first;
   const bool pinned = ring.kind == RingKind::pinned;
   if (onLeft(tile.sides)) {
@@ -37,7 +38,9 @@ void vertexJet(const TileTable& table, const Pose& pose, int ring_tile, Jet& jet
     patch.duu = pinned ? Padded::Zero() : coefficient(2, 6 * second);
   }
   if (onRight(tile.sides)) {
-    patch.dv = coefficient(1, -first) + (pinned ? coefficient(2, first) : Padded::Zero());
+    const bool same_way = ring.kind == RingKind::loop;
+    patch.dv = coefficient(1, same_way ? first : -first) +
+               (pinned ? coefficient(2, first) : Padded::Zero());
     patch.dvv = pinned ? Padded::Zero() : coefficient(2, 6 * second);
   }
 }

@@ -19,7 +19,11 @@ bool vertexIsStationary(const Ring& ring);
 
 /// Whether all approaches to the vertex within its sector agree on a normal. They do at interior
 /// vertices and darts of valence 3 and more, in boundary sectors of at most three faces (valence
-/// 4), and in pinned corners of one face; never at cones.
+/// 4), and in pinned corners of one face; never at cones, tips and loops.
+///
+/// At a tip the mode with the largest eigenvalue, (3 + sqrt 5) / 8, is the same in all directions,
+/// as at a cone. The two leading modes of a loop of up to three faces map its two halves onto each
+/// other, those of a larger one fold as in a boundary sector.
 ///
 /// At a dart the two largest eigenvalues below 1 belong to an antisymmetric and a symmetric mode,
 /// and the map that these two modes make preserves the orientation everywhere.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "support/cages/meshes.h"
 
@@ -93,6 +94,45 @@ Cage without(Cage cage, const Faces& faces) {
 Cage withTurned(Cage cage, const std::vector<int>& faces) {
   for (int face : faces) std::reverse(cage.faces[face].begin(), cage.faces[face].end());
   return cage;
+}
+
+/// Adds faces, triangles or quads, around the vertex, from each new rim point to the next.
+void addFaces(Cage& cage, int vertex, const std::vector<int>& rim, bool quads) {
+  for (std::size_t i = 0; i + 1 < rim.size(); ++i) {
+    cage.faces.push_back({vertex, rim[i], rim[i + 1]});
+    if (quads) {
+      const Vector3 a = cage.positions.row(rim[i]), b = cage.positions.row(rim[i + 1]);
+      const int corner = add(cage, 0.7 * (a + b) - 0.4 * Vector3(cage.positions.row(vertex)));
+      cage.faces.back().insert(cage.faces.back().begin() + 2, corner);
+    }
+  }
+}
+
+/// A point of a circle below a vertex.
+int addRimPoint(Cage& cage, int vertex, double turns) {
+  const double angle = 6.283185307179586 * turns;
+  const Vector3 p = cage.positions.row(vertex);
+  return add(cage, p + Vector3(std::cos(angle), std::sin(angle), -1));
+}
+
+/// Adds a closed fan of faces around the vertex.
+void addTip(Cage& cage, int vertex, int faces, bool quads) {
+  std::vector<int> rim;
+  for (int i = 0; i < faces; ++i) {
+    rim.push_back(addRimPoint(cage, vertex, (i + 0.3) / faces));
+  }
+  rim.push_back(rim[0]);
+  addFaces(cage, vertex, rim, quads || faces == 2);
+}
+
+/// Adds a fan of faces around the vertex that begins and ends at the edge to `end`.
+void addLoop(Cage& cage, int vertex, int end, int faces, bool quads) {
+  std::vector<int> rim = {end};
+  for (int i = 1; i < faces; ++i) {
+    rim.push_back(addRimPoint(cage, vertex, i / static_cast<double>(faces)));
+  }
+  rim.push_back(end);
+  addFaces(cage, vertex, rim, quads || faces == 2);
 }
 
 Cage withAgain(Cage cage, int face, bool turned) {
@@ -193,12 +233,30 @@ NamedCages nonManifoldCages() {
   return cages;
 }
 
-Cage coneOnACrease() {
+NamedCages fansOnACrease() {
+  NamedCages cages;
+  const auto take = [&](const std::string& name, Cage cage) {
+    cages.emplace_back(name, perturbed(std::move(cage), 0.1, cages.size() + 1));
+  };
+  for (const int faces : {2, 3, 4, 5, 8}) {
+    Cage cage = raised({10, 11, 12, 13, 14});
+    addTip(cage, 12, faces, faces % 2 == 0);
+    take("tip of " + std::to_string(faces) + " faces", cage);
+  }
+  for (const int faces : {2, 3, 4, 5, 6}) {
+    Cage cage = raised({10, 11, 12, 13, 14});
+    addLoop(cage, 12, 13, faces, faces % 2 == 0);
+    take("loop of " + std::to_string(faces) + " faces", cage);
+  }
   Cage cage = raised({10, 11, 12, 13, 14});
-  std::vector<int> rim;
-  for (int i = 0; i < 4; ++i) rim.push_back(add(cage, {2 + std::cos(i), 2 + std::sin(i), -1}));
-  for (int i = 0; i < 4; ++i) cage.faces.push_back({12, rim[i], rim[(i + 1) % 4]});
-  return perturbed(cage, 0.1, 1);
+  addTip(cage, 11, 3, true);
+  addTip(cage, 12, 4, false);
+  addTip(cage, 12, 5, true);
+  addLoop(cage, 13, 12, 3, true);
+  addLoop(cage, 13, 14, 2, false);
+  addLoop(cage, 12, 13, 4, true);
+  take("tips and loops", cage);
+  return cages;
 }
 
 Cage gridWithFace(const std::vector<int>& corners) {

@@ -16,9 +16,10 @@ using NamedCages = std::vector<std::pair<std::string, Cage>>;
 /// have different vertices.
 NamedCages nonManifoldCages();
 
-/// A closed cone whose tip lies in the middle of a crease where three sheets meet: OpenSubdiv 3.5
-/// moves the tip along that crease, later versions do not.
-Cage coneOnACrease();
+/// Fans of faces at a vertex in the middle of a crease where three sheets meet, which is not their
+/// own boundary on both sides: closed ones, and others that begin and end at the same edge of the
+/// crease. OpenSubdiv 3.5 moves the vertex along that crease, later versions do not.
+NamedCages fansOnACrease();
 
 /// 4x4 squares whose sixth face is given instead by these corners of its own: {0, 1, 2, 1}, say,
 /// uses its second vertex twice.

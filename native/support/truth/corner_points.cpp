@@ -23,6 +23,7 @@ CornerPoint vertexPoint(const SplitMesh& split, int f, int corner) {
   point.rule = vertexRule(isInfinitelySharp(vertex.sharpness) ? vertex.sharpness : 0, lasting);
   point.faces = sector.faces;
   point.closed = sector.closed;
+  point.loop = vertex.loop;
   point.vertex = vertex.original;
   point.sharp_next = split.isOpen(v, next);
   point.sharp_previous = split.isOpen(v, previous);
@@ -48,7 +49,7 @@ bool CornerPoint::regular() const {
     case Rule::dart:
       return false;
     case Rule::crease:
-      return faces == 2 && !closed;
+      return faces == 2 && !closed && !loop;
     default:
       return faces == 1;
   }
@@ -60,7 +61,7 @@ bool CornerPoint::hasNormal() const {
     case Rule::dart:
       return faces >= 3;
     case Rule::crease:
-      return faces <= 3 && !closed;
+      return faces <= 3 && !closed && !loop;
     default:
       return faces == 1;
   }

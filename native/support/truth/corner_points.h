@@ -14,6 +14,7 @@ struct CornerPoint {
   int faces = 4;       ///< quads after one subdivision: around it, or of its sector, which reaches
                        ///< from one infinitely sharp edge (or boundary) to another
   bool closed = true;  ///< whether these are all around it
+  bool loop = false;   ///< whether they begin and end at the same edge
   int vertex = -1;     ///< of the cage; -1 at face centres and edge midpoints
   bool sharp_next = false, sharp_previous = false;  ///< the Ptex face's sides from and to it
 

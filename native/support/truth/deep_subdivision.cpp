@@ -45,7 +45,11 @@ void addCurve(const LocalMesh& mesh, int level, int corner, bool next, Truth& tr
   const Point ahead = mesh.vertices[along].point;
   Point behind = Real(2) * vertex.point - ahead;  // where the curve ends
   if (mesh.rule(v) == Rule::crease) {
-    const int other = mesh.sharp[v][0].to == along ? 1 : 0;
+    int edge = along;
+    for (const Spoke& spoke : mesh.sharp[v]) {
+      if (spoke.to == along && spoke.again >= 0) edge = spoke.again;
+    }
+    const int other = mesh.sharp[v][0].to == edge ? 1 : 0;
     behind = mesh.vertices.at(mesh.sharp[v][other].to).point;
   }
   const bool in_u = (corner % 2 == 0) == next;
@@ -80,7 +84,7 @@ struct DeepSubdivision::Data {
       if (is_new) {
         const SplitMesh::Vertex& global = split.vertices[vertex];
         const auto p = cage.positions.row(global.original);
-        found->second = mesh.add({{p[0], p[1], p[2]}, global.faces, global.sharpness});
+        found->second = mesh.add({{p[0], p[1], p[2]}, global.faces, global.sharpness, global.loop});
       }
       return found->second;
     };
@@ -95,9 +99,12 @@ struct DeepSubdivision::Data {
     }
     for (const auto& [global, vertex] : local) {
       for (const Spoke& spoke : split.sharp[global]) {
-        const auto end = local.find(spoke.to);
-        const int to = end == local.end() ? -1 : end->second;
-        mesh.sharp[vertex].push_back({to, spoke.sharpness});
+        const auto localOf = [&](int end) {
+          const auto found = local.find(end);
+          return found == local.end() ? -1 : found->second;
+        };
+        if (spoke.again >= 0 && localOf(spoke.again) < 0) continue;
+        mesh.sharp[vertex].push_back({localOf(spoke.to), spoke.sharpness, localOf(spoke.again)});
       }
     }
     mesh.connect();

@@ -38,7 +38,7 @@ bool LocalMesh::regular() const {
       case Rule::dart:
         return false;
       case Rule::crease:
-        return around.faces == 2 && !around.closed;
+        return around.faces == 2 && !around.closed && !vertices[v].loop;
       default:
         return around.faces == 1;
     }

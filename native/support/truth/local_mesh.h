@@ -35,6 +35,7 @@ struct LocalMesh : SharpTopology {
     Point point;  ///< relative to the origin
     int faces;    ///< of its fan in the whole mesh
     float sharpness;
+    bool loop = false;  ///< as in SplitMesh
   };
   Point origin;
   std::vector<Vertex> vertices;

@@ -150,7 +150,7 @@ class Refinement {
       const Real share = parentsShare(old.sharpness, edges, child_edges, options_.creasing);
       moved = share * moved + (1 - share) * vertexPosition(v, child_rule, child_edges);
     }
-    return found->second = child_.add({moved, old.faces, child_sharpness});
+    return found->second = child_.add({moved, old.faces, child_sharpness, old.loop});
   }
 
   /// Tells every new vertex of its sharp edges.
@@ -165,6 +165,12 @@ class Refinement {
         if (edges[i] == 0) continue;
         const int other = parent_.sharp[v][i].to;
         child_.sharp[point].push_back({known(edge_points_, undirected(v, other)), edges[i]});
+      }
+      for (const Spoke& spoke : parent_.sharp[v]) {
+        if (spoke.again < 0) continue;
+        const int to = known(edge_points_, undirected(v, spoke.to));
+        const int again = known(edge_points_, undirected(v, spoke.again));
+        if (again >= 0) child_.sharp[point].push_back({to, spoke.sharpness, again});
       }
     }
     for (const auto& [ends, point] : edge_points_) {

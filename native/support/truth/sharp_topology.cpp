@@ -43,7 +43,9 @@ float SharpTopology::sharpness(int a, int b) const {
 
 std::vector<float> SharpTopology::sharpnessAround(int v) const {
   std::vector<float> result;
-  for (const Spoke& spoke : sharp[v]) result.push_back(spoke.sharpness);
+  for (const Spoke& spoke : sharp[v]) {
+    if (spoke.again < 0) result.push_back(spoke.sharpness);
+  }
   return result;
 }
 

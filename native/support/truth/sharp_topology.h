@@ -13,6 +13,9 @@ namespace limitsurf::test {
 struct Spoke {
   int to;  ///< the other end; -1 where it is not part of the same mesh
   float sharpness;
+  /// If not -1: the edge is the same as the one to `again`, in a fan of faces that begins and ends
+  /// at it. Such spokes follow all others of their vertex.
+  int again = -1;
 };
 
 /// Faces that are manifold and oriented, with sharp edges.
@@ -33,6 +36,7 @@ struct SharpTopology {
   float sharpness(int a, int b) const;
   /// Infinitely sharp, so that what lies beyond does not matter.
   bool isOpen(int a, int b) const { return isInfinitelySharp(sharpness(a, b)); }
+  /// Each edge once.
   std::vector<float> sharpnessAround(int v) const;
 
   /// The faces around a vertex, or those of them between two infinitely sharp edges.

@@ -105,7 +105,8 @@ class Splitter {
   void addVertex(int v, Fan fan) {
     const int added = static_cast<int>(split_.vertices.size());
     for (const Corner& corner : fan.corners) split_.faces[corner.face][corner.index] = added;
-    split_.vertices.push_back({v, static_cast<int>(fan.corners.size()), 0});
+    const bool loop = !fan.closed && fan.corners.front().next == fan.corners.back().previous;
+    split_.vertices.push_back({v, static_cast<int>(fan.corners.size()), 0, loop});
     split_.sharp.emplace_back();
     copies_[v].push_back(added);
     fans_.back().push_back(std::move(fan));
@@ -117,6 +118,7 @@ class Splitter {
     for (std::size_t i = 0; i < fans_[v].size(); ++i) {
       const int vertex = copies_[v][i];
       split_.vertices[vertex].sharpness = sharpness;
+      std::vector<Spoke> again;
       for (int other : around) {
         const float edge_sharpness = edge(v, other).sharpness;
         if (edge_sharpness == 0) continue;
@@ -125,8 +127,13 @@ class Splitter {
           // The other end's place matters where it is the end of a crease, that is for ever.
           ends.insert(isInfinitelySharp(edge_sharpness) ? copies_.at(other)[0] : -1);
         }
-        for (int end : ends) split_.sharp[vertex].push_back({end, edge_sharpness});
+        const int first = *ends.begin();
+        split_.sharp[vertex].push_back({first, edge_sharpness});
+        for (int end : ends) {
+          if (end != first) again.push_back({end, edge_sharpness, first});
+        }
       }
+      split_.sharp[vertex].insert(split_.sharp[vertex].end(), again.begin(), again.end());
     }
   }
 

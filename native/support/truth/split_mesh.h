@@ -24,6 +24,7 @@ struct SplitMesh : SharpTopology {
     int original;     ///< vertex of the cage
     int faces;        ///< of its fan
     float sharpness;  ///< as far as it is sharp itself, not only its edges
+    bool loop;        ///< whether its fan begins and ends at the same edge
   };
   std::vector<Vertex> vertices;
 

@@ -30,14 +30,17 @@ using Big = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<1
 using WideMatrix = Eigen::Matrix<DoubleDouble, Eigen::Dynamic, Eigen::Dynamic>;
 
 constexpr RingKind kKinds[] = {RingKind::interior, RingKind::boundary, RingKind::pinned,
-                               RingKind::cone, RingKind::dart};
+                               RingKind::cone,     RingKind::dart,     RingKind::tip,
+                               RingKind::loop};
 
 std::string describe(const Ring& ring) {
-  const char* names[] = {"interior", "boundary", "pinned", "cone", "dart"};
+  const char* names[] = {"interior", "boundary", "pinned", "cone", "dart", "tip", "loop"};
   return std::string(names[static_cast<int>(ring.kind)]) + " of " + std::to_string(ring.faces);
 }
 
-bool exists(const Ring& ring) { return ring.faces >= (ring.closed() ? 2 : 1); }
+bool exists(const Ring& ring) {
+  return ring.faces >= (ring.closed() || ring.kind == RingKind::loop ? 2 : 1);
+}
 
 /// The matrix of a step on the coefficients of the modes.
 WideMatrix jordanForm(const Eigenbasis& basis) {

@@ -11,8 +11,8 @@ namespace {
 TEST(RingShrinkage, BoundsTheDistancesFromTheLimit) {
   const int steps = 60;
   Random random(5);
-  for (const RingKind kind :
-       {RingKind::interior, RingKind::boundary, RingKind::pinned, RingKind::cone, RingKind::dart}) {
+  for (const RingKind kind : {RingKind::interior, RingKind::boundary, RingKind::pinned,
+                              RingKind::cone, RingKind::dart, RingKind::tip, RingKind::loop}) {
     for (const int faces : {2, 3, 5, 8, 16}) {
       const Ring ring = {kind, faces};
       const auto basis = Eigenbasis::get(ring);

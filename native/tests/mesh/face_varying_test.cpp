@@ -163,7 +163,7 @@ NamedCages manyCages() {
                       {"open fan", fan(4, false, 1)},
                       {"hexagon", ngon(6, 1)},
                       {"pole", pole(7)},
-                      {"cone on a crease", coneOnACrease()},
+                      fansOnACrease().back(),
                       {"a vertex twice", gridWithFace({0, 1, 2, 1})}};
   for (const auto& cage : nonManifoldCages()) cages.push_back(cage);
   for (int seed = 1; seed <= 6; ++seed) {

@@ -104,7 +104,7 @@ void compareWithFar(const std::string& name, const Cage& cage, int step, double&
 void compareNonManifoldMeshes(int step) {
   double worst = 0;
   NamedCages cages = nonManifoldCages();
-  cages.emplace_back("cone on a crease", coneOnACrease());
+  for (auto& cage : fansOnACrease()) cages.push_back(std::move(cage));
   for (auto& [name, cage] : cages) {
     for (const Boundary boundary : {Boundary::smooth, Boundary::corners}) {
       cage.options.boundary = boundary;
