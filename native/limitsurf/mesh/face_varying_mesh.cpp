@@ -2,7 +2,7 @@
 #include "limitsurf/mesh/face_varying_mesh.h"
 
 #include <algorithm>
-#include <map>
+#include <iterator>
 #include <utility>
 
 #include "limitsurf/interruption_point.h"
@@ -68,7 +68,7 @@ class Builder {
         ControlMesh(Points::Zero(static_cast<Eigen::Index>(vertices_.values.size()), 3),
                     {sizes.begin(), sizes.end()},
                     {vertices_.at_corner.begin(), vertices_.at_corner.end()}, std::move(options_)),
-        std::move(vertices_.values), std::move(refused_)};
+        std::move(vertices_.values), std::move(seams_)};
   }
 
  private:
@@ -161,7 +161,7 @@ class Builder {
     }
     const double own = level_.GetVertexSharpness(vertex);  // infinite at corners that are pinned
     if (isDivided(vertex)) {
-      checkDecay(vertex);
+      setAveragedEdges(vertex);
     }
     const bool all_pinned = allPinned(vertex);
     for (int derived = begin; derived < end; ++derived) {
@@ -169,7 +169,7 @@ class Builder {
       if (all_pinned || corner) {
         setSharpness(derived, kInfinitelySharp);
       } else if (own == 0 && dependsOnOther(vertex, derived)) {
-        setSharpness(derived, sharpnessAcross(vertex, begin + end - 1 - derived));
+        setCornerAcross(vertex, begin + end - 1 - derived, derived);
       } else {
         setSharpness(derived, own);
       }
@@ -234,9 +234,8 @@ class Builder {
     return inner;
   }
 
-  /// The vertex sharpness that keeps a value pinned for as long as the edges of the other one are
-  /// sharp.
-  double sharpnessAcross(int vertex, int other) {
+  /// A value stays a corner for as long as the edges of the other one are sharp.
+  void setCornerAcross(int vertex, int other, int derived) {
     int count;
     DecayingSharpness around(mesh_.options(), sharpnessAround(vertex, other, count));
     const auto sharp = [&](const std::vector<float>& edges) {
@@ -247,24 +246,22 @@ class Builder {
       around.advance();
     }
     // OpenSubdiv does not blend the two rules while the seam itself is still sharp.
-    const float left = around.nextSemiSharp() ? 1 : around.weight(count);
-    float sharpness = static_cast<float>(steps - 1) + left;
-    const double result = sharpness;
+    const float share = around.nextSemiSharp() ? 1 : around.weight(count);
+    const float lasting = static_cast<float>(steps - 1) + share;
+    float left = lasting;
     for (int i = 1; i < steps; ++i) {
-      sharpness -= 1;
+      left -= 1;
     }
-    if (sharpness != left) {
-      refuseAround(vertex,
-                   "a value at a seam has to stay a corner for as long as the edges on the other "
-                   "side of the seam are sharp, and no sharpness in single precision lasts exactly "
-                   "as long");
+    if (left == share) {
+      setSharpness(derived, lasting);
+    } else {  // the sum is rounded
+      seams_.corners[derived] = {steps, share};
     }
-    return result;
   }
 
-  /// Chaikin's rule averages sharpness over all edges at a vertex, including seams. The faces of
-  /// one value have to come to the same average on their own.
-  void checkDecay(int vertex) {
+  /// Chaikin's rule averages sharpness over all edges at a vertex, including seams. The edges of a
+  /// value decay in the same way without the others where all are equally sharp, say.
+  void setAveragedEdges(int vertex) {
     if (mesh_.options().creasing == Creasing::uniform) {
       return;
     }
@@ -283,24 +280,8 @@ class Builder {
         whole.advance();
       }
       if (!alike()) {
-        refuseAround(vertex,
-                     "chaikin creases of different sharpness meet at a seam of values, which "
-                     "is not supported");
-      }
-    }
-  }
-
-  /// Refuses all faces whose surface depends on the vertex: those that share a vertex with one of
-  /// its faces.
-  void refuseAround(int vertex, const char* reason) {
-    const std::string why = text("at vertex ", vertex, ", ", reason);
-    for (const int own : level_.GetVertexFaces(vertex)) {
-      for (const int neighbour : level_.GetFaceVertices(own)) {
-        for (const int face : level_.GetVertexFaces(neighbour)) {
-          if (refused_.emplace(face, why).second) {
-            options_.holes.push_back(face);
-          }
-        }
+        std::copy_if(edges.begin() + count, edges.end(),
+                     std::back_inserter(seams_.averaged_edges[derived]), isSemiSharp);
       }
     }
   }
@@ -311,7 +292,7 @@ class Builder {
   MeshOptions options_;
   ValueVertices vertices_;
   std::vector<Surroundings> around_;  // per new vertex
-  std::map<int, std::string> refused_;
+  SeamSharpness seams_;
   std::vector<bool> at_seam_;  // per vertex of the mesh: whether it is on a seam
 };
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <string>
 #include <vector>
 
 #include "limitsurf/mesh/interpolation.h"
@@ -20,13 +18,13 @@ namespace limitsurf {
 /// several fans of faces around its vertex, these fans share a vertex, which is pinned, unless
 /// OpenSubdiv takes them for different values (value_vertices.cpp says when). Other vertices that
 /// the rules of `Interpolation` and of the surface's boundary pin get infinite sharpness, so that
-/// the mesh's own boundary rule is always Boundary::smooth.
+/// the mesh's own boundary rule is always Boundary::smooth. What edges beyond a seam do to the
+/// decay of sharpness, which no mesh by itself can represent, is said in `seams`.
 struct FaceVaryingMesh {
   ControlMesh mesh;         ///< all positions are 0
   std::vector<int> values;  ///< per vertex of `mesh`: the row of its value
-  /// Faces whose values no mesh of this kind can represent, with the reason. They are holes of
-  /// `mesh`.
-  std::map<int, std::string> refused;
+  /// What the sharpness beyond seams does to its vertices: Topology takes it.
+  SeamSharpness seams;
 };
 
 /// `indices` holds the value of each corner of the faces of `mesh`, one face after the other.
@@ -34,14 +32,6 @@ struct FaceVaryingMesh {
 ///
 /// Throws MeshError where `indices` has another size than the mesh has corners, and for an index
 /// that is not below `value_count`, naming it and its corner.
-///
-/// Refuses the faces around a seam's vertex where no mesh of this kind can represent the decay of
-/// semi-sharp edges:
-///   - with Creasing::chaikin, if the average of sharpness around a vertex is not the same in each
-///     of the parts into which seams divide it;
-///   - with corners_plus1 and corners_plus2, if a value has to be as sharp as another one across
-///   the
-///     seam, whose edges decay to an average to which no single float decays.
 FaceVaryingMesh faceVaryingMesh(const ControlMesh& mesh, const Topology& topology,
                                 const std::vector<std::int64_t>& indices, std::int64_t value_count,
                                 Interpolation interpolation);

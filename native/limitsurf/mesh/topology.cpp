@@ -107,7 +107,8 @@ struct FarInput {
 
 }  // namespace
 
-Topology::Topology(const ControlMesh& mesh) : mesh_(mesh) {
+Topology::Topology(const ControlMesh& mesh, SeamSharpness seams)
+    : mesh_(mesh), seams_(std::move(seams)) {
   for (const std::int64_t hole : mesh.options().holes) {
     refused_.emplace(static_cast<int>(hole), "it is a hole");
   }
@@ -115,11 +116,13 @@ Topology::Topology(const ControlMesh& mesh) : mesh_(mesh) {
   if (std::optional<Adjacency> adjacency = Adjacency::ofManifold(mesh)) {
     adjacency_ = std::move(*adjacency);
     setSharpness();
+    setLastingCorners();
     return;
   }
   is_manifold_ = false;
   readAdjacencyFromFar();
   readSharpnessFromFar();
+  setLastingCorners();
   refuseRepeatedVertices();
   splitNonManifoldVertices();
 }
@@ -215,6 +218,20 @@ void Topology::readSharpnessFromFar() {
     for (const int edge : far.GetFaceEdges(face)) {
       side_sharpness_.push_back(far.GetEdgeSharpness(edge));
     }
+  }
+}
+
+void Topology::setLastingCorners() {
+  if (seams_.corners.empty()) {
+    return;
+  }
+  has_sharpness_ = true;
+  if (side_sharpness_.empty()) {
+    side_sharpness_.assign(mesh_.faceVertices().size(), 0);
+  }
+  vertex_sharpness_.resize(static_cast<std::size_t>(mesh_.vertexCount()), 0);
+  for (const auto& [vertex, corner] : seams_.corners) {
+    vertex_sharpness_[vertex] = corner.sharpness();
   }
 }
 

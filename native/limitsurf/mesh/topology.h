@@ -12,6 +12,7 @@
 
 #include "limitsurf/mesh/adjacency.h"
 #include "limitsurf/mesh/control_mesh.h"
+#include "limitsurf/rules/seam_sharpness.h"
 
 namespace limitsurf {
 
@@ -24,7 +25,7 @@ namespace limitsurf {
 class Topology {
  public:
   /// Throws MeshError where OpenSubdiv cannot represent a mesh that is not manifold.
-  explicit Topology(const ControlMesh& mesh);
+  explicit Topology(const ControlMesh& mesh, SeamSharpness seams = {});
 
   /// An edge that is not manifold has no twins. The fan of a vertex that is not manifold has no
   /// meaning: splitFans() takes its place.
@@ -38,6 +39,9 @@ class Topology {
   const float* vertexSharpness() const {
     return vertex_sharpness_.empty() ? nullptr : vertex_sharpness_.data();
   }
+
+  /// Of the mesh of a face-varying channel; empty for all others.
+  const SeamSharpness& seams() const { return seams_; }
 
   /// Whether the mesh is manifold, so that splitFans() is empty.
   bool isManifold() const { return is_manifold_; }
@@ -73,6 +77,7 @@ class Topology {
 
  private:
   void readAdjacencyFromFar();
+  void setLastingCorners();
   void setSharpness();
   void readSharpnessFromFar();
   void refuseRepeatedVertices();
@@ -81,6 +86,7 @@ class Topology {
   void setCreaseEnds(SplitFan& fan) const;
 
   const ControlMesh& mesh_;
+  const SeamSharpness seams_;
   Adjacency adjacency_;
   bool is_manifold_ = true, has_sharpness_ = false;
   std::vector<float> side_sharpness_, vertex_sharpness_;

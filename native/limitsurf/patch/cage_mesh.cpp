@@ -22,6 +22,13 @@ void forEach(int count, const Visit& visit) {
               });
 }
 
+template <typename Map>
+void copyEntry(Map& map, int from, int to) {
+  if (const auto found = map.find(from); found != map.end()) {
+    map[to] = found->second;
+  }
+}
+
 }  // namespace
 
 CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology) : topology_(topology) {
@@ -45,6 +52,8 @@ CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology) : topology
   }
   cage_fans_ = adjacency.fans.data();
   cage_sharpness_ = topology.vertexSharpness();
+  averaged_edges_ = topology.seams().averaged_edges;
+  lasting_corners_ = topology.seams().corners;
   fans_.resize(topology.splitFans().size());
   marks_.resize(static_cast<std::size_t>(vertex_count_));
   if (!topology.splitFans().empty()) {
@@ -91,6 +100,8 @@ void CageMesh::setSplitFan(int vertex) {
                                  static_cast<int>(split.faces.size()),
                                  split.closed,
                                  cage_sharpness_ ? cage_sharpness_[split.vertex] : 0};
+  copyEntry(averaged_edges_, split.vertex, vertex);
+  copyEntry(lasting_corners_, split.vertex, vertex);
   const auto& level = topology_.level();
   std::vector<int> own;
   for (const auto& [face, corner] : split.faces) {

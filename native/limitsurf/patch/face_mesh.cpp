@@ -18,6 +18,13 @@ void FaceMesh::getSharpnessAround(int vertex, SharpnessAround& around) const {
   if (const std::vector<float>* others = edgesOfOtherFans(vertex)) {
     around.edges.insert(around.edges.end(), others->begin(), others->end());
   }
+  around.averaged_edges.clear();
+  if (!averaged_edges_.empty()) {
+    const auto averaged = averaged_edges_.find(vertex);
+    if (averaged != averaged_edges_.end()) {
+      around.averaged_edges = averaged->second;
+    }
+  }
 }
 
 }  // namespace limitsurf

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limitsurf/mesh/adjacency.h"
+#include "limitsurf/rules/seam_sharpness.h"
 #include "limitsurf/rules/subdivision_rules.h"
 
 namespace limitsurf {
@@ -118,6 +119,15 @@ class FaceMesh {
     return known == crease_ends_.end() ? nullptr : &known->second;
   }
 
+  /// One of SeamSharpness::corners, as it is at this level; null at all other vertices.
+  const LastingCorner* lastingCorner(int vertex) const {
+    if (lasting_corners_.empty()) {
+      return nullptr;
+    }
+    const auto known = lasting_corners_.find(vertex);
+    return known == lasting_corners_.end() ? nullptr : &known->second;
+  }
+
   /// Whether the vertex has faces all around, and neither it nor an edge at it is sharp. It is
   /// known where the mesh has any sharpness.
   bool isSmooth(int vertex) const { return smooth_[vertex]; }
@@ -194,6 +204,9 @@ class FaceMesh {
   std::vector<int> points_;  ///< -1: not made yet
   std::map<int, std::vector<float>> other_fans_edges_;
   std::map<int, CreaseEnds> crease_ends_;
+  // As SeamSharpness has them, at this level.
+  std::map<int, std::vector<float>> averaged_edges_;
+  std::map<int, LastingCorner> lasting_corners_;
 };
 
 }  // namespace limitsurf

@@ -66,7 +66,7 @@ void RefinedMesh::makeChildren() {
     fans_.push_back({{static_cast<int>(origin_.size()), 0},
                      fan.faces,
                      fan.closed,
-                     crease_.SubdivideVertexSharpness(fan.sharpness)});
+                     childVertexSharpness(vertex, fan.sharpness)});
     parent_.forEachAround(fan, [&](FaceCorner at) {
       child_of_corner_[parent_.cornerNumber(at)] = static_cast<int>(origin_.size());
       origin_.push_back(at);
@@ -178,8 +178,15 @@ void RefinedMesh::followCreases() {
 
 void RefinedMesh::getSubdivided(int parent_vertex, SharpnessAround& around) const {
   parent_.getSharpnessAround(parent_vertex, around);
-  around.child_vertex = crease_.SubdivideVertexSharpness(around.vertex);
-  limitsurf::subdivideSharpness(crease_, around.edges, around.child_edges);
+  around.child_vertex = childVertexSharpness(parent_vertex, around.vertex);
+  around.subdivideEdges(crease_);
+}
+
+float RefinedMesh::childVertexSharpness(int parent_vertex, float sharpness) const {
+  const LastingCorner* corner = parent_.lastingCorner(parent_vertex);
+  return corner          ? corner->lasts() ? corner->next().sharpness() : 0
+         : sharpness > 0 ? crease_.SubdivideVertexSharpness(sharpness)
+                         : 0;
 }
 
 void RefinedMesh::subdivideSharpness() {
@@ -212,6 +219,13 @@ void RefinedMesh::subdivideSharpness() {
     if (static_cast<int>(around.edges.size()) > fan.edges()) {
       other_fans_edges_[static_cast<int>(v)].assign(around.child_edges.begin() + fan.edges(),
                                                     around.child_edges.end());
+    }
+    if (!around.averaged_child_edges.empty()) {
+      averaged_edges_[static_cast<int>(v)] = around.averaged_child_edges;
+    }
+    const LastingCorner* corner = parent_.lastingCorner(refined_vertices_[v]);
+    if (corner && corner->lasts()) {
+      lasting_corners_[static_cast<int>(v)] = corner->next();
     }
   }
 }

@@ -47,6 +47,7 @@ class RefinedMesh final : public FaceMesh {
 
   /// Sets the sharpness around one of the parent's vertices, before and after a step.
   void getSubdivided(int parent_vertex, SharpnessAround& around) const;
+  float childVertexSharpness(int parent_vertex, float sharpness) const;
   /// The sharpness of that half of the parent's edge that begins at the side's first vertex.
   float childSharpness(FaceCorner side) const;
 

@@ -4,6 +4,7 @@
 #include <opensubdiv/sdc/catmarkScheme.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "limitsurf/rules/sharpness_order.h"
@@ -45,6 +46,23 @@ constexpr float kInfinitelySharp = 10;
 struct SharpnessAround {
   float vertex = 0, child_vertex = 0;
   std::vector<float> edges, child_edges;
+  /// Edges that count in the average of Chaikin's rule alone (SeamSharpness).
+  std::vector<float> averaged_edges, averaged_child_edges;
+
+  /// Sets the children of all edges.
+  void subdivideEdges(const OpenSubdiv::Sdc::Crease& crease) {
+    averaged_child_edges.clear();
+    if (averaged_edges.empty()) {
+      subdivideSharpness(crease, edges, child_edges);
+      return;
+    }
+    std::vector<float> all = edges;
+    all.insert(all.end(), averaged_edges.begin(), averaged_edges.end());
+    subdivideSharpness(crease, all, child_edges);
+    const auto averaged = child_edges.begin() + static_cast<std::ptrdiff_t>(edges.size());
+    averaged_child_edges.assign(averaged, child_edges.end());
+    child_edges.resize(edges.size());
+  }
 };
 
 /// The weights of one Catmull-Clark step, taken from OpenSubdiv's Sdc, in any precision.

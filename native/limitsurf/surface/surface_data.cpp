@@ -59,8 +59,9 @@ ControlMesh bilinearMesh(const ControlMesh& mesh, const std::map<int, std::strin
 /// The tiles of a mesh that has the same faces as the surface's and refuses those in `refused` as
 /// well.
 std::shared_ptr<const TiledSurface> tilesOf(const ControlMesh& mesh,
-                                            std::map<int, std::string> refused) {
-  auto tiles = std::make_shared<TiledSurface>(mesh);
+                                            std::map<int, std::string> refused,
+                                            SeamSharpness seams = {}) {
+  auto tiles = std::make_shared<TiledSurface>(mesh, Topology(mesh, std::move(seams)));
   refused.merge(tiles->refused);
   tiles->refused = std::move(refused);
   return tiles;
@@ -181,10 +182,9 @@ SurfaceData LimitSurface::faceVarying(const DataRows& values,
   checkValues(values);
   FaceVaryingMesh channel =
       faceVaryingMesh(data_->mesh, Topology(data_->mesh), indices, values.rows(), interpolation);
-  std::map<int, std::string> refused = data_->refused;
-  refused.merge(channel.refused);
   return SurfaceData(std::make_unique<SurfaceData::Data>(
-      tilesOf(channel.mesh, std::move(refused)), std::move(channel.values), values, threads));
+      tilesOf(channel.mesh, data_->refused, std::move(channel.seams)), std::move(channel.values),
+      values, threads));
 }
 
 SurfaceData LimitSurface::vertexData(const DataRows& values, int threads) const {

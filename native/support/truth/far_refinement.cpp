@@ -50,7 +50,25 @@ std::vector<float> sharpness(const std::vector<double>& values) {
   return result;
 }
 
-std::unique_ptr<Far::TopologyRefiner> makeRefiner(const Cage& cage) {
+Sdc::Options::FVarLinearInterpolation farRule(Interpolation interpolation) {
+  switch (interpolation) {
+    case Interpolation::none:
+      return Sdc::Options::FVAR_LINEAR_NONE;
+    case Interpolation::corners_only:
+      return Sdc::Options::FVAR_LINEAR_CORNERS_ONLY;
+    case Interpolation::corners_plus1:
+      return Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1;
+    case Interpolation::corners_plus2:
+      return Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2;
+    case Interpolation::boundaries:
+      return Sdc::Options::FVAR_LINEAR_BOUNDARIES;
+    default:
+      return Sdc::Options::FVAR_LINEAR_ALL;
+  }
+}
+
+std::unique_ptr<Far::TopologyRefiner> makeRefiner(const Cage& cage, const Channel& channel,
+                                                  Interpolation interpolation) {
   std::vector<int> sizes, vertices, crease_ends, corners;
   for (const std::vector<int>& face : cage.faces) {
     sizes.push_back(static_cast<int>(face.size()));
@@ -76,7 +94,14 @@ std::unique_ptr<Far::TopologyRefiner> makeRefiner(const Cage& cage) {
   descriptor.numCorners = static_cast<int>(corners.size());
   descriptor.cornerVertexIndices = corners.data();
   descriptor.cornerWeights = corner_weights.data();
+  const std::vector<int> indices(channel.indices.begin(), channel.indices.end());
+  Far::TopologyDescriptor::FVarChannel far_channel;
+  far_channel.numValues = channel.value_count;
+  far_channel.valueIndices = indices.data();
+  descriptor.numFVarChannels = indices.empty() ? 0 : 1;
+  descriptor.fvarChannels = &far_channel;
   Sdc::Options options;
+  options.SetFVarLinearInterpolation(farRule(interpolation));
   options.SetVtxBoundaryInterpolation(cage.options.boundary == Boundary::smooth
                                           ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
                                           : Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
@@ -95,8 +120,11 @@ std::unique_ptr<Far::TopologyRefiner> makeRefiner(const Cage& cage) {
 
 }  // namespace
 
-FarRefinement::FarRefinement(const Cage& cage, int level)
-    : refiner(makeRefiner(cage)), points(cage.vertexCount()), squares(baseSquares(cage)) {
+FarRefinement::FarRefinement(const Cage& cage, int level, const Channel& channel,
+                             Interpolation interpolation)
+    : refiner(makeRefiner(cage, channel, interpolation)),
+      points(cage.vertexCount()),
+      squares(baseSquares(cage)) {
   Far::TopologyRefiner::UniformOptions uniform(level);
   uniform.fullTopologyInLastLevel = true;
   refiner->RefineUniform(uniform);
@@ -108,6 +136,29 @@ FarRefinement::FarRefinement(const Cage& cage, int level)
     points = std::move(refined);
     squares = refinedSquares(refiner->GetLevel(l - 1), refiner->GetLevel(l), squares);
   }
+}
+
+RefinedChannel subdivided(const Cage& cage, int level, const Channel& channel,
+                          const DataRows& values, Interpolation interpolation) {
+  const FarRefinement far(cage, level, channel, interpolation);
+  const Far::PrimvarRefinerReal<double> primvars(*far.refiner);
+  std::vector<FarPrimvar> points(static_cast<std::size_t>(values.rows()));
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].value = values.row(i);
+  for (int l = 1; l <= level; ++l) {
+    std::vector<FarPrimvar> refined(far.refiner->GetLevel(l).GetNumFVarValues());
+    primvars.InterpolateFaceVarying(l, points, refined);
+    points = std::move(refined);
+  }
+  RefinedChannel result;
+  result.values.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) result.values.row(i) = points[i].value;
+  result.channel.value_count = static_cast<int>(points.size());
+  const Far::TopologyLevel& last = far.refiner->GetLevel(level);
+  for (int face = 0; face < last.GetNumFaces(); ++face) {
+    const Far::ConstIndexArray corners = last.GetFaceFVarValues(face);
+    result.channel.indices.insert(result.channel.indices.end(), corners.begin(), corners.end());
+  }
+  return result;
 }
 
 Cage subdivided(const Cage& cage, int level) {

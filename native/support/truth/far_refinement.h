@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/cages/cage.h"
+#include "support/truth/channels.h"
 
 namespace limitsurf::test {
 
@@ -25,12 +26,22 @@ struct FarSquare {
 
 /// A cage that OpenSubdiv has refined uniformly, in double.
 struct FarRefinement {
-  FarRefinement(const Cage& cage, int level);
+  FarRefinement(const Cage& cage, int level, const Channel& channel = {},
+                Interpolation interpolation = Interpolation::all);
 
   std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner;
   std::vector<FarPrimvar> points;
   std::vector<FarSquare> squares;  ///< of the last level's faces
 };
+
+/// A face-varying channel that OpenSubdiv has refined with its cage, in double: the channel of
+/// subdivided(cage, level), with values that have the same limit.
+struct RefinedChannel {
+  Channel channel;
+  DataRows values;
+};
+RefinedChannel subdivided(const Cage& cage, int level, const Channel& channel,
+                          const DataRows& values, Interpolation interpolation);
 
 /// The refined mesh as a cage of its own, with what is left of the sharpness: it has the same limit
 /// surface.
