@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "limitsurf/interruption_point.h"
+
 namespace limitsurf {
 
 BoxF::BoxF() {
@@ -61,6 +63,9 @@ class BoxTree::Builder {
   /// within 32 more levels.
   static constexpr int kHeuristicDepth = kMostDepth - 32;
 
+  /// Leaves of parts that are divided between two interruption points: some milliseconds.
+  static constexpr std::int32_t kLeavesPerPass = 1 << 16;
+
   struct Part {
     std::int32_t begin, end;
     std::int32_t size() const { return end - begin; }
@@ -70,6 +75,11 @@ class BoxTree::Builder {
   std::int32_t addNode(const Part& part, int depth) {
     const std::int32_t index = static_cast<std::int32_t>(nodes_.size());
     nodes_.emplace_back();
+    looked_at_ += part.size();
+    if (looked_at_ >= kLeavesPerPass) {
+      InterruptionPoint::pass();
+      looked_at_ = 0;
+    }
     const std::int32_t middle = divide(part, depth);
     const Part halves[2] = {{part.begin, middle}, {middle, part.end}};
     for (int side = 0; side < 2; ++side) {
@@ -163,6 +173,7 @@ class BoxTree::Builder {
   const std::vector<BoxF>& leaves_;
   std::vector<std::int32_t>& order_;
   std::vector<Node>& nodes_;
+  std::int32_t looked_at_ = 0;  // leaves of parts since the last interruption point
 };
 
 BoxTree::BoxTree(const std::vector<BoxF>& leaves, std::vector<std::int32_t>& order) {

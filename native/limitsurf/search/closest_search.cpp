@@ -78,6 +78,10 @@ Vector3 inUnit(const Vector3& direction) {
           std::scalbn(direction[2], -std::ilogb(largest))};
 }
 
+/// Most rows look at a few leaves, but among sheets that lie on each other at hundreds: so many
+/// take some milliseconds.
+constexpr std::int64_t kLeavesPerPass = 1024;
+
 /// Angles from here on count as pi, and then no cosine is too small.
 constexpr double kNearlyPi = kPi<double> - 1e-13, kAnyCosine = -2;
 
@@ -293,6 +297,7 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
     std::vector<char> gave_up(open.size(), 0);
     parallelFor(open.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
       ClosestSearch search(*data_, cones);
+      std::int64_t leaves_passed = 0;
       for (std::size_t i = begin; i < end; ++i) {
         const auto row = static_cast<Eigen::Index>(open[i]);
         std::optional<Facing> filter;
@@ -303,6 +308,10 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
         at[open[i]] = search.find(scale * points.row(row).transpose(), scale * options.max_distance,
                                   filter ? &*filter : nullptr);
         gave_up[i] = search.gaveUp();
+        if (search.leaves() - leaves_passed >= kLeavesPerPass) {
+          InterruptionPoint::pass();
+          leaves_passed = search.leaves();
+        }
       }
       leaves += search.leaves();
     });

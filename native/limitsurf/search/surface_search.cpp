@@ -61,17 +61,26 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
       }
     }
   });
+  std::size_t count = 0;
+  for (const Block& block : blocks) {
+    count += block.leaves.size();
+  }
   std::vector<SearchLeaf> unordered;
   std::vector<BoxF> boxes;
+  unordered.reserve(count);
+  boxes.reserve(count);
   for (Block& block : blocks) {
     unordered.insert(unordered.end(), block.leaves.begin(), block.leaves.end());
     boxes.insert(boxes.end(), block.boxes.begin(), block.boxes.end());
     block = {};
+    InterruptionPoint::pass();
   }
   std::vector<std::int32_t> order;
   tree = std::make_unique<BoxTree>(boxes, order);
   leaves.reserve(unordered.size());
+  InterruptionStride stride;
   for (const std::int32_t leaf : order) {
+    stride.step();
     leaves.push_back(unordered[leaf]);
   }
   if (leaves.size() * sizeof(BezierPatch) <= kPatchBytes) {

@@ -3,12 +3,17 @@
 // What an interruption leaves behind, whenever it comes.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "limitsurf/eigen/eigenbasis.h"
 #include "limitsurf/interruption_point.h"
+#include "limitsurf/search/box_tree.h"
+#include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/surface/surface_data.h"
 #include "support/cages/cage.h"
 #include "support/cages/meshes.h"
+#include "support/random.h"
 
 namespace limitsurf::test {
 namespace {
@@ -69,6 +74,46 @@ TEST(Interruption, IsPossibleWhileABasisIsMade) {
     const Eigenbasis basis(ring);
     EXPECT_GE(passes, ring.faces / 2 / 256) << static_cast<int>(kind);
   }
+}
+
+long passesOf(const std::function<void()>& call) {
+  long passes = 0;
+  const InterruptionPoint point([&] { ++passes; });
+  call();
+  return passes;
+}
+
+TEST(Interruption, IsPossibleWhileATreeIsMade) {
+  std::vector<BoxF> leaves;
+  Random random(1);
+  for (int i = 0; i < 200'000; ++i) {
+    Box box;
+    box.include(random.vector(1));
+    leaves.emplace_back(box);
+  }
+  std::vector<std::int32_t> order;
+  // Each level of the tree looks at all leaves, and more than 17 levels are needed.
+  EXPECT_GE(passesOf([&] { BoxTree tree(leaves, order); }), 17 * 200'000 / (1 << 17));
+}
+
+TEST(Interruption, IsPossibleWithinOneTaskOfASearch) {
+  Cage sheets;
+  sheets.positions.resize(4 * 300, 3);
+  for (int sheet = 0; sheet < 300; ++sheet) {
+    sheets.positions.middleRows<4>(4 * sheet) << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
+    sheets.faces.push_back({4 * sheet, 4 * sheet + 1, 4 * sheet + 2, 4 * sheet + 3});
+  }
+  const LimitSurface surface = limitSurface(sheets);
+  const SurfaceSearch search(surface, 1);
+  Points points(400, 3);  // one task
+  Random random(2);
+  for (int row = 0; row < points.rows(); ++row) points.row(row) = random.vector(1);
+  std::int64_t leaves = 0;
+  ClosestOptions options;
+  options.leaves = &leaves;
+  const long passes = passesOf([&] { search.closest(points, options, 1); });
+  ASSERT_GE(leaves, 100'000);
+  EXPECT_GE(passes, leaves / 4096);
 }
 
 TEST(Interruption, OfAPoseIsToldAndHealedByTheNextPose) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -11,8 +10,8 @@
 #include <vector>
 
 #include "limitsurf/parallel.h"
-#include "limitsurf/reserve_more.h"
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/tiles/point_rows.h"
 #include "limitsurf/surface/tiles/tile_control_points.h"
 #include "limitsurf/surface/tiles/tile_place.h"
 
@@ -28,7 +27,7 @@ constexpr std::size_t kTilesPerTask = 16, kTilesPerBlock = 4096;
 /// Gives refined points their numbers, equal rows the same.
 class PointNumbers {
  public:
-  PointNumbers(const RefinedPoints& points, SurfaceTiles& out) : points_(points), out_(out) {
+  PointNumbers(const RefinedPoints& points, SurfaceTiles& out) : points_(points), rows_(out) {
     out.cage_points = points.cagePoints();
   }
 
@@ -49,29 +48,11 @@ class PointNumbers {
   int withoutWeights() { return numberOf(CageRow{}); }
 
  private:
-  int numberOf(const CageRow& row) {
-    std::string bytes(row.indices.size() * (sizeof(int) + sizeof(double)), '\0');
-    if (!bytes.empty()) {
-      const std::size_t size = row.indices.size() * sizeof(int);
-      std::memcpy(bytes.data(), row.indices.data(), size);
-      std::memcpy(bytes.data() + size, row.weights.data(), row.weights.size() * sizeof(double));
-    }
-    const int next = out_.cage_points + static_cast<int>(out_.points_offsets.size()) - 1;
-    const auto [known, is_new] = of_row_.try_emplace(std::move(bytes), next);
-    if (is_new) {
-      reserveMore(out_.points_indices, row.indices.size());
-      reserveMore(out_.points_weights, row.weights.size());
-      out_.points_indices.insert(out_.points_indices.end(), row.indices.begin(), row.indices.end());
-      out_.points_weights.insert(out_.points_weights.end(), row.weights.begin(), row.weights.end());
-      out_.points_offsets.push_back(static_cast<std::int64_t>(out_.points_indices.size()));
-    }
-    return known->second;
-  }
+  int numberOf(const CageRow& row) { return points_.cagePoints() + rows_.numberOf(row); }
 
   const RefinedPoints& points_;
-  SurfaceTiles& out_;
+  PointRows rows_;
   std::unordered_map<int, int> of_table_;
-  std::unordered_map<std::string, int> of_row_;
 };
 
 /// The different parts in the order of their keys.
@@ -82,7 +63,9 @@ std::vector<TilePart> differentParts(const std::vector<Place>& places) {
   }
   std::sort(by_key.begin(), by_key.end());
   std::vector<TilePart> parts;
+  InterruptionStride stride;
   for (std::size_t i = 0; i < by_key.size(); ++i) {
+    stride.step();
     if (i == 0 || by_key[i].first != by_key[i - 1].first) {
       parts.push_back(places[by_key[i].second].part);
     }

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "limitsurf/interruption_point.h"
+
 namespace limitsurf {
 namespace {
 
@@ -63,11 +65,13 @@ TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth, int thread
   std::vector<Cell> cells = wholeFaces(surface);
   std::vector<int> covered_nodes;
   std::vector<Location> covered;
+  InterruptionStride stride;
   for (double size = 1; !cells.empty(); size /= 2) {
     const std::vector<Location> middles = middlesOf(cells, size);
     const SurfaceTiles tiles = surface.tiles(middles, max_depth, threads);
     std::vector<Cell> next;
     for (std::size_t i = 0; i < cells.size(); ++i) {
+      stride.step();
       const Cell& cell = cells[i];
       if (covers(tiles, i, middles[i], cell, size)) {
         covered_nodes.push_back(cell.node);
@@ -89,6 +93,7 @@ TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth, int thread
   out.tiles = surface.tiles(covered, max_depth, threads);
   out.origin.setZero(static_cast<Eigen::Index>(out.tiles.tile_points.size()), 2);
   for (std::size_t i = 0; i < covered.size(); ++i) {
+    stride.step();
     const int tile = out.tiles.tile[i];
     out.child[static_cast<std::size_t>(covered_nodes[i])] = -1 - tile;
     if (!out.tiles.moved[i]) {
