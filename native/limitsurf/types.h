@@ -14,6 +14,9 @@ using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// The same in single precision: the form in which applications store the points of hair.
 using FloatPoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+/// One 3 x 3 matrix per row, row-major.
+using Rotations = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
+
 /// A read-only view of contiguous elements. It does not own them.
 template <typename T>
 class Span {

@@ -42,7 +42,8 @@ class Binding:
         """Returns the binding of things that stand on the surface itself, in its space."""
 
         def at(face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return surface.evaluate(face, uv).position, surface.frames(face, uv)
+            placed = surface.placed_frames(face, uv)
+            return placed.position, placed.frame
 
         binding = cls(locations)
         for part in roots.evaluate(at, locations, progress):

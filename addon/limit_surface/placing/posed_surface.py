@@ -42,9 +42,8 @@ class PosedSurface:
 
     def places(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> Places:
         """Returns positions and frames in the space that the matrix `space` maps to the world."""
-        surface = self.in_object
-        found = Places(surface.evaluate(face, uv).position, surface.frames(face, uv))
-        return seen_from(space, found, self.cage.matrix)
+        found = self.in_object.placed_frames(face, uv)
+        return seen_from(space, Places(found.position, found.frame), self.cage.matrix)
 
 
 def at_closest(posed: PosedSurface, hits: limitsurf.Hits) -> Locations:
@@ -64,6 +63,13 @@ def seen_from(space: np.ndarray, places: Places, matrix: np.ndarray) -> Places:
     frame = WorldSpace(relation).frames(places.frame)
     frame[:, :, 1] = np.cross(frame[:, :, 2], frame[:, :, 0])
     return Places(transformed(relation, places.position), frame)
+
+
+def positions_seen_from(space: np.ndarray, points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Returns the positions that `seen_from` gives."""
+    if np.array_equal(space, matrix):
+        return points
+    return transformed(np.linalg.solve(space, matrix), points)
 
 
 def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -33,7 +33,8 @@ class PlacedDecal:
         local = world.local
 
         def on(face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return local.evaluate(face, uv).position, local.frames(face, uv)
+            placed = local.placed_frames(face, uv)
+            return placed.position, placed.frame
 
         for part in roots.evaluate(on, locations, progress):
             self.binding.fill(part)

@@ -53,40 +53,6 @@ LocationBatch LimitSurface::checkLocations(const LocationBatch& at) const {
   return data_->tiles->checked(at);
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> LimitSurface::frames(
-    const LocationBatch& at, int threads) const {
-  // Derivatives and normals of so many rows stay in the cache until the frames are made of them.
-  constexpr std::size_t kRowsPerPart = std::size_t{1} << 15;
-  using Frame = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-  checkThreads(threads);
-  const LocationBatch checked = checkLocations(at);
-  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> out(at.size(), 9);
-  for (std::size_t first = 0; first < at.size(); first += kRowsPerPart) {
-    const LocationBatch part = checked.rows(first, std::min(kRowsPerPart, at.size() - first));
-    const Evaluation e = evaluate(part, Derivatives::first, true, threads);
-    parallelFor(part.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-      TileEvaluator evaluator(data_->table, data_->pose);
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        Frame rotation(out.row(static_cast<Eigen::Index>(first) + row).data());
-        const Location location = part[i];
-        if ((location.u == 0 || location.u == 1) && (location.v == 0 || location.v == 1)) {
-          const TileLocation place = evaluator.locate(location);
-          if (place.atVertex()) {
-            const VertexApproach towards = data_->approachTo(place);
-            rotation = frame(towards.du, towards.dv, towards.normal);
-            continue;
-          }
-        }
-        const Vector3 normal = e.normal.row(row);
-        rotation =
-            frame(e.du.row(row), e.dv.row(row), normal.allFinite() ? normal : Vector3::Zero());
-      }
-    });
-  }
-  return out;
-}
-
 void checkCurvatureRadius(double radius) {
   if (!(radius > 0 && radius <= 0.5)) {
     std::ostringstream message;

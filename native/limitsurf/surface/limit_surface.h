@@ -56,6 +56,12 @@ struct EvaluationArrays {
   Rows normal = {};  ///< may have no rows for any derivatives
 };
 
+/// The caller's own memory for frames, contiguous rows of nine numbers, and for positions.
+struct FrameArrays {
+  EvaluationArrays<double>::Rows position = {};  ///< no memory: no positions are wanted
+  EvaluationArrays<double>::Rows frame = {};     ///< 9 count numbers
+};
+
 /// Principal curvatures k1 >= k2 with their unit directions in space; mean = (k1 + k2) / 2,
 /// gaussian = k1 k2. Signs follow the normal: a sphere seen from outside has negative curvatures.
 struct Curvature {
@@ -205,8 +211,12 @@ class LimitSurface {
   /// x tangent, normal. They are always finite: at an irregular vertex they are the limit over u =
   /// v = 2^-n as seen from the vertex; where du or the normal vanishes, they are completed from dv,
   /// then from the least aligned world axis.
-  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> frames(const LocationBatch& at,
-                                                                   int threads = 0) const;
+  Rotations frames(const LocationBatch& at, int threads = 0) const;
+
+  /// The same, written to arrays, with the positions of evaluate() where there is an array for
+  /// them: they cost nothing more. Throws std::invalid_argument for an array that has another
+  /// number of rows than there are locations, and then writes nothing.
+  void frames(const LocationBatch& at, const FrameArrays& results, int threads = 0) const;
 
   /// Curvature. Exactly at irregular vertices, where it has no limit, `rule` says what is given.
   ///

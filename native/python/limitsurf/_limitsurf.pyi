@@ -19,6 +19,7 @@ from ._results import (
     MapDistortion,
     MapLocations,
     PathFit,
+    PlacedFrames,
     Projection,
     PtexTexels,
     RayHits,
@@ -289,6 +290,9 @@ class LimitSurface(metaclass=_BoundType):
     def frames(
         self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0, dtype: DTypeLike = ...
     ) -> NDArray[np.floating[Any]]: ...
+    def placed_frames(
+        self, face: ArrayLike, uv: ArrayLike, *, threads: int = 0, dtype: DTypeLike = ...
+    ) -> PlacedFrames: ...
     def tangent_frames(
         self,
         uv_map: SurfaceData,
@@ -603,7 +607,12 @@ def frames_in_world(
 ) -> NDArray[np.float64]: ...
 def leaning(frames: ArrayLike, angles: ArrayLike, *, threads: int = 0) -> NDArray[np.float64]: ...
 def straight_strands(
-    roots: ArrayLike, along: ArrayLike, points: int, *, threads: int = 0
+    roots: ArrayLike,
+    along: ArrayLike,
+    points: int,
+    out: NDArray[np.float32] | None = None,
+    *,
+    threads: int = 0,
 ) -> NDArray[np.float32]: ...
 def move_strands(
     points: ArrayLike,

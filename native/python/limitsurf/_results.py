@@ -50,6 +50,15 @@ class Curvature:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class PlacedFrames:
+    """Positions (n, 3) and the rotations (n, 3, 3) there, whose columns are the tangent (along du),
+    normal x tangent, and the normal."""
+
+    position: Array
+    frame: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class MapDistortion:
     """The distortion of a UV map, (n,) each: the area of the surface per area of the map, and the
     largest and the smallest length on the surface per length on the map."""

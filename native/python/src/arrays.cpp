@@ -202,6 +202,26 @@ Output::Output(const py::dtype& dtype, std::vector<py::ssize_t> shape)
       data_(array_->mutable_data()),
       single_(dtype.itemsize() == 4) {}
 
+Floats resultArray(const py::object& out, const std::string& name,
+                   const std::vector<py::ssize_t>& shape) {
+  if (out.is_none()) {
+    return Floats(shape);
+  }
+  if (!py::isinstance<Floats>(out)) {
+    throw py::type_error(name + " is no contiguous array of float32");
+  }
+  Floats array = py::reinterpret_borrow<Floats>(out);
+  if (!array.writeable()) {
+    throw py::type_error(name + " is read-only");
+  }
+  const std::vector<py::ssize_t> given(array.shape(), array.shape() + array.ndim());
+  if (given != shape) {
+    const auto expected = py::cast<std::string>(py::str(py::tuple(py::cast(shape))));
+    throw py::value_error(name + " has shape " + shapeText(array) + "; expected " + expected);
+  }
+  return array;
+}
+
 void Output::put(std::size_t offset, const double* from, std::size_t count) {
   if (single_) {
     float* to = static_cast<float*>(data_) + offset;

@@ -68,6 +68,11 @@ Doubles doubles(const py::handle& object, const char* name);
 /// The same rounded to float32. An array of float32 is not converted.
 Floats floats(const py::object& object, const char* name);
 
+/// The array of float32 that receives a result: `out`, or a new one. Throws TypeError unless `out`
+/// is such an array, contiguous and writeable, and ValueError for another shape.
+Floats resultArray(const py::object& out, const std::string& name,
+                   const std::vector<py::ssize_t>& shape);
+
 /// Throws Error quoting the shape unless the array has one dimension.
 template <typename Error>
 void requireVector(const py::array& array, const char* name) {

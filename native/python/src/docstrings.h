@@ -121,6 +121,13 @@ the vertex. Where du or the normal vanishes, the frame is completed from dv, the
 that is least aligned with it. Parameters and errors are those of evaluate().
 )";
 
+constexpr const char* kPlacedFramesDoc =
+    R"(The frames of frames() and the positions at which they stand, in one evaluation: PlacedFrames.
+
+.position (n, 3) is that of evaluate(), .frame (n, 3, 3) that of frames(), each to the bit. Parameters and
+errors are those of evaluate().
+)";
+
 constexpr const char* kCurvatureDoc =
     R"(The curvature of the surface.
 

@@ -49,17 +49,50 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
                               outputs[3].object());
 }
 
+/// Frames, and the positions for an output that is wanted.
+void framesInto(const SharedSurface& shared, const CheckedLocations& at, Output& position,
+                Output& frame, int threads) {
+  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
+    const std::size_t count = chunk.size();
+    if (double* const rotations = frame.numbers<double>()) {
+      double* const positions = position.numbers<double>();
+      shared.surface().frames(
+          chunk,
+          {{positions ? positions + 3 * begin : nullptr, count}, {rotations + 9 * begin, count}},
+          threads);
+      return;
+    }
+    Points positions(position.wanted() ? count : 0, 3);
+    Rotations rotations(count, 9);
+    shared.surface().frames(
+        chunk, {{position.wanted() ? positions.data() : nullptr, count}, {rotations.data(), count}},
+        threads);
+    if (position.wanted()) {
+      position.put(3 * begin, positions.data(), 3 * count);
+    }
+    frame.put(9 * begin, rotations.data(), 9 * count);
+  });
+}
+
 py::object frames(const SharedSurface& shared, const py::object& face, const py::object& uv,
                   int threads, const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
-  Output output(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
-  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
-    const auto rotations = shared.surface().frames(chunk, threads);
-    output.put(9 * begin, rotations.data(), 9 * chunk.size());
-  });
-  return output.object();
+  Output position, frame(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
+  framesInto(shared, at, position, frame, threads);
+  return frame.object();
+}
+
+py::object placedFrames(const SharedSurface& shared, const py::object& face, const py::object& uv,
+                        int threads, const py::object& dtype) {
+  checkThreads(threads);
+  const py::dtype type = floatType(dtype);
+  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  Output position(type, {rows, 3}), frame(type, {rows, 3, 3});
+  framesInto(shared, at, position, frame, threads);
+  return result("PlacedFrames")(position.object(), frame.object());
 }
 
 py::object curvature(const SharedSurface& shared, const py::object& face, const py::object& uv,
@@ -135,6 +168,8 @@ void bindEvaluation(py::class_<SharedSurface>& type) {
            "threads"_a = 0, "dtype"_a = float64, kEvaluateDoc)
       .def("frames", &frames, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0, "dtype"_a = float64,
            kFramesDoc)
+      .def("placed_frames", &placedFrames, "face"_a, "uv"_a, py::kw_only(), "threads"_a = 0,
+           "dtype"_a = float64, kPlacedFramesDoc)
       .def("curvature", &curvature, "face"_a, "uv"_a, py::kw_only(), "irregular"_a = "none",
            "radius"_a = kCurvatureRadius, "threads"_a = 0, "dtype"_a = float64, kCurvatureDoc)
       .def("stencils", &stencils, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),

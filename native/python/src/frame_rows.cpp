@@ -42,6 +42,7 @@ constexpr char kStraightStrandsDoc[] =
     R"((n, points, 3) float32: straight strands, evenly spaced from each root to root + along.
 
 roots and along are (n, 3). A strand of one point is its root. Points are computed in float64 and then rounded.
+`out`, a contiguous array of float32 of the result's shape, receives the result and is returned.
 Raises ValueError for arrays of other shapes and for points below 1. Cost: O(n points).
 )";
 
@@ -85,12 +86,18 @@ py::array_t<double> leaningRows(const py::object& frames, const py::object& angl
   return rowArray(released([&] { return leaning(from, by, threads); }));
 }
 
-py::array_t<float> strandRows(const py::object& roots, const py::object& along, int points,
-                              int threads) {
+Floats strandRows(const py::object& roots, const py::object& along, int points,
+                  const py::object& out, int threads) {
   Doubles from = doubles(roots, "roots"), to = doubles(along, "along");
   const auto root = rows<Points>(from, "roots"), whole = rows<Points>(to, "along");
-  FloatPoints result = released([&] { return straightStrands(root, whole, points, threads); });
-  return arrayIn<float>(std::move(result), {root.rows(), points, 3});
+  if (out.is_none()) {
+    FloatPoints result = released([&] { return straightStrands(root, whole, points, threads); });
+    return arrayIn<float>(std::move(result), {root.rows(), points, 3});
+  }
+  Floats strands = resultArray(out, "out", {root.rows(), points, 3});
+  const Eigen::Map<FloatPoints> into(strands.mutable_data(), root.rows() * points, 3);
+  released([&] { straightStrands(root, whole, points, into, threads); });
+  return strands;
 }
 
 }  // namespace
@@ -103,8 +110,8 @@ void bindFrameRows(py::module_& module) {
              "threads"_a = 0, kFramesInWorldDoc);
   module.def("leaning", &leaningRows, "frames"_a, "angles"_a, py::kw_only(), "threads"_a = 0,
              kLeaningDoc);
-  module.def("straight_strands", &strandRows, "roots"_a, "along"_a, "points"_a, py::kw_only(),
-             "threads"_a = 0, kStraightStrandsDoc);
+  module.def("straight_strands", &strandRows, "roots"_a, "along"_a, "points"_a,
+             "out"_a = py::none(), py::kw_only(), "threads"_a = 0, kStraightStrandsDoc);
 }
 
 }  // namespace limitsurf::python

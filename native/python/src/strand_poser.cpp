@@ -161,26 +161,6 @@ FloatRotations floatRotations(const py::object& object) {
   return result;
 }
 
-/// The array that receives the result: `out`, or a new one.
-template <int Columns>
-Floats resultArray(const py::object& out, const std::string& name, py::ssize_t rows) {
-  if (out.is_none()) {
-    return Floats(std::vector<py::ssize_t>{rows, Columns});
-  }
-  if (!py::isinstance<Floats>(out)) {
-    throw py::type_error(name + " is no contiguous array of float32");
-  }
-  Floats array = py::reinterpret_borrow<Floats>(out);
-  if (!array.writeable()) {
-    throw py::type_error(name + " is read-only");
-  }
-  if (array.ndim() != 2 || array.shape(0) != rows || array.shape(1) != Columns) {
-    throw py::value_error(name + " has shape " + shapeText(array) + "; expected (" +
-                          std::to_string(rows) + ", " + std::to_string(Columns) + ")");
-  }
-  return array;
-}
-
 /// Calls body(input, output, matrix) without the GIL, while the surface keeps its pose.
 template <int Columns, typename Body>
 py::object posed(const BoundStrandPoser& self, const py::object& object, const char* name,
@@ -189,7 +169,7 @@ py::object posed(const BoundStrandPoser& self, const py::object& object, const c
   checkThreads(threads);
   const Floats from = floatRows<Columns>(object, name);
   const Eigen::Matrix4d map = matrixOrNone(matrix, "matrix");
-  Floats to = resultArray<Columns>(out, out_name, self.poser().pointCount());
+  Floats to = resultArray(out, out_name, {self.poser().pointCount(), Columns});
   const Eigen::Map<const Rows<Columns>> input = viewOf<Columns>(from);
   RowsMap<Columns> output(to.mutable_data(), to.shape(0), Columns);
   {

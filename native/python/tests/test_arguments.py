@@ -113,6 +113,7 @@ CASES = {
     "LimitSurface.set_positions": (POSED.set_positions, {"positions": SQUARES.tolist()}),
     "LimitSurface.evaluate": (SURFACE.evaluate, ON),
     "LimitSurface.frames": (SURFACE.frames, ON),
+    "LimitSurface.placed_frames": (SURFACE.placed_frames, ON),
     "LimitSurface.tangent_frames": (
         lambda **given: SURFACE.tangent_frames(UV_MAP, **given),
         ON,

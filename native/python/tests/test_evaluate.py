@@ -14,6 +14,9 @@ FIELDS = ("position", "du", "dv", "duu", "duv", "dvv", "normal")
 CALLS = {
     "evaluate": lambda surface, face, uv, **options: surface.evaluate(face, uv, 2, **options),
     "frames": lambda surface, face, uv, **options: surface.frames(face, uv, **options),
+    "placed_frames": lambda surface, face, uv, **options: surface.placed_frames(
+        face, uv, **options
+    ),
     "curvature": lambda surface, face, uv, **options: surface.curvature(face, uv, **options),
     "stencils": lambda surface, face, uv, **options: surface.stencils(face, uv, 1, **options),
 }

@@ -87,6 +87,30 @@ def test_straight_strands_are_evenly_spaced(points):
     np.testing.assert_array_equal(strands, expected.astype(np.float32))
 
 
+def test_straight_strands_are_written_to_the_callers_array():
+    roots, along = np.random.default_rng(6).normal(size=(2, 30, 3))
+    whole = np.full((40, 4, 3), np.nan, np.float32)
+    out = whole[5:35]
+    assert ls.straight_strands(roots, along, 4, out) is out
+    np.testing.assert_array_equal(out, ls.straight_strands(roots, along, 4))
+    assert np.isnan(whole[:5]).all()
+    assert np.isnan(whole[35:]).all()
+
+
+@pytest.mark.parametrize(
+    ("out", "error", "message"),
+    [
+        (np.empty((5, 4, 3)), TypeError, "out is no contiguous array of float32"),
+        (np.empty((5, 8, 3), np.float32)[:, ::2], TypeError, "out is no contiguous array"),
+        (np.empty((5, 12), np.float32), ValueError, r"out has shape \(5, 12\); expected \(5, 4"),
+        (np.empty((4, 4, 3), np.float32), ValueError, r"expected \(5, 4, 3\)"),
+    ],
+)
+def test_other_arrays_do_not_receive_strands(out, error, message):
+    with pytest.raises(error, match=message):
+        ls.straight_strands(np.zeros((5, 3)), np.ones((5, 3)), 4, out)
+
+
 def test_threads_do_not_change_a_bit():
     own, angles = frames(10_000), np.random.default_rng(4).normal(size=(10_000, 2))
     linear = np.diag([1.0, -2.0, 0.5])

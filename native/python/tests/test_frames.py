@@ -27,6 +27,15 @@ def test_are_rotations_everywhere(surface):
     np.testing.assert_allclose(np.linalg.det(frames), 1, atol=1e-14)
 
 
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_placed_frames_are_positions_and_frames_to_the_bit(surface, dtype):
+    at = everywhere(surface)
+    placed = surface.placed_frames(*at, dtype=dtype)
+    np.testing.assert_array_equal(placed.frame, surface.frames(*at, dtype=dtype))
+    np.testing.assert_array_equal(placed.position, surface.evaluate(*at, dtype=dtype).position)
+    assert placed.frame.dtype == placed.position.dtype == dtype
+
+
 def test_columns_are_tangent_binormal_normal(surface, anywhere):
     face, uv = anywhere(surface, 100)
     here, frames = surface.evaluate(face, uv, 1), surface.frames(face, uv)

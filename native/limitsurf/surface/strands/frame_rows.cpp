@@ -104,19 +104,26 @@ Points leaning(const Eigen::Ref<const Rotations>& frames, const Eigen::Ref<const
 
 FloatPoints straightStrands(const Eigen::Ref<const Points>& roots,
                             const Eigen::Ref<const Points>& along, int points, int threads) {
+  FloatPoints result(points < 1 ? 0 : roots.rows() * points, 3);
+  straightStrands(roots, along, points, Eigen::Map<FloatPoints>(result.data(), result.rows(), 3),
+                  threads);
+  return result;
+}
+
+void straightStrands(const Eigen::Ref<const Points>& roots, const Eigen::Ref<const Points>& along,
+                     int points, Eigen::Map<FloatPoints> strands, int threads) {
   checkRows("along", along.rows(), roots.rows());
   if (points < 1) {
     throw std::invalid_argument("points is " + std::to_string(points) + "; expected 1 or more");
   }
-  FloatPoints result(roots.rows() * points, 3);
+  checkRows("strands", strands.rows(), roots.rows() * points);
   forEachRow(roots.rows(), threads, [&](Eigen::Index row) {
     const Eigen::RowVector3d root = roots.row(row), whole = along.row(row);
     for (int point = 0; point < points; ++point) {
       const double step = points == 1 ? 0 : static_cast<double>(point) / (points - 1);
-      result.row(row * points + point) = (root + step * whole).cast<float>();
+      strands.row(row * points + point) = (root + step * whole).cast<float>();
     }
   });
-  return result;
 }
 
 }  // namespace limitsurf

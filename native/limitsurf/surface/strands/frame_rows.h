@@ -42,5 +42,8 @@ Points leaning(const Eigen::Ref<const Rotations>& frames, const Eigen::Ref<const
 /// std::invalid_argument for points below 1.
 FloatPoints straightStrands(const Eigen::Ref<const Points>& roots,
                             const Eigen::Ref<const Points>& along, int points, int threads = 0);
+/// The same, written to the caller's memory, which has room for all points.
+void straightStrands(const Eigen::Ref<const Points>& roots, const Eigen::Ref<const Points>& along,
+                     int points, Eigen::Map<FloatPoints> strands, int threads = 0);
 
 }  // namespace limitsurf

@@ -9,8 +9,7 @@
 
 namespace limitsurf {
 
-/// One 3 x 3 matrix per row, row-major, and one quaternion w, x, y, z per row.
-using Rotations = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
+/// One quaternion w, x, y, z per row.
 using Quaternions = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
 /// Bound on the error of each entry of shortestTurns(), divided by the length of the sum of the two

@@ -24,6 +24,7 @@ def by_location(surface):
     return {
         "evaluate": lambda at, **k: surface.evaluate(*at, 2, **k),
         "frames": lambda at, **k: surface.frames(*at, **k),
+        "placed_frames": lambda at, **k: surface.placed_frames(*at, **k),
         "curvature": lambda at, **k: surface.curvature(*at, irregular="average", **k),
         "data": lambda at, **k: data.evaluate(*at, 2, **k),
         "varying": lambda at, **k: surface.varying(surface.positions).evaluate(*at, 1, **k),

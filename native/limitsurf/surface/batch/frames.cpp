@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// LimitSurface::frames().
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/surface/batch/frame_kernels.h"
+#include "limitsurf/surface/differential.h"
+#include "limitsurf/surface/limit_surface_data.h"
+
+namespace limitsurf {
+namespace {
+
+/// Derivatives and normals of so many rows stay in the cache until the frames are made of them.
+constexpr std::size_t kRowsPerPart = std::size_t{1} << 15;
+
+using Frame = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+
+template <typename Rows>
+void checkRoom(const char* name, const Rows& rows, std::size_t count) {
+  if (rows.count != count) {
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows.count) +
+                                " rows; expected " + std::to_string(count));
+  }
+}
+
+bool isCorner(const Location& at) { return (at.u == 0 || at.u == 1) && (at.v == 0 || at.v == 1); }
+
+}  // namespace
+
+Rotations LimitSurface::frames(const LocationBatch& at, int threads) const {
+  Rotations out(at.size(), 9);
+  frames(at, {{}, {out.data(), at.size()}}, threads);
+  return out;
+}
+
+void LimitSurface::frames(const LocationBatch& at, const FrameArrays& results, int threads) const {
+  checkThreads(threads);
+  const LocationBatch checked = checkLocations(at);
+  checkRoom("frame", results.frame, at.size());
+  const bool has_positions = results.position.numbers != nullptr;
+  if (has_positions) {
+    checkRoom("position", results.position, at.size());
+  }
+  // The same memory serves all parts: fresh memory costs as much as filling it.
+  const auto most = static_cast<Eigen::Index>(std::min(kRowsPerPart, at.size()));
+  Points position(has_positions ? 0 : most, 3), du(most, 3), dv(most, 3), normal(most, 3);
+  for (std::size_t first = 0; first < at.size(); first += kRowsPerPart) {
+    const LocationBatch part = checked.rows(first, std::min(kRowsPerPart, at.size() - first));
+    double* const positions =
+        has_positions ? results.position.numbers + 3 * first : position.data();
+    evaluate<double>(part, Derivatives::first,
+                     {{positions, part.size()},
+                      {du.data(), part.size()},
+                      {dv.data(), part.size()},
+                      {},
+                      {},
+                      {},
+                      {normal.data(), part.size()}},
+                     threads);
+    parallelFor(part.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+      constexpr std::size_t kRows = FrameKernels::kMostRows;
+      const FrameKernels& kernels = FrameKernels::get();
+      TileEvaluator evaluator(data_->table, data_->pose);
+      unsigned found = 0;  // a bit for each of the rows that were found together
+      for (std::size_t i = begin; i < end; ++i, found >>= 1) {
+        const auto row = static_cast<Eigen::Index>(i);
+        double* const numbers = results.frame.numbers + 9 * (first + i);
+        if ((i - begin) % kRows == 0) {
+          found = kernels.frames(du.row(row).data(), normal.row(row).data(), numbers,
+                                 static_cast<int>(std::min(kRows, end - i)));
+        }
+        Frame rotation(numbers);
+        const Location location = part[i];
+        if (isCorner(location)) {
+          const TileLocation place = evaluator.locate(location);
+          if (place.atVertex()) {
+            const VertexApproach towards = data_->approachTo(place);
+            rotation = frame(towards.du, towards.dv, towards.normal);
+            continue;
+          }
+        }
+        if ((found & 1) == 0) {
+          const Vector3 up = normal.row(row);
+          rotation =
+              frame(du.row(row), dv.row(row), up.allFinite() ? up : Vector3(Vector3::Zero()));
+        }
+      }
+    });
+  }
+}
+
+}  // namespace limitsurf
