@@ -34,7 +34,7 @@ PARTS = {
     "scattering": (distribution.Distribution, "scatter"),
     "positions and frames": (scatter_operator.Ground, "evaluate"),
     "rest rotations": (binding.Binding, "fill"),
-    "strands": (strands.StrandMaker, "strands"),
+    "strands": (strands.StrandMaker, "put"),
     "writing": (new_hair, "add"),
     "Blender's update": (new_hair, "add_on_surface"),
 }

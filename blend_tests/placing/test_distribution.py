@@ -89,6 +89,19 @@ def test_a_seed_gives_one_arrangement(distribution):
     assert not np.array_equal(made[0][1], made[2][1])
 
 
+@pytest.mark.parametrize("distribution", ["UNIFORM", "BLUE_NOISE"])
+def test_places_do_not_depend_on_where_the_object_stands(distribution):
+    ob = scenes.cross()
+    found = []
+    for where in ((0, 0, 0), (1e6, -3e5, 7e5)):  # in single precision an edge has few digits there
+        ob.location = where
+        bpy.context.view_layer.update()
+        hair = add_hair(ob, distribution=distribution, count=60, seed=3)
+        found.append([attributes.read(hair.data, name) for name in (ids.FACE, ids.UV)])
+    for here, far_away in zip(*found, strict=True):
+        np.testing.assert_array_equal(here, far_away)
+
+
 def test_hair_and_points_at_the_same_places():
     ob = scenes.mixed_polygons()
     settings = {"distribution": "BLUE_NOISE", "count": 60, "seed": 3}

@@ -96,7 +96,8 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, SteeringProperties, bpy.types.Op
         uv_map = found.uv_map.name if found.uv_map else ""
 
         def make(ground: Ground, progress: Progress) -> Strands:
-            region, maker = ground.region, StrandMaker(space, seed)
+            region = ground.region
+            maker = StrandMaker(space, seed, random > 0, random_length > 0)
             steered = steering.Steering(
                 region.sources, region.cage, region.surface, STEERED, SIGNED
             )
@@ -116,12 +117,11 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, SteeringProperties, bpy.types.Op
                     lean = lean + flow_angle * sideways
                 shape = Shape(
                     length=length * factors["length"],
-                    points=points,
                     lean=lean,
                     random=random * factors["random"],
                     random_length=(random_length * factors["random"]).clip(max=1),
                 )
-                position[part.rows] = maker.strands(part.position, frame, shape)
+                maker.put(position[part.rows], part.position, frame, shape)
                 radii[part.rows] = radius * factors["radius"][:, 0]
             return Strands.equal(binding, position, radii, ground.surface_uv(), uv_map)
 

@@ -14,27 +14,33 @@ class Shape:
     """The shape of strands. What is steered has a row for each strand, or one for all."""
 
     length: np.ndarray  # (n, 1) in world units
-    points: int  # number of control points on each strand, including the root
     lean: np.ndarray  # (n, 2) angles in radians, towards the first two columns of the frames
     random: np.ndarray  # (n, 1) the largest random angle, in radians
     random_length: np.ndarray  # (n, 1) the largest part by which strands are shorter
 
 
 class StrandMaker:
-    """Makes strands part by part; the random numbers of a strand depend on those before it."""
+    """Makes strands part by part; the random numbers of a strand depend on those before it. Unless
+    directions or lengths are random at all, no numbers are drawn for them.
+    """
 
-    def __init__(self, space: WorldSpace, seed: int) -> None:
+    def __init__(
+        self, space: WorldSpace, seed: int, random_directions: bool, random_lengths: bool
+    ) -> None:
         self._space = space
-        self._directions = np.random.default_rng(seed)
-        self._lengths = np.random.default_rng([seed, 1])
+        self._directions = np.random.default_rng(seed) if random_directions else None
+        self._lengths = np.random.default_rng([seed, 1]) if random_lengths else None
 
-    def strands(self, root: np.ndarray, frame: np.ndarray, shape: Shape) -> np.ndarray:
-        """Returns control points (n, points, 3) in the surface's space, evenly spaced from the
-        roots, in single precision. The frames (n, 3, 3) are in the world; strands that do not lean
-        follow their last columns.
+    def put(self, out: np.ndarray, root: np.ndarray, frame: np.ndarray, shape: Shape) -> None:
+        """Writes control points to `out` (n, points, 3), an array in single precision: in the
+        surface's space, evenly spaced from the roots. The frames (n, 3, 3) are in the world;
+        strands that do not lean follow their last columns.
         """
-        shorter = shape.random_length * self._lengths.random((len(root), 1))
-        length = shape.length * (1 - shorter)
-        lean = shape.lean + shape.random * within_disc(len(frame), self._directions)
+        length, lean = shape.length, shape.lean
+        if self._lengths is not None:
+            shorter = shape.random_length * self._lengths.random((len(root), 1))
+            length = length * (1 - shorter)
+        if self._directions is not None:
+            lean = lean + shape.random * within_disc(len(frame), self._directions)
         along = self._space.to_local(length * native.limitsurf.leaning(frame, lean))
-        return native.limitsurf.straight_strands(root, along, shape.points)
+        native.limitsurf.straight_strands(root, along, out.shape[1], out)

@@ -87,7 +87,13 @@ class Region:
 
     @contextmanager
     def in_world(self) -> Iterator[None]:
-        """Moves the surface to world space for as long as the context lasts."""
+        """Moves the surface to world space for as long as the context lasts. Where its object is
+        neither turned nor scaled it stays: all lengths, areas and directions are those of the
+        world, and what is calculated from the same pose before is kept.
+        """
+        if np.array_equal(self.cage.matrix[:3, :3], np.eye(3)):
+            yield
+            return
         self.surface.set_positions(self.cage.world_positions())
         try:
             yield

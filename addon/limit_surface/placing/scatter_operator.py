@@ -57,8 +57,10 @@ class Ground:
         limit surface, which has no kinks between polygons.
         """
         surface = self.region.surface
-        on = self.shown.positions(face, uv) if self.shown else surface.evaluate(face, uv).position
-        return on, surface.frames(face, uv)
+        if self.shown:
+            return self.shown.positions(face, uv), surface.frames(face, uv)
+        placed = surface.placed_frames(face, uv)
+        return placed.position, placed.frame
 
     def world_frames(self, part: roots.Roots, space: WorldSpace) -> np.ndarray:
         """Returns frames (n, 3, 3) in the world whose last column is the direction of a thing."""
