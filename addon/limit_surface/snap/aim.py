@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -29,10 +30,15 @@ class Elements:
     """The elements that are to be snapped, in world space."""
 
     points: np.ndarray  # (n, 3)
-    normals: np.ndarray  # (n, 3) unit vectors, NaN where an element has none
+    find_normals: Callable[[], np.ndarray]  # not every search needs them
     axes: np.ndarray  # (3, 3), or (n, 3, 3): columns are the local X, Y and Z as unit vectors
     # reason -> number of elements that cannot be snapped
     left_out: Counter[str] = field(default_factory=Counter)
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """The elements' own normals (n, 3), unit vectors; NaN where an element has none."""
+        return self.find_normals()
 
 
 @dataclass(frozen=True)
@@ -49,8 +55,13 @@ class Placement:
     face: np.ndarray  # (k,)
     uv: np.ndarray  # (k, 2)
     position: np.ndarray  # (k, 3) world, offset included
-    frame: np.ndarray  # (k, 3, 3) world
+    surface: TargetSurface
     failures: Counter[str]  # reason -> number of elements
+
+    @cached_property
+    def frame(self) -> np.ndarray:
+        """The frames (k, 3, 3) in the world, which points that have no rotation do not need."""
+        return self.surface.places(self.face, self.uv, np.eye(4)).frame
 
 
 @dataclass(frozen=True)
@@ -84,13 +95,17 @@ class Aim:
         face, uv = face[hit], uv[hit]
         if single_precision:
             uv = uv.astype(np.float32).astype(np.float64)
-        position, frame = surface.places(face, uv, np.eye(4))
+        if self.offset:
+            position, frame = surface.places(face, uv, np.eye(4))
+            position = position + self.offset * frame[:, :, 2]
+        else:
+            position = surface.positions(face, uv, np.eye(4))
         return Placement(
             rows=usable[hit],
             face=face,
             uv=uv,
-            position=position + self.offset * frame[:, :, 2],
-            frame=frame,
+            position=position,
+            surface=surface,
             failures=elements.left_out
             + Counter(
                 {

@@ -40,7 +40,7 @@ class SnappedBones:
         matrices = np.array([bone.matrix.to_3x3() for bone in self._bones], np.float64)
         columns = self._matrix[:3, :3] @ matrices.reshape(-1, 3, 3)
         axes = unit(columns.swapaxes(1, 2)).swapaxes(1, 2)
-        return Elements(heads, unit(tails - heads), axes, self._left_out)
+        return Elements(heads, lambda: unit(tails - heads), axes, self._left_out)
 
     def place(self, placement: Placement, choices: Choices) -> Outcome:
         elements, rows = self.elements(), placement.rows

@@ -47,7 +47,7 @@ class SnappedPoints(ABC):
         return np.broadcast_to(self._axes()[:, 2], (len(rows), 3))
 
     def elements(self) -> Elements:
-        return Elements(self._points, self.normals(self._rows), self._axes())
+        return Elements(self._points, lambda: self.normals(self._rows), self._axes())
 
     def place(self, placement: Placement, choices: Choices) -> Outcome:
         moves = placement.position - self._points[placement.rows]

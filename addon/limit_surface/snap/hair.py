@@ -43,7 +43,7 @@ class SnappedHair:
     def elements(self) -> Elements:
         strands, _rows = self._strands(self._chosen)
         axes = unit(self._matrix[:3, :3].T).T
-        return Elements(strands.points[strands.root], strands.directions(), axes)
+        return Elements(strands.points[strands.root], strands.directions, axes)
 
     def place(self, placement: Placement, choices: Choices) -> Outcome:
         outcome = Outcome(self.noun)

@@ -25,7 +25,7 @@ class SnappedObjects:
     def elements(self) -> Elements:
         matrix = np.array([ob.matrix_world for ob in self._objects], np.float64)
         axes = np.swapaxes(unit(np.swapaxes(matrix[:, :3, :3], 1, 2)), 1, 2)
-        return Elements(matrix[:, :3, 3], axes[:, :, 2], axes)
+        return Elements(matrix[:, :3, 3], lambda: axes[:, :, 2], axes)
 
     def place(self, placement: Placement, choices: Choices) -> Outcome:
         """Places parents before their children, whose transforms depend on the parents' new

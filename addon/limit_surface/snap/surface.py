@@ -6,7 +6,7 @@ from typing import Literal
 import bpy
 import numpy as np
 
-from ..placing.posed_surface import SAME, Places, PosedSurface, seen_from
+from ..placing.posed_surface import SAME, Places, PosedSurface, positions_seen_from, seen_from
 from ..reading import cage, displayed_mesh, rules
 from ..tasks.refused_faces import check_some_left
 
@@ -55,13 +55,21 @@ class TargetSurface:
 
         Frames are those of the limit surface even on polygons, which would have kinks between them.
         """
-        places = Places(self._positions(face, uv), self._in_object.frames(face, uv))
+        if self._shown is None:
+            placed = self._in_object.placed_frames(face, uv)
+            places = Places(placed.position, placed.frame)
+        else:
+            frame = self._in_object.frames(face, uv)
+            places = Places(self._shown.positions(face, uv), frame)
         return seen_from(space, places, self.cage.matrix)
+
+    def positions(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> np.ndarray:
+        """Returns the positions of `places` alone, which are found in less time."""
+        if self._shown is None:
+            found = self._in_object.evaluate(face, uv).position
+        else:
+            found = self._shown.positions(face, uv)
+        return positions_seen_from(space, found, self.cage.matrix)
 
     def surface_uv(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray | None:
         return self.cage.surface_uv(self._in_object, face, uv)
-
-    def _positions(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        if self._shown is None:
-            return self._in_object.evaluate(face, uv).position
-        return self._shown.positions(face, uv)
