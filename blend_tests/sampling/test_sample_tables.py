@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tables for Sample Limit Surface: they are seen when they are stale, made anew and removed."""
 
+import threading
+from types import SimpleNamespace
+from unittest.mock import MagicMock
+
 import bpy
 import numpy as np
 import pytest
@@ -8,9 +12,13 @@ import scenes
 from follow_scenes import check_hair, deforming, look
 from limit_surface import ids
 from limit_surface.follow import stale
-from limit_surface.placing import all_tiles
+from limit_surface.placing import all_tiles, tables
 from limit_surface.placing.follow_state import State, surfaces
 from limit_surface.reading import attributes
+from limit_surface.sampling import tables_operator
+from limit_surface.tasks import watched_operator
+from stand_ins import event, window_context
+from waiting import wait_for
 
 STALE = (
     "The faces, creases or rules of Holes have changed since its tables for Sample Limit Surface "
@@ -111,6 +119,67 @@ def test_settings_stay_unless_they_are_given():
     assert all_tiles.settings_of(ob) == (6, 0)
     all_tiles.faces_of(ob)[ids.FACES_MARK] = True  # a file of the first version
     assert all_tiles.settings_of(ob) == (6, None)
+
+
+@pytest.fixture
+def waiting(monkeypatch):
+    """The operator as a user starts it; the tables are not found until the event is set."""
+    go_on, compute = threading.Event(), all_tiles.AllTiles.compute
+
+    def wait(self):
+        wait_for(go_on)
+        compute(self)
+
+    monkeypatch.setattr(all_tiles.AllTiles, "compute", wait)
+    monkeypatch.setattr(watched_operator, "PATIENCE", 0.01)
+    made = SimpleNamespace(depth=3, levels=1, report=MagicMock())
+    made.properties = SimpleNamespace(is_property_set=lambda name: True)
+    operator = tables_operator.OBJECT_OT_limit_sample_tables
+    for name in ("start", "finish", "too_large", "cancelled"):
+        setattr(_Tables, name, operator.__dict__[name])
+    yield _Tables(**vars(made)), go_on
+    go_on.set()
+
+
+class _Tables(watched_operator.WatchedOperator):
+    def __init__(self, **members):
+        vars(self).update(members)
+
+
+def test_finding_many_tiles_is_waited_for(waiting):
+    operator, go_on = waiting
+    ob = deforming("grid with holes")
+    scenes.activate(ob)
+    context, before = window_context(), scenes.file_contents()
+    assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
+    assert scenes.file_contents() == before
+    go_on.set()
+    wait_for(operator._job)
+    assert operator.modal(context, event("TIMER")) == {"FINISHED"}
+    assert all_tiles.settings_of(ob) == (3, 1)
+
+
+def test_escape_ends_finding_tiles(waiting):
+    operator, _ = waiting
+    scenes.activate(deforming("grid with holes"))
+    context, before = window_context(), scenes.file_contents()
+    assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    operator.report.assert_called_with({"INFO"}, "Cancelled: no tables were made")
+    assert scenes.file_contents() == before
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_largest_of_each_row(seed):
+    rng = np.random.default_rng(seed)
+    sizes = rng.integers(0, 4, 50 * seed)
+    values = rng.integers(0, 3, sizes.sum()).astype(float)
+    ends = np.cumsum(sizes)
+    rows = [(end - size, end) for size, end in zip(sizes, ends, strict=True) if size]
+    # the last one of the largest
+    expected = [end - 1 - np.argmax(values[begin:end][::-1]) for begin, end in rows]
+    np.testing.assert_array_equal(tables._largest(values, sizes), expected)
 
 
 def test_tables_are_removed():

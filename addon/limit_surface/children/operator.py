@@ -225,7 +225,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Any]:
         if self.mode == "LIVE":
-            return _live_table
+            return _live_table_of(self._tiles)
         uv_map = found.uv_map.name if found.uv_map else ""
         radius = self._local_radius(found.matrix)
 
@@ -257,10 +257,19 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
         return new_hair.add(context, ids.CHILDREN_OBJECT, surface, made, guides.data.materials)
 
 
-def _live_table(ground: Ground, _progress: Progress) -> live_children.Table:
-    followed = _followed(ground)
-    strand = followed.guides.strand[followed.guide]
-    return live_children.Table.of(followed.locations, strand, followed.weight)
+def _live_table_of(
+    tiles: AllTiles | None,
+) -> Callable[[Ground, Progress], live_children.Table]:
+    """Returns the function that finds the tiles, and makes the table of the children."""
+
+    def make(ground: Ground, _progress: Progress) -> live_children.Table:
+        assert tiles is not None
+        tiles.compute()
+        followed = _followed(ground)
+        strand = followed.guides.strand[followed.guide]
+        return live_children.Table.of(followed.locations, strand, followed.weight)
+
+    return make
 
 
 def _curves(ground: Ground, radius: float, uv_map: str, progress: Progress) -> Strands:

@@ -13,6 +13,7 @@ from ..errors import RefusalError
 from ..nodes import locate
 from ..nodes.tiles import ROWS_OF_A_TILE
 from ..reading import attributes, cage
+from ..tasks.object_keys import ObjectKey
 from ..tasks.refused_faces import check_some_left
 from . import following, new_objects, tables
 
@@ -20,8 +21,9 @@ _NO_TILE = -(1 << 23)  # what quadtrees hold for faces that have no limit surfac
 
 
 class AllTiles:
-    """The tables of one surface. Raises RefusalError for a surface that cannot have them; nothing
-    has changed then.
+    """The tables of one surface, in three steps: the surface is read from Blender, the tables are
+    computed where Blender's data need not be touched, and written. Raises RefusalError for a
+    surface that cannot have them; nothing has changed then.
     """
 
     def __init__(
@@ -33,17 +35,20 @@ class AllTiles:
     ) -> None:
         """Takes the levels of the mesh of faces, or None to make no such mesh."""
         following.check_surface(surface, depsgraph.scene)
-        self._surface, self._depth, self._levels = surface, depth, levels
+        self._surface, self._depth, self._levels = ObjectKey.of(surface), depth, levels
         with cage.opened(surface, depsgraph) as (found, mesh):
             self._bound = following.bound_to(found, mesh)
-        limit = found.surface()
-        check_some_left(limit, surface.name)
-        self.tree = limit.tile_quadtree(depth)
-        self._face_count = limit.face_count
-        if levels is None:
+        self._limit = found.surface()
+        check_some_left(self._limit, surface.name)
+
+    def compute(self) -> None:
+        """Finds the tiles, which takes some 50 microseconds for each of them."""
+        limit = self._limit
+        self.tree = limit.tile_quadtree(self._depth)
+        if self._levels is None:
             return
         faces = np.flatnonzero(self.tree.child[: limit.face_count] != _NO_TILE)
-        side = 2**levels
+        side = 2**self._levels
         self._face, self._uv = _grids(faces, side)
         self._positions = limit.evaluate(self._face, self._uv).position
         self._corners = _quads(len(faces), side)
@@ -51,7 +56,7 @@ class AllTiles:
 
     def write(self) -> bpy.types.Object:
         """Makes the tables, or makes them anew, and returns the table of tiles."""
-        surface = self._surface
+        surface = self._surface.find()
         following.ensure_capture(surface)
         table = of_surface(surface)
         points = tables.PointsTable(self.tree.tiles, self._bound.vertices)
@@ -63,8 +68,12 @@ class AllTiles:
         tables.connect(table, holder, surface, points, self._bound)
         self._fill(table.data, points.origin)
         if self._levels is not None:
-            self._write_faces()
+            self._write_faces(surface)
         return table
+
+    @property
+    def surface_name(self) -> str:
+        return self._surface.name
 
     @property
     def topology(self) -> int:
@@ -85,15 +94,15 @@ class AllTiles:
             (locate.CHILD, "INT", tree.child),
             (locate.ORIGIN, "FLOAT2", begin),
             (locate.LEVELS, "INT", np.full(rows, tree.levels)),
-            (locate.FACES, "INT", np.full(rows, self._face_count)),
+            (locate.FACES, "INT", np.full(rows, self._limit.face_count)),
             (ids.CAGE_TOPOLOGY, "INT", np.full(rows, self._bound.topology)),
         ):
             attributes.write(mesh, name, kind, "POINT", tables.padded(values, rows))
 
-    def _write_faces(self) -> None:
+    def _write_faces(self, surface: bpy.types.Object) -> None:
         assert self._levels is not None
-        ob = faces_of(self._surface) or tables.new_object(ids.FACES_TABLE, self._surface)
-        new_objects.put_on_surface(ob, self._surface)
+        ob = faces_of(surface) or tables.new_object(ids.FACES_TABLE, surface)
+        new_objects.put_on_surface(ob, surface)
         ob[ids.FACES_MARK] = self._levels
         mesh = ob.data
         mesh.clear_geometry()

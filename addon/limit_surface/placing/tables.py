@@ -262,7 +262,11 @@ def fill(mesh: bpy.types.Mesh, positions: np.ndarray) -> None:
 
 
 def _largest(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Returns the index of the largest value of each row that is not empty."""
-    row = np.repeat(np.arange(len(sizes)), sizes)
-    order = np.lexsort((values, row))
-    return order[np.cumsum(sizes)[sizes > 0] - 1]
+    """Returns the index of the largest value of each row that is not empty, the last such one."""
+    filled = sizes[sizes > 0]
+    if not len(filled):
+        return np.empty(0, np.int64)
+    ends = np.cumsum(filled)
+    largest = np.maximum.reduceat(values, ends - filled)
+    found = np.flatnonzero(values == np.repeat(largest, filled))
+    return found[np.searchsorted(found, ends) - 1]

@@ -6,12 +6,13 @@ from bpy.props import IntProperty
 
 from .. import ids
 from ..placing.all_tiles import AllTiles, settings_of
-from ..placing.binding_operator import BindingOperator
-from ..tasks import polling
+from ..placing.mending import mended
+from ..tasks.job import Job, Progress
 from ..tasks.properties import draw_summary
+from ..tasks.watched_operator import WatchedOperator
 
 
-class OBJECT_OT_limit_sample_tables(BindingOperator, bpy.types.Operator):
+class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
     """Make the tables by which the node group Sample Limit Surface samples the active mesh, or make
     them anew after a change of its topology, creases or rules. Unless Depth and Levels are set,
     they stay as they were"""
@@ -19,6 +20,8 @@ class OBJECT_OT_limit_sample_tables(BindingOperator, bpy.types.Operator):
     bl_idname = ids.SAMPLE_TABLES
     bl_label = "Tables for Sample Limit Surface"
     bl_options = {"REGISTER", "UNDO"}
+    too_large = "There is not enough memory for the tables"
+    cancelled = "Cancelled: no tables were made"
 
     depth: IntProperty(
         name="Depth",
@@ -37,13 +40,9 @@ class OBJECT_OT_limit_sample_tables(BindingOperator, bpy.types.Operator):
         max=6,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.mesh_in_object_mode(cls, context, context.active_object)
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self._keep_settings(context.active_object)
-        return self.execute(context)
+        return super().invoke(context, event)
 
     def _keep_settings(self, surface: bpy.types.Object) -> None:
         """Takes the settings of the tables that are there."""
@@ -53,13 +52,23 @@ class OBJECT_OT_limit_sample_tables(BindingOperator, bpy.types.Operator):
         if was.levels is not None:
             self.levels = was.levels
 
-    def bind(self, context: bpy.types.Context) -> set[str]:
+    def start(self, context: bpy.types.Context) -> set[str]:
+        self.summary = ""
         surface = context.active_object
         if not any(self.properties.is_property_set(name) for name in ("depth", "levels")):
             self._keep_settings(surface)
-        made = AllTiles(surface, context.evaluated_depsgraph_get(), self.depth, self.levels)
-        made.write()
-        self.summary = f"{len(made.tree.tiles.tile_points):,} tiles of {surface.name}"
+        tables = AllTiles(surface, context.evaluated_depsgraph_get(), self.depth, self.levels)
+
+        def work(_progress: Progress) -> AllTiles:
+            tables.compute()
+            return tables
+
+        return self.watch(context, Job(work), f"Making tables of {surface.name}")
+
+    def finish(self, _context: bpy.types.Context, made: AllTiles) -> set[str]:
+        with mended():
+            made.write()
+        self.summary = f"{len(made.tree.tiles.tile_points):,} tiles of {made.surface_name}"
         self.report({"INFO"}, self.summary)
         return {"FINISHED"}
 

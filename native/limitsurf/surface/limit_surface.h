@@ -267,6 +267,11 @@ class LimitSurface {
   SurfaceTiles tiles(const LocationBatch& at, int max_depth = SurfaceTiles::kDefaultDepth,
                      int threads = 0) const;
 
+  /// Where the locations lie in these tiles, without the tiles, whose weights are what takes time.
+  /// Cost: O(1) for each location.
+  TilePlaces tilePlaces(const LocationBatch& at, int max_depth = SurfaceTiles::kDefaultDepth,
+                        int threads = 0) const;
+
   // Data on the surface.
   //
   // UV maps, colours, rest positions, weights: values at vertices or face corners that are

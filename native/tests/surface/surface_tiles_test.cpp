@@ -157,5 +157,26 @@ TEST(SurfaceTiles, RefuseDepthsOutOfRange) {
   EXPECT_THROW(surface.tiles(at, 5, -1), std::invalid_argument);
 }
 
+TEST(SurfaceTiles, PlacesAloneAreTheSame) {
+  for (const Cage& cage : {mixture(21), fan(7, true, 1), cross()}) {
+    const LimitSurface surface = limitSurface(cage);
+    Random random(4);
+    std::vector<Location> at;
+    for (int face = 0; face < surface.faceCount(); ++face) {
+      at += anywhere(face, 5, random);
+      at += shells(face, random.below(4), {3, 9, 40});
+      at.push_back(cornerLocation(face, random.below(4)));
+    }
+    for (int depth : {1, 6, 24}) {
+      const SurfaceTiles tiles = surface.tiles(at, depth);
+      const TilePlaces places = surface.tilePlaces(at, depth);
+      EXPECT_EQ(places.tile_uv, tiles.tile_uv);
+      EXPECT_EQ(places.scale, tiles.scale);
+      EXPECT_EQ(places.moved, tiles.moved);
+    }
+    EXPECT_THROW(surface.tilePlaces(at, 0), std::invalid_argument);
+  }
+}
+
 }  // namespace
 }  // namespace limitsurf::test

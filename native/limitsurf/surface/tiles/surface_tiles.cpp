@@ -97,23 +97,50 @@ void addTiles(const ControlPoints* controls, std::size_t count, PointNumbers& nu
   }
 }
 
-}  // namespace
-
-SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int threads) const {
-  data_->check(at, threads);
+std::vector<Place> foundPlaces(const LocationBatch& at, const TileTable& table, const Pose& pose,
+                               int max_depth, int threads) {
   if (max_depth < 1 || max_depth > SurfaceTiles::kLargestDepth) {
     throw std::invalid_argument("max_depth is " + std::to_string(max_depth) + "; expected 1 to " +
                                 std::to_string(SurfaceTiles::kLargestDepth));
   }
-  const TileTable& table = data_->table;
   std::vector<Place> places(at.size());
   parallelFor(at.size(), kPlacesPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    const PlaceFinder find(table, data_->pose, max_depth);
+    const PlaceFinder find(table, pose, max_depth);
     for (std::size_t i = begin; i < end; ++i) {
       places[i] = find(at[i]);
     }
   });
+  return places;
+}
 
+void putPlaces(const std::vector<Place>& places, TilePlaces& out, int threads) {
+  const auto rows = static_cast<Eigen::Index>(places.size());
+  out.moved.resize(places.size());
+  out.tile_uv.resize(rows, 2);
+  out.scale.resize(rows, 2);
+  parallelFor(places.size(), kPlacesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Place& place = places[i];
+      out.moved[i] = place.moved;
+      out.tile_uv.row(static_cast<Eigen::Index>(i)) << place.u, place.v;
+      out.scale.row(static_cast<Eigen::Index>(i)) << place.u_scale, place.v_scale;
+    }
+  });
+}
+
+}  // namespace
+
+TilePlaces LimitSurface::tilePlaces(const LocationBatch& at, int max_depth, int threads) const {
+  data_->check(at, threads);
+  TilePlaces out;
+  putPlaces(foundPlaces(at, data_->table, data_->pose, max_depth, threads), out, threads);
+  return out;
+}
+
+SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int threads) const {
+  data_->check(at, threads);
+  const TileTable& table = data_->table;
+  const std::vector<Place> places = foundPlaces(at, table, data_->pose, max_depth, threads);
   const std::vector<TilePart> parts = differentParts(places);
   SurfaceTiles out;
   PointNumbers numbers(table.points, out);
@@ -129,18 +156,11 @@ SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int thr
     addTiles(controls.data(), count, numbers, out);
   }
 
-  const auto rows = static_cast<Eigen::Index>(at.size());
+  putPlaces(places, out, threads);
   out.tile.resize(at.size());
-  out.moved.resize(at.size());
-  out.tile_uv.resize(rows, 2);
-  out.scale.resize(rows, 2);
   parallelFor(at.size(), kPlacesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Place& place = places[i];
-      out.tile[i] = tileOf(parts, place.part.key());
-      out.moved[i] = place.moved;
-      out.tile_uv.row(static_cast<Eigen::Index>(i)) << place.u, place.v;
-      out.scale.row(static_cast<Eigen::Index>(i)) << place.u_scale, place.v_scale;
+      out.tile[i] = tileOf(parts, places[i].part.key());
     }
   });
   return out;

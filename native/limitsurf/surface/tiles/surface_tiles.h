@@ -8,6 +8,15 @@
 
 namespace limitsurf {
 
+/// Where locations lie in their tiles, one row each (SurfaceTiles says what that means).
+struct TilePlaces {
+  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> tile_uv, scale;
+  /// Whether the location lies exactly at an extraordinary vertex, or in tiles deeper than allowed:
+  /// the tile and the place in it are then those where the way from the vertex to the location (at
+  /// the vertex itself, the face's diagonal) first reaches a tile that is allowed.
+  std::vector<char> moved;
+};
+
 /// The bicubic tiles that some locations lie in: everything that a program of its own (a shader, a
 /// node tree) needs to evaluate the limit surface there, in any pose of the cage. It is
 /// OpenSubdiv's PatchTable with local point stencils, but exact: at any depth near an extraordinary
@@ -31,7 +40,7 @@ namespace limitsurf {
 /// near them, control points whose weights add up to 0, and for base the point without weights,
 /// which is the origin in every pose: so they keep their digits in single precision, too. All other
 /// tiles have one of their own control points for both anchor and base.
-struct SurfaceTiles {
+struct SurfaceTiles : TilePlaces {
   int cage_points = 0;
   std::vector<std::int64_t> points_offsets{0};
   std::vector<int> points_indices;
@@ -40,13 +49,7 @@ struct SurfaceTiles {
   std::vector<std::array<int, 16>> tile_points;
   std::vector<int> tile_anchor, tile_base;
 
-  // One row per location.
-  std::vector<int> tile;
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> tile_uv, scale;
-  /// Whether the location lies exactly at an extraordinary vertex, or in tiles deeper than allowed:
-  /// the tile and the place in it are then those where the way from the vertex to the location (at
-  /// the vertex itself, the face's diagonal) first reaches a tile that is allowed.
-  std::vector<char> moved;
+  std::vector<int> tile;  ///< one per location
 
   /// Tiles beside an extraordinary vertex are at least 2^-depth of a face wide, for the depth that
   /// LimitSurface::tiles() is given. This one suits float, whose coordinates do not tell places

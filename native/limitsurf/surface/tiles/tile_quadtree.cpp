@@ -27,7 +27,7 @@ std::vector<Location> middlesOf(const std::vector<Cell>& cells, double size) {
 }
 
 /// Where the tile of a location begins on its face.
-Eigen::RowVector2d originOf(const SurfaceTiles& tiles, std::size_t location, const Location& at) {
+Eigen::RowVector2d originOf(const TilePlaces& tiles, std::size_t location, const Location& at) {
   const auto row = static_cast<Eigen::Index>(location);
   return Eigen::RowVector2d(at.u, at.v) -
          tiles.tile_uv.row(row).cwiseQuotient(tiles.scale.row(row));
@@ -35,8 +35,8 @@ Eigen::RowVector2d originOf(const SurfaceTiles& tiles, std::size_t location, con
 
 /// Whether the tile of the cell's middle covers the cell. A middle that was moved lies beside an
 /// irregular vertex: the tile that it was moved to stands for all that is nearer to the vertex.
-bool covers(const SurfaceTiles& tiles, std::size_t location, const Location& middle,
-            const Cell& cell, double size) {
+bool covers(const TilePlaces& tiles, std::size_t location, const Location& middle, const Cell& cell,
+            double size) {
   const auto row = static_cast<Eigen::Index>(location);
   const Eigen::RowVector2d begin = originOf(tiles, location, middle),
                            end = begin + tiles.scale.row(row).cwiseInverse(),
@@ -68,7 +68,7 @@ TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth, int thread
   InterruptionStride stride;
   for (double size = 1; !cells.empty(); size /= 2) {
     const std::vector<Location> middles = middlesOf(cells, size);
-    const SurfaceTiles tiles = surface.tiles(middles, max_depth, threads);
+    const TilePlaces tiles = surface.tilePlaces(middles, max_depth, threads);
     std::vector<Cell> next;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       stride.step();

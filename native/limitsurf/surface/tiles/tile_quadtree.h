@@ -32,7 +32,7 @@ struct TileQuadtree {
 ///
 /// Depends on the topology alone, not on the pose. Errors and exceptions as those of
 /// LimitSurface::tiles(). Cost: O(max_depth) nodes at each irregular vertex, and that of
-/// LimitSurface::tiles() for the middles of all nodes.
+/// LimitSurface::tiles() for the middles of all tiles.
 TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth = SurfaceTiles::kDefaultDepth,
                           int threads = 0);
 
