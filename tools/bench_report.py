@@ -16,7 +16,7 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,6 +25,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "docs")]
 
+import bench_threads  # noqa: E402
 import limitsurf  # noqa: E402
 from figures.plots import plt, save  # noqa: E402
 
@@ -49,6 +50,16 @@ RUNS = {
 }
 #: The numbers of samples on a face whose times are drawn
 PER_FACE = (1, 2, 5, 10, 30, 100, 300)
+OPENING = "### Opening a mesh, ns per face"
+#: The sides of the grids whose opening is drawn, and what of it
+OPENED_SIDES = (100, 200, 500, 1000, 1500)
+OPENED = (
+    "limitsurf ControlMesh + LimitSurface",
+    "Far topology alone",
+    "Far topology + Bfr 2 surfaces",
+    "Far topology + Bfr 10 surfaces",
+    "Far adaptive refinement, level 6",
+)
 
 
 def output(options: tuple[str, ...]) -> str:
@@ -90,6 +101,15 @@ def replaced(page: str, heading: str, made: list[str]) -> str:
             raise ValueError(f"{heading} has no table for {columns}")
         text = text.replace(old[place], table, 1)
     return page[:begin] + text + page[end:]
+
+
+def with_image(page: str, heading: str, image: str, what: str) -> str:
+    """Returns the page with an image at the end of a section, unless it has that image already."""
+    line = f"![{what}](images/{image}.png)\n"
+    if line in page:
+        return page
+    _, end = section(page, heading)
+    return page[:end].rstrip("\n") + f"\n\n{line}" + page[end:]
 
 
 def rows(table: str) -> Iterator[dict[str, str]]:
@@ -139,59 +159,37 @@ def draw_batches() -> None:
     save(figure, IMAGES / "benchmark_batch.png")
 
 
-def best(call: Callable[[int], object], threads: int, repeats: int = 5) -> float:
-    """Returns the least of some wall times of a call on so many threads, in seconds."""
-    times = []
-    for _ in range(repeats):
-        begin = time.perf_counter()
-        call(threads)
-        times.append(time.perf_counter() - begin)
-    return min(times)
+def draw_opening() -> None:
+    """Draws the time in which a mesh is opened against the number of its faces."""
+    seconds: dict[str, list[float]] = {}
+    faces = []
+    for side in OPENED_SIDES:
+        text = output((f"--large={side}",))
+        faces.append(int(text.split(" quads", 1)[0].split()[-1]))
+        for row in rows(tables(text)[0]):
+            seconds.setdefault(row[""], []).append(float(row["CPU s"]))
+    figure, plot = plt.subplots(figsize=(7, 4), layout="constrained")
+    for name in OPENED:
+        plot.plot(faces, 1e9 * np.array(seconds[name]) / faces, marker="o", label=name)
+    plot.set(xlabel="faces", ylabel="ns a face, all threads together", xscale="log", ylim=0)
+    plot.legend()
+    save(figure, IMAGES / "benchmark_opening.png")
 
 
-def python_table() -> str:
-    """Returns the times of calls of the Python module on one thread and on all of them."""
-    side = 100
-    y, x = np.mgrid[: side + 1, : side + 1].astype(float)
-    z = 8 * np.sin(9 * x / side) * np.cos(7 * y / side)
-    first = (y[:-1, :-1] * (side + 1) + x[:-1, :-1]).astype(int).ravel()
-    faces = np.stack([first, first + 1, first + side + 2, first + side + 1], 1)
-    mesh = limitsurf.ControlMesh.from_faces(np.stack([x, y, z], -1).reshape(-1, 3), faces)
-    surface = limitsurf.LimitSurface(mesh)
-    rng, count = np.random.default_rng(1), 1_000_000
-    face, uv = np.sort(rng.integers(0, len(faces), count)), rng.random((count, 2))
-    near = surface.evaluate(face, uv).position + rng.normal(scale=0.1, size=(count, 3))
-    shuffled = rng.permutation(count)
-    random_face, random_uv = face[shuffled], uv[shuffled]
-    origins = near[shuffled] + [0, 0, 100]
-    down = np.tile([0.0, 0, -1], (count, 1))
-    calls: dict[str, Callable[[int], object]] = {
-        "evaluate, P": lambda threads: surface.evaluate(face, uv, threads=threads),
-        "evaluate, P with du, dv and normals": lambda threads: surface.evaluate(
-            face, uv, 1, threads=threads
-        ),
-        "the same in float32": lambda threads: surface.evaluate(
-            face, uv, 1, threads=threads, dtype=np.float32
-        ),
-        "P with du, dv and normals, faces in random order": lambda threads: surface.evaluate(
-            random_face, random_uv, 1, threads=threads
-        ),
-        "evaluate, second derivatives too": lambda threads: surface.evaluate(
-            face, uv, 2, threads=threads
-        ),
-        "frames": lambda threads: surface.frames(face, uv, threads=threads),
-        "closest, within a tenth of an edge": lambda threads: surface.closest(
-            near, threads=threads
-        ),
-        "ray_cast, from above": lambda threads: surface.ray_cast(origins, down, threads=threads),
-        "scatter_uniform": lambda threads: surface.scatter_uniform(count, seed=1, threads=threads),
-    }
-    lines = ["| Python | one thread | all threads | ratio |", "|---|---:|---:|---:|"]
-    for name, call in calls.items():
-        print(name, flush=True)
-        one, all_cores = (1e9 / count * best(call, threads) for threads in (1, 0))
-        lines.append(f"| {name} | {one:.3g} | {all_cores:.3g} | {one / all_cores:.2f} |")
-    return "\n".join([*lines, ""])
+def draw_threads(found: dict[str, dict[int, float]]) -> None:
+    """Draws the time of calls against the number of threads, over that on one."""
+    figure, plot = plt.subplots(figsize=(7, 4.5), layout="constrained")
+    for name, seconds in found.items():
+        threads = sorted(seconds)
+        shares = [seconds[count] / seconds[1] for count in threads]
+        plot.plot(threads, shares, marker="o", label=name)
+    most = max(max(seconds) for seconds in found.values())
+    ideal = np.arange(1, most + 1)
+    plot.plot(ideal, 1 / ideal, color="black", linestyle=":", label="1 over the threads")
+    plot.set(xlabel="threads", ylabel="wall time over that on one thread", ylim=0)
+    plot.set_xticks(ideal)
+    plot.legend(fontsize="small")
+    save(figure, IMAGES / "benchmark_threads.png")
 
 
 def machine() -> str:
@@ -210,10 +208,9 @@ def machine() -> str:
 
 def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "--only", nargs="+", choices=[*RUNS, "batches", "python"], help="what to run; default: all"
-    )
-    wanted = parser.parse_args(arguments).only or [*RUNS, "batches", "python"]
+    names = [*RUNS, "batches", "opening", "python"]
+    parser.add_argument("--only", nargs="+", choices=names, help="what to run; default: all")
+    wanted = parser.parse_args(arguments).only or names
     page = PAGE.read_text()
     for name, run in RUNS.items():
         if name in wanted:
@@ -224,8 +221,16 @@ def main(arguments: list[str]) -> None:
                 page = re.sub(r"^The results are for limitsurf .*$", machine(), page, flags=re.M)
     if "batches" in wanted:
         draw_batches()
+    if "opening" in wanted:
+        draw_opening()
+        what = "Time for opening a mesh against the number of its faces"
+        page = with_image(page, OPENING, "benchmark_opening", what)
     if "python" in wanted:
-        page = replaced(page, "### From Python", [python_table()])
+        found = bench_threads.measured()
+        page = replaced(page, "### From Python", [bench_threads.table(found)])
+        draw_threads(found)
+        what = "Time of calls against the number of threads"
+        page = with_image(page, "### From Python", "benchmark_threads", what)
     PAGE.write_text(page)
 
 

@@ -2,6 +2,7 @@
 """How tools/bench_report.py writes tables into the page on benchmarks."""
 
 import bench_report
+import bench_threads
 import pytest
 
 PAGE = """# Page
@@ -46,6 +47,27 @@ def test_a_section_ends_at_the_next_heading_of_its_level():
 def test_a_table_without_a_place_is_an_error():
     with pytest.raises(ValueError, match="## Other has no table"):
         bench_report.replaced(PAGE, "## Other", [table(1), table(2)])
+
+
+def test_an_image_is_added_once_at_the_end_of_a_section():
+    found = bench_report.with_image(PAGE, "### Inner", "plot", "What it shows")
+    assert found == PAGE.replace("Text.\n", "Text.\n\n![What it shows](images/plot.png)\n")
+    assert bench_report.with_image(found, "### Inner", "plot", "What it shows") == found
+
+
+def test_calls_on_threads_fill_the_table_of_the_page():
+    found = {"a call": {1: 0.2, 2: 0.1}, bench_threads.OPENING: {1: 0.5, 2: 0.25}}
+    table = bench_threads.table(found)
+    assert list(bench_report.rows(table)) == [
+        {"Python": "a call", "one thread": "200", "all threads": "100", "ratio": "2.00"},
+        {
+            "Python": bench_threads.OPENING,
+            "one thread": "500",
+            "all threads": "250",
+            "ratio": "2.00",
+        },
+    ]
+    assert bench_report.header(table) in bench_report.PAGE.read_text()
 
 
 def test_rows_have_the_names_of_columns():

@@ -85,7 +85,7 @@ int measureOpening(const MeshArrays& cage) {
     std::sort(row.costs.begin(), row.costs.end(),
               [](const Cost& a, const Cost& b) { return a.seconds < b.seconds; });
     const Cost& middle = row.costs[1];
-    std::printf("| %s | %.2f | %.2f | %.0f | %.0f |\n", row.name, middle.seconds,
+    std::printf("| %s | %.3f | %.3f | %.0f | %.0f |\n", row.name, middle.seconds,
                 middle.cpu_seconds, middle.peak_mib, middle.kept_mib);
   }
   return 0;
