@@ -128,6 +128,18 @@ def _repose(surface: limitsurf.LimitSurface, positions: np.ndarray, threads: int
 
 
 OPENING = "opening, a million quads"
+#: What is drawn against the number of threads
+DRAWN = (
+    "evaluate, P with du, dv and normals",
+    "P with du, dv and normals, faces in random order",
+    "frames",
+    "closest, within some edges, random order",
+    "ray_cast, from above",
+    "scatter_uniform",
+    "scatter_blue_noise",
+    "set_positions, a million quads",
+    OPENING,
+)
 #: Rows of the calls that have not COUNT of them
 ROWS = {
     "scatter_blue_noise": BLUE_NOISE,
