@@ -44,14 +44,17 @@ class Places:
     def among(cls, stored: Mapping[str, np.ndarray]) -> Places:
         """Returns those of elements for which these attributes are stored."""
         face, uv = stored[ids.FACE], stored[ids.UV]
-        rotation = stored[ids.REST_ROTATION]
+        # the default values mean face 0, where few elements are: only these are looked at
+        first = np.flatnonzero(face == 0)
+        rotation = stored[ids.REST_ROTATION][first]
         is_default = (
-            (face == 0)
-            & ~uv.any(axis=1)
-            & ~stored[ids.REST_ROOT].any(axis=1)
+            ~uv[first].any(axis=1)
+            & ~stored[ids.REST_ROOT][first].any(axis=1)
             & (~rotation.any(axis=1) | (rotation == _UNTURNED).all(axis=1))
         )
-        rows = np.flatnonzero((face >= 0) & ~is_default)
+        has_place = face >= 0
+        has_place[first[is_default]] = False
+        rows = np.flatnonzero(has_place)
         return cls(len(face), rows, face[rows], uv[rows].astype(np.float64))
 
     @classmethod

@@ -286,13 +286,14 @@ def _moved(
     offsets = np.concatenate([[0], np.cumsum(elements.sizes)])
     is_moving = np.zeros(elements.count, bool)
     is_moving[rows] = True
-    moving = np.repeat(is_moving, elements.sizes)
     for name in _POINTS:
         if elements.rest_name(name) in elements.data.attributes:
             points = elements.read_shape(name).astype(np.float64)
             moved = native.limitsurf.move_strands(points, offsets, before, after, turn)
-            points[moving] = moved[moving]
-            relocation.values[elements.rest_name(name)] = points
+            if not is_moving.all():
+                resting = np.repeat(~is_moving, elements.sizes)
+                moved[resting] = points[resting]
+            relocation.values[elements.rest_name(name)] = moved
     if elements.domain == "POINT":
         _turn_attributes(relocation, rows, turn[rows])
     return after[rows]

@@ -37,8 +37,7 @@ class Elements:
         if ids.POSITION not in holder.attributes:
             raise RefusalError(f"{ob.name} has no points")
         is_curve = ob.type == "CURVE"  # its table has the points as they were when it was bound
-        points = splines.positions(ob.data) if is_curve else self.read_shape(ids.POSITION)
-        self._points = points.astype(np.float64)
+        self._points = splines.positions(ob.data) if is_curve else self.read_shape(ids.POSITION)
         self.sizes = np.ones(len(self._points), np.int64)
         if ob.type == "CURVES":
             self.sizes = np.empty(len(ob.data.curves), np.int32)
@@ -69,7 +68,8 @@ class Elements:
 
     def first_points(self) -> np.ndarray:
         """Returns the first points of strands, or the points themselves, in the world (n, 3)."""
-        return transformed(self.matrix, self._points[ragged_rows.starts(self.sizes)])
+        first = self._points[ragged_rows.starts(self.sizes)]
+        return transformed(self.matrix, first.astype(np.float64))
 
     def roots(self) -> np.ndarray:
         """Returns the roots in the world (n, 3): those at rest, or where an element has no place,
