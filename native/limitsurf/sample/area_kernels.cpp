@@ -56,16 +56,10 @@ inline Lanes squareRoot(const Lanes& a) {
 
 const AreaKernels& AreaKernels::get() {
 #if LIMITSURF_X86_SETS
-  switch (instructionSet()) {
-    case InstructionSet::avx512:
-      return avx512::kKernels;
-    case InstructionSet::avx2:
-      return avx2::kKernels;
-    case InstructionSet::baseline:
-      break;
-  }
-#endif
+  return inUse(baseline::kKernels, avx2::kKernels, avx512::kKernels);
+#else
   return baseline::kKernels;
+#endif
 }
 
 }  // namespace limitsurf
