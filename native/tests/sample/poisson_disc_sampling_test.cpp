@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What blue noise costs, counted in trials, and the bounds by which it tells what a disc covers.
-#include "limitsurf/sample/poisson_disc_sampling.h"
+#include "limitsurf/sample/blue_noise/poisson_disc_sampling.h"
 
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ double trialsPerPoint(Cage cage) {
   const double radius = std::sqrt(0.7 * surfaceArea(surface) / expected);
   PoissonDiscSampling sampling(patches, box, DensityField(), radius, AreaSampler::kGap, expected, 1,
                                0);
-  sampling.run([](std::size_t) {});
-  return static_cast<double>(sampling.trials()) / static_cast<double>(sampling.points().size());
+  const std::size_t points = sampling.run([](std::size_t) {}).at.size();
+  return static_cast<double>(sampling.trials()) / static_cast<double>(points);
 }
 
 TEST(PoissonDiscSampling, TakesFewTrialsForEachPoint) {

@@ -21,6 +21,10 @@ struct Lanes {
   static Lanes smaller(const Lanes& a, const Lanes& b) {
     return {a.numbers < b.numbers ? a.numbers : b.numbers};
   }
+  /// `a`, or `b` where `a` is 0.
+  static Lanes unlessZero(const Lanes& a, const Lanes& b) {
+    return {a.numbers == 0 ? b.numbers : a.numbers};
+  }
 #else
   double numbers[kCount];
 
@@ -56,6 +60,9 @@ struct Lanes {
   }
   static Lanes smaller(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x < y ? x : y; });
+  }
+  static Lanes unlessZero(const Lanes& a, const Lanes& b) {
+    return each(a, b, [](double x, double y) { return x == 0 ? y : x; });
   }
 #endif
   friend Lanes operator+(const Lanes& a, double b) { return a + of(b); }

@@ -2,14 +2,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/sample/area_sampler_data.h"
-#include "limitsurf/sample/crowding.h"
-#include "limitsurf/sample/poisson_disc_sampling.h"
+#include "limitsurf/sample/blue_noise/crowding.h"
+#include "limitsurf/sample/blue_noise/poisson_disc_sampling.h"
 
 namespace limitsurf {
 namespace {
@@ -115,7 +116,8 @@ class BlueNoiseMaker {
                                   text(expected_) +
                                   " points would come out; at most 2147483647 can");
     }
-    return result(sampled(radius), radius);
+    const std::vector<Location> at = sampled(radius).at;
+    return result(ordered(at, orderByFace(at)), radius);
   }
 
   BlueNoise ofCount(std::size_t count) {
@@ -142,17 +144,20 @@ class BlueNoiseMaker {
       if (!(radius >= DiscGrid::smallestRadius(box_))) {
         break;
       }
-      std::vector<NoisePoint> points = sampled(radius);
-      const double excess = static_cast<double>(points.size()) / static_cast<double>(count);
-      const bool is_enough = points.size() >= count;
+      NoisePoints points = sampled(radius);
+      const std::size_t found = points.at.size();
+      const double excess = static_cast<double>(found) / static_cast<double>(count);
+      const bool is_enough = found >= count;
       if (is_enough &&
-          (excess <= kMostSurplus || points.size() <= count + 2 || attempt > kPatientAttempts)) {
-        sortByFace(points);  // neighbours shall be close to each other in memory
-        Crowding crowding(box_, std::move(points), threads_);
+          (excess <= kMostSurplus || found <= count + 2 || attempt > kPatientAttempts)) {
+        // Neighbours shall be close to each other in memory.
+        const std::vector<std::size_t> order = orderByFace(points.at);
+        Crowding crowding(box_, {ordered(points.discs, order), ordered(points.at, order)},
+                          threads_);
         crowding.thin(count);
         const double slack = crowding.slack();
         const double held = radius * slack * (1 - kRadiusRounding) - margin_;
-        return result(std::move(crowding.points()), std::max(held, 0.));
+        return result(std::move(crowding.points().at), std::max(held, 0.));
       }
       if (excess < kLeastExcess && radius > of_area) {
         radius = of_area;
@@ -228,16 +233,15 @@ class BlueNoiseMaker {
     setWeighedArea();
   }
 
-  std::vector<NoisePoint> sampled(double radius) {
+  NoisePoints sampled(double radius) {
     PoissonDiscSampling sampling(patches_, box_, density_, radius * (1 + kRadiusRounding) + margin_,
                                  AreaSampler::kGap, expected_, options_.seed, threads_);
-    sampling.run([&](std::size_t points) {
-      done_ = std::max(done_, std::min(static_cast<double>(points) / expected_, 1.));
+    NoisePoints points = sampling.run([&](std::size_t accepted) {
+      done_ = std::max(done_, std::min(static_cast<double>(accepted) / expected_, 1.));
       if (progress_) {
         progress_(kSamplingPart * done_);
       }
     });
-    std::vector<NoisePoint> points = std::move(sampling.points());
     if (options_.density.function()) {
       removeZeros(points);
     }
@@ -245,47 +249,51 @@ class BlueNoiseMaker {
   }
 
   /// Removes points at which the density function is 0: it may be 0 between the points of the grid.
-  void removeZeros(std::vector<NoisePoint>& points) const {
+  void removeZeros(NoisePoints& points) const {
     std::size_t kept = 0;
     constexpr std::size_t kBatch = std::size_t{1} << 16;
-    std::vector<Location> at;
-    for (std::size_t first = 0; first < points.size(); first += at.size()) {
-      at.clear();
-      for (std::size_t i = first; i < std::min(points.size(), first + kBatch); ++i) {
-        at.push_back(points[i].at);
-      }
+    const std::vector<Location> all = points.at;
+    for (std::size_t first = 0; first < all.size(); first += kBatch) {
+      const auto at = Span<Location>(all).subspan(first, std::min(kBatch, all.size() - first));
       const std::vector<double> weights = options_.density.weights(at);
       for (std::size_t i = 0; i < at.size(); ++i) {
         if (weights[i] > 0) {
-          points[kept++] = points[first + i];
+          points.discs[kept] = points.discs[first + i];
+          points.at[kept++] = at[i];
         }
       }
     }
-    points.resize(kept);
+    points.discs.resize(kept);
+    points.at.resize(kept);
   }
 
-  /// Those of a face stay in the order of their acceptance.
-  static void sortByFace(std::vector<NoisePoint>& points) {
-    const auto before = [](const NoisePoint& a, const NoisePoint& b) {
-      return a.at.face < b.at.face;
-    };
-    if (!std::is_sorted(points.begin(), points.end(), before)) {
-      std::stable_sort(points.begin(), points.end(), before);
+  /// The numbers of the points, sorted by face. Those of a face stay in the order of their
+  /// acceptance.
+  std::vector<std::size_t> orderByFace(const std::vector<Location>& at) const {
+    std::vector<std::size_t> next(has_surface_.size() + 1, 0), order(at.size());
+    for (const Location& location : at) {
+      ++next[static_cast<std::size_t>(location.face) + 1];
     }
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      order[next[static_cast<std::size_t>(at[i].face)]++] = i;
+    }
+    return order;
+  }
+  template <typename T>
+  static std::vector<T> ordered(const std::vector<T>& all, const std::vector<std::size_t>& order) {
+    std::vector<T> result(all.size());
+    std::transform(order.begin(), order.end(), result.begin(),
+                   [&](std::size_t i) { return all[i]; });
+    return result;
   }
 
   /// The points in the order of their faces.
-  BlueNoise result(std::vector<NoisePoint> points, double radius) const {
-    sortByFace(points);
-    BlueNoise noise;
-    noise.at.resize(points.size());
-    std::transform(points.begin(), points.end(), noise.at.begin(),
-                   [](const NoisePoint& point) { return point.at; });
-    noise.radius = radius / patches_.scale();
+  BlueNoise result(std::vector<Location> at, double radius) const {
     if (progress_) {
       progress_(1);
     }
-    return noise;
+    return {std::move(at), radius / patches_.scale()};
   }
 
   const LimitSurface& surface_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "limitsurf/random_bits.h"
+#include "limitsurf/sample/blue_noise/noise_kernels.h"
 #include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
@@ -20,6 +21,11 @@ struct TrialCell {
   double width() const { return 1. / (std::uint32_t{1} << s_level); }
   double height() const { return 1. / (std::uint32_t{1} << t_level); }
 
+  bool isOfSamePiece(const TrialCell& other) const {
+    return piece.tile == other.piece.tile && piece.steps == other.piece.steps &&
+           piece.part == other.piece.part;
+  }
+
   /// The lower (0) or upper (1) half along s, and along t.
   TrialCell halfOfS(unsigned which) const {
     TrialCell half = *this;
@@ -34,15 +40,28 @@ struct TrialCell {
     return half;
   }
 
-  /// Random bits that no other cell has under the same key.
-  std::uint64_t bits(std::uint64_t key) const {
-    const auto join = [](std::uint64_t high, std::uint32_t low) { return high << 32 | low; };
+  /// Puts the cell's middle and its size into a block.
+  void putMiddle(ExtentBlock& block, int place) const {
+    const double a = block.half_width[place] = width() / 2;
+    const double b = block.half_height[place] = height() / 2;
+    block.s[place] = (2. * column + 1) * a;
+    block.t[place] = (2. * row + 1) * b;
+  }
+
+  /// A key of random bits for all cells of the piece.
+  std::uint64_t pieceKey(std::uint64_t key) const {
     const std::uint32_t part =
         static_cast<std::uint32_t>(piece.steps) << 16 | static_cast<std::uint16_t>(piece.part);
-    key = mixed(key ^ mixed(join(static_cast<std::uint32_t>(piece.tile), part)));
-    key = mixed(key ^ mixed(join(column, row)));
-    return mixed(key ^ static_cast<std::uint64_t>(s_level << 8 | t_level));
+    return mixed(key ^ mixed(joined(static_cast<std::uint32_t>(piece.tile), part)));
   }
+  /// Random bits that no other cell has under the same key, which is that of the piece.
+  std::uint64_t bits(std::uint64_t piece_key) const {
+    return mixed(mixed(piece_key ^ mixed(joined(column, row))) ^
+                 static_cast<std::uint64_t>(s_level << 8 | t_level));
+  }
+
+ private:
+  static std::uint64_t joined(std::uint64_t high, std::uint32_t low) { return high << 32 | low; }
 };
 
 }  // namespace limitsurf

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limitsurf/sample/area_kernels.h"
-#include "limitsurf/sample/bounded_patch.h"
+#include "limitsurf/sample/blue_noise/bounded_patch.h"
 #include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
@@ -30,7 +30,7 @@ class NormalCone {
     cone.sine_ = 0;
     const double axis_length = length(axis);
     for (const NormalBound& bound : bounds) {
-      const double size = length(bound.normal), reach = bound.normal_reach;
+      const double size = bound.normal_length, reach = bound.normal_reach;
       const double cosine = bound.normal.dot(axis) / (size * axis_length);
       const double sine = std::sqrt(std::max(0., 1 - cosine * cosine));
       const double spread_sine = reach / size;
@@ -125,7 +125,8 @@ class CoreDescent {
     NormalBounds found;
     AreaKernels::get().normals(block_, waiting_, found);
     for (int i = 0; i < waiting_; ++i) {
-      bounds_.push_back({{found.mean[0][i], found.mean[1][i], found.mean[2][i]}, found.reach[i]});
+      const Vector3 mean(found.mean[0][i], found.mean[1][i], found.mean[2][i]);
+      bounds_.push_back({mean, length(mean), found.reach[i]});
     }
     waiting_ = 0;
   }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
-#include "limitsurf/sample/poisson_disc_sampling.h"
+#include "limitsurf/sample/blue_noise/poisson_disc_sampling.h"
 
 namespace limitsurf {
 
@@ -12,14 +10,14 @@ class Crowding {
  public:
   static constexpr double kReach = 1.5;
 
-  Crowding(const Box& box, std::vector<NoisePoint> points, int threads);
+  Crowding(const Box& box, NoisePoints points, int threads);
 
   /// Removes the most crowded points until `count` are left.
   void thin(std::size_t count);
   /// The largest factor, at most kReach, by which all radii can be multiplied without a conflict.
   double slack() const;
 
-  std::vector<NoisePoint>& points() { return points_; }
+  NoisePoints& points() { return points_; }
 
  private:
   DiscGrid grid() const;
@@ -28,7 +26,7 @@ class Crowding {
   void forEachNeighbour(const DiscGrid& grid, std::size_t point, const Visit& visit) const;
 
   Box box_;
-  std::vector<NoisePoint> points_;
+  NoisePoints points_;
   int threads_;
 };
 

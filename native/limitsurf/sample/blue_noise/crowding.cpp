@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/sample/crowding.h"
+#include "limitsurf/sample/blue_noise/crowding.h"
 
 #include <algorithm>
 #include <limits>
@@ -11,60 +11,65 @@ namespace limitsurf {
 namespace {
 
 constexpr std::size_t kPointsPerTask = 1024;
+/// Crowding is summed up in whole numbers of 1 / kUnit, so that the order does not matter.
+constexpr double kUnit = std::int64_t{1} << 50;
 
 }  // namespace
 
-Crowding::Crowding(const Box& box, std::vector<NoisePoint> points, int threads)
+Crowding::Crowding(const Box& box, NoisePoints points, int threads)
     : box_(box), points_(std::move(points)), threads_(threads) {}
 
 DiscGrid Crowding::grid() const {
   double smallest = std::numeric_limits<double>::infinity(), largest = 0;
-  for (const NoisePoint& point : points_) {
-    smallest = std::min(smallest, kReach * point.radius);
-    largest = std::max(largest, kReach * point.radius);
+  for (const NoiseDisc& disc : points_.discs) {
+    smallest = std::min(smallest, kReach * disc.radius);
+    largest = std::max(largest, kReach * disc.radius);
+  }
+  std::vector<NoiseDisc> discs = points_.discs;
+  for (NoiseDisc& disc : discs) {
+    disc.radius *= kReach;
   }
   DiscGrid grid(box_, smallest, largest);
-  for (const NoisePoint& point : points_) {
-    grid.insert(point.position, kReach * point.radius);
-  }
+  grid.insert({discs}, threads_);
   return grid;
 }
 
 template <typename Visit>
 void Crowding::forEachNeighbour(const DiscGrid& grid, std::size_t point, const Visit& visit) const {
-  const NoisePoint& own = points_[point];
+  const NoiseDisc& own = points_.discs[point];
   grid.any(own.position, kReach * own.radius, [&](int number) {
     const std::size_t other = static_cast<std::size_t>(number);
-    if (other != point && seeEachOther(own.normal, points_[other].normal)) {
-      const double distance = length(Vector3(points_[other].position - own.position));
-      visit(other, 2 * distance / (own.radius + points_[other].radius));
+    const NoiseDisc& disc = points_.discs[other];
+    if (other != point && seeEachOther(own.normal, disc.normal)) {
+      const double distance = length(Vector3(disc.position - own.position));
+      visit(other, 2 * distance / (own.radius + disc.radius));
     }
     return false;
   });
 }
 
 void Crowding::thin(std::size_t count) {
-  while (points_.size() > count) {
+  while (points_.at.size() > count) {
     const DiscGrid all = grid();
-    std::vector<double> crowds(points_.size());
+    std::vector<std::int64_t> crowds(points_.at.size());
     parallelFor(crowds.size(), kPointsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        double crowd = 0;
+        std::int64_t crowd = 0;
         forEachNeighbour(all, i, [&](std::size_t, double distance) {
           const double closeness = std::max(kReach - distance, 0.);
-          crowd += closeness * closeness;
+          crowd += static_cast<std::int64_t>(kUnit * closeness * closeness);
         });
         crowds[i] = crowd;
       }
     });
-    std::vector<std::size_t> order(points_.size());
+    std::vector<std::size_t> order(points_.at.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return crowds[a] != crowds[b] ? crowds[a] > crowds[b] : a < b;
     });
     // No two neighbours are removed at a time: without the one the other is crowded no longer.
-    std::vector<char> is_removed(points_.size(), 0), has_lost(points_.size(), 0);
-    std::size_t left = points_.size();
+    std::vector<char> is_removed(points_.at.size(), 0), has_lost(points_.at.size(), 0);
+    std::size_t left = points_.at.size();
     for (const std::size_t i : order) {
       if (left == count) {
         break;
@@ -76,18 +81,20 @@ void Crowding::thin(std::size_t count) {
       }
     }
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
+    for (std::size_t i = 0; i < points_.at.size(); ++i) {
       if (!is_removed[i]) {
-        points_[kept++] = points_[i];
+        points_.discs[kept] = points_.discs[i];
+        points_.at[kept++] = points_.at[i];
       }
     }
-    points_.resize(kept);
+    points_.discs.resize(kept);
+    points_.at.resize(kept);
   }
 }
 
 double Crowding::slack() const {
   const DiscGrid all = grid();
-  std::vector<double> closest(points_.size());
+  std::vector<double> closest(points_.at.size());
   parallelFor(closest.size(), kPointsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       closest[i] = kReach;
