@@ -10,15 +10,22 @@
 namespace limitsurf {
 namespace {
 
-/// Differences shrink by the same factor from rule to rule where the integrand is smooth. The error
-/// of a rule is estimated by its last difference times the factor of its last two, times this, so
-/// that an accidental agreement does less harm.
-constexpr double kCaution = 32;
+/// Differences shrink by about the same factor from rule to rule where the integrand is smooth. The
+/// error of a rule is estimated by its last difference times the factor of its last two, times
+/// this.
+constexpr double kCaution = 8;
+/// Two rules may agree by accident. So an error is taken to be no smaller than these parts of the
+/// last difference and of the one before. Measured: of the 4,896 patches of uneven, noisy and
+/// folded sheets on which these constants were chosen, none has a larger error than stated. Without
+/// the second constant some had errors 200 times as large; half its square root or twice the first
+/// one is too little.
+constexpr double kLeastOfLast = 1. / 8, kLeastOfBefore = 1. / 2048;
 /// Points of a rule that find less than one part in so many of what is turned over have missed it.
 constexpr double kFewFound = 8;
 
 double errorAfter(double before, double last) {
-  return before > 0 ? last * std::min(1., kCaution * last / before) : last;
+  const double factor = before > 0 ? std::min(1., kCaution * last / before) : 1;
+  return std::max(last * std::max(factor, kLeastOfLast), kLeastOfBefore * before);
 }
 
 /// The difference that follows these two, `steps` rules later.
@@ -87,7 +94,6 @@ void AreaQuadrature::measure(std::vector<AreaSquare>& squares) {
     measureFirst(squares, first, std::min(kBlock, squares.size() - first));
   }
   const AreaKernels& kernels = AreaKernels::get();
-  measureOpen(squares, {kernels.four, 16, 2, 2});
   measureOpen(squares, {kernels.six, 36, 3, 3});
   open_.erase(std::remove_if(open_.begin(), open_.end(),
                              [&](const Open& open) { return isDone(squares[open.square], open); }),
@@ -98,7 +104,7 @@ void AreaQuadrature::measure(std::vector<AreaSquare>& squares) {
 bool AreaQuadrature::isDone(AreaSquare& square, const Open& open) {
   const double before = open.differences[2], last = open.differences[3];
   if (open.upright) {
-    return continued(before, last, 3) > tolerance(square);
+    return std::max(continued(before, last, 3), kLeastOfBefore * last) > tolerance(square);
   }
   const AreaFolds::Parts parts = AreaFolds(square.points).parts();
   if (parts.turned > 0) {
@@ -112,27 +118,49 @@ bool AreaQuadrature::isDone(AreaSquare& square, const Open& open) {
 
 void AreaQuadrature::measureFirst(std::vector<AreaSquare>& squares, std::size_t first,
                                   std::size_t count) {
+  const AreaKernels& kernels = AreaKernels::get();
   SquareBlock block;
   for (std::size_t i = 0; i < SquareBlock::kCount; ++i) {
     put(squares[first + std::min(i, count - 1)], static_cast<int>(i), block);
   }
   FirstRules rules;
-  AreaKernels::get().first_rules(block, rules);
+  kernels.first_rules(block, rules);
+  Open open[SquareBlock::kCount];
+  bool is_open[SquareBlock::kCount], any_open = false;
   for (std::size_t i = 0; i < count; ++i) {
     AreaSquare& square = squares[first + i];
     square.rounding = rules.rounding[i];
     square.area = rules.three[i];
     square.evaluations = 1 + 4 + 9;
-    Open open;
-    open.square = first + i;
-    open.upright = rules.upright[i] > 0 || AreaFolds(square.points).isUpright();
-    open.differences[0] = std::abs(rules.two[i] - rules.one[i]);
-    open.differences[1] = std::abs(rules.three[i] - rules.two[i]);
-    square.error = open.differences[1];
-    if (!(open.upright && square.error <= tolerance(square))) {
-      open_.push_back(open);
+    open[i].square = first + i;
+    open[i].upright = rules.upright[i] > 0 || AreaFolds(square.points).isUpright();
+    open[i].differences[0] = std::abs(rules.two[i] - rules.one[i]);
+    open[i].differences[1] = std::abs(rules.three[i] - rules.two[i]);
+    square.error = std::max(open[i].differences[1], kLeastOfBefore * open[i].differences[0]);
+    is_open[i] = !(open[i].upright && square.error <= tolerance(square));
+    any_open |= is_open[i];
+  }
+  if (!any_open) {
+    return;
+  }
+  // Most squares need the next rule as well, and they are in the block already.
+  const NextRule next = {kernels.four, 16, 2, 2};
+  double areas[SquareBlock::kCount];
+  next.rule(block, areas);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_open[i] && !isExact(squares[first + i], open[i], areas[i], next)) {
+      open_.push_back(open[i]);
     }
   }
+}
+
+bool AreaQuadrature::isExact(AreaSquare& square, Open& open, double area, const NextRule& next) {
+  square.evaluations += next.points;
+  double* const d = open.differences + next.difference;
+  d[0] = std::abs(area - square.area);
+  square.area = area;
+  square.error = std::max(errorAfter(d[-1], d[0]), continued(d[-2], d[-1], next.rules));
+  return open.upright && square.error <= tolerance(square);
 }
 
 void AreaQuadrature::measureOpen(std::vector<AreaSquare>& squares, const NextRule& next) {
@@ -147,13 +175,7 @@ void AreaQuadrature::measureOpen(std::vector<AreaSquare>& squares, const NextRul
     next.rule(block, areas);
     for (std::size_t i = 0; i < count; ++i) {
       Open open = open_[first + i];
-      AreaSquare& square = squares[open.square];
-      square.evaluations += next.points;
-      double* const d = open.differences + next.difference;
-      d[0] = std::abs(areas[i] - square.area);
-      square.area = areas[i];
-      square.error = std::max(errorAfter(d[-1], d[0]), continued(d[-2], d[-1], next.rules));
-      if (!(open.upright && square.error <= tolerance(square))) {
+      if (!isExact(squares[open.square], open, areas[i], next)) {
         open_[still_open++] = open;
       }
     }

@@ -43,10 +43,14 @@ class AreaQuadrature {
     double differences[5];
   };
 
+  struct NextRule;
+  /// Applies the rules of up to 4 points to squares side by side. Those that are not exact enough
+  /// are open.
   void measureFirst(std::vector<AreaSquare>& squares, std::size_t first, std::size_t count);
   /// Applies the next rule to all open squares. Those that are exact enough are open no longer.
-  struct NextRule;
   void measureOpen(std::vector<AreaSquare>& squares, const NextRule& next);
+  /// Takes the next rule's area of a square. Returns whether it is exact enough.
+  static bool isExact(AreaSquare& square, Open& open, double area, const NextRule& next);
   /// Whether a square whose rule of 6 points is not exact enough has to be left so: where there are
   /// folds, which count as errors then, or where 8 points do not promise to be enough.
   static bool isDone(AreaSquare& square, const Open& open);
