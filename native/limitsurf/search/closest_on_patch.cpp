@@ -29,14 +29,18 @@ class PatchSearch {
     }
   }
 
-  void run() {
+  void run(const FootBound& bound) {
     BezierPatch::Point low = relative_.points[0], high = low;
     for (int i = 1; i < 16; ++i) {
       low = low.min(relative_.points[i]);
       high = high.max(relative_.points[i]);
     }
     const BezierPatch::Point nearest = away_.max(low).min(high);
-    if (!isBetter((nearest * (nearest - 2 * away_)).sum()) || isBehindFoot() || facesAway()) {
+    const double least = (nearest * (nearest - 2 * away_)).sum();
+    if (!isBetter(least) || isBehindFoot() || facesAway()) {
+      return;
+    }
+    if (!facing_ && isBoundUseful(bound, least) && findsFoot(bound, least)) {
       return;
     }
     const SquaredDistance f(kernels_, relative_.points, away_);
@@ -63,6 +67,57 @@ class PatchSearch {
 
   static double dot(const BezierPatch::Point& a, const BezierPatch::Point& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+
+  /// Beyond so many radii FootBound::holds() seldom does.
+  static constexpr double kUsefulRadii = 2;
+  bool isBoundUseful(const FootBound& bound, double least) const {
+    const double reach = kUsefulRadii * double{bound.radius} + best_.from.range;
+    return bound.stretch > 0 && least + best_.from.range * best_.from.range < reach * reach;
+  }
+
+  /// Looks for the closest point of the whole patch by first-order conditions. Returns whether it
+  /// is found or cannot matter, for certain. `least` is a lower bound of the squared distance less
+  /// that of the range.
+  bool findsFoot(const FootBound& bound, double least) {
+    double s, t;
+    guess(s, t);
+    const double range = best_.from.range;
+    const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., least + range * range)));
+    double distance;
+    const FootSearch search =
+        minimizeDistance(kernels_, relative_, away_, {0, 0, 1}, reach * best_.tolerance,
+                         best_.enough(), bound.radius, s, t, distance);
+    if (search == FootSearch::beyond) {
+      return true;
+    }
+    Values at;
+    relative_.evaluate<0>(s, t, at);
+    best_.offer(at.value.head<3>().matrix(), patch_.on.at(s, t));
+    if (search != FootSearch::arrived) {
+      return false;
+    }
+    if (distance <= bound.radius) {
+      return true;
+    }
+    const BezierPatch::Point direction = (at.value - away_) / distance;
+    double z[16];
+    kernels_.along(reinterpret_cast<const double (*)[4]>(relative_.points), direction.data(), z);
+    return bound.holds(z, distance);
+  }
+
+  /// The closest point of the plane of the patch's mean derivatives.
+  void guess(double& s, double& t) const {
+    const BezierPatch::Point* p = relative_.points;
+    const BezierPatch::Point low = p[3] - p[0], high = p[15] - p[12];
+    const BezierPatch::Point along = 0.5 * (low + high),
+                             across = (p[12] - p[0]) + 0.5 * (high - low);
+    const BezierPatch::Point middle = 0.25 * ((p[0] + p[3]) + (p[12] + p[15])) - away_;
+    const double ss = dot(along, along), tt = dot(across, across), st = dot(along, across);
+    const double gs = dot(middle, along), gt = dot(middle, across);
+    const double determinant = ss * tt - st * st;
+    s = determinant > 0 ? std::clamp(0.5 + (st * gt - tt * gs) / determinant, 0., 1.) : 0.5;
+    t = determinant > 0 ? std::clamp(0.5 + (st * gs - ss * gt) / determinant, 0., 1.) : 0.5;
   }
 
   bool isBetter(double squared_distance) const { return squared_distance < best_.enough(); }
@@ -150,15 +205,15 @@ class PatchSearch {
                     (!shape.convex && bordersOf(cell) == 0 && f.isNowhereConvex()))) {
       return;
     }
-    double s, t;
+    double s, t, distance;
     f.guess(s, t);
     s = cell.s + sideOr(shape.s_side, s) * cell.size;
     t = cell.t + sideOr(shape.t_side, t) * cell.size;
     const bool corner = shape.s_side != 0 && shape.t_side != 0;
     bool done = cell.depth == kMostDepth || ++cells_ > kMostCells || corner;
     if (!done && shape.convex) {
-      const FootSearch search =
-          minimizeDistance(kernels_, relative_, away_, cell, slack, best_.enough() + noise, s, t);
+      const FootSearch search = minimizeDistance(kernels_, relative_, away_, cell, slack,
+                                                 best_.enough() + noise, kNever, s, t, distance);
       if (search == FootSearch::beyond) {
         return;
       }
@@ -173,7 +228,7 @@ class PatchSearch {
     if (!facing_) {
       if (cell.depth == 0) {
         // A minimum that may be none of the whole patch is a guess that leaves out most cells.
-        minimizeDistance(kernels_, relative_, away_, cell, slack, kNever, s, t);
+        minimizeDistance(kernels_, relative_, away_, cell, slack, kNever, kNever, s, t, distance);
         offer(s, t);
       }
       for (int i = 0; i < 4; ++i) {
@@ -273,8 +328,9 @@ SearchPoint::SearchPoint(const Vector3& point, const Vector3& middle, double dia
   }
 }
 
-void closestOnPatch(const BezierPatch& patch, const Facing* facing, ClosestSoFar& best) {
-  PatchSearch(patch, facing, best).run();
+void closestOnPatch(const BezierPatch& patch, const FootBound& bound, const Facing* facing,
+                    ClosestSoFar& best) {
+  PatchSearch(patch, facing, best).run(bound);
 }
 
 }  // namespace limitsurf

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "limitsurf/search/foot_bound.h"
 #include "limitsurf/search/squared_distance.h"
 #include "limitsurf/surface/bezier_patch.h"
 #include "limitsurf/surface/limit_surface.h"
@@ -91,6 +92,9 @@ struct Facing {
 /// Improves `best` by the point of the patch that is closest to the searching point or, with
 /// `facing`, by its closest foot that meets the condition. The method is branch and bound on the
 /// squared distance; Newton's iteration finds the minimum wherever the squared distance is convex.
-void closestOnPatch(const BezierPatch& patch, const Facing* facing, ClosestSoFar& best);
+///
+/// `bound` is that of the patch, or knows nothing.
+void closestOnPatch(const BezierPatch& patch, const FootBound& bound, const Facing* facing,
+                    ClosestSoFar& best);
 
 }  // namespace limitsurf

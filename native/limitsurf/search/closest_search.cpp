@@ -9,6 +9,8 @@
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
+#include "limitsurf/prefetch.h"
+#include "limitsurf/search/box_queries.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/closest_on_patch.h"
 #include "limitsurf/search/hit_evaluation.h"
@@ -18,57 +20,6 @@
 
 namespace limitsurf {
 namespace {
-
-/// A searching point in single precision, for distances from the boxes of the tree: a box that
-/// contains the point in spite of rounding.
-class BoxPoint {
- public:
-  /// `point` is in the coordinates of boxes.
-  BoxPoint(const SearchPoint& from, const Vector3& point) : is_far_(from.isFar()) {
-    if (is_far_) {
-      const Vector3& away = from.away;
-      low_ << static_cast<float>(away[0]), static_cast<float>(away[1]), static_cast<float>(away[2]),
-          0;
-      high_ = low_;
-      twice_range_ = static_cast<float>(2 * from.range);
-      return;
-    }
-    const double margin = kRounding * (point.cwiseAbs().maxCoeff() + 1);
-    low_ << static_cast<float>(point[0] - margin), static_cast<float>(point[1] - margin),
-        static_cast<float>(point[2] - margin), 0;
-    high_ << static_cast<float>(point[0] + margin), static_cast<float>(point[1] + margin),
-        static_cast<float>(point[2] + margin), 0;
-  }
-
-  /// A lower bound of the squared distance from a box, less the square of the range.
-  float squaredDistance(const BoxF& box) const {
-    if (is_far_) {
-      return squaredDistanceLess(box);
-    }
-    const float squared = (box.low - high_).max(low_ - box.high).max(0.f).square().sum();
-    return std::min(squared * kNearlyOne, std::numeric_limits<float>::max());
-  }
-
- private:
-  float squaredDistanceLess(const BoxF& box) const {
-    if (box.low[0] > box.high[0]) {  // empty
-      return std::numeric_limits<float>::infinity();
-    }
-    const BoxF::Corner nearest = low_.max(box.low).min(box.high);
-    const float reach = box.low.abs().max(box.high.abs()).sum();
-    return (nearest * (nearest - 2 * low_)).sum() -
-           (1 - kNearlyOne) * reach * (reach + twice_range_);
-  }
-
-  /// Four units in the last place of single precision, 2^-24 each, and a little more.
-  static constexpr double kRounding = 2.5e-7;
-  /// Less than 1 by more than the relative rounding of the squared distance.
-  static constexpr float kNearlyOne = 1 - 1e-6f;
-
-  bool is_far_;
-  BoxF::Corner low_, high_;  // of a far point both are the way to it
-  float twice_range_ = 0;
-};
 
 /// A direction in a unit of its own, a power of two, so that its square can be formed.
 Vector3 inUnit(const Vector3& direction) {
@@ -81,7 +32,8 @@ Vector3 inUnit(const Vector3& direction) {
 /// Most rows look at a few leaves, but among sheets that lie on each other at hundreds: so many
 /// take some milliseconds.
 constexpr std::int64_t kLeavesPerPass = 1024;
-
+/// Points are fetched so many searches ahead: in the order of searches they are scattered.
+constexpr std::size_t kPrefetched = 4;
 /// Angles from here on count as pi, and then no cosine is too small.
 constexpr double kNearlyPi = kPi<double> - 1e-13, kAnyCosine = -2;
 
@@ -141,48 +93,35 @@ class ClosestSearch {
 
   /// Walks down the tree, nearer boxes first.
   void descend() {
-    struct Entry {
-      std::int32_t node;
-      float squared;
-    };
     const BoxPoint box_point(best_.from, point_in_boxes_);
-    Entry stack[BoxTree::kMostDepth + 1];
-    int height = 0;
-    Entry next{0, -std::numeric_limits<float>::infinity()};
-    while (true) {
-      if (next.squared < best_.enough()) {
-        if (!BoxTree::isLeaf(next.node)) {
-          const BoxTree::Node& node = data_.tree->node(next.node);
-          float near[2] = {box_point.squaredDistance(node.boxes[0]),
-                           box_point.squaredDistance(node.boxes[1])};
-          if (facing_ && cones_) {
-            for (int child = 0; child < 2; ++child) {
-              if (cones_->ofChild(next.node, child).isBeyond(unit_, reach_)) {
-                near[child] = std::numeric_limits<float>::infinity();
-              }
-            }
-          }
-          const int first = near[1] < near[0] ? 1 : 0;
-          stack[height++] = {node.children[1 - first], near[1 - first]};
-          next = {node.children[first], near[first]};
-          continue;
-        }
-        const std::int32_t leaf = BoxTree::leaf(next.node);
-        const double squared = squaredDistance(data_.leaves[leaf].box);
-        if (squared < best_.enough()) {
-          if (leaves_ == last_leaf_) {
-            gave_up_ = true;
-            return;
-          }
-          ++leaves_;
-          visitLeaf(leaf, squared);
-        }
+    NearestFirst open;
+    NearestFirst::Entry next{0, -std::numeric_limits<float>::infinity()};
+    do {
+      if (!(next.key < best_.enough())) {
+        continue;
       }
-      if (height == 0) {
-        return;
+      if (!WideTree::isLeaf(next.place)) {
+        const WideTree::Node& node = data_.tree->node(next.place);
+        const WideTree::Row squared = box_point.squaredDistances(node);
+        const double enough = best_.enough();
+        open.add(node, squared, [&](int child) {
+          return squared[child] < enough &&
+                 !(facing_ && cones_ && child < node.count &&
+                   cones_->ofChild(next.place, child).isBeyond(unit_, reach_));
+        });
+        continue;
       }
-      next = stack[--height];
-    }
+      const std::int32_t leaf = WideTree::leaf(next.place);
+      const double squared = squaredDistance(data_.leaves[leaf].box);
+      if (squared < best_.enough()) {
+        if (leaves_ == last_leaf_) {
+          gave_up_ = true;
+          return;
+        }
+        ++leaves_;
+        visitLeaf(leaf, squared);
+      }
+    } while (open.take(next));
   }
 
   void visitLeaf(std::int32_t leaf, double squared) {
@@ -190,7 +129,7 @@ class ClosestSearch {
     if (found.piece.isCore()) {
       putOff(found.piece, squared);
     } else {
-      closestOnPatch(cache_.patch(leaf), facing_, best_);
+      closestOnPatch(cache_.patch(leaf), found.foot_bound, facing_, best_);
     }
   }
 
@@ -230,7 +169,7 @@ class ClosestSearch {
       data_.patches.split(next.core, split);
       ++leaves_;
       for (const BezierPatch& patch : split.patches) {
-        closestOnPatch(patch, facing_, best_);
+        closestOnPatch(patch, {}, facing_, best_);
       }
       const CoreBox rest(data_.patches.restHull(split), data_.middle);
       const double squared = squaredDistance(rest);
@@ -299,6 +238,9 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
       ClosestSearch search(*data_, cones);
       std::int64_t leaves_passed = 0;
       for (std::size_t i = begin; i < end; ++i) {
+        if (i + kPrefetched < end) {
+          prefetch(points.coeffRef(static_cast<Eigen::Index>(open[i + kPrefetched]), 0));
+        }
         const auto row = static_cast<Eigen::Index>(open[i]);
         std::optional<Facing> filter;
         if (facing) {

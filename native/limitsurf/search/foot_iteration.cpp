@@ -107,7 +107,7 @@ class FootIteration {
     squared_ = evaluate(s_, t_, at_);
   }
 
-  FootSearch run(double slack, double enough) {
+  FootSearch run(double slack, double enough, double radius) {
     for (int i = 0; i < kMostIterations; ++i) {
       const Gradient g(at_);
       const bool free_s = !((s_ <= s0_ && g.s >= 0) || (s_ >= s1_ && g.s <= 0));
@@ -115,7 +115,7 @@ class FootIteration {
       if (!free_s && !free_t) {
         return FootSearch::arrived;
       }
-      if (isBeyond(g, slack, enough)) {
+      if (isBeyond(g, slack, enough) && distance() <= radius) {
         return FootSearch::beyond;
       }
       Hessian h(at_);
@@ -140,6 +140,8 @@ class FootIteration {
     }
     return FootSearch::failed;
   }
+
+  double distance() const { return std::sqrt(dot(at_.value, at_.value)); }
 
  private:
   enum class Descent { kDescended, kNoDescent, kNoMove };
@@ -240,8 +242,12 @@ class FootIteration {
 
 FootSearch minimizeDistance(const SearchKernels& kernels, const BezierPatch& patch,
                             const BezierPatch::Point& away, const ParameterSquare& square,
-                            double slack, double enough, double& s, double& t) {
-  return FootIteration(kernels, patch, away, square, s, t).run(slack, enough);
+                            double slack, double enough, double radius, double& s, double& t,
+                            double& distance) {
+  FootIteration iteration(kernels, patch, away, square, s, t);
+  const FootSearch search = iteration.run(slack, enough, radius);
+  distance = iteration.distance();
+  return search;
 }
 
 }  // namespace limitsurf

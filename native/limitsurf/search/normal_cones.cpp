@@ -185,16 +185,25 @@ NormalCones::NormalCones(const SearchTree& tree, int threads) {
     }
   });
   const std::int32_t count = tree.tree->nodeCount();
-  children_.resize(2 * static_cast<std::size_t>(count));
+  children_.resize(WideTree::kWidth * static_cast<std::size_t>(count));
   // Children have higher numbers than their parents.
-  for (std::int32_t node = count - 1; node >= 0; --node) {
-    for (int side = 0; side < 2; ++side) {
-      const std::int32_t child = tree.tree->node(node).children[side];
-      children_[2 * static_cast<std::size_t>(node) + static_cast<std::size_t>(side)] =
-          BoxTree::isLeaf(child) ? leaves[static_cast<std::size_t>(BoxTree::leaf(child))]
-                                 : NormalCone::around(ofChild(child, 0), ofChild(child, 1));
+  for (std::int32_t number = count - 1; number >= 0; --number) {
+    const WideTree::Node& node = tree.tree->node(number);
+    for (int i = 0; i < node.count; ++i) {
+      const std::int32_t child = node.children[i];
+      children_[place(number, i)] = WideTree::isLeaf(child)
+                                        ? leaves[static_cast<std::size_t>(WideTree::leaf(child))]
+                                        : around(child, tree.tree->node(child).count);
     }
   }
+}
+
+NormalCone NormalCones::around(std::int32_t node, int count) const {
+  NormalCone cone = ofChild(node, 0);
+  for (int i = 1; i < count; ++i) {
+    cone = NormalCone::around(cone, ofChild(node, i));
+  }
+  return cone;
 }
 
 }  // namespace limitsurf

@@ -28,12 +28,18 @@ class NormalCones {
  public:
   NormalCones(const SearchTree& tree, int threads);
 
-  /// Of a node's child, 0 or 1.
+  /// Of a node's child, 0 to 3.
   const NormalCone& ofChild(std::int32_t node, int child) const {
-    return children_[2 * static_cast<std::size_t>(node) + static_cast<std::size_t>(child)];
+    return children_[place(node, child)];
   }
 
  private:
+  static std::size_t place(std::int32_t node, int child) {
+    return WideTree::kWidth * static_cast<std::size_t>(node) + static_cast<std::size_t>(child);
+  }
+  /// A cone around those of a node's children.
+  NormalCone around(std::int32_t node, int count) const;
+
   std::vector<NormalCone> children_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "limitsurf/float_rounding.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/search/box_queries.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/hit_evaluation.h"
 #include "limitsurf/search/patch_intersection.h"
@@ -11,47 +12,6 @@
 
 namespace limitsurf {
 namespace {
-
-/// A ray prepared for intersections with axis-aligned boxes, in single precision. Whatever is lost
-/// by rounding is added to the boxes: a ray may be said to meet a box that it only just misses.
-class BoxRay {
- public:
-  explicit BoxRay(const Ray& ray) {
-    const float margin = static_cast<float>(kMargin * (1 + ray.origin.cwiseAbs().maxCoeff()));
-    for (int i = 0; i < 3; ++i) {
-      const double rate = ray.direction[i];
-      inverse_[i] = static_cast<float>(1 / (std::abs(rate) > kLeast ? rate : kLeast));
-      const float origin = static_cast<float>(ray.origin[i]);
-      above_[i] = origin + margin;
-      below_[i] = origin - margin;
-    }
-    // The fourth coordinate of all boxes is 0. It excludes nothing.
-    inverse_[3] = 1;
-    above_[3] = kUnbounded;
-    below_[3] = -kUnbounded;
-  }
-
-  /// Whether the ray meets the box between `from` and `to`. Raises `from` to where it enters, or a
-  /// little less.
-  bool meets(const BoxF& box, float& from, float to) const {
-    const BoxF::Corner a = (box.low - above_) * inverse_, b = (box.high - below_) * inverse_;
-    from = std::max(from, a.min(b).maxCoeff());
-    to = std::min(to, a.max(b).minCoeff());
-    return from <= to;
-  }
-
- private:
-  /// Boxes lie within 4 units of the middle, so that the rounding of a difference is at most
-  /// 2^-24 (4 + |origin|) for each of three roundings, and that of the product at most 2^-22 times
-  /// a difference of at most 4 + |origin|: less than this part of 1 + |origin| in all.
-  static constexpr double kMargin = 4e-6;
-  /// Smaller components of the direction are replaced by this one: along such an axis a ray does
-  /// not leave a box within any distance that matters.
-  static constexpr double kLeast = 1e-20;
-  static constexpr float kUnbounded = 1e30f;
-
-  BoxF::Corner above_, below_, inverse_;
-};
 
 /// Searches for one ray after the other.
 class RaySearch {
@@ -99,48 +59,29 @@ class RaySearch {
   /// Walks down the tree, nearer boxes first. `ray` is in the coordinates of boxes, `frame` in
   /// those of patches.
   void descend(const Ray& ray, const RayFrame& frame) {
-    struct Entry {
-      std::int32_t node;
-      float from;
-    };
-    if (data_.leaves.size() == 1) {
-      visitLeaf(0, ray, frame);
-      return;
-    }
     const BoxRay box_ray(ray);
     const float begin = roundedDown(start());
     double end_of_last = end();
     float last = roundedUp(end_of_last);
-    Entry stack[BoxTree::kMostDepth + 1];
-    int height = 0;
-    stack[height++] = {0, begin};
-    while (height > 0) {
-      const Entry next = stack[--height];
-      if (next.from > end()) {
+    NearestFirst open;
+    NearestFirst::Entry next{0, begin};
+    do {
+      if (next.key > end()) {
         continue;
       }
-      if (BoxTree::isLeaf(next.node)) {
-        visitLeaf(BoxTree::leaf(next.node), ray, frame);
+      if (WideTree::isLeaf(next.place)) {
+        visitLeaf(WideTree::leaf(next.place), ray, frame);
         continue;
       }
-      const BoxTree::Node& node = data_.tree->node(next.node);
+      const WideTree::Node& node = data_.tree->node(next.place);
       if (end() != end_of_last) {
         end_of_last = end();
         last = roundedUp(end_of_last);
       }
-      float from[2];
-      bool met[2];
-      for (int side = 0; side < 2; ++side) {
-        from[side] = begin;
-        met[side] = box_ray.meets(node.boxes[side], from[side], last);
-      }
-      const int first = met[1] && (!met[0] || from[1] < from[0]) ? 1 : 0;
-      for (const int side : {1 - first, first}) {
-        if (met[side]) {
-          stack[height++] = {node.children[side], from[side]};
-        }
-      }
-    }
+      WideTree::Row from, to;
+      box_ray.meet(node, begin, last, from, to);
+      open.add(node, from, [&](int child) { return from[child] <= to[child]; });
+    } while (open.take(next));
   }
 
   void visitLeaf(std::int32_t leaf, const Ray& ray, const RayFrame& frame) {

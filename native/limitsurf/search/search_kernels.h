@@ -29,6 +29,9 @@ struct SearchKernels {
   /// A patch's value and first and second derivatives at (s, t), as BezierPatch::evaluate<2>.
   void (*evaluate)(const double points[16][4], double s, double t, double out[6][4]);
 
+  /// The scalar products of a patch's points with a direction.
+  void (*along)(const double points[16][4], const double direction[4], double out[16]);
+
   static const SearchKernels& get();
 };
 

@@ -151,4 +151,16 @@ inline void evaluate(const double points[16][4], double s, double t, double out[
   along[0][2].store(out[5]);
 }
 
-constexpr SearchKernels kKernels = {squaredDistance, differenceBounds, evaluate};
+inline void along(const double points[16][4], const double direction[4], double out[16]) {
+  for (int i = 0; i < 16; i += 4) {
+    Four sum = Four::of(0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double of_points[4] = {points[i][axis], points[i + 1][axis], points[i + 2][axis],
+                                   points[i + 3][axis]};
+      sum = sum + Four::load(of_points) * direction[axis];
+    }
+    sum.store(out + i);
+  }
+}
+
+constexpr SearchKernels kKernels = {squaredDistance, differenceBounds, evaluate, along};

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "limitsurf/first_made.h"
-#include "limitsurf/search/box_tree.h"
+#include "limitsurf/search/foot_bound.h"
 #include "limitsurf/search/oriented_box.h"
 #include "limitsurf/search/surface_search.h"
+#include "limitsurf/search/wide_tree.h"
 #include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
@@ -17,6 +18,7 @@ namespace limitsurf {
 struct SearchLeaf {
   LeafBox box;
   SurfacePiece piece;
+  FootBound foot_bound;  ///< of a patch
 };
 
 class NormalCones;
@@ -37,7 +39,7 @@ struct SearchTree {
   Vector3 inBoxes(const Vector3& point) const { return point - middle; }
 
   std::vector<SearchLeaf> leaves;  ///< in the order of the tree
-  std::unique_ptr<BoxTree> tree;
+  std::unique_ptr<WideTree> tree;
   /// The patches of the leaves, or none if they would need more than kPatchBytes together; those of
   /// cores are not set.
   std::vector<BezierPatch> kept;

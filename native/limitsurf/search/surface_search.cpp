@@ -76,7 +76,7 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
     InterruptionPoint::pass();
   }
   std::vector<std::int32_t> order;
-  tree = std::make_unique<BoxTree>(boxes, order);
+  tree = std::make_unique<WideTree>(BoxTree(boxes, order));
   leaves.reserve(unordered.size());
   InterruptionStride stride;
   for (const std::int32_t leaf : order) {
@@ -106,7 +106,7 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
   patches.appendPieces(tile, pieces);
   const auto addPatch = [&](const SurfacePiece& piece, const BezierPatch& patch) {
     const PatchPoints points = pointsOf(patch, middle);
-    out.push_back({orientedBox(points), piece});
+    out.push_back({orientedBox(points), piece, FootBound(patch)});
     boxes.emplace_back(boxOf(points));
   };
   for (const SurfacePiece& piece : pieces) {
@@ -162,7 +162,7 @@ void SearchTree::addCore(const SurfacePiece& core, SurfacePatches::SplitCore& sp
   const Vector3 normal = rest.axes.row(2);
   const Vector3 along = points.row(2 * 16 - 1).transpose() - inBoxes(rest.vertex);
   const Vector3 tangent = along - along.dot(normal) * normal;
-  out.push_back({LeafBox(points, tangent, normal.cross(tangent)), core});
+  out.push_back({LeafBox(points, tangent, normal.cross(tangent)), core, {}});
   boxes.emplace_back(boxOf(points));
 }
 

@@ -109,7 +109,7 @@ TEST(SearchKernels, AllInstructionSetsGiveTheSameBits) {
     const RandomPatch patch(random);
     const double s = random.uniform(), t = random.uniform();
     struct {
-      double polynomial[kDistanceSize], values[6][4];
+      double polynomial[kDistanceSize], values[6][4], along[16];
       DifferenceBounds bounds;
     } results[3];
     int count = 0;
@@ -121,6 +121,12 @@ TEST(SearchKernels, AllInstructionSetsGiveTheSameBits) {
       SearchKernels::get().squaredDistance(patch.points, patch.away, result.polynomial);
       SearchKernels::get().differenceBounds(result.polynomial, result.bounds);
       SearchKernels::get().evaluate(patch.points, s, t, result.values);
+      SearchKernels::get().along(patch.points, patch.away, result.along);
+      for (int i = 0; i < 16; ++i) {
+        const double* p = patch.points[i];
+        const double* a = patch.away;
+        EXPECT_EQ(result.along[i], p[0] * a[0] + p[1] * a[1] + p[2] * a[2]);
+      }
       EXPECT_EQ(std::memcmp(&result, &results[0], sizeof result), 0);
     }
   }

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "limitsurf/search/box_tree.h"
+
+namespace limitsurf {
+
+/// A box tree in which a node has up to four children, so that a search tests four boxes with the
+/// same instructions and meets fewer nodes.
+class WideTree {
+ public:
+  static constexpr int kWidth = 4;
+  /// One number for each child of a node.
+  using Row = Eigen::Array<float, kWidth, 1>;
+
+  struct Node {
+    Row low[3], high[3];  ///< of the children's boxes, axis by axis
+    std::int32_t
+        children[kWidth];  ///< a node's number, or ~(a leaf's place in the order of leaves)
+    std::int32_t count;    ///< the number of children, which come first
+  };
+
+  /// The same leaves in the same order, in the same boxes.
+  explicit WideTree(const BoxTree& tree);
+
+  bool empty() const { return nodes_.empty(); }
+  const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  /// Children have higher numbers than their parents.
+  std::int32_t nodeCount() const { return static_cast<std::int32_t>(nodes_.size()); }
+  static bool isLeaf(std::int32_t child) { return child < 0; }
+  static std::int32_t leaf(std::int32_t child) { return ~child; }
+
+  /// A walk from the root that puts all children but one aside at each node puts at most so many.
+  static constexpr int kMostOpen = (kWidth - 1) * BoxTree::kMostDepth + 1;
+
+ private:
+  class Builder;
+  std::vector<Node> nodes_;  ///< the root first
+};
+
+/// What a walk down a tree has still to visit. The last one added of those that are nearest among
+/// their siblings comes first, so that the walk goes to the nearest leaves early.
+class NearestFirst {
+ public:
+  struct Entry {
+    std::int32_t place;  ///< as WideTree::Node::children
+    float key;           ///< how near it is
+  };
+
+  /// Adds those children of a node for which `matters(child)`.
+  template <typename Matters>
+  void add(const WideTree::Node& node, const WideTree::Row& keys, const Matters& matters) {
+    // Which child is nearer is hard to predict, so that they are sorted without branches: by
+    // numbers that grow with the key and then the place among the children.
+    static_assert(WideTree::kWidth == 4, "a network that sorts four");
+    std::uint64_t order[4];
+    for (int child = 0; child < 4; ++child) {
+      const std::uint64_t number = static_cast<std::uint64_t>(ordered(keys[child])) << 32 |
+                                   static_cast<std::uint64_t>(child);
+      order[child] = (child < node.count) & matters(child) ? number : kNone;
+    }
+    sortTwo(order[0], order[1]);
+    sortTwo(order[2], order[3]);
+    sortTwo(order[0], order[2]);
+    sortTwo(order[1], order[3]);
+    sortTwo(order[1], order[2]);
+    for (int i = 3; i >= 0; --i) {
+      const auto child = static_cast<int>(order[i] & 3);
+      entries_[height_] = {node.children[child], keys[child]};
+      height_ += order[i] != kNone ? 1 : 0;
+    }
+  }
+
+  /// Takes the next one. Returns false if there is none.
+  bool take(Entry& next) {
+    if (height_ == 0) {
+      return false;
+    }
+    next = entries_[--height_];
+    return true;
+  }
+
+ private:
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+
+  /// A number that grows with a float that is not NaN.
+  static std::uint32_t ordered(float key) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &key, sizeof bits);
+    return bits >> 31 != 0 ? ~bits : bits | 0x80000000u;
+  }
+  static void sortTwo(std::uint64_t& a, std::uint64_t& b) {
+    const std::uint64_t less = std::min(a, b);
+    b = std::max(a, b);
+    a = less;
+  }
+
+  Entry entries_[WideTree::kMostOpen];
+  int height_ = 0;
+};
+
+}  // namespace limitsurf
