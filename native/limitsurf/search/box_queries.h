@@ -15,36 +15,40 @@ namespace limitsurf {
 /// contains the point in spite of rounding.
 class BoxPoint {
  public:
+  using Row = WideTree::Row;
+
   /// `point` is in the coordinates of boxes.
   BoxPoint(const SearchPoint& from, const Vector3& point) : is_far_(from.isFar()) {
     const double margin = is_far_ ? 0 : kRounding * (point.cwiseAbs().maxCoeff() + 1);
     const Vector3& middle = is_far_ ? from.away : point;
     for (int axis = 0; axis < 3; ++axis) {
-      low_[axis] = static_cast<float>(middle[axis] - margin);
-      high_[axis] = static_cast<float>(middle[axis] + margin);
+      low_[axis].setConstant(static_cast<float>(middle[axis] - margin));
+      high_[axis].setConstant(static_cast<float>(middle[axis] + margin));
     }
     twice_range_ = static_cast<float>(2 * from.range);
   }
 
   /// Lower bounds of the squared distances from a node's children, less the square of the range.
-  WideTree::Row squaredDistances(const WideTree::Node& node) const {
+  Row squaredDistances(const WideTree::Node& node) const {
     if (is_far_) {
       return squaredDistancesLess(node);
     }
-    WideTree::Row squared = WideTree::Row::Zero();
+    Row squared = Row::Zero();
     for (int axis = 0; axis < 3; ++axis) {
-      squared += (node.low[axis] - high_[axis]).max(low_[axis] - node.high[axis]).max(0.f).square();
+      const Row &low = node.bounds[axis][0], &high = node.bounds[axis][1];
+      squared += (low - high_[axis]).max(low_[axis] - high).max(0.f).square();
     }
     return (squared * kNearlyOne).min(std::numeric_limits<float>::max());
   }
 
  private:
-  WideTree::Row squaredDistancesLess(const WideTree::Node& node) const {
-    WideTree::Row less = WideTree::Row::Zero(), reach = less;
+  Row squaredDistancesLess(const WideTree::Node& node) const {
+    Row less = Row::Zero(), reach = less;
     for (int axis = 0; axis < 3; ++axis) {
-      const WideTree::Row nearest = node.low[axis].max(low_[axis]).min(node.high[axis]);
+      const Row &low = node.bounds[axis][0], &high = node.bounds[axis][1];
+      const Row nearest = low.max(low_[axis]).min(high);
       less += nearest * (nearest - 2 * low_[axis]);
-      reach += node.low[axis].abs().max(node.high[axis].abs());
+      reach += low.abs().max(high.abs());
     }
     return less - (1 - kNearlyOne) * reach * (reach + twice_range_);
   }
@@ -55,7 +59,7 @@ class BoxPoint {
   static constexpr float kNearlyOne = 1 - 1e-6f;
 
   bool is_far_;
-  float low_[3], high_[3];  // of a far point both are the way to it
+  Row low_[3], high_[3];  // the same number four times; of a far point both are the way to it
   float twice_range_;
 };
 
@@ -63,30 +67,33 @@ class BoxPoint {
 /// by rounding is added to the boxes: a ray may be said to meet a box that it only just misses.
 class BoxRay {
  public:
+  using Row = WideTree::Row;
+
+  BoxRay() = default;
   explicit BoxRay(const Ray& ray) {
     const float margin = static_cast<float>(kMargin * (1 + ray.origin.cwiseAbs().maxCoeff()));
     for (int i = 0; i < 3; ++i) {
       const double rate = ray.direction[i];
-      inverse_[i] = static_cast<float>(1 / (std::abs(rate) > kLeast ? rate : kLeast));
-      const float origin = static_cast<float>(ray.origin[i]);
-      above_[i] = origin + margin;
-      below_[i] = origin - margin;
+      const auto inverse = static_cast<float>(1 / (std::abs(rate) > kLeast ? rate : kLeast));
+      const auto origin = static_cast<float>(ray.origin[i]);
+      const bool forwards = inverse > 0;
+      first_[i] = forwards ? 0 : 1;
+      inverse_[i].setConstant(inverse);
+      enter_[i].setConstant(forwards ? origin + margin : origin - margin);
+      leave_[i].setConstant(forwards ? origin - margin : origin + margin);
     }
   }
 
   /// Where the ray enters the boxes of a node's children, or a little before, but not before
   /// `begin`, and where it leaves them, but not after `end`. It meets those that it enters before
   /// it leaves them.
-  void meet(const WideTree::Node& node, float begin, float end, WideTree::Row& from,
-            WideTree::Row& to) const {
+  void meet(const WideTree::Node& node, float begin, float end, Row& from, Row& to) const {
     from.setConstant(begin);
     to.setConstant(end);
     for (int axis = 0; axis < 3; ++axis) {
-      const WideTree::Row a = (node.low[axis] - above_[axis]) * inverse_[axis],
-                          b = (node.high[axis] - below_[axis]) * inverse_[axis];
-      const bool forwards = inverse_[axis] > 0;
-      from = from.max(forwards ? a : b);
-      to = to.min(forwards ? b : a);
+      const Row* const ends = node.bounds[axis];
+      from = from.max((ends[first_[axis]] - enter_[axis]) * inverse_[axis]);
+      to = to.min((ends[1 - first_[axis]] - leave_[axis]) * inverse_[axis]);
     }
   }
 
@@ -99,7 +106,8 @@ class BoxRay {
   /// not leave a box within any distance that matters.
   static constexpr double kLeast = 1e-20;
 
-  float above_[3], below_[3], inverse_[3];
+  int first_[3];                          // the end of a box at which the ray enters, 0 or 1
+  Row enter_[3], leave_[3], inverse_[3];  // the same number four times
 };
 
 }  // namespace limitsurf

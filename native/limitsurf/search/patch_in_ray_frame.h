@@ -11,6 +11,7 @@ namespace limitsurf {
 /// A ray and two axes perpendicular to it, in coordinates in which the surface lies near the
 /// origin.
 struct RayFrame {
+  RayFrame() = default;
   explicit RayFrame(const Ray& ray);
   Vector3 origin, direction, across[2];
 };

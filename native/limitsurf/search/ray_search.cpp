@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
 
 #include "limitsurf/float_rounding.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/prefetch.h"
 #include "limitsurf/search/box_queries.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/hit_evaluation.h"
@@ -13,39 +17,73 @@
 namespace limitsurf {
 namespace {
 
-/// Searches for one ray after the other.
+/// The search for one ray after the other, in steps. Between its steps other rays can make theirs,
+/// while the memory that the next step needs is on its way.
 class RaySearch {
  public:
-  explicit RaySearch(const SearchTree& tree) : data_(tree), cache_(tree) {
+  RaySearch(const SearchTree& tree, PatchCache& cache) : data_(tree), cache_(cache) {
     found_.tolerance = tree.tolerance;
   }
 
-  /// The hits between the distances 0 and `max_distance`: the first, or all in order. Lengths are
-  /// in the unit of the tree.
-  std::vector<RayHit>& find(const Vector3& origin, const Vector3& direction, double max_distance,
-                            bool first_only) {
-    found_.hits.clear();
-    if (data_.tree->empty()) {
-      return found_.hits;
-    }
+  /// Begins a search for the hits between the distances 0 and `max_distance`: the first, or all.
+  /// Lengths are in the unit of the tree, which must not be empty.
+  void begin(const Vector3& origin, const Vector3& direction, double max_distance,
+             bool first_only) {
     // The ray's origin is moved to the ray's point nearest to the middle of the surface:
     // coordinates are small there, so that neighbouring patches agree to the last digits. The ray
     // begins at the distance `start` from that point.
-    Ray ray;
-    ray.direction = direction.stableNormalized();
+    ray_.direction = direction.stableNormalized();
     const Vector3 from_middle = origin - data_.middle;
-    const double start = from_middle.dot(ray.direction);
-    ray.origin = from_middle - start * ray.direction;
+    const double start = from_middle.dot(ray_.direction);
+    ray_.origin = from_middle - start * ray_.direction;
+    found_.hits.clear();
     found_.first_only = first_only;
     found_.from = start;
     found_.nearest = start + max_distance;
-    RayFrame frame(ray);
-    frame.origin += data_.middle;
-    descend(ray, frame);
-    for (RayHit& hit : found_.hits) {
-      hit.distance = std::max(0., hit.distance - start);
+    frame_ = RayFrame(ray_);
+    frame_.origin += data_.middle;
+    box_ray_ = BoxRay(ray_);
+    begin_ = roundedDown(this->start());
+    open_.clear();
+    next_ = {0, begin_};
+    box_met_ = false;
+  }
+
+  /// Visits a node, the box of a leaf, or a leaf. Returns false when there is nothing left to do.
+  bool step() {
+    if (!WideTree::isLeaf(next_.place)) {
+      const WideTree::Node& node = data_.tree->node(next_.place);
+      WideTree::Row from, to;
+      box_ray_.meet(node, begin_, roundedUp(end()), from, to);
+      open_.add(node, from, [&](int child) { return from[child] <= to[child]; });
+      return takeNext();
     }
-    if (!first_only) {
+    const std::int32_t leaf = WideTree::leaf(next_.place);
+    const SearchLeaf& found = data_.leaves[leaf];
+    if (!box_met_) {
+      double from = start();
+      if (!found.box.meets(ray_, margin(), from, end())) {
+        return takeNext();
+      }
+      if (!found.piece.isCore()) {
+        box_met_ = true;
+        cache_.expect(leaf);
+        return true;
+      }
+      visitCore(found.piece);
+      return takeNext();
+    }
+    box_met_ = false;
+    intersectPatch(cache_.patch(leaf), frame_, found_);
+    return takeNext();
+  }
+
+  /// What has been found: the first hit, or all in order.
+  std::vector<RayHit>& hits() {
+    for (RayHit& hit : found_.hits) {
+      hit.distance = std::max(0., hit.distance - found_.from);
+    }
+    if (!found_.first_only) {
       sortAndMerge();
     }
     return found_.hits;
@@ -56,74 +94,48 @@ class RaySearch {
   double start() const { return found_.from - found_.tolerance; }
   double end() const { return found_.nearest; }
 
-  /// Walks down the tree, nearer boxes first. `ray` is in the coordinates of boxes, `frame` in
-  /// those of patches.
-  void descend(const Ray& ray, const RayFrame& frame) {
-    const BoxRay box_ray(ray);
-    const float begin = roundedDown(start());
-    double end_of_last = end();
-    float last = roundedUp(end_of_last);
-    NearestFirst open;
-    NearestFirst::Entry next{0, begin};
+  /// Walks on, to the nearest box first.
+  bool takeNext() {
     do {
-      if (next.key > end()) {
-        continue;
+      if (!open_.take(next_)) {
+        return false;
       }
-      if (WideTree::isLeaf(next.place)) {
-        visitLeaf(WideTree::leaf(next.place), ray, frame);
-        continue;
-      }
-      const WideTree::Node& node = data_.tree->node(next.place);
-      if (end() != end_of_last) {
-        end_of_last = end();
-        last = roundedUp(end_of_last);
-      }
-      WideTree::Row from, to;
-      box_ray.meet(node, begin, last, from, to);
-      open.add(node, from, [&](int child) { return from[child] <= to[child]; });
-    } while (open.take(next));
-  }
-
-  void visitLeaf(std::int32_t leaf, const Ray& ray, const RayFrame& frame) {
-    const SearchLeaf& found = data_.leaves[leaf];
-    double from = start();
-    if (!found.box.meets(ray, margin(), from, end())) {
-      return;
-    }
-    if (found.piece.isCore()) {
-      visitCore(found.piece, ray, frame);
+    } while (next_.key > end());
+    if (WideTree::isLeaf(next_.place)) {
+      prefetch(data_.leaves[WideTree::leaf(next_.place)]);
     } else {
-      intersectPatch(cache_.patch(leaf), frame, found_);
+      prefetch(data_.tree->node(next_.place));
     }
+    return true;
   }
 
-  void visitCore(SurfacePiece core, const Ray& ray, const RayFrame& frame) {
+  void visitCore(SurfacePiece core) {
     SurfacePatches::SplitCore split;
     while (true) {
       data_.patches.split(core, split);
       for (const BezierPatch& patch : split.patches) {
-        intersectPatch(patch, frame, found_);
+        intersectPatch(patch, frame_, found_);
       }
       core = split.core;
       double from = start();
       const CoreBox rest(data_.patches.restHull(split), data_.middle);
-      if (!rest.meets(ray, margin(), from, end())) {
+      if (!rest.meets(ray_, margin(), from, end())) {
         return;
       }
       if (data_.patches.coreRadius(core) <= found_.tolerance ||
           core.steps >= SurfacePatches::kMostSteps) {
-        touchVertex(core, frame);
+        touchVertex(core);
         return;
       }
     }
   }
 
   /// Takes the vertex in place of the rest of a core, if the ray comes close enough to it.
-  void touchVertex(const SurfacePiece& core, const RayFrame& frame) {
+  void touchVertex(const SurfacePiece& core) {
     const Vector3 vertex = data_.patches.coreVertex(core);
-    const Vector3 to_vertex = vertex - frame.origin;
-    const double z = to_vertex.dot(frame.direction);
-    const double aside = (to_vertex - z * frame.direction).norm();
+    const Vector3 to_vertex = vertex - frame_.origin;
+    const double z = to_vertex.dot(frame_.direction);
+    const double aside = (to_vertex - z * frame_.direction).norm();
     if (aside <= found_.tolerance + data_.patches.coreRadius(core) &&
         z >= found_.from - found_.tolerance && z <= found_.nearest) {
       found_.add({z, data_.patches.rectangle(core).at(0, 0), vertex, 1});
@@ -170,9 +182,62 @@ class RaySearch {
   }
 
   const SearchTree& data_;
-  PatchCache cache_;
+  PatchCache& cache_;
+  Ray ray_;         // in the coordinates of boxes
+  RayFrame frame_;  // in those of patches
+  BoxRay box_ray_;
+  float begin_ = 0;
+  NearestFirst open_;
+  NearestFirst::Entry next_{};
+  bool box_met_ = false;  // whether the ray meets the box of the leaf that comes next
   CollectedHits found_;
 };
+
+/// Rays that are searched for at once, step by step in turns. More do not hide more latency.
+constexpr std::size_t kRaysAtOnce = 8;
+
+/// Calls found(row, hits) for each ray.
+template <typename Found>
+void searchRays(const SearchTree& tree, const Points& origins, const Points& directions,
+                double max_distance, bool first_only, int threads, const Found& found) {
+  if (tree.tree->empty()) {
+    return;
+  }
+  parallelFor(static_cast<std::size_t>(origins.rows()), kRowsPerTask, threads,
+              [&](std::size_t begin, std::size_t end) {
+                PatchCache cache(tree);
+                std::vector<std::unique_ptr<RaySearch>> searches;
+                std::size_t rows[kRaysAtOnce];
+                std::size_t next = begin;
+                const auto start = [&](std::size_t i) {
+                  const auto row = static_cast<Eigen::Index>(next);
+                  rows[i] = next++;
+                  searches[i]->begin(tree.scale * origins.row(row).transpose(),
+                                     directions.row(row).transpose(), tree.scale * max_distance,
+                                     first_only);
+                };
+                while (searches.size() < kRaysAtOnce && next < end) {
+                  searches.push_back(std::make_unique<RaySearch>(tree, cache));
+                  start(searches.size() - 1);
+                }
+                std::size_t left = searches.size();
+                bool idle[kRaysAtOnce] = {};
+                while (left > 0) {
+                  for (std::size_t i = 0; i < searches.size(); ++i) {
+                    if (idle[i] || searches[i]->step()) {
+                      continue;
+                    }
+                    found(rows[i], searches[i]->hits());
+                    if (next < end) {
+                      start(i);
+                    } else {
+                      idle[i] = true;
+                      --left;
+                    }
+                  }
+                }
+              });
+}
 
 /// Checks the arguments of rayCast() and rayCastAll().
 void checkRays(const Points& origins, const Points& directions, double max_distance, double scale,
@@ -191,19 +256,15 @@ Hits SurfaceSearch::rayCast(const Points& origins, const Points& directions, dou
   const double scale = data_->scale;
   checkRays(origins, directions, max_distance, scale, threads);
   std::vector<Location> at(static_cast<std::size_t>(origins.rows()));
-  Eigen::VectorXd distance(origins.rows());
-  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    RaySearch search(*data_);
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      const std::vector<RayHit>& hits =
-          search.find(scale * origins.row(row).transpose(), directions.row(row).transpose(),
-                      scale * max_distance, true);
-      at[i] = hits.empty() ? Location{} : hits[0].at;
-      distance[row] =
-          hits.empty() ? std::numeric_limits<double>::quiet_NaN() : hits[0].distance / scale;
-    }
-  });
+  Eigen::VectorXd distance =
+      Eigen::VectorXd::Constant(origins.rows(), std::numeric_limits<double>::quiet_NaN());
+  searchRays(*data_, origins, directions, max_distance, true, threads,
+             [&](std::size_t row, const std::vector<RayHit>& hits) {
+               if (!hits.empty()) {
+                 at[row] = hits[0].at;
+                 distance[static_cast<Eigen::Index>(row)] = hits[0].distance / scale;
+               }
+             });
   Hits result = hitsAt(data_->surface, std::move(at), threads);
   result.distance = std::move(distance);
   return result;
@@ -213,16 +274,9 @@ RayHits SurfaceSearch::rayCastAll(const Points& origins, const Points& direction
                                   double max_distance, int threads) const {
   const double scale = data_->scale;
   checkRays(origins, directions, max_distance, scale, threads);
-  const std::size_t rays = static_cast<std::size_t>(origins.rows());
-  std::vector<std::vector<RayHit>> hits(rays);
-  parallelFor(rays, kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    RaySearch search(*data_);
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      hits[i] = search.find(scale * origins.row(row).transpose(), directions.row(row).transpose(),
-                            scale * max_distance, false);
-    }
-  });
+  std::vector<std::vector<RayHit>> hits(static_cast<std::size_t>(origins.rows()));
+  searchRays(*data_, origins, directions, max_distance, false, threads,
+             [&](std::size_t row, const std::vector<RayHit>& found) { hits[row] = found; });
   RayHits result;
   result.offsets.push_back(0);
   std::vector<Location> at;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limitsurf/first_made.h"
+#include "limitsurf/prefetch.h"
 #include "limitsurf/search/foot_bound.h"
 #include "limitsurf/search/oriented_box.h"
 #include "limitsurf/search/surface_search.h"
@@ -82,6 +83,13 @@ class PatchCache {
       leaves_[slot] = leaf;
     }
     return patches_[slot];
+  }
+
+  /// Has the memory of a patch brought into the processor's caches, if the tree keeps it.
+  void expect(std::int32_t leaf) const {
+    if (!data_.kept.empty()) {
+      prefetch(data_.kept[static_cast<std::size_t>(leaf)]);
+    }
   }
 
  private:

@@ -18,11 +18,12 @@ class WideTree::Builder {
     Node& node = nodes_.back();
     node.count = count;
     for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis].setConstant(std::numeric_limits<float>::infinity());
-      node.high[axis] = -node.low[axis];
+      Row &low = node.bounds[axis][0], &high = node.bounds[axis][1];
+      low.setConstant(std::numeric_limits<float>::infinity());
+      high = -low;
       for (int i = 0; i < count; ++i) {
-        node.low[axis][i] = children[i].box.low[axis];
-        node.high[axis][i] = children[i].box.high[axis];
+        low[i] = children[i].box.low[axis];
+        high[i] = children[i].box.high[axis];
       }
     }
     for (int i = 0; i < kWidth; ++i) {

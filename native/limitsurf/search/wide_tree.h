@@ -19,7 +19,7 @@ class WideTree {
   using Row = Eigen::Array<float, kWidth, 1>;
 
   struct Node {
-    Row low[3], high[3];  ///< of the children's boxes, axis by axis
+    Row bounds[3][2];  ///< the low and the high ends of the children's boxes, axis by axis
     std::int32_t
         children[kWidth];  ///< a node's number, or ~(a leaf's place in the order of leaves)
     std::int32_t count;    ///< the number of children, which come first
@@ -75,6 +75,8 @@ class NearestFirst {
       height_ += order[i] != kNone ? 1 : 0;
     }
   }
+
+  void clear() { height_ = 0; }
 
   /// Takes the next one. Returns false if there is none.
   bool take(Entry& next) {

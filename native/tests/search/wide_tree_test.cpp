@@ -29,8 +29,8 @@ void visit(const WideTree& tree, std::int32_t index, const BoxF& around, const B
   for (int i = 0; i < node.count; ++i) {
     BoxF own;
     for (int axis = 0; axis < 3; ++axis) {
-      own.low[axis] = node.low[axis][i];
-      own.high[axis] = node.high[axis][i];
+      own.low[axis] = node.bounds[axis][0][i];
+      own.high[axis] = node.bounds[axis][1][i];
       EXPECT_GE(own.low[axis], around.low[axis]);
       EXPECT_LE(own.high[axis], around.high[axis]);
     }
