@@ -58,12 +58,13 @@ struct Quarter {
     v -= b;
   }
 
-  /// The steps for the larger one of (u, v). Where that is 0 or below 2^-1000 the result is only
-  /// known to be 1000 or more.
+  /// The steps for the larger one of (u, v). Where that is 0, of either sign, or below 2^-1000 the
+  /// result is only known to be 1000 or more.
   static int stepsTo(double larger) {
     std::uint64_t bits;
     std::memcpy(&bits, &larger, sizeof bits);
-    return std::max(1, 1023 - static_cast<int>(bits >> 52));  // larger in [2^-steps, 2^(1 - steps))
+    const int exponent = static_cast<int>(bits >> 52 & 0x7ff);
+    return std::max(1, 1023 - exponent);  // larger in [2^-steps, 2^(1 - steps))
   }
 
   int steps;    ///< >= 1

@@ -66,6 +66,32 @@ TEST(Extremes, TinyUvApproachTheVertex) {
   }
 }
 
+TEST(Extremes, MinusZeroIsZero) {
+  for (const Cage& cage : {fan(5, true, 1), fan(4, false, 1), fan(2, false, 1), cube()}) {
+    const LimitSurface surface = limitSurface(cage);
+    std::vector<Location> zero, minus;
+    for (int face = 0; face < surface.faceCount(); ++face) {
+      for (const double other : {0., 0x1p-60, 0.3, 1.}) {
+        zero.insert(zero.end(), {{face, 0, other}, {face, other, 0}});
+        minus.insert(minus.end(), {{face, -0., other}, {face, other, -0.}});
+      }
+      zero.push_back({face, 0, 0});
+      minus.push_back({face, -0., -0.});
+    }
+    const auto same = [](const Points& a, const Points& b) {
+      return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
+    };
+    for (const Derivatives order : {Derivatives::none, Derivatives::first, Derivatives::second}) {
+      const bool normals = order != Derivatives::none;
+      const Evaluation a = surface.evaluate(zero, order, normals);
+      const Evaluation b = surface.evaluate(minus, order, normals);
+      EXPECT_TRUE(same(a.position, b.position)) << static_cast<int>(order);
+      EXPECT_TRUE(same(a.du, b.du) && same(a.dv, b.dv) && same(a.normal, b.normal));
+      EXPECT_TRUE(same(a.duu, b.duu) && same(a.duv, b.duv) && same(a.dvv, b.dvv));
+    }
+  }
+}
+
 TEST(Extremes, TinyUvHaveNormals) {
   // The surface is smooth everywhere but at the vertex itself.
   for (const auto& [name, cage] : someFans()) {
