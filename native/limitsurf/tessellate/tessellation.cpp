@@ -77,7 +77,9 @@ void evaluateCornerNormals(const LimitSurface& surface, Tessellation& result, in
   std::vector<Location> others;
   std::vector<Eigen::Index> rows;
   std::size_t corner = 0;
+  InterruptionStride stride;
   for (std::size_t polygon = 0; polygon < result.face_sizes.size(); ++polygon) {
+    stride.step();
     const int face = result.ptex_face[polygon];
     for (int k = 0; k < result.face_sizes[polygon]; ++k, ++corner) {
       const int point = result.face_vertices[corner];
