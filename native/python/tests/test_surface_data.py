@@ -351,6 +351,12 @@ def test_varying_data_on_faces_that_touch_a_crease_of_others():
     face = int(np.flatnonzero(pinned.base_face == 6)[0])
     corner = pinned.varying(positions).evaluate(face, [[0.0, 0.0]]).value
     assert np.array_equal(corner, positions[:1])
+    # Not pinned, the apex follows the line, as the sheets do.
+    positions[1] += [0, 0.3, 0.6]
+    following = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
+    assert not following.refused
+    apex = following.evaluate([face, 1], [[0.0, 0.0], [0.0, 0.0]]).position
+    np.testing.assert_allclose(apex, [(positions[1] + positions[2]) / 6] * 2, atol=1e-15)
     flat = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces, scheme="bilinear"))
     assert not flat.refused
     assert np.array_equal(flat.evaluate(face, [[0.0, 0.0]]).position, positions[:1])
