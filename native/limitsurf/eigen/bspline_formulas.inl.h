@@ -19,11 +19,11 @@ struct BSplineWeights {
   Number first[3];   ///< on the differences p1 - p0, p2 - p1, p3 - p2
   Number second[2];  ///< on the differences of those
 
-  BSplineWeights(const Number& t, bool low, bool high) {
+  [[gnu::always_inline]] BSplineWeights(const Number& t, bool low, bool high) {
     const Number zero{}, s = 1 - t;
     const double sixth = 1. / 6;
-    first[0] = low ? zero : s * s / 2;
-    first[2] = high ? zero : t * t / 2;
+    first[0] = low ? zero : 0.5 * (s * s);
+    first[2] = high ? zero : 0.5 * (t * t);
     first[1] = 1 - first[0] - first[2];
     second[0] = low ? zero : s;
     second[1] = high ? zero : t;
@@ -50,11 +50,28 @@ struct PatchValues {
   Point value, du, dv, duu, duv, dvv;
 };
 
-/// The bicubic patch of a 4 x 4 window of control points; derivatives up to Order. `points(x, y)`,
-/// 0 <= x, y <= 3, returns one of them.
-template <int Order, typename Point, typename Weights, typename Points>
-inline void evaluatePatch(const Points& points, const Weights& u, const Weights& v,
-                          PatchValues<Point>& out) {
+/// Four control points in a row of a window, and their differences.
+template <typename Point>
+struct WindowLine {
+  Point point[4];
+  Point first[3];   ///< p1 - p0, p2 - p1, p3 - p2
+  Point second[2];  ///< the differences of those
+
+  static WindowLine of(const Point& p, const Point& q, const Point& r, const Point& s) {
+    WindowLine line{{p, q, r, s}, {q - p, r - q, s - r}, {}};
+    line.second[0] = line.first[1] - line.first[0];
+    line.second[1] = line.first[2] - line.first[1];
+    return line;
+  }
+};
+
+/// The bicubic patch of a 4 x 4 window of control points; derivatives up to Order. `row(y)` is the
+/// WindowLine of the points (0, y) to (3, y). `column(x)` is that of (x, 0) to (x, 3), of which
+/// only the second differences are used, and only for second derivatives.
+template <int Order, typename Point, typename Weights, typename Row, typename Column>
+[[gnu::always_inline]] inline void evaluateLines(const Row& row_of, const Column& column_of,
+                                                 const Weights& u, const Weights& v,
+                                                 PatchValues<Point>& out) {
   const auto value = [](const Weights& w, const Point& a, const Point& b, const Point& c,
                         const Point& d) -> Point {
     return w.value[0] * a + w.value[1] * b + w.value[2] * c + w.value[3] * d;
@@ -65,20 +82,20 @@ inline void evaluatePatch(const Points& points, const Weights& u, const Weights&
     // no longer equally spaced exactly where the points are.
     Point column[4];
     for (int x = 0; x < 4; ++x) {
-      const Point p = points(x, 0), q = points(x, 1), r = points(x, 2), s = points(x, 3);
-      column[x] = v.second[0] * ((r - q) - (q - p)) + v.second[1] * ((s - r) - (r - q));
+      const WindowLine<Point> line = column_of(x);
+      column[x] = v.second[0] * line.second[0] + v.second[1] * line.second[1];
     }
     out.dvv = value(u, column[0], column[1], column[2], column[3]);
   }
   for (int y = 0; y < 4; ++y) {
-    const Point p = points(0, y), q = points(1, y), r = points(2, y), s = points(3, y);
-    row[y] = value(u, p, q, r, s);
+    const WindowLine<Point> line = row_of(y);
+    row[y] = value(u, line.point[0], line.point[1], line.point[2], line.point[3]);
     if (Order >= 1) {
-      const Point d0 = q - p, d1 = r - q, d2 = s - r;
-      row_du[y] = u.first[0] * d0 + u.first[1] * d1 + u.first[2] * d2;
-      if (Order >= 2) {
-        row_duu[y] = u.second[0] * (d1 - d0) + u.second[1] * (d2 - d1);
-      }
+      row_du[y] =
+          u.first[0] * line.first[0] + u.first[1] * line.first[1] + u.first[2] * line.first[2];
+    }
+    if (Order >= 2) {
+      row_duu[y] = u.second[0] * line.second[0] + u.second[1] * line.second[1];
     }
   }
   out.value = value(v, row[0], row[1], row[2], row[3]);
@@ -92,6 +109,19 @@ inline void evaluatePatch(const Points& points, const Weights& u, const Weights&
                 v.first[2] * (row_du[3] - row_du[2]);
     }
   }
+}
+
+/// The same. `points(x, y)`, 0 <= x, y <= 3, returns one of the control points.
+template <int Order, typename Point, typename Weights, typename Points>
+inline void evaluatePatch(const Points& points, const Weights& u, const Weights& v,
+                          PatchValues<Point>& out) {
+  const auto row = [&](int y) {
+    return WindowLine<Point>::of(points(0, y), points(1, y), points(2, y), points(3, y));
+  };
+  const auto column = [&](int x) {
+    return WindowLine<Point>::of(points(x, 0), points(x, 1), points(x, 2), points(x, 3));
+  };
+  evaluateLines<Order, Point>(row, column, u, v, out);
 }
 
 /// The same from the differences of the points, which are given (derivative_nets.h): du(x, y) is

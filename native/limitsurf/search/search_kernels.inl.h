@@ -61,6 +61,7 @@ inline void squaredDistance(const double points[16][4], const double away[4],
 
 /// The extremes of numbers that come four at a time.
 struct Extremes {
+  Extremes() {}  // an implicit one would be compiled for the baseline
   Four low = Four::of(__builtin_inf()), high = Four::of(-__builtin_inf());
 
   void include(const Four& numbers) {

@@ -38,6 +38,9 @@ class LocationBatch {
     return is_wide_ ? *static_cast<const std::int64_t*>(at) : *static_cast<const std::int32_t*>(at);
   }
 
+  double u(std::size_t row) const { return parameter(row, 0); }
+  double v(std::size_t row) const { return parameter(row, 1); }
+
   /// Some rows of the batch. They are checked if the batch is.
   LocationBatch rows(std::size_t begin, std::size_t count) const;
 

@@ -137,6 +137,58 @@ TEST_P(Batch, SettingPositionsEqualsANewSurface) {
   }
 }
 
+// Rows of a patch are evaluated several at a time, and those that are left over in other ways.
+TEST_P(Batch, RunsOfAnyLengthDoNotChangeABit) {
+  const LimitSurface surface = limitSurface(cage());
+  Random random(3);
+  for (int face = 0; face < surface.faceCount(); ++face) {
+    for (const double part : {1., 0.5, 0x1p-7}) {  // of the face, so that few patches meet it
+      const std::vector<Location> all = anywhere(face, 21, random);
+      std::vector<Location> at;
+      for (const Location& l : all) at.push_back({face, part * l.u, part * l.v});
+      for (const Derivatives order : {Derivatives::none, Derivatives::first, Derivatives::second}) {
+        std::vector<Evaluation> alone;
+        for (const Location& l : at) {
+          alone.push_back(
+              surface.evaluate(Span<Location>(&l, 1), order, order > Derivatives::none));
+        }
+        for (std::size_t count = 1; count <= at.size(); ++count) {
+          const Evaluation run = surface.evaluate(Span<Location>(at).subspan(0, count), order,
+                                                  order > Derivatives::none);
+          for (std::size_t row = 0; row < count; ++row) {
+            const auto i = static_cast<Eigen::Index>(row);
+            for (const auto member : {&Evaluation::position, &Evaluation::du, &Evaluation::dv,
+                                      &Evaluation::duv, &Evaluation::normal}) {
+              if ((run.*member).rows() > 0) {
+                ASSERT_TRUE(sameBits((run.*member).row(i), alone[row].*member))
+                    << describe(at[row]) << ", " << count << " rows";
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+// Numbers below 0 are refused, and -0 is none of them.
+TEST_P(Batch, NegativeZeroIsZero) {
+  const LimitSurface surface = limitSurface(cage());
+  for (int face = 0; face < surface.faceCount(); ++face) {
+    const std::vector<Location> at = {{face, 0, 0}, {face, 0, 0.3}, {face, 0.3, 0},
+                                      {face, 0, 1}, {face, 1, 0},   {face, 0, 0x1p-70}};
+    std::vector<Location> negative = at;
+    for (Location& l : negative) {
+      l.u = l.u == 0 ? -0. : l.u;
+      l.v = l.v == 0 ? -0. : l.v;
+    }
+    const Evaluation expected = surface.evaluate(at, Derivatives::first);
+    const Evaluation got = surface.evaluate(negative, Derivatives::first);
+    EXPECT_EQ(got.position, expected.position) << face;
+    EXPECT_TRUE(((got.du - expected.du).array() == 0 || expected.du.array().isNaN()).all()) << face;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Cages, Batch, testing::Values(0, 1, 2));
 
 // Where so many faces meet, all cores share the work on one vertex.

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <utility>
 
 #include "limitsurf/error.h"
+#include "limitsurf/prefetch.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/tile_weights.h"
 #include "limitsurf/surface/vertex_approach.h"
@@ -20,11 +21,7 @@ const double (*numbersOf(const Padded* points))[4] {
   return reinterpret_cast<const double (*)[4]>(points);
 }
 
-void copy(const Padded& from, double to[3]) {
-  to[0] = from[0];
-  to[1] = from[1];
-  to[2] = from[2];
-}
+void copy(const Padded& from, double to[4]) { std::memcpy(to, from.data(), sizeof from); }
 
 }  // namespace
 
@@ -33,8 +30,7 @@ BatchEvaluator<Real>::BatchEvaluator(const TileTable& table, const Pose& pose, i
                                      const PatchResults<Real>& results)
     : table_(table),
       pose_(pose),
-      kernels_(PatchKernels::get()),
-      kernel_(kernels_.evaluate<Real>(order)),
+      kernel_(PatchKernels::get().evaluate<Real>(order)),
       order_(order),
       results_(results),
       alone_(table, pose) {}
@@ -42,38 +38,53 @@ BatchEvaluator<Real>::BatchEvaluator(const TileTable& table, const Pose& pose, i
 template <typename Real>
 void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& order,
                                     std::size_t begin, std::size_t end) {
-  double u[kMostRows], v[kMostRows];
+  double u[kMostRows + PatchRun::kReadBeyond], v[kMostRows + PatchRun::kReadBeyond];
   std::size_t rows[kMostRows];
   while (begin < end) {
-    const int face = at[order[begin]].face;
+    const std::int64_t face = at.face(order[begin]);
     const std::size_t stop = std::min<std::size_t>(end, begin + kMostRows);
     unsigned count = 0;
     bool good = true;
+    std::int64_t next = face;
     do {
       const std::size_t row = order[begin];
-      const Location location = at[row];
-      if (location.face != face) {
+      next = at.face(row);
+      if (next != face) {
         break;
       }
-      good &= (location.u >= 0) & (location.u <= 1) & (location.v >= 0) & (location.v <= 1);
-      u[count] = location.u;
-      v[count] = location.v;
+      const double u_here = at.u(row), v_here = at.v(row);
+      good &= (u_here >= 0) & (u_here <= 1) & (v_here >= 0) & (v_here <= 1);
+      u[count] = u_here;
+      v[count] = v_here;
       rows[count] = row;
       ++count;
     } while (++begin < stop);
-    if (!good || static_cast<std::size_t>(face) >= table_.faces.size() ||
-        table_.faces[face].kind == TileRef::kNone) {
+    const TileRef tile = tileOf(face);
+    if (!good || tile.kind == TileRef::kNone) {
       throw LocationError("the locations were changed while they were evaluated");
     }
-    evaluateTile(table_.faces[face], 0, 0, {u, v, rows, count});
+    if (next != face) {
+      prefetchTile(tileOf(next));
+    }
+    if (count > 1) {
+      std::fill_n(u + count, PatchRun::kReadBeyond, 0.);
+      std::fill_n(v + count, PatchRun::kReadBeyond, 0.);
+    }
+    evaluateTile(tile, 0, 0, {u, v, rows, count});
   }
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluateTile(TileRef tile, int turns, int depth, const Rows& rows) {
+TileRef BatchEvaluator<Real>::tileOf(std::int64_t face) const {
+  const auto index = static_cast<std::uint64_t>(face);
+  return index < table_.faces.size() ? table_.faces[index] : TileRef{TileRef::kNone, 0};
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateTile(TileRef tile, int turns, int depth, const TileRows& rows) {
   constexpr unsigned kFewestRows = 3;  // fewer are located faster one by one
   if (tile.kind == TileRef::kBSpline && !hasCrease(tile)) {
-    evaluatePatch({tile, turns & 3, depth, 0, 0, 0}, rows.u, rows.v, rows.rows, rows.count);
+    evaluatePatch({tile, turns & 3, depth, 0, 0, 0}, 1, rows.u, rows.v, rows.rows, rows.count);
   } else if (tile.kind == TileRef::kBSpline || rows.count < kFewestRows) {
     for (unsigned i = 0; i < rows.count; ++i) {
       evaluateOne(alone_.locateBelow({tile, rows.u[i], rows.v[i], turns, depth}), rows.rows[i]);
@@ -86,115 +97,73 @@ void BatchEvaluator<Real>::evaluateTile(TileRef tile, int turns, int depth, cons
 }
 
 template <typename Real>
-typename BatchEvaluator<Real>::Level& BatchEvaluator<Real>::level(int depth, unsigned rows) {
-  while (static_cast<int>(levels_.size()) <= depth) {
-    levels_.emplace_back();
+RowParts& BatchEvaluator<Real>::partsAt(int depth) {
+  while (static_cast<int>(parts_.size()) <= depth) {
+    parts_.emplace_back();
   }
-  Level& level = levels_[depth];
-  if (level.part.size() < rows) {
-    level.u.resize(rows);
-    level.v.resize(rows);
-    level.rows.resize(rows);
-    level.part.resize(rows);
-  }
-  return level;
+  return parts_[depth];
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluateSplit(TileRef tile, int turns, int depth, const Rows& rows) {
-  Level& parts = level(depth, rows.count);
-  unsigned count[4] = {};
-  for (unsigned i = 0; i < rows.count; ++i) {
-    const unsigned right = rows.u[i] >= 0.5, top = rows.v[i] >= 0.5;
-    parts.part[i] = static_cast<std::uint8_t>(right ^ (3 * top));  // anticlockwise
-    ++count[parts.part[i]];
-  }
-  unsigned end[4] = {0, count[0], count[0] + count[1], count[0] + count[1] + count[2]};
-  for (unsigned i = 0; i < rows.count; ++i) {
-    const unsigned to = end[parts.part[i]]++;
-    parts.u[to] = rows.u[i];
-    parts.v[to] = rows.v[i];
-    parts.rows[to] = rows.rows[i];
-  }
-  for (int child = 0; child < 4; ++child) {
-    const unsigned first = end[child] - count[child];
-    double *const u = &parts.u[first], *const v = &parts.v[first];
-    for (unsigned i = 0; i < count[child]; ++i) {
-      turnParameters(child, u[i], v[i]);
-      u[i] *= 2;
-      v[i] *= 2;
-    }
-    if (count[child] > 0) {
-      evaluateTile(table_.splits[tile.index][child], turns + child, depth + 1,
-                   {u, v, &parts.rows[first], count[child]});
+void BatchEvaluator<Real>::prefetchTile(TileRef tile) const {
+  if (tile.kind == TileRef::kRing) {
+    const int index = static_cast<int>(tile.index);
+    prefetch(table_.ring_tiles[index]);
+    prefetch(pose_.grid(index, 1));  // three quarters of the locations lie there
+  } else if (tile.kind == TileRef::kSplit) {
+    for (const TileRef child : table_.splits[tile.index]) {
+      if (child.kind != TileRef::kSplit) {
+        prefetchTile(child);
+      }
     }
   }
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth, const Rows& rows) {
+void BatchEvaluator<Real>::evaluateSplit(TileRef tile, int turns, int depth, const TileRows& rows) {
+  RowParts& parts = partsAt(depth);
+  parts.sortByChild(rows);
+  parts.forEachPart([&](unsigned part, const TileRows& some) {
+    const int child = static_cast<int>(part);
+    evaluateTile(table_.splits[tile.index][child], turns + child, depth + 1, some);
+  });
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth,
+                                            const TileRows& rows) {
   const RingTile& ring_tile = table_.ring_tiles[tile.index];
   const int corner = ring_tile.corner;
-  const bool needs_nets = TileEvaluator::needsNets(*table_.rings[ring_tile.ring].basis, order_);
   turns = (turns + corner) & 3;
-  // Parts are numbered 4 steps + a + 2 b. Rows that are evaluated one by one belong to part 0.
-  constexpr unsigned kParts = 4 * (kMostSteps + 1);
-  static_assert(kParts <= 256);
-  Level& parts = level(depth, rows.count);
-  unsigned begin[kParts] = {};
-  int deepest = 0;
+  bool is_any_on_spoke = false;
   for (unsigned i = 0; i < rows.count; ++i) {
     turnParameters(corner, rows.u[i], rows.v[i]);
-    const double larger = std::max(rows.u[i], rows.v[i]);
-    const int steps = Quarter::stepsTo(larger);
-    const double edge = powerOfTwo(-steps);
-    const int a = rows.u[i] >= edge ? 1 : 0, b = rows.v[i] >= edge ? 2 : 0;
-    const bool on_spoke = std::min(rows.u[i], rows.v[i]) == 0;
-    const int part = steps <= kMostSteps && !(needs_nets && on_spoke) ? 4 * steps + a + b : 0;
-    parts.part[i] = static_cast<std::uint8_t>(part);
-    deepest = std::max(deepest, part);
-    ++begin[part];
+    is_any_on_spoke |= (rows.u[i] == 0) | (rows.v[i] == 0);
   }
-  const unsigned last = static_cast<unsigned>(deepest);
-  unsigned next = 0;
-  for (unsigned part = 0; part <= last; ++part) {
-    next += std::exchange(begin[part], next);
-  }
-  for (unsigned i = 0; i < rows.count; ++i) {
-    const unsigned to = begin[parts.part[i]]++;
-    parts.u[to] = rows.u[i];
-    parts.v[to] = rows.v[i];
-    parts.rows[to] = rows.rows[i];
-  }
-  for (unsigned i = 0; i < begin[0]; ++i) {
-    evaluateOne({tile, parts.u[i], parts.v[i], turns, depth}, parts.rows[i]);
-  }
-  for (unsigned part = 4, first = begin[0]; part <= last; first = begin[part++]) {
-    const unsigned count = begin[part] - first;
-    if (count == 0) {
-      continue;
+  const bool spokes_are_deep =
+      is_any_on_spoke && TileEvaluator::needsNets(*table_.rings[ring_tile.ring].basis, order_);
+  RowParts& parts = partsAt(depth);
+  parts.sortByQuarter(rows, spokes_are_deep);
+  parts.forEachPart([&](unsigned part, const TileRows& some) {
+    if (part == RowParts::kDeep) {
+      for (unsigned i = 0; i < some.count; ++i) {
+        evaluateOne({tile, some.u[i], some.v[i], turns, depth}, some.rows[i]);
+      }
+      return;
     }
-    const Patch patch{tile,
-                      turns,
-                      depth,
-                      static_cast<int>(part / 4),
-                      static_cast<int>(part & 1),
-                      static_cast<int>(part >> 1 & 1)};
-    double *const u = &parts.u[first], *const v = &parts.v[first];
-    const double scale = powerOfTwo(patch.steps);
-    for (unsigned i = 0; i < count; ++i) {
-      u[i] = u[i] * scale - patch.a;
-      v[i] = v[i] * scale - patch.b;
-    }
-    evaluatePatch(patch, u, v, &parts.rows[first], count);
-  }
+    const int steps = static_cast<int>(part / 4);
+    const Patch patch{
+        tile, turns, depth, steps, static_cast<int>(part & 1), static_cast<int>(part >> 1 & 1)};
+    evaluatePatch(patch, powerOfTwo(steps), some.u, some.v, some.rows, some.count);
+  });
 }
 
 template <typename Real>
 void BatchEvaluator<Real>::evaluateOne(const TileLocation& place, std::size_t row) {
   if (place.tile.kind == TileRef::kBSpline) {
     if (!hasCrease(place.tile)) {
-      evaluatePatch({place.tile, place.turns, place.depth, 0, 0, 0}, &place.u, &place.v, &row, 1);
+      evaluatePatch({place.tile, place.turns, place.depth, 0, 0, 0}, 1, &place.u, &place.v, &row,
+                    1);
       return;
     }
   } else if (!place.atVertex()) {
@@ -202,10 +171,10 @@ void BatchEvaluator<Real>::evaluateOne(const TileLocation& place, std::size_t ro
     const RingTile& tile = table_.ring_tiles[place.tile.index];
     const Eigenbasis& basis = *table_.rings[tile.ring].basis;
     if (quarter.steps <= pose_.gridSteps(tile) ||
-        (quarter.steps <= kMostSteps &&
+        (quarter.steps <= static_cast<int>(RowParts::kMostSteps) &&
          !TileEvaluator::takesModes(basis, order_, place.u, place.v))) {
       evaluatePatch({place.tile, place.turns, place.depth, quarter.steps, quarter.a, quarter.b},
-                    &quarter.u, &quarter.v, &row, 1);
+                    powerOfTwo(quarter.steps), &place.u, &place.v, &row, 1);
       return;
     }
   }
@@ -213,8 +182,8 @@ void BatchEvaluator<Real>::evaluateOne(const TileLocation& place, std::size_t ro
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, const double* u, const double* v,
-                                         const std::size_t* rows, unsigned count) {
+void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, double scale, const double* u,
+                                         const double* v, const std::size_t* rows, unsigned count) {
   PatchRun run;
   if (patch.tile.kind == TileRef::kBSpline) {
     setBSpline(patch, run);
@@ -224,14 +193,20 @@ void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, const double* u, co
   run.turns = patch.turns;
   run.u = u;
   run.v = v;
+  run.scale = scale;
+  run.a = patch.a;
+  run.b = patch.b;
   run.rows = rows;
   run.count = count;
+  const bool has_normals = order_ >= 1 && results_.normal;
+  if (has_normals) {
+    run.normal_limits = alone_.normalLimits(patch.steps, patch.depth);
+  }
   kernel_(run, results_);
-  if (order_ >= 1 && results_.normal) {
+  if (has_normals) {
     for (unsigned i = 0; i < count; ++i) {
       if (std::isnan(results_.normal[3 * rows[i]])) {
-        const TileLocation own{patch.tile, std::ldexp(u[i] + patch.a, -patch.steps),
-                               std::ldexp(v[i] + patch.b, -patch.steps), patch.turns, patch.depth};
+        const TileLocation own{patch.tile, u[i], v[i], patch.turns, patch.depth};
         Jet jet;
         alone_.evaluateUpTo(order_, own, jet);  // the same du and dv as those in the results
         putNormal(own, jet, rows[i]);
@@ -245,24 +220,22 @@ void BatchEvaluator<Real>::setBSpline(const Patch& patch, PatchRun& run) {
   const BSplineTile& tile = table_.bsplines[patch.tile.index];
   if (tile.fine) {
     for (int i = 0; i < 16; ++i) {
-      const Padded point = pose_.difference(tile.points[i], tile.points[5]);
-      std::copy_n(point.data(), 4, window_[i]);
+      copy(pose_.difference(tile.points[i], tile.points[5]), window_[i]);
     }
+    run.points = window_;
   } else {
-    kernels_.gather(numbersOf(&pose_.point(0)), tile.points.data(), window_);
+    run.points = numbersOf(&pose_.point(0));
+    run.indices = tile.points.data();
   }
-  run.points = window_;
-  run.stride = 4;
   run.u_low = tile.x_low;
   run.u_high = tile.x_high;
   run.v_low = tile.y_low;
   run.v_high = tile.y_high;
   copy(pose_.point(tile.points[5]), run.anchor);
   run.value_scale = 1;
-  run.offset[0] = run.offset[1] = run.offset[2] = 0;
+  std::fill_n(run.offset, 4, 0);
   run.first_scale = powerOfTwo(patch.depth);
   run.second_scale = powerOfTwo(2 * patch.depth);
-  run.normal_limits = alone_.normalLimits(0, patch.depth);
 }
 
 template <typename Real>
@@ -275,7 +248,7 @@ void BatchEvaluator<Real>::setRing(const Patch& patch, bool is_single, PatchRun&
     grid = kept.points;
     copy(kept.limit(), run.anchor);
     run.value_scale = 1;
-    run.offset[0] = run.offset[1] = run.offset[2] = 0;
+    std::fill_n(run.offset, 4, 0);
     run.first_scale = powerOfTwo(patch.steps + patch.depth);
     run.second_scale = powerOfTwo(2 * (patch.steps + patch.depth));
   } else {
@@ -294,7 +267,6 @@ void BatchEvaluator<Real>::setRing(const Patch& patch, bool is_single, PatchRun&
   run.u_low = onRight(tile.sides) && patch.a == 0;
   run.v_low = onLeft(tile.sides) && patch.b == 0;
   run.u_high = run.v_high = false;
-  run.normal_limits = alone_.normalLimits(patch.steps, patch.depth);
 }
 
 template <typename Real>

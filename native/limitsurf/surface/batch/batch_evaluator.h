@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <deque>
-#include <vector>
 
 #include "limitsurf/surface/batch/patch_kernels.h"
 #include "limitsurf/surface/batch/row_order.h"
+#include "limitsurf/surface/batch/row_parts.h"
 #include "limitsurf/surface/location_batch.h"
 #include "limitsurf/surface/tile_evaluator.h"
 
@@ -23,16 +23,15 @@ class BatchEvaluator {
   BatchEvaluator(const TileTable& table, const Pose& pose, int order,
                  const PatchResults<Real>& results);
 
-  /// The rows at places `begin` to `end` - 1 of an order, of a batch that has been checked. Each
-  /// location is read once and looked at again, because an array of another program may be changed
-  /// by another of its threads; throws LocationError if that made it invalid.
+  /// The rows at places `begin` to `end` - 1 of an order. Each location is read once and checked:
+  /// throws LocationError, after some rows may have been written, if it is not on the surface. That
+  /// holds for a batch that has been checked before as well, because an array of another program
+  /// may be changed by another of its threads.
   void evaluate(const LocationBatch& at, const RowOrder& order, std::size_t begin, std::size_t end);
 
  private:
   /// At most so many rows are put in order at a time.
   static constexpr unsigned kMostRows = 2048;
-  /// Deeper quarters of a ring tile, where few samples lie, are evaluated one by one.
-  static constexpr int kMostSteps = 63;
 
   /// A bicubic patch of a tile: all of a regular tile, or what a quarter of a ring tile is after
   /// some steps.
@@ -41,25 +40,17 @@ class BatchEvaluator {
     int turns, depth;
     int steps, a, b;  // of the quarter; 0 on a regular tile
   };
-  /// Rows of a batch on one tile, with the tile's parameters.
-  struct Rows {
-    double *u, *v;
-    std::size_t* rows;
-    unsigned count;
-  };
-  /// Memory for rows of each level of splits below a face.
-  struct Level {
-    std::vector<double> u, v;
-    std::vector<std::size_t> rows;
-    std::vector<std::uint8_t> part;  // by row of the level above: to which part it belongs
-  };
-
+  /// The tile of a face, of kind kNone if there is no such face.
+  TileRef tileOf(std::int64_t face) const;
   /// The rows of a part of a face, on which the tile lies, split as often as `depth`.
-  void evaluateTile(TileRef tile, int turns, int depth, const Rows& rows);
-  void evaluateSplit(TileRef tile, int turns, int depth, const Rows& rows);
-  void evaluateRingTile(TileRef tile, int turns, int depth, const Rows& rows);
-  void evaluatePatch(const Patch& patch, const double* u, const double* v, const std::size_t* rows,
-                     unsigned count);
+  void evaluateTile(TileRef tile, int turns, int depth, const TileRows& rows);
+  /// Fetches what most locations on a tile will read.
+  void prefetchTile(TileRef tile) const;
+  void evaluateSplit(TileRef tile, int turns, int depth, const TileRows& rows);
+  void evaluateRingTile(TileRef tile, int turns, int depth, const TileRows& rows);
+  /// The parameters are in the tile's frame. They are `scale` times as large in that of the patch.
+  void evaluatePatch(const Patch& patch, double scale, const double* u, const double* v,
+                     const std::size_t* rows, unsigned count);
   void setBSpline(const Patch& patch, PatchRun& run);
   void setRing(const Patch& patch, bool is_single, PatchRun& run);
   /// Computes the points of a ring tile after more steps than are kept, or their nets: all of them,
@@ -71,22 +62,21 @@ class BatchEvaluator {
   void putNormal(const TileLocation& place, const Jet& jet, std::size_t row);
 
   bool hasCrease(TileRef tile) const { return table_.bsplines[tile.index].crease > 0; }
-  /// Memory for the parts of a tile of that depth.
-  Level& level(int depth, unsigned rows);
+  /// The sorted rows of a tile of that depth.
+  RowParts& partsAt(int depth);
 
   const TileTable& table_;
   const Pose& pose_;
-  const PatchKernels& kernels_;
   const typename PatchKernels::Evaluate<Real> kernel_;
   const int order_;
   const PatchResults<Real> results_;
   TileEvaluator alone_;
 
-  alignas(64) double window_[16][4];
+  alignas(64) double window_[16][4];      // of a fine tile
   Padded deep_[derivative_nets::kCount];  // of the last ring tile below the grids that are kept
   std::uint32_t deep_tile_ = 0;
   int deep_steps_ = 0;
-  std::deque<Level> levels_;  // their addresses stay
+  std::deque<RowParts> parts_;  // by depth; their addresses stay
 };
 
 extern template class BatchEvaluator<double>;

@@ -10,15 +10,23 @@ struct Lanes {
   typedef double Numbers __attribute__((vector_size(kCount * sizeof(double))));
   Numbers numbers;
 
-  friend Lanes operator+(const Lanes& a, const Lanes& b) { return {a.numbers + b.numbers}; }
-  friend Lanes operator-(const Lanes& a, const Lanes& b) { return {a.numbers - b.numbers}; }
-  friend Lanes operator*(const Lanes& a, const Lanes& b) { return {a.numbers * b.numbers}; }
-  friend Lanes operator/(const Lanes& a, const Lanes& b) { return {a.numbers / b.numbers}; }
-  static Lanes of(double a) { return {a - Numbers{}}; }
-  static Lanes larger(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] friend Lanes operator+(const Lanes& a, const Lanes& b) {
+    return {a.numbers + b.numbers};
+  }
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a, const Lanes& b) {
+    return {a.numbers - b.numbers};
+  }
+  [[gnu::always_inline]] friend Lanes operator*(const Lanes& a, const Lanes& b) {
+    return {a.numbers * b.numbers};
+  }
+  [[gnu::always_inline]] friend Lanes operator/(const Lanes& a, const Lanes& b) {
+    return {a.numbers / b.numbers};
+  }
+  [[gnu::always_inline]] static Lanes of(double a) { return {a - Numbers{}}; }
+  [[gnu::always_inline]] static Lanes larger(const Lanes& a, const Lanes& b) {
     return {a.numbers > b.numbers ? a.numbers : b.numbers};
   }
-  static Lanes smaller(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] static Lanes smaller(const Lanes& a, const Lanes& b) {
     return {a.numbers < b.numbers ? a.numbers : b.numbers};
   }
   /// `a`, or `b` where `a` is 0.
@@ -36,50 +44,50 @@ struct Lanes {
     }
     return result;
   }
-  friend Lanes operator+(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] friend Lanes operator+(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x + y; });
   }
-  friend Lanes operator-(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x - y; });
   }
-  friend Lanes operator*(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] friend Lanes operator*(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x * y; });
   }
-  friend Lanes operator/(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] friend Lanes operator/(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x / y; });
   }
-  static Lanes of(double a) {
+  [[gnu::always_inline]] static Lanes of(double a) {
     Lanes result;
     for (double& number : result.numbers) {
       number = a;
     }
     return result;
   }
-  static Lanes larger(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] static Lanes larger(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x > y ? x : y; });
   }
-  static Lanes smaller(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] static Lanes smaller(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x < y ? x : y; });
   }
   static Lanes unlessZero(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x == 0 ? y : x; });
   }
 #endif
-  friend Lanes operator+(const Lanes& a, double b) { return a + of(b); }
-  friend Lanes operator-(const Lanes& a, double b) { return a - of(b); }
-  friend Lanes operator*(const Lanes& a, double b) { return a * of(b); }
-  friend Lanes operator/(const Lanes& a, double b) { return a / of(b); }
-  friend Lanes operator+(double a, const Lanes& b) { return of(a) + b; }
-  friend Lanes operator-(double a, const Lanes& b) { return of(a) - b; }
-  friend Lanes operator*(double a, const Lanes& b) { return of(a) * b; }
+  [[gnu::always_inline]] friend Lanes operator+(const Lanes& a, double b) { return a + of(b); }
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a, double b) { return a - of(b); }
+  [[gnu::always_inline]] friend Lanes operator*(const Lanes& a, double b) { return a * of(b); }
+  [[gnu::always_inline]] friend Lanes operator/(const Lanes& a, double b) { return a / of(b); }
+  [[gnu::always_inline]] friend Lanes operator+(double a, const Lanes& b) { return of(a) + b; }
+  [[gnu::always_inline]] friend Lanes operator-(double a, const Lanes& b) { return of(a) - b; }
+  [[gnu::always_inline]] friend Lanes operator*(double a, const Lanes& b) { return of(a) * b; }
 
-  static Lanes load(const double* from) {
+  [[gnu::always_inline]] static Lanes load(const double* from) {
     Lanes result;
     __builtin_memcpy(&result, from, sizeof result);
     return result;
   }
-  void store(double* to) const { __builtin_memcpy(to, this, sizeof *this); }
-  void store(float* to) const {
+  [[gnu::always_inline]] void store(double* to) const { __builtin_memcpy(to, this, sizeof *this); }
+  [[gnu::always_inline]] void store(float* to) const {
     double exact[kCount];
     store(exact);
     for (int i = 0; i < kCount; ++i) {

@@ -15,27 +15,32 @@ namespace limitsurf {
 namespace {
 
 namespace baseline {
-constexpr int kLanes = 2;
+#include "limitsurf/surface/batch/lanes.inl.h"
+constexpr int kLanes = 2, kFewLanes = 2;
 constexpr std::size_t kFewestLanes = 2;
 inline double squareRoot(double a) { return __builtin_sqrt(a); }
-template <typename Lanes>
-Lanes squareRoot(const Lanes& a) {
-  Lanes result = a;
+inline Lanes<kLanes> squareRoot(const Lanes<kLanes>& a) {
+  Lanes<kLanes> result = a;
   for (int i = 0; i < kLanes; ++i) {
     result.numbers[i] = std::sqrt(a.numbers[i]);
   }
   return result;
 }
-template <typename Lanes>
-inline void interleave(const Lanes xyz[3], Lanes out[3]) {
-  for (int i = 0; i < 3 * kLanes; ++i) {
-    out[i / kLanes].numbers[i % kLanes] = xyz[i % 3].numbers[i / 3];
-  }
+inline Lanes<2> pairOf(double a, double b) {
+  const double both[2] = {a, b};
+  return Lanes<2>::load(both);
 }
-template <typename Lanes>
-inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
-  for (int i = 0; i < 4 * kLanes; ++i) {
-    out[i / kLanes].numbers[i % kLanes] = xyz[i % 4 < 3 ? i % 4 : 0].numbers[i / 4];
+inline void interleave(const Lanes<2> xyz[3], Lanes<2> out[3]) {
+  const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
+  out[0] = pairOf(x[0], y[0]);
+  out[1] = pairOf(z[0], x[1]);
+  out[2] = pairOf(y[1], z[1]);
+}
+inline void interleavePadded(const Lanes<2> xyz[3], Lanes<2> out[4]) {
+  const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
+  for (int row = 0; row < 2; ++row) {
+    out[2 * row] = pairOf(x[row], y[row]);
+    out[2 * row + 1] = pairOf(z[row], 0);
   }
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
@@ -44,37 +49,12 @@ inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
 #if LIMITSURF_X86_SETS
 #include "limitsurf/surface/batch/target_avx2.inl.h"
 namespace avx2 {
-constexpr int kLanes = 4;
+#include "limitsurf/surface/batch/lanes.inl.h"
+constexpr int kLanes = 4, kFewLanes = 4;
 constexpr std::size_t kFewestLanes = 3;
 inline double squareRoot(double a) { return __builtin_sqrt(a); }
-template <typename Lanes>
-inline Lanes squareRoot(const Lanes& a) {
-  return {_mm256_sqrt_pd(a.numbers)};
-}
-/// x0 y0 z0 x1 y1 z1 ... from x0 x1 ..., y0 y1 ..., z0 z1 ...
-template <typename Lanes>
-inline void interleave(const Lanes xyz[3], Lanes out[3]) {
-  const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
-  out[0].numbers =
-      __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 4, 0, 1), z, 0, 1, 4, 3);
-  out[1].numbers =
-      __builtin_shufflevector(__builtin_shufflevector(x, y, 5, 0, 2, 6), z, 0, 5, 2, 3);
-  out[2].numbers =
-      __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 3, 7, 0), z, 6, 1, 2, 7);
-}
-/// x0 y0 z0 _ x1 y1 z1 _ ...
-template <typename Lanes>
-inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
-  const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
-  out[0].numbers =
-      __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 4, 0, 0), z, 0, 1, 4, 3);
-  out[1].numbers =
-      __builtin_shufflevector(__builtin_shufflevector(x, y, 1, 5, 0, 0), z, 0, 1, 5, 3);
-  out[2].numbers =
-      __builtin_shufflevector(__builtin_shufflevector(x, y, 2, 6, 0, 0), z, 0, 1, 6, 3);
-  out[3].numbers =
-      __builtin_shufflevector(__builtin_shufflevector(x, y, 3, 7, 0, 0), z, 0, 1, 7, 3);
-}
+inline Lanes<4> squareRoot(const Lanes<4>& a) { return {_mm256_sqrt_pd(a.numbers)}; }
+#include "limitsurf/surface/batch/interleave_four.inl.h"
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx2
 #include "limitsurf/surface/batch/target_end.inl.h"
@@ -83,16 +63,15 @@ inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
 #if LIMITSURF_X86_SETS
 #include "limitsurf/surface/batch/target_avx512.inl.h"
 namespace avx512 {
-constexpr int kLanes = 8;
+#include "limitsurf/surface/batch/lanes.inl.h"
+constexpr int kLanes = 8, kFewLanes = 4;
 constexpr std::size_t kFewestLanes = 3;
 inline double squareRoot(double a) { return __builtin_sqrt(a); }
-template <typename Lanes>
-inline Lanes squareRoot(const Lanes& a) {
-  return {_mm512_maskz_sqrt_pd(0xff, a.numbers)};
-}
+inline Lanes<4> squareRoot(const Lanes<4>& a) { return {_mm256_sqrt_pd(a.numbers)}; }
+inline Lanes<8> squareRoot(const Lanes<8>& a) { return {_mm512_maskz_sqrt_pd(0xff, a.numbers)}; }
+#include "limitsurf/surface/batch/interleave_four.inl.h"
 /// x0 y0 z0 x1 y1 z1 ... from x0 x1 ..., y0 y1 ..., z0 z1 ...
-template <typename Lanes>
-inline void interleave(const Lanes xyz[3], Lanes out[3]) {
+inline void interleave(const Lanes<8> xyz[3], Lanes<8> out[3]) {
   const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
   out[0].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 8, 0, 1, 9, 0, 2, 10),
                                            z, 0, 1, 8, 3, 4, 9, 6, 7);
@@ -102,8 +81,7 @@ inline void interleave(const Lanes xyz[3], Lanes out[3]) {
                                            z, 0, 13, 2, 3, 14, 5, 6, 15);
 }
 /// x0 y0 z0 _ x1 y1 z1 _ ...
-template <typename Lanes>
-inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
+inline void interleavePadded(const Lanes<8> xyz[3], Lanes<8> out[4]) {
   const auto &x = xyz[0].numbers, &y = xyz[1].numbers, &z = xyz[2].numbers;
   out[0].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 0, 8, 0, 0, 1, 9, 0, 0), z,
                                            0, 1, 8, 3, 4, 5, 9, 7);
@@ -113,6 +91,30 @@ inline void interleavePadded(const Lanes xyz[3], Lanes out[4]) {
                                            z, 0, 1, 12, 3, 4, 5, 13, 7);
   out[3].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 6, 14, 0, 0, 7, 15, 0, 0),
                                            z, 0, 1, 14, 3, 4, 5, 15, 7);
+}
+// Three of four numbers are written by one instruction.
+[[gnu::always_inline]] inline void putPadded(double* to, const Lanes<8> padded[4],
+                                             const std::size_t* rows, int count) {
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    const auto& two = padded[i].numbers;
+    if (2 * i < count) {
+      _mm256_mask_storeu_pd(to + 3 * rows[2 * i], 7, __builtin_shufflevector(two, two, 0, 1, 2, 3));
+    }
+    if (2 * i + 1 < count) {
+      _mm256_mask_storeu_pd(to + 3 * rows[2 * i + 1], 7,
+                            __builtin_shufflevector(two, two, 4, 5, 6, 7));
+    }
+  }
+}
+[[gnu::always_inline]] inline void putPadded(double* to, const Lanes<4> padded[4],
+                                             const std::size_t* rows, int count) {
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    if (i < count) {
+      _mm256_mask_storeu_pd(to + 3 * rows[i], 7, padded[i].numbers);
+    }
+  }
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx512

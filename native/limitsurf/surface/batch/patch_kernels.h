@@ -13,10 +13,6 @@ struct PatchKernels {
   template <typename Real>
   using Evaluate = void (*)(const PatchRun& run, const PatchResults<Real>& results);
 
-  /// The 16 points that `indices` choose, less the sixth of them.
-  using Gather = void (*)(const double (*points)[4], const int indices[16], double window[16][4]);
-
-  Gather gather;
   Evaluate<double> evaluate_double[3];  ///< by the order of derivatives
   Evaluate<float> evaluate_float[3];
 

@@ -1,129 +1,176 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The inner loops of batch evaluation. patch_kernels.cpp includes this file once for each
-// instruction set, inside a namespace, after it has defined kLanes, kFewestLanes, squareRoot(),
-// interleave() and interleavePadded(). Nothing here may call a function that is defined elsewhere:
-// its code could be that of another set.
+// instruction set, inside a namespace, after it has included lanes.inl.h and defined kLanes,
+// kFewLanes, kFewestLanes, squareRoot(), interleave() and interleavePadded(). Nothing here may call
+// a function that is defined elsewhere: its code could be that of another set.
 
 #include "limitsurf/eigen/bspline_formulas.inl.h"
-#include "limitsurf/surface/batch/lanes.inl.h"
+#include "limitsurf/surface/batch/row_places.inl.h"
 #include "limitsurf/surface/batch/unit_normal.inl.h"
 
-inline void gather(const double (*points)[4], const int indices[16], double window[16][4]) {
-  using Point = Lanes<4>;
-  const Point anchor = Point::load(points[indices[5]]);
-  for (int i = 0; i < 16; ++i) {
-    (Point::load(points[indices[i]]) - anchor).store(window[i]);
-  }
+/// Has compilers take the numbers that are the same for all lanes from memory, each time. Otherwise
+/// they put each of them in all lanes and store these before they begin, which takes as long as 8
+/// rows.
+inline void rereadMemory() {
+#if defined(__GNUC__)
+  __asm__ volatile("" ::: "memory");
+#endif
 }
-
-/// kLanes rows at a time.
-using Rows = Lanes<kLanes>;
-
-/// Where the results of up to kLanes rows go.
-struct RowPlaces {
-  RowPlaces(const std::size_t* rows_, int count_)
-      : rows(rows_),
-        count(count_),
-        contiguous(count_ == kLanes && rows_[kLanes - 1] - rows_[0] == kLanes - 1) {}
-
-  template <typename Real>
-  void put(Real* to, const Rows vectors[3]) const {
-    if (contiguous) {
-      Rows interleaved[3];
-      interleave(vectors, interleaved);
-      for (int i = 0; i < 3; ++i) {
-        interleaved[i].store(to + 3 * rows[0] + i * kLanes);
-      }
-      return;
-    }
-    // With a fourth number in each row, no row is read from memory that two instructions have
-    // written: processors do not read such a row until both have reached the cache.
-    Rows padded[4];
-    interleavePadded(vectors, padded);
-    Real numbers[4 * kLanes];
-    for (int i = 0; i < 4; ++i) {
-      padded[i].store(numbers + i * kLanes);
-    }
-    for (int lane = 0; lane < count; ++lane) {
-      __builtin_memcpy(to + 3 * rows[lane], numbers + 4 * lane, 3 * sizeof(Real));
-    }
-  }
-
-  const std::size_t* rows;
-  int count;
-  bool contiguous;  ///< whether there are kLanes rows that follow each other
-};
 
 /// What a run does to the derivatives of its patch, as Jet::turn() does.
 struct Turned {
   explicit Turned(const PatchRun& run)
       : swapped(run.turns % 2 == 1),
-        du(run.turns == 1 || run.turns == 2 ? -run.first_scale : run.first_scale),
-        dv(run.turns == 2 || run.turns == 3 ? -run.first_scale : run.first_scale),
+        du(kSignOfDu[run.turns] * run.first_scale),
+        dv(kSignOfDv[run.turns] * run.first_scale),
         second(run.second_scale),
-        duv(swapped ? -run.second_scale : run.second_scale) {}
+        duv(kSignOfDuv[run.turns] * run.second_scale) {}
 
   bool swapped;
   double du, dv, second, duv;  // factors
+
+ private:
+  // The signs by the number of turns. (Branches would be guessed wrong.)
+  static constexpr double kSignOfDu[4] = {1, -1, -1, 1}, kSignOfDv[4] = {1, 1, -1, -1},
+                          kSignOfDuv[4] = {1, -1, 1, -1};
 };
 
+/// Calls body with a function that returns the run's point (x, y).
+template <typename Body>
+[[gnu::always_inline]] inline void withPoints(const PatchRun& run, const Body& body) {
+  if (run.indices) {
+    const Lanes<4> anchor = Lanes<4>::load(run.anchor);
+    body([&](int x, int y) { return Lanes<4>::load(run.points[run.indices[4 * y + x]]) - anchor; });
+  } else {
+    body([&](int x, int y) {
+      return Lanes<4>::load(
+          run.points[run.stride * static_cast<std::size_t>(y) + static_cast<std::size_t>(x)]);
+    });
+  }
+}
+
 /// The place of one number of a net, from the window's first point on.
-inline int netSlot(const PatchRun& run, int net, int x, int y) {
+inline std::size_t netSlot(const PatchRun& run, std::size_t net, std::size_t x, std::size_t y) {
   return net * run.stride * run.stride + run.stride * y + x;
 }
 
-template <int Order, typename Real>
-inline void evaluateRows(const PatchRun& run, const Turned& turned, std::size_t begin, int count,
-                         const PatchResults<Real>& results) {
-  const RowPlaces places(run.rows + begin, count);
-  Rows u, v;
-  if (count == kLanes) {
-    u = Rows::load(run.u + begin);
-    v = Rows::load(run.v + begin);
-  } else {
-    double some_u[kLanes] = {}, some_v[kLanes] = {};
-    for (int lane = 0; lane < count; ++lane) {
-      some_u[lane] = run.u[begin + lane];
-      some_v[lane] = run.v[begin + lane];
-    }
-    u = Rows::load(some_u);
-    v = Rows::load(some_v);
+/// The control points of a run with as many of their differences as derivatives up to Order need:
+/// formed once, and read for each coordinate of many rows.
+template <int Order>
+class RunLines {
+ public:
+  explicit RunLines(const PatchRun& run) {
+    withPoints(run, [&](const auto& at) {
+      for (int i = 0; i < 4; ++i) {
+        rows_[i].set(WindowLine<Lanes<4>>::of(at(0, i), at(1, i), at(2, i), at(3, i)));
+        if (Order >= 2) {
+          columns_[i].set(WindowLine<Lanes<4>>::of(at(i, 0), at(i, 1), at(i, 2), at(i, 3)));
+        }
+      }
+    });
   }
-  const BSplineWeights<Rows> u_weights(u, run.u_low, run.u_high);
-  const BSplineWeights<Rows> v_weights(v, run.v_low, run.v_high);
-  Rows position[3], du[3], dv[3], duu[3], duv[3], dvv[3];
+
+  template <typename Rows>
+  [[gnu::always_inline]] void evaluate(int c, const BSplineWeights<Rows>& u,
+                                       const BSplineWeights<Rows>& v,
+                                       PatchValues<Rows>& patch) const {
+    evaluateLines<Order, Rows>([&](int y) { return rows_[y].template at<Rows>(c); },
+                               [&](int x) { return columns_[x].template at<Rows>(c); }, u, v,
+                               patch);
+  }
+
+ private:
+  struct Line {
+    double point[4][4], first[Order >= 1 ? 3 : 1][4], second[Order >= 2 ? 2 : 1][4];
+
+    void set(const WindowLine<Lanes<4>>& line) {
+      for (int i = 0; i < 4; ++i) {
+        line.point[i].store(point[i]);
+      }
+      for (int i = 0; Order >= 1 && i < 3; ++i) {
+        line.first[i].store(first[i]);
+      }
+      for (int i = 0; Order >= 2 && i < 2; ++i) {
+        line.second[i].store(second[i]);
+      }
+    }
+    template <typename Rows>
+    [[gnu::always_inline]] WindowLine<Rows> at(int c) const {
+      WindowLine<Rows> line{};
+      for (int i = 0; i < 4; ++i) {
+        line.point[i] = Rows::of(point[i][c]);
+      }
+      for (int i = 0; Order >= 1 && i < 3; ++i) {
+        line.first[i] = Rows::of(first[i][c]);
+      }
+      for (int i = 0; Order >= 2 && i < 2; ++i) {
+        line.second[i] = Rows::of(second[i][c]);
+      }
+      return line;
+    }
+  };
+
+  alignas(64) Line rows_[4];
+  Line columns_[Order >= 2 ? 4 : 1];
+};
+
+/// The nets of a run that has them.
+template <int Order>
+class RunNets {
+ public:
+  explicit RunNets(const PatchRun& run) : run_(run) {}
+
+  template <typename Rows>
+  void evaluate(int c, const BSplineWeights<Rows>& u, const BSplineWeights<Rows>& v,
+                PatchValues<Rows>& patch) const {
+    evaluateNets<Order, Rows>(
+        [&](derivative_nets::Net net, int x, int y) {
+          return Rows::of(run_.points[netSlot(run_, net, x, y)][c]);
+        },
+        u, v, patch);
+  }
+
+ private:
+  const PatchRun& run_;
+};
+
+/// The next `count` rows of a run, at most kCount: a lane for each.
+template <int Order, int kCount, typename Window, typename Real>
+[[gnu::always_inline]] inline void evaluateRows(const PatchRun& run, const Turned& turned,
+                                                const Window& window, std::size_t begin, int count,
+                                                const PatchResults<Real>& results) {
+  using Rows = Lanes<kCount>;
+  rereadMemory();
+  const RowPlaces<kCount> places(run.rows + begin, count);
+  const BSplineWeights<Rows> u(run.scale * Rows::load(run.u + begin) - run.a, run.u_low,
+                               run.u_high);
+  const BSplineWeights<Rows> v(run.scale * Rows::load(run.v + begin) - run.b, run.v_low,
+                               run.v_high);
+  Rows position[3], along_u[3], along_v[3], duu[3], duv[3], dvv[3];
+#pragma GCC unroll 3
   for (int c = 0; c < 3; ++c) {
     PatchValues<Rows> patch;
-    if (run.has_nets) {
-      evaluateNets<Order, Rows>(
-          [&](derivative_nets::Net net, int x, int y) {
-            return Rows::of(run.points[netSlot(run, net, x, y)][c]);
-          },
-          u_weights, v_weights, patch);
-    } else {
-      evaluatePatch<Order, Rows>(
-          [&](int x, int y) { return Rows::of(run.points[run.stride * y + x][c]); }, u_weights,
-          v_weights, patch);
-    }
+    window.evaluate(c, u, v, patch);
     position[c] = run.anchor[c] + (run.value_scale * patch.value + run.offset[c]);
     if (Order >= 1) {
-      du[c] = (turned.swapped ? patch.dv : patch.du) * turned.du;
-      dv[c] = (turned.swapped ? patch.du : patch.dv) * turned.dv;
+      along_u[c] = patch.du * (turned.swapped ? turned.dv : turned.du);
+      along_v[c] = patch.dv * (turned.swapped ? turned.du : turned.dv);
     }
     if (Order >= 2) {
-      duu[c] = (turned.swapped ? patch.dvv : patch.duu) * turned.second;
+      duu[c] = patch.duu * turned.second;
       duv[c] = patch.duv * turned.duv;
-      dvv[c] = (turned.swapped ? patch.duu : patch.dvv) * turned.second;
+      dvv[c] = patch.dvv * turned.second;
     }
   }
   places.put(results.position, position);
   if (Order >= 1) {
-    places.put(results.du, du);
-    places.put(results.dv, dv);
+    places.put(turned.swapped ? results.dv : results.du, along_u);
+    places.put(turned.swapped ? results.du : results.dv, along_v);
     if (results.normal) {
-      UnitNormal<Rows> normal(du, dv);
-      double square[kLanes], lengths[kLanes], squares[kLanes];
+      UnitNormal<Rows> normal(turned.swapped ? along_v : along_u,
+                              turned.swapped ? along_u : along_v);
+      double square[kCount], lengths[kCount], squares[kCount];
       normal.square.store(square);
       normal.lengths.store(lengths);
       normal.squares.store(squares);
@@ -139,19 +186,46 @@ inline void evaluateRows(const PatchRun& run, const Turned& turned, std::size_t 
     }
   }
   if (Order >= 2) {
-    places.put(results.duu, duu);
+    places.put(turned.swapped ? results.dvv : results.duu, duu);
     places.put(results.duv, duv);
-    places.put(results.dvv, dvv);
+    places.put(turned.swapped ? results.duu : results.dvv, dvv);
+  }
+}
+
+/// Weights along one axis, each in all lanes of a point.
+struct PointWeights {
+  Lanes<4> value[4], first[3], second[2];
+
+  template <typename Weights, typename NumberOf>
+  [[gnu::always_inline]] PointWeights(const Weights& weights, const NumberOf& number) {
+    for (int i = 0; i < 4; ++i) {
+      value[i] = Lanes<4>::of(number(weights.value[i]));
+    }
+    for (int i = 0; i < 3; ++i) {
+      first[i] = Lanes<4>::of(number(weights.first[i]));
+    }
+    for (int i = 0; i < 2; ++i) {
+      second[i] = Lanes<4>::of(number(weights.second[i]));
+    }
+  }
+};
+
+inline void putPoint(double* to, const Lanes<4>& point) {
+  Lanes<2>{{point.numbers[0], point.numbers[1]}}.store(to);
+  to[2] = point.numbers[2];
+}
+inline void putPoint(float* to, const Lanes<4>& point) {
+  for (int c = 0; c < 3; ++c) {
+    to[c] = static_cast<float>(point.numbers[c]);
   }
 }
 
 /// One row, all coordinates at a time.
 template <int Order, typename Real>
-inline void evaluateRow(const PatchRun& run, const Turned& turned, std::size_t i,
-                        const PatchResults<Real>& results) {
+[[gnu::always_inline]] inline void evaluateRow(const PatchRun& run, const Turned& turned,
+                                               const PointWeights& u, const PointWeights& v,
+                                               std::size_t row, const PatchResults<Real>& results) {
   using Point = Lanes<4>;
-  const BSplineWeights<double> u(run.u[i], run.u_low, run.u_high);
-  const BSplineWeights<double> v(run.v[i], run.v_low, run.v_high);
   PatchValues<Point> patch;
   if (run.has_nets) {
     evaluateNets<Order, Point>(
@@ -160,24 +234,16 @@ inline void evaluateRow(const PatchRun& run, const Turned& turned, std::size_t i
         },
         u, v, patch);
   } else {
-    evaluatePatch<Order, Point>(
-        [&](int x, int y) { return Point::load(run.points[run.stride * y + x]); }, u, v, patch);
+    withPoints(run, [&](const auto& points) { evaluatePatch<Order, Point>(points, u, v, patch); });
   }
-  const std::size_t at = 3 * run.rows[i];
-  const auto putPoint = [at](Real* to, const Point& point) {
-    for (int c = 0; c < 3; ++c) {
-      to[at + c] = static_cast<Real>(point.numbers[c]);
-    }
-  };
-  for (int c = 0; c < 3; ++c) {
-    results.position[at + c] = static_cast<Real>(
-        run.anchor[c] + (run.value_scale * patch.value.numbers[c] + run.offset[c]));
-  }
+  const std::size_t at = 3 * row;
+  putPoint(results.position + at,
+           Point::load(run.anchor) + (run.value_scale * patch.value + Point::load(run.offset)));
   if (Order >= 1) {
     const Point du = (turned.swapped ? patch.dv : patch.du) * turned.du;
     const Point dv = (turned.swapped ? patch.du : patch.dv) * turned.dv;
-    putPoint(results.du, du);
-    putPoint(results.dv, dv);
+    putPoint(results.du + at, du);
+    putPoint(results.dv + at, dv);
     if (results.normal) {
       const double x[3] = {du.numbers[0], du.numbers[1], du.numbers[2]};
       const double y[3] = {dv.numbers[0], dv.numbers[1], dv.numbers[2]};
@@ -190,29 +256,69 @@ inline void evaluateRow(const PatchRun& run, const Turned& turned, std::size_t i
     }
   }
   if (Order >= 2) {
-    putPoint(results.duu, (turned.swapped ? patch.dvv : patch.duu) * turned.second);
-    putPoint(results.duv, patch.duv * turned.duv);
-    putPoint(results.dvv, (turned.swapped ? patch.duu : patch.dvv) * turned.second);
+    putPoint(results.duu + at, (turned.swapped ? patch.dvv : patch.duu) * turned.second);
+    putPoint(results.duv + at, patch.duv * turned.duv);
+    putPoint(results.dvv + at, (turned.swapped ? patch.duu : patch.dvv) * turned.second);
   }
+}
+
+/// The rows of a run from `begin` on, of which there are few.
+template <int Order, typename Real>
+void evaluateOneByOne(const PatchRun& run, const Turned& turned, std::size_t begin,
+                      const PatchResults<Real>& results) {
+  const bool has_ends = run.u_low || run.u_high || run.v_low || run.v_high;
+  for (std::size_t i = begin; i < run.count; ++i) {
+    const double u = run.scale * run.u[i] - run.a, v = run.scale * run.v[i] - run.b;
+    if (has_ends) {
+      const auto number = [](double x) { return x; };
+      evaluateRow<Order>(run, turned,
+                         PointWeights(BSplineWeights<double>(u, run.u_low, run.u_high), number),
+                         PointWeights(BSplineWeights<double>(v, run.v_low, run.v_high), number),
+                         run.rows[i], results);
+    } else {
+      using Pair = Lanes<2>;
+      const BSplineWeights<Pair> both(Pair{{u, v}}, false, false);
+      evaluateRow<Order>(
+          run, turned, PointWeights(both, [](const Pair& x) { return x.numbers[0]; }),
+          PointWeights(both, [](const Pair& x) { return x.numbers[1]; }), run.rows[i], results);
+    }
+  }
+}
+
+/// As many lanes at a time as pay.
+template <int Order, typename Window, typename Real>
+void evaluateInLanes(const PatchRun& run, const Turned& turned, const PatchResults<Real>& results) {
+  const Window window(run);
+  std::size_t begin = 0;
+  for (; begin + kLanes <= run.count; begin += kLanes) {
+    evaluateRows<Order, kLanes>(run, turned, window, begin, kLanes, results);
+  }
+  const int left = static_cast<int>(run.count - begin);
+  if (left > kFewLanes + 1) {
+    evaluateRows<Order, kLanes>(run, turned, window, begin, left, results);
+    return;
+  }
+  if (left > 1) {
+    const int some = left < kFewLanes ? left : kFewLanes;
+    evaluateRows<Order, kFewLanes>(run, turned, window, begin, some, results);
+    begin += static_cast<std::size_t>(some);
+  }
+  evaluateOneByOne<Order>(run, turned, begin, results);
 }
 
 template <int Order, typename Real>
 void evaluate(const PatchRun& run, const PatchResults<Real>& results) {
   const Turned turned(run);
   if (run.count < kFewestLanes) {
-    for (std::size_t i = 0; i < run.count; ++i) {
-      evaluateRow<Order>(run, turned, i, results);
-    }
-    return;
-  }
-  for (std::size_t begin = 0; begin < run.count; begin += kLanes) {
-    const int count = run.count - begin < kLanes ? static_cast<int>(run.count - begin) : kLanes;
-    evaluateRows<Order>(run, turned, begin, count, results);
+    evaluateOneByOne<Order>(run, turned, 0, results);
+  } else if (run.has_nets) {
+    evaluateInLanes<Order, RunNets<Order>>(run, turned, results);
+  } else {
+    evaluateInLanes<Order, RunLines<Order>>(run, turned, results);
   }
 }
 
 inline const PatchKernels kKernels = {
-    gather,
     {evaluate<0, double>, evaluate<1, double>, evaluate<2, double>},
     {evaluate<0, float>, evaluate<1, float>, evaluate<2, float>},
 };

@@ -12,22 +12,28 @@ namespace limitsurf {
 /// The position is anchor + (value_scale * patch + offset), as a Jet's is; derivatives are the
 /// patch's times first_scale and second_scale.
 struct PatchRun {
-  /// Control points, relative to the anchor: (x, y) is points[stride * y + x]. The fourth number of
-  /// each is 0.
+  /// Control points: (x, y) is points[indices[4 * y + x]] less the anchor, or, without indices,
+  /// points[stride * y + x], which is relative to the anchor. The fourth number of each is 0.
   const double (*points)[4];
-  int stride;
+  const int* indices = nullptr;
+  std::size_t stride = 4;
   bool has_nets = false;  ///< the nets of differences follow the points (derivative_nets.h)
   /// Sides with no points beyond them (see BSplineWeights).
   bool u_low, u_high, v_low, v_high;
-  int turns;  ///< by how many corners the patch is turned against the face, 0 to 3
-  double anchor[3];
+  int turns;         ///< by how many corners the patch is turned against the face, 0 to 3
+  double anchor[4];  ///< the fourth number is 0, as that of the offset
   double value_scale;
-  double offset[3];
+  double offset[4];
   double first_scale, second_scale;
   /// Where a normal does not meet these limits, it is NaN: it is left to the caller.
-  NormalLimits normal_limits;
+  NormalLimits normal_limits{0, 0};
 
-  const double *u, *v;      ///< parameters of the patch, `count` each
+  /// Parameters, `count` each: those of the patch are scale * u - a and scale * v - b. As many
+  /// numbers more as kReadBeyond can be read behind them, whose values do not matter.
+  const double *u, *v;
+  double scale = 1;
+  int a = 0, b = 0;
+  static constexpr int kReadBeyond = 7;
   const std::size_t* rows;  ///< the rows that get the results
   std::size_t count;
 };
