@@ -195,9 +195,9 @@ class LimitSurface {
   Evaluation evaluate(const LocationBatch& at, Derivatives derivatives = Derivatives::none,
                       bool normals = false, int threads = 0) const;
 
-  /// The same, written to arrays: positions, derivatives up to `derivatives`, and normals if there
-  /// are rows for them. Throws std::invalid_argument for an array that has another number of rows
-  /// than there are locations, and then writes nothing. Real is double or float.
+  /// The same, written to arrays of double or float: what `derivatives` asks for, and normals if
+  /// there are rows for them. Throws std::invalid_argument, and writes nothing, unless each has as
+  /// many rows as there are locations. A wrong location may be found after some rows are written.
   template <typename Real>
   void evaluate(const LocationBatch& at, Derivatives derivatives,
                 const EvaluationArrays<Real>& results, int threads = 0) const;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <tuple>
 
 #include "support/cages/meshes.h"
@@ -190,6 +191,22 @@ TEST_P(Batch, NegativeZeroIsZero) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cages, Batch, testing::Values(0, 1, 2));
+
+// The batch is checked while it is evaluated, by tasks that end in any order.
+TEST(Batch, NamesTheFirstRowThatIsWrong) {
+  const LimitSurface surface = limitSurface(cross());
+  std::vector<Location> at = manyLocations(cross(), 30000);
+  at[29000].u = 2;
+  at[12345].v = -1;
+  for (int threads : {1, 0, 5}) {
+    try {
+      surface.evaluate(at, Derivatives::first, true, threads);
+      FAIL() << "no error";
+    } catch (const LocationError& error) {
+      EXPECT_EQ(std::string(error.what()).find("row 12345: "), 0u) << error.what();
+    }
+  }
+}
 
 // Where so many faces meet, all cores share the work on one vertex.
 TEST(Batch, ThreadsDoNotChangeTheFacesAroundALargePole) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/error.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/batch/batch_evaluator.h"
 #include "limitsurf/surface/limit_surface_data.h"
@@ -14,22 +15,28 @@ namespace {
 /// Rows of one task. Those of a face are divided among its patches, which pays if there are many.
 constexpr std::size_t kBatchRowsPerTask = 2048;
 
-/// The batch has been checked, and the results have room for it.
+/// The results have room for the batch. It is checked while it is evaluated.
 template <typename Real>
-void evaluateInto(const TileTable& table, const Pose& pose, const LocationBatch& at,
+void evaluateInto(const TiledSurface& tiles, const Pose& pose, const LocationBatch& at,
                   Derivatives derivatives, const PatchResults<Real>& results, int threads) {
+  const TileTable& table = tiles.table;
   const RowOrder order(at, static_cast<int>(table.faces.size()), threads);
-  parallelFor(at.size(), kBatchRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    BatchEvaluator<Real>(table, pose, static_cast<int>(derivatives), results)
-        .evaluate(at, order, begin, end);
-  });
+  try {
+    parallelFor(at.size(), kBatchRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+      BatchEvaluator<Real>(table, pose, static_cast<int>(derivatives), results)
+          .evaluate(at, order, begin, end);
+    });
+  } catch (const LocationError&) {
+    tiles.check(at, threads);  // says which is the first row that is wrong, and why
+    throw;
+  }
 }
 
 }  // namespace
 
 Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives, bool normals,
                                   int threads) const {
-  data_->check(at, threads);
+  checkThreads(threads);
   const auto rows = static_cast<Eigen::Index>(at.size());
   Evaluation out;
   out.position.resize(rows, 3);
@@ -48,14 +55,14 @@ Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivativ
   const PatchResults<double> results{out.position.data(), out.du.data(),  out.dv.data(),
                                      out.duu.data(),      out.duv.data(), out.dvv.data(),
                                      out.normal.data()};
-  evaluateInto(data_->table, data_->pose, at, derivatives, results, threads);
+  evaluateInto(*data_->tiles, data_->pose, at, derivatives, results, threads);
   return out;
 }
 
 template <typename Real>
 void LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives,
                             const EvaluationArrays<Real>& results, int threads) const {
-  data_->check(at, threads);
+  checkThreads(threads);
   const auto of = [&](const char* name, const typename EvaluationArrays<Real>::Rows& array,
                       bool wanted) {
     if (!wanted) {
@@ -75,7 +82,7 @@ void LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives,
                                 of("duv", results.duv, second),
                                 of("dvv", results.dvv, second),
                                 of("normal", results.normal, first && results.normal.count > 0)};
-  evaluateInto(data_->table, data_->pose, at, derivatives, into, threads);
+  evaluateInto(*data_->tiles, data_->pose, at, derivatives, into, threads);
 }
 
 template void LimitSurface::evaluate(const LocationBatch&, Derivatives,
