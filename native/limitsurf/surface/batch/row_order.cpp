@@ -15,13 +15,16 @@ constexpr std::size_t kFewestRows = 256, kMostFacesPerRow = 2;
 /// Rows that are counted by one task.
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 16, kMostParts = 8;
 
-/// Whether at least every other row follows one of another face.
+/// Whether at least every other row follows one of another face, and not only because there are few
+/// rows on each face: then faces come in order, or almost.
 bool isScattered(const LocationBatch& at) {
-  std::size_t changes = 0;
+  std::size_t changes = 0, descents = 0;
   for (std::size_t row = 1; row < at.size(); ++row) {
-    changes += at.face(row) != at.face(row - 1) ? 1 : 0;
+    const std::int64_t before = at.face(row - 1), face = at.face(row);
+    changes += face != before ? 1 : 0;
+    descents += face < before ? 1 : 0;
   }
-  return changes >= at.size() / 2;
+  return changes >= at.size() / 2 && descents >= at.size() / 16;
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace limitsurf {
 /// otherwise. What a face needs is then read once for all its rows. Cost: O(rows).
 class RowOrder {
  public:
-  /// The batch must have been checked.
+  /// The batch need not have been checked.
   RowOrder(const LocationBatch& at, int faces, int threads);
 
   /// The row that comes at place i.
