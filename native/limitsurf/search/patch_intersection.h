@@ -33,12 +33,15 @@ struct CollectedHits {
   /// Hits farther away are not searched for: the largest distance or, with first_only, that of the
   /// nearest hit so far.
   double nearest;
+  /// By how much rounding may have moved the ray aside, which grows with the distance of its
+  /// origin.
+  double rounding = 0;
   /// The distance from the surface within which the ray counts as meeting it: a tenth of
-  /// kSearchError.
+  /// kSearchError, and the rounding.
   double tolerance;
   /// Parts of the surface farther from the ray than this are not searched. It is more than rounding
   /// and less than the tolerance: points between the two are hits if the search comes upon them.
-  double margin() const { return tolerance / 32; }
+  double margin() const { return (tolerance - rounding) / 32 + rounding; }
   std::vector<RayHit> hits;
 
   void add(const RayHit& hit);

@@ -21,9 +21,7 @@ namespace {
 /// while the memory that the next step needs is on its way.
 class RaySearch {
  public:
-  RaySearch(const SearchTree& tree, PatchCache& cache) : data_(tree), cache_(cache) {
-    found_.tolerance = tree.tolerance;
-  }
+  RaySearch(const SearchTree& tree, PatchCache& cache) : data_(tree), cache_(cache) {}
 
   /// Begins a search for the hits between the distances 0 and `max_distance`: the first, or all.
   /// Lengths are in the unit of the tree, which must not be empty.
@@ -37,6 +35,9 @@ class RaySearch {
     const double start = from_middle.dot(ray_.direction);
     ray_.origin = from_middle - start * ray_.direction;
     found_.hits.clear();
+    const double farthest = kFarthest * data_.patches.diagonal();
+    found_.rounding = kRayRounding * std::min(std::abs(start), farthest);
+    found_.tolerance = data_.tolerance + found_.rounding;
     found_.first_only = first_only;
     found_.from = start;
     found_.nearest = start + max_distance;
@@ -90,6 +91,11 @@ class RaySearch {
   }
 
  private:
+  /// A direction that was computed as a difference of two points, its length, and the ray's point
+  /// nearest to the middle are each rounded by 2^-53 of the distance of the origin. From 1,000
+  /// diagonals away, that is half of kSearchError; from farther away no bound is given.
+  static constexpr double kRayRounding = 4 * 0x1p-53, kFarthest = 1000;
+
   double margin() const { return found_.tolerance; }
   double start() const { return found_.from - found_.tolerance; }
   double end() const { return found_.nearest; }

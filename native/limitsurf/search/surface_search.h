@@ -78,7 +78,8 @@ class SurfaceSearch {
 
   /// The first point at which each ray meets the surface, from either side. The distance is
   /// measured along the ray and is at least 0. A ray that touches the surface hits it, and no ray
-  /// passes between two faces; a ray that misses by less than kSearchError may count as a hit.
+  /// passes between two faces; a ray that misses by less than kSearchError may count as a hit, and
+  /// does if the rounding of its numbers may be the reason.
   ///
   /// `directions` need not be unit vectors. Throws std::invalid_argument naming the first row that
   /// is not finite, or whose direction is 0.
