@@ -6,10 +6,8 @@
 #include <string>
 
 #include "limitsurf/parallel.h"
-#include "limitsurf/random_bits.h"
-#include "limitsurf/sample/area_form.h"
 #include "limitsurf/sample/area_sampler_data.h"
-#include "limitsurf/sample/core_tail.h"
+#include "limitsurf/sample/uniform_candidates.h"
 
 namespace limitsurf {
 namespace {
@@ -17,86 +15,8 @@ namespace {
 /// More locations than this fit into no machine's memory.
 constexpr std::int64_t kMostLocations = std::int64_t{1} << 40;
 /// The number of samples between two calls of Progress, and the number that one task takes.
-constexpr std::size_t kSamplesPerReport = std::size_t{1} << 17;
+constexpr std::size_t kSamplesPerReport = std::size_t{1} << 18;
 constexpr std::size_t kSamplesPerTask = 2048;
-
-/// Independent random locations, by rejection: their density is proportional to area times the
-/// densities of the table. Each sample has an endless sequence of candidates of its own, most of
-/// which are accepted.
-class Candidates {
- public:
-  Candidates(const SurfacePatches& patches, const std::vector<AreaCell>& cells,
-             const CellTable& table, const DensityField& density, std::uint64_t seed)
-      : patches_(patches), cells_(cells), table_(table), density_(density), key_(mixed(seed)) {}
-
-  /// The next candidate of a sample that is accepted. `attempt` counts the candidates tried.
-  Location next(std::size_t sample, std::uint32_t& attempt) const {
-    const std::uint64_t stream = mixed(key_ ^ mixed(sample));
-    Location at;
-    while (!accept(stream + kNumbers * attempt++, at)) {
-    }
-    return at;
-  }
-
-  /// One more random number for the candidate that next() returned last.
-  double number(std::size_t sample, std::uint32_t attempt) const {
-    const std::uint64_t stream = mixed(key_ ^ mixed(sample));
-    return uniformIn01(mixed(stream + kNumbers * (attempt - 1) + kNumbers - 1));
-  }
-
- private:
-  /// The number of random numbers that a candidate may use.
-  static constexpr std::uint64_t kNumbers = 5;
-
-  bool accept(std::uint64_t stream, Location& at) const {
-    const CellTable::Choice choice = table_.pick(uniformIn01(mixed(stream)));
-    const AreaCell& cell = cells_[choice.cell];
-    double s = uniformIn01(mixed(stream + 1)), t = uniformIn01(mixed(stream + 2));
-    const double test = uniformIn01(mixed(stream + 3));
-    SurfacePiece piece = cell.piece;
-    double bound = cell.bound, size = 1;
-    if (piece.isCore()) {
-      if (!pickFromCore(cell, choice.rest, piece, bound)) {
-        return false;
-      }
-    } else if (cell.level > 0) {
-      const double side = 1. / (1 << cell.level);
-      s = side * (cell.column + s);
-      t = side * (cell.row + t);
-      size = side * side;
-    }
-    const BezierPatch patch = patches_.patch(piece);
-    BezierPatch::Values values;
-    patch.evaluate<1>(s, t, values);
-    const double area = length(cross(values.ds, values.dt)) * size;
-    at = patch.on.at(s, t);
-    return test * bound * table_.largest(choice.cell) < area * density_.at(at);
-  }
-
-  /// Picks a patch of a core, and the bound of |ds x dt| on it. Returns false where rounding leads
-  /// beyond the last patch: the candidate is rejected then.
-  bool pickFromCore(const AreaCell& cell, double number, SurfacePiece& piece, double& bound) const {
-    double rest = number * cell.bound;
-    RingPitches pitches(patches_, cell.piece);
-    CoreTail tail(pitches, cell.piece.steps, Vector3(cell.outer[0], cell.outer[1], cell.outer[2]));
-    for (; !tail.ended() && rest >= 3 * tail.bound(); tail.step()) {
-      rest -= 3 * tail.bound();
-    }
-    bound = tail.bound();
-    if (tail.ended() || !(bound > 0)) {
-      return false;
-    }
-    piece.steps = static_cast<std::int16_t>(tail.steps() + 1);
-    piece.part = static_cast<std::int16_t>(std::min(static_cast<int>(rest / bound), 2));
-    return true;
-  }
-
-  const SurfacePatches& patches_;
-  const std::vector<AreaCell>& cells_;
-  const CellTable& table_;
-  const DensityField& density_;
-  std::uint64_t key_;
-};
 
 void report(const Progress& progress, std::size_t done, std::size_t all) {
   if (progress) {
@@ -105,18 +25,13 @@ void report(const Progress& progress, std::size_t done, std::size_t all) {
 }
 
 /// The first accepted candidate of each sample.
-std::vector<Location> allAccepted(const Candidates& candidates, std::size_t count, int threads,
-                                  const Progress& progress) {
+std::vector<Location> allAccepted(const UniformCandidates& candidates, std::size_t count,
+                                  int threads, const Progress& progress) {
   std::vector<Location> result(count);
   for (std::size_t first = 0; first < count; first += kSamplesPerReport) {
     report(progress, first, count);
-    const std::size_t size = std::min(kSamplesPerReport, count - first);
-    parallelFor(size, kSamplesPerTask, threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = first + begin; i < first + end; ++i) {
-        std::uint32_t attempt = 0;
-        result[i] = candidates.next(i, attempt);
-      }
-    });
+    candidates.findFirst(first, std::min(kSamplesPerReport, count - first), result.data() + first,
+                         threads);
   }
   report(progress, 1, 1);
   return result;
@@ -127,8 +42,8 @@ std::vector<Location> allAccepted(const Candidates& candidates, std::size_t coun
 /// anew.
 class Thinning {
  public:
-  Thinning(const Candidates& candidates, const Density& density, std::size_t count, int threads,
-           const Progress& progress)
+  Thinning(const UniformCandidates& candidates, const Density& density, std::size_t count,
+           int threads, const Progress& progress)
       : candidates_(candidates),
         density_(density),
         threads_(threads),
@@ -224,7 +139,7 @@ class Thinning {
   /// A density that is 0 at this many locations is taken to be 0 everywhere.
   static constexpr std::size_t kMostZeros = std::size_t{1} << 20;
 
-  const Candidates& candidates_;
+  const UniformCandidates& candidates_;
   const Density& density_;
   int threads_;
   const Progress& progress_;
@@ -288,22 +203,23 @@ std::vector<Location> AreaSampler::uniform(std::int64_t count, std::uint64_t see
   const std::size_t samples = static_cast<std::size_t>(count);
   if (density.function()) {
     const DensityField constant;
-    const Candidates candidates(data_->patches, data_->cells, data_->uniform, constant, seed);
+    const UniformCandidates candidates(data_->patches, data_->cells, data_->uniform, constant,
+                                       seed);
     Thinning thinning(candidates, density, samples, threads, progress);
     thinning.pilot(pilotLocations(data_->hasSurface()));
     return thinning.run();
   }
   const DensityField field(density);
   if (field.isConstant()) {
-    return allAccepted(Candidates(data_->patches, data_->cells, data_->uniform, field, seed),
+    return allAccepted(UniformCandidates(data_->patches, data_->cells, data_->uniform, field, seed),
                        samples, threads, progress);
   }
   const CellTable table(data_->patches, data_->cells, field, threads);
   if (!(table.total() > 0)) {
     throw std::invalid_argument("density is 0 everywhere on the surface");
   }
-  return allAccepted(Candidates(data_->patches, data_->cells, table, field, seed), samples, threads,
-                     progress);
+  return allAccepted(UniformCandidates(data_->patches, data_->cells, table, field, seed), samples,
+                     threads, progress);
 }
 
 }  // namespace limitsurf

@@ -36,6 +36,9 @@ struct SurfacePiece {
 
   static constexpr std::int16_t kCore = -1;
   bool isCore() const { return part == kCore; }
+  friend bool operator==(const SurfacePiece& a, const SurfacePiece& b) {
+    return a.tile == b.tile && a.steps == b.steps && a.part == b.part;
+  }
 };
 
 /// A box with axes of its own around the surface on a core.

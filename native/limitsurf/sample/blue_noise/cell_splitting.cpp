@@ -59,10 +59,9 @@ class Parts {
 }  // namespace
 
 const BoundedPatch& CellSplitting::patchOf(const TrialCell& cell) {
-  const SurfacePiece& a = cell.piece;
-  if (!patch_ || a.tile != piece_.tile || a.steps != piece_.steps || a.part != piece_.part) {
-    piece_ = a;
-    patch_.emplace(surface_.patches.patch(a));
+  if (!patch_ || !(cell.piece == piece_)) {
+    piece_ = cell.piece;
+    patch_.emplace(surface_.patches.patch(piece_));
   }
   return *patch_;
 }
@@ -158,7 +157,7 @@ void CellSplitting::findCovered(std::vector<Hit>& hits) {
       continue;
     }
     while (end < std::min(hits.size(), begin + ExtentBlock::kCount) &&
-           hits[end].cell->isOfSamePiece(first)) {
+           hits[end].cell->piece == first.piece) {
       ++end;
     }
     const BoundedPatch& patch = patchOf(first);

@@ -16,7 +16,7 @@ void CellTrials::make(Span<TrialCell> cells, Outcome& out) {
       continue;
     }
     const std::size_t most = std::min(cells.size(), begin + PlaceBlock::kCount);
-    while (end < most && cells[end].isOfSamePiece(cells[begin])) {
+    while (end < most && cells[end].piece == cells[begin].piece) {
       ++end;
     }
     makeInPatch(cells.subspan(begin, end - begin), out);

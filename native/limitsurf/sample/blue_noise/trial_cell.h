@@ -21,11 +21,6 @@ struct TrialCell {
   double width() const { return 1. / (std::uint32_t{1} << s_level); }
   double height() const { return 1. / (std::uint32_t{1} << t_level); }
 
-  bool isOfSamePiece(const TrialCell& other) const {
-    return piece.tile == other.piece.tile && piece.steps == other.piece.steps &&
-           piece.part == other.piece.part;
-  }
-
   /// The lower (0) or upper (1) half along s, and along t.
   TrialCell halfOfS(unsigned which) const {
     TrialCell half = *this;
