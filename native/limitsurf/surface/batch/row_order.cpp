@@ -16,15 +16,22 @@ constexpr std::size_t kFewestRows = 256, kMostFacesPerRow = 2;
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 16, kMostParts = 8;
 
 /// Whether at least every other row follows one of another face, and not only because there are few
-/// rows on each face: then faces come in order, or almost.
+/// rows on each face: then faces come in order, or almost. Of a large batch some blocks of rows are
+/// looked at.
 bool isScattered(const LocationBatch& at) {
-  std::size_t changes = 0, descents = 0;
-  for (std::size_t row = 1; row < at.size(); ++row) {
-    const std::int64_t before = at.face(row - 1), face = at.face(row);
-    changes += face != before ? 1 : 0;
-    descents += face < before ? 1 : 0;
+  constexpr std::size_t kBlock = 128, kBlocks = 64;
+  const std::size_t step = std::max(kBlock, at.size() / kBlocks);
+  std::size_t pairs = 0, changes = 0, descents = 0;
+  for (std::size_t begin = 0; begin < at.size(); begin += step) {
+    const std::size_t end = std::min(at.size(), begin + kBlock);
+    for (std::size_t row = begin + 1; row < end; ++row) {
+      const std::int64_t before = at.face(row - 1), face = at.face(row);
+      ++pairs;
+      changes += face != before ? 1 : 0;
+      descents += face < before ? 1 : 0;
+    }
   }
-  return changes >= at.size() / 2 && descents >= at.size() / 16;
+  return changes >= pairs / 2 && descents >= pairs / 16;
 }
 
 }  // namespace
