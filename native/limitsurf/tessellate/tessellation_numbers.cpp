@@ -104,12 +104,17 @@ void TessellationNumbers::divide(int face, Divided& divided) const {
 }
 
 void TessellationNumbers::fill(Tessellation& result, int threads) const {
+  // The system hands out the memory of each when it is first written to, which takes long.
   result.locations.resize(pointCount());
+  InterruptionPoint::pass();
   for (std::vector<int>* values : {&result.face_sizes, &result.base_face, &result.ptex_face}) {
     values->resize(first_polygon_.back());
+    InterruptionPoint::pass();
   }
   result.face_vertices.resize(first_corner_.back());
+  InterruptionPoint::pass();
   result.corners.resize(first_corner_.back());
+  InterruptionPoint::pass();
   std::vector<int> number_of_slot(slot_count_, -1);
   parallelFor(faces_.size(), kFacesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
