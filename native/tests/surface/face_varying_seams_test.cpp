@@ -73,6 +73,22 @@ bool hasFewSharpEdges(const Cage& cage) {
   return true;
 }
 
+/// Whether the sharpness of an edge falls from above 1 to 0 at one of its ends, as Chaikin's rule
+/// may have it: there OpenSubdiv extrapolates, and its documentation does not.
+bool extrapolates(const Cage& cage) {
+  const FarRefinement far(cage, kLevels);
+  for (int level = 0; level < kLevels; ++level) {
+    const auto &parent = far.refiner->GetLevel(level), &child = far.refiner->GetLevel(level + 1);
+    for (int edge = 0; edge < parent.GetNumEdges(); ++edge) {
+      if (parent.GetEdgeSharpness(edge) <= 1) continue;
+      for (const int half : parent.GetEdgeChildEdges(edge)) {
+        if (half >= 0 && child.GetEdgeSharpness(half) == 0) return true;
+      }
+    }
+  }
+  return false;
+}
+
 void compareChannels(int rounds) {
   double worst = 0;
   int channels = 0, averaged = 0, corners = 0;
@@ -91,9 +107,9 @@ void compareChannels(int rounds) {
       Cage cage = smooth;
       do {
         cage.options = smooth.options;
+        cage.options.creasing = round % 3 == 2 ? Creasing::uniform : Creasing::chaikin;
         sharpenAtRandom(cage, random, 4, 1000, kSharpness);
-      } while (!hasFewSharpEdges(cage));
-      cage.options.creasing = round % 3 == 2 ? Creasing::uniform : Creasing::chaikin;
+      } while (!hasFewSharpEdges(cage) || extrapolates(cage));
       const Channel channel = randomChannel(cage, random);
       for (const auto& [rule, interpolation] : kInterpolations) {
         if (interpolation == Interpolation::all) continue;
