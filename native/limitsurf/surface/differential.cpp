@@ -16,9 +16,14 @@ double squareRoot(double a) { return std::sqrt(a); }
 
 #include "limitsurf/surface/batch/unit_normal.inl.h"
 
+/// The order of additions is written down, because FrameKernels has the same one.
+double dotProduct(const Vector3& a, const Vector3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /// v over its length; zero where the length is 0 or not finite.
 Vector3 direction(const Vector3& v) {
-  const double square = v.squaredNorm();
+  const double square = dotProduct(v, v);
   if (square >= 0x1p-900 && square <= 0x1p900) {  // nothing has been lost
     return v / std::sqrt(square);
   }
@@ -89,7 +94,7 @@ Eigen::Matrix3d frame(const Vector3& du, const Vector3& dv, const Vector3& norma
     const Vector3 across = direction(dv);
     tangent = across.isZero(0) ? leastAlignedAxis(n) : Vector3(across.cross(n));
   }
-  tangent = direction(tangent - tangent.dot(n) * n);
+  tangent = direction(tangent - dotProduct(tangent, n) * n);
   Eigen::Matrix3d result;
   result.col(0) = tangent;
   result.col(1) = n.cross(tangent);

@@ -13,9 +13,9 @@ struct RowVector {
   Rows axis[3];
 };
 
-/// The order of additions is that of Eigen's dot product of three numbers.
+/// The order of additions is that of frame().
 inline Rows dotProduct(const RowVector& a, const RowVector& b) {
-  return a.axis[0] * b.axis[0] + (a.axis[1] * b.axis[1] + a.axis[2] * b.axis[2]);
+  return a.axis[0] * b.axis[0] + a.axis[1] * b.axis[1] + a.axis[2] * b.axis[2];
 }
 
 inline RowVector crossProduct(const RowVector& a, const RowVector& b) {
