@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Work whose instructions tools/instruction_counts.py counts under callgrind.
+//
+//   limitsurf_instructions                 lists the kinds of work
+//   limitsurf_instructions KIND SIZE       does it once, on one thread, for so many rows or faces
+//
+// Instructions for vectors that not every processor has are not used, so that the counts are the
+// same on all of them.
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+
+#include "limitsurf/sample/area.h"
+#include "limitsurf/sample/area_sampler.h"
+#include "limitsurf/search/surface_search.h"
+#include "limitsurf/surface/batch/instruction_sets.h"
+#include "limitsurf/surface/limit_surface.h"
+#include "support/cages/benchmark_cages.h"
+#include "support/cages/meshes.h"
+#include "support/random.h"
+
+namespace limitsurf::test {
+namespace {
+
+/// So many locations, in the order of the faces.
+std::vector<Location> sorted(const LimitSurface& surface, int count) {
+  Random random(1);
+  std::vector<Location> at;
+  for (int i = 0; i < count; ++i) {
+    const int face = static_cast<int>(std::int64_t{i} * surface.faceCount() / count);
+    at.push_back({face, random.uniform(), random.uniform()});
+  }
+  return at;
+}
+
+std::vector<Location> shuffled(const LimitSurface& surface, int count) {
+  std::vector<Location> at = sorted(surface, count);
+  Random(2).shuffle(at);
+  return at;
+}
+
+/// Locations 2^-5 to 2^-12 from the vertex (0, 0) of the first face.
+std::vector<Location> nearVertex(int count) {
+  Random random(3);
+  std::vector<Location> at;
+  for (int i = 0; i < count; ++i) {
+    const double size = std::ldexp(1, -5 - random.below(8));
+    at.push_back({0, size * random.uniform(0.5, 1), size * random.uniform()});
+  }
+  return at;
+}
+
+/// Points near a surface.
+Points pointsNear(const LimitSurface& surface, int count) {
+  Random random(4);
+  Points points = surface.evaluate(shuffled(surface, count), Derivatives::none, false, 1).position;
+  for (Eigen::Index row = 0; row < points.rows(); ++row) {
+    points.row(row) += random.vector(0.3);
+  }
+  return points;
+}
+
+LimitSurface regular() { return limitSurface(perturbed(grid(20, 20), 0.1, 1)); }
+
+struct Work {
+  const char* name;
+  void (*run)(int size);
+};
+
+constexpr Work kWork[] = {
+    {"evaluate P,D1, regular, sorted",
+     [](int n) {
+       const LimitSurface surface = regular();
+       surface.evaluate(sorted(surface, n), Derivatives::first, false, 1);
+     }},
+    {"evaluate P,D1, regular, shuffled",
+     [](int n) {
+       const LimitSurface surface = regular();
+       surface.evaluate(shuffled(surface, n), Derivatives::first, false, 1);
+     }},
+    {"evaluate P,D1,D2, regular, sorted",
+     [](int n) {
+       const LimitSurface surface = regular();
+       surface.evaluate(sorted(surface, n), Derivatives::second, false, 1);
+     }},
+    {"evaluate P,D1, several irregular vertices, sorted",
+     [](int n) {
+       const LimitSurface surface = limitSurface(cross());
+       surface.evaluate(sorted(surface, n), Derivatives::first, false, 1);
+     }},
+    {"evaluate P,D1, near an irregular vertex",
+     [](int n) {
+       const LimitSurface surface = limitSurface(fan(5, true, 1));
+       surface.evaluate(nearVertex(n), Derivatives::first, false, 1);
+     }},
+    {"frames, regular, shuffled",
+     [](int n) {
+       const LimitSurface surface = regular();
+       surface.frames(shuffled(surface, n), 1);
+     }},
+    {"closest, near",
+     [](int n) {
+       const LimitSurface surface = regular();
+       SurfaceSearch(surface, 1).closest(pointsNear(surface, n), {}, 1);
+     }},
+    {"uniform points",
+     [](int n) {
+       const LimitSurface surface = regular();
+       AreaSampler(surface, 1).uniform(n, 1, {}, 1);
+     }},
+    {"pose, irregular",
+     [](int n) {
+       LimitSurface surface = limitSurface(mixture(3));
+       for (int i = 0; i < n / 100; ++i) {
+         surface.setPositions(surface.positions(), 1);
+       }
+     }},
+    {"area, triangles and quads",
+     [](int n) {
+       const LimitSurface surface = limitSurface(mixture(3));
+       for (int i = 0; i < n / 100; ++i) {
+         surfaceArea(surface, 1);
+       }
+     }},
+};
+
+int run(int argc, char** argv) {
+  if (argc != 3) {
+    for (const Work& work : kWork) std::printf("%s\n", work.name);
+    return argc == 1 ? 0 : 2;
+  }
+  useInstructionSet(InstructionSet::baseline);
+  for (const Work& work : kWork) {
+    if (std::strcmp(work.name, argv[1]) == 0) {
+      work.run(std::atoi(argv[2]));
+      return 0;
+    }
+  }
+  std::fprintf(stderr, "no work is called %s\n", argv[1]);
+  return 2;
+}
+
+}  // namespace
+}  // namespace limitsurf::test
+
+int main(int argc, char** argv) {
+  try {
+    return limitsurf::test::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
