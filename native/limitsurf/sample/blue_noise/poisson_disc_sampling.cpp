@@ -2,6 +2,7 @@
 #include "limitsurf/sample/blue_noise/poisson_disc_sampling.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "limitsurf/parallel.h"
 
@@ -112,10 +113,7 @@ void PoissonDiscSampling::accept() {
   for (const Task& task : tasks_) {
     discs.push_back(task.discs);
     points_.insert(points_.end(), task.points.begin(), task.points.end());
-    cells_.add(task.outcome.parts);
-  }
-  for (const Task& task : tasks_) {
-    cells_.add(task.open);
+    cells_.add(task.cells);
   }
   accepted_.insert(discs, threads_);
 }
@@ -124,7 +122,7 @@ void PoissonDiscSampling::decide(Task& task) {
   const CellTrials::Outcome& outcome = task.outcome;
   task.discs.clear();
   task.points.clear();
-  task.open.clear();
+  task.cells.clear();
   std::vector<bool> has_won(outcome.discs.size(), false);
   std::vector<CellSplitting::Hit> hits;
   DiscFinder others(candidates_);
@@ -139,11 +137,16 @@ void PoissonDiscSampling::decide(Task& task) {
     }
   }
   CellSplitting(surface_, accepted_).findCovered(hits);
+  std::vector<TrialCell> open;
   for (std::size_t i = 0, hit = 0; i < has_won.size(); ++i) {
     if (!has_won[i] || !hits[hit++].is_covered) {
-      task.open.push_back(outcome.candidates[i].cell);
+      open.push_back(outcome.candidates[i].cell);
     }
   }
+  // The cells of a patch come one after the other.
+  std::merge(outcome.parts.begin(), outcome.parts.end(), open.begin(), open.end(),
+             std::back_inserter(task.cells),
+             [](const TrialCell& a, const TrialCell& b) { return a.comesBefore(b); });
 }
 
 }  // namespace limitsurf

@@ -51,7 +51,7 @@ class PoissonDiscSampling {
     std::size_t first = 0;  ///< the number of its first candidate
     std::vector<NoiseDisc> discs;
     std::vector<Location> points;  ///< those of its candidates that were accepted
-    std::vector<TrialCell> open;   ///< cells of candidates that may still have room
+    std::vector<TrialCell> cells;  ///< cells that may still have room
   };
 
   void makeFirstCells();

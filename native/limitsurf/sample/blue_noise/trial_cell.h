@@ -21,6 +21,15 @@ struct TrialCell {
   double width() const { return 1. / (std::uint32_t{1} << s_level); }
   double height() const { return 1. / (std::uint32_t{1} << t_level); }
 
+  /// Whether it is on an earlier patch: tile by tile, and from the outside of a core inwards.
+  bool comesBefore(const TrialCell& other) const {
+    const SurfacePiece &a = piece, &b = other.piece;
+    return a.tile != b.tile ? a.tile < b.tile
+           : a.steps != b.steps
+               ? a.steps < b.steps
+               : static_cast<std::uint16_t>(a.part) < static_cast<std::uint16_t>(b.part);
+  }
+
   /// The lower (0) or upper (1) half along s, and along t.
   TrialCell halfOfS(unsigned which) const {
     TrialCell half = *this;
