@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
-#include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/sample/area_sampler_data.h"
 #include "limitsurf/sample/blue_noise/crowding.h"
+#include "limitsurf/sample/blue_noise/face_order.h"
+#include "limitsurf/sample/blue_noise/face_sizes.h"
 #include "limitsurf/sample/blue_noise/poisson_disc_sampling.h"
 
 namespace limitsurf {
@@ -51,36 +51,6 @@ std::string text(double value) {
   return out.str();
 }
 
-/// For each face that has a surface its largest extent along u or v, times `scale`, roughly; -1 for
-/// others.
-std::vector<double> faceSizes(const LimitSurface& surface, const std::vector<bool>& has_surface,
-                              double scale, int threads) {
-  constexpr int kSteps = 2, kSide = kSteps + 1;
-  std::vector<Location> at;
-  for (std::size_t face = 0; face < has_surface.size(); ++face) {
-    for (int i = 0; has_surface[face] && i < kSide * kSide; ++i) {
-      const int row = i / kSide, column = i % kSide;
-      at.push_back({static_cast<int>(face), static_cast<double>(column) / kSteps,
-                    static_cast<double>(row) / kSteps});
-    }
-  }
-  const Points points = scale * surface.evaluate(at, Derivatives::none, false, threads).position;
-  std::vector<double> sizes(has_surface.size(), -1);
-  for (Eigen::Index first = 0; first < points.rows(); first += kSide * kSide) {
-    double& size = sizes[static_cast<std::size_t>(at[static_cast<std::size_t>(first)].face)];
-    for (int line = 0; line < kSide; ++line) {
-      double along_u = 0, along_v = 0;
-      for (int i = 0; i < kSteps; ++i) {
-        const auto point = [&](int x, int y) { return points.row(first + kSide * y + x); };
-        along_u += (point(i + 1, line) - point(i, line)).norm();
-        along_v += (point(line, i + 1) - point(line, i)).norm();
-      }
-      size = std::max({size, along_u, along_v});
-    }
-  }
-  return sizes;
-}
-
 /// Makes blue noise, with lengths in the unit of the patches: once for a radius, repeatedly for a
 /// count until there are enough points.
 class BlueNoiseMaker {
@@ -117,7 +87,7 @@ class BlueNoiseMaker {
                                   " points would come out; at most 2147483647 can");
     }
     const std::vector<Location> at = sampled(radius).at;
-    return result(ordered(at, orderByFace(at)), radius);
+    return result(ordered(at, orderByFace(at, has_surface_.size())), radius);
   }
 
   BlueNoise ofCount(std::size_t count) {
@@ -151,7 +121,7 @@ class BlueNoiseMaker {
       if (is_enough &&
           (excess <= kMostSurplus || found <= count + 2 || attempt > kPatientAttempts)) {
         // Neighbours shall be close to each other in memory.
-        const std::vector<std::size_t> order = orderByFace(points.at);
+        const std::vector<std::size_t> order = orderByFace(points.at, has_surface_.size());
         Crowding crowding(box_, {ordered(points.discs, order), ordered(points.at, order)},
                           threads_);
         crowding.thin(count);
@@ -265,27 +235,6 @@ class BlueNoiseMaker {
     }
     points.discs.resize(kept);
     points.at.resize(kept);
-  }
-
-  /// The numbers of the points, sorted by face. Those of a face stay in the order of their
-  /// acceptance.
-  std::vector<std::size_t> orderByFace(const std::vector<Location>& at) const {
-    std::vector<std::size_t> next(has_surface_.size() + 1, 0), order(at.size());
-    for (const Location& location : at) {
-      ++next[static_cast<std::size_t>(location.face) + 1];
-    }
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      order[next[static_cast<std::size_t>(at[i].face)]++] = i;
-    }
-    return order;
-  }
-  template <typename T>
-  static std::vector<T> ordered(const std::vector<T>& all, const std::vector<std::size_t>& order) {
-    std::vector<T> result(all.size());
-    std::transform(order.begin(), order.end(), result.begin(),
-                   [&](std::size_t i) { return all[i]; });
-    return result;
   }
 
   /// The points in the order of their faces.

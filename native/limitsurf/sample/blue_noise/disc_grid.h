@@ -44,7 +44,7 @@ class DiscGrid {
 
   std::size_t size() const { return discs_.size(); }
   /// Discs are numbered in the order in which they were added.
-  const std::vector<NoiseDisc>& discs() const { return discs_; }
+  const NoiseDisc& disc(std::size_t number) const { return discs_[number]; }
 
   void clear();
   void reserve(std::size_t discs) { discs_.reserve(discs); }

@@ -64,7 +64,6 @@ void PoissonDiscSampling::makeFirstCells() {
 NoisePoints PoissonDiscSampling::run(const std::function<void(std::size_t points)>& report) {
   makeFirstCells();
   for (; cells_.size() > 0; ++round_) {
-    tasks_.swap(last_tasks_);
     makeTrials(report);
     trials_ += cells_.size();
     accept();
@@ -103,6 +102,9 @@ void PoissonDiscSampling::accept() {
   }
   candidates_.clear();
   candidates_.insert(discs, threads_);
+  for (Task& task : tasks_) {
+    std::vector<NoiseDisc>().swap(task.outcome.discs);  // the grid has them now
+  }
   parallelFor(tasks_.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       decide(tasks_[i]);
@@ -110,10 +112,14 @@ void PoissonDiscSampling::accept() {
   });
   discs.clear();
   cells_.clear();
-  for (const Task& task : tasks_) {
+  first_cells_.clear();
+  last_cells_.resize(tasks_.size());
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    Task& task = tasks_[i];
     discs.push_back(task.discs);
     points_.insert(points_.end(), task.points.begin(), task.points.end());
-    cells_.add(task.cells);
+    last_cells_[i].swap(task.cells);
+    cells_.add(last_cells_[i]);
   }
   accepted_.insert(discs, threads_);
 }
@@ -123,11 +129,12 @@ void PoissonDiscSampling::decide(Task& task) {
   task.discs.clear();
   task.points.clear();
   task.cells.clear();
-  std::vector<bool> has_won(outcome.discs.size(), false);
+  const std::size_t count = outcome.candidates.size();
+  std::vector<bool> has_won(count, false);
   std::vector<CellSplitting::Hit> hits;
   DiscFinder others(candidates_);
-  for (std::size_t i = 0; i < outcome.discs.size(); ++i) {
-    const NoiseDisc& own = outcome.discs[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    const NoiseDisc& own = candidates_.disc(task.first + i);
     if (!others.near(own.position, own.radius).conflict(own, static_cast<double>(task.first + i))) {
       hits.push_back({&own, &outcome.candidates[i].cell, false});
       has_won[i] = true;
@@ -138,7 +145,7 @@ void PoissonDiscSampling::decide(Task& task) {
   }
   CellSplitting(surface_, accepted_).findCovered(hits);
   std::vector<TrialCell> open;
-  for (std::size_t i = 0, hit = 0; i < has_won.size(); ++i) {
+  for (std::size_t i = 0, hit = 0; i < count; ++i) {
     if (!has_won[i] || !hits[hit++].is_covered) {
       open.push_back(outcome.candidates[i].cell);
     }

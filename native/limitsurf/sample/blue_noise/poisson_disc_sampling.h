@@ -68,9 +68,9 @@ class PoissonDiscSampling {
 
   int round_ = 0;
   std::size_t trials_ = 0;
-  std::vector<std::vector<TrialCell>> first_cells_;
+  std::vector<std::vector<TrialCell>> first_cells_, last_cells_;  // what cells_ lists
   CellList cells_;
-  std::vector<Task> tasks_, last_tasks_;  // of this round and of the one before
+  std::vector<Task> tasks_;
   std::vector<Location> points_;
   DiscGrid accepted_, candidates_;
 };
