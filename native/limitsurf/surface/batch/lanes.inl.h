@@ -30,8 +30,13 @@ struct Lanes {
     return {a.numbers < b.numbers ? a.numbers : b.numbers};
   }
   /// `a`, or `b` where `a` is 0.
-  static Lanes unlessZero(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] static Lanes unlessZero(const Lanes& a, const Lanes& b) {
     return {a.numbers == 0 ? b.numbers : a.numbers};
+  }
+  /// `a` where x >= y, `b` elsewhere and where x or y is NaN.
+  [[gnu::always_inline]] static Lanes whereAtLeast(const Lanes& x, const Lanes& y, const Lanes& a,
+                                                   const Lanes& b) {
+    return {x.numbers >= y.numbers ? a.numbers : b.numbers};
   }
 #else
   double numbers[kCount];
@@ -69,8 +74,15 @@ struct Lanes {
   [[gnu::always_inline]] static Lanes smaller(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x < y ? x : y; });
   }
-  static Lanes unlessZero(const Lanes& a, const Lanes& b) {
+  [[gnu::always_inline]] static Lanes unlessZero(const Lanes& a, const Lanes& b) {
     return each(a, b, [](double x, double y) { return x == 0 ? y : x; });
+  }
+  static Lanes whereAtLeast(const Lanes& x, const Lanes& y, const Lanes& a, const Lanes& b) {
+    Lanes result;
+    for (int i = 0; i < kCount; ++i) {
+      result.numbers[i] = x.numbers[i] >= y.numbers[i] ? a.numbers[i] : b.numbers[i];
+    }
+    return result;
   }
 #endif
   [[gnu::always_inline]] friend Lanes operator+(const Lanes& a, double b) { return a + of(b); }

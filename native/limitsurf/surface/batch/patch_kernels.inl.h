@@ -135,6 +135,17 @@ class RunNets {
   const PatchRun& run_;
 };
 
+/// 1 in the lanes for which normalKeepsDigits(), NaN in the others.
+template <typename Rows>
+[[gnu::always_inline]] inline Rows oneWhereKept(const UnitNormal<Rows>& normal,
+                                                const NormalLimits& limits) {
+  const Rows nan = Rows::of(__builtin_nan(""));
+  Rows keeps = Rows::whereAtLeast(normal.square, Rows::of(kLeastSquare), Rows::of(1), nan);
+  keeps = Rows::whereAtLeast(Rows::of(kMostSquare), normal.square, keeps, nan);
+  keeps = Rows::whereAtLeast(normal.square, limits.sine_square * normal.lengths, keeps, nan);
+  return Rows::whereAtLeast(normal.square, limits.square * normal.squares, keeps, nan);
+}
+
 /// The next `count` rows of a run, at most kCount: a lane for each.
 template <int Order, int kCount, typename Window, typename Real>
 [[gnu::always_inline]] inline void evaluateRows(const PatchRun& run, const Turned& turned,
@@ -170,17 +181,9 @@ template <int Order, int kCount, typename Window, typename Real>
     if (results.normal) {
       UnitNormal<Rows> normal(turned.swapped ? along_v : along_u,
                               turned.swapped ? along_u : along_v);
-      double square[kCount], lengths[kCount], squares[kCount];
-      normal.square.store(square);
-      normal.lengths.store(lengths);
-      normal.squares.store(squares);
-      for (int lane = 0; lane < count; ++lane) {
-        if (!normalKeepsDigits(square[lane], lengths[lane], squares[lane],
-                               run.normal_limits.sine_square, run.normal_limits.square)) {
-          for (Rows& numbers : normal.unit) {
-            numbers.numbers[lane] = __builtin_nan("");
-          }
-        }
+      const Rows keeps = oneWhereKept(normal, run.normal_limits);
+      for (Rows& numbers : normal.unit) {
+        numbers = numbers * keeps;
       }
       places.put(results.normal, normal.unit);
     }

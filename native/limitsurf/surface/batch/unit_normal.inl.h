@@ -27,11 +27,14 @@ struct UnitNormal {
   Number squares;  ///< their sum
 };
 
+/// Between these neither du x dv nor its square has overflowed or underflowed.
+constexpr double kLeastSquare = 0x1p-900, kMostSquare = 0x1p900;
+
 /// Whether neither du x dv nor its square has overflowed or underflowed, the squared sine of the
 /// angle between du and dv is `lowest_sine_square` at least, and the rounding of du and dv is small
 /// beside du x dv (see NormalLimits).
 inline bool normalKeepsDigits(double square, double lengths, double squares,
                               double lowest_sine_square, double least_square) {
-  return square >= 0x1p-900 && square <= 0x1p900 && square >= lowest_sine_square * lengths &&
-         square >= least_square * squares;
+  return square >= kLeastSquare && square <= kMostSquare &&
+         square >= lowest_sine_square * lengths && square >= least_square * squares;
 }
