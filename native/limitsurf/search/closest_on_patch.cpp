@@ -84,23 +84,23 @@ class PatchSearch {
     guess(s, t);
     const double range = best_.from.range;
     const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., least + range * range)));
-    double distance;
+    BezierPatch::Point found;
     const FootSearch search =
         minimizeDistance(kernels_, relative_, away_, {0, 0, 1}, reach * best_.tolerance,
-                         best_.enough(), bound.radius, s, t, distance);
+                         best_.enough(), bound.radius, s, t, found);
     if (search == FootSearch::beyond) {
       return true;
     }
-    Values at;
-    relative_.evaluate<0>(s, t, at);
-    best_.offer(at.value.head<3>().matrix(), patch_.on.at(s, t));
+    offer(found, s, t);
     if (search != FootSearch::arrived) {
       return false;
     }
+    const BezierPatch::Point way = found - away_;
+    const double distance = std::sqrt(dot(way, way));
     if (distance <= bound.radius) {
       return true;
     }
-    const BezierPatch::Point direction = (at.value - away_) / distance;
+    const BezierPatch::Point direction = way / distance;
     double z[16];
     kernels_.along(reinterpret_cast<const double (*)[4]>(relative_.points), direction.data(), z);
     return bound.holds(z, distance);
@@ -205,7 +205,8 @@ class PatchSearch {
                     (!shape.convex && bordersOf(cell) == 0 && f.isNowhereConvex()))) {
       return;
     }
-    double s, t, distance;
+    double s, t;
+    BezierPatch::Point found;
     f.guess(s, t);
     s = cell.s + sideOr(shape.s_side, s) * cell.size;
     t = cell.t + sideOr(shape.t_side, t) * cell.size;
@@ -213,11 +214,15 @@ class PatchSearch {
     bool done = cell.depth == kMostDepth || ++cells_ > kMostCells || corner;
     if (!done && shape.convex) {
       const FootSearch search = minimizeDistance(kernels_, relative_, away_, cell, slack,
-                                                 best_.enough() + noise, kNever, s, t, distance);
+                                                 best_.enough() + noise, kNever, s, t, found);
       if (search == FootSearch::beyond) {
         return;
       }
       done = search == FootSearch::arrived;
+      if (done && !facing_) {
+        offer(found, s, t);
+        return;
+      }
     }
     if (done) {
       if (!facing_ || isFoot(cell, s, t)) {
@@ -228,8 +233,8 @@ class PatchSearch {
     if (!facing_) {
       if (cell.depth == 0) {
         // A minimum that may be none of the whole patch is a guess that leaves out most cells.
-        minimizeDistance(kernels_, relative_, away_, cell, slack, kNever, kNever, s, t, distance);
-        offer(s, t);
+        minimizeDistance(kernels_, relative_, away_, cell, slack, kNever, kNever, s, t, found);
+        offer(found, s, t);
       }
       for (int i = 0; i < 4; ++i) {
         const double squared = f.corner(i & 1, i >> 1);
@@ -267,7 +272,10 @@ class PatchSearch {
   void offer(double s, double t) {
     Values at;
     relative_.evaluate<0>(s, t, at);
-    best_.offer(at.value.head<3>().matrix(), patch_.on.at(s, t));
+    offer(at.value, s, t);
+  }
+  void offer(const BezierPatch::Point& found, double s, double t) {
+    best_.offer(found.head<3>().matrix(), patch_.on.at(s, t));
   }
 
   /// Whether the minimum over a convex cell is a minimum over the smooth sheet around it as well,

@@ -104,7 +104,7 @@ class FootIteration {
         t1_(square.t + square.size),
         s_(s),
         t_(t) {
-    squared_ = evaluate(s_, t_, at_);
+    squared_ = evaluate(s_, t_, at_, found_);
   }
 
   FootSearch run(double slack, double enough, double radius) {
@@ -141,19 +141,20 @@ class FootIteration {
     return FootSearch::failed;
   }
 
+  const BezierPatch::Point& found() const { return found_; }
   double distance() const { return std::sqrt(dot(at_.value, at_.value)); }
 
  private:
   enum class Descent { kDescended, kNoDescent, kNoMove };
 
-  /// Returns the squared distance less that of `away`, and sets the value to the offset.
-  double evaluate(double s, double t, Values& at) const {
+  /// Returns the squared distance less that of `away`, and sets the value to the offset of `point`.
+  double evaluate(double s, double t, Values& at, BezierPatch::Point& point) const {
     static_assert(sizeof(Values) == sizeof(double[6][4]), "the kernel writes the values");
     kernels_.evaluate(reinterpret_cast<const double (*)[4]>(patch_.points), s, t,
                       reinterpret_cast<double (*)[4]>(&at));
-    const BezierPatch::Point offset = at.value - away_;
-    const double squared = dot(at.value, offset - away_);
-    at.value = offset;
+    point = at.value;
+    at.value = point - away_;
+    const double squared = dot(point, at.value - away_);
     return squared;
   }
 
@@ -203,19 +204,21 @@ class FootIteration {
   /// Goes a part of the step, halved until the distance does not grow.
   Descent descend(const Step& step, double part, bool is_last) {
     Values next;
+    BezierPatch::Point point;
     for (int halvings = 0; halvings < kMostHalvings; ++halvings, part /= 2) {
       const double next_s = std::clamp(s_ + part * step.s, s0_, s1_),
                    next_t = std::clamp(t_ + part * step.t, t0_, t1_);
       if (next_s == s_ && next_t == t_) {
         return Descent::kNoMove;
       }
-      const double next_squared = evaluate(next_s, next_t, next);
+      const double next_squared = evaluate(next_s, next_t, next, point);
       if (next_squared <= squared_ ||
           (is_last && next_squared <= squared_ + kStepRounding * std::abs(squared_))) {
         s_ = next_s;
         t_ = next_t;
         squared_ = next_squared;
         at_ = next;
+        found_ = point;
         return Descent::kDescended;
       }
     }
@@ -235,6 +238,7 @@ class FootIteration {
   const double size_, s0_, s1_, t0_, t1_;
   double &s_, &t_;
   Values at_;
+  BezierPatch::Point found_;
   double squared_;
 };
 
@@ -243,10 +247,10 @@ class FootIteration {
 FootSearch minimizeDistance(const SearchKernels& kernels, const BezierPatch& patch,
                             const BezierPatch::Point& away, const ParameterSquare& square,
                             double slack, double enough, double radius, double& s, double& t,
-                            double& distance) {
+                            BezierPatch::Point& found) {
   FootIteration iteration(kernels, patch, away, square, s, t);
   const FootSearch search = iteration.run(slack, enough, radius);
-  distance = iteration.distance();
+  found = iteration.found();
   return search;
 }
 

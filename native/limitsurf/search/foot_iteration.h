@@ -21,11 +21,11 @@ enum class FootSearch {
 /// Where it arrives, the following holds if the squared distance is convex: it is nowhere on the
 /// square less by more than `slack`. It ends early if convexity, up to `slack`, shows that the
 /// squared distance, less that of `away` itself, is at least `enough` on the whole square.
-/// Convexity, or what stands in for it (footRadius()), is made use of only within the distance
-/// `radius` of the point. `distance` becomes that of the point that is found.
+/// Convexity, or what stands in for it (FootBound), is made use of only within the distance
+/// `radius` of the point. `found` becomes the point of the patch at (s, t).
 FootSearch minimizeDistance(const SearchKernels& kernels, const BezierPatch& patch,
                             const BezierPatch::Point& away, const ParameterSquare& square,
                             double slack, double enough, double radius, double& s, double& t,
-                            double& distance);
+                            BezierPatch::Point& found);
 
 }  // namespace limitsurf

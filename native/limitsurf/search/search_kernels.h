@@ -11,7 +11,6 @@ constexpr int kDistanceStride = 8, kDistanceSize = 7 * kDistanceStride;
 
 /// The least and the largest differences of such coefficients.
 struct DifferenceBounds {
-  double least, largest;        ///< of the coefficients themselves
   double least_s, largest_s;    ///< first differences along s
   double least_t, largest_t;    ///< along t
   double least_ss, largest_ss;  ///< second differences
@@ -25,6 +24,8 @@ struct SearchKernels {
   /// The squared distance of a patch from `away`, less the square of `away`: |P|^2 - 2 P away.
   void (*squaredDistance)(const double points[16][4], const double away[4],
                           double out[kDistanceSize]);
+  /// The least and the largest coefficient.
+  void (*extremes)(const double coefficients[kDistanceSize], double& least, double& largest);
   void (*differenceBounds)(const double coefficients[kDistanceSize], DifferenceBounds& out);
   /// A patch's value and first and second derivatives at (s, t), as BezierPatch::evaluate<2>.
   void (*evaluate)(const double points[16][4], double s, double t, double out[6][4]);

@@ -81,17 +81,23 @@ struct Extremes {
   }
 };
 
+inline void extremes(const double c[kDistanceSize], double& least, double& largest) {
+  Extremes values;  // the padding repeats coefficients
+  for (int i = 0; i < kDistanceSize; i += 4) {
+    values.include(Four::load(c + i));
+  }
+  values.store(least, largest);
+}
+
 inline void differenceBounds(const double c[kDistanceSize], DifferenceBounds& out) {
   // A row has seven coefficients, i = 0 to 6: those from 0 on and those from 3 on.
-  Extremes values, s, t, ss, tt, st;
+  Extremes s, t, ss, tt, st;
   Four before[2], slope_before[2], t_before[2];
   for (int j = 0; j < 7; ++j) {
     const double* row = c + kDistanceStride * j;
     const Four at0 = Four::load(row), at1 = Four::load(row + 1), at2 = Four::load(row + 2),
                at3 = Four::load(row + 3);
     const Four slope[2] = {at1 - at0, at3 - at2};  // i = 0 to 3, 2 to 5
-    values.include(at0);
-    values.include(at3);
     s.include(slope[0]);
     s.include(slope[1]);
     ss.include((at0 - 2 * at1) + at2);
@@ -114,7 +120,6 @@ inline void differenceBounds(const double c[kDistanceSize], DifferenceBounds& ou
     slope_before[0] = slope[0];
     slope_before[1] = slope[1];
   }
-  values.store(out.least, out.largest);
   s.store(out.least_s, out.largest_s);
   t.store(out.least_t, out.largest_t);
   ss.store(out.least_ss, out.largest_ss);
@@ -164,4 +169,4 @@ inline void along(const double points[16][4], const double direction[4], double 
   }
 }
 
-constexpr SearchKernels kKernels = {squaredDistance, differenceBounds, evaluate, along};
+constexpr SearchKernels kKernels = {squaredDistance, extremes, differenceBounds, evaluate, along};

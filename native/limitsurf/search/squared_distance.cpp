@@ -24,7 +24,7 @@ SquaredDistance::SquaredDistance(const SearchKernels& kernels, const BezierPatch
       Bernstein<6>::kStride == kDistanceStride && sizeof f_ == sizeof(double[kDistanceSize]),
       "the kernels write the coefficients");
   kernels.squaredDistance(reinterpret_cast<const double (*)[4]>(points), away.data(), f_.data());
-  kernels.differenceBounds(f_.data(), bounds_);
+  kernels.extremes(f_.data(), least_, largest_);
   const double range = std::sqrt(away.square().sum());
   if (range > 0) {
     for (int i = 0; i < 16; ++i) {
@@ -41,15 +41,14 @@ void SquaredDistance::quarter(SquaredDistance out[4]) const {
     out[i].kernels_ = kernels_;
     out[i].f_ = parts[i];
     out[i].summands_ = summands_;
-    kernels_->differenceBounds(out[i].f_.data(), out[i].bounds_);
+    kernels_->extremes(out[i].f_.data(), out[i].least_, out[i].largest_);
   }
 }
 
 void SquaredDistance::guess(double& s, double& t) const {
-  const double least = bounds_.least;
   for (int j = 0; j < 7; ++j) {
     for (int i = 0; i < 7; ++i) {
-      if (f_.at(i, j) == least) {
+      if (f_.at(i, j) == least_) {
         s = i / 6.;
         t = j / 6.;
         return;
@@ -61,7 +60,8 @@ void SquaredDistance::guess(double& s, double& t) const {
 SquaredDistance::Shape SquaredDistance::shape(double slack) const {
   Shape shape;
   const double rounding = kRounding * magnitude();
-  const DifferenceBounds& d = bounds_;
+  DifferenceBounds d;
+  kernels_->differenceBounds(f_.row(0), d);
   shape.s_side = d.least_s >= 0 ? -1 : d.largest_s <= 0 ? 1 : 0;
   shape.s_strictly = d.least_s > rounding || d.largest_s < -rounding;
   shape.t_side = d.least_t >= 0 ? -1 : d.largest_t <= 0 ? 1 : 0;
@@ -84,20 +84,20 @@ SquaredDistance::Shape SquaredDistance::shape(double slack) const {
     }
     shape.convex = kSecond * second + slack > 0;
   } else {
-    shape.convex = isConvex(slack);
+    shape.convex = isConvex(d, slack);
   }
   return shape;
 }
 
-bool SquaredDistance::isConvex(double slack) const {
-  const DifferenceBounds& d = bounds_;
+bool SquaredDistance::isConvex(const DifferenceBounds& d, double slack) {
   const double ss = kSecond * d.least_ss + slack, tt = kSecond * d.least_tt + slack;
   const double st = kMixed * std::max(std::abs(d.least_st), std::abs(d.largest_st));
   return ss > 0 && tt > 0 && ss * tt >= st * st;
 }
 
 bool SquaredDistance::isNowhereConvex() const {
-  const DifferenceBounds& d = bounds_;
+  DifferenceBounds d;
+  kernels_->differenceBounds(f_.row(0), d);
   const double rounding = kRounding * magnitude();
   const double st = kMixed * std::max({0., d.least_st, -d.largest_st});
   return d.largest_ss < -rounding || d.largest_tt < -rounding ||

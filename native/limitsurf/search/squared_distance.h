@@ -22,9 +22,9 @@ class SquaredDistance {
   SquaredDistance(const SearchKernels& kernels, const BezierPatch::Point points[16],
                   const BezierPatch::Point& away);
 
-  double least() const { return bounds_.least; }
+  double least() const { return least_; }
   /// The size of the numbers that the coefficients are sums of: their rounding is relative to it.
-  double magnitude() const { return std::max({bounds_.largest, -bounds_.least, summands_}); }
+  double magnitude() const { return std::max({largest_, -least_, summands_}); }
   /// The value at a corner: i and j are 0 or 1.
   double corner(int i, int j) const { return f_.at(6 * i, 6 * j); }
   /// The polynomial on the quarters of the square.
@@ -51,11 +51,11 @@ class SquaredDistance {
 
  private:
   /// Whether the smaller eigenvalue of the Hessian is at least -slack everywhere.
-  bool isConvex(double slack) const;
+  static bool isConvex(const DifferenceBounds& d, double slack);
 
   const SearchKernels* kernels_;
   Bernstein<6> f_;
-  DifferenceBounds bounds_;
+  double least_, largest_;  // of the coefficients
   /// The largest |P| (|P| + 2 |away|) of a point P, or 0 for points that are not far away: there
   /// nothing cancels.
   double summands_ = 0;

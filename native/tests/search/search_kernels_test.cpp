@@ -69,6 +69,8 @@ TEST(SearchKernels, BoundsAreTheExtremesOfTheDifferences) {
     SearchKernels::get().squaredDistance(patch.points, patch.away, c);
     DifferenceBounds found;
     SearchKernels::get().differenceBounds(c, found);
+    double least, largest;
+    SearchKernels::get().extremes(c, least, largest);
     double low[6], high[6];
     std::fill_n(low, 6, std::numeric_limits<double>::infinity());
     std::fill_n(high, 6, -low[0]);
@@ -91,10 +93,12 @@ TEST(SearchKernels, BoundsAreTheExtremesOfTheDifferences) {
         }
       }
     }
-    const double pairs[6][2] = {
-        {found.least, found.largest},       {found.least_s, found.largest_s},
-        {found.least_t, found.largest_t},   {found.least_ss, found.largest_ss},
-        {found.least_tt, found.largest_tt}, {found.least_st, found.largest_st}};
+    const double pairs[6][2] = {{least, largest},
+                                {found.least_s, found.largest_s},
+                                {found.least_t, found.largest_t},
+                                {found.least_ss, found.largest_ss},
+                                {found.least_tt, found.largest_tt},
+                                {found.least_st, found.largest_st}};
     for (int kind = 0; kind < 6; ++kind) {
       EXPECT_EQ(pairs[kind][0], low[kind]) << kind;
       EXPECT_EQ(pairs[kind][1], high[kind]) << kind;
@@ -109,7 +113,7 @@ TEST(SearchKernels, AllInstructionSetsGiveTheSameBits) {
     const RandomPatch patch(random);
     const double s = random.uniform(), t = random.uniform();
     struct {
-      double polynomial[kDistanceSize], values[6][4], along[16];
+      double polynomial[kDistanceSize], extremes[2], values[6][4], along[16];
       DifferenceBounds bounds;
     } results[3];
     int count = 0;
@@ -120,6 +124,7 @@ TEST(SearchKernels, AllInstructionSetsGiveTheSameBits) {
       auto& result = results[count++];
       SearchKernels::get().squaredDistance(patch.points, patch.away, result.polynomial);
       SearchKernels::get().differenceBounds(result.polynomial, result.bounds);
+      SearchKernels::get().extremes(result.polynomial, result.extremes[0], result.extremes[1]);
       SearchKernels::get().evaluate(patch.points, s, t, result.values);
       SearchKernels::get().along(patch.points, patch.away, result.along);
       for (int i = 0; i < 16; ++i) {
