@@ -31,7 +31,7 @@ struct Lanes {
   }
   /// `a`, or `b` where `a` is 0.
   [[gnu::always_inline]] static Lanes unlessZero(const Lanes& a, const Lanes& b) {
-    return {a.numbers == 0 ? b.numbers : a.numbers};
+    return {a.numbers == Numbers{} ? b.numbers : a.numbers};
   }
   /// `a` where x >= y, `b` elsewhere and where x or y is NaN.
   [[gnu::always_inline]] static Lanes whereAtLeast(const Lanes& x, const Lanes& y, const Lanes& a,
