@@ -63,9 +63,9 @@ class RunLines {
   explicit RunLines(const PatchRun& run) {
     withPoints(run, [&](const auto& at) {
       for (int i = 0; i < 4; ++i) {
-        rows_[i].set(WindowLine<Lanes<4>>::of(at(0, i), at(1, i), at(2, i), at(3, i)));
+        rows_[i].set(at(0, i), at(1, i), at(2, i), at(3, i));
         if (Order >= 2) {
-          columns_[i].set(WindowLine<Lanes<4>>::of(at(i, 0), at(i, 1), at(i, 2), at(i, 3)));
+          columns_[i].set(at(i, 0), at(i, 1), at(i, 2), at(i, 3));
         }
       }
     });
@@ -82,17 +82,23 @@ class RunLines {
 
  private:
   struct Line {
-    double point[4][4], first[Order >= 1 ? 3 : 1][4], second[Order >= 2 ? 2 : 1][4];
+    double point[4][4], first[3][4], second[2][4];  // as WindowLine has them
 
-    void set(const WindowLine<Lanes<4>>& line) {
-      for (int i = 0; i < 4; ++i) {
-        line.point[i].store(point[i]);
+    using Point = Lanes<4>;
+    [[gnu::always_inline]] void set(const Point& p, const Point& q, const Point& r,
+                                    const Point& s) {
+      p.store(point[0]);
+      q.store(point[1]);
+      r.store(point[2]);
+      s.store(point[3]);
+      if (Order >= 1) {
+        (q - p).store(first[0]);
+        (r - q).store(first[1]);
+        (s - r).store(first[2]);
       }
-      for (int i = 0; Order >= 1 && i < 3; ++i) {
-        line.first[i].store(first[i]);
-      }
-      for (int i = 0; Order >= 2 && i < 2; ++i) {
-        line.second[i].store(second[i]);
+      if (Order >= 2) {
+        ((r - q) - (q - p)).store(second[0]);
+        ((s - r) - (r - q)).store(second[1]);
       }
     }
     template <typename Rows>
