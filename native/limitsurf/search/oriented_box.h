@@ -75,8 +75,9 @@ class OrientedBox {
  private:
   /// A ray counts as perpendicular to an axis if the cosine of their angle is below this.
   static constexpr double kParallel = 1e-12;
-  /// Axes in single precision are orthonormal to 3e-7.
-  static constexpr double kNearlyOne = 1 - 1e-6;
+  /// Axes in single precision are orthonormal to 3e-7, those in double precision to 1e-15.
+  static constexpr double kNearlyOne =
+      std::numeric_limits<Real>::digits < 53 ? 1 - 1e-6 : 1 - 1e-14;
 
   double coordinate(int i, const Vector3& point) const {
     return axes_[i][0] * (point[0] - centre_[0]) + axes_[i][1] * (point[1] - centre_[1]) +

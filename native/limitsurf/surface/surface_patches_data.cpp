@@ -6,8 +6,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "limitsurf/eigen/ring_shrinkage.h"
+#include "limitsurf/float_rounding.h"
 #include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/batch/grid_step.h"
@@ -34,6 +36,9 @@ FaceRectangle turned(const FaceRectangle& on, int corner) {
 
 /// If the sine of the angle between two vectors is smaller, they do not span a plane well enough.
 constexpr double kLeastSine = 1e-6;
+/// The rounding of the coordinates of a point in a frame, of its largest coordinate: three products
+/// and two sums, each of at most sqrt(3) times that.
+constexpr double kTurnRounding = 9 * 0x1p-53;
 /// The number of points for which memory is taken between two interruption points.
 constexpr std::size_t kPointsPerPass = std::size_t{1} << 18;
 
@@ -82,6 +87,10 @@ int SurfacePatches::Data::keptSteps(int ring) const {
   return table.rings[ring].basis->ring().faces > kFewFaces ? kMostSteps : kFewSteps;
 }
 
+int SurfacePatches::Data::flatSteps(int ring) const {
+  return std::max(keptSteps(ring), kFlatSteps);
+}
+
 void SurfacePatches::Data::setLevels(int threads) {
   radii.resize(table.rings.size() * (kMostSteps + 1));
   first_level.resize(table.rings.size());
@@ -93,7 +102,7 @@ void SurfacePatches::Data::setLevels(int threads) {
     first_extent[ring] = steps;
     const int kept = keptSteps(static_cast<int>(ring));
     size += table.rings[ring].points.size() * static_cast<std::size_t>(kept + 1);
-    steps += static_cast<std::size_t>(kept + 1);
+    steps += static_cast<std::size_t>(flatSteps(static_cast<int>(ring)) + 1);
     const Eigenbasis* basis = table.rings[ring].basis.get();
     if (kept < kMostSteps && shrinkages_.count(basis) == 0) {
       shrinkages_[basis] = ringShrinkage(*basis, kMostSteps - kept);
@@ -114,7 +123,21 @@ void SurfacePatches::Data::setLevels(int threads) {
   });
 }
 
-Eigen::Matrix3d SurfacePatches::Data::frameOf(int ring) const {
+std::pair<Vector3, Vector3> SurfacePatches::Data::planeOf(int ring) const {
+  const Eigenbasis& basis = *table.rings[ring].basis;
+  if (basis.ring().kind == RingKind::interior) {
+    // Ring points approach the plane of the two modes with the largest eigenvalues below 1.
+    int first = 1, second = 2;
+    for (int mode = 2; mode < basis.modeCount(); ++mode) {
+      if (basis.eigenvalue(mode) > basis.eigenvalue(first)) {
+        second = std::exchange(first, mode);
+      } else if (mode > 2 && basis.eigenvalue(mode) > basis.eigenvalue(second)) {
+        second = mode;
+      }
+    }
+    const Points& coefficients = pose.ring(ring).coefficients;
+    return {coefficients.row(first), coefficients.row(second)};
+  }
   const std::size_t count = table.rings[ring].points.size();
   const Padded* points =
       &levels[first_level[ring] + count * static_cast<std::size_t>(keptSteps(ring))];
@@ -130,20 +153,26 @@ Eigen::Matrix3d SurfacePatches::Data::frameOf(int ring) const {
     }
     return Vector3(points[found].head<3>());
   };
-  const Vector3 along =
-      farthest([](const Vector3& p) { return p.cwiseAbs().maxCoeff(); }).stableNormalized();
-  const Vector3 across = farthest([&](const Vector3& p) {
-                           return along.cross(p).cwiseAbs().maxCoeff();
-                         }).stableNormalized();
-  const Vector3 normal = along.cross(across);
-  const double sine = normal.norm();
-  if (!(sine > kLeastSine)) {
+  const Vector3 along = farthest([](const Vector3& p) { return p.cwiseAbs().maxCoeff(); });
+  const Vector3 direction = along.stableNormalized();
+  return {along,
+          farthest([&](const Vector3& p) { return direction.cross(p).cwiseAbs().maxCoeff(); })};
+}
+
+Eigen::Matrix3d SurfacePatches::Data::frameOf(int ring) const {
+  const auto [first, second] = planeOf(ring);
+  const Vector3 along = first.stableNormalized(), across = second.stableNormalized();
+  Vector3 normal = along.cross(across);
+  if (!(normal.norm() > kLeastSine)) {
     return Eigen::Matrix3d::Identity();
   }
+  // Where the sine is small, rounding has left some of the first direction in the product.
+  normal.normalize();
+  normal = (normal - normal.dot(along) * along).normalized();
   Eigen::Matrix3d axes;
   axes.row(0) = along;
-  axes.row(2) = normal / sine;
-  axes.row(1) = axes.row(2).cross(axes.row(0));
+  axes.row(2) = normal;
+  axes.row(1) = normal.cross(along);
   return axes;
 }
 
@@ -151,20 +180,33 @@ void SurfacePatches::Data::setExtents(int ring) {
   frames[ring] = frameOf(ring);
   const std::size_t count = table.rings[ring].points.size();
   const Padded* points = &levels[first_level[ring]];
-  for (int step = 0; step <= keptSteps(ring); ++step) {
-    // The limit, 0, is in the hull, but for rounding.
-    Vector3 low = Vector3::Zero(), high = low;
-    for (std::size_t i = 0; i < count; ++i, ++points) {
-      const Vector3 turned = frames[ring] * points->head<3>().matrix();
-      low = low.cwiseMin(turned);
-      high = high.cwiseMax(turned);
-    }
-    Extent& extent = extents[first_extent[ring] + static_cast<std::size_t>(step)];
-    const double margin = kFloatMargin * std::max(-low.minCoeff(), high.maxCoeff());
-    for (int axis = 0; axis < 3; ++axis) {
-      extent.low[axis] = static_cast<float>((low[axis] - margin) / unit);
-      extent.high[axis] = static_cast<float>((high[axis] + margin) / unit);
-    }
+  Extent* extent = &extents[first_extent[ring]];
+  const int kept = keptSteps(ring);
+  for (int step = 0; step <= kept; ++step, points += count) {
+    setExtent(points, count, frames[ring], *extent++);
+  }
+  std::vector<Padded> last(points - count, points), next(count);
+  for (int step = kept + 1; step <= flatSteps(ring); ++step) {
+    table.rings[ring].basis->step().apply([&](int i) -> const Padded& { return last[i]; },
+                                          [&](int i) -> Padded& { return next[i]; });
+    last.swap(next);
+    setExtent(last.data(), count, frames[ring], *extent++);
+  }
+}
+
+void SurfacePatches::Data::setExtent(const Padded* points, std::size_t count,
+                                     const Eigen::Matrix3d& frame, Extent& extent) const {
+  // The limit, 0, is in the hull, but for rounding.
+  Vector3 low = Vector3::Zero(), high = low;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3 turned = frame * points[i].head<3>().matrix();
+    low = low.cwiseMin(turned);
+    high = high.cwiseMax(turned);
+  }
+  const double margin = kTurnRounding * std::max(-low.minCoeff(), high.maxCoeff());
+  for (int axis = 0; axis < 3; ++axis) {
+    extent.low[axis] = roundedDown((low[axis] - margin) / unit);
+    extent.high[axis] = roundedUp((high[axis] + margin) / unit);
   }
 }
 
@@ -173,16 +215,14 @@ CoreHull SurfacePatches::Data::hull(const SurfacePiece& core, const Padded* grid
   CoreHull hull;
   hull.vertex = pose.ring(tile.ring).limit.head<3>();
   hull.axes = frames[tile.ring];
+  // Later points lie in the hull of earlier ones.
   const int step = core.steps + tile.ring_steps;
-  if (step <= keptSteps(tile.ring)) {
-    const Extent& extent = extents[first_extent[tile.ring] + static_cast<std::size_t>(step)];
-    for (int axis = 0; axis < 3; ++axis) {
-      hull.low[axis] = unit * extent.low[axis];
-      hull.high[axis] = unit * extent.high[axis];
-    }
-  } else {
-    hull.high = Vector3::Constant(radius(core));
-    hull.low = -hull.high;
+  const int flat = std::min(step, flatSteps(tile.ring));
+  const Extent& extent = extents[first_extent[tile.ring] + static_cast<std::size_t>(flat)];
+  const double reach = radius(core);
+  for (int axis = 0; axis < 3; ++axis) {
+    hull.low[axis] = std::max(unit * extent.low[axis], -reach);
+    hull.high[axis] = std::min(unit * extent.high[axis], reach);
   }
   // Grids are relative to the vertex.
   for (const int c : tile_grid::kOuterSlots) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "limitsurf/patch/tile_table.h"
@@ -30,6 +31,8 @@ struct SurfacePatches::Data {
 
   /// The last step for which a ring's points are kept.
   int keptSteps(int ring) const;
+  /// The last step after which the extent of a ring's points is kept.
+  int flatSteps(int ring) const;
 
   /// A ring's points after so many steps, at most keptSteps().
   const Padded* ringPoints(int ring, int steps) const {
@@ -62,7 +65,7 @@ struct SurfacePatches::Data {
   std::vector<Padded> levels;             // relative to the rings' limits
   std::vector<Eigen::Matrix3d> frames;    // for each ring, an axis in each row
   std::vector<std::size_t> first_extent;  // for each ring
-  std::vector<Extent> extents;            // for each kept level
+  std::vector<Extent> extents;            // after each step to flatSteps()
   Box cage_box;
   double unit = 1;   ///< the patches' own, as in PatchUnit
   double scale = 1;  ///< SurfacePatches::scale(); what is kept here is in the pose's unit
@@ -73,14 +76,21 @@ struct SurfacePatches::Data {
   /// Rings with few faces keep their points for so many steps; later ones are rarely asked for, and
   /// cost little at their valence.
   static constexpr int kFewSteps = 12;
+  /// The extents of all rings are kept for so many steps at least. A smooth ring is flatter than
+  /// its size by this many halvings then: 2^-48 of a diagonal is less than what searches leave.
+  static constexpr int kFlatSteps = 24;
   /// A ring takes much longer than an evaluation, so that a task has fewer of them than
   /// kRowsPerTask.
   static constexpr std::size_t kRingsPerTask = 16;
 
   void addTiles(const TileRef& ref, const FaceRectangle& on);
-  /// Axes along which the ring's points after the last kept step are as flat as can be.
+  /// Two directions in the plane that the ring's points approach, or one of several such planes.
+  std::pair<Vector3, Vector3> planeOf(int ring) const;
+  /// Axes along which the ring's points after many steps are as flat as can be.
   Eigen::Matrix3d frameOf(int ring) const;
   void setExtents(int ring);
+  void setExtent(const Padded* points, std::size_t count, const Eigen::Matrix3d& frame,
+                 Extent& extent) const;
   void setRingLevels(int ring);
   void stripPatch(const BSplineTile& tile, int strip, BezierPatch& out) const;
 

@@ -51,6 +51,30 @@ TEST(ClosestCost, TrianglesCostFewTimesWhatQuadsCost) {
   }
 }
 
+/// Around an extraordinary vertex, the boxes of what is left of cores are as flat as the surface,
+/// so that above it, where all faces are almost equally close, a search ends after some splits of
+/// each.
+TEST(ClosestCost, FewSplitsAboveAnExtraordinaryVertex) {
+  for (const int valence : {5, 6, 9, 16}) {
+    const LimitSurface surface = limitSurface(fan(valence, true, 1));
+    const SurfaceSearch search(surface);
+    const Evaluation at_vertex =
+        surface.evaluate(std::vector<Location>{{0, 0, 0}}, Derivatives::first, true);
+    constexpr int kCount = 100;
+    Random random(3);
+    Points points(kCount, 3);
+    for (int i = 0; i < kCount; ++i) {
+      points.row(i) = at_vertex.position.row(0) + 0.3 * at_vertex.normal.row(0) +
+                      random.vector(1e-3).transpose();
+    }
+    std::int64_t leaves = 0;
+    ClosestOptions options;
+    options.leaves = &leaves;
+    search.closest(points, options);
+    EXPECT_LE(leaves, std::int64_t{20} * kCount * valence) << valence;
+  }
+}
+
 /// The cost does not grow with the distance, and the result is at least as close as any of many
 /// places of the surface. Squared distances are compared less that of the middle: distances
 /// themselves could not tell the places apart.
