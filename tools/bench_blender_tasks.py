@@ -124,7 +124,7 @@ def sample_tables(_size: int, _count: int) -> Task:
 TASKS: dict[str, tuple[str, Callable[[int, int], Task], int]] = {
     # name: what the table calls it, what sets it up, how often it can be repeated
     "bake": ("position bake", position_bake, REPEATS),
-    "snap": ("snapping vertices", snapped_vertices, REPEATS),
+    "snap": ("snapping vertices", snapped_vertices, 1),
     "follow-nodes": ("follow by nodes", following("NODES"), 1),
     "follow-live": ("follow live", following("LIVE"), 1),
     "rebind-nodes": ("rebind, by nodes, closest", rebinding("CLOSEST", "NODES"), REPEATS),
