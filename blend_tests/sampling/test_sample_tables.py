@@ -11,6 +11,7 @@ import pytest
 import scenes
 from follow_scenes import check_hair, deforming, look
 from limit_surface import ids
+from limit_surface.errors import CancelledError
 from limit_surface.follow import stale
 from limit_surface.placing import all_tiles, tables
 from limit_surface.placing.follow_state import State, surfaces
@@ -126,9 +127,9 @@ def waiting(monkeypatch):
     """The operator as a user starts it; the tables are not found until the event is set."""
     go_on, compute = threading.Event(), all_tiles.AllTiles.compute
 
-    def wait(self):
+    def wait(self, progress):
         wait_for(go_on)
-        compute(self)
+        compute(self, progress)
 
     monkeypatch.setattr(all_tiles.AllTiles, "compute", wait)
     monkeypatch.setattr(watched_operator, "PATIENCE", 0.01)
@@ -161,13 +162,18 @@ def test_finding_many_tiles_is_waited_for(waiting):
 
 
 def test_escape_ends_finding_tiles(waiting):
-    operator, _ = waiting
+    operator, go_on = waiting
     scenes.activate(deforming("grid with holes"))
     context, before = window_context(), scenes.file_contents()
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    job = operator._job
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
     operator.report.assert_called_with({"INFO"}, "Cancelled: no tables were made")
     assert scenes.file_contents() == before
+    go_on.set()
+    wait_for(job)
+    with pytest.raises(CancelledError):  # the work itself has ended early
+        job.result()
 
 
 @pytest.mark.parametrize("seed", range(5))

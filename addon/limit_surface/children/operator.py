@@ -262,9 +262,9 @@ def _live_table_of(
 ) -> Callable[[Ground, Progress], live_children.Table]:
     """Returns the function that finds the tiles, and makes the table of the children."""
 
-    def make(ground: Ground, _progress: Progress) -> live_children.Table:
+    def make(ground: Ground, progress: Progress) -> live_children.Table:
         assert tiles is not None
-        tiles.compute()
+        tiles.compute(progress)
         followed = _followed(ground)
         strand = followed.guides.strand[followed.guide]
         return live_children.Table.of(followed.locations, strand, followed.weight)

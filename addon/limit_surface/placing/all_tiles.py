@@ -13,6 +13,7 @@ from ..errors import RefusalError
 from ..nodes import locate
 from ..nodes.tiles import ROWS_OF_A_TILE
 from ..reading import attributes, cage
+from ..tasks.job import Progress
 from ..tasks.object_keys import ObjectKey
 from ..tasks.refused_faces import check_some_left
 from . import following, new_objects, tables
@@ -41,10 +42,10 @@ class AllTiles:
         self._limit = found.surface()
         check_some_left(self._limit, surface.name)
 
-    def compute(self) -> None:
+    def compute(self, progress: Progress) -> None:
         """Finds the tiles, which takes some 50 microseconds for each of them."""
         limit = self._limit
-        self.tree = limit.tile_quadtree(self._depth)
+        self.tree = limit.tile_quadtree(self._depth, progress=progress)
         if self._levels is None:
             return
         faces = np.flatnonzero(self.tree.child[: limit.face_count] != _NO_TILE)

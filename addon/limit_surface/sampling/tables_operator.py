@@ -59,8 +59,8 @@ class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
             self._keep_settings(surface)
         tables = AllTiles(surface, context.evaluated_depsgraph_get(), self.depth, self.levels)
 
-        def work(_progress: Progress) -> AllTiles:
-            tables.compute()
+        def work(progress: Progress) -> AllTiles:
+            tables.compute(progress)
             return tables
 
         return self.watch(context, Job(work), f"Making tables of {surface.name}")

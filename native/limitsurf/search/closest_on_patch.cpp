@@ -55,8 +55,10 @@ class PatchSearch {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
   /// At this depth the distance over a cell varies by less than rounding.
   static constexpr int kMostDepth = 40;
-  /// A search ends after this many cells: on degenerate patches, as of no area, many points may be
-  /// equally close but for rounding.
+  /// A search ends after this many cells. On patches without area many points may be equally close
+  /// but for rounding, and on patches whose tangents are parallel to 1e-4 the squared distance is
+  /// convex in a narrow band only. There the result may not be the closest point
+  /// (docs/accuracy.md says by how much).
   static constexpr int kMostCells = 1 << 17;
   /// The squared distance is computed anew after every so many halvings.
   static constexpr int kFreshDepths = 4;

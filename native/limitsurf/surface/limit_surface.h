@@ -116,9 +116,9 @@ class SurfacePatches;  // surface_patches.h
 /// location does not depend on it, nor on what else is in the batch, to the last bit. All const
 /// members may be called from many threads at once.
 ///
-/// A location that cannot be evaluated makes a batch call throw before any work is done:
-/// LocationError names the first row whose face or (u, v) is out of range, MeshError the first row
-/// whose face is refused.
+/// A location that cannot be evaluated makes a batch call throw, before any work is done unless the
+/// call says otherwise: LocationError names the first row whose face or (u, v) is out of range,
+/// MeshError the first row whose face is refused.
 ///
 /// Memory: the control mesh, 76 bytes for each regular face, O(neighbourhood) for an irregular one,
 /// O(valence) for an extraordinary vertex, and about 4 KiB for each step in which a semi-sharp
@@ -284,9 +284,8 @@ class LimitSurface {
   /// The rules are OpenSubdiv's, for seams, their ends and junctions, boundaries and corners,
   /// smooth and sharp. Faces that have no limit surface have no data either.
   ///
-  /// Throws MeshError, which names the first index that is no row of `values`, the first row that
-  /// is not finite, and vertices where a seam meets semi-sharp edges whose decay cannot be
-  /// represented (face_varying_mesh.h says which). Cost: as for the construction of a surface.
+  /// Throws MeshError, which names the first index that is no row of `values` or the first row that
+  /// is not finite. Cost: as for the construction of a surface.
   SurfaceData faceVarying(const DataRows& values, const std::vector<std::int64_t>& indices,
                           Interpolation interpolation, int threads = 0) const;
 

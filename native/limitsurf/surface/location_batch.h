@@ -48,8 +48,10 @@ class LocationBatch {
   friend struct TiledSurface;
   LocationBatch(const void* faces, std::size_t face_size, std::size_t face_count, Span<double> uv);
 
+  /// -0 is read as 0: otherwise it would depend on the rest of a batch which of the two a result
+  /// is.
   double parameter(std::size_t row, std::size_t which) const {
-    return reinterpret_cast<const double*>(uv_ + row * uv_step_)[which];
+    return reinterpret_cast<const double*>(uv_ + row * uv_step_)[which] + 0.;
   }
 
   const char *faces_ = nullptr, *uv_ = nullptr;  // of the first row

@@ -355,7 +355,13 @@ class LimitSurface(metaclass=_BoundType):
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> AlongCurves: ...
-    def tile_quadtree(self, max_depth: int | None = None, *, threads: int = 0) -> TileQuadtree: ...
+    def tile_quadtree(
+        self,
+        max_depth: int | None = None,
+        *,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> TileQuadtree: ...
     def strand_poser(
         self,
         face: ArrayLike,

@@ -8,6 +8,7 @@
 
 #include "batches.h"
 #include "limitsurf/surface/tiles/tile_quadtree.h"
+#include "progress.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -82,7 +83,7 @@ py::object surfaceTiles(const SharedSurface& shared, const py::object& face, con
 }
 
 constexpr char kQuadtreeDoc[] =
-    R"(tile_quadtree(max_depth=None, *, threads=0)
+    R"(tile_quadtree(max_depth=None, *, threads=0, progress=None)
 
 All bicubic tiles of this surface, and for each Ptex face the quadtree that leads from (u, v) to its
 tile: what another program needs to evaluate the limit surface at locations that it finds itself.
@@ -90,6 +91,8 @@ tile: what another program needs to evaluate the limit surface at locations that
 Parameters
     max_depth: as in tiles(). What lies closer to an irregular vertex gets the tile beside it.
     threads: 0 uses all cores.
+    progress: a function that is called from time to time with the part of the work that is done, 0
+        to 1. An exception that it raises ends the call.
 
 Returns TileQuadtree, with
     child (nodes,): the first of a node's four children, or -1 - tile at the end of a way. Node f is
@@ -106,15 +109,19 @@ Depends on the topology alone. Cost: O(max_depth) nodes at each irregular vertex
 tiles() for as many locations. Raises ValueError for a max_depth out of range.)";
 
 py::object tileQuadtree(const SharedSurface& shared, const std::optional<int>& max_depth,
-                        int threads) {
+                        int threads, const py::object& progress) {
   checkThreads(threads);
+  const ProgressReport report(progress);
+  double part = 0;
   TileQuadtree tree;
   {
     const py::gil_scoped_release release;
     const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
-    tree = limitsurf::tileQuadtree(shared.surface(),
-                                   max_depth.value_or(SurfaceTiles::kDefaultDepth), threads);
+    // The steps of the work are long: what has been done is told again meanwhile.
+    const InterruptionPoint point = interruptible([&] { report(part); });
+    tree =
+        limitsurf::tileQuadtree(shared.surface(), max_depth.value_or(SurfaceTiles::kDefaultDepth),
+                                threads, [&](double done) { report(part = done); });
   }
   return result("TileQuadtree")(arrayOf(std::move(tree.child)), tilesResult(std::move(tree.tiles)),
                                 rowArray(std::move(tree.origin)), tree.levels);
@@ -127,7 +134,7 @@ void bindSurfaceTiles(py::class_<SharedSurface>& type) {
   type.def("tiles", &surfaceTiles, "face"_a, "uv"_a, "max_depth"_a = py::none(), py::kw_only(),
            "threads"_a = 0, kTilesDoc)
       .def("tile_quadtree", &tileQuadtree, "max_depth"_a = py::none(), py::kw_only(),
-           "threads"_a = 0, kQuadtreeDoc);
+           "threads"_a = 0, "progress"_a = py::none(), kQuadtreeDoc);
 }
 
 }  // namespace limitsurf::python

@@ -192,6 +192,26 @@ TEST_P(Batch, NegativeZeroIsZero) {
 
 INSTANTIATE_TEST_SUITE_P(Cages, Batch, testing::Values(0, 1, 2));
 
+/// The sign of a zero parameter reaches no result, in which it could depend on the number of rows.
+TEST(Batch, SignsOfZerosDoNotDependOnTheBatch) {
+  const Cage cage = inTriangles(fullGrid(4, 4));
+  const LimitSurface surface = limitSurface(cage);
+  for (int face = 0; face < surface.faceCount(); ++face) {
+    const std::vector<Location> three(3, {face, -0., 0.1}), one(1, three[0]);
+    const Evaluation a = surface.evaluate(three, Derivatives::second, true);
+    const Evaluation b = surface.evaluate(one, Derivatives::second, true);
+    for (const auto& [of_three, of_one] : {std::pair{&a.position, &b.position},
+                                           {&a.du, &b.du},
+                                           {&a.dv, &b.dv},
+                                           {&a.duu, &b.duu},
+                                           {&a.duv, &b.duv},
+                                           {&a.dvv, &b.dvv},
+                                           {&a.normal, &b.normal}}) {
+      EXPECT_EQ(std::memcmp(of_three->data(), of_one->data(), 3 * sizeof(double)), 0) << face;
+    }
+  }
+}
+
 // The batch is checked while it is evaluated, by tasks that end in any order.
 TEST(Batch, NamesTheFirstRowThatIsWrong) {
   const LimitSurface surface = limitSurface(cross());

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "limitsurf/progress.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/surface/tiles/surface_tiles.h"
 
@@ -34,6 +35,6 @@ struct TileQuadtree {
 /// LimitSurface::tiles(). Cost: O(max_depth) nodes at each irregular vertex, and that of
 /// LimitSurface::tiles() for the middles of all tiles.
 TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth = SurfaceTiles::kDefaultDepth,
-                          int threads = 0);
+                          int threads = 0, const Progress& progress = {});
 
 }  // namespace limitsurf

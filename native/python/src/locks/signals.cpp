@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <chrono>
+#include <utility>
 
 namespace limitsurf::python {
 
@@ -21,11 +22,14 @@ void lookForSignals() {
   }
 }
 
-InterruptionPoint interruptible() {
+InterruptionPoint interruptible(std::function<void()> also) {
   using Clock = std::chrono::steady_clock;
-  return InterruptionPoint([next = Clock::now() + kBetween]() mutable {
+  return InterruptionPoint([also = std::move(also), next = Clock::now() + kBetween]() mutable {
     if (Clock::now() >= next) {
       lookForSignals();
+      if (also) {
+        also();
+      }
       next = Clock::now() + kBetween;
     }
   });
