@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/surface/face_corner.h"
+
 namespace limitsurf {
 namespace {
 
@@ -55,7 +57,6 @@ double distanceToSide(const PatchPlace& at, int side) {
   return std::abs(side % 2 ? 1 - x : x);
 }
 
-bool isCorner(const Location& at) { return (at.u == 0 || at.u == 1) && (at.v == 0 || at.v == 1); }
 int cornerOf(const Location& at) { return at.v == 0 ? (at.u == 0 ? 0 : 1) : (at.u == 1 ? 2 : 3); }
 
 /// The faces around a vertex, each with the corner at which the vertex is.

@@ -15,6 +15,7 @@
 #include "limitsurf/path/bezier_fit.h"
 #include "limitsurf/path/space_curves.h"
 #include "limitsurf/path/surface_distance.h"
+#include "limitsurf/row_check.h"
 
 namespace limitsurf {
 namespace {
@@ -312,9 +313,8 @@ PathFit fitPath(const LimitSurface& surface, const SurfaceSearch& search,
                                 " points; at least 2 are needed");
   }
   const auto rows = static_cast<Eigen::Index>(path.size());
-  if (options.values.size() != 0 && options.values.size() != rows) {
-    throw std::invalid_argument("values has " + std::to_string(options.values.size()) +
-                                " rows; expected " + std::to_string(rows));
+  if (options.values.size() != 0) {
+    checkRows("values", options.values.size(), rows);
   }
   for (Eigen::Index row = 0; row < options.values.size(); ++row) {
     if (!std::isfinite(options.values[row])) {

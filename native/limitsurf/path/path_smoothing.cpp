@@ -8,6 +8,7 @@
 #include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/path/surface_distance.h"
+#include "limitsurf/row_check.h"
 
 namespace limitsurf {
 namespace {
@@ -20,10 +21,7 @@ void checkPath(std::size_t points) {
 }
 
 void checkWeights(const Eigen::VectorXd& weights, std::size_t points) {
-  if (static_cast<std::size_t>(weights.size()) != points) {
-    throw std::invalid_argument("weights has " + std::to_string(weights.size()) +
-                                " rows; expected " + std::to_string(points));
-  }
+  checkRows("weights", weights.size(), static_cast<Eigen::Index>(points));
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     if (!(weights[i] >= 0 && weights[i] <= 1)) {
       throw std::invalid_argument("weights[" + std::to_string(i) + "] is " +

@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Quadratures of |ds x dt| on several squares at once. area_kernels.cpp includes this file once for
-// each instruction set, inside a namespace, after it has defined kLanes and squareRoot(). Nothing
-// here may call a function that is defined elsewhere: its code could be that of another set.
+// Quadratures of |ds x dt| on several squares at once. kernels_by_set.inl.h compiles this file for
+// each instruction set, where kLanes and squareRoot() are defined. Nothing here may call a function
+// that is defined elsewhere: its code could be that of another set.
 
-#include "limitsurf/surface/batch/lanes.inl.h"
+#include "limitsurf/surface/batch/lane_vectors.inl.h"
 
 /// kLanes squares at a time.
 using Squares = Lanes<kLanes>;
 
-struct SquareVector {
-  Squares axis[3];
-};
-
-inline Squares squaredLength(const SquareVector& a) {
-  return a.axis[0] * a.axis[0] + a.axis[1] * a.axis[1] + a.axis[2] * a.axis[2];
-}
-
-inline SquareVector crossProduct(const SquareVector& a, const SquareVector& b) {
-  return {{a.axis[1] * b.axis[2] - a.axis[2] * b.axis[1],
-           a.axis[2] * b.axis[0] - a.axis[0] * b.axis[2],
-           a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
-}
+using SquareVector = LaneVectors<kLanes>;
 
 /// The derivatives of bicubic patches, in Bezier form.
 struct SquareDerivatives {

@@ -7,6 +7,7 @@
 
 #include "limitsurf/number_text.h"
 #include "limitsurf/pi.h"
+#include "limitsurf/row_check.h"
 
 namespace limitsurf {
 namespace {
@@ -48,10 +49,7 @@ void checkDirections(const Points& rows) {
 }
 
 void checkRows(const Points& rows, Eigen::Index expected, const char* name) {
-  if (rows.rows() != expected) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows.rows()) +
-                                " rows; expected " + std::to_string(expected));
-  }
+  checkRows(name, rows.rows(), expected);
 }
 
 void checkDistance(double max_distance) {

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "limitsurf/surface/complete_normals.h"
+#include "limitsurf/surface/face_corner.h"
 
 namespace limitsurf {
 namespace {
-
-bool isCorner(const Location& at) { return (at.u == 0 || at.u == 1) && (at.v == 0 || at.v == 1); }
 
 /// Whether the derivatives there define no directions.
 bool isFlat(const MapDerivatives& d, Eigen::Index row) {

@@ -1,27 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Trials of blue noise, several at once. noise_kernels.cpp includes this file once for each
-// instruction set, inside a namespace, after it has defined kLanes and squareRoot(). Nothing here
-// may call a function that is defined elsewhere: its code could be that of another set.
+// Trials of blue noise, several at once. kernels_by_set.inl.h compiles this file for each
+// instruction set, where kLanes and squareRoot() are defined. Nothing here may call a function that
+// is defined elsewhere: its code could be that of another set.
 
-#include "limitsurf/surface/batch/lanes.inl.h"
+#include "limitsurf/surface/batch/lane_vectors.inl.h"
 
 /// kLanes places, or discs, at a time.
 using Several = Lanes<kLanes>;
 
-struct SeveralVectors {
-  Several axis[3];
+using SeveralVectors = LaneVectors<kLanes>;
 
-  static SeveralVectors load(const double (&from)[3][8], int first) {
-    return {{Several::load(from[0] + first), Several::load(from[1] + first),
-             Several::load(from[2] + first)}};
+inline SeveralVectors load(const double (&from)[3][8], int first) {
+  return {{Several::load(from[0] + first), Several::load(from[1] + first),
+           Several::load(from[2] + first)}};
+}
+inline void store(const SeveralVectors& vectors, double (&to)[3][8], int first) {
+  for (int i = 0; i < 3; ++i) {
+    vectors.axis[i].store(to[i] + first);
   }
-  void store(double (&to)[3][8], int first) const {
-    for (int i = 0; i < 3; ++i) {
-      axis[i].store(to[i] + first);
-    }
-  }
-};
+}
 
 inline SeveralVectors operator+(const SeveralVectors& a, const SeveralVectors& b) {
   return {{a.axis[0] + b.axis[0], a.axis[1] + b.axis[1], a.axis[2] + b.axis[2]}};
@@ -32,15 +30,7 @@ inline SeveralVectors operator-(const SeveralVectors& a, const SeveralVectors& b
 inline SeveralVectors operator*(const Several& a, const SeveralVectors& b) {
   return {{a * b.axis[0], a * b.axis[1], a * b.axis[2]}};
 }
-inline SeveralVectors crossed(const SeveralVectors& a, const SeveralVectors& b) {
-  return {{a.axis[1] * b.axis[2] - a.axis[2] * b.axis[1],
-           a.axis[2] * b.axis[0] - a.axis[0] * b.axis[2],
-           a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
-}
-inline Several squared(const SeveralVectors& a) {
-  return a.axis[0] * a.axis[0] + a.axis[1] * a.axis[1] + a.axis[2] * a.axis[2];
-}
-inline Several lengths(const SeveralVectors& a) { return squareRoot(squared(a)); }
+inline Several lengths(const SeveralVectors& a) { return squareRoot(squaredLength(a)); }
 /// In the order of additions that Eigen has.
 inline Several dots(const SeveralVectors& a, const double* b) {
   return a.axis[0] * b[0] + (a.axis[1] * b[1] + a.axis[2] * b[2]);
@@ -89,8 +79,8 @@ struct SeveralPoints {
 inline void places(const BezierPatch& patch, PlaceBlock& block) {
   for (int first = 0; first < PlaceBlock::kCount; first += kLanes) {
     const SeveralPoints at(patch, Several::load(block.s + first), Several::load(block.t + first));
-    at.position.store(block.position, first);
-    const SeveralVectors normal = crossed(at.ds, at.dt);
+    store(at.position, block.position, first);
+    const SeveralVectors normal = crossProduct(at.ds, at.dt);
     const Several area = lengths(normal);
     area.store(block.area + first);
     for (int i = 0; i < 3; ++i) {
@@ -102,21 +92,22 @@ inline void places(const BezierPatch& patch, PlaceBlock& block) {
 inline void extents(const BezierPatch& patch, const DerivativeBounds& bounds, ExtentBlock& block) {
   for (int first = 0; first < ExtentBlock::kCount; first += kLanes) {
     const SeveralPoints at(patch, Several::load(block.s + first), Several::load(block.t + first));
-    at.position.store(block.middle, first);
-    const SeveralVectors normal = crossed(at.ds, at.dt);
-    normal.store(block.normal, first);
+    store(at.position, block.middle, first);
+    const SeveralVectors normal = crossProduct(at.ds, at.dt);
+    store(normal, block.normal, first);
     lengths(normal).store(block.normal_length + first);
     const Several a = Several::load(block.half_width + first);
     const Several b = Several::load(block.half_height + first);
     const SeveralVectors s = a * at.ds, t = b * at.dt;
-    s.store(block.half_s, first);
-    t.store(block.half_t, first);
+    store(s, block.half_s, first);
+    store(t, block.half_t, first);
     const Several aa = a * a * 0.5, ab = a * b, bb = b * b * 0.5, half_ab = ab * 0.5;
     // The second derivatives count as well: ds may vanish in the middle and be large elsewhere.
     (lengths(s) + aa * bounds.dss + half_ab * bounds.dst).store(block.along_s + first);
     (lengths(t) + bb * bounds.dtt + half_ab * bounds.dst).store(block.along_t + first);
     (aa * bounds.dss + ab * bounds.dst + bb * bounds.dtt).store(block.bend + first);
-    squareRoot(Several::larger(squared(s + t), squared(s - t))).store(block.corner + first);
+    squareRoot(Several::larger(squaredLength(s + t), squaredLength(s - t)))
+        .store(block.corner + first);
     (a * (bounds.dss * bounds.dt + bounds.ds * bounds.dst) +
      b * (bounds.dst * bounds.dt + bounds.ds * bounds.dtt))
         .store(block.normal_reach + first);
@@ -142,13 +133,13 @@ inline bool conflict(const DiscBlock* blocks, std::size_t count, const NoiseDisc
   const double* const normal = reinterpret_cast<const double*>(&own.normal);
   for (const DiscBlock* block = blocks; block != blocks + count; ++block) {
     for (int first = 0; first < DiscBlock::kCount; first += kLanes) {
-      SeveralVectors off = SeveralVectors::load(block->position, first);
+      SeveralVectors off = load(block->position, first);
       for (int i = 0; i < 3; ++i) {
         off.axis[i] = off.axis[i] - position[i];
       }
       const Several reach = (Several::load(block->radius + first) + own.radius) * 0.5;
-      const Several is_close = reach * reach - squared(off);
-      const Several faces = dots(SeveralVectors::load(block->normal, first), normal) - kRightAngle;
+      const Several is_close = reach * reach - squaredLength(off);
+      const Several faces = dots(load(block->normal, first), normal) - kRightAngle;
       const Several is_before =
           Several::unlessZero(Several::of(own.rank) - Several::load(block->rank + first),
                               Several::of(number) - Several::load(block->number + first));
@@ -168,9 +159,8 @@ inline unsigned covered(const DiscBlock* blocks, std::size_t count, const CellPa
   for (const DiscBlock* block = blocks; block != blocks + count; ++block) {
     for (int first = 0; first < DiscBlock::kCount; first += kLanes) {
       const Several faces =
-          (dots(SeveralVectors::load(block->normal, first), parts.normal) - parts.normal_reach) -
-          parts.least;
-      const SeveralVectors position = SeveralVectors::load(block->position, first);
+          (dots(load(block->normal, first), parts.normal) - parts.normal_reach) - parts.least;
+      const SeveralVectors position = load(block->position, first);
       const Several reach = (Several::load(block->radius + first) + parts.smallest) * 0.5;
       for (int part = 0; part < parts.count; ++part) {
         SeveralVectors off;
@@ -178,7 +168,7 @@ inline unsigned covered(const DiscBlock* blocks, std::size_t count, const CellPa
           off.axis[i] = position.axis[i] - parts.middle[i][part];
         }
         const Several rest = reach - parts.reach[part];
-        const Several is_inside = Several::smaller(rest, rest * rest - squared(off));
+        const Several is_inside = Several::smaller(rest, rest * rest - squaredLength(off));
         best[part] = Several::larger(best[part], Several::smaller(is_inside, faces));
       }
     }

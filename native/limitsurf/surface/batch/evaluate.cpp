@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // LimitSurface::evaluate().
-#include <stdexcept>
-#include <string>
-
 #include "limitsurf/error.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/surface/batch/batch_evaluator.h"
 #include "limitsurf/surface/limit_surface_data.h"
 
@@ -68,10 +66,7 @@ void LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives,
     if (!wanted) {
       return static_cast<Real*>(nullptr);
     }
-    if (array.count != at.size()) {
-      throw std::invalid_argument(std::string(name) + " has " + std::to_string(array.count) +
-                                  " rows; expected " + std::to_string(at.size()));
-    }
+    checkRows(name, static_cast<Eigen::Index>(array.count), static_cast<Eigen::Index>(at.size()));
     return array.numbers;
   };
   const bool first = derivatives >= Derivatives::first, second = derivatives == Derivatives::second;

@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Frames of several rows at once. frame_kernels.cpp includes this file once for each instruction
-// set, inside a namespace, after it has defined kLanes and squareRoot(). Nothing here may call a
-// function that is defined elsewhere: its code could be that of another set.
+// Frames of several rows at once. kernels_by_set.inl.h compiles this file for each instruction set,
+// where kLanes and squareRoot() are defined. Nothing here may call a function that is defined
+// elsewhere: its code could be that of another set.
 
-#include "limitsurf/surface/batch/lanes.inl.h"
+#include "limitsurf/surface/batch/lane_vectors.inl.h"
 
 /// kLanes rows at a time.
 using Rows = Lanes<kLanes>;
 
-struct RowVector {
-  Rows axis[3];
-};
-
-/// The order of additions is that of frame().
-inline Rows dotProduct(const RowVector& a, const RowVector& b) {
-  return a.axis[0] * b.axis[0] + a.axis[1] * b.axis[1] + a.axis[2] * b.axis[2];
-}
-
-inline RowVector crossProduct(const RowVector& a, const RowVector& b) {
-  return {{a.axis[1] * b.axis[2] - a.axis[2] * b.axis[1],
-           a.axis[2] * b.axis[0] - a.axis[0] * b.axis[2],
-           a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
-}
+/// Their dotProduct() adds in the order of frame().
+using RowVector = LaneVectors<kLanes>;
 
 /// v over its length, whose square is given.
 inline RowVector direction(const RowVector& v, const Rows& square) {

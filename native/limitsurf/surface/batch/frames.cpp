@@ -2,12 +2,12 @@
 //
 // LimitSurface::frames().
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/surface/batch/frame_kernels.h"
 #include "limitsurf/surface/differential.h"
+#include "limitsurf/surface/face_corner.h"
 #include "limitsurf/surface/limit_surface_data.h"
 
 namespace limitsurf {
@@ -17,16 +17,6 @@ namespace {
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 15;
 
 using Frame = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-
-template <typename Rows>
-void checkRoom(const char* name, const Rows& rows, std::size_t count) {
-  if (rows.count != count) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows.count) +
-                                " rows; expected " + std::to_string(count));
-  }
-}
-
-bool isCorner(const Location& at) { return (at.u == 0 || at.u == 1) && (at.v == 0 || at.v == 1); }
 
 }  // namespace
 
@@ -39,10 +29,11 @@ Rotations LimitSurface::frames(const LocationBatch& at, int threads) const {
 void LimitSurface::frames(const LocationBatch& at, const FrameArrays& results, int threads) const {
   checkThreads(threads);
   const LocationBatch checked = checkLocations(at);
-  checkRoom("frame", results.frame, at.size());
+  const auto rows = static_cast<Eigen::Index>(at.size());
+  checkRows("frame", static_cast<Eigen::Index>(results.frame.count), rows);
   const bool has_positions = results.position.numbers != nullptr;
   if (has_positions) {
-    checkRoom("position", results.position, at.size());
+    checkRows("position", static_cast<Eigen::Index>(results.position.count), rows);
   }
   // The same memory serves all parts: fresh memory costs as much as filling it.
   const auto most = static_cast<Eigen::Index>(std::min(kRowsPerPart, at.size()));

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/surface/strands/strand_offsets.h"
 #include "limitsurf/surface/strands/strand_turns.h"
 

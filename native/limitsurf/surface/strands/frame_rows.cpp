@@ -9,8 +9,8 @@
 #include <string>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/surface/differential.h"
-#include "limitsurf/surface/strands/strand_offsets.h"
 
 namespace limitsurf {
 namespace {

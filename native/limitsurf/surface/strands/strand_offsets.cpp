@@ -6,13 +6,6 @@
 
 namespace limitsurf {
 
-void checkRows(const char* what, Eigen::Index rows, Eigen::Index expected) {
-  if (rows != expected) {
-    throw std::invalid_argument(std::string(what) + " has " + std::to_string(rows) +
-                                " rows; expected " + std::to_string(expected));
-  }
-}
-
 void checkOffsets(const std::vector<std::int64_t>& offsets, std::size_t strands) {
   if (offsets.size() != strands + 1) {
     throw std::invalid_argument("there are " + std::to_string(offsets.size()) + " offsets for " +

@@ -12,6 +12,7 @@
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/prefetch.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/strands/root_pose.h"
 #include "limitsurf/surface/strands/strand_offsets.h"

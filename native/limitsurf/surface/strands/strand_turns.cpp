@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/row_check.h"
 #include "limitsurf/surface/strands/strand_offsets.h"
 
 namespace limitsurf {
