@@ -40,13 +40,8 @@ class Binding:
         cls, surface: limitsurf.LimitSurface, locations: roots.Locations, progress: Progress
     ) -> Binding:
         """Returns the binding of things that stand on the surface itself, in its space."""
-
-        def at(face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            placed = surface.placed_frames(face, uv)
-            return placed.position, placed.frame
-
         binding = cls(locations)
-        for part in roots.evaluate(at, locations, progress):
+        for part in roots.evaluate(roots.on_surface(surface), locations, progress):
             binding.fill(part)
         return binding
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..tasks.job import Progress, slices
+
+if TYPE_CHECKING:
+    import limitsurf
 
 # Locations are evaluated in parts of this size, so that progress is shown and memory stays small.
 PART = 1 << 16
@@ -51,6 +55,16 @@ class Roots:
     rows: slice
     position: np.ndarray  # (n, 3)
     frame: np.ndarray  # (n, 3, 3): columns tangent, normal x tangent, normal
+
+
+def on_surface(surface: limitsurf.LimitSurface) -> Evaluate:
+    """Returns the function that finds places on the surface itself, in its space."""
+
+    def places(face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        placed = surface.placed_frames(face, uv)
+        return placed.position, placed.frame
+
+    return places
 
 
 def evaluate(on: Evaluate, locations: Locations, progress: Progress) -> Iterator[Roots]:

@@ -30,13 +30,7 @@ class PlacedDecal:
         self.binding = Binding(locations)
         self.position, self.normal = (np.empty((len(hits), 3)) for _ in range(2))
 
-        local = world.local
-
-        def on(face: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            placed = local.placed_frames(face, uv)
-            return placed.position, placed.frame
-
-        for part in roots.evaluate(on, locations, progress):
+        for part in roots.evaluate(roots.on_surface(world.local), locations, progress):
             self.binding.fill(part)
             side = hits.facing[part.rows][:, None]
             outward = side * world.axes.frames(part.frame)[:, :, 2]
