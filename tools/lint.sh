@@ -12,8 +12,9 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 set_up
 cd "$ROOT"
 
-# clang reads no header that another compiler has precompiled.
-configure release -B build/lint -D CMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
+# clang reads no header that another compiler has precompiled, and clang-tidy needs the options of
+# each file, which a unity build does not state.
+configure release -B build/lint -D CMAKE_DISABLE_PRECOMPILE_HEADERS=ON -D CMAKE_UNITY_BUILD=OFF \
   -D LIMITSURF_BUILD_PYTHON=ON -D Python_EXECUTABLE="$VENV/bin/python" \
   -D pybind11_DIR="$(python -m pybind11 --cmakedir)"
 files=("$@")

@@ -48,7 +48,7 @@ py::array viewed(const py::handle& object, const char* name) {
 std::string elementText(const py::array& array, const char* name, py::ssize_t place) {
   std::string indices;
   for (py::ssize_t axis = array.ndim() - 1; axis >= 0; --axis) {
-    indices = std::to_string(place % array.shape(axis)) + (indices.empty() ? "" : ", ") + indices;
+    indices.insert(0, std::to_string(place % array.shape(axis)) + (indices.empty() ? "" : ", "));
     place /= array.shape(axis);
   }
   return indices.empty() ? name : name + ("[" + indices + "]");

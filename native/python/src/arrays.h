@@ -28,10 +28,11 @@ using Floats = py::array_t<float, py::array::c_style>;
 /// may mean more than its numbers. This takes a few nanoseconds.
 template <typename T>
 bool isPlain(const py::handle& object) {
+  constexpr int plainFlags = static_cast<int>(py::array::c_style) |
+                             static_cast<int>(py::detail::npy_api::NPY_ARRAY_ALIGNED_);
   const auto& api = py::detail::npy_api::get();
   if (Py_TYPE(object.ptr()) != api.PyArray_Type_ ||
-      !py::detail::check_flags(object.ptr(),
-                               py::array::c_style | py::detail::npy_api::NPY_ARRAY_ALIGNED_)) {
+      !py::detail::check_flags(object.ptr(), plainFlags)) {
     return false;
   }
   return api.PyArray_EquivTypes_(py::detail::array_proxy(object.ptr())->descr,
@@ -129,7 +130,7 @@ py::array_t<T> arrayOf(const std::vector<T>& values) {
 template <typename Number, typename Values>
 py::array_t<Number> arrayIn(Values&& values, std::vector<py::ssize_t> shape) {
   static_assert(!std::is_reference_v<Values>, "the container is taken over");
-  auto kept = std::make_unique<Values>(std::move(values));
+  auto kept = std::make_unique<Values>(std::forward<Values>(values));
   auto* const numbers = reinterpret_cast<Number*>(kept->data());
   const py::capsule owner(kept.get(), [](void* p) { delete static_cast<Values*>(p); });
   kept.release();
@@ -146,7 +147,7 @@ py::array_t<T> arrayOf(std::vector<T>&& values) {
 template <typename Matrix>
 py::array_t<typename Matrix::Scalar> rowArray(Matrix&& rows) {
   static_assert(Matrix::IsRowMajor, "numpy's order");
-  return arrayIn<typename Matrix::Scalar>(std::move(rows), {rows.rows(), rows.cols()});
+  return arrayIn<typename Matrix::Scalar>(std::forward<Matrix>(rows), {rows.rows(), rows.cols()});
 }
 
 /// The rows of an (n, 3) array, converted as doubles() does; [] has none. Throws

@@ -46,6 +46,7 @@ PYBIND11_MODULE(limitsurf_in_main_interpreter, module) {
 
 /// What Python calls to import the module. In another interpreter of the process pybind11 would
 /// hang before it looked.
+// NOLINTNEXTLINE(bugprone-reserved-identifier): Python gives the name
 extern "C" PYBIND11_EXPORT PyObject* PyInit__limitsurf() {
   if (PyInterpreterState_Get() != PyInterpreterState_Main()) {
     PyErr_SetString(PyExc_ImportError,

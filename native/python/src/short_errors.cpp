@@ -19,7 +19,7 @@ PyObject* shortError() {
   const py::object text = py::str(error.value());
   const py::str quoting("\nInvoked with: ");
   const auto at = py::cast<py::ssize_t>(text.attr("find")(quoting));
-  const py::ssize_t most = at + py::len(quoting) + kMost;
+  const py::ssize_t most = at + static_cast<py::ssize_t>(py::len(quoting)) + kMost;
   if (at < 0 || static_cast<py::ssize_t>(py::len(text)) <= most) {
     error.restore();
     return nullptr;
