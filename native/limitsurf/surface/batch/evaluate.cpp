@@ -13,12 +13,34 @@ namespace {
 /// Rows of one task. Those of a face are divided among its patches, which pays if there are many.
 constexpr std::size_t kBatchRowsPerTask = 2048;
 
+/// Takes memory from the system for an array that has perhaps never been written to. Rows that come
+/// in another order would take all of it at once, which lasts seconds for large arrays, and nobody
+/// would hear Ctrl-C meanwhile.
+template <typename Real>
+void takeMemory(Real* numbers, std::size_t count, int threads) {
+  constexpr std::size_t kPage = 4096 / sizeof(Real), kPagesPerTask = 512;
+  if (numbers != nullptr) {
+    parallelFor((count + kPage - 1) / kPage, kPagesPerTask, threads,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t page = begin; page < end; ++page) {
+                    numbers[kPage * page] = 0;
+                  }
+                });
+  }
+}
+
 /// The results have room for the batch. It is checked while it is evaluated.
 template <typename Real>
 void evaluateInto(const TiledSurface& tiles, const Pose& pose, const LocationBatch& at,
                   Derivatives derivatives, const PatchResults<Real>& results, int threads) {
   const TileTable& table = tiles.table;
   const RowOrder order(at, static_cast<int>(table.faces.size()), threads);
+  if (order.isSorted()) {
+    for (Real* const numbers : {results.position, results.du, results.dv, results.duu, results.duv,
+                                results.dvv, results.normal}) {
+      takeMemory(numbers, 3 * at.size(), threads);
+    }
+  }
   try {
     parallelFor(at.size(), kBatchRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
       BatchEvaluator<Real>(table, pose, static_cast<int>(derivatives), results)

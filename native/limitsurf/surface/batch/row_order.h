@@ -16,6 +16,8 @@ class RowOrder {
   /// The batch need not have been checked.
   RowOrder(const LocationBatch& at, int faces, int threads);
 
+  /// Whether rows come in another order than they are given.
+  bool isSorted() const { return !rows_.empty(); }
   /// The row that comes at place i.
   std::size_t operator[](std::size_t i) const { return rows_.empty() ? i : rows_[i]; }
 
