@@ -18,14 +18,15 @@ std::atomic<long> allocation_count{0};
 
 }  // namespace
 
-// All of this program's allocations by `new` are counted. Eigen's own go past it, by malloc().
-void* operator new(std::size_t size) {
+// All of this program's allocations by `new` are counted. Eigen's own go past it, by malloc(). If
+// only some of these functions became inline, GCC would warn that malloc() and delete do not match.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocation_count;
   if (void* const memory = std::malloc(size > 0 ? size : 1)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace limitsurf::test {
 namespace {
