@@ -8,11 +8,14 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "limitsurf/flow/flow_mesh.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/differential.h"
+#include "limitsurf/work_aside.h"
 
 namespace limitsurf {
 namespace {
@@ -67,7 +70,9 @@ class Equations {
   /// Adds the integral of |grad X|^2. Each quad is the mean of its two divisions into triangles.
   void addChange() {
     entries_.reserve(mesh_.quadCount() * 4 * 9 * 4);
+    InterruptionStride stride;
     for (std::size_t i = 0; i < mesh_.quadCount(); ++i) {
+      stride.step();
       const std::array<int, 4> v = mesh_.quad(i);
       for (int corner = 0; corner < 4; ++corner) {
         addTriangle({v[corner], v[(corner + 1) % 4], v[(corner + 2) % 4]}, 0.5);
@@ -97,14 +102,18 @@ class Equations {
     }
   }
 
-  Eigen::VectorXd solve() const {
-    Eigen::SparseMatrix<double> matrix(right_.size(), right_.size());
-    matrix.setFromTriplets(entries_.begin(), entries_.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-    if (solver.info() != Eigen::Success) {
-      throw std::runtime_error("the directions of the curves cannot be continued");
-    }
-    return solver.solve(right_);
+  /// Solves the equations, which are gone then. Eigen's factorization, which takes seconds, passes
+  /// no interruption points.
+  Eigen::VectorXd solve() && {
+    return workAside([entries = std::move(entries_), right = std::move(right_)] {
+      Eigen::SparseMatrix<double> matrix(right.size(), right.size());
+      matrix.setFromTriplets(entries.begin(), entries.end());
+      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+      if (solver.info() != Eigen::Success) {
+        throw std::runtime_error("the directions of the curves cannot be continued");
+      }
+      return Eigen::VectorXd(solver.solve(right));
+    });
   }
 
  private:
@@ -159,7 +168,9 @@ std::size_t holdToCurves(const LimitSurface& surface, const FlowMesh& mesh, cons
   const auto frames = surface.frames(hits.at, threads);
   const double strength = kHold / mesh.meanSide() * mesh.scale();
   std::size_t held = 0;
+  InterruptionStride stride;
   for (std::size_t row = 0; row < hits.at.size(); ++row) {
+    stride.step();
     const Vector3 normal = normalOf(frames.row(static_cast<Eigen::Index>(row)).data());
     const Vector3 piece = samples.along.row(static_cast<Eigen::Index>(row));
     const Vector3 along = piece - normal * normal.dot(piece);
@@ -219,7 +230,7 @@ Points curveDirections(const LimitSurface& surface, const Polylines& curves,
     throw std::invalid_argument("no part of a curve runs along the surface");
   }
   report(0.4);
-  const Eigen::VectorXd field = equations.solve();
+  const Eigen::VectorXd field = std::move(equations).solve();
   report(0.9);
   Points directions = evaluate(surface, mesh, field, at, threads);
   report(1);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/own_unit.h"
 #include "limitsurf/surface/differential.h"
 
@@ -63,7 +64,9 @@ double FlowMesh::meanSide() const {
 
 void FlowMesh::computeNormals() {
   normals_.assign(static_cast<std::size_t>(polygons_.positions.rows()), Vector3::Zero());
+  InterruptionStride stride;
   for (std::size_t i = 0; i < quadCount(); ++i) {
+    stride.step();
     const std::array<int, 4> v = quad(i);
     const Vector3 across =
         (position(v[2]) - position(v[0])).cross(position(v[3]) - position(v[1])) / 2;
@@ -75,6 +78,7 @@ void FlowMesh::computeNormals() {
   }
   bases_.reserve(normals_.size());
   for (Vector3& normal : normals_) {
+    stride.step();
     const Vector3 unit = unitDirection(normal);
     normal = unit.allFinite() ? unit : Vector3::UnitZ();
     bases_.push_back(planeBasis(normal));

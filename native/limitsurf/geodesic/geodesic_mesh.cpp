@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limitsurf/geodesic/curve_cuts.h"
+#include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
 namespace {
@@ -53,37 +54,55 @@ GeodesicMesh::GeodesicMesh(const LimitSurface& surface, const std::vector<int>& 
 /// Replaces points by vertices: the corners that sides link around a point.
 void GeodesicMesh::hangTogether() {
   struct Side {
-    std::uint64_t points;
+    int other;      // its larger point
     int low, high;  // its corners, counted over all triangles, at the smaller and the larger point
   };
-  std::vector<Side> sides;
+  InterruptionStride stride;
   const std::size_t count = 3 * triangleCount();
-  sides.reserve(count);
-  for (std::size_t side = 0; side < count; ++side) {
-    const std::size_t triangle = side / 3, k = side % 3, next = (k + 1) % 3;
-    if (triangles_.is_cut[triangle][k]) {
-      continue;
+  const auto for_each_side = [&](const auto& body) {
+    for (std::size_t triangle = 0; triangle < triangleCount(); ++triangle) {
+      stride.step();
+      const std::array<int, 3>& points = triangles_.vertices[triangle];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t next = (k + 1) % 3;
+        if (triangles_.is_cut[triangle][k]) {
+          continue;
+        }
+        const int here = static_cast<int>(3 * triangle + k);
+        const int there = static_cast<int>(3 * triangle + next);
+        if (points[k] < points[next]) {
+          body(points[k], Side{points[next], here, there});
+        } else {
+          body(points[next], Side{points[k], there, here});
+        }
+      }
     }
-    const int a = triangles_.vertices[triangle][k], b = triangles_.vertices[triangle][next];
-    const int here = static_cast<int>(side), there = static_cast<int>(3 * triangle + next);
-    const auto key = [](int low, int high) {
-      return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
-    };
-    sides.push_back(a < b ? Side{key(a, b), here, there} : Side{key(b, a), there, here});
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.points != b.points ? a.points < b.points : a.low < b.low;
-  });
+  };
+  // The sides at each smaller point, by their larger ones.
+  std::vector<int> end(triangles_.points.size() + 1, 0);
+  for_each_side([&](int point, const Side&) { ++end[point + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<Side> sides(static_cast<std::size_t>(end.back()));
+  for_each_side([&](int point, const Side& side) { sides[end[point]++] = side; });
   CornerSets sets(count);
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    if (sides[i].points == sides[i - 1].points) {
-      sets.unite(sides[i].low, sides[i - 1].low);
-      sets.unite(sides[i].high, sides[i - 1].high);
+  for (std::size_t point = 0, begin = 0; point < triangles_.points.size(); ++point) {
+    stride.step();
+    const auto last = static_cast<std::size_t>(end[point]);
+    std::sort(sides.begin() + begin, sides.begin() + last, [](const Side& a, const Side& b) {
+      return a.other != b.other ? a.other < b.other : a.low < b.low;
+    });
+    for (std::size_t i = begin + 1; i < last; ++i) {
+      if (sides[i].other == sides[i - 1].other) {
+        sets.unite(sides[i].low, sides[i - 1].low);
+        sets.unite(sides[i].high, sides[i - 1].high);
+      }
     }
+    begin = last;
   }
   std::vector<Vector3> positions;
   std::vector<int> number(count, -1);
   for (std::size_t corner = 0; corner < count; ++corner) {
+    stride.step();
     int& vertex = triangles_.vertices[corner / 3][corner % 3];
     int& of_set = number[sets.find(static_cast<int>(corner))];
     if (of_set < 0) {
@@ -96,8 +115,10 @@ void GeodesicMesh::hangTogether() {
 }
 
 void GeodesicMesh::listAround() {
+  InterruptionStride stride;
   first_around_.assign(triangles_.points.size() + 1, 0);
   for (const auto& triangle : triangles_.vertices) {
+    stride.step();
     for (const int vertex : triangle) {
       ++first_around_[vertex + 1];
     }
@@ -106,6 +127,7 @@ void GeodesicMesh::listAround() {
   around_.resize(3 * triangleCount());
   std::vector<int> end(first_around_.begin(), first_around_.end() - 1);
   for (std::size_t number = 0; number < triangleCount(); ++number) {
+    stride.step();
     for (const int vertex : triangles_.vertices[number]) {
       around_[end[vertex]++] = static_cast<int>(number);
     }
@@ -117,7 +139,9 @@ void GeodesicMesh::listNeighbors() {
   first_neighbor_.reserve(triangles_.points.size() + 1);
   neighbors_.reserve(around_.size() + around_.size() / 8);
   first_neighbor_.push_back(0);
+  InterruptionStride stride;
   for (int vertex = 0; vertex < vertexCount(); ++vertex) {
+    stride.step();
     const auto first = static_cast<std::size_t>(first_neighbor_.back());
     // Poles have many neighbors: each is looked for from the last one, beside which it mostly is.
     const auto number_of = [&](int other) {

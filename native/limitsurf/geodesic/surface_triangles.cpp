@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/geodesic/surface_triangles.h"
 
+#include "limitsurf/interruption_point.h"
+#include "limitsurf/reserve_more.h"
 #include "limitsurf/tessellate/tessellation.h"
 
 namespace limitsurf {
@@ -41,11 +43,14 @@ SurfaceTriangles surfaceTriangles(const LimitSurface& surface, const std::vector
   const Tessellation polygons = tessellate(surface, levels, options);
   SurfaceTriangles made;
   made.points.reserve(static_cast<std::size_t>(polygons.positions.rows()));
+  InterruptionStride stride;
   for (Eigen::Index row = 0; row < polygons.positions.rows(); ++row) {
+    stride.step();
     made.points.emplace_back(polygons.positions.row(row));
   }
   std::size_t first = 0;
   for (std::size_t polygon = 0; polygon < polygons.face_sizes.size(); ++polygon) {
+    stride.step();
     const int size = polygons.face_sizes[polygon];
     const int* point = polygons.face_vertices.data() + first;
     const PolygonCorner* corner = polygons.corners.data() + first;
@@ -59,6 +64,10 @@ SurfaceTriangles surfaceTriangles(const LimitSurface& surface, const std::vector
     const int ptex_face = polygons.ptex_face[polygon];
     for (int k = 0; k + 2 < size; ++k) {
       const std::array<int, 3> at = {turn, turn + k + 1, (turn + k + 2) % size};
+      reserveMore(made.vertices, 1);
+      reserveMore(made.corners, 1);
+      reserveMore(made.face, 1);
+      reserveMore(made.is_cut, 1);
       made.vertices.push_back({point[at[0]], point[at[1]], point[at[2]]});
       made.corners.push_back({scaled(corner[at[0]]), scaled(corner[at[1]]), scaled(corner[at[2]])});
       made.face.push_back(ptex_face);

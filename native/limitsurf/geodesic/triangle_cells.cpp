@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "limitsurf/interruption_point.h"
+
 namespace limitsurf {
 namespace {
 
@@ -26,7 +28,9 @@ TriangleCells::TriangleCells(const LimitSurface& surface, const std::vector<int>
     levels_[face] = static_cast<std::uint8_t>(surface.refused().count(base) ? 0 : level);
     first_cell_[face + 1] = first_cell_[face] + (std::size_t{1} << 2 * levels_[face]);
   }
+  InterruptionStride stride;
   const auto for_each_cell = [&](std::size_t number, const auto& body) {
+    stride.step();
     const int face = triangles.face[number];
     const auto& [a, b, c] = triangles.corners[number];
     const int level = levels_[face];

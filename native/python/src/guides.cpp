@@ -87,10 +87,8 @@ Raises ValueError for arrays of other shapes, and for a guide that does not exis
 some nanoseconds for each point and guide.)";
 
 template <typename T>
-py::array_t<T> table(const std::vector<T>& values, std::size_t rows, int columns) {
-  py::array_t<T> array({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
-  std::copy(values.begin(), values.end(), array.mutable_data());
-  return array;
+py::array_t<T> table(std::vector<T>&& values, std::size_t rows, int columns) {
+  return arrayIn<T>(std::move(values), {static_cast<py::ssize_t>(rows), columns});
 }
 
 py::object guideWeights(const SharedSurface& shared, const py::object& guide_face,
@@ -113,9 +111,9 @@ py::object guideWeights(const SharedSurface& shared, const py::object& guide_fac
     const InterruptionPoint point = interruptible();
     found = limitsurf::guideWeights(shared.surface(), guides, at, options);
   }
-  return result("GuideWeights")(table(found.guide, at.size(), count),
-                                table(found.weight, at.size(), count),
-                                table(found.distance, at.size(), count));
+  return result("GuideWeights")(table(std::move(found.guide), at.size(), count),
+                                table(std::move(found.weight), at.size(), count),
+                                table(std::move(found.distance), at.size(), count));
 }
 
 py::object resampleStrands(const py::object& points, const py::object& offsets, int count,
@@ -130,8 +128,7 @@ py::object resampleStrands(const py::object& points, const py::object& offsets, 
     const InterruptionPoint point = interruptible();
     made = resampledStrands(from, starts, count, threads);
   }
-  return py::array_t<double>({made.rows() / count, Eigen::Index{count}, Eigen::Index{3}},
-                             made.data());
+  return arrayIn<double>(std::move(made), {made.rows() / count, count, 3});
 }
 
 GuideStrands guideStrands(const py::object& points, const py::object& normals) {
@@ -188,9 +185,7 @@ py::object childStrands(const py::object& guide_points, const py::object& guide_
     const InterruptionPoint point = interruptible();
     made = limitsurf::childStrands(guides, children, threads, report);
   }
-  return py::array_t<float>(
-      {children.position.rows(), Eigen::Index{guides.points_per_strand}, Eigen::Index{3}},
-      made.data());
+  return arrayIn<float>(std::move(made), {children.position.rows(), guides.points_per_strand, 3});
 }
 
 }  // namespace

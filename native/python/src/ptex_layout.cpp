@@ -81,8 +81,7 @@ py::object texels(const PtexLayout& layout) {
 py::array_t<double> mapCoordinates(const PtexLayout& layout, const py::object& face,
                                    const py::object& uv) {
   const Locations at = locationsOf(layout.faces(), face, uv);
-  const PlaceRows places = layout.mapCoordinates(at);
-  return py::array_t<double>({places.rows(), Eigen::Index{2}}, places.data());
+  return rowArray(layout.mapCoordinates(at));
 }
 
 py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int threads) {
@@ -102,7 +101,7 @@ py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int
     const InterruptionPoint point = interruptible();
     sampled = image.sample(Eigen::Map<const PlaceRows>(places.data(), places.shape(0), 2), threads);
   }
-  return py::array_t<double>({sampled.rows(), sampled.cols()}, sampled.data());
+  return rowArray(std::move(sampled));
 }
 
 }  // namespace

@@ -45,9 +45,8 @@ Raises ValueError for arrays of other shapes, and for offsets that do not begin 
 that do not end with the number of points. Cost: O(points).
 )";
 
-py::array_t<double> matrices(const Rotations& rotations) {
-  return py::array_t<double>({rotations.rows(), Eigen::Index{3}, Eigen::Index{3}},
-                             rotations.data());
+py::array_t<double> matrices(Rotations&& rotations) {
+  return arrayIn<double>(std::move(rotations), {rotations.rows(), 3, 3});
 }
 
 py::array_t<double> turnsBetween(const py::object& source, const py::object& target) {

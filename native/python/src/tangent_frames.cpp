@@ -106,7 +106,7 @@ py::object throughShadingFrames(const py::object& directions, const py::object& 
     const py::gil_scoped_release release;
     out = convert(from, frames);
   }
-  return py::array_t<double>({out.rows(), Eigen::Index{3}}, out.data());
+  return pointArray(std::move(out));
 }
 
 }  // namespace
