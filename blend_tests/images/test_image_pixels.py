@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Images as arrays of pixels: they are read, written, saved and undone."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
 import scenes
 from limit_surface.errors import RefusalError
-from limit_surface.images import image_files, image_pixels
+from limit_surface.images import image_files, image_pixels, pixel_undo
 
 SIZE = (6, 4)  # width, height
 
@@ -133,6 +135,55 @@ def test_several_writes_are_undone_at_once(tmp_path, write):
     assert seed < 2  # versions of Blender count their undo steps differently
     bpy.ops.ed.undo_history(item=4)
     assert shows("generated 8", seed + 2)
+
+
+def kept_files() -> set[str]:
+    return {file.name for file in Path(bpy.app.tempdir).glob("limit_surface_*.npy")}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_pixels_between_two_writes_are_stored_once(kind, tmp_path, write):
+    new_image(kind, tmp_path)
+    bpy.ops.ed.undo_push(message="an image")
+    before = kept_files()
+    for i, seed in enumerate((1, 2, 3)):
+        write(kind, seed)
+        assert len(kept_files() - before) == i + 2
+    for seed in (2, 1, 0):
+        bpy.ops.ed.undo()
+        assert shows(kind, seed)
+
+
+@pytest.mark.parametrize("depth", ["8", "float"])
+def test_pixels_painted_between_two_writes_come_back(depth, tmp_path, write):
+    kind = f"generated {depth}"
+    image = new_image(kind, tmp_path)
+    bpy.ops.ed.undo_push(message="an image")
+    write(kind, 1)
+    painted = some_pixels(1)
+    painted[2, 3, :3] = 0
+    bpy.data.images[kind].pixels.foreach_set(painted.ravel())
+    write(kind, 2)
+    bpy.ops.ed.undo()
+    np.testing.assert_allclose(raw(bpy.data.images[kind]), painted, atol=1e-6)
+    del image
+
+
+def test_the_oldest_pixels_are_dropped_and_shared_ones_are_kept(tmp_path, write, monkeypatch):
+    new_image("generated float", tmp_path)
+    bpy.ops.ed.undo_push(message="an image")
+    write("generated float", 1)
+    monkeypatch.setattr(pixel_undo, "MOST_KEPT", 2 * sum(
+        Path(bpy.app.tempdir, name).stat().st_size for name in kept_files()
+    ) // len(kept_files()))
+    before = kept_files()
+    for seed in (2, 3):
+        write("generated float", seed)
+    assert len(kept_files() - before) == 2 and len(before - kept_files()) == len(before)
+    bpy.ops.ed.undo()
+    assert shows("generated float", 2)
+    bpy.ops.ed.redo()
+    assert shows("generated float", 3)
 
 
 def test_a_new_image_comes_back(write):

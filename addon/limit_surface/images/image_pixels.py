@@ -117,8 +117,10 @@ def write(
         image_tiles.write_some(image, given)
         image.pack()
     else:
-        with pixel_undo.recorded(image):
+        with pixel_undo.recorded(image) as tell:
             image_tiles.write_some(image, given)
+            if described.is_float and described.channels == 4 and image.source != "TILED":
+                tell(given)  # the image holds just these numbers
 
 
 def new(

@@ -10,7 +10,7 @@ again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,21 +23,29 @@ from .. import ids
 from . import image_tiles
 
 MOST_KEPT = 8 << 30  # in bytes; the oldest pixels are dropped where more would be stored
+COMPARED = 1 << 20  # numbers compared at a time, so that no large array is made for it
 
 _GONE = "gone"  # without a mark: the image does not exist at this point of the undo history
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Kept:
     files: Mapping[int, Path]  # the pixels by tile
 
     @classmethod
-    def of(cls, image: bpy.types.Image, mark: str) -> _Kept:
+    def of(cls, tiles: Mapping[int, np.ndarray], mark: str) -> _Kept:
         files = {}
-        for number, pixels in image_tiles.read_all(image).items():
+        for number, pixels in tiles.items():
             files[number] = Path(bpy.app.tempdir, f"limit_surface_{mark}_{number}.npy")
-            np.save(files[number], pixels)
+            np.save(files[number], np.ascontiguousarray(pixels, np.float32))
         return cls(files)
+
+    def holds(self, tiles: Mapping[int, np.ndarray]) -> bool:
+        """Tells whether these are the very pixels, bit by bit."""
+        return tiles.keys() == self.files.keys() and all(
+            file.exists() and _same_bits(np.load(file, mmap_mode="r"), tiles[number])
+            for number, file in self.files.items()
+        )
 
     @property
     def size(self) -> int:
@@ -56,12 +64,8 @@ class _Kept:
 @dataclass(frozen=True)
 class _Write:
     onto: str | None  # the mark that the image had before the write
-    before: _Kept
+    before: _Kept  # often what an earlier write has left, which is then stored once
     after: _Kept
-
-    def drop(self) -> None:
-        self.before.drop()
-        self.after.drop()
 
 
 @dataclass(frozen=True)
@@ -78,16 +82,25 @@ _unsaved: set[int] = set()  # images that held unsaved pixels before an undo or 
 
 
 @contextmanager
-def recorded(image: bpy.types.Image) -> Iterator[None]:
-    """Records a change of the image's pixels. If the change fails, the pixels are restored."""
+def recorded(image: bpy.types.Image) -> Iterator[Callable[[Mapping[int, np.ndarray]], None]]:
+    """Records a change of the image's pixels. If the change fails, the pixels are restored. Yields
+    a function to call with the pixels of all tiles after the change, by whoever knows them; they
+    are read from the image otherwise.
+    """
     mark, onto = uuid4().hex, image.get(ids.PIXELS_MARK)
-    before = _Kept.of(image, f"{mark}_before")
+    now, known = image_tiles.read_all(image), {}
+    shown = _shown.get(image.session_uid)
+    if shown and shown.kept and shown.kept.holds(now):
+        before = shown.kept
+    else:
+        before = _Kept.of(now, f"{mark}_before")
+    del now
     try:
-        yield
-        after = _Kept.of(image, f"{mark}_after")
+        yield known.update
+        after = _Kept.of(known or image_tiles.read_all(image), f"{mark}_after")
     except BaseException:
         before.show(image)
-        before.drop()
+        _drop([before])
         raise
     _writes[mark] = _Write(onto, before, after)
     image[ids.PIXELS_MARK] = mark
@@ -139,18 +152,39 @@ def _pixels_at(mark: str | None, shown: str | None) -> _Kept | None:
     return _writes[mark].after if mark in _writes else None
 
 
+def _same_bits(a: np.ndarray, b: np.ndarray) -> bool:
+    if a.shape != b.shape or a.dtype != b.dtype:
+        return False
+    a, b = (np.ascontiguousarray(of).reshape(-1).view(np.uint32) for of in (a, b))
+    return all(
+        np.array_equal(a[begin : begin + COMPARED], b[begin : begin + COMPARED])
+        for begin in range(0, len(a), COMPARED)
+    )
+
+
+def _kept_by_writes() -> set[_Kept]:
+    return {kept for write in _writes.values() for kept in (write.before, write.after)}
+
+
+def _drop(kept: list[_Kept]) -> None:
+    """Removes the files of pixels that no write needs."""
+    needed = _kept_by_writes()
+    for one in kept:
+        if one not in needed:
+            one.drop()
+
+
 def _drop_oldest() -> None:
-    sizes = [write.before.size + write.after.size for write in _writes.values()]
-    while len(_writes) > 1 and sum(sizes) > MOST_KEPT:
-        _writes.pop(next(iter(_writes))).drop()
-        sizes.pop(0)
+    while len(_writes) > 1 and sum(kept.size for kept in _kept_by_writes()) > MOST_KEPT:
+        oldest = _writes.pop(next(iter(_writes)))
+        _drop([oldest.before, oldest.after])
 
 
 @bpy.app.handlers.persistent
 def _forget(*_file: object) -> None:
-    for write in _writes.values():
-        write.drop()
+    kept = list(_kept_by_writes())
     _writes.clear()
+    _drop(kept)
     _shown.clear()
 
 
