@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     import limitsurf
 
 MAPPED = 0.3  # the part of a tile's progress at which its texels are known
+PAINTED = 1 << 16  # the texels that are painted at a time, which fit into the processor's cache
 
 
 @dataclass(frozen=True)
@@ -102,14 +103,19 @@ def _values(order: Order, tile: int, made: Baked, progress: Progress) -> _Tile:
             if name not in values:
                 values[name] = np.empty((count, *found.shape[1:]), np.float32)
             values[name][rows] = found
+            _black_out_lost(values[name][rows], made)
     if order.polygons and count:
         values[NORMAL_TANGENT] = _in_tangent_space(order, tile, texels, made, progress)
-    for of_map in values.values():
-        lost = ~np.isfinite(of_map)
-        if lost.any():
-            made.without_values += int(np.count_nonzero(lost.reshape(count, -1).any(axis=1)))
-            of_map[lost] = 0
+        _black_out_lost(values[NORMAL_TANGENT], made)
     return _Tile(texels, values)
+
+
+def _black_out_lost(values: np.ndarray, made: Baked) -> None:
+    """Counts the texels whose values have no limit, and makes the values 0."""
+    finite = np.isfinite(values)
+    if not finite.all():
+        made.without_values += int(np.count_nonzero(~finite.reshape(len(values), -1).all(axis=1)))
+        values[~finite] = 0
 
 
 def _in_tangent_space(
@@ -153,11 +159,22 @@ def _paint(order: Order, name: str, tiles: dict[int, _Tile], made: Baked) -> Non
         values = tile.values.pop(name)
         if order.is_encoded:
             values = encoded(values, made.ranges[name])
-        pixels = np.zeros((height * width, 4), np.float32)
-        at = _flat(tile.texels, width)
-        pixels[at, :3] = values if values.ndim == 2 else values[:, None]
-        pixels[at, 3] = 1
-        made.pixels[name][number] = pixels.reshape(height, width, 4)
+        made.pixels[name][number] = _pixels(tile.texels, values, width, height)
+
+
+def _pixels(texels: limitsurf.Texels, values: np.ndarray, width: int, height: int) -> np.ndarray:
+    """Returns opaque pixels with these values, and transparent black ones elsewhere."""
+    pixels = np.zeros((height * width, 4), np.float32)
+    some = np.ones((min(PAINTED, len(values)), 4), np.float32)
+    # numpy moves a pixel at once where it takes it for one number of 16 bytes
+    whole_pixels, whole_some = (of.view(np.complex128)[:, 0] for of in (pixels, some))
+    for begin in range(0, len(values), PAINTED):
+        part = values[begin : begin + PAINTED]
+        rows = slice(begin, begin + len(part))
+        some[: len(part), :3] = part if part.ndim == 2 else part[:, None]
+        at = texels.y[rows].astype(np.int64) * width + texels.x[rows]
+        whole_pixels[at] = whole_some[: len(part)]
+    return pixels.reshape(height, width, 4)
 
 
 def _flat(texels: limitsurf.Texels, width: int) -> np.ndarray:

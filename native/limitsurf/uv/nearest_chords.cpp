@@ -17,15 +17,15 @@ double squaredNorm(const Point2& vector) { return (vector * vector).sum(); }
 
 }  // namespace
 
-NearestChords::NearestChords(const BorderChords& chords, const Lattice& lattice)
+NearestChords::NearestChords(const BorderChords& chords, const Lattice& lattice,
+                             std::vector<Nearest>& found)
     : chords_(chords),
       lattice_(lattice),
       width_(static_cast<std::size_t>(lattice.x1 - lattice.x0 + 1)),
-      nearest_(width_ * static_cast<std::size_t>(lattice.y1 - lattice.y0 + 1)) {
+      nearest_(found) {
   const double farthest = chords.margin() + BorderChords::kSlack;
-  for (Nearest& nearest : nearest_) {
-    nearest.squared = farthest * farthest;
-  }
+  nearest_.assign(width_ * static_cast<std::size_t>(lattice.y1 - lattice.y0 + 1),
+                  Nearest{farthest * farthest});
 }
 
 Lattice NearestChords::rowOf(const BorderChords::Chord& chord, const Lattice& near, int y) const {

@@ -11,7 +11,14 @@ namespace limitsurf {
 /// For each point of a lattice the nearest chord that is no farther away than the margin.
 class NearestChords {
  public:
-  NearestChords(const BorderChords& chords, const Lattice& lattice);
+  struct Nearest {
+    double squared;
+    double part = 0;
+    const BorderChords::Chord* chord = nullptr;
+  };
+
+  /// `found` is overwritten. Its memory is the caller's, so that many lattices can share it.
+  NearestChords(const BorderChords& chords, const Lattice& lattice, std::vector<Nearest>& found);
 
   /// Offers a chord to the points for which wanted(x, y) is true.
   template <typename Wanted>
@@ -52,11 +59,6 @@ class NearestChords {
   bool foot(int x, int y, Foot& out) const;
 
  private:
-  struct Nearest {
-    double squared;
-    double part = 0;
-    const BorderChords::Chord* chord = nullptr;
-  };
   Nearest& at(int x, int y) {
     return nearest_[static_cast<std::size_t>(y - lattice_.y0) * width_ +
                     static_cast<std::size_t>(x - lattice_.x0)];
@@ -67,7 +69,7 @@ class NearestChords {
   const BorderChords& chords_;
   const Lattice lattice_;
   const std::size_t width_;
-  std::vector<Nearest> nearest_;
+  std::vector<Nearest>& nearest_;
 };
 
 }  // namespace limitsurf

@@ -9,6 +9,7 @@
 #include "limitsurf/progress.h"
 #include "limitsurf/surface/surface_data.h"
 #include "limitsurf/types.h"
+#include "limitsurf/unset_vector.h"
 
 namespace limitsurf {
 
@@ -34,12 +35,12 @@ struct MapLocations {
 
 /// Texels of an image, sorted by row and then by column.
 struct Texels {
-  std::vector<std::int32_t> x, y;
-  std::vector<std::int32_t> face;
-  std::vector<std::array<double, 2>> uv;
-  std::vector<std::uint8_t>
+  UnsetVector<std::int32_t> x, y;
+  UnsetVector<std::int32_t> face;
+  UnsetVector<std::array<double, 2>> uv;
+  UnsetVector<std::uint8_t>
       inside;  ///< the map covers the texel's centre; else the texel belongs to the margin
-  std::vector<std::uint8_t> overlap, flipped;
+  UnsetVector<std::uint8_t> overlap, flipped;
 
   std::size_t size() const { return x.size(); }
 };
@@ -89,7 +90,7 @@ class UvMap {
   /// have neither `inside` nor `overlap`.
   ///
   /// Throws std::invalid_argument for options out of range. Memory: 35 bytes for each texel of the
-  /// result, twice that for a moment, and 8 MiB for each thread.
+  /// result, meanwhile up to 64 MiB, and 6 MiB for each thread.
   Texels rasterize(const RasterOptions& options, int threads = 0,
                    const Progress& progress = {}) const;
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/uv/nearest_chords.h"
@@ -29,6 +31,9 @@ constexpr double kMostListed = 1 << 25;
 constexpr double kTexelsPerReport = 1 << 22;
 constexpr double kFewestBandsPerReport = 4, kMostBandsPerReport = 16;
 
+/// The number of texels with a margin, relative to those without, that is seldom exceeded. Chosen.
+constexpr double kShareWithMargin = 1.5;
+
 void checkRange(const char* name, double value, double least, double most) {
   if (!(value >= least && value <= most)) {
     std::ostringstream message;
@@ -47,7 +52,7 @@ class Bands {
                {static_cast<double>(width_), static_cast<double>(height_)},
                -0.5},
         tolerance_(map.tolerance() * frame_.scale) {
-    chooseRows(map);
+    chooseRows(map, options.margin);
     std::vector<std::size_t>& begins = begins_;
     begins.assign(count() + 2, 0);
     const auto forEachBand = [&](const auto& body) {
@@ -79,6 +84,9 @@ class Bands {
     return Span<int>(pieces_).subspan(begins_[band], begins_[band + 1] - begins_[band]);
   }
   std::size_t countPerReport() const { return per_report_; }
+  /// About the number of texels that the map covers, seldom too small. What is reserved too much
+  /// takes addresses, but no memory.
+  std::size_t mostTexels() const { return most_texels_; }
   const PlaneFrame& frame() const { return frame_; }
   const Point2& tolerance() const { return tolerance_; }
 
@@ -88,7 +96,7 @@ class Bands {
     return image().within(frame_.at(piece.box).grown(tolerance_));
   }
 
-  void chooseRows(const UvPatches& map) {
+  void chooseRows(const UvPatches& map, double margin) {
     double texels = 0, rows = 0;  // those of all pieces, added up
     for (const UvPiece& piece : map.pieces()) {
       const Lattice inside = texelsOf(piece);
@@ -99,6 +107,8 @@ class Bands {
       }
     }
     const double layers = texels / width_ / height_;
+    most_texels_ = static_cast<std::size_t>(
+        std::min(1., layers * (margin > 0 ? kShareWithMargin : 1)) * width_ * height_);
     const int whole_rows = kTexelsPerBand / width_;
     const double wanted = whole_rows / std::max(1., layers / kFewLayers);
     rows_ = static_cast<int>(
@@ -109,103 +119,117 @@ class Bands {
   }
 
   int width_, height_, rows_ = 1;
-  std::size_t per_report_ = 1;
+  std::size_t per_report_ = 1, most_texels_ = 0;
   PlaneFrame frame_;
   Point2 tolerance_;
   std::vector<std::size_t> begins_;  // where each band begins, and the end of the last
   std::vector<int> pieces_;          // band after band
 };
 
-/// Appends texels to a result.
-class TexelWriter {
- public:
-  explicit TexelWriter(Texels& out) : out_(out) {}
+/// A texel of the result.
+struct Texel {
+  double u, v;
+  std::int32_t x, y, face;
+  std::uint8_t inside, overlap, flipped;
+};
+/// What is needed to rasterize a band.
+struct BandWork {
+  std::vector<LatticeFinds::Slot> slots;
+  std::vector<NearestChords::Nearest> nearest;  // if there is a margin
+};
 
-  void add(int x, int y, const LatticeFinds::Slot& slot) {
-    add(x, y, {slot.face, slot.u, slot.v}, true, slot.overlap, slot.flipped);
+/// Hands the memory of bands that are done to the next ones, so that it is not made anew.
+class BandWorks {
+ public:
+  BandWork take() {
+    const std::lock_guard<std::mutex> hold(mutex_);
+    if (free_.empty()) {
+      return {};
+    }
+    BandWork work = std::move(free_.back());
+    free_.pop_back();
+    return work;
   }
-  void add(int x, int y, const NearestChords::Foot& foot) {
-    add(x, y, foot.at, false, false, foot.flipped);
+  void giveBack(BandWork&& work) {
+    const std::lock_guard<std::mutex> hold(mutex_);
+    free_.push_back(std::move(work));
   }
 
  private:
-  void add(int x, int y, const Location& at, bool inside, bool overlap, bool flipped) {
-    out_.x.push_back(x);
-    out_.y.push_back(y);
-    out_.face.push_back(at.face);
-    out_.uv.push_back({at.u, at.v});
-    out_.inside.push_back(inside);
-    out_.overlap.push_back(overlap);
-    out_.flipped.push_back(flipped);
-  }
-
-  Texels& out_;
+  std::mutex mutex_;
+  std::vector<BandWork> free_;
 };
 
-/// Appends the texels of a band that the map covers.
-void append(const LatticeFinds& finds, const Lattice& lattice, TexelWriter out) {
-  for (int y = lattice.y0; y <= lattice.y1; ++y) {
-    for (int x = lattice.x0; x <= lattice.x1; ++x) {
-      if (finds.at(x, y).face >= 0) {
-        out.add(x, y, finds.at(x, y));
-      }
-    }
-  }
+Texel texelOf(int x, int y, const LatticeFinds::Slot& slot) {
+  return {slot.u, slot.v, x, y, slot.face, true, slot.overlap, slot.flipped};
+}
+Texel texelOf(int x, int y, const NearestChords::Foot& foot) {
+  return {foot.at.u, foot.at.v, x, y, foot.at.face, false, false, foot.flipped};
 }
 
-/// The same with the texels of the margin.
-void append(const LatticeFinds& finds, const Lattice& lattice, const BorderChords& chords,
-            std::size_t band, TexelWriter out) {
-  NearestChords nearest(chords, lattice);
-  for (const BorderChords::Chord& chord : chords.inBand(band)) {
-    nearest.add(chord, [&](int x, int y) { return finds.at(x, y).face < 0; });
+/// Finds the texels of a band that the map covers, and those of the margin if there are chords.
+void findTexels(const LatticeFinds& finds, const Lattice& lattice, const BorderChords* chords,
+                std::size_t band, std::vector<NearestChords::Nearest>& memory,
+                std::vector<Texel>& out) {
+  std::optional<NearestChords> nearest;
+  if (chords && !chords->inBand(band).empty()) {
+    nearest.emplace(*chords, lattice, memory);
+    for (const BorderChords::Chord& chord : chords->inBand(band)) {
+      nearest->add(chord, [&](int x, int y) { return finds.at(x, y).face < 0; });
+    }
   }
+  out.clear();
+  out.reserve(static_cast<std::size_t>(lattice.x1 - lattice.x0 + 1) *
+              static_cast<std::size_t>(lattice.y1 - lattice.y0 + 1));
   for (int y = lattice.y0; y <= lattice.y1; ++y) {
     for (int x = lattice.x0; x <= lattice.x1; ++x) {
       NearestChords::Foot foot;
       if (finds.at(x, y).face >= 0) {
-        out.add(x, y, finds.at(x, y));
-      } else if (nearest.foot(x, y, foot)) {
-        out.add(x, y, foot);
+        out.push_back(texelOf(x, y, finds.at(x, y)));
+      } else if (nearest && nearest->foot(x, y, foot)) {
+        out.push_back(texelOf(x, y, foot));
       }
     }
   }
 }
 
-template <typename T>
-void moveTo(std::vector<T>& from, std::vector<T>& to, std::size_t begin) {
-  std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(begin));
-  from = {};
+/// Calls use() with each array of the texels.
+template <typename Use>
+void forEachArray(Texels& texels, const Use& use) {
+  use(texels.x);
+  use(texels.y);
+  use(texels.face);
+  use(texels.uv);
+  use(texels.inside);
+  use(texels.overlap);
+  use(texels.flipped);
 }
 
-/// The texels of all bands, one band after the other. Empties the parts.
-Texels concatenate(std::vector<Texels>& parts, int threads) {
+/// Appends the texels of `count` bands, one band after the other.
+void append(const std::vector<std::vector<Texel>>& bands, std::size_t count, int threads,
+            Texels& all) {
   std::vector<std::size_t> begins;
-  std::size_t size = 0;
-  for (const Texels& part : parts) {
+  std::size_t size = all.size();
+  for (std::size_t band = 0; band < count; ++band) {
     begins.push_back(size);
-    size += part.size();
+    size += bands[band].size();
   }
-  Texels all;
-  all.x.resize(size);
-  all.y.resize(size);
-  all.face.resize(size);
-  all.uv.resize(size);
-  all.inside.resize(size);
-  all.overlap.resize(size);
-  all.flipped.resize(size);
-  parallelFor(parts.size(), 1, threads, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      moveTo(parts[i].x, all.x, begins[i]);
-      moveTo(parts[i].y, all.y, begins[i]);
-      moveTo(parts[i].face, all.face, begins[i]);
-      moveTo(parts[i].uv, all.uv, begins[i]);
-      moveTo(parts[i].inside, all.inside, begins[i]);
-      moveTo(parts[i].overlap, all.overlap, begins[i]);
-      moveTo(parts[i].flipped, all.flipped, begins[i]);
+  forEachArray(all, [&](auto& array) { array.resize(size); });
+  parallelFor(count, 1, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t band = first; band < last; ++band) {
+      std::size_t row = begins[band];
+      for (const Texel& texel : bands[band]) {
+        all.x[row] = texel.x;
+        all.y[row] = texel.y;
+        all.face[row] = texel.face;
+        all.uv[row] = {texel.u, texel.v};
+        all.inside[row] = texel.inside;
+        all.overlap[row] = texel.overlap;
+        all.flipped[row] = texel.flipped;
+        ++row;
+      }
     }
   });
-  return all;
 }
 
 }  // namespace
@@ -271,30 +295,33 @@ Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& 
   if (options.margin > 0) {
     chords.emplace(borders(), bands.frame(), bands.image(), bands.rows(), options.margin);
   }
-  std::vector<Texels> parts(bands.count());
-  for (std::size_t begin = 0; begin < parts.size(); begin += bands.countPerReport()) {
-    const std::size_t count = std::min(bands.countPerReport(), parts.size() - begin);
+  Texels all;
+  forEachArray(all, [&](auto& array) { array.reserve(bands.mostTexels()); });
+  BandWorks works;
+  std::vector<std::vector<Texel>> found(std::min(bands.countPerReport(), bands.count()));
+  for (std::size_t begin = 0; begin < bands.count(); begin += found.size()) {
+    const std::size_t count = std::min(found.size(), bands.count() - begin);
     parallelFor(count, 1, threads, [&](std::size_t first, std::size_t last) {
-      for (std::size_t band = begin + first; band < begin + last; ++band) {
+      for (std::size_t i = first; i < last; ++i) {
+        const std::size_t band = begin + i;
         const Lattice lattice = bands.lattice(band);
-        LatticeFinds finds(lattice);
+        BandWork work = works.take();
+        LatticeFinds finds(lattice, work.slots);
         LatticeInverse inverse(lattice, bands.tolerance(), finds);
         for (const int piece : bands.pieces(band)) {
           map.invert(map.pieces()[static_cast<std::size_t>(piece)], bands.frame(), inverse, finds);
         }
         finds.finish();
-        if (chords) {
-          append(finds, lattice, *chords, band, TexelWriter(parts[band]));
-        } else {
-          append(finds, lattice, TexelWriter(parts[band]));
-        }
+        findTexels(finds, lattice, chords ? &*chords : nullptr, band, work.nearest, found[i]);
+        works.giveBack(std::move(work));
       }
     });
+    append(found, count, threads, all);
     if (progress) {
-      progress(static_cast<double>(begin + count) / static_cast<double>(parts.size()));
+      progress(static_cast<double>(begin + count) / static_cast<double>(bands.count()));
     }
   }
-  return concatenate(parts, threads);
+  return all;
 }
 
 }  // namespace limitsurf

@@ -15,17 +15,18 @@ namespace limitsurf {
 class LatticeFinds : public UvPatches::Sink {
  public:
   struct Slot {
-    double u, v;
+    double u = 0, v = 0;
     std::int32_t face = -1;
     bool overlap = false;
     bool flipped = false;
     bool within_cell = false;  ///< there is a find that is not on the border of its cell
   };
 
-  explicit LatticeFinds(const Lattice& lattice)
-      : lattice_(lattice),
-        width_(lattice.x1 - lattice.x0 + 1),
-        slots_(static_cast<std::size_t>(width_) * (lattice.y1 - lattice.y0 + 1)) {}
+  /// The slots are overwritten. Their memory is the caller's, so that many lattices can share it.
+  LatticeFinds(const Lattice& lattice, std::vector<Slot>& slots)
+      : lattice_(lattice), width_(lattice.x1 - lattice.x0 + 1), slots_(slots) {
+    slots_.assign(static_cast<std::size_t>(width_) * (lattice.y1 - lattice.y0 + 1), Slot());
+  }
 
   void enter(const FaceRectangle& on) override { on_ = on; }
   void add(const Find& find) override;
@@ -44,7 +45,7 @@ class LatticeFinds : public UvPatches::Sink {
   const Lattice lattice_;
   const std::int64_t width_;
   FaceRectangle on_;
-  std::vector<Slot> slots_;
+  std::vector<Slot>& slots_;
   std::vector<BorderFind> border_finds_;
 };
 

@@ -61,8 +61,9 @@ MapLocations UvSearch::locate(const PlanePoints& points, int threads) const {
   out.flipped.resize(rows);
   parallelFor(rows, kPointsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     constexpr Lattice kOnePoint{0, 0, 0, 0};
+    std::vector<LatticeFinds::Slot> slots;
     for (std::size_t row = begin; row < end; ++row) {
-      LatticeFinds finds(kOnePoint);
+      LatticeFinds finds(kOnePoint, slots);
       LatticeInverse inverse(kOnePoint, Point2::Constant(map_.tolerance()), finds);
       find(points.row(static_cast<Eigen::Index>(row)).transpose().array(), inverse, finds);
       finds.finish();

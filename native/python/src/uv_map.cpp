@@ -34,21 +34,25 @@ auto withMap(const SharedData& shared, int threads, const Use& use) {
 
 /// An array that takes over the elements of a vector, without a copy. Its type is `Shown`; a T that
 /// consists of several becomes a row.
-template <typename Shown, typename T>
-py::array_t<Shown> taken(std::vector<T>&& from) {
+template <typename Shown, typename T, typename Allocator>
+py::array_t<Shown> taken(std::vector<T, Allocator>&& from) {
   // T may be Shown itself
   constexpr auto kColumns =
       static_cast<py::ssize_t>(sizeof(T) / sizeof(Shown));  // NOLINT(bugprone-sizeof-expression)
-  auto owned = std::make_unique<std::vector<T>>(std::move(from));
+  auto owned = std::make_unique<std::vector<T, Allocator>>(std::move(from));
   const auto rows = static_cast<py::ssize_t>(owned->size());
   const auto* data = reinterpret_cast<const Shown*>(owned->data());
-  const py::capsule owner(owned.get(), [](void* all) { delete static_cast<std::vector<T>*>(all); });
+  const py::capsule owner(owned.get(),
+                          [](void* all) { delete static_cast<std::vector<T, Allocator>*>(all); });
   owned.release();
   return kColumns == 1 ? py::array_t<Shown>({rows}, data, owner)
                        : py::array_t<Shown>({rows, kColumns}, data, owner);
 }
 
-py::array_t<bool> flags(std::vector<std::uint8_t>&& from) { return taken<bool>(std::move(from)); }
+template <typename Allocator>
+py::array_t<bool> flags(std::vector<std::uint8_t, Allocator>&& from) {
+  return taken<bool>(std::move(from));
+}
 
 py::object rasterize(const SharedData& shared, int width, int height,
                      const std::array<int, 2>& tile, double margin, int threads,

@@ -56,7 +56,8 @@ Searched search(const LimitSurface& surface, const DataRows& values, int side) {
   const UvPatches map(data, 1);
   const Lattice lattice{0, 0, side - 1, side - 1};
   const PlaneFrame frame{Point2::Zero(), Point2::Constant(side), -0.5};
-  LatticeFinds finds(lattice);
+  std::vector<LatticeFinds::Slot> slots;
+  LatticeFinds finds(lattice, slots);
   LatticeInverse inverse(lattice, map.tolerance() * frame.scale, finds);
   for (const UvPiece& piece : map.pieces()) {
     map.invert(piece, frame, inverse, finds);
