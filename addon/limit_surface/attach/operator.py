@@ -12,9 +12,11 @@ from ..placing import dependencies, following
 from ..placing.binding import Binding
 from ..placing.binding_operator import BindingOperator
 from ..placing.followers import live_modifier_of, modifier_of
-from ..placing.posed_surface import PosedSurface, at_closest
+from ..placing.posed_surface import Places, PosedSurface, at_closest
 from ..reading import cage
 from ..tasks import polling
+from ..tasks.job import Progress
+from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary
 from ..tasks.refused_faces import check_some_left
 from .carrier import Extension, is_carrier
@@ -47,7 +49,7 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
     def draw(self, _context: bpy.types.Context) -> None:
         draw_summary(self.layout, self.summary)
 
-    def bind(self, context: bpy.types.Context) -> set[str]:
+    def bind(self, context: bpy.types.Context) -> Pieces:
         surface, objects = context.active_object, _others(context)
         context.view_layer.update()
         depsgraph = context.evaluated_depsgraph_get()
@@ -57,9 +59,15 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
         posed = PosedSurface(cage.read(surface, depsgraph))
         check_some_left(posed.in_world, surface.name)
         origins = np.array([ob.matrix_world.translation for ob in objects], np.float64)
-        locations = at_closest(posed, posed.in_world.closest(origins))
-        binding = Binding.at(posed, locations, _WORLD)
-        places = posed.places(locations.face, locations.uv.astype(np.float64), _WORLD)
+
+        def locate(progress: Progress) -> tuple[Binding, Places]:
+            hits = posed.in_world.closest(origins, progress=progress)
+            found = at_closest(posed, hits)
+            places = posed.places(found.face, found.uv.astype(np.float64), _WORLD)
+            return Binding.at(posed, found, _WORLD), places
+
+        binding, places = yield from aside(locate)
+        depsgraph = context.evaluated_depsgraph_get()
         size = float(np.abs(posed.in_world.positions).max())
 
         attached = [i for i, ob in enumerate(objects) if ob.parent]

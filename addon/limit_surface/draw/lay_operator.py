@@ -8,10 +8,12 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from .. import ids, native
+from .. import ids
 from ..errors import RefusalError
 from ..tasks import polling
-from ..tasks.properties import SummaryProperty, draw_summary
+from ..tasks.piecewise_job import Pieces, PiecewiseJob
+from ..tasks.properties import draw_summary
+from ..tasks.watched_operator import WatchedOperator
 from . import curve_object, properties, result, splines
 from .fitting import Fit, Spline
 from .ground import Ground
@@ -19,7 +21,7 @@ from .ground import Ground
 NOTHING = "Select curves, and make the mesh to lay them on active"
 
 
-class OBJECT_OT_limit_curve_lay(properties.FitProperties, SummaryProperty, bpy.types.Operator):
+class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.types.Operator):
     """Lay the selected curves onto the exact limit surface of the active mesh, between their
     control points too: their splines are fitted again, so that no place of them is farther from the
     surface than the tolerance"""
@@ -27,6 +29,8 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, SummaryProperty, bpy.t
     bl_idname = ids.CURVE_LAY
     bl_label = "Lay Curves on Limit Surface"
     bl_options = {"REGISTER", "UNDO"}
+    too_large = "There is not enough memory for so many control points"
+    cancelled = "Cancelled: no curve has changed"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -43,17 +47,15 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, SummaryProperty, bpy.t
             layout.prop(self, name)
         draw_summary(layout, self.summary)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
-        try:
-            return self._run(context)
-        except native.refusals as error:
-            self.report({"ERROR"}, str(error))
-        except MemoryError:
-            self.report({"ERROR"}, "There is not enough memory for so many control points")
-        return {"CANCELLED"}
+        return self.watch(context, PiecewiseJob(self._pieces(context)), "Laying curves")
 
-    def _run(self, context: bpy.types.Context) -> set[str]:
+    def finish(self, _context: bpy.types.Context, made: set[str]) -> set[str]:
+        return made
+
+    def _pieces(self, context: bpy.types.Context) -> Pieces:
+        """Changes the curves in the last piece, and returns what the operator returns."""
         surface, curves = context.active_object, _curves(context)
         for ob in curves:
             curve_object.check_editable(ob, surface)
@@ -64,7 +66,10 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, SummaryProperty, bpy.t
             curve_object.check_places(ob, ground)
         tolerance = ground.tolerance(self.tolerance)
         fit = Fit(self.spline, tolerance, self.offset)
-        laid = [_laid(ob, ground, fit, tolerance) for ob in curves]
+        laid, count = [], sum(len(ob.data.splines) for ob in curves)
+        for ob in curves:
+            done = sum(len(numbers) for _made, numbers in laid)
+            laid.append((yield from _laid(ob, ground, fit, tolerance, done / count, 1 / count)))
         for ob, (made, numbers) in zip(curves, laid, strict=True):
             curve_object.change(context, ob, ground, numbers, made)
             curve_object.store_offset(ob.data, self.offset)
@@ -77,19 +82,24 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, SummaryProperty, bpy.t
 
 
 def _laid(
-    ob: bpy.types.Object, ground: Ground, fit: Fit, tolerance: float
-) -> tuple[list[Spline], list[int]]:
-    """Returns the new splines, and the numbers of those that they replace."""
+    ob: bpy.types.Object, ground: Ground, fit: Fit, tolerance: float, done: float, share: float
+) -> Pieces:
+    """Returns the new splines, and the numbers of those that they replace. Each spline is a `share`
+    of the work, of which a part is `done`.
+    """
     matrix = np.array(ob.matrix_world, np.float64)
-    by_spline = splines.strokes(ob, ground, tolerance)
-    if not by_spline:
+    made: list[Spline] = []
+    numbers: list[int] = []
+    for strokes in splines.strokes_by_spline(ob, ground, tolerance):
+        for stroke in strokes:
+            yield done + share * len(numbers)
+            before = ob.data.splines[stroke.spline]
+            look = {name: getattr(before, name) for name in ("material_index", "use_smooth")}
+            made.append(replace(fit.spline(stroke, ground, matrix), **look))
+        numbers += sorted({stroke.spline for stroke in strokes})
+    if not made:
         raise RefusalError(f"{ob.name} has no spline with two control points or more")
-    made = []
-    for stroke in by_spline:
-        before = ob.data.splines[stroke.spline]
-        look = {name: getattr(before, name) for name in ("material_index", "use_smooth")}
-        made.append(replace(fit.spline(stroke, ground, matrix), **look))
-    return made, sorted({stroke.spline for stroke in by_spline})
+    return made, numbers
 
 
 def _curves(context: bpy.types.Context) -> list[bpy.types.Object]:

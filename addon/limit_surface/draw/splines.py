@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import bpy
@@ -92,7 +92,13 @@ def strokes(ob: bpy.types.Object, ground: Ground, tolerance: float) -> list[Stro
     """Returns the strokes of a Curve object, laid onto the surface, each with the number of its
     spline. A spline of one point has none; one that cannot be laid in one piece has several.
     """
-    found = []
+    return [each for laid in strokes_by_spline(ob, ground, tolerance) for each in laid]
+
+
+def strokes_by_spline(
+    ob: bpy.types.Object, ground: Ground, tolerance: float
+) -> Iterator[list[Stroke]]:
+    """Yields the strokes of one spline after the other."""
     for number, spline in enumerate(ob.data.splines):
         if spline.type == "NURBS":
             raise RefusalError(
@@ -107,8 +113,7 @@ def strokes(ob: bpy.types.Object, ground: Ground, tolerance: float) -> list[Stro
             spline.use_cyclic_u,
             _handles(spline, np.array(ob.matrix_world, np.float64)),
         )
-        found += [replace(piece, spline=number) for piece in laid]
-    return found
+        yield [replace(piece, spline=number) for piece in laid]
 
 
 def _curve(spline: bpy.types.Spline, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

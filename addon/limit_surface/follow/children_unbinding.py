@@ -18,6 +18,7 @@ from ..placing.binding import Binding
 from ..placing.posed_surface import PosedSurface
 from ..placing.roots import Locations
 from ..reading import attributes, cage
+from ..tasks.piecewise_job import Pieces
 
 
 @dataclass(frozen=True)
@@ -34,12 +35,16 @@ class _Curves:
 class ChildrenUnbinding:
     """Raises RefusalError for live children that cannot become curves; nothing has changed then."""
 
-    def __init__(
-        self, children: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph
-    ) -> None:
-        self._curves = [_read(ob, depsgraph) for ob in children]
+    def __init__(self, children: Sequence[bpy.types.Object]) -> None:
+        self._children, self._curves = list(children), list[_Curves]()
 
-    def write(self) -> str:
+    def compute(self, context: bpy.types.Context) -> Pieces:
+        """Blender evaluates one object after the other, and cannot be cancelled within one."""
+        for i, ob in enumerate(self._children):
+            yield i / len(self._children)
+            self._curves.append(_read(ob, context.evaluated_depsgraph_get()))
+
+    def write(self, _depsgraph: bpy.types.Depsgraph) -> str:
         """Changes the file, and returns a report."""
         for made in self._curves:
             data, table = made.ob.data, live_children.table_of(made.ob)

@@ -9,6 +9,7 @@ from ..errors import RefusalError
 from ..placing import curve_points, following, live_binding, newcomers
 from ..placing.binding_operator import BindingOperator
 from ..tasks import polling
+from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary
 from .subjects import BINDABLE, selected, to_bind
 
@@ -68,13 +69,12 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         self.layout.prop(self, "use_proxy")
         draw_summary(self.layout, self.summary)
 
-    def bind(self, context: bpy.types.Context) -> set[str]:
+    def bind(self, context: bpy.types.Context) -> Pieces:
         by_surface = to_bind(context)
         if not by_surface:
             raise RefusalError(NOTHING)
-        depsgraph = context.evaluated_depsgraph_get()
         bind = self._live if self.mode == "LIVE" else self._by_nodes
-        lines = bind(context, by_surface, depsgraph)
+        lines = yield from bind(context, by_surface)
         self.summary = "\n".join(lines)
         self.report({"INFO"}, "; ".join(lines))
         self._take_over(by_surface)
@@ -89,10 +89,10 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         self,
         context: bpy.types.Context,
         by_surface: dict[bpy.types.Object, list[bpy.types.Object]],
-        depsgraph: bpy.types.Depsgraph,
-    ) -> list[str]:
+    ) -> Pieces:
         requests = []
         for on, obs in by_surface.items():
+            depsgraph = context.evaluated_depsgraph_get()
             following.check_surface(on, depsgraph.scene)
             obs = live_binding.with_live_sharers(obs)
             things, curves = (
@@ -101,12 +101,18 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
             for ob in things:
                 following.check_thing(ob, on)
             bound_curves = curve_points.CurveRequest(curves, on, depsgraph, self._proxy)
-            relocated = newcomers.relocations(things, on, depsgraph)
+            relocated = yield from newcomers.relocations(things, on, depsgraph)
+            depsgraph = context.evaluated_depsgraph_get()
             request = following.Request(
                 on, depsgraph, things, self._proxy, relocated, without=curves
             )
             requests.append((request, things, bound_curves))
-        made = [request.compute() for request, things, _curves in requests if things]
+        made = []
+        for request, things, _curves in requests:
+            if things:
+                compute = request.compute
+                made.append((yield from aside(lambda _progress, compute=compute: compute())))
+        depsgraph = context.evaluated_depsgraph_get()
         for ob in [ob for obs in by_surface.values() for ob in obs]:
             live_binding.end(ob, depsgraph)
         outcomes = [bindings.write() for bindings in made]
@@ -118,9 +124,11 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         self,
         context: bpy.types.Context,
         by_surface: dict[bpy.types.Object, list[bpy.types.Object]],
-        depsgraph: bpy.types.Depsgraph,
-    ) -> list[str]:
+    ) -> Pieces:
+        depsgraph = context.evaluated_depsgraph_get()
         requests = [live_binding.LiveRequest(on, depsgraph, obs) for on, obs in by_surface.items()]
+        for request in requests:
+            yield from request.locate(context.evaluated_depsgraph_get())
         return [str(request.write(context)) for request in requests]
 
     def _take_over(self, by_surface: dict[bpy.types.Object, list[bpy.types.Object]]) -> None:

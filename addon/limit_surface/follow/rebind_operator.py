@@ -11,6 +11,7 @@ from ..errors import RefusalError
 from ..placing.binding_operator import BindingOperator
 from ..placing.rebinding import Rebinding
 from ..tasks import polling
+from ..tasks.piecewise_job import Pieces
 from ..tasks.properties import draw_summary
 from . import children_rebinding
 from .subjects import children_to_rebind, to_rebind
@@ -69,7 +70,7 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
             layout.prop(self, "distance")
         draw_summary(layout, self.summary)
 
-    def bind(self, context: bpy.types.Context) -> set[str]:
+    def bind(self, context: bpy.types.Context) -> Pieces:
         by_surface = to_rebind(context)
         children = children_to_rebind(context, by_surface)
         if not by_surface and not children:
@@ -80,6 +81,8 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
             Rebinding(on, depsgraph, things, self.method, limit)
             for on, things in by_surface.items()
         ]
+        for rebinding in rebindings:
+            yield from rebinding.compute(context)
         done = [rebinding.write(context) for rebinding in rebindings]
         for rebound in done:
             if rebound.warning:

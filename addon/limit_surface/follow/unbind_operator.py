@@ -4,23 +4,26 @@
 import bpy
 from bpy.props import EnumProperty
 
-from .. import ids, native
+from .. import ids
 from ..placing.followers import live_modifier_of
 from ..placing.live_unbinding import LiveUnbinding
 from ..placing.unbinding import Unbinding, leftovers_of, remove_leftovers
 from ..tasks import polling
-from ..tasks.properties import SummaryProperty, draw_summary
+from ..tasks.piecewise_job import Pieces, PiecewiseJob
+from ..tasks.properties import draw_summary
+from ..tasks.watched_operator import WatchedOperator
 from .children_unbinding import ChildrenUnbinding
 from .subjects import children_to_unbind, chosen_followers
 
 
-class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
+class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
     """Stop the selected hair and points from following. If only the surface is selected, stop
     everything that follows it. Live children become curves"""
 
     bl_idname = ids.UNBIND
     bl_label = "Unbind from Limit Surface"
     bl_options = {"REGISTER", "UNDO"}
+    cancelled = "Cancelled: nothing has changed"
 
     shape: EnumProperty(
         name="Shape",
@@ -43,31 +46,35 @@ class OBJECT_OT_limit_unbind(SummaryProperty, bpy.types.Operator):
             "Select hair or points that follow a limit surface, or live children",
         )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
-        try:
-            depsgraph = context.evaluated_depsgraph_get()
-            things = chosen_followers(context)
-            children = children_to_unbind(context)
-            live = [ob for ob in things if live_modifier_of(ob)]
-            by_nodes = [ob for ob in things if ob not in live]
-            if not things and not children:
-                self.summary = remove_leftovers(context.active_object)
-                self.report({"INFO"}, self.summary)
-                return {"FINISHED"}
-            unbindings: list[Unbinding | LiveUnbinding | ChildrenUnbinding] = []
-            if children:  # before their guides are unbound
-                unbindings.append(ChildrenUnbinding(children, depsgraph))
-            if by_nodes:
-                unbindings.append(Unbinding(by_nodes, depsgraph, self.shape))
-            if live:
-                unbindings.append(LiveUnbinding(live, depsgraph, self.shape))
-            self.summary = "\n".join([unbinding.write() for unbinding in unbindings])
-        except native.refusals as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        return self.watch(context, PiecewiseJob(self._pieces(context)), "Unbinding")
+
+    def finish(self, _context: bpy.types.Context, made: str) -> set[str]:
+        self.summary = made
         self.report({"INFO"}, self.summary)
         return {"FINISHED"}
+
+    def _pieces(self, context: bpy.types.Context) -> Pieces:
+        """Unbinds in the last piece, and returns a report."""
+        things = chosen_followers(context)
+        children = children_to_unbind(context)
+        live = [ob for ob in things if live_modifier_of(ob)]
+        by_nodes = [ob for ob in things if ob not in live]
+        if not things and not children:
+            return remove_leftovers(context.active_object)
+        unbindings: list[Unbinding | LiveUnbinding | ChildrenUnbinding] = []
+        if children:  # before their guides are unbound
+            unbindings.append(ChildrenUnbinding(children))
+        if by_nodes:
+            unbindings.append(Unbinding(by_nodes, self.shape))
+        if live:
+            unbindings.append(LiveUnbinding(live, context.evaluated_depsgraph_get(), self.shape))
+        for unbinding in unbindings:
+            if not isinstance(unbinding, LiveUnbinding):
+                yield from unbinding.compute(context)
+        depsgraph = context.evaluated_depsgraph_get()
+        return "\n".join([unbinding.write(depsgraph) for unbinding in unbindings])
 
     def draw(self, _context: bpy.types.Context) -> None:
         self.layout.use_property_split = True

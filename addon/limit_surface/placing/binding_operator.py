@@ -3,34 +3,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
-
 import bpy
 
-from .. import native
-from ..tasks.properties import SummaryProperty
+from ..tasks.piecewise_job import Pieces, PiecewiseJob
+from ..tasks.watched_operator import WatchedOperator
 from .mending import mended
 
 
-class BindingOperator(SummaryProperty):
-    """Mixin for operators that write tables of a surface. Refusals are reported as errors. A
-    subclass provides `bind`.
+class BindingOperator(WatchedOperator):
+    """Mixin for operators that write tables of a surface. A subclass provides `bind`.
+
+    `tasks/watched_operator.py` says where this stands among the steps of an operator. The last
+    piece of `bind` is the one that changes something.
     """
 
-    if TYPE_CHECKING:  # of bpy.types.Operator, the other base of its subclasses
-        report: Callable[[set[str], str], None]
+    doing = "Binding"  # what the status bar shows
+    too_large = "There is not enough memory for the tables"
+    cancelled = "Cancelled: nothing has changed"
 
-    def bind(self, context: bpy.types.Context) -> set[str]:
+    def bind(self, context: bpy.types.Context) -> Pieces:
+        """Returns what the operator returns."""
         raise NotImplementedError
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
-        try:
-            with mended():
-                return self.bind(context)
-        except native.refusals as error:
-            self.report({"ERROR"}, str(error))
-        except MemoryError:
-            self.report({"ERROR"}, "There is not enough memory for the tables")
-        return {"CANCELLED"}
+        return self.watch(context, PiecewiseJob(self._pieces(context)), self.doing)
+
+    def finish(self, _context: bpy.types.Context, made: set[str]) -> set[str]:
+        return made
+
+    def _pieces(self, context: bpy.types.Context) -> Pieces:
+        with mended():
+            return (yield from self.bind(context))

@@ -14,7 +14,9 @@ from ..nodes import groups
 from ..nodes.follow import SURFACE
 from ..nodes.live import FOLLOW_LIVE
 from ..reading import cage
+from ..tasks.piecewise_job import Pieces, at_once
 from . import followers, following, live, live_surface, live_thing, newcomers
+from .relocation import Relocation
 from .unbinding import Unbinding
 
 
@@ -28,8 +30,9 @@ class LiveOutcome:
 
 
 class LiveRequest:
-    """What makes things follow one surface live. Raises RefusalError, MeshError or LocationError
-    for those that cannot; nothing has changed then.
+    """What makes things follow one surface live, in three steps: they are checked, located, and
+    written. The first two raise RefusalError, MeshError or LocationError for those that cannot
+    follow; nothing has changed then.
     """
 
     def __init__(
@@ -40,23 +43,30 @@ class LiveRequest:
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
         things = with_sharers(things)
-        found = cage.read(surface, depsgraph)
-        self._signature, limit = following.signature(found), found.surface()
         for ob in things:
             following.check_thing(ob, surface)
             _check_kind(ob)
             live.check_sharers(ob, surface, depsgraph)
-        self._relocations = newcomers.relocations(things, surface, depsgraph)
-        relocated = {relocation.data for relocation in self._relocations}
-        for ob in things:
-            if ob.data not in relocated:
-                following.check_holds(ob, surface, self._signature)
-                live_thing.check(ob.data, limit)
         self._surface, self._things = surface, list(things)
+        self._relocations: list[Relocation] | None = None
         self._by_nodes = [ob for ob in things if followers.modifier_of(ob)]
-        self._unbinding = Unbinding(self._by_nodes, depsgraph, "REST")
+        self._unbinding = Unbinding(self._by_nodes, "REST")
+
+    def locate(self, depsgraph: bpy.types.Depsgraph) -> Pieces:
+        """Finds the places of things that have none yet."""
+        found = cage.read(self._surface, depsgraph)
+        self._signature, limit = following.signature(found), found.surface()
+        located = yield from newcomers.relocations(self._things, self._surface, depsgraph)
+        relocated = {relocation.data for relocation in located}
+        for ob in self._things:
+            if ob.data not in relocated:
+                following.check_holds(ob, self._surface, self._signature)
+                live_thing.check(ob.data, limit)
+        self._relocations = located
 
     def write(self, context: bpy.types.Context) -> LiveOutcome:
+        if self._relocations is None:
+            at_once(self.locate(context.evaluated_depsgraph_get()))
         places = {
             ob: ob.modifiers.find(modifier.name)
             for ob in self._by_nodes
@@ -65,7 +75,7 @@ class LiveRequest:
         for ob in self._things:
             if followers.live_modifier_of(ob) and not live_thing.missing(ob.data):
                 live.take_up_edits(ob, context.evaluated_depsgraph_get())
-        for relocation in self._relocations:
+        for relocation in self._relocations or ():
             relocation.write()
         if self._by_nodes:
             self._unbinding.write()

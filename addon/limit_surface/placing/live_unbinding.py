@@ -30,18 +30,18 @@ class LiveUnbinding:
         things = live_binding.with_sharers(things)
         for ob in things:
             following.check_editable(ob)
-        self._things, self._depsgraph, self._shape = list(things), depsgraph, shape
+        self._things, self._shape = list(things), shape
         self._surfaces = {ob: live.surface_of(ob) for ob in things}
         self._posed = {
             surface: PosedSurface(cage.read(surface, depsgraph))
             for surface in set(self._surfaces.values()) - {None}
         }
 
-    def write(self) -> str:
+    def write(self, depsgraph: bpy.types.Depsgraph) -> str:
         """Changes the file, and returns a report."""
         for ob, surface in self._surfaces.items():
             if self._shape == "REST" or surface is None or live_thing.missing(ob.data):
-                live_binding.end(ob, self._depsgraph)
+                live_binding.end(ob, depsgraph)
                 continue
             self._bind_here(ob, self._posed[surface])
             live_thing.leave(ob.data)

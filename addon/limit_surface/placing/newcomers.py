@@ -14,8 +14,9 @@ import numpy as np
 from .. import ids, native
 from ..errors import RefusalError
 from ..reading import cage
+from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
-from .posed_surface import PosedSurface, at_closest
+from .posed_surface import Places, PosedSurface, at_closest
 from .relocation import Elements, Relocation
 
 _DEFORMERS = {"ARMATURE", "CURVE", "HOOK", "LATTICE", "MESH_DEFORM", "SURFACE_DEFORM"}
@@ -26,8 +27,8 @@ def relocations(
     things: Sequence[bpy.types.Object],
     surface: bpy.types.Object,
     depsgraph: bpy.types.Depsgraph,
-) -> list[Relocation]:
-    """Returns the places of those strands and points that have none yet."""
+) -> Pieces:
+    """Returns the places (list[Relocation]) of those strands and points that have none yet."""
     waiting: dict[bpy.types.ID, Elements] = {}
     for ob in things:
         elements = Elements(ob)
@@ -37,25 +38,30 @@ def relocations(
         return []
     posed = PosedSurface(cage.read(surface, depsgraph))
     check_some_left(posed.in_world, surface.name)
-    return [
-        bound_at_closest(elements, posed, np.flatnonzero(~elements.has_place))
-        for elements in waiting.values()
-    ]
+    found = []
+    for elements in waiting.values():
+        rows = np.flatnonzero(~elements.has_place)
+        found.append((yield from bound_at_closest(elements, posed, rows)))
+    return found
 
 
 def bound_at_closest(
     elements: Elements, posed: PosedSurface, rows: np.ndarray, max_distance: float = math.inf
-) -> Relocation:
-    """Binds some elements where they are. Those beyond the distance (world units) are lost."""
+) -> Pieces:
+    """Binds some elements where they are, and returns the Relocation. Those beyond the distance
+    (world units) are lost.
+    """
     points = elements.first_points()[rows]
     lost_row = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(lost_row):
         raise RefusalError(f"Point {rows[lost_row[0]]} has a coordinate that is not a number")
-    hits = posed.in_world.closest(points, max_distance)
+    hits = yield from aside(
+        lambda progress: posed.in_world.closest(points, max_distance, progress=progress)
+    )
     found = hits.face >= 0
     relocation = Relocation(elements, lost=rows[~found], distances=np.zeros(int(found.sum())))
     at = at_closest(posed, hits)
-    put_places(relocation, posed, rows[found], at.face[found], at.uv[found])
+    yield from put_places(relocation, posed, rows[found], at.face[found], at.uv[found])
     return relocation
 
 
@@ -65,15 +71,23 @@ def put_places(
     rows: np.ndarray,
     face: np.ndarray,
     uv: np.ndarray,
-) -> np.ndarray:
+) -> Pieces:
     """Stores locations and the roots at rest there, and returns the frames (n, 3, 3) there."""
     rounded = uv.astype(np.float32)
-    places = posed.places(face, rounded.astype(np.float64), relocation.elements.matrix)
+    matrix = relocation.elements.matrix
+    places, turn = yield from aside(lambda _progress: _turned(posed, face, rounded, matrix))
     relocation.put(ids.FACE, rows, face)
     relocation.put(ids.UV, rows, rounded)
     relocation.put(ids.REST_ROOT, rows, places.position)
-    relocation.put(ids.REST_ROTATION, rows, native.limitsurf.quaternions(places.frame))
+    relocation.put(ids.REST_ROTATION, rows, turn)
     return places.frame
+
+
+def _turned(
+    posed: PosedSurface, face: np.ndarray, uv: np.ndarray, matrix: np.ndarray
+) -> tuple[Places, np.ndarray]:
+    places = posed.places(face, uv.astype(np.float64), matrix)
+    return places, native.limitsurf.quaternions(places.frame)
 
 
 def disable_deformation_by_blender(ob: bpy.types.Object) -> list[str]:

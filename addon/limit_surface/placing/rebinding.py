@@ -14,6 +14,8 @@ import numpy as np
 from .. import ids, native
 from ..errors import RefusalError
 from ..reading import attributes, cage, uv_map
+from ..tasks.job import Progress
+from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
 from . import curve_points, following, live_binding
 from .followers import (
@@ -74,8 +76,9 @@ class Rebound:
 
 
 class Rebinding:
-    """Binds everything that follows a surface anew, and other things that stand on it. Raises
-    RefusalError where that is impossible; nothing has changed then.
+    """Binds everything that follows a surface anew, and other things that stand on it, in three
+    steps: what is needed is read, the new places are computed, and written. Raises RefusalError
+    where that is impossible; nothing has changed then.
     """
 
     def __init__(
@@ -99,29 +102,43 @@ class Rebinding:
         self._live = [ob for ob in kept if live_modifier_of(ob)]
         live_binding.prepare_rebinding(self._live, depsgraph)
         blocks = {holder_of(ob): ob for ob in reversed(kept)}
+        self._elements = [Elements(ob, at_rest=True) for ob in blocks.values()]
         with cage.opened(surface, depsgraph) as (found, mesh):
-            posed = PosedSurface(found)
-            check_some_left(posed.in_world, surface.name)
-            maps = _UvMaps(posed, mesh, surface)
-            find: _Finder
-            if method == "CLOSEST":
-                find = _Closest(posed, maps, max_distance)
-            elif method == "UV":
-                find = _ByUv(maps)
-            else:
-                find = _ByFace(posed)
-            self._relocations = [_relocation(ob, posed, find) for ob in blocks.values()]
+            self._posed = PosedSurface(found)
+            check_some_left(self._posed.in_world, surface.name)
+            maps = _UvMaps(self._posed, mesh, surface)
+            for elements in self._elements:
+                if method == "UV" or (method == "CLOSEST" and _stores_uv(elements)):
+                    maps.read(elements.data)
             self._signature = following.signature(found)
+        self._find: _Finder
+        if method == "CLOSEST":
+            self._find = _Closest(self._posed, maps, max_distance)
+        elif method == "UV":
+            self._find = _ByUv(maps)
+        else:
+            self._find = _ByFace(self._posed)
         self._target = surface
         self._surface, self._names = surface.name, [ob.name for ob in bound]
-        self._reason = find.reason
-        by_nodes = [ob for ob in kept if ob not in self._live]
+        self._by_nodes = [ob for ob in kept if ob not in self._live]
+
+    def compute(self, context: bpy.types.Context) -> Pieces:
+        self._relocations = []
+        for elements in self._elements:
+            relocation = yield from _relocation(elements, self._posed, self._find)
+            self._relocations.append(relocation)
         self._relocations_of_live = [r for r in self._relocations if r.elements.ob in self._live]
         others = [r for r in self._relocations if r not in self._relocations_of_live]
         request = following.Request(
-            surface, depsgraph, by_nodes, relocated=others, without=self._curves
+            self._target,
+            context.evaluated_depsgraph_get(),
+            self._by_nodes,
+            relocated=others,
+            without=self._curves,
         )
-        self._bindings = request.compute() if by_nodes else None
+        self._bindings = None
+        if self._by_nodes:
+            self._bindings = yield from aside(lambda _progress: request.compute())
 
     def write(self, context: bpy.types.Context) -> Rebound:
         """Changes the file."""
@@ -141,7 +158,7 @@ class Rebinding:
                 [np.empty(0), *(relocation.distances for relocation in self._relocations)]
             ),
             sum(len(relocation.lost) for relocation in self._relocations),
-            self._reason,
+            self._find.reason,
         )
 
 
@@ -153,7 +170,8 @@ class _Finder:
     reason = ""
     keeps_frame = False
 
-    def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
+    def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
+        """Returns what was found (Found)."""
         raise NotImplementedError
 
 
@@ -164,9 +182,25 @@ class _UvMaps:
         self, posed: PosedSurface, mesh: bpy.types.Mesh, surface: bpy.types.Object
     ) -> None:
         self._posed, self._mesh, self._surface = posed, mesh, surface
+        self._read: dict[bpy.types.ID, limitsurf.SurfaceData | RefusalError] = {}
+
+    def read(self, data: bpy.types.ID) -> None:
+        """Reads the map that the hair names, or else the active one, as long as the mesh is
+        there.
+        """
+        try:
+            self._read[data] = self._of(data)
+        except RefusalError as error:
+            self._read[data] = error
 
     def of(self, data: bpy.types.ID) -> limitsurf.SurfaceData:
-        """Returns the map that the hair names, or else the active one."""
+        """Returns that map. Raises RefusalError where there is none."""
+        found = self._read[data]
+        if isinstance(found, RefusalError):
+            raise found
+        return found
+
+    def _of(self, data: bpy.types.ID) -> limitsurf.SurfaceData:
         active = self._surface.data.uv_layers.active
         name = getattr(data, "surface_uv_map", "") or (active.name if active else "")
         if not name:
@@ -188,8 +222,13 @@ class _Closest(_Finder):
         self.posed, self.maps, self.max_distance = posed, maps, max_distance
         self.reason = f"the surface is farther than {max_distance:.4g} from them"
 
-    def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
-        hits = self.posed.in_world.closest(elements.roots()[rows], self.max_distance)
+    def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
+        roots = elements.roots()[rows]
+        hits = yield from aside(
+            lambda progress: self.posed.in_world.closest(
+                roots, self.max_distance, progress=progress
+            )
+        )
         return Found(hits.face, hits.uv)
 
 
@@ -201,14 +240,15 @@ class _ByUv(_Finder):
     def __init__(self, maps: _UvMaps) -> None:
         self._maps = maps
 
-    def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
+    def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
         if not _stores_uv(elements):
             raise RefusalError(
                 f"{elements.ob.name} does not store the UVs of its roots (the attribute "
                 f"{ids.SURFACE_UV} is missing), which the method UV needs. Choose another method"
             )
         uv = attributes.read(elements.data, ids.SURFACE_UV)[rows].astype(np.float64)
-        at = self._maps.of(elements.data).locate(uv)
+        on_surface = self._maps.of(elements.data)
+        at = yield from aside(lambda progress: on_surface.locate(uv, progress=progress))
         return Found(at.face, at.uv)
 
 
@@ -221,29 +261,30 @@ class _ByFace(_Finder):
         self._exists = np.ones(surface.face_count, bool)
         self._exists[np.isin(surface.base_face, list(surface.refused))] = False
 
-    def __call__(self, elements: Elements, rows: np.ndarray) -> Found:
+    def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
+        yield 0.0
         face = elements.read(ids.FACE)[rows]
         there = face < len(self._exists)
         there[there] = self._exists[face[there]]
         return Found(np.where(there, face, NOWHERE), elements.read(ids.UV)[rows])
 
 
-def _relocation(ob: bpy.types.Object, posed: PosedSurface, find: _Finder) -> Relocation:
-    elements = Elements(ob, at_rest=True)
+def _relocation(elements: Elements, posed: PosedSurface, find: _Finder) -> Pieces:
     rows = np.flatnonzero(elements.has_place)
-    if ob.type == "CURVE" and not find.keeps_frame:
-        return _curve_relocation(elements, posed)
-    found = find(elements, rows)
+    if elements.ob.type == "CURVE" and not find.keeps_frame:
+        return (yield from _curve_relocation(elements, posed))
+    found = yield from find(elements, rows)
     kept = found.face != NOWHERE
     relocation = Relocation(elements, lost=rows[~kept])
     if find.keeps_frame:
         face, uv = found.face[kept], found.uv[kept].astype(np.float64)
-        now = posed.places(face, uv, elements.matrix).position
+        places = yield from aside(lambda _progress: posed.places(face, uv, elements.matrix))
+        now = places.position
     else:
-        now = _moved(relocation, posed, rows[kept], found.face[kept], found.uv[kept])
+        now = yield from _moved(relocation, posed, rows[kept], found.face[kept], found.uv[kept])
         if isinstance(find, _Closest):
-            _bind_others(relocation, posed, find.max_distance)
-            _store_uv(relocation, find.maps)
+            yield from _bind_others(relocation, posed, find.max_distance)
+            yield from _store_uv(relocation, find.maps)
     relocation.distances = np.linalg.norm(
         transformed(elements.matrix, now) - elements.roots()[rows[kept]], axis=1
     )
@@ -251,10 +292,10 @@ def _relocation(ob: bpy.types.Object, posed: PosedSurface, find: _Finder) -> Rel
     return relocation
 
 
-def _curve_relocation(elements: Elements, posed: PosedSurface) -> Relocation:
+def _curve_relocation(elements: Elements, posed: PosedSurface) -> Pieces:
     """Binds the control points of a Curve object where they are, as new ones are bound."""
     rows, before = np.arange(elements.count), elements.roots()
-    relocation = bound_at_closest(elements, posed, rows)
+    relocation = yield from bound_at_closest(elements, posed, rows)
     after = transformed(elements.matrix, relocation.values[ids.REST_ROOT].astype(np.float64))
     relocation.distances = np.linalg.norm(after - before, axis=1)
     return relocation
@@ -266,7 +307,7 @@ def _moved(
     rows: np.ndarray,
     face: np.ndarray,
     uv: np.ndarray,
-) -> np.ndarray:
+) -> Pieces:
     """Moves elements with their roots, and turns them by the smallest angle that turns the normal
     of before into that of now: on other faces u and v run elsewhere. Returns the new roots.
     """
@@ -277,19 +318,29 @@ def _moved(
             "or apply them"
         )
     before = elements.read(ids.REST_ROOT).astype(np.float64)
-    old = native.limitsurf.rotation_matrices(elements.read(ids.REST_ROTATION)[rows])
-    frame = put_places(relocation, posed, rows, face, uv)
+    rotation = elements.read(ids.REST_ROTATION)[rows]
+    frame = yield from put_places(relocation, posed, rows, face, uv)
     after = before.copy()
     after[rows] = relocation.values[ids.REST_ROOT][rows]
-    turn = np.tile(np.eye(3), (elements.count, 1, 1))
-    turn[rows] = native.limitsurf.shortest_turns(old[:, :, 2], frame[:, :, 2])
+
+    def turns(_progress: Progress) -> np.ndarray:
+        old = native.limitsurf.rotation_matrices(rotation)
+        turn = np.tile(np.eye(3), (elements.count, 1, 1))
+        turn[rows] = native.limitsurf.shortest_turns(old[:, :, 2], frame[:, :, 2])
+        return turn
+
+    turn = yield from aside(turns)
     offsets = np.concatenate([[0], np.cumsum(elements.sizes)])
+
+    def moved_with_roots(points: np.ndarray) -> np.ndarray:
+        return native.limitsurf.move_strands(points, offsets, before, after, turn)
+
     is_moving = np.zeros(elements.count, bool)
     is_moving[rows] = True
     for name in _POINTS:
         if elements.rest_name(name) in elements.data.attributes:
             points = elements.read_shape(name).astype(np.float64)
-            moved = native.limitsurf.move_strands(points, offsets, before, after, turn)
+            moved = yield from aside(lambda _progress, points=points: moved_with_roots(points))
             if not is_moving.all():
                 resting = np.repeat(~is_moving, elements.sizes)
                 moved[resting] = points[resting]
@@ -316,13 +367,13 @@ def _turn_attributes(relocation: Relocation, rows: np.ndarray, turn: np.ndarray)
         relocation.values[elements.rest_name(ids.ROTATION)] = rotation
 
 
-def _bind_others(relocation: Relocation, posed: PosedSurface, max_distance: float) -> None:
+def _bind_others(relocation: Relocation, posed: PosedSurface, max_distance: float) -> Pieces:
     """Binds elements that had no place where they are."""
     elements = relocation.elements
     rows = np.flatnonzero(~elements.has_place)
     if not len(rows):
         return
-    others = bound_at_closest(elements, posed, rows, max_distance)
+    others = yield from bound_at_closest(elements, posed, rows, max_distance)
     found = np.setdiff1d(rows, others.lost)
     for name, values in others.values.items():
         relocation.put(name, found, values[found])
@@ -334,7 +385,7 @@ def _stores_uv(elements: Elements) -> bool:
     return bool(stored) and (stored.data_type, stored.domain) == ("FLOAT2", elements.domain)
 
 
-def _store_uv(relocation: Relocation, maps: _UvMaps) -> None:
+def _store_uv(relocation: Relocation, maps: _UvMaps) -> Pieces:
     """Changes stored UVs to those of the new places."""
     if not _stores_uv(relocation.elements):
         return
@@ -344,7 +395,8 @@ def _store_uv(relocation: Relocation, maps: _UvMaps) -> None:
         return  # the map exists no more
     places = relocation.places
     uv = attributes.read(relocation.data, ids.SURFACE_UV)
-    uv[places.rows] = on_surface.evaluate(places.face, places.uv).value
+    found = yield from aside(lambda _progress: on_surface.evaluate(places.face, places.uv))
+    uv[places.rows] = found.value
     relocation.values[ids.SURFACE_UV] = uv
 
 

@@ -15,6 +15,8 @@ from ..errors import CageError, RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage
+from ..tasks.job import Progress
+from ..tasks.piecewise_job import Pieces, aside
 from . import followers, following, proxy, tables
 from .places import NOWHERE
 from .posed_surface import PosedSurface
@@ -45,28 +47,36 @@ class _Frozen:
 
 
 class Unbinding:
-    """What is written when some followers are unbound. Raises RefusalError for those that cannot
-    be; nothing has changed then.
+    """What is written when some followers are unbound, in three steps: they are checked, their
+    shapes are computed, and they are written. Raises RefusalError for those that cannot be unbound;
+    nothing has changed then.
     """
 
-    def __init__(
-        self, things: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph, shape: Shape
-    ) -> None:
+    def __init__(self, things: Sequence[bpy.types.Object], shape: Shape) -> None:
         for ob in things:
             following.check_editable(ob)
-        self._things = list(things)
+        self._things, self._shape = list(things), shape
         self._frozen: list[_Frozen] = []
         if shape == "SHOWN":
             for ob in things:
                 _check_own_data(ob)
-            posed: dict[bpy.types.Object | None, PosedSurface | None] = {}
-            for ob in things:
-                surface = followers.surface_of(ob)
-                if surface not in posed:
-                    posed[surface] = _posed(surface, depsgraph)
-                self._frozen.append(_freeze(ob, posed[surface], depsgraph))
 
-    def write(self) -> str:
+    def compute(self, context: bpy.types.Context) -> Pieces:
+        """Finds the shapes in which things are left. Blender evaluates one thing after the other,
+        and cannot be cancelled within one.
+        """
+        if self._shape != "SHOWN":
+            return
+        posed: dict[bpy.types.Object | None, PosedSurface | None] = {}
+        for i, ob in enumerate(self._things):
+            yield i / len(self._things)
+            depsgraph = context.evaluated_depsgraph_get()
+            surface = followers.surface_of(ob)
+            if surface not in posed:
+                posed[surface] = _posed(surface, depsgraph)
+            self._frozen.append((yield from _freeze(ob, posed[surface], depsgraph)))
+
+    def write(self, _depsgraph: bpy.types.Depsgraph | None = None) -> str:
         """Changes the file, and returns a report."""
         surfaces, used = set(), set()
         for ob in self._things:
@@ -114,12 +124,13 @@ def _posed(surface: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> 
 
 def _freeze(
     ob: bpy.types.Object, posed: PosedSurface | None, depsgraph: bpy.types.Depsgraph
-) -> _Frozen:
-    """Returns what the modifier shows. The places at rest are those of this frame then, so that
-    what is bound again does not move.
+) -> Pieces:
+    """Returns what the modifier shows (_Frozen). The places at rest are those of this frame then,
+    so that what is bound again does not move.
     """
     data, frozen = ob.data, _Frozen(ob.data)
     frozen.values = _shown(ob, depsgraph)
+    yield 0.0
     if all(np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()):
         return frozen  # it is at rest, because its tables do not fit
     follows = attributes.read(data, ids.TILE) > 0
@@ -129,11 +140,14 @@ def _freeze(
         frozen.values[ids.FACE] = face
         return frozen
     face, uv = (attributes.read(data, name)[follows] for name in (ids.FACE, ids.UV))
-    places = posed.places(face, uv.astype(np.float64), np.array(ob.matrix_world, np.float64))
-    for name, values in (
-        (ids.REST_ROOT, places.position),
-        (ids.REST_ROTATION, native.limitsurf.quaternions(places.frame)),
-    ):
+    matrix = np.array(ob.matrix_world, np.float64)
+
+    def place(_progress: Progress) -> tuple[np.ndarray, np.ndarray]:
+        places = posed.places(face, uv.astype(np.float64), matrix)
+        return places.position, native.limitsurf.quaternions(places.frame)
+
+    root, rotation = yield from aside(place)
+    for name, values in ((ids.REST_ROOT, root), (ids.REST_ROTATION, rotation)):
         frozen.values[name] = attributes.read(data, name)
         frozen.values[name][follows] = values
     return frozen

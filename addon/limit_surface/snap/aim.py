@@ -75,6 +75,11 @@ class Aim:
     offset: float
     view: View | None
 
+    def read(self, elements: Elements) -> None:
+        """Reads from Blender's data what `place` needs, which may then run in another thread."""
+        if self._needs_normals:
+            _ = elements.normals
+
     def place(
         self,
         surface: TargetSurface,
@@ -118,9 +123,13 @@ class Aim:
             ),
         )
 
+    @property
+    def _needs_normals(self) -> bool:
+        return self.mode == "NORMAL" or (self.mode == "NEAREST" and self.max_angle is not None)
+
     def _directions(self, elements: Elements) -> np.ndarray:
         """Returns the unit vectors (n, 3) of the search; NaN where an element has none."""
-        if self.mode == "NORMAL" or (self.mode == "NEAREST" and self.max_angle is not None):
+        if self._needs_normals:
             return elements.normals
         axes = np.eye(3)
         if self.mode == "AXIS" and self.orientation == "LOCAL":

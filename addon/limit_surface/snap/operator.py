@@ -8,10 +8,11 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from .. import ids, native
 from ..errors import RefusalError
 from ..placing.follow_properties import FollowSnappedProperties
-from ..tasks.job import part_of
-from ..tasks.progress import progress_bar
-from ..tasks.properties import SummaryProperty, draw_summary
-from .aim import Aim, View
+from ..tasks.job import Progress, part_of
+from ..tasks.piecewise_job import Pieces, PiecewiseJob, aside
+from ..tasks.properties import draw_summary
+from ..tasks.watched_operator import WatchedOperator
+from .aim import Aim, Elements, Placement, View
 from .binding_again import bind_again
 from .choices import Choices, Outcome, merged
 from .properties import PlacingProperties
@@ -20,7 +21,7 @@ from .surface import TargetSurface
 
 
 class OBJECT_OT_limit_snap(
-    PlacingProperties, FollowSnappedProperties, SummaryProperty, bpy.types.Operator
+    PlacingProperties, FollowSnappedProperties, WatchedOperator, bpy.types.Operator
 ):
     """Snap to the exact limit surface: selected objects and hair to that of the active mesh, or
     outside Object Mode the selected elements to that of the target in the sidebar tab Limit"""
@@ -28,6 +29,8 @@ class OBJECT_OT_limit_snap(
     bl_idname = ids.SNAP
     bl_label = "Snap to Limit Surface"
     bl_options = {"REGISTER", "UNDO"}
+    too_large = "There is not enough memory for so many elements"
+    cancelled = "Cancelled: nothing was snapped"
 
     mode: EnumProperty(
         name="Mode",
@@ -130,15 +133,12 @@ class OBJECT_OT_limit_snap(
             cls.poll_message_set(reason)
         return not reason
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
-        try:
-            return self._run(context)
-        except native.refusals as error:
-            self.report({"ERROR"}, str(error))
-        except MemoryError:
-            self.report({"ERROR"}, "There is not enough memory for so many elements")
-        return {"CANCELLED"}
+        return self.watch(context, PiecewiseJob(self._pieces(context)), "Snapping")
+
+    def finish(self, _context: bpy.types.Context, made: set[str]) -> set[str]:
+        return made
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -168,7 +168,10 @@ class OBJECT_OT_limit_snap(
         layout.prop(self, "target")
         draw_summary(layout, self.summary)
 
-    def _run(self, context: bpy.types.Context) -> set[str]:
+    def _pieces(self, context: bpy.types.Context) -> Pieces:
+        """Finds all places, and moves everything in the last piece. Returns what the operator
+        returns.
+        """
         aim = self._aim(context)
         choices = Choices(self.align, self.children == "KEEP", self.hair, self.keep_length)
         target = find_target(context)
@@ -176,16 +179,16 @@ class OBJECT_OT_limit_snap(
         surface = TargetSurface(target, context.evaluated_depsgraph_get(), self.target)
         selection = gather(context, surface)
         parts = selection.parts
-        with progress_bar(context.window_manager) as progress:
-            placements = [
-                aim.place(
-                    surface,
-                    part.elements(),
-                    part.stores_location,
-                    part_of(progress, i / len(parts), (i + 1) / len(parts)),
-                )
-                for i, part in enumerate(parts)
-            ]
+        placements = []
+        for i, part in enumerate(parts):
+            elements = part.elements()
+            aim.read(elements)
+
+            def place(progress: Progress, i: int = i, elements: Elements = elements) -> Placement:
+                of_all = part_of(progress, i / len(parts), (i + 1) / len(parts))
+                return aim.place(surface, elements, parts[i].stores_location, of_all)
+
+            placements.append((yield from aside(place)))
         outcomes = [Outcome("objects", failures=+selection.failures)]
         for part, placement in zip(parts, placements, strict=True):
             placed = len(placement.rows) > 0

@@ -4,15 +4,40 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from typing import Any
 
-from ..errors import CancelledError
+from ..errors import CancelledError, RefusalError
 from .job import Job, Progress
 
 #: The work yields the part that is done, from 0 to 1, and returns its result. Where it is cancelled
 #: it ends with GeneratorExit where it has yielded, and cleans up.
 Pieces = Generator[float, None, Any]
+
+POLL = 0.02  # seconds between two looks at work that is done aside
+
+
+def aside(work: Callable[[Progress], Any]) -> Pieces:
+    """Runs work on plain arrays in a thread of its own, and returns its result. Where it is
+    cancelled it ends when it next reports its progress; nobody waits for that.
+    """
+    job = Job(work)
+    job.start()
+    try:
+        while not job.wait(POLL):
+            yield job.part
+    finally:
+        job.cancel()
+    return job.result()
+
+
+def at_once(pieces: Pieces) -> Any:
+    """Runs pieces to their end where nobody waits for them, and returns the result."""
+    while True:
+        try:
+            next(pieces)
+        except StopIteration as ended:
+            return ended.value
 
 
 class PiecewiseJob(Job):
@@ -53,6 +78,9 @@ class PiecewiseJob(Job):
             self.part = next(self._pieces)
         except StopIteration as ended:
             self._made, self.part = ended.value, 1.0
+            self._done.set()
+        except ReferenceError:
+            self._error = RefusalError("Something that is needed was removed meanwhile")
             self._done.set()
         except BaseException as error:
             self._error = error
