@@ -19,7 +19,20 @@ def stand_in(name, **chosen):
     cls = type(
         "StandIn", (scatter_operator.ScatterOperator,), {n: getattr(operator, n) for n in own}
     )
-    made = cls()
+    return with_properties(cls(), kind, chosen)
+
+
+def stand_in_of(operator, **chosen):
+    """Returns a stand-in for any operator of the extension, by its class."""
+    own = {name: value for name, value in vars(operator).items() if not name.startswith("bl_")}
+    own = {name: value for name, value in own.items() if not name.startswith("__")}
+    bases = tuple(base for base in operator.__bases__ if base is not bpy.types.Operator)
+    made = type("StandIn", bases, own)()
+    kind = getattr(bpy.ops.object, operator.bl_idname.partition(".")[2]).get_rna_type()
+    return with_properties(made, kind, chosen)
+
+
+def with_properties(made, kind, chosen):
     for prop in kind.properties:
         if prop.identifier != "rna_type":
             value = prop.default_array[:] if getattr(prop, "is_array", False) else None
@@ -38,8 +51,9 @@ def window_context():
     calls.
     """
     context = MagicMock(wraps=bpy.context)
-    for name in ("active_object", "scene", "view_layer", "selected_objects", "space_data"):
-        setattr(context, name, getattr(bpy.context, name))
+    names = ("active_object", "scene", "view_layer", "selected_objects", "space_data", "mode")
+    for name in (*names, "objects_in_mode"):
+        setattr(context, name, getattr(bpy.context, name, []))
     context.window_manager, context.workspace = MagicMock(), MagicMock()
     context.window = MagicMock()
     return context

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operator object.limit_follow."""
 
+from collections.abc import Callable
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
@@ -9,6 +11,7 @@ from ..errors import RefusalError
 from ..placing import curve_points, following, live_binding, newcomers
 from ..placing.binding_operator import BindingOperator
 from ..tasks import polling
+from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary
 from .subjects import BINDABLE, selected, to_bind
@@ -110,8 +113,7 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         made = []
         for request, things, _curves in requests:
             if things:
-                compute = request.compute
-                made.append((yield from aside(lambda _progress, compute=compute: compute())))
+                made.append((yield from aside(_computing(request))))
         depsgraph = context.evaluated_depsgraph_get()
         for ob in [ob for obs in by_surface.values() for ob in obs]:
             live_binding.end(ob, depsgraph)
@@ -149,3 +151,7 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
                         f"{ob.name}: the modifier {name} was disabled, because it would move the "
                         "hair a second time",
                     )
+
+
+def _computing(request: following.Request) -> Callable[[Progress], following.Bindings]:
+    return lambda _progress: request.compute()

@@ -88,7 +88,8 @@ def recorded(image: bpy.types.Image) -> Iterator[Callable[[Mapping[int, np.ndarr
     are read from the image otherwise.
     """
     mark, onto = uuid4().hex, image.get(ids.PIXELS_MARK)
-    now, known = image_tiles.read_all(image), {}
+    now = image_tiles.read_all(image)
+    known: dict[int, np.ndarray] = {}
     shown = _shown.get(image.session_uid)
     if shown and shown.kept and shown.kept.holds(now):
         before = shown.kept

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -332,15 +332,15 @@ def _moved(
     turn = yield from aside(turns)
     offsets = np.concatenate([[0], np.cumsum(elements.sizes)])
 
-    def moved_with_roots(points: np.ndarray) -> np.ndarray:
-        return native.limitsurf.move_strands(points, offsets, before, after, turn)
+    def move(points: np.ndarray) -> Callable[[Progress], np.ndarray]:
+        return lambda _progress: native.limitsurf.move_strands(points, offsets, before, after, turn)
 
     is_moving = np.zeros(elements.count, bool)
     is_moving[rows] = True
     for name in _POINTS:
         if elements.rest_name(name) in elements.data.attributes:
             points = elements.read_shape(name).astype(np.float64)
-            moved = yield from aside(lambda _progress, points=points: moved_with_roots(points))
+            moved = yield from aside(move(points))
             if not is_moving.all():
                 resting = np.repeat(~is_moving, elements.sizes)
                 moved[resting] = points[resting]
