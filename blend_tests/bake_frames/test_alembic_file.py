@@ -128,5 +128,5 @@ def test_a_file_that_is_cut_off_is_refused(tmp_path, size):
 def test_another_format_is_refused(tmp_path):
     path = tmp_path / "a.abc"
     path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
-    with pytest.raises(RefusalError, match="it has another format"):
+    with pytest.raises(RefusalError, match="it is not in Ogawa format"):
         alembic_file.normalize(path)

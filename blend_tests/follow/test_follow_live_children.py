@@ -183,7 +183,7 @@ def test_deleted_guides_are_refused(scene):
     assert len(troubles(live)) == 1
     select(live)
     before = scenes.file_contents()
-    with pytest.raises(RuntimeError, match="were deleted: choose others"):
+    with pytest.raises(RuntimeError, match="were deleted: choose other guides"):
         bpy.ops.object.limit_rebind()
     assert scenes.file_contents() == before
     live.pop(ids.CHILDREN_SETTINGS)

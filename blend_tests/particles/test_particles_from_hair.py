@@ -221,8 +221,8 @@ def test_a_warning_where_renders_differ(capfd):
     subsurf = scenes.add_subsurf(ob)
     add_hair(ob)
     for levels, viewport, text in (
-        ("VIEWPORT", 1, "in the viewport (level 1), and beside them in renders (level 2)"),
-        ("RENDER", 1, "in renders (level 2), and beside them in the viewport (level 1)"),
+        ("VIEWPORT", 1, "in the viewport (level 1), but not in renders (level 2)"),
+        ("RENDER", 1, "in renders (level 2), but not in the viewport (level 1)"),
         ("VIEWPORT", 2, ""),
     ):
         subsurf.levels, subsurf.render_levels = viewport, 2

@@ -315,8 +315,10 @@ def test_animated_levels():
     driver = subsurf.driver_add("levels").driver
     driver.expression = "2"
     assert read(ob, "VIEWPORT").level == 2
-    refusal(ob, "RENDER", "is not available: display settings of Subdivision are animated")
-    refusal(ob, 4, "the mesh of level 4 is not available")
+    refusal(
+        ob, "RENDER", "cannot be measured, because levels or visibility of Subdivision are animated"
+    )
+    refusal(ob, 4, "the mesh of level 4 cannot be measured")
 
 
 def test_adaptive_subdivision():

@@ -148,7 +148,7 @@ def set_up(ob, **settings):
         ({"show_viewport": False}, "Control mesh: modifier is off", False),
         ({"show_viewport": False, "show_render": False}, "Control mesh, not its limit", False),
         ({"levels": 0}, "Control mesh: level is 0", False),
-        ({"use_limit_surface": False}, "Level 2, beside the limit", False),
+        ({"use_limit_surface": False}, "Level 2, away from the limit", False),
         ({"quality": 2}, "Level 2, near the limit", False),
         ({}, "Level 2, on the limit", True),
     ],

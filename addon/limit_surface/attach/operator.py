@@ -23,9 +23,7 @@ from .carrier import Extension, is_carrier
 from .parenting import attach, parent_matrices
 
 _WORLD = np.eye(4)
-_NOTHING = (
-    "Select the objects to attach, and then the mesh that they are to follow as the active one"
-)
+_NOTHING = "Select the objects to attach and, last, the mesh that they should follow"
 
 
 class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):

@@ -58,7 +58,9 @@ def measure(request: Request, progress: Progress) -> Measured:
         overlapping += int(texels.overlap.sum())
         tiles[tile] = pixels
     if not count:
-        raise RefusalError("No texel lies on the surface: check that the UV map lies on the image")
+        raise RefusalError(
+            "The UV map covers no texel of the image: check that its islands lie within the image"
+        )
     if not ranges:
         raise RefusalError(
             f"No normal of the surface meets {request.surfaces.target_name} in the chosen "

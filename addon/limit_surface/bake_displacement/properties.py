@@ -15,12 +15,12 @@ class DisplacementProperties(TextureProperties):
 
     target: StringProperty(
         name="Sculpted",
-        description="Name of the mesh object whose shape the image describes. If empty, the other "
-        "selected mesh is used",
+        description="Name of the sculpted mesh, whose shape the image describes. If empty, "
+        "the other selected mesh is used",
     )
     mode: EnumProperty(
         name="Displacement",
-        description="Kind of displacement that the image stores",
+        description="What the image stores: vectors, or distances along the normal",
         items=(
             (
                 "VECTOR",
@@ -43,7 +43,7 @@ class DisplacementProperties(TextureProperties):
     )
     space: EnumProperty(
         name="Space",
-        description="Axes in which vectors are stored",
+        description="Axes of the stored vectors",
         items=(
             (
                 "TANGENT",
@@ -58,7 +58,7 @@ class DisplacementProperties(TextureProperties):
     )
     target_shape: EnumProperty(
         name="Sculpted Surface",
-        description="Surface of the sculpted mesh that is used",
+        description="Which surface of the sculpted mesh is the target",
         items=(
             (
                 "LIMIT",
@@ -133,7 +133,8 @@ class DisplacementProperties(TextureProperties):
             (
                 "PTEX",
                 "Tile per Face",
-                "Give each Ptex face a square tile of its own, without a UV map",
+                "Give each quad, and each corner of any other face, a square tile of its own "
+                "(Ptex). No UV map is needed",
                 "",
                 1,
             ),
@@ -148,8 +149,9 @@ class DisplacementProperties(TextureProperties):
     )
     face_resolution: EnumProperty(
         name="Resolution",
-        description="Number of parts along each side of a Ptex face. The tile of the face is one "
-        "texel wider and higher than this number",
+        description="Resolution of each face's tile: the number of parts into which a side "
+        "of the face is divided. The tile is one texel wider and higher than "
+        "this number",
         items=tuple((str(n), str(n), "", n) for n in FACE_RESOLUTIONS),
         default="16",
     )

@@ -83,8 +83,9 @@ def _polygons(
     evaluated = target.evaluated_get(depsgraph)
     if not evaluated.is_evaluated:  # so this would be the mesh without its modifiers
         raise RefusalError(
-            f"{target.name} is disabled in viewports or is not in this view layer, so there are no "
-            "polygons as the viewport shows them"
+            f"{target.name} is disabled in viewports or is not in this view layer, so the "
+            "viewport shows no polygons of it: enable it, or choose the limit surface as the "
+            "target's shape"
         )
     mesh = evaluated.data
     if not mesh.polygons:

@@ -65,7 +65,7 @@ class _Rewriter:
 
     def run(self) -> None:
         if self._contents[: len(_MAGIC)] != _MAGIC:
-            raise ValueError("it has another format")
+            raise ValueError("it is not in Ogawa format")
         self._target.write(self._contents[:16])
         new = []
         for i, old in enumerate(self._children(self._number(8))):

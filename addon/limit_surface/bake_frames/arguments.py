@@ -70,7 +70,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar="A-B",
         help="first and last frame, or one frame; write --frames=-5-10 where the first is negative",
     )
-    add("--step", type=_step, default=1, metavar="N", help="only every N-th frame, from A on")
+    add("--step", type=_step, default=1, metavar="N", help="only every N-th frame, counted from A")
     add("--objects", required=True, nargs="+", metavar="NAME", help="names of the objects")
     add("--output", required=True, metavar="DIR", help="the folder to write to; made if missing")
     add(
@@ -79,7 +79,7 @@ def _parser() -> argparse.ArgumentParser:
         default="abc",
         help="Alembic, USD, USD as text, or numpy arrays; abc by default",
     )
-    add("--overwrite", action="store_true", help="write files anew that exist")
+    add("--overwrite", action="store_true", help="replace files that exist already")
     return parser
 
 

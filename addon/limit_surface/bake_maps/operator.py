@@ -50,7 +50,9 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
             else (image_pixels.FIRST_TILE,)
         )
         if not tiles:
-            raise RefusalError("The UV map lies on no tile that has a UDIM number")
+            raise RefusalError(
+                "The UV map lies outside the UDIM tiles 1001 to 2000: move its islands onto them"
+            )
         texel_places.check_size(self.width, self.height, len(tiles), len(maps), self.allow_large)
         output = self._output(ob, tiles)
         output.check(maps)

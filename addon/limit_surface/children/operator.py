@@ -57,16 +57,16 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             (
                 "MADE",
                 "Curves",
-                "Make curves, which can be combed and edited, and do not depend on the guides any "
-                "more",
+                "Make curves that you can comb and edit. They do not change when the guides change",
                 "",
                 0,
             ),
             (
                 "LIVE",
                 "Live",
-                "Store places and guides alone: Geometry Nodes grow the strands wherever they are "
-                "shown, as the guides are in that frame, also without this extension",
+                "Let Geometry Nodes grow the strands from the guides as they are in each "
+                "frame. This also works without this extension. The file stores only the "
+                "children's places and guides",
                 "",
                 1,
             ),
@@ -81,7 +81,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
     )
     guide_count: IntProperty(
         name="Guides per Child",
-        description="Number of the nearest guides that shape a child",
+        description="How many of the nearest guides shape a child",
         default=4,
         min=1,
         max=live_children.MOST_GUIDES,
@@ -125,7 +125,10 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             return ob is not None and (ob.type == "MESH" or followers.ground_of(ob) is not None)
 
         return polling.in_object_mode(
-            cls, context, has_guides, "Make hair on a mesh active first, whose strands will guide"
+            cls,
+            context,
+            has_guides,
+            "Make hair that stands on a mesh active: its strands become the guides",
         )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -140,13 +143,13 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
     def check_properties(self) -> None:
         if self.mode == "LIVE" and self.target != "LIMIT":
             raise RefusalError(
-                "Live children grow on the limit surface: choose the mode Curves for roots on a "
-                "displayed mesh"
+                "Live children grow only on the limit surface: choose the mode Curves, or "
+                "the limit surface as the target"
             )
         if self.mode == "LIVE" and self.follow == "LIVE":
             raise RefusalError(
-                "Live children follow the surface by nodes: choose another value of Follow, which "
-                "is about the guides then"
+                "Live children cannot follow live, because Geometry Nodes grow them: choose "
+                "another value of Follow"
             )
 
     def sources(self) -> Mapping[str, Choice]:

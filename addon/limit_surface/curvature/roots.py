@@ -83,7 +83,10 @@ class StoredRoots:
         for ob, part in zip(stored, self._parts, strict=True):
             _check(ob)
             if len(attributes.read(ob.data, ids.FACE)) != len(part.face):
-                raise RefusalError(f"{ob.name} has changed while its curvature was calculated")
+                raise RefusalError(
+                    f"{ob.name} has changed while its curvature was "
+                    "calculated: run the operator again"
+                )
         for ob, of, color in zip(stored, values, colors, strict=True):
             storage.write(ob.data, _DOMAINS[ob.type], of, color)
             ob.data.update_tag()
@@ -115,7 +118,8 @@ def _check(ob: bpy.types.Object) -> None:
         there = ob.data.attributes[name]
         if (there.data_type, there.domain) != (kind, domain):
             raise RefusalError(
-                f"{ob.data.name}: the attribute {name} exists with another type or domain"
+                f"{ob.data.name}: the attribute {name} exists with another type or domain: "
+                "rename or remove it"
             )
     storage.check(ob, domain)
 

@@ -34,6 +34,6 @@ def without(parts: list[Values], noun: str) -> str:
     if not missing:
         return ""
     return (
-        f"{missing:,} of {len(found):,} {noun} have no curvature: they lie on no limit surface, or "
-        "it is singular there"
+        f"{missing:,} of {len(found):,} {noun} have no curvature: they belong to no face with "
+        "a limit surface, or the surface has no area there"
     )

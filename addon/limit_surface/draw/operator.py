@@ -30,8 +30,8 @@ class VIEW3D_OT_limit_draw(
 
     strokes: CollectionProperty(
         name="Strokes",
-        description="Points of the strokes, one stroke after the other. Scripts and the redo panel "
-        "use them",
+        description="Points of all strokes, one stroke after the other, for scripts and the "
+        "redo panel",
         type=LIMIT_PG_draw_point,
         options={"HIDDEN", "SKIP_SAVE"},
     )
@@ -173,7 +173,10 @@ class VIEW3D_OT_limit_draw(
         result.warn_of_pieces(self, len(strokes), stroke.count(self.strokes))
         removed = [each.index for each in self.removed]
         if removed and found.edited is None:
-            raise RefusalError("`removed` names splines, but no curve is active")
+            raise RefusalError(
+                "The property `removed` names splines, but no curve is "
+                "active: make the drawn curve active"
+            )
         self.summary = result.make(context, ground, found.edited, strokes, removed, self)
         self.report({"INFO"}, "; ".join([self.summary, *ground.posed.cage.notes]))
         return {"FINISHED"}

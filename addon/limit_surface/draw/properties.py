@@ -13,9 +13,7 @@ SPLINES = (
 class FitProperties:
     """Mixin with what curves are fitted by."""
 
-    spline: EnumProperty(
-        name="Spline", description="Type of the curves that are made", items=SPLINES
-    )
+    spline: EnumProperty(name="Spline", description="Type of the new curves", items=SPLINES)
     tolerance: FloatProperty(
         name="Tolerance",
         description="Largest distance of the curves from the surface, or from their offset, in "
@@ -40,7 +38,7 @@ class DrawingProperties(FitProperties):
 
     output: EnumProperty(
         name="Make",
-        description="What is made of the strokes",
+        description="What the strokes become",
         items=(
             ("CURVE", "Curve", "Make a Curve object: for stitches, cables, seams and scratches", 0),
             (
@@ -63,7 +61,8 @@ class DrawingProperties(FitProperties):
     )
     bevel_resolution: IntProperty(
         name="Bevel Resolution",
-        description="Number of segments of each quarter of the tube around the curves, less one",
+        description="Roundness of the tube around the curves, as Bevel Resolution of curves: "
+        "a quarter of the tube has one segment more than this number",
         default=2,
         min=0,
         max=32,

@@ -16,7 +16,7 @@ def make_again(context: bpy.types.Context, ob: bpy.types.Object) -> str:
     guides, settings = live_children.guides_of(ob), live_children.settings_of(ob)
     if guides is None or guides.type != "CURVES":
         raise RefusalError(
-            f"The guides of {ob.name} were deleted: choose others in its modifier "
+            f"The guides of {ob.name} were deleted: choose other guides in its modifier "
             f"{ids.CHILDREN_GROUP}"
         )
     # the operator belongs to another capability, which this one does not import

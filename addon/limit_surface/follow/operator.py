@@ -17,8 +17,8 @@ from ..tasks.properties import draw_summary
 from .subjects import BINDABLE, selected, to_bind
 
 NOTHING = (
-    "Select hair or points that stand on a limit surface, or hair, points or curves and the mesh "
-    "that they are to follow, which must be active"
+    "Select hair or points that stand on a limit surface, or select other hair, points or "
+    "curves and, last, the mesh that they should follow"
 )
 
 
@@ -38,14 +38,15 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
             (
                 "NODES",
                 "Nodes",
-                "Geometry Nodes move them. Files play everywhere, also without this extension",
+                "Geometry Nodes move things. Files play in every Blender, also without this "
+                "extension",
                 0,
             ),
             (
                 "LIVE",
                 "Live",
-                "This extension moves them in each frame. It is faster for very many strands, and "
-                "follows creases and topology that change",
+                "This extension moves things in each frame. It is faster for very many "
+                "strands, and also follows animated creases and changes of topology",
                 1,
             ),
         ),
@@ -53,10 +54,10 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
 
     use_proxy: BoolProperty(
         name="Fast Viewport",
-        description="Read a hidden copy of the surface in the viewport, so that the graphics card "
-        "can subdivide the surface itself. Use it with a Subdivision Surface of level 3 and more "
-        "at the end of the stack. Run this operator again after a change of the surface's "
-        "modifiers",
+        description="Make playback faster: in the viewport nodes read a hidden copy of the "
+        "surface, so that the graphics card can subdivide the surface itself. "
+        "Use it if a Subdivision Surface modifier of level 3 or more is the last "
+        "one. Run this operator again after you change the surface's modifiers",
         default=False,
     )
 

@@ -29,28 +29,34 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
 
     method: EnumProperty(
         name="Method",
-        description="How the places on the changed surface are found",
+        description="How the new places on the changed surface are found",
         items=(
             (
                 "CLOSEST",
                 "Closest Point",
-                "Take the point of the surface that is closest to where the root was at rest",
+                "Use the point of the surface that is closest to the root's place at rest",
                 0,
             ),
-            ("UV", "UV", "Take the point with the UV that is stored with the root", 1),
+            (
+                "UV",
+                "UV",
+                "Use the point with the UV that is stored with the root, after a "
+                "change of topology that keeps the UV map",
+                1,
+            ),
             (
                 "FACE",
                 "Face",
-                "Keep the face and the place in it. Use it where creases, rules or positions have "
-                "changed, but not the faces",
+                "Keep the face and the place on it, after a change of creases, settings or "
+                "positions, but not of faces",
                 2,
             ),
         ),
     )
     distance: FloatProperty(
         name="Distance",
-        description="Largest distance of the closest point, in world units. Roots that are farther "
-        "from the surface are not bound. 0 means any distance",
+        description="Largest distance from the surface, in world units. Roots that are "
+        "farther away are not bound. 0 means any distance",
         min=0.0,
         default=0.0,
         subtype="DISTANCE",

@@ -27,9 +27,9 @@ class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
 
     shape: EnumProperty(
         name="Shape",
-        description="Shape in which things are left",
+        description="Which shape things keep",
         items=(
-            ("SHOWN", "As Shown", "Keep the shape that is shown in this frame", 0),
+            ("SHOWN", "As Shown", "Keep the shape of this frame", 0),
             ("REST", "At Rest", "Go back to the shape that things had when they were bound", 1),
         ),
     )

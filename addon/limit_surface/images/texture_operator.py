@@ -52,9 +52,9 @@ class TextureProperties:
             (
                 "ERROR",
                 "Refuse",
-                "Make nothing if more than one texel in 500 is shared. Fewer can be folds at the "
-                "corners of islands: these texels show the face with the lowest number, and a "
-                "warning gives their number",
+                "Stop with an error if more than one texel in 500 is shared. If fewer are "
+                "shared, as at folded corners of islands, these texels show the face with "
+                "the lowest number, and a warning says how many there are",
                 "",
                 0,
             ),

@@ -98,8 +98,8 @@ def _whole_levels(mesh: bpy.types.Mesh, name: str, ob: bpy.types.Object) -> np.n
         )
     if attribute.domain != "FACE" or attribute.data_type not in element_numbers.TYPES:
         raise RefusalError(
-            f"The attribute {name} is {attribute.data_type} on {attribute.domain}: levels are "
-            "numbers on FACE"
+            f"The attribute {name} is {attribute.data_type} on {attribute.domain}: choose an "
+            "attribute of faces (FACE) that holds numbers"
         )
     values = attributes.read(mesh, name).astype(np.float64)
     wrong = np.flatnonzero(~((values > -0.5) & (values < MOST + 0.5)))

@@ -47,7 +47,7 @@ class OBJECT_OT_limit_mesh(
 
     level_source: EnumProperty(
         name="Levels From",
-        description="Method that chooses how finely each face is divided",
+        description="What decides how finely each face is divided",
         items=(
             ("UNIFORM", "Uniform", "Divide all faces equally", "", 0),
             (
@@ -108,8 +108,8 @@ class OBJECT_OT_limit_mesh(
     )
     most_levels: IntProperty(
         name="Most Levels",
-        description="Level at which faces are not divided further, even if they do not reach the "
-        "tolerance or the length",
+        description="Highest level of a face, even if it does not reach the tolerance or the "
+        "length",
         default=6,
         min=1,
         max=levels.MOST,

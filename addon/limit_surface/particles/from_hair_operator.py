@@ -53,8 +53,9 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
 
     levels: EnumProperty(
         name="Levels",
-        description="The subdivision at which the keys lie on the strands. Particles stand on the "
-        "displayed polygons, so that they move a little where these change",
+        description="Subdivision level at which the particles match the strands exactly. "
+        "Particles stand on the displayed polygons, so at another level they "
+        "move a little",
         items=(
             ("VIEWPORT", "Viewport", "Use the levels of the viewport", 0),
             ("RENDER", "Render", "Use the levels of renders", 1),
@@ -149,6 +150,6 @@ def _levels_warning(surface: bpy.types.Object, levels: str) -> str:
     if levels == "RENDER":
         exact, other, at, beside = other, exact, beside, at
     return (
-        f"The particles are where the strands are in {exact} (level {at}), and beside them in "
-        f"{other} (level {beside}): give {subsurf.name} the same levels for both"
+        f"The particles match the strands in {exact} (level {at}), but not in {other} (level "
+        f"{beside}): give {subsurf.name} the same levels for both"
     )

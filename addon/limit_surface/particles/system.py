@@ -94,7 +94,9 @@ def write_keys(
         begin = time.monotonic()
         shown = Shown.of(context, surface.find(), name)
         if len(shown.original.particles) != count or len(shown.system.particles) != count:
-            raise RefusalError(f"The particle system {name} was changed meanwhile")
+            raise RefusalError(
+                f"The particle system {name} was changed meanwhile: run the operator again"
+            )
         evaluated = time.monotonic()
         deadline = evaluated + max(_LEAST_TIME, _WORK_RATIO * (evaluated - begin))
         while True:

@@ -89,9 +89,9 @@ class OBJECT_OT_limit_hair_from_particles(
     )
     snap_roots: BoolProperty(
         name="Snap Roots",
-        description="Move strands so that their roots lie exactly on the limit surface. Blender "
-        "puts particles on the displayed polygons, which are beside it. Otherwise strands stay "
-        "where they are",
+        description="Move strands so that their roots lie exactly on the limit surface. "
+        "Particles stand on the displayed polygons, a little away from it. If "
+        "this is off, strands stay where they are",
         default=True,
     )
 

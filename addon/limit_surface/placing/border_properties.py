@@ -31,8 +31,9 @@ class BorderProperties:
     )
     border_jitter: FloatProperty(
         name="Jitter",
-        description="Part of the distance between neighbors by which each is moved along the "
-        "border at random: by half of it at most to each side",
+        description="Random movement along the border, as a part of the distance between "
+        "neighbors. At 1 each one moves by at most half of this distance to "
+        "either side",
         default=0.0,
         min=0.0,
         max=1.0,
@@ -40,8 +41,8 @@ class BorderProperties:
     )
     rows: IntProperty(
         name="Rows",
-        description="Number of rows: the first one lies on the border, and the others beside it. "
-        "A row ends where it would meet itself or another one",
+        description="Number of rows. The first row lies on the border, and the others beside "
+        "it. A row ends where it would meet itself or another row",
         default=1,
         min=1,
         max=1000,
@@ -64,13 +65,14 @@ class BorderProperties:
     )
     direction: EnumProperty(
         name="Direction",
-        description="Direction of things along a border",
+        description="Direction in which things along a border point",
         items=(
             ("NORMAL", "Normal", "Point along the surface's normal", "", 0),
             (
                 "OUTWARDS",
                 "Outwards",
-                "Point away from the faces that they stand on, tangentially to the surface",
+                "Point away from the faces on which things stand, in the tangent plane of "
+                "the surface",
                 "",
                 1,
             ),

@@ -52,5 +52,5 @@ class DensityChoice:
             return None
         is_clipped = found.image is not None and found.image.extension == "CLIP"
         if found.largest <= 0 and not is_clipped:  # outside of such an image it may be more
-            raise RefusalError("The density is 0 everywhere")
+            raise RefusalError("The density is 0 everywhere: check its source and its range")
         return DensityMap(found)

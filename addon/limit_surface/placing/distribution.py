@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 #: further location fits anywhere
 PACKING = 0.7
 
-NOWHERE = "The density is 0 everywhere"
-TOO_LOW = "The density is so low that no location was found"
+NOWHERE = "The density is 0 everywhere: check its source and its range"
+TOO_LOW = "The density is so low that no location was found: check its source and its range"
 
 
 @dataclass(frozen=True)

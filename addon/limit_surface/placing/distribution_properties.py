@@ -60,7 +60,7 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
 
     distribution: EnumProperty(
         name="Distribution",
-        description="Method that distributes locations over the surface",
+        description="How things are distributed over the surface",
         items=(
             (
                 "JITTERED",
@@ -105,7 +105,7 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
     )
     amount: EnumProperty(
         name="Amount",
-        description="Setting that determines the number, for all but Jittered. Scripts can "
+        description="Which setting determines the number. Jittered ignores it. Scripts can "
         "leave it out and set one of count, density and distance",
         items=(
             ("COUNT", "Count", "Make the given number", "", 0),
@@ -146,9 +146,9 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
     )
     distance: FloatProperty(
         name="Distance",
-        description="Minimum distance between any two in world space. Where a density source is "
-        "below its maximum, the distance is larger, so that the number is proportional to the "
-        "density. For Border, the length of the border between neighbors",
+        description="Minimum distance between any two in world space. Where the density is "
+        "lower, the distance is larger, so that the number is proportional to "
+        "the density. For Border, the length of the border between neighbors",
         default=0.05,
         min=1e-6,
         soft_min=1e-3,
@@ -194,28 +194,28 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
     )
     target: EnumProperty(
         name="Target",
-        description="Surface on which the roots lie",
+        description="Which surface the roots lie on",
         items=(
             (
                 "LIMIT",
                 "Limit Surface",
-                "Put roots on the exact smooth surface to which subdivision converges",
+                "Put roots exactly on the limit surface, the smooth surface to which "
+                "subdivision converges",
                 "",
                 0,
             ),
             (
                 "VIEWPORT",
                 "Viewport Mesh",
-                "Put roots at the same places of the faces, but on the polygons that the viewport "
-                "shows",
+                "Put roots on the polygons that the viewport shows, at the same places of "
+                "the faces",
                 "",
                 1,
             ),
             (
                 "RENDER",
                 "Render Mesh",
-                "Put roots at the same places of the faces, but on the polygons that a render "
-                "shows",
+                "Put roots on the polygons that a render shows, at the same places of the faces",
                 "",
                 2,
             ),

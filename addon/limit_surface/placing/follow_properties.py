@@ -22,15 +22,15 @@ _AUTO = (
 _NODES = (
     "NODES",
     "Nodes",
-    "Follow by Geometry Nodes, which work in every Blender, also without this extension",
+    "Follow by Geometry Nodes. This works in every Blender, also without this extension",
     1,
 )
-_NONE = ("NONE", "None", "Stay where the surface is now", 2)
+_NONE = ("NONE", "None", "Do not follow: stay in place when the mesh deforms", 2)
 _LIVE = (
     "LIVE",
     "Live",
-    "Follow by this extension itself, which moves the object in each frame. It is faster for very "
-    "many strands, and follows creases that are animated",
+    "Let this extension move the object in each frame. It is faster for very many strands, "
+    "and also follows animated creases",
     3,
 )
 _DESCRIPTION = "How the new object follows the surface when its mesh deforms"

@@ -190,7 +190,10 @@ def obstacles(ob: bpy.types.Object, signature: str | None) -> Iterator[str]:
         yield f"The hidden table that {ob.name} reads was deleted"
     guides = guides_of(ob)
     if guides is None or guides.type != "CURVES":
-        yield f"The guides of {ob.name} were deleted: choose others in its modifier, and rebind it"
+        yield (
+            f"The guides of {ob.name} were deleted: choose other guides in its modifier, and "
+            "rebind it"
+        )
     else:
         before, now = groups.get_input(modifier_of(ob), nodes.GUIDE_COUNT), len(guides.data.curves)
         if before != now:

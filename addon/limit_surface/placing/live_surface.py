@@ -50,7 +50,10 @@ class LiveSurface:
         if captured is None:
             return
         if len(captured.positions) != len(self.limit.positions):
-            raise CageError(f"{ob.name} has another control mesh in renders than in the viewport")
+            raise CageError(
+                f"The modifiers of {ob.name} give another control mesh in renders "
+                "than in the viewport: enable each of them in both, or in neither"
+            )
         self.limit.set_positions(captured.positions)
         self._checksums = captured.checksums
 

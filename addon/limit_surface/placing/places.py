@@ -79,8 +79,8 @@ class Places:
         stored = len(data.attributes[ids.FACE].data)
         if stored != self.count:
             raise RefusalError(
-                f"{data.name} has changed meanwhile: it has {stored} elements instead of "
-                f"{self.count}"
+                f"{data.name} has changed meanwhile (it has {stored} elements instead of "
+                f"{self.count}): run the operator again"
             )
 
     def write(self, data: bpy.types.ID, tile: np.ndarray, tile_uv: np.ndarray) -> None:

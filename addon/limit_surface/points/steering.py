@@ -86,7 +86,7 @@ class SteeringProperties(flow_properties.FlowProperties):
         ),
         "flow_axis": EnumProperty(
             name="Flow Axis",
-            description="Axis of the instances that the flow directs",
+            description="Which axis of the instances follows the flow",
             items=(
                 ("X", "X", "The X axis points along the flow, and the Z axis stays as it is", 0),
                 ("Z", "Z", "The Z axis leans into the flow, as strands do", 1),

@@ -24,7 +24,7 @@ class ProjectionProperties(TextureProperties, FollowProperties):
 
     source: EnumProperty(
         name="From",
-        description="Source from which the image is projected",
+        description="What projects the image",
         items=(
             (
                 "CAMERA",
@@ -80,7 +80,7 @@ class ProjectionProperties(TextureProperties, FollowProperties):
     )
     mode: EnumProperty(
         name="Result",
-        description="What the projected image is used for",
+        description="What is made of the projected image",
         items=(
             ("TEXTURE", "Texture", "Paint it into an image, by a UV map", "", 0),
             ("DECAL", "Decal", "Make a new mesh that lies on the surface and has a UV map", "", 1),
@@ -89,7 +89,7 @@ class ProjectionProperties(TextureProperties, FollowProperties):
     )
     output: EnumProperty(
         name="Paint Into",
-        description="Image into which the texture is painted",
+        description="Which image is painted into",
         items=(
             (
                 "NEW",
@@ -120,7 +120,7 @@ class ProjectionProperties(TextureProperties, FollowProperties):
     )
     extension: EnumProperty(
         name="Outside",
-        description="What is projected beyond the borders of the image",
+        description="What is projected outside the borders of the image",
         items=(
             ("CLIP", "Clip", "Project nothing", "", 0),
             ("EXTEND", "Extend", "Extend the pixels along its border", "", 1),
@@ -181,8 +181,8 @@ class ProjectionProperties(TextureProperties, FollowProperties):
     )
     blend: FloatProperty(
         name="Blend",
-        description="Softness of the blend between the box's sides. At 0 each place shows only "
-        "the side that it faces most directly",
+        description="How softly the box's sides are blended. At 0 each place shows only the "
+        "side that it faces most directly",
         default=0.2,
         min=0.0,
         max=1.0,

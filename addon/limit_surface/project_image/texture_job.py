@@ -90,7 +90,9 @@ class Made:
                 raise RefusalError(f"{target} does not exist any more")
             sizes = image_pixels.checked(image, to_write=True).tiles
             if any(sizes.get(tile) != canvas.size for tile, canvas in canvases.items()):
-                raise RefusalError(f"The size of {target} has changed since the work began")
+                raise RefusalError(
+                    f"The size of {target} has changed since the work began: run the operator again"
+                )
         pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
         image_pixels.write(image, pixels, is_new=isinstance(target, NewImage))
         if self.order.create_material:

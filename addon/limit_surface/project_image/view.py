@@ -29,7 +29,10 @@ def projector(
 ) -> Projector:
     matrix = np.array(view.perspective_matrix, np.float64)
     if min(region) < 1 or not np.linalg.matrix_rank(matrix) == 4:
-        raise RefusalError("The 3D view has not been drawn yet, so its matrix is not known")
+        raise RefusalError(
+            "The 3D view has not been drawn yet, so nothing can be projected "
+            "from it: run the operator again"
+        )
     filled = fitted(size) / fitted(region)
     scale = np.array([*(filled.max() / filled), 1, 1])
     return Projector("The view", scale[:, None] * matrix, has_eye=view.is_perspective)

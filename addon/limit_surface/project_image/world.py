@@ -38,7 +38,7 @@ class WorldSurface:
 
     def check_eye(self, projector: Projector) -> None:
         if projector.has_eye and self.surface.eye_is_inside(self.clip_matrix(projector)):
-            raise RefusalError(f"{projector.called} is inside the surface")
+            raise RefusalError(f"{projector.called} is inside the surface: move it outside")
 
     def bounds(self) -> np.ndarray:
         """The bounds (2, 3) in the world."""

@@ -164,8 +164,8 @@ def _check_dicing(
         )
     if dices and subsurf.show_render:
         raise DisplayedError(
-            f"{ob.name} is rendered with adaptive subdivision, for which Cycles makes the polygons "
-            "itself"
+            f"{ob.name} is rendered with adaptive subdivision, so only Cycles knows the "
+            "polygons: turn it off, or measure the mesh of the viewport"
         )
 
 
@@ -205,7 +205,9 @@ def _check_settings(
         animated.append(subsurf.name)
     if animated:
         raise DisplayedError(
-            f"{whose} is not available: display settings of {', '.join(animated)} are animated"
+            f"{whose} cannot be measured, because levels or visibility of "
+            f"{', '.join(animated)} are animated or driven: remove the animation, or measure "
+            "the mesh of the viewport"
         )
 
 
@@ -234,7 +236,7 @@ def _read_mesh(whose: str, mesh: bpy.types.Mesh, found: cage.Cage, level: int) -
         expected = found.face_sizes
     if not np.array_equal(sizes, expected):
         raise DisplayedError(
-            f"{whose} has {len(sizes):,} polygons, which are not those of the cage's "
+            f"{whose} has {len(sizes):,} polygons, which are not those of the control mesh's "
             f"{len(found.face_sizes):,} faces at level {level}"
         )
     if level:
@@ -261,7 +263,7 @@ def _check_corners(whose: str, shown: DisplayedMesh, found: cage.Cage) -> None:
     at = subdivided_mesh.cage_corners(found.face_sizes)
     if not np.array_equal(shown.vertices(*at), found.mesh.face_vertices):
         raise DisplayedError(
-            f"{whose} does not have the cage's vertices at the corners of its faces"
+            f"{whose} does not have the control mesh's vertices at the corners of its faces"
         )
 
 

@@ -38,7 +38,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
 
     levels: EnumProperty(
         name="Levels",
-        description="Level of the displayed mesh that is measured",
+        description="Which displayed mesh is measured",
         items=(
             (
                 "BOTH",

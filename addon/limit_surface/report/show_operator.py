@@ -47,8 +47,9 @@ class OBJECT_OT_limit_show(WatchedOperator, LargeCountProperty, bpy.types.Operat
 
     levels: IntProperty(
         name="Levels",
-        description="Number of subdivisions in the viewport. Their vertices lie on the limit "
-        "surface, and more of them make the polygons between follow it more closely",
+        description="Number of subdivisions in the viewport. All vertices lie on the limit "
+        "surface. With more subdivisions the polygons between the vertices "
+        "follow it more closely",
         default=setup.LEVELS,
         min=1,
         max=MOST_LEVELS,

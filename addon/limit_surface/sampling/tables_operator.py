@@ -25,8 +25,9 @@ class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
 
     depth: IntProperty(
         name="Depth",
-        description="Places are exact up to a distance of 2^-Depth of a face from irregular "
-        "vertices. Places closer to such a vertex are put at that distance",
+        description="How close to irregular vertices the surface is exact: up to 2^-Depth of "
+        "a face. Places closer to such a vertex are moved to that distance. A "
+        "larger depth makes larger tables",
         default=16,
         min=1,
         max=24,

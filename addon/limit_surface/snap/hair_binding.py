@@ -31,7 +31,8 @@ class HairBinding:
             attribute = data.attributes.get(name)
             if attribute and (attribute.data_type, attribute.domain) != (kind, "CURVE"):
                 raise RefusalError(
-                    f"{data.name}: the attribute {name} exists with another type or domain"
+                    f"{data.name}: the attribute {name} exists with another type or domain: "
+                    "rename or remove it"
                 )
         if not is_whole and data.surface not in (None, surface.ob):
             raise RefusalError(

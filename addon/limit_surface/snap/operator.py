@@ -114,15 +114,16 @@ class OBJECT_OT_limit_snap(
     )
     view_matrix: FloatVectorProperty(
         name="View Matrix",
-        description="Matrix from world to view, for the view's axes. If it is not set, the matrix "
-        "of the 3D viewport is used",
+        description="For scripts, if the axes are those of the view: the matrix from world "
+        "to view. If it is not set, that of the 3D viewport is used",
         size=(4, 4),
         subtype="MATRIX",
         options={"HIDDEN", "SKIP_SAVE"},
     )
     view_is_perspective: BoolProperty(
         name="View Is Perspective",
-        description="Whether the lines of sight of the view meet at the eye, for the view's Z axis",
+        description="For scripts, if the axis is the Z axis of the view: whether the view is "
+        "a perspective one",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 

@@ -22,9 +22,9 @@ class FlowProperties:
 
     flow_source: EnumProperty(
         name="Flow From",
-        description="Source of directions along the surface, into which things are combed",
+        description="Source of the directions along the surface in which things lean",
         items=(
-            ("NONE", "None", "Do not comb anything", "", 0),
+            ("NONE", "None", "Let nothing lean along the surface", "", 0),
             (
                 "IMAGE",
                 "Image",

@@ -90,8 +90,8 @@ class SourceNames:
             ),
             self.channel: EnumProperty(
                 name="Channel",
-                description="Channel of the colors that is used. The numbers in images are used "
-                "without color conversion; color attributes are linear",
+                description="Which channel of the colors is used. Images are read without "
+                "color conversion; color attributes are linear",
                 items=_CHANNELS,
                 default="LUMINANCE",
             ),

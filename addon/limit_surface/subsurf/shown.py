@@ -31,7 +31,7 @@ def of(ob: bpy.types.Object, scene: bpy.types.Scene) -> Shown:
     if subsurf.subdivision_type == "SIMPLE":
         return Shown(f"Level {level}, simple", True)
     if not subsurf.use_limit_surface:
-        return Shown(f"Level {level}, beside the limit", False)
+        return Shown(f"Level {level}, away from the limit", False)
     if subsurf.quality < QUALITY:
         return Shown(f"Level {level}, near the limit", False)
     return Shown(f"Level {level}, on the limit", True)
