@@ -15,15 +15,15 @@ _FRAMES = re.compile(r"(-?\d+)(?:-(-?\d+))?")
 
 DESCRIPTION = """\
 Writes a cache of each object as it is in each frame: DIR/OBJECT.FRAME.abc. Files
-that exist are left as they are, so that an interrupted bake can be run again.
+that exist already are kept, so run an interrupted bake again to complete it.
 """
 
 EXIT_CODES = """\
 exit codes:
   0  all files are there
   1  at least one file could not be written; the others are there
-  2  the arguments do not fit, or the folder holds another bake
-  3  an object does not fit the surface that it stands on any more: bind it again
+  2  the arguments are wrong, or the folder holds another bake
+  3  an object no longer fits its surface: bind it again
 """
 
 

@@ -38,8 +38,8 @@ _ROOTS = 0.5  # the part of the progress at which the roots are evaluated
 
 
 class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, bpy.types.Operator):
-    """Add strands between the strands of the active hair, which guides them: roots lie exactly on
-    the limit surface, and each child is shaped as the guides that are nearest to it along the
+    """Add strands between the strands of the active hair, which are their guides. Roots lie exactly
+    on the limit surface, and each child takes its shape from the guides that are nearest along the
     surface"""
 
     bl_idname = ids.CHILDREN_ADD

@@ -22,9 +22,9 @@ NOTHING = "Select curves, and make the mesh to lay them on active"
 
 
 class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.types.Operator):
-    """Lay the selected curves onto the exact limit surface of the active mesh, between their
-    control points too: their splines are fitted again, so that no place of them is farther from the
-    surface than the tolerance"""
+    """Lay the selected curves onto the exact limit surface of the active mesh along their whole
+    length: new splines replace theirs, which are nowhere farther from the surface than the
+    tolerance"""
 
     bl_idname = ids.CURVE_LAY
     bl_label = "Lay Curves on Limit Surface"

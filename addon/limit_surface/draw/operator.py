@@ -21,8 +21,8 @@ class VIEW3D_OT_limit_draw(
     properties.DrawingProperties, FollowProperties, SummaryProperty, bpy.types.Operator
 ):
     """Draw curves or guide strands on the exact limit surface of the active mesh, with the mouse or
-    a pen. With a curve active that was drawn before, its strokes are continued, erased and
-    smoothed"""
+    a pen. If a curve that was drawn before is active, continue, erase and smooth its
+    strokes"""
 
     bl_idname = ids.DRAW
     bl_label = "Draw on Limit Surface"

@@ -21,7 +21,7 @@ _NOTHING = "Select a surface or what follows it"
 
 class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
     """Bind everything that follows the selected surface again, after its topology, creases or rules
-    have changed. Live children are made again with the settings that they were made with"""
+    have changed. Live children are made again with their settings"""
 
     bl_idname = ids.REBIND
     bl_label = "Rebind to Limit Surface"

@@ -77,7 +77,7 @@ class OBJECT_OT_limit_hair_from_particles(
     WatchedOperator, FollowOrLiveProperties, bpy.types.Operator
 ):
     """Make hair on the active mesh's limit surface from one of its legacy hair particle systems:
-    the particles' own strands, without their children, as curves that are bound to the surface"""
+    each particle, without children, becomes a curve that is bound to the surface"""
 
     bl_idname = ids.HAIR_FROM_PARTICLES
     bl_label = "Hair from Particle System"

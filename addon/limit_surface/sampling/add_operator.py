@@ -12,7 +12,8 @@ from ..placing import all_tiles
 
 class NODE_OT_limit_sample_add(bpy.types.Operator):
     """Add the node group Sample Limit Surface to the file, and a node of it to the tree in the
-    editor. The node samples the active mesh, or that mesh's surface if the file has its tables"""
+    editor. The node samples the active mesh if that has tables, or else the only mesh that has
+    tables"""
 
     bl_idname = ids.SAMPLE_ADD
     bl_label = "Sample Limit Surface"

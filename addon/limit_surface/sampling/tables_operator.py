@@ -14,8 +14,8 @@ from ..tasks.watched_operator import WatchedOperator
 
 class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
     """Make the tables by which the node group Sample Limit Surface samples the active mesh, or make
-    them anew after a change of its topology, creases or rules. Unless Depth and Levels are set,
-    they stay as they were"""
+    them again after a change of its topology, creases or rules. Depth and Levels stay as they were
+    unless they are set"""
 
     bl_idname = ids.SAMPLE_TABLES
     bl_label = "Tables for Sample Limit Surface"

@@ -23,8 +23,8 @@ from .surface import TargetSurface
 class OBJECT_OT_limit_snap(
     PlacingProperties, FollowSnappedProperties, WatchedOperator, bpy.types.Operator
 ):
-    """Snap to the exact limit surface: selected objects and hair to that of the active mesh, or
-    outside Object Mode the selected elements to that of the target in the sidebar tab Limit"""
+    """Move the selected objects and hair onto the exact limit surface of the active mesh. Outside
+    Object Mode, move the selected elements onto that of the target in the sidebar tab Limit"""
 
     bl_idname = ids.SNAP
     bl_label = "Snap to Limit Surface"
