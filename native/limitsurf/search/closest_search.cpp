@@ -37,6 +37,22 @@ constexpr std::size_t kPrefetched = 4;
 /// Angles from here on count as pi, and then no cosine is too small.
 constexpr double kNearlyPi = kPi<double> - 1e-13, kAnyCosine = -2;
 
+/// The searching point as it is seen from an extraordinary vertex.
+struct SeenFromVertex {
+  SeenFromVertex(const SearchPoint& from, const Vector3& vertex, const Eigen::Matrix3d& frame) {
+    const Vector3 offset = vertex - from.place;
+    way = from.away - offset;
+    squared = offset.dot(offset - 2 * from.away);
+    turned = frame * way;
+    aside = std::hypot(turned[0], turned[1]);
+  }
+
+  Vector3 way;     ///< from the vertex to the point
+  Vector3 turned;  ///< the same along the axes of the ring
+  double squared;  ///< the vertex's squared distance, less the square of the range
+  double aside;    ///< the distance of the point from the ring's last axis
+};
+
 /// Searches for one point after the other.
 class ClosestSearch {
  public:
@@ -82,6 +98,9 @@ class ClosestSearch {
   static constexpr double kDistanceRounding = 1e-15;
   /// A search with a condition on normals ends after this many leaves if it has no cones.
   static constexpr std::int64_t kPatience = 8;
+  /// After so many steps a core asks what is known of all cores around its vertex. Few searches
+  /// come so far.
+  static constexpr int kManySteps = 8;
   static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
   /// A lower bound of the squared distance of a box, less the square of the range.
@@ -148,6 +167,9 @@ class ClosestSearch {
   /// and if it stayed the best one while its own core is split, no bound of the rest, which always
   /// contains the vertex, would end that.
   void putOff(const SurfacePiece& core, double squared) {
+    if (isLikeTheFirst(core)) {
+      return;
+    }
     if (!facing_) {
       best_.offer(data_.patches.coreVertex(core) - best_.from.place,
                   data_.patches.rectangle(core).at(0, 0));
@@ -165,26 +187,132 @@ class ClosestSearch {
       std::pop_heap(open_.begin(), open_.end());
       const OpenCore next = open_.back();
       open_.pop_back();
-      SurfacePatches::SplitCore& split = *splits_[next.split];
-      data_.patches.split(next.core, split);
-      ++leaves_;
-      for (const BezierPatch& patch : split.patches) {
-        closestOnPatch(patch, {}, facing_, best_);
+      const int ring = data_.patches.ringOf(next.core);
+      if (data_.rings.isLarge(ring)) {
+        visitRing(ring, next.core);
+        continue;
       }
+      SurfacePiece core = next.core;
+      skipLevels(ring, core);
+      SurfacePatches::SplitCore& split = *splits_[next.split];
+      if (isSmall(core)) {
+        offerVertex(core, data_.patches.coreVertex(core));
+        continue;
+      }
+      visitParts(core, split);
       const CoreBox rest(data_.patches.restHull(split), data_.middle);
       const double squared = squaredDistance(rest);
       if (!(squared < best_.enough())) {
-        continue;
-      }
-      if (data_.patches.coreRadius(split.core) <= data_.tolerance ||
-          split.core.steps >= SurfacePatches::kMostSteps) {
-        offerVertex(split.core, data_.patches.coreVertex(split.core));
         continue;
       }
       open_.push_back({std::max(squared, next.squared), next.split, split.core});
       std::push_heap(open_.begin(), open_.end());
     }
     open_.clear();
+  }
+
+  bool isSmall(const SurfacePiece& core) const {
+    return data_.patches.coreRadius(core) <= data_.tolerance ||
+           core.steps >= SurfacePatches::kMostSteps;
+  }
+
+  /// Splits a core and searches its patches.
+  void visitParts(const SurfacePiece& core, SurfacePatches::SplitCore& split) {
+    data_.patches.split(core, split);
+    ++leaves_;
+    for (const BezierPatch& patch : split.patches) {
+      closestOnPatch(patch, {}, facing_, best_);
+    }
+  }
+
+  SeenFromVertex seenFrom(int ring, const SurfacePiece& core) const {
+    return {best_.from, data_.patches.coreVertex(core), data_.patches.ringFrame(ring)};
+  }
+
+  /// Whether the point lies on the axis of a ring with the symmetry of a regular polygon, and the
+  /// core is another than the first one, to which it is as near.
+  bool isLikeTheFirst(const SurfacePiece& core) const {
+    const int ring = data_.patches.ringOf(core);
+    return !facing_ && core.tile != data_.rings.firstTile(ring) &&
+           data_.patches.ringLevel(core) >= data_.rings.firstLevel(ring) &&
+           data_.rings.isSymmetric(ring, seenFrom(ring, core).aside);
+  }
+
+  /// Takes the steps of a core that cannot lead to a closer point.
+  void skipLevels(int ring, SurfacePiece& core) const {
+    const int level = data_.patches.ringLevel(core);
+    if (core.steps < kManySteps || level < data_.rings.firstLevel(ring)) {
+      return;
+    }
+    const RingLevel* at = data_.rings.level(ring, level);
+    if (!at) {
+      return;
+    }
+    const SeenFromVertex seen = seenFrom(ring, core);
+    while (!isSmall(core) && cannotMatter(*at, seen)) {
+      ++core.steps;
+      at = data_.rings.level(ring, data_.patches.ringLevel(core));
+    }
+  }
+
+  /// Whether no point between the cores of a level and those of the next can be closer.
+  bool cannotMatter(const RingLevel& level, const SeenFromVertex& seen) const {
+    return seen.squared + level.bounds.squaredDistanceLess(seen.turned[2], seen.aside) >=
+           best_.enough();
+  }
+
+  /// Searches all cores around a vertex, level by level.
+  void visitRing(int ring, SurfacePiece core) {
+    const SeenFromVertex seen = seenFrom(ring, core);
+    const bool is_symmetric = !facing_ && data_.rings.isSymmetric(ring, seen.aside);
+    for (; !isSmall(core); ++core.steps) {
+      const int number = data_.patches.ringLevel(core);
+      const RingLevel& level = *data_.rings.level(ring, number);
+      ++leaves_;
+      if (!cannotMatter(level, seen)) {
+        if (is_symmetric) {
+          visitParts(core, ring_split_);
+        } else {
+          visitSectors(ring, number, seen);
+        }
+      }
+      if (seen.squared + level.restSquaredDistanceLess(seen.turned) >= best_.enough()) {
+        return;
+      }
+    }
+    offerVertex(core, data_.patches.coreVertex(core));
+  }
+
+  /// Searches the patches between the cores of a level and those of the next, nearer ones first.
+  void visitSectors(int ring, int level, const SeenFromVertex& seen) {
+    const SectorTree& sectors = data_.rings.sectors(ring, level);
+    struct Entry {
+      int node;
+      double squared;
+    };
+    const auto entry = [&](int node) -> Entry {
+      return {node, seen.squared + sectors.box(node).squaredDistanceLess(seen.way)};
+    };
+    Entry open[SectorTree::kMostOpen];
+    int height = 0;
+    open[height++] = entry(SectorTree::kRoot);
+    while (height > 0) {
+      const Entry next = open[--height];
+      if (!(next.squared < best_.enough())) {
+        continue;
+      }
+      if (sectors.isLeaf(next.node)) {
+        visitParts(data_.rings.core(ring, sectors.core(next.node), level), ring_split_);
+        continue;
+      }
+      const int child = SectorTree::child(next.node);
+      open[height] = entry(child);
+      open[height + 1] = entry(child + 1);
+      if (open[height].squared < open[height + 1].squared) {
+        std::swap(open[height], open[height + 1]);
+      }
+      height += 2;
+    }
   }
 
   /// Offers the vertex in place of the rest of a core, which is smaller than the tolerance.
@@ -208,6 +336,7 @@ class ClosestSearch {
   ClosestSoFar best_;
   std::vector<OpenCore> open_;
   std::vector<std::unique_ptr<SurfacePatches::SplitCore>> splits_;  // of open cores
+  SurfacePatches::SplitCore ring_split_;
 };
 
 }  // namespace

@@ -109,7 +109,9 @@ NormalCone coneOfCore(const SearchTree& tree, SurfacePiece core) {
   NormalCone cone;
   cone.axis = Vector3(frame(0, 2), frame(0, 5), frame(0, 8));
   SurfacePatches::SplitCore split;
+  InterruptionStride stride;
   do {
+    stride.step();
     tree.patches.split(core, split);
     for (const BezierPatch& patch : split.patches) {
       cone = NormalCone::around(cone, normalCone(patch));
@@ -117,6 +119,19 @@ NormalCone coneOfCore(const SearchTree& tree, SurfacePiece core) {
     core = split.core;
   } while (cone.angle < kPi<double> && tree.patches.coreRadius(core) > tree.tolerance &&
            core.steps < SurfacePatches::kMostSteps);
+  return cone;
+}
+
+/// The cone of all normals on a leaf that is no patch.
+NormalCone coneOfCores(const SearchTree& tree, const SurfacePiece& leaf) {
+  NormalCone cone = coneOfCore(tree, leaf);
+  const int ring = tree.patches.ringOf(leaf);
+  if (tree.rings.isLarge(ring)) {
+    const int level = tree.patches.ringLevel(leaf);
+    for (int i = 1; i < tree.rings.coreCount(ring) && cone.angle < kPi<double>; ++i) {
+      cone = NormalCone::around(cone, coneOfCore(tree, tree.rings.core(ring, i, level)));
+    }
+  }
   return cone;
 }
 
@@ -181,7 +196,7 @@ NormalCones::NormalCones(const SearchTree& tree, int threads) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
       const SurfacePiece& piece = tree.leaves[leaf].piece;
       leaves[leaf] =
-          piece.isCore() ? coneOfCore(tree, piece) : normalCone(tree.patches.patch(piece));
+          piece.isCore() ? coneOfCores(tree, piece) : normalCone(tree.patches.patch(piece));
     }
   });
   const std::int32_t count = tree.tree->nodeCount();

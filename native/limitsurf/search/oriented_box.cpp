@@ -65,6 +65,8 @@ OrientedBox<Real>::OrientedBox(const CoreHull& hull, const Vector3& middle) {
 
 template OrientedBox<float>::OrientedBox(const Eigen::Ref<const Points>&, const Vector3&,
                                          const Vector3&);
+template OrientedBox<double>::OrientedBox(const Eigen::Ref<const Points>&, const Vector3&,
+                                          const Vector3&);
 template OrientedBox<double>::OrientedBox(const CoreHull&, const Vector3&);
 
 }  // namespace limitsurf

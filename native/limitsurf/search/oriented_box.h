@@ -19,10 +19,26 @@ struct Ray {
 template <typename Real>
 class OrientedBox {
  public:
+  OrientedBox() = default;
   /// A box around points, one a row, whose axes are as close as possible to the two directions.
   OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& along, const Vector3& across);
   /// A hull, relative to `middle`.
   OrientedBox(const CoreHull& hull, const Vector3& middle);
+
+  /// Its corners, one a row.
+  Eigen::Matrix<double, 8, 3, Eigen::RowMajor> corners() const {
+    Eigen::Matrix<double, 8, 3, Eigen::RowMajor> points;
+    for (int corner = 0; corner < 8; ++corner) {
+      for (int j = 0; j < 3; ++j) {
+        double at = centre_[j];
+        for (int i = 0; i < 3; ++i) {
+          at += ((corner >> i & 1) != 0 ? 1 : -1) * double{half_[i]} * axes_[i][j];
+        }
+        points(corner, j) = at;
+      }
+    }
+    return points;
+  }
 
   /// A lower bound of the squared distance of the box from a point.
   double squaredDistance(const Vector3& point) const {

@@ -96,6 +96,10 @@ class RaySearch {
   /// diagonals away, that is half of kSearchError; from farther away no bound is given.
   static constexpr double kRayRounding = 4 * 0x1p-53, kFarthest = 1000;
 
+  /// After so many steps a core asks what is known of all cores around its vertex. Few rays come so
+  /// far.
+  static constexpr int kManySteps = 8;
+
   double margin() const { return found_.tolerance; }
   double start() const { return found_.from - found_.tolerance; }
   double end() const { return found_.nearest; }
@@ -115,24 +119,118 @@ class RaySearch {
     return true;
   }
 
+  /// How a ray passes an extraordinary vertex.
+  struct Passing {
+    double aside;  ///< its distance from the vertex
+    double angle;  ///< its angle with the first two axes of the ring
+  };
+  Passing passing(int ring, const SurfacePiece& core) const {
+    const Vector3 to_vertex = data_.patches.coreVertex(core) - frame_.origin;
+    const Vector3 across = to_vertex - to_vertex.dot(frame_.direction) * frame_.direction;
+    const double sine = data_.patches.ringFrame(ring).row(2).dot(frame_.direction);
+    return {across.norm(), std::asin(std::min(1., std::abs(sine)))};
+  }
+
+  /// Whether the ray meets nothing between the cores of a level and those of the next.
+  bool misses(const RingLevel& level, const Passing& passing) const {
+    return level.bounds.distanceFromLine(passing.angle) > passing.aside + 2 * margin();
+  }
+
+  bool isSmall(const SurfacePiece& core) const {
+    return data_.patches.coreRadius(core) <= found_.tolerance ||
+           core.steps >= SurfacePatches::kMostSteps;
+  }
+
+  void visitParts(const SurfacePiece& core, SurfacePatches::SplitCore& split) {
+    data_.patches.split(core, split);
+    for (const BezierPatch& patch : split.patches) {
+      intersectPatch(patch, frame_, found_);
+    }
+  }
+
+  /// Whether the ray meets the rest of a core.
+  bool meetsRest(const SurfacePatches::SplitCore& split) const {
+    double from = start();
+    return CoreBox(data_.patches.restHull(split), data_.middle).meets(ray_, margin(), from, end());
+  }
+
   void visitCore(SurfacePiece core) {
+    const int ring = data_.patches.ringOf(core);
+    if (data_.rings.isLarge(ring)) {
+      visitRing(ring, core);
+      return;
+    }
     SurfacePatches::SplitCore split;
-    while (true) {
-      data_.patches.split(core, split);
-      for (const BezierPatch& patch : split.patches) {
-        intersectPatch(patch, frame_, found_);
+    for (; !isSmall(core); ++core.steps) {
+      skipLevels(ring, core);
+      if (isSmall(core)) {
+        break;
       }
-      core = split.core;
+      visitParts(core, split);
+      if (!meetsRest(split)) {
+        return;
+      }
+    }
+    touchVertex(core);
+  }
+
+  /// Takes the steps of a core whose patches the ray misses for certain.
+  void skipLevels(int ring, SurfacePiece& core) const {
+    const int level = data_.patches.ringLevel(core);
+    if (core.steps < kManySteps || level < data_.rings.firstLevel(ring)) {
+      return;
+    }
+    const RingLevel* at = data_.rings.level(ring, level);
+    if (!at) {
+      return;
+    }
+    const Passing how = passing(ring, core);
+    while (!isSmall(core) && misses(*at, how)) {
+      ++core.steps;
+      at = data_.rings.level(ring, data_.patches.ringLevel(core));
+    }
+  }
+
+  /// Searches all cores around a vertex, level by level.
+  void visitRing(int ring, SurfacePiece core) {
+    const Passing how = passing(ring, core);
+    const Eigen::Matrix3d frame = data_.patches.ringFrame(ring);
+    const Vector3 vertex = data_.patches.coreVertex(core);
+    for (; !isSmall(core); ++core.steps) {
+      const int number = data_.patches.ringLevel(core);
+      const RingLevel& level = *data_.rings.level(ring, number);
+      if (!misses(level, how)) {
+        visitSectors(ring, number, vertex);
+      }
       double from = start();
-      const CoreBox rest(data_.patches.restHull(split), data_.middle);
+      const CoreBox rest({vertex, frame, level.rest_low, level.rest_high}, data_.middle);
       if (!rest.meets(ray_, margin(), from, end())) {
         return;
       }
-      if (data_.patches.coreRadius(core) <= found_.tolerance ||
-          core.steps >= SurfacePatches::kMostSteps) {
-        touchVertex(core);
-        return;
+    }
+    touchVertex(core);
+  }
+
+  /// Searches the patches between the cores of a level and those of the next.
+  void visitSectors(int ring, int level, const Vector3& vertex) {
+    const SectorTree& sectors = data_.rings.sectors(ring, level);
+    const Ray from_vertex{frame_.origin - vertex, ray_.direction};
+    SurfacePatches::SplitCore split;
+    int open[SectorTree::kMostOpen];
+    int height = 0;
+    open[height++] = SectorTree::kRoot;
+    while (height > 0) {
+      const int node = open[--height];
+      double from = start();
+      if (!sectors.box(node).meets(from_vertex, margin(), from, end())) {
+        continue;
       }
+      if (sectors.isLeaf(node)) {
+        visitParts(data_.rings.core(ring, sectors.core(node), level), split);
+        continue;
+      }
+      open[height++] = SectorTree::child(node) + 1;
+      open[height++] = SectorTree::child(node);
     }
   }
 

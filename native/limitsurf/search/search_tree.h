@@ -9,6 +9,7 @@
 #include "limitsurf/prefetch.h"
 #include "limitsurf/search/foot_bound.h"
 #include "limitsurf/search/oriented_box.h"
+#include "limitsurf/search/search_rings.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/search/wide_tree.h"
 #include "limitsurf/surface/surface_patches.h"
@@ -16,6 +17,7 @@
 namespace limitsurf {
 
 /// A leaf of the search tree: a bicubic patch, or a core, which searches split when they reach it.
+/// All cores around a vertex with many faces are one leaf, at the place of the first of them.
 struct SearchLeaf {
   LeafBox box;
   SurfacePiece piece;
@@ -39,6 +41,7 @@ struct SearchTree {
   double tolerance;
   Vector3 inBoxes(const Vector3& point) const { return point - middle; }
 
+  SearchRings rings;
   std::vector<SearchLeaf> leaves;  ///< in the order of the tree
   std::unique_ptr<WideTree> tree;
   /// The patches of the leaves, or none if they would need more than kPatchBytes together; those of
@@ -58,6 +61,8 @@ struct SearchTree {
   void addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
   /// The number of steps that a core is split before searches.
   int stepsBefore(const SurfacePiece& core) const;
+  /// Appends the cores around a vertex as one leaf.
+  void addRing(int ring, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
   void addCore(const SurfacePiece& core, SurfacePatches::SplitCore& split,
                std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
 };

@@ -13,8 +13,6 @@ namespace {
 
 /// The number of tiles whose leaves one task finds, and of leaves whose patches it keeps.
 constexpr std::size_t kTilesPerTask = 1024, kLeavesPerTask = 1024;
-/// The cores around a vertex are split into no more than about so many patches.
-constexpr int kMostRingLeaves = 1 << 16;
 
 using PatchPoints = Eigen::Matrix<double, 16, 3, Eigen::RowMajor>;
 
@@ -46,7 +44,8 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
       patches(limit_surface, threads, PatchUnit::own),
       scale(patches.scale()),
       middle(patches.middle()),
-      tolerance(kSearchError / 10 * patches.diagonal()) {
+      tolerance(kSearchError / 10 * patches.diagonal()),
+      rings(patches, tolerance) {
   const std::size_t tiles = static_cast<std::size_t>(patches.tileCount());
   struct Block {
     std::vector<SearchLeaf> leaves;
@@ -74,6 +73,11 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
     boxes.insert(boxes.end(), block.boxes.begin(), block.boxes.end());
     block = {};
     InterruptionPoint::pass();
+  }
+  for (int ring = 0; ring < patches.ringCount(); ++ring) {
+    if (rings.isLarge(ring)) {
+      addRing(ring, unordered, boxes);
+    }
   }
   std::vector<std::int32_t> order;
   tree = std::make_unique<WideTree>(BoxTree(boxes, order));
@@ -124,22 +128,55 @@ void SearchTree::addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<B
         addPatch(split.pieces[quarter], split.patches[quarter]);
       }
     }
-    addCore(core, split, out, boxes);
+    if (!rings.isLarge(patches.ringOf(core))) {
+      addCore(core, split, out, boxes);
+    }
   }
 }
 
 int SearchTree::stepsBefore(const SurfacePiece& core) const {
+  const int ring = patches.ringOf(core);
+  if (rings.isLarge(ring)) {
+    return rings.firstLevel(ring) - patches.ringLevel(core);
+  }
   // The cores of small tiles are split once, those of whole faces twice.
   const FaceRectangle on = patches.rectangle(core);
-  int steps = std::abs(on.us + on.ut) == 1 ? 2 : 1;
-  // The faces around a pole are so thin that the boxes of their cores overlap. A step takes two
-  // thirds of a core's length.
-  const int faces = patches.coreValence(core);
-  for (int thin = faces; thin > SurfacePatches::kFewFaces && 3 * faces * steps < kMostRingLeaves;
-       thin = 2 * thin / 3) {
-    ++steps;
+  return std::abs(on.us + on.ut) == 1 ? 2 : 1;
+}
+
+void SearchTree::addRing(int ring, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const {
+  const Eigen::Matrix3d frame = patches.ringFrame(ring);
+  const int first = rings.firstLevel(ring);
+  Box box, turned;
+  SurfacePatches::SplitCore split;
+  InterruptionStride stride;
+  const auto include = [&](const Vector3& point) {
+    box.include(point);
+    turned.include(Vector3(frame * point));
+  };
+  for (int place = 0; place < rings.coreCount(ring); ++place) {
+    stride.step();
+    patches.split(rings.core(ring, place, first), split);
+    for (const BezierPatch& patch : split.patches) {
+      const PatchPoints points = pointsOf(patch, middle);
+      for (int i = 0; i < 16; ++i) {
+        include(points.row(i).transpose());
+      }
+    }
+    const CoreHull rest = patches.restHull(split);
+    for (int corner = 0; corner < 8; ++corner) {
+      include(inBoxes(rest.vertex) + rest.axes.transpose() * rest.corner(corner));
+    }
   }
-  return steps;
+  Eigen::Matrix<double, 8, 3, Eigen::RowMajor> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 at((corner & 1 ? turned.high : turned.low)[0],
+                     (corner & 2 ? turned.high : turned.low)[1],
+                     (corner & 4 ? turned.high : turned.low)[2]);
+    corners.row(corner) = (frame.transpose() * at).transpose();
+  }
+  out.push_back({LeafBox(corners, frame.row(0), frame.row(1)), rings.core(ring, 0, first), {}});
+  boxes.emplace_back(box);
 }
 
 void SearchTree::addCore(const SurfacePiece& core, SurfacePatches::SplitCore& split,
@@ -152,11 +189,8 @@ void SearchTree::addCore(const SurfacePiece& core, SurfacePatches::SplitCore& sp
   }
   const CoreHull rest = patches.restHull(split);
   for (int corner = 0; corner < 8; ++corner) {
-    const Vector3 turned((corner & 1 ? rest.high : rest.low)[0],
-                         (corner & 2 ? rest.high : rest.low)[1],
-                         (corner & 4 ? rest.high : rest.low)[2]);
     points.row(3 * 16 + corner) =
-        inBoxes(rest.vertex).transpose() + (rest.axes.transpose() * turned).transpose();
+        (inBoxes(rest.vertex) + rest.axes.transpose() * rest.corner(corner)).transpose();
   }
   // The core's opposite corner, the last point of the second patch, gives the first axis.
   const Vector3 normal = rest.axes.row(2);

@@ -46,6 +46,11 @@ struct CoreHull {
   Vector3 vertex;        ///< the limit of the core's vertex
   Eigen::Matrix3d axes;  ///< a unit vector in each row; the last is nearly normal to the surface
   Vector3 low, high;     ///< along the axes, relative to the vertex
+
+  /// One of the eight corners, along the axes and relative to the vertex.
+  Vector3 corner(int i) const {
+    return {(i & 1 ? high : low)[0], (i & 2 ? high : low)[1], (i & 4 ? high : low)[2]};
+  }
 };
 
 /// The unit of length of patches.
@@ -130,6 +135,22 @@ class SurfacePatches {
   /// A frame for ringPitch(), in which the core is about as long as wide: its first axis runs
   /// between the sides of the core, the last one across both.
   Eigen::Matrix3d coreFrame(const SurfacePiece& core) const;
+  /// The number of extraordinary vertices; each has a ring of faces.
+  int ringCount() const;
+  /// The ring to which a core belongs, and which of its faces the core is on.
+  int ringOf(const SurfacePiece& core) const;
+  int ringFace(const SurfacePiece& core) const;
+  /// By how many subdivisions of the ring's first points the core is reached. The cores of one ring
+  /// at the same level are next to each other.
+  int ringLevel(const SurfacePiece& core) const;
+  /// Axes of the ring, an axis in each row. The last is nearly normal to the surface.
+  Eigen::Matrix3d ringFrame(int ring) const;
+  /// How far the surface on the cores of a ring, at one level, is from having the symmetry of a
+  /// regular polygon around the last axis of its frame, that is, the largest distance between
+  /// points that ought to coincide. Infinity if the faces do not go all around the vertex, if
+  /// `cores` are not all of the ring's, or if it is not less than `enough`.
+  double ringAsymmetry(const std::vector<SurfacePiece>& cores, double enough) const;
+
   /// The limit position of the core's vertex.
   Vector3 coreVertex(const SurfacePiece& core) const;
 
