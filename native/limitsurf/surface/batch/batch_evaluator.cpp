@@ -31,6 +31,7 @@ BatchEvaluator<Real>::BatchEvaluator(const TileTable& table, const Pose& pose, i
     : table_(table),
       pose_(pose),
       kernel_(PatchKernels::get().evaluate<Real>(order)),
+      grid_kernel_(PatchKernels::get().evaluateOnGrids<Real>(order)),
       order_(order),
       results_(results),
       alone_(table, pose) {}
@@ -84,7 +85,7 @@ template <typename Real>
 void BatchEvaluator<Real>::evaluateTile(TileRef tile, int turns, int depth, const TileRows& rows) {
   constexpr unsigned kFewestRows = 3;  // fewer are located faster one by one
   if (tile.kind == TileRef::kBSpline && !hasCrease(tile)) {
-    evaluatePatch({tile, turns & 3, depth, 0, 0, 0}, 1, rows.u, rows.v, rows.rows, rows.count);
+    evaluatePatch({tile, turns & 3, depth, 0, 0, 0}, 1, rows);
   } else if (tile.kind == TileRef::kBSpline || rows.count < kFewestRows) {
     for (unsigned i = 0; i < rows.count; ++i) {
       evaluateOne(alone_.locateBelow({tile, rows.u[i], rows.v[i], turns, depth}), rows.rows[i]);
@@ -135,13 +136,79 @@ void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth,
   const RingTile& ring_tile = table_.ring_tiles[tile.index];
   const int corner = ring_tile.corner;
   turns = (turns + corner) & 3;
-  bool is_any_on_spoke = false;
+  const double least = powerOfTwo(-pose_.gridSteps(ring_tile));  // on the grids that are kept
+  unsigned below = 0;
   for (unsigned i = 0; i < rows.count; ++i) {
     turnParameters(corner, rows.u[i], rows.v[i]);
+    below += std::max(rows.u[i], rows.v[i]) < least ? 1 : 0;
+  }
+  if (below > rows.count / 4) {
+    evaluateQuarters(tile, turns, depth, rows);
+    return;
+  }
+  evaluateOnGrids(tile, turns, depth, rows);
+  if (below > 0) {
+    unsigned count = 0;
+    for (unsigned i = 0; i < rows.count; ++i) {
+      rows.u[count] = rows.u[i];
+      rows.v[count] = rows.v[i];
+      rows.rows[count] = rows.rows[i];
+      count += std::max(rows.u[i], rows.v[i]) < least ? 1 : 0;
+    }
+    evaluateQuarters(tile, turns, depth, {rows.u, rows.v, rows.rows, count});
+  }
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateOnGrids(TileRef tile, int turns, int depth,
+                                           const TileRows& rows) {
+  const int index = static_cast<int>(tile.index);
+  const RingTile& ring_tile = table_.ring_tiles[index];
+  const Pose::Grid& grid = pose_.grid(index, 1);
+  GridRun run;
+  run.grids = numbersOf(grid.points);
+  run.steps = pose_.gridSteps(ring_tile);
+  run.u_low = onRight(ring_tile.sides);
+  run.v_low = onLeft(ring_tile.sides);
+  run.turns = turns;
+  copy(grid.limit(), run.anchor);
+  run.depth_scale = powerOfTwo(depth);
+  run.u = rows.u;
+  run.v = rows.v;
+  run.rows = rows.rows;
+  run.count = rows.count;
+  const bool has_normals = order_ >= 1 && results_.normal;
+  if (has_normals) {
+    run.normal_limits = alone_.normalLimits(run.steps, depth);
+  }
+  grid_kernel_(run, results_);
+  if (has_normals) {
+    completeNormals(tile, turns, depth, rows);
+  }
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::completeNormals(TileRef tile, int turns, int depth,
+                                           const TileRows& rows) {
+  for (unsigned i = 0; i < rows.count; ++i) {
+    const TileLocation own{tile, rows.u[i], rows.v[i], turns, depth};
+    if (std::isnan(results_.normal[3 * rows.rows[i]]) && !own.atVertex()) {
+      Jet jet;
+      alone_.evaluateUpTo(order_, own, jet);  // the same du and dv as those in the results
+      putNormal(own, jet, rows.rows[i]);
+    }
+  }
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateQuarters(TileRef tile, int turns, int depth,
+                                            const TileRows& rows) {
+  bool is_any_on_spoke = false;
+  for (unsigned i = 0; i < rows.count; ++i) {
     is_any_on_spoke |= (rows.u[i] == 0) | (rows.v[i] == 0);
   }
-  const bool spokes_are_deep =
-      is_any_on_spoke && TileEvaluator::needsNets(*table_.rings[ring_tile.ring].basis, order_);
+  const Eigenbasis& basis = *table_.rings[table_.ring_tiles[tile.index].ring].basis;
+  const bool spokes_are_deep = is_any_on_spoke && TileEvaluator::needsNets(basis, order_);
   RowParts& parts = partsAt(depth);
   parts.sortByQuarter(rows, spokes_are_deep);
   parts.forEachPart([&](unsigned part, const TileRows& some) {
@@ -154,16 +221,16 @@ void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth,
     const int steps = static_cast<int>(part / 4);
     const Patch patch{
         tile, turns, depth, steps, static_cast<int>(part & 1), static_cast<int>(part >> 1 & 1)};
-    evaluatePatch(patch, powerOfTwo(steps), some.u, some.v, some.rows, some.count);
+    evaluatePatch(patch, powerOfTwo(steps), some);
   });
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluateOne(const TileLocation& place, std::size_t row) {
+void BatchEvaluator<Real>::evaluateOne(TileLocation place, std::size_t row) {
+  const TileRows single{&place.u, &place.v, &row, 1};
   if (place.tile.kind == TileRef::kBSpline) {
     if (!hasCrease(place.tile)) {
-      evaluatePatch({place.tile, place.turns, place.depth, 0, 0, 0}, 1, &place.u, &place.v, &row,
-                    1);
+      evaluatePatch({place.tile, place.turns, place.depth, 0, 0, 0}, 1, single);
       return;
     }
   } else if (!place.atVertex()) {
@@ -174,7 +241,7 @@ void BatchEvaluator<Real>::evaluateOne(const TileLocation& place, std::size_t ro
         (quarter.steps <= static_cast<int>(RowParts::kMostSteps) &&
          !TileEvaluator::takesModes(basis, order_, place.u, place.v))) {
       evaluatePatch({place.tile, place.turns, place.depth, quarter.steps, quarter.a, quarter.b},
-                    powerOfTwo(quarter.steps), &place.u, &place.v, &row, 1);
+                    powerOfTwo(quarter.steps), single);
       return;
     }
   }
@@ -182,36 +249,28 @@ void BatchEvaluator<Real>::evaluateOne(const TileLocation& place, std::size_t ro
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, double scale, const double* u,
-                                         const double* v, const std::size_t* rows, unsigned count) {
+void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, double scale, const TileRows& rows) {
   PatchRun run;
   if (patch.tile.kind == TileRef::kBSpline) {
     setBSpline(patch, run);
   } else {
-    setRing(patch, count == 1, run);
+    setRing(patch, rows.count == 1, run);
   }
   run.turns = patch.turns;
-  run.u = u;
-  run.v = v;
+  run.u = rows.u;
+  run.v = rows.v;
   run.scale = scale;
   run.a = patch.a;
   run.b = patch.b;
-  run.rows = rows;
-  run.count = count;
+  run.rows = rows.rows;
+  run.count = rows.count;
   const bool has_normals = order_ >= 1 && results_.normal;
   if (has_normals) {
     run.normal_limits = alone_.normalLimits(patch.steps, patch.depth);
   }
   kernel_(run, results_);
   if (has_normals) {
-    for (unsigned i = 0; i < count; ++i) {
-      if (std::isnan(results_.normal[3 * rows[i]])) {
-        const TileLocation own{patch.tile, u[i], v[i], patch.turns, patch.depth};
-        Jet jet;
-        alone_.evaluateUpTo(order_, own, jet);  // the same du and dv as those in the results
-        putNormal(own, jet, rows[i]);
-      }
-    }
+    completeNormals(patch.tile, patch.turns, patch.depth, rows);
   }
 }
 

@@ -48,16 +48,21 @@ class BatchEvaluator {
   void prefetchTile(TileRef tile) const;
   void evaluateSplit(TileRef tile, int turns, int depth, const TileRows& rows);
   void evaluateRingTile(TileRef tile, int turns, int depth, const TileRows& rows);
+  /// Rows whose parameters are in the ring tile's frame, patch by patch.
+  void evaluateQuarters(TileRef tile, int turns, int depth, const TileRows& rows);
+  /// Such rows on the grids that are kept. Those below get results without meaning.
+  void evaluateOnGrids(TileRef tile, int turns, int depth, const TileRows& rows);
   /// The parameters are in the tile's frame. They are `scale` times as large in that of the patch.
-  void evaluatePatch(const Patch& patch, double scale, const double* u, const double* v,
-                     const std::size_t* rows, unsigned count);
+  void evaluatePatch(const Patch& patch, double scale, const TileRows& rows);
+  /// Computes the normals that the kernels have left out.
+  void completeNormals(TileRef tile, int turns, int depth, const TileRows& rows);
   void setBSpline(const Patch& patch, PatchRun& run);
   void setRing(const Patch& patch, bool is_single, PatchRun& run);
   /// Computes the points of a ring tile after more steps than are kept, or their nets: all of them,
   /// unless they are for a single row.
   void setDeep(const Patch& patch, bool is_single);
   /// A row on its own: by a patch where there is one, otherwise by TileEvaluator.
-  void evaluateOne(const TileLocation& place, std::size_t row);
+  void evaluateOne(TileLocation place, std::size_t row);
   void evaluateAlone(const TileLocation& place, std::size_t row);
   void putNormal(const TileLocation& place, const Jet& jet, std::size_t row);
 
@@ -68,6 +73,7 @@ class BatchEvaluator {
   const TileTable& table_;
   const Pose& pose_;
   const typename PatchKernels::Evaluate<Real> kernel_;
+  const typename PatchKernels::EvaluateOnGrids<Real> grid_kernel_;
   const int order_;
   const PatchResults<Real> results_;
   TileEvaluator alone_;

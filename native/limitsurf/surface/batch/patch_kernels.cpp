@@ -16,6 +16,34 @@ namespace {
 
 namespace baseline {
 #include "limitsurf/surface/batch/lanes.inl.h"
+/// Two vectors. Compilers would keep one that is larger than a register in memory.
+template <>
+struct Lanes<4> {
+  struct Numbers {
+    Lanes<2> low, high;
+    double operator[](int i) const { return i < 2 ? low.numbers[i] : high.numbers[i - 2]; }
+  } numbers;
+
+  [[gnu::always_inline]] friend Lanes operator+(const Lanes& a, const Lanes& b) {
+    return {{a.numbers.low + b.numbers.low, a.numbers.high + b.numbers.high}};
+  }
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a, const Lanes& b) {
+    return {{a.numbers.low - b.numbers.low, a.numbers.high - b.numbers.high}};
+  }
+  [[gnu::always_inline]] friend Lanes operator*(const Lanes& a, const Lanes& b) {
+    return {{a.numbers.low * b.numbers.low, a.numbers.high * b.numbers.high}};
+  }
+  [[gnu::always_inline]] friend Lanes operator*(const Lanes& a, double b) { return a * of(b); }
+  [[gnu::always_inline]] friend Lanes operator*(double a, const Lanes& b) { return of(a) * b; }
+  [[gnu::always_inline]] static Lanes of(double a) { return {{Lanes<2>::of(a), Lanes<2>::of(a)}}; }
+  [[gnu::always_inline]] static Lanes load(const double* from) {
+    return {{Lanes<2>::load(from), Lanes<2>::load(from + 2)}};
+  }
+  [[gnu::always_inline]] void store(double* to) const {
+    numbers.low.store(to);
+    numbers.high.store(to + 2);
+  }
+};
 constexpr int kLanes = 2, kFewLanes = 2;
 constexpr std::size_t kFewestLanes = 2;
 inline double squareRoot(double a) { return __builtin_sqrt(a); }

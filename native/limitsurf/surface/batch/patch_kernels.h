@@ -19,6 +19,16 @@ struct PatchKernels {
   template <typename Real>
   Evaluate<Real> evaluate(int order) const;
 
+  /// The same on the grids of a ring tile.
+  template <typename Real>
+  using EvaluateOnGrids = void (*)(const GridRun& run, const PatchResults<Real>& results);
+
+  EvaluateOnGrids<double> on_grids_double[3];
+  EvaluateOnGrids<float> on_grids_float[3];
+
+  template <typename Real>
+  EvaluateOnGrids<Real> evaluateOnGrids(int order) const;
+
   /// For the instruction set in use.
   static const PatchKernels& get();
 };
@@ -30,6 +40,14 @@ inline PatchKernels::Evaluate<double> PatchKernels::evaluate(int order) const {
 template <>
 inline PatchKernels::Evaluate<float> PatchKernels::evaluate(int order) const {
   return evaluate_float[order];
+}
+template <>
+inline PatchKernels::EvaluateOnGrids<double> PatchKernels::evaluateOnGrids(int order) const {
+  return on_grids_double[order];
+}
+template <>
+inline PatchKernels::EvaluateOnGrids<float> PatchKernels::evaluateOnGrids(int order) const {
+  return on_grids_float[order];
 }
 
 }  // namespace limitsurf

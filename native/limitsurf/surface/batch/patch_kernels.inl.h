@@ -20,12 +20,12 @@ inline void rereadMemory() {
 
 /// What a run does to the derivatives of its patch, as Jet::turn() does.
 struct Turned {
-  explicit Turned(const PatchRun& run)
-      : swapped(run.turns % 2 == 1),
-        du(kSignOfDu[run.turns] * run.first_scale),
-        dv(kSignOfDv[run.turns] * run.first_scale),
-        second(run.second_scale),
-        duv(kSignOfDuv[run.turns] * run.second_scale) {}
+  Turned(int turns, double first_scale, double second_scale)
+      : swapped(turns % 2 == 1),
+        du(kSignOfDu[turns] * first_scale),
+        dv(kSignOfDv[turns] * first_scale),
+        second(second_scale),
+        duv(kSignOfDuv[turns] * second_scale) {}
 
   bool swapped;
   double du, dv, second, duv;  // factors
@@ -229,6 +229,20 @@ inline void putPoint(float* to, const Lanes<4>& point) {
   }
 }
 
+/// The unit normal, or NaN where it does not meet the limits.
+template <typename Real>
+inline void putNormal(const Lanes<4>& du, const Lanes<4>& dv, const NormalLimits& limits,
+                      Real* to) {
+  const double x[3] = {du.numbers[0], du.numbers[1], du.numbers[2]};
+  const double y[3] = {dv.numbers[0], dv.numbers[1], dv.numbers[2]};
+  const UnitNormal<double> normal(x, y);
+  const bool keeps = normalKeepsDigits(normal.square, normal.lengths, normal.squares,
+                                       limits.sine_square, limits.square);
+  for (int c = 0; c < 3; ++c) {
+    to[c] = static_cast<Real>(keeps ? normal.unit[c] : __builtin_nan(""));
+  }
+}
+
 /// One row, all coordinates at a time.
 template <int Order, typename Real>
 [[gnu::always_inline]] inline void evaluateRow(const PatchRun& run, const Turned& turned,
@@ -254,14 +268,7 @@ template <int Order, typename Real>
     putPoint(results.du + at, du);
     putPoint(results.dv + at, dv);
     if (results.normal) {
-      const double x[3] = {du.numbers[0], du.numbers[1], du.numbers[2]};
-      const double y[3] = {dv.numbers[0], dv.numbers[1], dv.numbers[2]};
-      const UnitNormal<double> normal(x, y);
-      const bool keeps = normalKeepsDigits(normal.square, normal.lengths, normal.squares,
-                                           run.normal_limits.sine_square, run.normal_limits.square);
-      for (int c = 0; c < 3; ++c) {
-        results.normal[at + c] = static_cast<Real>(keeps ? normal.unit[c] : __builtin_nan(""));
-      }
+      putNormal(du, dv, run.normal_limits, results.normal + at);
     }
   }
   if (Order >= 2) {
@@ -317,7 +324,7 @@ void evaluateInLanes(const PatchRun& run, const Turned& turned, const PatchResul
 
 template <int Order, typename Real>
 void evaluate(const PatchRun& run, const PatchResults<Real>& results) {
-  const Turned turned(run);
+  const Turned turned(run.turns, run.first_scale, run.second_scale);
   if (run.count < kFewestLanes) {
     evaluateOneByOne<Order>(run, turned, 0, results);
   } else if (run.has_nets) {
@@ -327,7 +334,11 @@ void evaluate(const PatchRun& run, const PatchResults<Real>& results) {
   }
 }
 
+#include "limitsurf/surface/batch/grid_kernels.inl.h"
+
 inline const PatchKernels kKernels = {
     {evaluate<0, double>, evaluate<1, double>, evaluate<2, double>},
     {evaluate<0, float>, evaluate<1, float>, evaluate<2, float>},
+    {evaluateOnGrids<0, double>, evaluateOnGrids<1, double>, evaluateOnGrids<2, double>},
+    {evaluateOnGrids<0, float>, evaluateOnGrids<1, float>, evaluateOnGrids<2, float>},
 };

@@ -38,6 +38,25 @@ struct PatchRun {
   std::size_t count;
 };
 
+/// Locations on a ring tile, which lie on the grids that are kept of its first steps (Pose::Grid).
+struct GridRun {
+  static constexpr int kStride = 5, kSlots = 25;
+  /// The grids after 1, 2, ... `steps` steps, one behind the other; relative to the anchor.
+  const double (*grids)[4];
+  int steps;
+  bool u_low, v_low;   ///< whether the sides at u = 0 and v = 0 have no points beyond them
+  int turns;           ///< by how many corners the tile is turned against the face, 0 to 3
+  double anchor[4];    ///< the fourth number is 0
+  double depth_scale;  ///< 2^depth of the tile
+  NormalLimits normal_limits{0, 0};  ///< as in PatchRun
+  /// Parameters in the tile's frame. As many numbers more as PatchRun::kReadBeyond can be read
+  /// behind them. One of u and v is larger than 2^-steps or equal; results of other rows have no
+  /// meaning.
+  const double *u, *v;
+  const std::size_t* rows;  ///< the rows that get the results
+  std::size_t count;
+};
+
 /// Where results go: row r of each array has its three numbers from 3 r on. Normals may be missing.
 template <typename Real>
 struct PatchResults {
