@@ -87,7 +87,7 @@ class BlueNoiseMaker {
                                   " points would come out; at most 2147483647 can");
     }
     const std::vector<Location> at = sampled(radius).at;
-    return result(ordered(at, orderByFace(at, has_surface_.size())), radius);
+    return result(ordered(at, orderByFace(at, has_surface_.size()), threads_), radius);
   }
 
   BlueNoise ofCount(std::size_t count) {
@@ -122,10 +122,10 @@ class BlueNoiseMaker {
           (excess <= kMostSurplus || found <= count + 2 || attempt > kPatientAttempts)) {
         // Neighbours shall be close to each other in memory.
         const std::vector<std::size_t> order = orderByFace(points.at, has_surface_.size());
-        Crowding crowding(box_, {ordered(points.discs, order), ordered(points.at, order)},
-                          threads_);
-        crowding.thin(count);
-        const double slack = crowding.slack();
+        Crowding crowding(
+            box_, {ordered(points.discs, order, threads_), ordered(points.at, order, threads_)},
+            threads_);
+        const double slack = crowding.thin(count);
         const double held = radius * slack * (1 - kRadiusRounding) - margin_;
         return result(std::move(crowding.points().at), std::max(held, 0.));
       }

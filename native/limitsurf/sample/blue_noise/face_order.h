@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <vector>
 
+#include "limitsurf/parallel.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -26,9 +26,15 @@ inline std::vector<std::size_t> orderByFace(const std::vector<Location>& at, std
 
 /// Elements in an order, which is given as their numbers.
 template <typename T>
-std::vector<T> ordered(const std::vector<T>& all, const std::vector<std::size_t>& order) {
+std::vector<T> ordered(const std::vector<T>& all, const std::vector<std::size_t>& order,
+                       int threads) {
+  constexpr std::size_t kElementsPerTask = 1 << 13;
   std::vector<T> result(all.size());
-  std::transform(order.begin(), order.end(), result.begin(), [&](std::size_t i) { return all[i]; });
+  parallelFor(order.size(), kElementsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      result[i] = all[order[i]];
+    }
+  });
   return result;
 }
 
