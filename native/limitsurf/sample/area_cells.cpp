@@ -2,6 +2,9 @@
 #include "limitsurf/sample/area_cells.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "limitsurf/float_rounding.h"
 #include "limitsurf/sample/area_form.h"
@@ -25,43 +28,81 @@ constexpr double kSlowest = 0.5, kUsual = 0.25;
 /// The number of tiles that one task cuts into cells.
 constexpr std::size_t kTilesPerTask = 64;
 
-/// Cuts pieces of the surface into cells.
+/// Cuts tiles into cells. Patches are bounded side by side: all regular ones and the first patches
+/// of all cores, then the next patches of those cores that need more, and so on.
 class CellMaker {
  public:
-  CellMaker(const SurfacePatches& patches, std::vector<AreaCell>& cells)
-      : patches_(patches), cells_(cells) {}
-  ~CellMaker() { addWaiting(); }
+  explicit CellMaker(const SurfacePatches& patches) : patches_(patches) {}
 
-  void add(const SurfacePiece& piece) {
-    if (piece.isCore()) {
-      addWaiting();
-      addCore(piece);
-    } else {
-      wait(piece, patches_.patch(piece));
+  /// Appends the cells of some tiles, in the order of the tiles' pieces.
+  void cut(std::size_t begin, std::size_t end, std::vector<AreaCell>& cells) {
+    pieces_.clear();
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      patches_.appendPieces(static_cast<int>(tile), pieces_);
     }
+    found_.clear();
+    counts_.assign(pieces_.size() + 1, 0);
+    cores_.clear();
+    cores_.reserve(pieces_.size());
+    open_.clear();
+    for (std::size_t place = 0; place < pieces_.size(); ++place) {
+      const SurfacePiece& piece = pieces_[place];
+      if (piece.isCore()) {
+        open_.push_back(cores_.size());
+        cores_.emplace_back(patches_, piece, place);
+      } else {
+        wait(piece, patches_.patch(piece), place, kNoCore);
+      }
+    }
+    do {
+      splitCores();
+      addWaiting();
+      finishCores();
+    } while (!open_.empty());
+    appendInOrder(cells);
   }
 
  private:
+  static constexpr std::size_t kNoCore = static_cast<std::size_t>(-1);
+
+  struct Core {
+    Core(const SurfacePatches& patches, const SurfacePiece& piece, std::size_t in_order)
+        : rest(piece), place(in_order), pitches(patches, piece) {}
+
+    SurfacePiece rest;
+    std::size_t place;  // of the piece in its order
+    RingPitches pitches;
+    SurfacePatches::SplitCore split;
+    double bounds = 0, last = 0;  // of all patches so far, and the area of those of the last step
+    double sum = 0, area = 0;     // of the cells of this step: all bounds, and the whole area
+  };
+  /// A patch that waits.
+  struct Waiting {
+    SurfacePiece piece;
+    std::size_t place, core;
+  };
+
   /// Patches wait until there are enough to be bounded side by side.
-  void wait(const SurfacePiece& piece, const BezierPatch& patch) {
-    pieces_[waiting_] = piece;
-    block_.put(patch, waiting_);
-    if (++waiting_ == SquareBlock::kCount) {
+  void wait(const SurfacePiece& piece, const BezierPatch& patch, std::size_t place,
+            std::size_t core) {
+    waiting_[count_] = {piece, place, core};
+    block_.put(patch, count_);
+    if (++count_ == SquareBlock::kCount) {
       addWaiting();
     }
   }
 
-  /// Adds the cells of all patches that wait. Returns the sum of their bounds.
-  double addWaiting() {
+  /// Adds the cells of all patches that wait.
+  void addWaiting() {
     double bounds[SquareBlock::kCount], means[SquareBlock::kCount];
-    for (int place = waiting_; waiting_ > 0 && place < SquareBlock::kCount; ++place) {
+    for (int place = count_; count_ > 0 && place < SquareBlock::kCount; ++place) {
       block_.copy(0, place);
     }
-    AreaKernels::get().bounds(block_, waiting_, bounds, means);
-    sum_ = area_ = 0;
-    for (int i = 0; i < waiting_; ++i) {
+    AreaKernels::get().bounds(block_, count_, bounds, means);
+    for (int i = 0; i < count_; ++i) {
       AreaCell cell;
-      cell.piece = pieces_[i];
+      cell.piece = waiting_[i].piece;
+      now_ = &waiting_[i];
       if (isLoose(bounds[i], means[i])) {
         BezierPatch patch;
         block_.get(i, patch);
@@ -71,8 +112,7 @@ class CellMaker {
         addCell(cell, bounds[i], means[i]);
       }
     }
-    waiting_ = 0;
-    return sum_;
+    count_ = 0;
   }
 
   static bool isLoose(double bound, double mean) { return bound > kLoose * mean; }
@@ -102,54 +142,91 @@ class CellMaker {
     if (bound > 0) {
       cell.bound = roundedUp(bound);
       cell.area = static_cast<float>(area);
-      sum_ += cell.bound;
-      area_ += cell.area;
-      cells_.push_back(cell);
+      if (now_->core != kNoCore) {
+        cores_[now_->core].sum += cell.bound;
+        cores_[now_->core].area += cell.area;
+      }
+      add(cell, now_->place);
     }
   }
 
-  void addCore(SurfacePiece core) {
-    double bounds = 0, last = 0;
-    SurfacePatches::SplitCore split;
-    RingPitches pitches(patches_, core);
-    while (core.steps < SurfacePatches::kMostSteps) {
-      patches_.split(core, split);
+  void add(const AreaCell& cell, std::size_t place) {
+    found_.emplace_back(place, cell);
+    ++counts_[place + 1];
+  }
+
+  /// Splits all open cores once.
+  void splitCores() {
+    for (const std::size_t i : open_) {
+      Core& core = cores_[i];
+      core.sum = core.area = 0;
+      const SurfacePiece whole = core.rest;
+      patches_.split(whole, core.split);
+      core.rest = core.split.core;
       for (int quarter = 0; quarter < 3; ++quarter) {
-        wait(split.pieces[quarter], split.patches[quarter]);
+        wait(core.split.pieces[quarter], core.split.patches[quarter], core.place, i);
       }
-      const double before = last;
-      bounds += addWaiting();
-      last = area_;
-      core = split.core;
-      const Vector3 outer = patches_.outerPitch(split, pitches.frame());
-      const double area = CoreTail(pitches, core.steps, outer).area();
-      if (!(area > kTail * bounds)) {
-        if (!(area > 0)) {
-          return;
-        }
-        AreaCell cell;
-        cell.piece = core;
-        // The bound is summed up from the rounded numbers, as samplers will do it, to the last bit.
-        Vector3 rounded;
-        for (int axis = 0; axis < 3; ++axis) {
-          rounded[axis] = cell.outer[axis] = roundedUp(outer[axis]);
-        }
-        cell.bound = roundedUp(CoreTail(pitches, core.steps, rounded).area());
-        // The areas of further steps shrink by about the same factor.
-        const double factor = before > 0 ? std::min(last / before, kSlowest) : kUsual;
-        cell.area = std::min(cell.bound, static_cast<float>(last * factor / (1 - factor)));
-        cells_.push_back(cell);
-        return;
+    }
+  }
+
+  /// Adds the rests of cores that need no more steps.
+  void finishCores() {
+    std::size_t left = 0;
+    for (const std::size_t i : open_) {
+      if (!finish(cores_[i])) {
+        open_[left++] = i;
       }
+    }
+    open_.resize(left);
+  }
+
+  bool finish(Core& core) {
+    const double before = core.last;
+    core.bounds += core.sum;
+    core.last = core.area;
+    const int steps = core.rest.steps;
+    const Vector3 outer = patches_.outerPitch(core.split, core.pitches.frame());
+    const double area = CoreTail(core.pitches, steps, outer).area();
+    if (area > kTail * core.bounds) {
+      return steps >= SurfacePatches::kMostSteps;
+    }
+    if (area > 0) {
+      AreaCell cell;
+      cell.piece = core.rest;
+      // The bound is summed up from the rounded numbers, as samplers will do it, to the last bit.
+      Vector3 rounded;
+      for (int axis = 0; axis < 3; ++axis) {
+        rounded[axis] = cell.outer[axis] = roundedUp(outer[axis]);
+      }
+      cell.bound = roundedUp(CoreTail(core.pitches, steps, rounded).area());
+      // The areas of further steps shrink by about the same factor.
+      const double factor = before > 0 ? std::min(core.last / before, kSlowest) : kUsual;
+      cell.area = std::min(cell.bound, static_cast<float>(core.last * factor / (1 - factor)));
+      add(cell, core.place);
+    }
+    return true;
+  }
+
+  /// The cells of a piece stay in the order in which they were found.
+  void appendInOrder(std::vector<AreaCell>& cells) {
+    std::partial_sum(counts_.begin(), counts_.end(), counts_.begin());
+    const std::size_t first = cells.size();
+    cells.resize(first + found_.size());
+    for (const auto& [place, cell] : found_) {
+      cells[first + counts_[place]++] = cell;
     }
   }
 
   const SurfacePatches& patches_;
-  std::vector<AreaCell>& cells_;
+  std::vector<SurfacePiece> pieces_;
+  std::vector<Core> cores_;
+  std::vector<std::size_t> open_;  // the cores that need more steps
   SquareBlock block_;
-  SurfacePiece pieces_[SquareBlock::kCount];
-  int waiting_ = 0;
-  double sum_ = 0, area_ = 0;  // of the cells made together: all bounds, and the whole area
+  Waiting waiting_[SquareBlock::kCount];
+  int count_ = 0;                                        // of those that wait
+  const Waiting* now_ = nullptr;                         // the one whose cells are added
+  std::vector<std::pair<std::size_t, AreaCell>> found_;  // with the places of their pieces
+  std::vector<std::size_t> counts_;                      // of the cells of the piece before
 };
 
 }  // namespace
@@ -159,15 +236,7 @@ std::vector<AreaCell> areaCells(const SurfacePatches& patches, int threads) {
   return concatenated<AreaCell>(
       tiles, kTilesPerTask, threads,
       [&](std::size_t begin, std::size_t end, std::vector<AreaCell>& cells) {
-        CellMaker maker(patches, cells);
-        std::vector<SurfacePiece> pieces;
-        for (std::size_t tile = begin; tile < end; ++tile) {
-          pieces.clear();
-          patches.appendPieces(static_cast<int>(tile), pieces);
-          for (const SurfacePiece& piece : pieces) {
-            maker.add(piece);
-          }
-        }
+        CellMaker(patches).cut(begin, end, cells);
       });
 }
 
