@@ -69,11 +69,12 @@ Catmull-Clark Subdivision Surfaces Near B-Spline Boundaries", 2007) at boundarie
 )";
 
 constexpr const char* kSetPositionsDoc =
-    R"(Sets new positions, (V, 3) float, under the same topology.
+    R"(Gives the surface another pose: new positions, (V, 3) float, of the vertices of the same mesh.
 
-Raises MeshError for an array of another shape and for values that ControlMesh refuses; the positions do
-not change then, nor if Ctrl-C ends the call. Raises RuntimeError in a function that a call on the same surface has called. Waits
-for evaluations that run in other threads. Cost: O(V), plus O(valence^2) for each irregular vertex.
+Waits for evaluations that run in other threads. Raises MeshError for an array of another shape and for
+values that ControlMesh refuses. Then nothing has changed, nor if Ctrl-C ends the call. Raises
+RuntimeError if it is called by a function that a call on the same surface runs (a progress function,
+for example). Cost: O(V), plus O(valence^2) for each irregular vertex.
 )";
 
 constexpr const char* kEvaluateDoc =
@@ -95,17 +96,17 @@ Returns
 -------
 Evaluation
     .position; with derivatives >= 1 .du .dv .normal; with derivatives=2 .duu .duv .dvv; (n, 3) each.
-    Those that are not wanted are None. Exactly at an irregular vertex the position is always finite,
+    Those that are not wanted are None. Positions are always finite. Exactly at an irregular vertex
     derivatives along a boundary of the face are those of the limit curve, and du = dv = 0 at interior
     valence 2 and 3. All other derivatives are NaN there, and so is the normal if it depends on the
-    direction from which the vertex is approached. The normal is also NaN where du x dv is nothing but
-    rounding, as on a fold or on a face without area.
+    direction from which the vertex is approached. The normal is also NaN where du x dv consists only
+    of rounding errors, as on a fold or on a face without area.
 
 Error bounds: positions 1e-13 of the bounding box's diagonal; du and dv 1e-12, and second derivatives
-1e-11, of the larger of the value itself and the largest on the face; normals 1e-11 radians, times
-their condition number. It is the ratio of S sqrt(2 (du^2 + dv^2)) to the length of du x dv, where S
-is the size of the patch's control polygon, and large on slivers only. Where it exceeds 2^30, the
-normal is NaN.
+1e-11, of the value itself or of the largest value on the face, whichever is larger; normals 1e-11
+radians, times their condition number. The condition number is S sqrt(2 (du^2 + dv^2)) divided by the
+length of du x dv, where S is the size of the patch's control polygon. It is large only on slivers and
+near folds. Where it exceeds 2^30, the normal is NaN.
 
 Cost: O(1) a location, O(valence) within about 1/16 of an irregular vertex.
 
@@ -122,10 +123,10 @@ that is least aligned with it. Parameters and errors are those of evaluate().
 )";
 
 constexpr const char* kPlacedFramesDoc =
-    R"(The frames of frames() and the positions at which they stand, in one evaluation: PlacedFrames.
+    R"(Positions and frames at the same locations, in one evaluation: PlacedFrames.
 
-.position (n, 3) is that of evaluate(), .frame (n, 3, 3) that of frames(), each to the bit. Parameters and
-errors are those of evaluate().
+.position (n, 3) has the same bits as that of evaluate(), and .frame (n, 3, 3) as frames(). Parameters
+and errors are those of evaluate().
 )";
 
 constexpr const char* kCurvatureDoc =
@@ -134,7 +135,7 @@ constexpr const char* kCurvatureDoc =
 Returns Curvature: .gaussian .mean .k1 .k2 (n,), with k1 >= k2, in the inverse (gaussian: squared
 inverse) unit of length; the unit directions .direction1 .direction2 (n, 3) of k1 and k2; and .irregular
 (n,) bool, which is True exactly at an irregular vertex, where curvature has no limit in general. Signs
-follow the normal: a sphere whose normals point outwards has negative curvature.
+depend on the normal: a sphere whose normals point outwards has negative curvature.
 
 At an irregular vertex the result depends on `irregular`:
 
@@ -154,8 +155,9 @@ at which the surface is singular (du x dv = 0) or has an opposite normal are lef
 and at singular places anywhere, the result is NaN.
 
 Error bound: 1e-9 of the larger of |k1| and |k2|, down to 2^-40 of a face beside irregular vertices of up
-to 64 faces; of averages, 1e-9 of the largest averaged curvature, for radii from 2^-40 on. Cost: as evaluate(), and O(valence^2)
-for each such vertex, and O(faces) for each 131,072 locations if any is at such a vertex.
+to 64 faces; of averages, 1e-9 of the largest averaged curvature, for radii from 2^-40 on. Cost: as
+evaluate(), and O(valence^2) for each such vertex, and O(faces) for each 131,072 locations if any is at
+such a vertex.
 
 Raises ValueError for a radius outside (0, 1/2], MeshError for another `irregular`, and all errors that
 evaluate() raises.
@@ -247,9 +249,9 @@ that of LimitSurface.evaluate() for every three columns.
 constexpr const char* kSetValuesDoc =
     R"(Replaces the values by others of the same shape, (m, d) or (m,) float.
 
-Raises MeshError for another shape and for values that are not finite; the values do not change then.
-Raises RuntimeError in a function that a call on the same data has called. Waits for evaluations in
-other threads. Cost: that of LimitSurface.set_positions() for every three columns.
+Waits for evaluations in other threads. Raises MeshError for another shape and for values that are not
+finite; then nothing has changed. Raises RuntimeError if it is called by a function that a call on the
+same data runs. Cost: that of LimitSurface.set_positions() for every three columns.
 )";
 
 constexpr const char* kVertexLocationsDoc =
@@ -322,11 +324,11 @@ constexpr const char* kClosestDoc =
     R"(The closest point of the limit surface to each of (n, 3) points.
 
 The exact surface is searched, not polygons; boundaries, creases and corners are parts of it. Points
-farther than max_distance are not found. With facing, directions (n, 3) or (3,), only feet count whose
-normal is within max_angle (radians, 0 to pi) of the direction. A foot is a local minimum of the distance
-on the smooth sheet it lies on; boundaries and infinitely sharp edges end a sheet. progress is a function
-that is called from time to time with the part of the work that is done, 0 to 1; an exception that it
-raises ends the call.
+farther than max_distance are not found. With facing, directions (n, 3) or (3,), a point counts only if
+its normal is within max_angle (radians, 0 to pi) of the direction, and if the distance has a local
+minimum there on the smooth part of the surface that contains it; boundaries and infinitely sharp edges
+end such a part. progress is a function that is called from time to time with the part of the work that
+is done, 0 to 1; an exception that it raises ends the call.
 
 Returns Hits: .face (n,) int32, .uv (n, 2), .position and .normal (n, 3), those of evaluate() at the
 location, and .distance (n,). Where no point is found face is -1 and everything else NaN.
@@ -365,10 +367,10 @@ of each patch is returned.
 constexpr const char* kTessellateDoc =
     R"(Watertight polygons on the limit surface: 2^levels x 2^levels quads a face.
 
-Each sub-face of an n-gon becomes half as many quads a side, so levels must be at least 1 if there are
-n-gons. levels may also be (F,) integers, one for each face of the mesh; those of refused faces are
-ignored. An edge then has 2^level segments for the larger level of its faces, and a coarser face has
-smaller quads and triangles towards such an edge.
+A sub-face of an n-gon has half as many quads a side, so levels must be at least 1 if there are n-gons.
+levels may also be (F,) integers, one for each face of the mesh; those of refused faces are ignored. The
+larger level of the two faces of an edge then decides how many segments the edge has, 2^level, and the
+coarser face has smaller quads and triangles towards it.
 
 Returns Tessellation:
     .positions .normals (n, 3), .locations: the points, each of which exists once

@@ -20,19 +20,19 @@ Parameters
     threads: 0 uses all cores.
     progress: a function that is called with the part that is done, 0 to 1.
 
-At a curve the direction is the curve's own (from its first point to its last), seen from the surface's
-point that is closest to it. Elsewhere it is that of the field of tangent vectors that agrees with the
-curves and changes least along the surface: a place follows the curves that are near it along the
-surface, and between two curves the direction turns from one to the other. Rows are 0 where no way along
-the surface leads to a curve.
+At a curve the direction is the curve's own, from its first point to its last; it counts at the point of
+the surface that is closest to the curve. Elsewhere the directions are those of the field of tangent
+vectors that agrees with the curves and changes least along the surface: a place follows the curves that
+are near it along the surface, and between two curves the direction turns from one to the other. Rows
+are 0 where no way along the surface leads to a curve.
 
 The field is computed on about 30,000 polygons on the limit surface, or one for each Ptex face if there
 are more of these. Curves that cross one polygon in different directions are averaged there.
 
 Raises LocationError and MeshError as evaluate() does, and ValueError for arrays of other shapes, for
 offsets that do not begin with 0, decrease, or do not end with m, for a point that is not finite, and if no
-part of a curve runs along the surface. Cost, on one core: 0.4 s for 16,000
-polygons, 9 s for 100,000. The number of threads gives the same bits.
+part of a curve runs along the surface. Cost, on one core: 0.4 s for 16,000 polygons, 9 s for 100,000. The
+result has the same bits for any number of threads.
 )";
 
 py::object curveDirections(const SharedSurface& shared, const py::object& points,

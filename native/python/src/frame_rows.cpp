@@ -19,23 +19,23 @@ Error: 2e-15. Raises ValueError for an array of another shape. Cost: O(n).
 )";
 
 constexpr char kFramesInWorldDoc[] =
-    R"((n, 3, 3) frames of an object as they are in the world.
+    R"((n, 3, 3) frames of an object, transformed to the world.
 
 Parameters
     frames: (n, 3, 3), with the columns tangent, normal x tangent, normal, as surface.frames() gives them.
     matrix: (3, 3), which maps the object's vectors to the world's.
 
-The tangent is mapped, the normal stays perpendicular to the surface, and the column between them is
-perpendicular to both and points to the side of growing v: where the matrix mirrors, the frame is
-left-handed. Columns are unit vectors, NaN where they have no direction. Error: 2e-15 times the condition
-number of the matrix. Raises ValueError for arrays of other shapes. Cost: O(n).
+The tangent is transformed by the matrix, and the normal remains perpendicular to the surface. The column
+between them is perpendicular to both and points to the side of growing v, so the frame is left-handed if
+the matrix mirrors. Columns are unit vectors, NaN where they have no direction. Error: 2e-15 times the
+condition number of the matrix. Raises ValueError for arrays of other shapes. Cost: O(n).
 )";
 
 constexpr char kLeaningDoc[] =
     R"((n, 3) unit vectors: the last columns of frames (n, 3, 3), turned towards the first two columns.
 
-angles (n, 2) are in radians; both are one turn, about one axis. Error: 2e-15. Raises ValueError for arrays of
-other shapes. Cost: O(n).
+angles (n, 2) are in radians; the two are combined into one rotation about one axis. Error: 2e-15. Raises
+ValueError for arrays of other shapes. Cost: O(n).
 )";
 
 constexpr char kStraightStrandsDoc[] =

@@ -20,36 +20,36 @@ constexpr char kGuideWeightsDoc[] =
     R"(guide_weights(guide_face, guide_uv, face, uv, count=4, *, cuts=None, cut_points=None, cut_offsets=None,
               threads=0, progress=None)
 
-The nearest guides of places by distance along the surface, and weights that fall off with it: what
-children of hair need. A way does not lead through the air: guides on the other lip are far away.
+The nearest guides of each place, and their weights: what children of hair need. Distances are measured
+along the surface, not through the air: a guide on the upper lip is far from a place on the lower one.
 
 Parameters
     guide_face, guide_uv: (g,) Ptex faces and (g, 2): the roots of the guides.
     face, uv: (n,) and (n, 2): the places.
     count: guides of each place, 1 to 16.
-    cuts: (m, 2) integers, pairs of vertices: edges of the control mesh that no way crosses, as a
-        parting. A way may go around the end of a row of edges. To keep regions apart, give all edges
-        between them.
-    cut_points: (p, 3): the points of curves that no way crosses either. They consist of straight lines
-        between these points, and are laid onto the surface at the points of it that are closest to
-        them. A closed curve ends with its first point. A way may go around an end, unless that lies on
-        a border or on another curve.
+    cuts: (m, 2) integers, pairs of vertices: edges of the control mesh that part the hair. Distances
+        are not measured across them, but may go around the end of a row of edges. To separate regions,
+        give all edges between them.
+    cut_points: (p, 3): the points of curves that part the hair in the same way. A curve consists of
+        straight lines between its points, which are projected to the closest points of the surface. A
+        closed curve ends with its first point. Distances may go around an end of a curve, unless the
+        end lies on a border or on another curve.
     cut_offsets: (k + 1,) integers: curve i has the points cut_offsets[i] to cut_offsets[i + 1] - 1.
         None: all points are one curve.
     threads: 0 uses all cores.
     progress: a function that is called from time to time with the part of the work that is done, 0 to
         1; an exception that it raises ends the call.
 
-Returns GuideWeights: .guide (n, count) int32, .weight and .distance (n, count), the nearest first. With
-d the distance, the weights are ((1 - d / R) / d)^2, scaled so that they add up to 1; R is the distance
-of the next guide, which gets no weight (Franke & Nielson 1980). So a guide's weight goes to 0 where
-another guide takes its place, and at a guide's root this guide alone counts. Where fewer guides can be
-reached, guide is -1, weight 0 and distance inf.
+Returns GuideWeights: .guide (n, count) int32, .weight and .distance (n, count), the nearest first. The
+weight of a guide at the distance d is ((1 - d / R) / d)^2, scaled so that the weights add up to 1. R is
+the distance of the next guide, which gets no weight (Franke & Nielson 1980). So a guide's weight goes to
+0 where another guide takes its place, and at the root of a guide only this guide has a weight. Where
+fewer guides can be reached, guide is -1, weight 0 and distance inf.
 
-Error: distances are measured on triangles with their vertices on the surface, by fast marching whose
-wave fronts are circles: within 1 % from an eighth of a face's side on, and on flat surfaces within 1e-3
-of such a side, except behind cuts and borders. The number of threads gives
-the same bits. Distances are those of the present pose: for those in the world, pose the surface there.
+Error: distances are measured on triangles whose vertices lie on the surface, by fast marching with
+circular wave fronts. They are within 1 % from an eighth of a face's side on, and on flat surfaces within
+1e-3 of such a side, except behind cuts and borders. Distances are those of the present pose; for
+distances in the world, pose the surface there. The result has the same bits for any number of threads.
 
 Raises LocationError and MeshError as evaluate() does, MeshError for cuts that are no edges of the mesh,
 naming the row, and ValueError for a count out of range, for points and offsets of curves of other shapes,
@@ -68,7 +68,7 @@ Raises ValueError for arrays of other shapes, a count below 2, and a strand with
 constexpr char kChildrenDoc[] =
     R"(child_strands(guide_points, guide_normals, guide, weight, roots, normals, *, threads=0, progress=None)
 
-Strands that are shaped as the guides around them.
+Strands of hair (children) that take their shapes from the guides around them.
 
 Parameters
     guide_points: (g, p, 3): the guides, all with the same number of points (resample_strands()).
@@ -78,10 +78,10 @@ Parameters
     threads: 0 uses all cores.
     progress: as for guide_weights().
 
-Returns (n, p, 3) float32. The shape of a guide, relative to its first point, is turned by the smallest
-rotation that turns the normal at its root into that at the child's. A child's shape is the weighted mean
-of these, scaled about its root so that its length is the weighted mean of the guides' lengths. Its first
-point is its root.
+Returns (n, p, 3) float32. Each guide, relative to its first point, is rotated by the smallest angle from
+the normal at its root to the normal at the child's root. The child is the weighted mean of these shapes,
+scaled about its root so that its length is the weighted mean of the guides' lengths. Its first point is
+its root.
 
 Raises ValueError for arrays of other shapes, and for a guide that does not exist, naming the row. Cost:
 some nanoseconds for each point and guide.)";

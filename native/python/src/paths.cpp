@@ -21,24 +21,26 @@ points (n, 3) are the control points; handle_left and handle_right (n, 3) make t
 curves. offsets (c + 1,) divide the points into c curves, one after the other; None is one curve. closed,
 one flag or (c,), joins the last point of a curve with its first.
 
-Each point of a curve goes to the closest point of the surface. Between control points the path is refined
-until its straight segments are within tolerance of the surface, and of the projection of the curve.
-Segments are at most max_step long. Where closest points jump, beyond a fold for example, the path is
-joined by a short way along the surface. Where there is none that is at most 4 times as long as the gap in
-space, as between the two sides of a thin sheet, it ends, and another one begins. Where it leaves a part
-of the surface and comes back without a control point in between, as past an eye in a head, such a way joins
-both ends, too, and what lies between is left out.
+Each point of a curve is moved to the closest point of the surface. Between control points the path is
+refined until its straight segments are within tolerance of the surface, and of the projection of the
+curve. Segments are at most max_step long.
 
-Returns LaidPaths: .face (m,), .uv (m, 2), .position (m, 3) of points on the surface, .place (m,), the
-number of the control point before each plus a parameter up to 1; path p consists of rows .offsets[p] to
-.offsets[p + 1] - 1, belongs to the curve .curve[p], is closed if .closed[p] (its last row then repeats its
-first), and is at most .deviation[p] away from the surface.
+Closest points may jump from one part of the surface to another, beyond a fold for example. There a short
+way along the surface joins the path, at most 4 times as long as the gap in space. If there is none, as
+between the two sides of a thin sheet, the path ends, and another one begins. If the path comes back to
+the first part without a control point in between, as past an eye in a head, a short way joins both ends,
+and what lies between them is left out.
 
-Bounds: points are exact as those of closest(). .deviation is the largest distance among 15 places of each
-segment, refined between the neighbours of the farthest: a lower bound of the true maximum, to 1 % where
-the distance along a segment has one maximum; features narrower than a sixteenth of a segment can be
-missed, which max_step prevents. It is at most tolerance, or 1e-12 of the largest coordinate.
-Cost: some 40 searches for each segment; the first short way needs a tessellation of the surface, too.
+Returns LaidPaths. All paths together have m points on the surface: .face (m,), .uv (m, 2), .position
+(m, 3), and .place (m,), the number of the control point before each plus a parameter up to 1. Path p
+consists of the rows .offsets[p] to .offsets[p + 1] - 1 and belongs to the curve .curve[p]. If .closed[p],
+its last row repeats its first. It is at most .deviation[p] away from the surface.
+
+Bounds: points are as exact as those of closest(). .deviation is measured at 15 places of each segment,
+and refined around the farthest of them. It is at most tolerance, or 1e-12 of the largest coordinate. The
+true maximum may be larger: by 1 % where the distance along a segment has one maximum, and by more where
+a feature is narrower than a sixteenth of a segment, which max_step prevents. Cost: some 40 searches for
+each segment; the first short way needs a tessellation of the surface, too.
 
 Raises ValueError for arrays of other shapes, rows that are not finite, offsets that do not cover the
 points, and a tolerance or max_step that is not above 0; MeshError where no face has a limit surface.
@@ -47,12 +49,12 @@ points, and a tolerance or max_step that is not above 0; MeshError where no face
 constexpr const char* kFitPathDoc =
     R"(A curve through some points of a path on the surface, within a tolerance of it and of the surface.
 
-The path's points are the locations face (n,), uv (n, 2), of lay_path() for example; at least 2. If closed,
-the last one repeats the first. kind is 'bezier' (least squares, with tangents in the tangent plane) or
-'poly'. With an offset the curve runs at that distance from the surface, along the normal, and distances
-are counted from there. Where the path turns by more than corner_angle (radians) a Bezier curve keeps a corner. values (n,)
-are numbers that are interpolated linearly between control points, as radii are: they are kept to
-value_tolerance.
+The path's points are at least 2 locations, face (n,) and uv (n, 2), as lay_path() returns them. If
+closed, the last one repeats the first. kind is 'bezier' (least squares, with tangents in the tangent
+plane) or 'poly'. With an offset the curve runs at that distance from the surface, along the normal, and
+distances are measured from there. Where the path turns by more than corner_angle (radians) a Bezier
+curve keeps a corner. values (n,) are numbers such as radii, one for each point of the path: linear
+interpolation between control points reproduces them to value_tolerance.
 
 Returns PathFit: .rows (k,), the points of the path that are control points; .handle_left and .handle_right
 (k, 3), None for 'poly'; .deviation, the largest distance from the surface; .error, the largest distance of
@@ -69,10 +71,10 @@ ValueError for arrays of other shapes, fewer than 2 points, and a tolerance that
 constexpr const char* kSmoothPathDoc =
     R"(Smooths a path on the surface: its points move along the surface towards a straighter path.
 
-The path's points are the locations face (n,), uv (n, 2), at least 2. In each of the iterations a point
-moves, by half its weight ((n,), 0 to 1), towards the place between its neighbours that divides their
-distance as the point did at the beginning, and from there to the closest point of the surface. The ends of the path stay;
-if closed, the last point repeats the first and moves with it.
+The path's points are at least 2 locations, face (n,) and uv (n, 2). In each iteration a point moves
+towards the straight line between its neighbours, by half its weight ((n,), 0 to 1), and then to the
+closest point of the surface. Its target divides the line in the ratio in which the point divided the path
+at the beginning. The ends of the path stay; if closed, the last point repeats the first and moves with it.
 
 Returns Locations: .face (n,), .uv (n, 2). Cost: one search for each point and iteration.
 
@@ -83,9 +85,9 @@ ValueError for arrays of other shapes, weights outside [0, 1], and a negative nu
 constexpr const char* kEvenPathDoc =
     R"(count points of the surface that divide a path into parts of equal length.
 
-The path's points are the locations face (n,), uv (n, 2), at least 2; the length is that of the polyline
-through them. The first and the last point are those of the path, the others the points of the surface that
-are closest to the polyline's.
+The path's points are at least 2 locations, face (n,) and uv (n, 2). The polyline through them is divided
+into parts of equal length. The first and the last point returned are those of the path; the others are
+the points of the surface that are closest to the polyline's.
 
 Returns Locations: .face (count,), .uv (count, 2). Cost: one search for each point.
 

@@ -20,10 +20,10 @@ namespace {
 constexpr char kMakerDoc[] =
     R"(strand_poser(face, uv, rest_roots, rest_rotations, offsets=None, *, threads=0)
 
-Strands that are bound to this surface, and are carried along when it is posed: StrandPoser.
+Binds strands to this surface, so that they move with it when it is posed: StrandPoser.
 
-Each strand was bound at a location at which the surface had, at rest, the position r and the frame R of
-frames(). Where the surface now has P and F there, a point p of the rest shape is posed at
+Each strand was bound at a location at which the surface had the position r and the frame R of frames().
+If the surface now has the position P and the frame F there, a point p of the rest shape moves to
 P + F R^-1 (p - r): the strand moves as a rigid body with its root.
 
 Parameters
@@ -51,35 +51,36 @@ All arrays of points are float32, as Blender's attributes are; others are conver
 result: a contiguous float32 array, which may be the input itself; without it a new array is returned. If
 a call is interrupted, some rows of `out` are written and others are not.
 
-`matrix` (4, 4) leads from the surface's space to that of the strands; its last row is (0, 0, 0, 1).
-None: they are the same. P is carried as a point; F is made of the carried du, the normal of the carried
-surface (on the side to which the surface's normal is carried) and normal x tangent. So F is a rotation
-whatever the matrix is, and strands stay outside where the matrix mirrors. Where du or the normal has no
-limit or vanishes, F is made in the same way of the columns of frames().
+`matrix` (4, 4) transforms from the surface's space to that of the strands; its last row is (0, 0, 0, 1).
+None: they are the same. P is transformed as a point. F consists of the direction of the transformed du,
+the normal of the transformed surface (on the side to which the surface's normal is transformed) and
+normal x tangent. So F is a rotation whatever the matrix is, and strands stay on the outside if the
+matrix mirrors. Where du or the normal has no limit or vanishes, F is made in the same way from the
+columns of frames().
 
 All methods raise ValueError for arrays of other shapes and for matrices that are not finite, and
 TypeError for an `out` of another kind.
 )";
 
 constexpr char kPoseDoc[] =
-    R"((points, 3) float32: the rest shape, moved to where it is on the surface as it is now posed.
+    R"((points, 3) float32: the rest shape, moved with the surface to its present pose.
 
-Error: 4e-11 times (the diagonal of the carried control mesh + the distance of the point from its root)
-times the condition number of the matrix, and the rounding to float32. Cost: an evaluation with
-derivatives=1 for each strand, and some nanoseconds for each point. The number of threads gives the same
-bits.
+Error: 4e-11 times (the diagonal of the transformed control mesh + the distance of the point from its
+root) times the condition number of the matrix, and the rounding to float32. Cost: an evaluation with
+derivatives=1 for each strand, and some nanoseconds for each point. The result has the same bits for any
+number of threads.
 )";
 
 constexpr char kReposeDoc[] =
-    R"((bool, (n,) int32): moves points that hold an earlier pose to where pose() has them now, in place.
+    R"((bool, (n,) int32): does the same as pose(), in place: `points` hold an earlier pose.
 
 Returns whether a bit of any point changed, and fingerprints() of the new points. `points` is a
-contiguous float32 array, (points, 3). It takes one pass over the points where pose(), a comparison and
-fingerprints() take three. Error and cost: as pose().
+contiguous float32 array, (points, 3). One pass over the points does what would need three with pose(), a
+comparison and fingerprints(). Error and cost: as pose().
 )";
 
 constexpr char kUnposeDoc[] =
-    R"((points, 3) float32: the rest shape of points on the surface as it is now posed, the inverse of pose().
+    R"((points, 3) float32: the rest shape of points that lie on the present pose; the inverse of pose().
 
 With `only`, (n,) bool, the points of the other strands are left as they are in `out`, which must be
 given.
@@ -95,10 +96,10 @@ Results have the length 1 and w >= 0; where the given quaternion is 0 they are 0
 )";
 
 constexpr char kFingerprintsDoc[] =
-    R"((n,) int32, never 0: a number for each strand that depends on the bits of its points alone.
+    R"((n,) int32, never 0: a checksum of the points of each strand.
 
-Compare it with that of the points as they were written to find the strands that somebody has edited: it
-changes with every bit, but for one case in 2^32.
+Keep the checksums of points that you write; strands whose checksums differ later have been edited. Two
+different strands have the same checksum only in one case in 2^32.
 )";
 
 /// Python keeps the surface alive as long as this.

@@ -14,13 +14,12 @@ namespace limitsurf::python {
 namespace {
 
 constexpr char kShortestTurnsDoc[] =
-    R"((n, 3, 3) rotations that turn each of the vectors source (n, 3) to the direction of that of target (n, 3)
-by the smallest angle. Vectors may have any length.
+    R"((n, 3, 3) rotations by the smallest angle, from the directions of source (n, 3) to those of target (n, 3).
 
-Where two are opposite the rotation is about an axis that is perpendicular to both and to the world's axis
-that is least aligned with them. It is the identity where a source is not finite, and NaN where another
-vector has no direction. Error: 1e-15 over the length of the sum of the two unit vectors. Raises ValueError
-for arrays of other shapes. Cost: O(n).
+Vectors may have any length. If the two are opposite, the rotation axis is perpendicular to both and to the
+world axis that is least aligned with them. The rotation is the identity if the source is not finite, and
+NaN if another vector has no direction. Error: 1e-15, divided by the length of the sum of the two unit
+vectors. Raises ValueError for arrays of other shapes. Cost: O(n).
 )";
 
 constexpr char kRotationMatricesDoc[] =
@@ -30,9 +29,9 @@ Raises ValueError for an array of another shape.
 )";
 
 constexpr char kMoveStrandsDoc[] =
-    R"((points, 3) float64: strands as they are when their roots have moved and they have turned with them.
+    R"((points, 3) float64: strands moved to new roots, and rotated about them.
 
-A point p of strand i goes to new_roots[i] + turns[i] (p - roots[i]).
+A point p of strand i moves to new_roots[i] + turns[i] (p - roots[i]).
 
 Parameters
     points: (points, 3).

@@ -17,18 +17,18 @@ namespace {
 constexpr char kTilesDoc[] =
     R"(tiles(face, uv, max_depth=None, *, threads=0)
 
-The bicubic tiles that locations lie in: what another program (a shader, a node tree) needs to
-evaluate the limit surface at these locations exactly, in any pose of the mesh. Like OpenSubdiv's
-PatchTable with local point stencils, but without approximation at extraordinary vertices.
+The bicubic tiles in which locations lie: tables with which another program (a shader, a node tree)
+evaluates the limit surface at these locations exactly, in any pose of the mesh. They correspond to
+OpenSubdiv's PatchTable with local point stencils, but nothing is approximated at extraordinary vertices.
 
 Parameters
     face: (n,) integers, Ptex face ids. One integer stands for all rows.
     uv: (n, 2), each in [0, 1].
-    max_depth: tiles beside an extraordinary vertex are at most this many halvings of a face deep,
-        1 to 256; None means 24. A location that lies deeper, or exactly at the vertex, is moved to
-        the nearest such tile on the way from the vertex to the location. Faces are split
-        until sharpness has decayed and each part has at most one irregular vertex; these parts are
-        split once more. This does not depend on max_depth.
+    max_depth: 1 to 256; None means 24. The smallest tiles beside an extraordinary vertex are
+        2^-max_depth of a face wide. A location that is closer to the vertex, or exactly at it, is moved
+        to the nearest tile on the way from the vertex to the location. Faces are also split until
+        sharpness has decayed and each part has at most one irregular vertex; these parts are split
+        once more. This does not depend on max_depth.
     threads: 0 uses all cores.
 
 Returns Tiles, with
@@ -43,8 +43,8 @@ Returns Tiles, with
 With p the positions of the points and b(t) = ((1 - t)^3, 3 t^3 - 6 t^2 + 4,
 -3 t^3 + 3 t^2 + 3 t + 1, t^3) / 6, a location in tile k at (s, t) has the position
     p[tile_anchor[k]] + sum of b_x(s) b_y(t) (p[tile_points[k, 4 y + x]] - p[tile_base[k]]).
-Tiles that are small have control points whose weights add up to 0, so that they keep their digits
-in single precision.
+The weights of the control points of small tiles add up to 0, so these points keep their digits in
+single precision.
 
 Everything depends on the topology and on the locations alone, not on the pose. Error: 1e-14 of the
 diagonal of the mesh's bounding box in position, 1e-12 of the tile's size in derivatives by tile_uv.
@@ -85,8 +85,8 @@ py::object surfaceTiles(const SharedSurface& shared, const py::object& face, con
 constexpr char kQuadtreeDoc[] =
     R"(tile_quadtree(max_depth=None, *, threads=0, progress=None)
 
-All bicubic tiles of this surface, and for each Ptex face the quadtree that leads from (u, v) to its
-tile: what another program needs to evaluate the limit surface at locations that it finds itself.
+All bicubic tiles of this surface, and for each Ptex face a quadtree that leads from (u, v) to the
+tile. With them another program can evaluate the limit surface at any location.
 
 Parameters
     max_depth: as in tiles(). What lies closer to an irregular vertex gets the tile beside it.
@@ -95,15 +95,17 @@ Parameters
         to 1. An exception that it raises ends the call.
 
 Returns TileQuadtree, with
-    child (nodes,): the first of a node's four children, or -1 - tile at the end of a way. Node f is
-        Ptex face f. It is -2^23 for faces that have no limit surface.
+    child (nodes,): of an inner node, the number of the first of its four children; of a leaf, -1 minus
+        the number of its tile; -2^23 for a face that has no limit surface. Node f is the root of Ptex
+        face f.
     tiles: Tiles, with a location in the middle of each tile, or several.
-    origin (t, 2): where each tile begins on its face.
-    levels: the largest number of steps on a way.
+    origin (t, 2): the (u, v) of the face at which each tile begins.
+    levels: the depth of the deepest leaf.
 
-A step with (u, v) from a node whose child c is not negative: a = u >= 1/2, b = v >= 1/2, the next
-node is c + 2 b + a, and (u, v) becomes (2 u - a, 2 v - b). The place in the tile is
-((u, v) on the face - origin[tile]) * scale, with the `scale` of the tile's location, cut off at 0 and 1.
+To find the tile of (u, v), begin at node f and repeat this step while c = child[node] is not negative:
+a = u >= 1/2, b = v >= 1/2, the next node is c + 2 b + a, and (u, v) becomes (2 u - a, 2 v - b). The
+place in the tile is ((u, v) on the face - origin[tile]) * scale, with the `scale` of the tile's
+location, clamped to 0 to 1.
 
 Depends on the topology alone. Cost: O(max_depth) nodes at each irregular vertex, and that of
 tiles() for as many locations. Raises ValueError for a max_depth out of range.)";
