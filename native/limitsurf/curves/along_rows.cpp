@@ -35,10 +35,9 @@ struct Samples {
       total += curves.length(i);
     }
     if (total / spacing > static_cast<double>(kMostSamples)) {
-      throw std::invalid_argument(text(
-          "row_distance is too small: rows are compared at places a quarter of it apart, of which "
-          "curves with a length of ",
-          total, " have more than ", kMostSamples));
+      throw std::invalid_argument(text("row_distance is too small for curves with a length of ",
+                                       total, ": they would be divided into more than ",
+                                       kMostSamples, " parts to compare the rows"));
     }
     for (int i = 0; i < curves.count(); ++i) {
       const int first = static_cast<int>(curve.size());

@@ -41,8 +41,8 @@ PtexLayout::PtexLayout(int faces, int resolution)
   if (side > kMostSide) {
     throw std::invalid_argument(std::to_string(faces) + " faces at a resolution of " +
                                 std::to_string(resolution) + " need an image " +
-                                std::to_string(side) + " pixels wide; at most " +
-                                std::to_string(kMostSide) + " can be had");
+                                std::to_string(side) + " pixels wide; the limit is " +
+                                std::to_string(kMostSide));
   }
 }
 

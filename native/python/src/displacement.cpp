@@ -136,7 +136,9 @@ py::object displaced(const SharedSurface& shared, const py::object& face, const 
                                 std::to_string(rows) + ", 3) or (" + std::to_string(rows) + ",)");
   }
   if (scalar && !frames.is_none()) {
-    throw std::invalid_argument("frames are given for distances, which go along the normals");
+    throw std::invalid_argument(
+        "values are distances along the normals, which need no frames: give frames only "
+        "with vectors");
   }
   const FrameRows all_frames = framesOf(frames, at.size());
   Output output(py::dtype("float64"), {rows, 3});

@@ -32,11 +32,13 @@ struct BoundEdgeCurves {
   /// Throws unless they were made of this surface, as it is now posed. Its lock must be held.
   void check(const SharedSurface& of) const {
     if (&of != surface_) {
-      throw std::invalid_argument("the curves were made by another surface");
+      throw std::invalid_argument(
+          "the curves were made by another surface: call edge_curves() of this one");
     }
     if (of.pose() != pose_) {
       throw std::invalid_argument(
-          "set_positions() has posed the surface since the curves were made");
+          "set_positions() has posed the surface since the curves were made: call edge_curves() "
+          "again");
     }
   }
 

@@ -209,11 +209,12 @@ py::object unpose(const BoundStrandPoser& self, const py::object& points, const 
   if (!only.is_none()) {
     const py::array_t<bool> array = booleans(only, "only");
     if (array.ndim() != 1 || array.shape(0) != static_cast<py::ssize_t>(self.poser().size())) {
-      throw py::value_error("only has shape " + shapeText(array) + "; expected (" +
+      throw py::value_error("the argument only has shape " + shapeText(array) + "; expected (" +
                             std::to_string(self.poser().size()) + ",)");
     }
     if (out.is_none()) {
-      throw py::value_error("only needs out, in which other strands are left as they are");
+      throw py::value_error(
+          "the argument only needs out, in which the other strands are left as they are");
     }
     flags.assign(array.data(), array.data() + array.size());
   }

@@ -82,9 +82,9 @@ class BlueNoiseMaker {
     }
     expected_ = pointsOf(radius);
     if (expected_ > kMostPoints || radius < DiscGrid::smallestRadius(box_)) {
-      throw std::invalid_argument("radius is " + text(radius / patches_.scale()) + ": about " +
-                                  text(expected_) +
-                                  " points would come out; at most 2147483647 can");
+      throw std::invalid_argument(
+          "radius is " + text(radius / patches_.scale()) + ": about " + text(expected_) +
+          " points would come out; the limit is 2147483647, so choose a larger radius");
     }
     const std::vector<Location> at = sampled(radius).at;
     return result(ordered(at, orderByFace(at, has_surface_.size()), threads_), radius);

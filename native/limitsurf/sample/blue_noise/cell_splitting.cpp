@@ -108,7 +108,7 @@ void CellSplitting::begin(Span<TrialCell> whole, const BoundedPatch& patch,
           surface_.most_first_cells) {
         throw std::invalid_argument(
             "faces are sheared or stretched so strongly that blue noise of this density would "
-            "need far more memory than its points");
+            "need far more memory than its points: choose a larger radius or a smaller count");
       }
     }
   }

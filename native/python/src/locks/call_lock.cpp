@@ -184,13 +184,15 @@ class Table {
         if (other.lost) {
           throw std::runtime_error(
               "a thread of the parent process was using this " + what +
-              " when this process was forked: it can no longer be used here in this way");
+              " when this process was forked: it can no longer be used here in this way. Start "
+              "child processes by spawn or forkserver instead");
         }
         if (other.thread == first->thread) {
           throw std::runtime_error(
               "this " + what +
               " is in use by a call that has itself called this function, for example a density or "
-              "progress function, a signal handler or a destructor: it would wait for itself");
+              "progress function, a signal handler or a destructor: the call would wait for "
+              "itself");
         }
         if (!seen.insert(other.thread).second) {
           continue;
