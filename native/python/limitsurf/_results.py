@@ -38,7 +38,8 @@ class DataEvaluation:
 @dataclass(frozen=True, slots=True, eq=False)
 class Curvature:
     """Gaussian, mean and principal curvatures (n,), k1 >= k2; the unit directions (n, 3) of k1 and
-    k2; whether a location is exactly at an irregular vertex, where all are an average or NaN."""
+    k2; and whether a location is exactly at an irregular vertex, where the others are an average
+    or NaN."""
 
     gaussian: Array
     mean: Array
@@ -81,7 +82,7 @@ class Stencils:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tiles:
-    """Bicubic tiles of locations, and the points that they consist of (LimitSurface.tiles())."""
+    """The bicubic tiles of locations, and their control points (LimitSurface.tiles())."""
 
     points_offsets: NDArray[np.int64]
     points_indices: NDArray[np.int32]
@@ -214,8 +215,8 @@ class LaidPaths:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PathFit:
-    """A curve through the rows of a path that are its control points; the handles are None for
-    polylines (LimitSurface.fit_path())."""
+    """A curve whose control points are some rows of a path; the handles are None for polylines
+    (LimitSurface.fit_path())."""
 
     rows: NDArray[np.int32]
     handle_left: NDArray[np.float64] | None
@@ -227,7 +228,7 @@ class PathFit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Projection:
-    """The image on texels: places in the image (n, 2), footprints (n, 2, 2) and weights (n,)."""
+    """Where texels see an image: places in it (n, 2), footprints (n, 2, 2) and weights (n,)."""
 
     st: NDArray[np.float64]
     footprint: NDArray[np.float64]

@@ -6,10 +6,11 @@ namespace limitsurf::python {
 constexpr const char* kEdgeCurvesDoc =
     R"(Limit curves of chains of edges, measured by their true arc length (LimitSurface.edge_curves()).
 
-len() is the number of curves. Curves are in the order of their first edges, as faces use these. A curve
-runs in the direction in which the first face of its first edge runs around, so that this face is on its
-left, and a closed curve begins with that edge: curves of boundaries have the surface on their left. The
-curves are those of the surface's pose when they were made. They cannot be pickled.
+len() is the number of curves. They are sorted by their first edges, in the order in which the faces use
+the edges. A curve runs in the direction in which the first face of its first edge uses that edge, so this
+face is on its left; a closed curve begins with that edge. Curves of boundaries therefore have the surface
+on their left. The curves belong to the pose that the surface had when they were made. They cannot be
+pickled.
 )";
 
 constexpr const char* kEdgeCurvesMakerDoc =
@@ -72,15 +73,15 @@ jitter : float
 seed : int
     0 to 2^64 - 1. A seed gives the same locations on every machine and with any number of threads.
 phase : float, optional
-    Where the first location lies, as a part of the spacing, 0 to 1. By default it is drawn for each curve
-    and row. At an open curve's ends locations that jitter moves beyond are reflected.
+    Where the first location lies, as a part of the spacing, 0 to 1. By default it is random for each curve
+    and row. If jitter moves a location beyond the end of an open curve, it is reflected.
 side : 'left' or 'right'
     The side of the curves whose faces the locations are on. Where no face with a surface is on that side,
     they are on the other one.
 rows : int
-    The number of rows. Row r lies r times row_distance away from the curves, into the faces on the given
-    side: its locations are the ends of geodesics that leave the curves perpendicularly, at places that
-    each row draws anew.
+    The number of rows. Row r lies r times row_distance away from the curves, on the faces of the given
+    side: its locations are the ends of geodesics that leave the curves perpendicularly. Each row has other
+    random places.
 row_distance : float
     The distance between rows along the surface, in units of the mesh, above 0 if there are several rows.
 threads : int
@@ -89,15 +90,18 @@ progress : function, optional
     It is called from time to time with the part of the work that is done, 0 to 1. An exception that it
     raises ends the call.
 
-Returns AlongCurves, row by row, curve by curve and along each of them: .face (n,) int32 and .uv (n, 2);
-.curve (n,) int32; .arc (n,), the arc length from the curve's start, in rows that of the geodesic's foot;
-.tangent and .outward (n, 3), unit vectors in the surface's tangent plane, along the curve and
-perpendicular to it, away from the location's face, in rows towards the foot; .row (n,) int32; and .ended
-(rows,) int64, the number of locations that each row lacks.
+Returns AlongCurves, sorted by row, curve and place along the curve:
+    .face (n,) int32 and .uv (n, 2): the locations
+    .curve (n,) int32, .row (n,) int32
+    .arc (n,): the arc length from the curve's start; in further rows, of the place on the curve at which
+        the location's geodesic begins
+    .tangent and .outward (n, 3): unit vectors in the surface's tangent plane, along the curve, and
+        perpendicular to it and away from the location's face; in further rows, towards that place
+    .ended (rows,) int64: the number of locations that each row lacks
 
-A row ends where the surface ends, and where it would run into itself or another row: where another part
-of the curves is nearer than the row's distance. All other locations keep it to 1 %. Nearer parts are
-sought by geodesics towards the places that are nearer in space.
+A row ends where the surface ends, and where it would run into itself or another row: a location is left
+out if another part of the curves is nearer than the row's distance. All other locations are at that
+distance, to 1 %. Nearer parts are searched by geodesics towards the places that are nearer in space.
 
 Raises ValueError for values out of range, for a count above 0 on curves without length, and if the
 surface has been posed since the curves were made. Cost: about 1 microsecond a location on the curves,

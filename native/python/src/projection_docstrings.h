@@ -19,8 +19,8 @@ premultiplied : bool
     colours, as in its 8 bit images, are multiplied before they are filtered, so that transparent
     pixels leave no dark fringe.
 
-A copy of the image and its halvings are kept: 1.34 times the size of the pixels as float32 (1.4 GB for
-8K x 8K x 4).
+A copy of the image and smaller copies of it (mipmap levels) are kept: 1.34 times the size of the pixels as
+float32 (1.4 GB for 8K x 8K x 4).
 
 Raises
 ------
@@ -43,9 +43,9 @@ footprint : (n, 2, 2) array of float
 Under a footprint of at most a pixel's length the image is interpolated bilinearly. From a length of one
 and a half pixels on, the filter is an elliptical weighted average (Greene & Heckbert: "Creating Raster
 Omnimax Images from Multiple Perspective Views Using the Elliptical Weighted Average Filter", 1986) with
-a standard deviation of half a texel, on the halving of the image that suits the short axis of the
-ellipse. The long axis may be 32 times as long; beyond, the short axis is widened. Between the two
-lengths both results are mixed.
+a standard deviation of half a texel, on the smaller copy of the image that suits the short axis of the
+ellipse. The long axis may be 32 times as long; if it is longer, the short axis is widened. Between the
+two lengths both results are mixed.
 
 For pixels from 0 to 1, values are within 0.15 (mostly 0.05; measured) of the exact integral of the image
 under a Gaussian of that size, for footprints up to 32 times as long as wide. This does not hold near
@@ -88,9 +88,8 @@ bias : float or None
 soft_edge : float
     The width, 0 to 1/2 of the image, of the zone inside its borders over which the weight rises.
 frame : bool
-    Whether the weight is 0 outside the image; along its border it is then the part of the texel that
-    lies inside. With False the weight is not limited by the image, for images that extend, repeat or
-    mirror.
+    Whether the weight is 0 outside the image; along the image's border it is then the part of the texel
+    that lies inside. Use False for images that extend, repeat or mirror.
 depth : (near, far) or None
     The visible range of z/w; None means everything in front of the eye. What lies in front of `near`
     neither receives the image nor hides anything, as in a render with clipping.
@@ -105,9 +104,9 @@ Returns Projection: .st (n, 2), with (0, 0) at the lower left corner of the imag
 that is not in front of the eye st is NaN, and footprint and weight are 0. Pass st and footprint to
 FilteredImage.sample(), preferably with extension 'extend', because the weight ends at the frame.
 
-st and the footprint are exact but for rounding: they come from first derivatives of the surface, the map
-and the projection. Where these have no limit (at irregular vertices), or the surface or the map is
-singular, they are taken 1/1024 of the way towards the face's centre; where the map is singular there
+st and the footprint are exact except for rounding: they come from first derivatives of the surface, the
+map and the projection. Where these have no limit (at irregular vertices), or the surface or the map is
+singular, those at 1/1024 of the way towards the face's centre are used; where the map is singular there
 too, the footprint is 0. Vectors longer than four images are shortened to four.
 
 Raises ValueError for a matrix that is singular or not finite, for options out of range, and for a map
@@ -118,7 +117,7 @@ Cost: 1 to 3 microseconds for each texel and ray.
 constexpr const char* kProjectAlongNormalsDoc =
     R"(Projects from the UV map of another surface along this surface's normals: Projection.
 
-Rays leave this surface along its normals, and .st is the value of the source's map at their first hit.
+Rays leave this surface along its normals; .st is the value of the other surface's map at their first hit.
 
 Parameters
 ----------
@@ -131,7 +130,7 @@ source_map : SurfaceData
 max_distance : float
     The largest length of a ray, measured in world space.
 direction : 'both', 'outward' or 'inward'
-    Along the normal, against it, or in the direction that meets the source first.
+    'outward' is along the normal, 'inward' against it; 'both' takes the hit that is nearer.
 transform : (4, 4) array of float or None
     From this surface's space to the source's; None means that they are the same.
 world : (4, 4) array of float or None
