@@ -124,7 +124,7 @@ def test_the_panel_says_that_things_are_at_rest():
     bpy.context.view_layer.update()
     told = (
         "The creases or rules of Holes have changed since its tables were made. What follows it "
-        "stands at rest until then. Creases that are animated need the mode Live"
+        "is at rest until you rebind it. Creases that are animated need the mode Live"
     )
     assert look(ob) == [(told, ids.REBIND)]
 

@@ -72,7 +72,7 @@ BREAKS = {
     ),
     "place of capture": (
         lambda ob, _hair: move_capture(ob),
-        "Holes: the modifier Limit Capture does not stand directly before the subdivision",
+        "Holes: the modifier Limit Capture is not directly before the Subdivision Surface modifier",
     ),
     "disabled capture": (
         lambda ob, _hair: disable_capture(ob),

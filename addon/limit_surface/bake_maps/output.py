@@ -68,7 +68,10 @@ class Output:
         described = image_pixels.checked(image, to_write=True)
         missing = set(self.tiles) - described.tiles.keys()
         if missing:
-            raise RefusalError(f"{whose} lacks the tile {min(missing)}")
+            raise RefusalError(
+                f"{whose} has no tile {min(missing)}: add the tile, set "
+                "another name, or turn Reuse Images off"
+            )
         for tile in self.tiles:
             if described.tiles[tile] != self.size:
                 width, height = described.tiles[tile]

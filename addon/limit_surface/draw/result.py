@@ -103,6 +103,6 @@ def warn_of_pieces(operator: bpy.types.Operator, laid: int, given: int) -> None:
     if laid > given:
         operator.report(
             {"WARNING"},
-            f"Of {counted(given, 'curves')} {laid:,} pieces were made: no short way along the "
-            "surface joins them",
+            f"{laid:,} pieces were made of {counted(given, 'curves')}, because no short way "
+            "along the surface joins the pieces",
         )

@@ -91,16 +91,18 @@ def check_pose(ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurf
         return
     face = attributes.read(table.data, ids.FACE)
     if len(face) and int(face.max()) >= posed.in_object.face_count:
-        raise RefusalError(f"{ob.name} is bound to faces that do not exist any more: use Rebind")
+        raise RefusalError(
+            f"{ob.name} is bound to faces that no longer exist: use Rebind to Limit Surface"
+        )
     found = Locations(face, attributes.read(table.data, ids.UV))
     now = Binding.at(posed, found, np.array(ob.matrix_world, np.float64)).root
     bound = attributes.read(table.data, ids.REST_ROOT)
     size = np.abs(bound).max(initial=0.0)
     if np.abs(now - bound).max(initial=0.0) > MOVED * size:
         raise RefusalError(
-            f"{ob.name} follows {surface.name}, which has another shape or place now than when "
-            "the curve was bound. Go back to that frame or pose to change the curve, or use Unbind "
-            "to keep the present one"
+            f"{ob.name} follows {surface.name}, which has another shape or place now than "
+            "when the curve was bound. To change the curve, go back to that frame or pose, "
+            "or use Unbind from Limit Surface to keep the present shape"
         )
 
 

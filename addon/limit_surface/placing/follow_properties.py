@@ -57,8 +57,8 @@ class FollowSnappedProperties:
 
     follow: EnumProperty(
         name="Follow",
-        description="How snapped hair follows the surface from now on when its mesh deforms. Hair "
-        "that follows already goes on as it does",
+        description="How snapped hair follows the surface when its mesh deforms. Hair that "
+        "follows already keeps its way of following",
         items=(_AUTO, _NODES, _LIVE, _NONE),
         default="AUTO",
     )

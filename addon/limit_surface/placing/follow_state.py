@@ -126,8 +126,8 @@ class State:
             text = f"The creases or rules of {name} have changed since its tables were made"
             if tables.points_of(table) is not None and not tables.fits(table):
                 text += (
-                    ". What follows it stands at rest until then. Creases that are animated need "
-                    "the mode Live"
+                    ". What follows it is at rest until you rebind it. Creases that are "
+                    "animated need the mode Live"
                 )
             yield Trouble(text, ids.REBIND)
         samples = self.samples
@@ -171,8 +171,8 @@ def _capture_obstacle(surface: bpy.types.Object) -> str:
     here = surface.modifiers.find(capture.name)
     if subsurf is None:
         later = [m for m in surface.modifiers[here + 1 :] if m.show_viewport or m.show_render]
-        return "does not stand at the end, as it has to without a subdivision" if later else ""
+        return "is not the last modifier, as it must be without a subdivision" if later else ""
     there = surface.modifiers.find(subsurf.name)
     if here > there or any(m.show_viewport for m in surface.modifiers[here + 1 : there]):
-        return "does not stand directly before the subdivision"
+        return "is not directly before the Subdivision Surface modifier"
     return ""

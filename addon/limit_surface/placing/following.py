@@ -267,8 +267,8 @@ def check_surface(surface: bpy.types.Object, scene: bpy.types.Scene) -> None:
         raise RefusalError(f"{surface.name} is not a mesh")
     if not surface.is_editable:
         raise RefusalError(
-            f"{surface.name} is linked from another file: make a library override of it, which can "
-            "have the modifier that hands on its control mesh"
+            f"{surface.name} is linked from another file: make a library override of it, to "
+            "which the modifier that following needs can be added"
         )
     if surface.name not in scene.objects:
         raise RefusalError(f"{surface.name} is not in the scene {scene.name}")

@@ -253,7 +253,7 @@ class _ByUv(_Finder):
 
 
 class _ByFace(_Finder):
-    reason = "their faces do not exist any more or have no limit surface"
+    reason = "their faces no longer exist or have no limit surface"
     keeps_frame = True
 
     def __init__(self, posed: PosedSurface) -> None:

@@ -34,8 +34,7 @@ class SteeringProperties(flow_properties.FlowProperties):
     __annotations__ = {  # noqa: RUF012
         "scale": FloatProperty(
             name="Scale",
-            description="Size of the instances, as a factor of the size that they have by "
-            "themselves",
+            description="Size of the instances, as a factor of their original size",
             default=1.0,
             min=0.0,
             soft_max=10.0,
