@@ -3,28 +3,50 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
 #include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
 
-/// Makes room for `count` more values, and twice as much where the vector must move: that takes
-/// long where it is large, and can be interrupted.
+/// Moves values to the end of a vector that has room for them. That takes long where there are
+/// many, because the system hands out memory when it is first written to, and can be interrupted.
 template <typename T>
-void reserveMore(std::vector<T>& values, std::size_t count) {
+void moveInParts(std::vector<T>& from, std::vector<T>& to) {
   constexpr std::size_t kPart = std::size_t{1} << 16;
-  if (count <= values.capacity() - values.size()) {
-    return;
-  }
-  std::vector<T> larger;
-  larger.reserve(std::max(2 * values.capacity(), values.size() + count));
-  for (std::size_t begin = 0; begin < values.size(); begin += kPart) {
-    const std::size_t end = std::min(begin + kPart, values.size());
-    larger.insert(larger.end(), values.data() + begin, values.data() + end);
+  for (std::size_t begin = 0; begin < from.size(); begin += kPart) {
+    T* const first = from.data() + begin;
+    T* const last = from.data() + std::min(begin + kPart, from.size());
+    to.insert(to.end(), std::make_move_iterator(first), std::make_move_iterator(last));
     InterruptionPoint::pass();
   }
-  values.swap(larger);
+}
+
+/// Gives a vector room for `capacity` values, at least as many as it has. Can be interrupted.
+template <typename T>
+void reallocate(std::vector<T>& values, std::size_t capacity) {
+  std::vector<T> other;
+  other.reserve(capacity);
+  moveInParts(values, other);
+  values.swap(other);
+}
+
+/// Makes room for `count` more values, and twice as much where the vector must move. Can be
+/// interrupted.
+template <typename T>
+void reserveMore(std::vector<T>& values, std::size_t count) {
+  if (count > values.capacity() - values.size()) {
+    reallocate(values, std::max(2 * values.capacity(), values.size() + count));
+  }
+}
+
+/// Frees the room for more values. Can be interrupted.
+template <typename T>
+void shrinkToSize(std::vector<T>& values) {
+  if (values.capacity() > values.size()) {
+    reallocate(values, values.size());
+  }
 }
 
 }  // namespace limitsurf

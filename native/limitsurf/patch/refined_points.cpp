@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "limitsurf/random_bits.h"
+#include "limitsurf/reserve_more.h"
 
 namespace limitsurf {
 
@@ -84,14 +85,17 @@ int RefinedPoints::addReflection(int inner, int next) {
 }
 
 void RefinedPoints::shrink() {
-  offsets_.shrink_to_fit();
-  sources_.shrink_to_fit();
-  mask_of_.shrink_to_fit();
-  weights_.shrink_to_fit();
-  mask_offsets_.shrink_to_fit();
+  shrinkToSize(offsets_);
+  shrinkToSize(sources_);
+  shrinkToSize(mask_of_);
+  shrinkToSize(weights_);
+  shrinkToSize(mask_offsets_);
 }
 
 int RefinedPoints::add(Span<int> sources, int mask) {
+  reserveMore(mask_of_, 1);
+  reserveMore(sources_, sources.size());
+  reserveMore(offsets_, 1);
   mask_of_.push_back(mask);
   sources_.insert(sources_.end(), sources.begin(), sources.end());
   offsets_.push_back(sources_.size());

@@ -11,6 +11,7 @@
 #include "limitsurf/patch/refinement_level.h"
 #include "limitsurf/patch/ring_tile_maker.h"
 #include "limitsurf/patch/window.h"
+#include "limitsurf/reserve_more.h"
 
 namespace limitsurf {
 namespace {
@@ -97,8 +98,7 @@ class Builder {
         table_.faces[ptex_.first[face]] = {TileRef::kBSpline, static_cast<std::uint32_t>(i)};
       }
     });
-    table_.bsplines.insert(table_.bsplines.end(), irregular_bsplines_.begin(),
-                           irregular_bsplines_.end());
+    moveInParts(irregular_bsplines_, table_.bsplines);
     irregular_bsplines_ = {};
   }
 
@@ -137,8 +137,8 @@ class Builder {
       InterruptionPoint::pass();
     }
     table_.points.shrink();
-    table_.splits.shrink_to_fit();
-    table_.rings.shrink_to_fit();
+    shrinkToSize(table_.splits);
+    shrinkToSize(table_.rings);
   }
 
   /// Makes the children of the faces, and returns those of them that are to be split in their turn.
@@ -189,6 +189,7 @@ class Builder {
       table_.ring_tiles.back().depth = depth;
       return {TileRef::kRing, static_cast<std::uint32_t>(table_.ring_tiles.size() - 1)};
     }
+    reserveMore(irregular_bsplines_, 1);
     irregular_bsplines_.push_back(bsplineTile(mesh, face, corners.diagonal));
     BSplineTile& tile = irregular_bsplines_.back();
     tile.fine = fine;
