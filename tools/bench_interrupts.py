@@ -248,12 +248,18 @@ def texturing() -> Iterator[tuple[str, Call]]:
 
 @cache
 def subdivided() -> ls.ControlMesh:
-    """The mesh "middle" with each face divided in Blender's order of faces."""
-    base = positions_and_faces("middle")[1]
-    corners = np.arange(4 * len(base)).reshape(-1, 4)
-    middle = 4 * len(base)
-    faces = np.stack([corners, corners + middle, corners + 2 * middle, corners + 3 * middle], 2)
-    return ls.ControlMesh.from_faces(np.zeros((4 * middle, 3)), faces.reshape(-1, 4))
+    """The mesh "middle", subdivided once."""
+    points, faces = positions_and_faces("middle")
+    sides = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], 2).reshape(-1, 2), axis=1)
+    edges, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
+    edge = len(points) + edge_of_side.reshape(-1, 4)
+    centre = len(points) + len(edges) + np.arange(len(faces))[:, None].repeat(4, 1)
+    before = np.roll(edge, 1, axis=1)
+    children = np.stack([faces, edge, centre, before], 2)  # each begins at its corner of the face
+    for corner in range(4):  # as OpenSubdiv does, a child keeps the number of that corner
+        children[:, corner] = np.roll(children[:, corner], corner, axis=1)
+    vertices = np.zeros((centre[-1, 0] + 1, 3))
+    return ls.ControlMesh.from_faces(vertices, children.reshape(-1, 4))
 
 
 @dataclass

@@ -62,7 +62,7 @@ class NearestFirst {
     for (int child = 0; child < 4; ++child) {
       const std::uint64_t number = static_cast<std::uint64_t>(ordered(keys[child])) << 32 |
                                    static_cast<std::uint64_t>(child);
-      order[child] = (child < node.count) & matters(child) ? number : kNone;
+      order[child] = ((child < node.count) & matters(child)) ? number : kNone;
     }
     sortTwo(order[0], order[1]);
     sortTwo(order[2], order[3]);
