@@ -6,6 +6,7 @@
 #include <string>
 
 #include "limitsurf/error.h"
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/number_text.h"
 
 namespace limitsurf {
@@ -55,9 +56,11 @@ std::vector<PtexLayout::Pixel> PtexLayout::pixels() const {
   const int side = resolution_ + 1;
   std::vector<Pixel> result;
   result.reserve(static_cast<std::size_t>(faces_) * side * side);
+  InterruptionStride stride;
   for (int face = 0; face < faces_; ++face) {
     const Pixel first = origin(face);
     for (int j = 0; j < side; ++j) {
+      stride.step();
       for (int i = 0; i < side; ++i) {
         result.push_back({first.x + i, first.y + j});
       }
@@ -70,8 +73,10 @@ std::vector<Location> PtexLayout::locations() const {
   const int side = resolution_ + 1;
   std::vector<Location> result;
   result.reserve(static_cast<std::size_t>(faces_) * side * side);
+  InterruptionStride stride;
   for (int face = 0; face < faces_; ++face) {
     for (int j = 0; j < side; ++j) {
+      stride.step();
       for (int i = 0; i < side; ++i) {
         result.push_back(
             {face, static_cast<double>(i) / resolution_, static_cast<double>(j) / resolution_});
@@ -84,7 +89,9 @@ std::vector<Location> PtexLayout::locations() const {
 Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> PtexLayout::mapCoordinates(
     Span<Location> at) const {
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> result(at.size(), 2);
+  InterruptionStride stride;
   for (std::size_t row = 0; row < at.size(); ++row) {
+    stride.step();
     const Location& place = at[row];
     if (place.face < 0 || place.face >= faces_) {
       throw LocationError("row " + std::to_string(row) + ": face " + std::to_string(place.face) +

@@ -32,7 +32,9 @@ struct Between {
 DataRows BilinearImage::sample(
     const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>& places, int threads) const {
   checkThreads(threads);
+  InterruptionStride stride;
   for (Eigen::Index row = 0; row < places.rows(); ++row) {
+    stride.step();
     if (!places.row(row).allFinite()) {
       throw std::invalid_argument("row " + std::to_string(row) + ": st (" +
                                   numberText(places(row, 0)) + ", " + numberText(places(row, 1)) +

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/number_text.h"
 
 namespace limitsurf {
@@ -44,8 +45,11 @@ float laidOver(float colour, float under, float under_alpha, BlendMode mode) {
 Colours blendOver(const Colours& below, const Colours& above, const Eigen::VectorXd& weight,
                   BlendMode mode, bool premultiplied) {
   checkShapes(below, above, weight);
-  Colours out = below;
+  Colours out(below.rows(), 4);
+  InterruptionStride stride;
   for (Eigen::Index i = 0; i < weight.size(); ++i) {
+    stride.step();
+    out.row(i) = below.row(i);
     const float alpha = static_cast<float>(weight[i]) * std::clamp(above(i, 3), 0.f, 1.f);
     if (!(alpha > 0)) {
       continue;

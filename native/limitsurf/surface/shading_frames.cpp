@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/interruption_point.h"
+
 namespace limitsurf {
 namespace {
 
@@ -34,7 +36,9 @@ Eigen::Matrix3d frameOf(const ShadingFrames& frames, Eigen::Index row) {
 Points intoShadingFrames(const Points& directions, const ShadingFrames& frames) {
   checkRows(directions.rows(), frames);
   Points out(directions.rows(), 3);
+  InterruptionStride stride;
   for (Eigen::Index row = 0; row < out.rows(); ++row) {
+    stride.step();
     const Eigen::Matrix3d frame = frameOf(frames, row);
     const Vector3 direction = directions.row(row).transpose();
     const double volume = frame.determinant();
@@ -51,7 +55,9 @@ Points intoShadingFrames(const Points& directions, const ShadingFrames& frames) 
 Points outOfShadingFrames(const Points& components, const ShadingFrames& frames) {
   checkRows(components.rows(), frames);
   Points out(components.rows(), 3);
+  InterruptionStride stride;
   for (Eigen::Index row = 0; row < out.rows(); ++row) {
+    stride.step();
     const Vector3 found = frameOf(frames, row) * components.row(row).transpose();
     const double length = found.norm();
     out.row(row) = length > 0

@@ -120,6 +120,14 @@ void forEachRow(std::size_t count, const Body& body) {
   }
 }
 
+/// What `work` gives, without the GIL; Ctrl-C ends it.
+template <typename Work>
+auto released(const Work& work) {
+  const py::gil_scoped_release release;
+  const InterruptionPoint point = interruptible();
+  return work();
+}
+
 template <typename T>
 py::array_t<T> arrayOf(const std::vector<T>& values) {
   return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());

@@ -52,14 +52,6 @@ Eigen::Map<const Rows> rows(Doubles& array, const char* name) {
   return {array.data(), array.shape(0), Rows::ColsAtCompileTime};
 }
 
-/// What `work` gives, without the GIL; Ctrl-C ends it.
-template <typename Work>
-auto released(const Work& work) {
-  const py::gil_scoped_release release;
-  const InterruptionPoint point = interruptible();
-  return work();
-}
-
 py::array_t<double> quaternionRows(const py::object& rotations, int threads) {
   Doubles array = doubles(rotations, "rotations");
   const auto from = rotationRows(array, "rotations");

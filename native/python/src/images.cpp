@@ -86,7 +86,11 @@ py::object sample(const FilteredImage& image, const py::object& st, const py::ob
 Colours pixelRows(const py::object& object, const char* name) {
   Floats array = floats(object, name);
   requireRows<std::invalid_argument>(array, name, 4);
-  return Eigen::Map<const Colours>(array.data(), array.shape(0), 4);
+  Colours rows(array.shape(0), 4);
+  const float* const from = array.data();
+  forEachRow(static_cast<std::size_t>(array.shape(0)),
+             [&](std::size_t row) { std::copy_n(from + 4 * row, 4, rows.data() + 4 * row); });
+  return rows;
 }
 
 py::object blendOver(const py::object& below, const py::object& above, const py::object& weight,
@@ -95,14 +99,9 @@ py::object blendOver(const py::object& below, const py::object& above, const py:
   const Colours lower = pixelRows(below, "below"), upper = pixelRows(above, "above");
   const Doubles weights = doubles(weight, "weight");
   requireVector<std::invalid_argument>(weights, "weight");
-  Colours out;
-  {
-    const py::gil_scoped_release release;
-    out = limitsurf::blendOver(lower, upper,
-                               Eigen::Map<const Eigen::VectorXd>(weights.data(), weights.size()),
-                               blend, premultiplied);
-  }
-  return Floats({out.rows(), Eigen::Index{4}}, out.data());
+  const Eigen::Map<const Eigen::VectorXd> part(weights.data(), weights.size());
+  return rowArray(
+      released([&] { return limitsurf::blendOver(lower, upper, part, blend, premultiplied); }));
 }
 
 py::object boxSides(const py::object& matrix) {
@@ -124,13 +123,7 @@ py::object boxWeights(const py::object& normals, double blend, const py::object&
   requireRows<std::invalid_argument>(array, "normals", 3);
   const Eigen::Matrix4d to_box = matrixOrNone(matrix, "matrix");
   const Points directions = pointsOf(array);
-  BoxWeights weights;
-  {
-    const py::gil_scoped_release release;
-    const InterruptionPoint point = interruptible();
-    weights = limitsurf::boxWeights(directions, blend, to_box);
-  }
-  return rowArray(std::move(weights));
+  return rowArray(released([&] { return limitsurf::boxWeights(directions, blend, to_box); }));
 }
 
 }  // namespace

@@ -63,25 +63,28 @@ Raises ValueError for arrays of other shapes and naming the first place that is 
 using PlaceRows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 py::object texels(const PtexLayout& layout) {
-  const std::vector<PtexLayout::Pixel> pixels = layout.pixels();
-  const Locations at = layout.locations();
+  const std::vector<PtexLayout::Pixel> pixels = released([&] { return layout.pixels(); });
+  const Locations at = released([&] { return layout.locations(); });
   const auto rows = static_cast<py::ssize_t>(at.size());
   py::array_t<int> x(rows), y(rows), face(rows);
   py::array_t<double> uv({rows, py::ssize_t{2}});
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    x.mutable_data()[i] = pixels[i].x;
-    y.mutable_data()[i] = pixels[i].y;
-    face.mutable_data()[i] = at[i].face;
-    uv.mutable_data()[2 * i] = at[i].u;
-    uv.mutable_data()[2 * i + 1] = at[i].v;
-  }
+  int *const to_x = x.mutable_data(), *const to_y = y.mutable_data();
+  int* const to_face = face.mutable_data();
+  double* const to_uv = uv.mutable_data();
+  forEachRow(at.size(), [&](std::size_t i) {
+    to_x[i] = pixels[i].x;
+    to_y[i] = pixels[i].y;
+    to_face[i] = at[i].face;
+    to_uv[2 * i] = at[i].u;
+    to_uv[2 * i + 1] = at[i].v;
+  });
   return result("PtexTexels")(x, y, face, uv);
 }
 
 py::array_t<double> mapCoordinates(const PtexLayout& layout, const py::object& face,
                                    const py::object& uv) {
   const Locations at = locationsOf(layout.faces(), face, uv);
-  return rowArray(layout.mapCoordinates(at));
+  return rowArray(released([&] { return layout.mapCoordinates(at); }));
 }
 
 py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int threads) {
@@ -95,13 +98,8 @@ py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int
   requireRows<std::invalid_argument>(places, "st", 2);
   const BilinearImage image{values.data(), static_cast<int>(values.shape(1)),
                             static_cast<int>(values.shape(0)), static_cast<int>(values.shape(2))};
-  DataRows sampled;
-  {
-    const py::gil_scoped_release release;
-    const InterruptionPoint point = interruptible();
-    sampled = image.sample(Eigen::Map<const PlaceRows>(places.data(), places.shape(0), 2), threads);
-  }
-  return rowArray(std::move(sampled));
+  const Eigen::Map<const PlaceRows> at(places.data(), places.shape(0), 2);
+  return rowArray(released([&] { return image.sample(at, threads); }));
 }
 
 }  // namespace

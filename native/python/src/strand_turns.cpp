@@ -49,7 +49,8 @@ py::array_t<double> matrices(Rotations&& rotations) {
 }
 
 py::array_t<double> turnsBetween(const py::object& source, const py::object& target) {
-  return matrices(shortestTurns(rowsOfThree(source, "source"), rowsOfThree(target, "target")));
+  const Points from = rowsOfThree(source, "source"), to = rowsOfThree(target, "target");
+  return matrices(released([&] { return shortestTurns(from, to); }));
 }
 
 py::array_t<double> rotationMatrices(const py::object& quaternions) {
@@ -58,7 +59,8 @@ py::array_t<double> rotationMatrices(const py::object& quaternions) {
   if (array.ndim() != 2 || array.shape(1) != 4) {
     throw py::value_error("quaternions has shape " + shapeText(array) + "; expected (n, 4)");
   }
-  return matrices(rotationsOf(Eigen::Map<const Quaternions>(array.data(), array.shape(0), 4)));
+  const Eigen::Map<const Quaternions> rows(array.data(), array.shape(0), 4);
+  return matrices(released([&] { return rotationsOf(rows); }));
 }
 
 py::array_t<double> moveStrands(const py::object& points, const py::object& offsets,
@@ -69,7 +71,7 @@ py::array_t<double> moveStrands(const py::object& points, const py::object& offs
   const std::vector<std::int64_t> begins = strandOffsets(offsets);
   const Points from = rowsOfThree(points, "points"), before = rowsOfThree(roots, "roots"),
                after = rowsOfThree(new_roots, "new_roots");
-  return pointArray(movedStrands(from, begins, before, after, turn));
+  return pointArray(released([&] { return movedStrands(from, begins, before, after, turn); }));
 }
 
 }  // namespace

@@ -101,12 +101,7 @@ py::object throughShadingFrames(const py::object& directions, const py::object& 
   }
   const ShadingFrames frames{rowsOfThree(normals, "normals"), rowsOfThree(tangents, "tangents"),
                              Eigen::Map<const Eigen::VectorXd>(sign.data(), sign.shape(0))};
-  Points out;
-  {
-    const py::gil_scoped_release release;
-    out = convert(from, frames);
-  }
-  return pointArray(std::move(out));
+  return pointArray(released([&] { return convert(from, frames); }));
 }
 
 }  // namespace

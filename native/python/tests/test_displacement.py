@@ -239,7 +239,7 @@ def test_arguments_without_meaning(cube, anywhere):
         cube.vector_displacement(cube, face, uv, frames=np.ones((4, 3, 3)))
     with pytest.raises(ValueError, match=r"values has shape \(5, 2\)"):
         cube.displaced(face, uv, np.ones((5, 2)))
-    with pytest.raises(ValueError, match="go along the normals"):
+    with pytest.raises(ValueError, match="distances along the normals, which need no frames"):
         cube.displaced(face, uv, np.ones(5), frames=np.ones((5, 3, 3)))
     with pytest.raises(ValueError, match="max_distance is -1"):
         cube.scalar_displacement(cube, face, uv, -1)

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/row_check.h"
 #include "limitsurf/surface/strands/strand_offsets.h"
 
@@ -53,7 +54,9 @@ Eigen::Matrix3d shortestTurn(const Vector3& from, const Vector3& to) {
 Rotations shortestTurns(const Points& from, const Points& to) {
   checkRows("target", to.rows(), from.rows());
   Rotations turns(from.rows(), 9);
+  InterruptionStride stride;
   for (Eigen::Index row = 0; row < from.rows(); ++row) {
+    stride.step();
     Eigen::Map<Matrix>(turns.row(row).data()) = shortestTurn(from.row(row), to.row(row));
   }
   return turns;
@@ -61,7 +64,9 @@ Rotations shortestTurns(const Points& from, const Points& to) {
 
 Rotations rotationsOf(const Quaternions& quaternions) {
   Rotations rotations(quaternions.rows(), 9);
+  InterruptionStride stride;
   for (Eigen::Index row = 0; row < quaternions.rows(); ++row) {
+    stride.step();
     const Eigen::RowVector4d q = quaternions.row(row) / quaternions.row(row).stableNorm();
     Eigen::Map<Matrix>(rotations.row(row).data()) =
         Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
@@ -79,7 +84,9 @@ Points movedStrands(const Points& points, const std::vector<std::int64_t>& offse
   }
   checkRows("points", points.rows(), offsets.empty() ? strands : offsets.back());
   Points moved(points.rows(), 3);
+  InterruptionStride stride;
   for (Eigen::Index strand = 0; strand < strands; ++strand) {
+    stride.step();
     const auto i = static_cast<std::size_t>(strand);
     const Eigen::Index begin = offsets.empty() ? strand : offsets[i],
                        end = offsets.empty() ? strand + 1 : offsets[i + 1];
