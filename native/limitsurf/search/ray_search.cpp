@@ -99,6 +99,8 @@ class RaySearch {
   /// After so many steps a core asks what is known of all cores around its vertex. Few rays come so
   /// far.
   static constexpr int kManySteps = 8;
+  /// Hits so many tolerances apart count as one: they are less than kSearchError apart.
+  static constexpr double kSameHit = 4;
 
   double margin() const { return found_.tolerance; }
   double start() const { return found_.from - found_.tolerance; }
@@ -133,11 +135,15 @@ class RaySearch {
 
   /// Whether the ray meets nothing between the cores of a level and those of the next.
   bool misses(const RingLevel& level, const Passing& passing) const {
-    return level.bounds.distanceFromLine(passing.angle) > passing.aside + 2 * margin();
+    return level.bounds.distanceFromLine(passing.angle) > passing.aside + margin();
   }
 
-  bool isSmall(const SurfacePiece& core) const {
-    return data_.patches.coreRadius(core) <= found_.tolerance ||
+  /// Whether the vertex may stand for the rest of a core: all of it is as near as the tolerance or,
+  /// if the ray meets the vertex itself, so near that no other hit there would be another one.
+  bool isSmall(const SurfacePiece& core, const Passing& passing) const {
+    const double tolerance = found_.tolerance;
+    return data_.patches.coreRadius(core) <=
+               (passing.aside <= tolerance ? kSameHit * tolerance : tolerance) ||
            core.steps >= SurfacePatches::kMostSteps;
   }
 
@@ -161,9 +167,10 @@ class RaySearch {
       return;
     }
     SurfacePatches::SplitCore split;
-    for (; !isSmall(core); ++core.steps) {
-      skipLevels(ring, core);
-      if (isSmall(core)) {
+    const Passing how = passing(ring, core);
+    for (; !isSmall(core, how); ++core.steps) {
+      skipLevels(ring, how, core);
+      if (isSmall(core, how)) {
         break;
       }
       visitParts(core, split);
@@ -175,7 +182,7 @@ class RaySearch {
   }
 
   /// Takes the steps of a core whose patches the ray misses for certain.
-  void skipLevels(int ring, SurfacePiece& core) const {
+  void skipLevels(int ring, const Passing& how, SurfacePiece& core) const {
     const int level = data_.patches.ringLevel(core);
     if (core.steps < kManySteps || level < data_.rings.firstLevel(ring)) {
       return;
@@ -184,8 +191,7 @@ class RaySearch {
     if (!at) {
       return;
     }
-    const Passing how = passing(ring, core);
-    while (!isSmall(core) && misses(*at, how)) {
+    while (!isSmall(core, how) && misses(*at, how)) {
       ++core.steps;
       at = data_.rings.level(ring, data_.patches.ringLevel(core));
     }
@@ -196,7 +202,7 @@ class RaySearch {
     const Passing how = passing(ring, core);
     const Eigen::Matrix3d frame = data_.patches.ringFrame(ring);
     const Vector3 vertex = data_.patches.coreVertex(core);
-    for (; !isSmall(core); ++core.steps) {
+    for (; !isSmall(core, how); ++core.steps) {
       const int number = data_.patches.ringLevel(core);
       const RingLevel& level = *data_.rings.level(ring, number);
       if (!misses(level, how)) {
