@@ -43,7 +43,7 @@ class AllTiles:
         check_some_left(self._limit, surface.name)
 
     def compute(self, progress: Progress) -> None:
-        """Finds the tiles, which takes some 50 microseconds for each of them."""
+        """Finds the tiles, which takes 30 to 65 microseconds of one core for each of them."""
         limit = self._limit
         self.tree = limit.tile_quadtree(self._depth, progress=progress)
         if self._levels is None:
