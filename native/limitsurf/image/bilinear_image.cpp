@@ -29,8 +29,7 @@ struct Between {
 
 }  // namespace
 
-DataRows BilinearImage::sample(
-    const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>& places, int threads) const {
+DataRows BilinearImage::sample(const Eigen::Ref<const Places>& places, int threads) const {
   checkThreads(threads);
   InterruptionStride stride;
   for (Eigen::Index row = 0; row < places.rows(); ++row) {

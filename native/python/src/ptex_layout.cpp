@@ -60,8 +60,6 @@ Returns
 Raises ValueError for arrays of other shapes and naming the first place that is not finite.
 )";
 
-using PlaceRows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
-
 py::object texels(const PtexLayout& layout) {
   const std::vector<PtexLayout::Pixel> pixels = released([&] { return layout.pixels(); });
   const Locations at = released([&] { return layout.locations(); });
@@ -98,7 +96,7 @@ py::array_t<double> bilinear(const py::object& pixels, const py::object& st, int
   requireRows<std::invalid_argument>(places, "st", 2);
   const BilinearImage image{values.data(), static_cast<int>(values.shape(1)),
                             static_cast<int>(values.shape(0)), static_cast<int>(values.shape(2))};
-  const Eigen::Map<const PlaceRows> at(places.data(), places.shape(0), 2);
+  const Eigen::Map<const BilinearImage::Places> at(places.data(), places.shape(0), 2);
   return rowArray(released([&] { return image.sample(at, threads); }));
 }
 
