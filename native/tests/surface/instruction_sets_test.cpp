@@ -40,7 +40,8 @@ std::vector<InstructionSet> availableSets() {
   return sets;
 }
 
-/// Runs of 1 to 40 locations on each face in turn, some of them at and near vertices.
+/// Runs of 1 to 40 locations on each face in turn, some of them at and near vertices, and then
+/// single ones.
 std::vector<Location> runs(const Cage& cage) {
   Random random(5);
   std::vector<Location> at;
@@ -51,6 +52,9 @@ std::vector<Location> runs(const Cage& cage) {
       at += shells(face, random.below(4), {1 + random.below(6), 1 + random.below(45)});
       at.push_back(cornerLocation(face, random.below(4)));
     }
+  }
+  for (int round = 0; round < 4; ++round) {
+    for (int face = 0; face < faces; ++face) at += anywhere(face, 1, random);
   }
   return at;
 }

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <utility>
 
 #include "limitsurf/error.h"
 #include "limitsurf/prefetch.h"
@@ -16,12 +16,9 @@
 namespace limitsurf {
 namespace {
 
-static_assert(sizeof(Padded) == 4 * sizeof(double));
-const double (*numbersOf(const Padded* points))[4] {
-  return reinterpret_cast<const double (*)[4]>(points);
+[[noreturn]] void throwChanged() {
+  throw LocationError("the locations were changed while they were evaluated");
 }
-
-void copy(const Padded& from, double to[4]) { std::memcpy(to, from.data(), sizeof from); }
 
 }  // namespace
 
@@ -32,8 +29,10 @@ BatchEvaluator<Real>::BatchEvaluator(const TileTable& table, const Pose& pose, i
       pose_(pose),
       kernel_(PatchKernels::get().evaluate<Real>(order)),
       grid_kernel_(PatchKernels::get().evaluateOnGrids<Real>(order)),
+      single_kernel_(PatchKernels::get().evaluateSingles<Real>(order)),
       order_(order),
       results_(results),
+      runs_(table, pose, order),
       alone_(table, pose) {}
 
 template <typename Real>
@@ -43,6 +42,13 @@ void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& ord
   std::size_t rows[kMostRows];
   while (begin < end) {
     const std::int64_t face = at.face(order[begin]);
+    if (begin + 1 == end || at.face(order[begin + 1]) != face) {
+      evaluateSingle(at, order[begin]);
+      if (++begin < end) {
+        prefetchTile(tileOf(at.face(order[begin])));
+      }
+      continue;
+    }
     const std::size_t stop = std::min<std::size_t>(end, begin + kMostRows);
     unsigned count = 0;
     bool good = true;
@@ -62,16 +68,67 @@ void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& ord
     } while (++begin < stop);
     const TileRef tile = tileOf(face);
     if (!good || tile.kind == TileRef::kNone) {
-      throw LocationError("the locations were changed while they were evaluated");
+      throwChanged();
     }
     if (next != face) {
       prefetchTile(tileOf(next));
     }
-    if (count > 1) {
-      std::fill_n(u + count, PatchRun::kReadBeyond, 0.);
-      std::fill_n(v + count, PatchRun::kReadBeyond, 0.);
-    }
+    std::fill_n(u + count, PatchRun::kReadBeyond, 0.);
+    std::fill_n(v + count, PatchRun::kReadBeyond, 0.);
     evaluateTile(tile, 0, 0, {u, v, rows, count});
+  }
+  evaluateSingles();
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateSingle(const LocationBatch& at, std::size_t row) {
+  double u = at.u(row), v = at.v(row);
+  const TileRef tile = tileOf(at.face(row));
+  if (!((u >= 0) & (u <= 1) & (v >= 0) & (v <= 1)) || tile.kind == TileRef::kNone) {
+    throwChanged();
+  }
+  if (tile.kind == TileRef::kBSpline) {
+    const BSplineTile& regular = table_.bsplines[tile.index];
+    const bool has_ends = regular.x_low | regular.x_high | regular.y_low | regular.y_high;
+    if (!has_ends && !regular.fine && !runs_.hasCrease(tile)) {
+      const unsigned i = singles_.count++;
+      singles_.tiles[i] = tile;
+      singles_.indices[i] = regular.points.data();
+      singles_.u[i] = u;
+      singles_.v[i] = v;
+      singles_.rows[i] = row;
+      if (singles_.count == Singles::kMost) {
+        evaluateSingles();
+      }
+      return;
+    }
+  }
+  evaluateTile(tile, 0, 0, {&u, &v, &row, 1});
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateSingles() {
+  const unsigned count = std::exchange(singles_.count, 0);
+  if (count == 0) {
+    return;
+  }
+  SingleRun run;
+  run.points = numbersOf(&pose_.point(0));
+  run.indices = singles_.indices;
+  run.u = singles_.u;
+  run.v = singles_.v;
+  run.rows = singles_.rows;
+  run.count = count;
+  const bool has_normals = order_ >= 1 && results_.normal;
+  if (has_normals) {
+    run.normal_limits = alone_.normalLimits(0, 0);
+  }
+  single_kernel_(run, results_);
+  if (has_normals) {
+    for (unsigned i = 0; i < count; ++i) {
+      completeNormals(singles_.tiles[i], 0, 0,
+                      {&singles_.u[i], &singles_.v[i], &singles_.rows[i], 1});
+    }
   }
 }
 
@@ -84,7 +141,7 @@ TileRef BatchEvaluator<Real>::tileOf(std::int64_t face) const {
 template <typename Real>
 void BatchEvaluator<Real>::evaluateTile(TileRef tile, int turns, int depth, const TileRows& rows) {
   constexpr unsigned kFewestRows = 3;  // fewer are located faster one by one
-  if (tile.kind == TileRef::kBSpline && !hasCrease(tile)) {
+  if (tile.kind == TileRef::kBSpline && !runs_.hasCrease(tile)) {
     evaluatePatch({tile, turns & 3, depth, 0, 0, 0}, 1, rows);
   } else if (tile.kind == TileRef::kBSpline || rows.count < kFewestRows) {
     for (unsigned i = 0; i < rows.count; ++i) {
@@ -162,17 +219,7 @@ void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth,
 template <typename Real>
 void BatchEvaluator<Real>::evaluateOnGrids(TileRef tile, int turns, int depth,
                                            const TileRows& rows) {
-  const int index = static_cast<int>(tile.index);
-  const RingTile& ring_tile = table_.ring_tiles[index];
-  const Pose::Grid& grid = pose_.grid(index, 1);
-  GridRun run;
-  run.grids = numbersOf(grid.points);
-  run.steps = pose_.gridSteps(ring_tile);
-  run.u_low = onRight(ring_tile.sides);
-  run.v_low = onLeft(ring_tile.sides);
-  run.turns = turns;
-  copy(grid.limit(), run.anchor);
-  run.depth_scale = powerOfTwo(depth);
+  GridRun run = runs_.onGrids(static_cast<int>(tile.index), turns, depth);
   run.u = rows.u;
   run.v = rows.v;
   run.rows = rows.rows;
@@ -219,7 +266,7 @@ void BatchEvaluator<Real>::evaluateQuarters(TileRef tile, int turns, int depth,
       return;
     }
     const int steps = static_cast<int>(part / 4);
-    const Patch patch{
+    const TilePatch patch{
         tile, turns, depth, steps, static_cast<int>(part & 1), static_cast<int>(part >> 1 & 1)};
     evaluatePatch(patch, powerOfTwo(steps), some);
   });
@@ -229,7 +276,7 @@ template <typename Real>
 void BatchEvaluator<Real>::evaluateOne(TileLocation place, std::size_t row) {
   const TileRows single{&place.u, &place.v, &row, 1};
   if (place.tile.kind == TileRef::kBSpline) {
-    if (!hasCrease(place.tile)) {
+    if (!runs_.hasCrease(place.tile)) {
       evaluatePatch({place.tile, place.turns, place.depth, 0, 0, 0}, 1, single);
       return;
     }
@@ -249,19 +296,12 @@ void BatchEvaluator<Real>::evaluateOne(TileLocation place, std::size_t row) {
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, double scale, const TileRows& rows) {
-  PatchRun run;
-  if (patch.tile.kind == TileRef::kBSpline) {
-    setBSpline(patch, run);
-  } else {
-    setRing(patch, rows.count == 1, run);
-  }
-  run.turns = patch.turns;
+void BatchEvaluator<Real>::evaluatePatch(const TilePatch& patch, double scale,
+                                         const TileRows& rows) {
+  PatchRun run = runs_.onPatch(patch, rows.count == 1);
   run.u = rows.u;
   run.v = rows.v;
   run.scale = scale;
-  run.a = patch.a;
-  run.b = patch.b;
   run.rows = rows.rows;
   run.count = rows.count;
   const bool has_normals = order_ >= 1 && results_.normal;
@@ -271,84 +311,6 @@ void BatchEvaluator<Real>::evaluatePatch(const Patch& patch, double scale, const
   kernel_(run, results_);
   if (has_normals) {
     completeNormals(patch.tile, patch.turns, patch.depth, rows);
-  }
-}
-
-template <typename Real>
-void BatchEvaluator<Real>::setBSpline(const Patch& patch, PatchRun& run) {
-  const BSplineTile& tile = table_.bsplines[patch.tile.index];
-  if (tile.fine) {
-    for (int i = 0; i < 16; ++i) {
-      copy(pose_.difference(tile.points[i], tile.points[5]), window_[i]);
-    }
-    run.points = window_;
-  } else {
-    run.points = numbersOf(&pose_.point(0));
-    run.indices = tile.points.data();
-  }
-  run.u_low = tile.x_low;
-  run.u_high = tile.x_high;
-  run.v_low = tile.y_low;
-  run.v_high = tile.y_high;
-  copy(pose_.point(tile.points[5]), run.anchor);
-  run.value_scale = 1;
-  std::fill_n(run.offset, 4, 0);
-  run.first_scale = powerOfTwo(patch.depth);
-  run.second_scale = powerOfTwo(2 * patch.depth);
-}
-
-template <typename Real>
-void BatchEvaluator<Real>::setRing(const Patch& patch, bool is_single, PatchRun& run) {
-  const int index = static_cast<int>(patch.tile.index);
-  const RingTile& tile = table_.ring_tiles[index];
-  const Padded* grid;
-  if (patch.steps <= pose_.gridSteps(tile)) {
-    const Pose::Grid& kept = pose_.grid(index, patch.steps);
-    grid = kept.points;
-    copy(kept.limit(), run.anchor);
-    run.value_scale = 1;
-    std::fill_n(run.offset, 4, 0);
-    run.first_scale = powerOfTwo(patch.steps + patch.depth);
-    run.second_scale = powerOfTwo(2 * (patch.steps + patch.depth));
-  } else {
-    const Pose::RingPose& ring = pose_.ring(tile.ring);
-    setDeep(patch, is_single);
-    run.has_nets = TileEvaluator::needsNets(*table_.rings[tile.ring].basis, order_);
-    grid = deep_;
-    copy(ring.limit, run.anchor);
-    copy(ring.constant(), run.offset);
-    run.value_scale = std::ldexp(1., 1 - patch.steps);
-    run.first_scale = powerOfTwo(1 + patch.depth);
-    run.second_scale = powerOfTwo(patch.steps + 1 + 2 * patch.depth);
-  }
-  run.points = numbersOf(grid + patch.b * tile_grid::kSize + patch.a);
-  run.stride = tile_grid::kSize;
-  run.u_low = onRight(tile.sides) && patch.a == 0;
-  run.v_low = onLeft(tile.sides) && patch.b == 0;
-  run.u_high = run.v_high = false;
-}
-
-template <typename Real>
-void BatchEvaluator<Real>::setDeep(const Patch& patch, bool is_single) {
-  if (patch.tile.index == deep_tile_ && patch.steps == deep_steps_) {
-    return;
-  }
-  const int index = static_cast<int>(patch.tile.index);
-  const RingTile& tile = table_.ring_tiles[index];
-  const Eigenbasis& basis = *table_.rings[tile.ring].basis;
-  const Points& coefficients = pose_.ring(tile.ring).coefficients;
-  const Padded* const outer = pose_.ringTile(index).outer;
-  deep_tile_ = patch.tile.index;
-  deep_steps_ = patch.steps;
-  if (!TileEvaluator::needsNets(basis, order_)) {
-    basis.controlGrid(tile.face, patch.steps, tile.ring_steps, coefficients, outer, deep_);
-    return;
-  }
-  using derivative_nets::Selection;
-  basis.derivativeNets(tile.face, patch.steps, tile.ring_steps, coefficients, outer,
-                       is_single ? Selection::window(patch.a, patch.b) : Selection::whole(), deep_);
-  if (is_single) {
-    deep_steps_ = 0;  // the other quarters are missing
   }
 }
 

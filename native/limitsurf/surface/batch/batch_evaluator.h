@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "limitsurf/surface/batch/patch_kernels.h"
+#include "limitsurf/surface/batch/patch_runs.h"
 #include "limitsurf/surface/batch/row_order.h"
 #include "limitsurf/surface/batch/row_parts.h"
 #include "limitsurf/surface/location_batch.h"
@@ -33,15 +34,12 @@ class BatchEvaluator {
   /// At most so many rows are put in order at a time.
   static constexpr unsigned kMostRows = 2048;
 
-  /// A bicubic patch of a tile: all of a regular tile, or what a quarter of a ring tile is after
-  /// some steps.
-  struct Patch {
-    TileRef tile;
-    int turns, depth;
-    int steps, a, b;  // of the quarter; 0 on a regular tile
-  };
   /// The tile of a face, of kind kNone if there is no such face.
   TileRef tileOf(std::int64_t face) const;
+  /// A row that follows none of its face. It may wait until there are more of them.
+  void evaluateSingle(const LocationBatch& at, std::size_t row);
+  /// Those that wait.
+  void evaluateSingles();
   /// The rows of a part of a face, on which the tile lies, split as often as `depth`.
   void evaluateTile(TileRef tile, int turns, int depth, const TileRows& rows);
   /// Fetches what most locations on a tile will read.
@@ -53,20 +51,14 @@ class BatchEvaluator {
   /// Such rows on the grids that are kept. Those below get results without meaning.
   void evaluateOnGrids(TileRef tile, int turns, int depth, const TileRows& rows);
   /// The parameters are in the tile's frame. They are `scale` times as large in that of the patch.
-  void evaluatePatch(const Patch& patch, double scale, const TileRows& rows);
+  void evaluatePatch(const TilePatch& patch, double scale, const TileRows& rows);
   /// Computes the normals that the kernels have left out.
   void completeNormals(TileRef tile, int turns, int depth, const TileRows& rows);
-  void setBSpline(const Patch& patch, PatchRun& run);
-  void setRing(const Patch& patch, bool is_single, PatchRun& run);
-  /// Computes the points of a ring tile after more steps than are kept, or their nets: all of them,
-  /// unless they are for a single row.
-  void setDeep(const Patch& patch, bool is_single);
   /// A row on its own: by a patch where there is one, otherwise by TileEvaluator.
   void evaluateOne(TileLocation place, std::size_t row);
   void evaluateAlone(const TileLocation& place, std::size_t row);
   void putNormal(const TileLocation& place, const Jet& jet, std::size_t row);
 
-  bool hasCrease(TileRef tile) const { return table_.bsplines[tile.index].crease > 0; }
   /// The sorted rows of a tile of that depth.
   RowParts& partsAt(int depth);
 
@@ -74,14 +66,22 @@ class BatchEvaluator {
   const Pose& pose_;
   const typename PatchKernels::Evaluate<Real> kernel_;
   const typename PatchKernels::EvaluateOnGrids<Real> grid_kernel_;
+  const typename PatchKernels::EvaluateSingles<Real> single_kernel_;
   const int order_;
   const PatchResults<Real> results_;
+  PatchRuns runs_;
   TileEvaluator alone_;
 
-  alignas(64) double window_[16][4];      // of a fine tile
-  Padded deep_[derivative_nets::kCount];  // of the last ring tile below the grids that are kept
-  std::uint32_t deep_tile_ = 0;
-  int deep_steps_ = 0;
+  /// Rows that are alone on their faces, which are evaluated together.
+  struct Singles {
+    static constexpr unsigned kMost = 64;
+    unsigned count = 0;
+    TileRef tiles[kMost];
+    const int* indices[kMost];
+    double u[kMost + PatchRun::kReadBeyond] = {}, v[kMost + PatchRun::kReadBeyond] = {};
+    std::size_t rows[kMost];
+  };
+  Singles singles_;
   std::deque<RowParts> parts_;  // by depth; their addresses stay
 };
 

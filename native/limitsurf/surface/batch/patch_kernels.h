@@ -29,6 +29,16 @@ struct PatchKernels {
   template <typename Real>
   EvaluateOnGrids<Real> evaluateOnGrids(int order) const;
 
+  /// The same on regular tiles.
+  template <typename Real>
+  using EvaluateSingles = void (*)(const SingleRun& run, const PatchResults<Real>& results);
+
+  EvaluateSingles<double> singles_double[3];
+  EvaluateSingles<float> singles_float[3];
+
+  template <typename Real>
+  EvaluateSingles<Real> evaluateSingles(int order) const;
+
   /// For the instruction set in use.
   static const PatchKernels& get();
 };
@@ -48,6 +58,14 @@ inline PatchKernels::EvaluateOnGrids<double> PatchKernels::evaluateOnGrids(int o
 template <>
 inline PatchKernels::EvaluateOnGrids<float> PatchKernels::evaluateOnGrids(int order) const {
   return on_grids_float[order];
+}
+template <>
+inline PatchKernels::EvaluateSingles<double> PatchKernels::evaluateSingles(int order) const {
+  return singles_double[order];
+}
+template <>
+inline PatchKernels::EvaluateSingles<float> PatchKernels::evaluateSingles(int order) const {
+  return singles_float[order];
 }
 
 }  // namespace limitsurf

@@ -334,11 +334,13 @@ void evaluate(const PatchRun& run, const PatchResults<Real>& results) {
   }
 }
 
-#include "limitsurf/surface/batch/grid_kernels.inl.h"
+#include "limitsurf/surface/batch/row_kernels.inl.h"
 
 inline const PatchKernels kKernels = {
     {evaluate<0, double>, evaluate<1, double>, evaluate<2, double>},
     {evaluate<0, float>, evaluate<1, float>, evaluate<2, float>},
     {evaluateOnGrids<0, double>, evaluateOnGrids<1, double>, evaluateOnGrids<2, double>},
     {evaluateOnGrids<0, float>, evaluateOnGrids<1, float>, evaluateOnGrids<2, float>},
+    {evaluateSingles<0, double>, evaluateSingles<1, double>, evaluateSingles<2, double>},
+    {evaluateSingles<0, float>, evaluateSingles<1, float>, evaluateSingles<2, float>},
 };

@@ -57,6 +57,19 @@ struct GridRun {
   std::size_t count;
 };
 
+/// Locations each of which lies on a regular tile of its own, a whole Ptex face with points all
+/// around.
+struct SingleRun {
+  static constexpr int kAnchor = 5;  ///< the point relative to which the sums are taken
+  const double (*points)[4];
+  const int* const* indices;         ///< for each row those of its 16 control points
+  NormalLimits normal_limits{0, 0};  ///< as in PatchRun
+  /// Parameters. As many numbers more as PatchRun::kReadBeyond can be read behind them.
+  const double *u, *v;
+  const std::size_t* rows;  ///< the rows that get the results
+  std::size_t count;
+};
+
 /// Where results go: row r of each array has its three numbers from 3 r on. Normals may be missing.
 template <typename Real>
 struct PatchResults {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The inner loop for rows on the grids that are kept of a ring tile. patch_kernels.inl.h includes
-// this file.
+// The inner loops for rows of which few lie on one patch. Their weights are found for several rows
+// at once. Then they are evaluated one by one, all coordinates at a time. patch_kernels.inl.h
+// includes this file.
 
 /// Weights of a few rows along one axis, to be read row by row.
 template <int kCount>
@@ -52,9 +53,8 @@ class StoredWeights {
   alignas(64) double value_[4][kCount], first_[3][kCount], second_[2][kCount];
 };
 
-/// The next `count` rows of a run, at most kCount. Where each row lies is found for all of them at
-/// once. Then they are evaluated one by one, all coordinates at a time: few rows lie on one patch,
-/// and branches on their number would be guessed wrong.
+/// The next `count` rows of a run, at most kCount. (Sorted by patch they would take longer:
+/// branches on the number of a patch's rows are guessed wrong.)
 template <int Order, int kCount, typename Real>
 [[gnu::always_inline]] inline void evaluateGridRows(const GridRun& run, const Turned& turned,
                                                     std::size_t begin, int count,
@@ -116,5 +116,48 @@ void evaluateOnGrids(const GridRun& run, const PatchResults<Real>& results) {
     const std::size_t left = run.count - begin;
     evaluateGridRows<Order, kLanes>(run, turned, begin,
                                     left < kLanes ? static_cast<int>(left) : kLanes, results);
+  }
+}
+
+/// The next `count` rows of a run, at most kCount.
+template <int Order, int kCount, typename Real>
+[[gnu::always_inline]] inline void evaluateSingleRows(const SingleRun& run, std::size_t begin,
+                                                      int count,
+                                                      const PatchResults<Real>& results) {
+  using Point = Lanes<4>;
+  using Rows = Lanes<kCount>;
+  const StoredWeights<kCount> weights_u(Rows::load(run.u + begin), false, Rows::of(0));
+  const StoredWeights<kCount> weights_v(Rows::load(run.v + begin), false, Rows::of(0));
+  for (int i = 0; i < count; ++i) {
+    const std::size_t place = begin + static_cast<std::size_t>(i);
+    const int* const indices = run.indices[place];
+    const Point anchor = Point::load(run.points[indices[SingleRun::kAnchor]]);
+    PatchValues<Point> patch;
+    evaluatePatch<Order, Point>(
+        [&](int x, int y) { return Point::load(run.points[indices[4 * y + x]]) - anchor; },
+        weights_u.row(i), weights_v.row(i), patch);
+    const std::size_t at = 3 * run.rows[place];
+    putPoint(results.position + at, anchor + (patch.value + Point::of(0)));
+    if (Order >= 1) {
+      putPoint(results.du + at, patch.du);
+      putPoint(results.dv + at, patch.dv);
+      if (results.normal) {
+        putNormal(patch.du, patch.dv, run.normal_limits, results.normal + at);
+      }
+    }
+    if (Order >= 2) {
+      putPoint(results.duu + at, patch.duu);
+      putPoint(results.duv + at, patch.duv);
+      putPoint(results.dvv + at, patch.dvv);
+    }
+  }
+}
+
+template <int Order, typename Real>
+void evaluateSingles(const SingleRun& run, const PatchResults<Real>& results) {
+  for (std::size_t begin = 0; begin < run.count; begin += kLanes) {
+    const std::size_t left = run.count - begin;
+    evaluateSingleRows<Order, kLanes>(run, begin, left < kLanes ? static_cast<int>(left) : kLanes,
+                                      results);
   }
 }
