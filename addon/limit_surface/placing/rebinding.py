@@ -6,18 +6,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal
 
 import bpy
 import numpy as np
 
 from .. import ids, native
 from ..errors import RefusalError
-from ..reading import attributes, cage, uv_map
+from ..reading import attributes, cage
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
 from . import curve_points, following, live_binding
+from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
 from .followers import (
     followers_of,
     holder_of,
@@ -30,21 +31,11 @@ from .places import NOWHERE
 from .posed_surface import PosedSurface, transformed
 from .relocation import Elements, Relocation
 
-if TYPE_CHECKING:
-    import limitsurf
-
 Method = Literal["CLOSEST", "UV", "FACE"]
 
 # What is turned with a root
 _POINTS = (ids.POSITION, ids.HANDLE_LEFT, ids.HANDLE_RIGHT)
 _DIRECTIONS = (ids.NORMAL, ids.TANGENT)
-
-
-class Found(NamedTuple):
-    """Where roots are on the surface as it is now; the face is NOWHERE where they are not."""
-
-    face: np.ndarray  # (n,)
-    uv: np.ndarray  # (n, 2)
 
 
 @dataclass(frozen=True)
@@ -106,18 +97,18 @@ class Rebinding:
         with cage.opened(surface, depsgraph) as (found, mesh):
             self._posed = PosedSurface(found)
             check_some_left(self._posed.in_world, surface.name)
-            maps = _UvMaps(self._posed, mesh, surface)
+            maps = UvMaps(self._posed, mesh, surface)
             for elements in self._elements:
-                if method == "UV" or (method == "CLOSEST" and _stores_uv(elements)):
+                if method == "UV" or (method == "CLOSEST" and stores_uv(elements)):
                     maps.read(elements.data)
             self._signature = following.signature(found)
-        self._find: _Finder
+        self._find: Finder
         if method == "CLOSEST":
-            self._find = _Closest(self._posed, maps, max_distance)
+            self._find = Closest(self._posed, maps, max_distance)
         elif method == "UV":
-            self._find = _ByUv(maps)
+            self._find = ByUv(maps)
         else:
-            self._find = _ByFace(self._posed)
+            self._find = ByFace(self._posed)
         self._target = surface
         self._surface, self._names = surface.name, [ob.name for ob in bound]
         self._by_nodes = [ob for ob in kept if ob not in self._live]
@@ -162,114 +153,7 @@ class Rebinding:
         )
 
 
-class _Finder:
-    """Finds the new locations of elements. `keeps_frame` means that the faces are those of before,
-    so that what is stored about the places at rest holds.
-    """
-
-    reason = ""
-    keeps_frame = False
-
-    def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
-        """Returns what was found (Found)."""
-        raise NotImplementedError
-
-
-class _UvMaps:
-    """The surface's UV maps, on which hair on a surface stores where it stands."""
-
-    def __init__(
-        self, posed: PosedSurface, mesh: bpy.types.Mesh, surface: bpy.types.Object
-    ) -> None:
-        self._posed, self._mesh, self._surface = posed, mesh, surface
-        self._read: dict[bpy.types.ID, limitsurf.SurfaceData | RefusalError] = {}
-
-    def read(self, data: bpy.types.ID) -> None:
-        """Reads the map that the hair names, or else the active one, as long as the mesh is
-        there.
-        """
-        try:
-            self._read[data] = self._of(data)
-        except RefusalError as error:
-            self._read[data] = error
-
-    def of(self, data: bpy.types.ID) -> limitsurf.SurfaceData:
-        """Returns that map. Raises RefusalError where there is none."""
-        found = self._read[data]
-        if isinstance(found, RefusalError):
-            raise found
-        return found
-
-    def _of(self, data: bpy.types.ID) -> limitsurf.SurfaceData:
-        active = self._surface.data.uv_layers.active
-        name = getattr(data, "surface_uv_map", "") or (active.name if active else "")
-        if not name:
-            raise RefusalError(
-                f"{self._surface.name} has no UV map, which the method UV needs. Choose another "
-                "method, or add a UV map"
-            )
-        obstacle = uv_map.obstacle(self._mesh, name)
-        if obstacle:
-            raise RefusalError(f"{self._surface.name}: {obstacle}")
-        found = uv_map.read(self._mesh, name)
-        return self._posed.in_object.face_varying(
-            found.values, found.indices, self._posed.cage.shown_uv_interpolation
-        )
-
-
-class _Closest(_Finder):
-    def __init__(self, posed: PosedSurface, maps: _UvMaps, max_distance: float) -> None:
-        self.posed, self.maps, self.max_distance = posed, maps, max_distance
-        self.reason = f"the surface is farther than {max_distance:.4g} from them"
-
-    def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
-        roots = elements.roots()[rows]
-        hits = yield from aside(
-            lambda progress: self.posed.in_world.closest(
-                roots, self.max_distance, progress=progress
-            )
-        )
-        return Found(hits.face, hits.uv)
-
-
-class _ByUv(_Finder):
-    """Takes the UV that Blender stores with hair on a surface."""
-
-    reason = "the UV map does not cover their UVs"
-
-    def __init__(self, maps: _UvMaps) -> None:
-        self._maps = maps
-
-    def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
-        if not _stores_uv(elements):
-            raise RefusalError(
-                f"{elements.ob.name} does not store the UVs of its roots (the attribute "
-                f"{ids.SURFACE_UV} is missing), which the method UV needs. Choose another method"
-            )
-        uv = attributes.read(elements.data, ids.SURFACE_UV)[rows].astype(np.float64)
-        on_surface = self._maps.of(elements.data)
-        at = yield from aside(lambda progress: on_surface.locate(uv, progress=progress))
-        return Found(at.face, at.uv)
-
-
-class _ByFace(_Finder):
-    reason = "their faces no longer exist or have no limit surface"
-    keeps_frame = True
-
-    def __init__(self, posed: PosedSurface) -> None:
-        surface = posed.in_object
-        self._exists = np.ones(surface.face_count, bool)
-        self._exists[np.isin(surface.base_face, list(surface.refused))] = False
-
-    def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
-        yield 0.0
-        face = elements.read(ids.FACE)[rows]
-        there = face < len(self._exists)
-        there[there] = self._exists[face[there]]
-        return Found(np.where(there, face, NOWHERE), elements.read(ids.UV)[rows])
-
-
-def _relocation(elements: Elements, posed: PosedSurface, find: _Finder) -> Pieces:
+def _relocation(elements: Elements, posed: PosedSurface, find: Finder) -> Pieces:
     rows = np.flatnonzero(elements.has_place)
     if elements.ob.type == "CURVE" and not find.keeps_frame:
         return (yield from _curve_relocation(elements, posed))
@@ -282,7 +166,7 @@ def _relocation(elements: Elements, posed: PosedSurface, find: _Finder) -> Piece
         now = places.position
     else:
         now = yield from _moved(relocation, posed, rows[kept], found.face[kept], found.uv[kept])
-        if isinstance(find, _Closest):
+        if isinstance(find, Closest):
             yield from _bind_others(relocation, posed, find.max_distance)
             yield from _store_uv(relocation, find.maps)
     relocation.distances = np.linalg.norm(
@@ -380,14 +264,9 @@ def _bind_others(relocation: Relocation, posed: PosedSurface, max_distance: floa
     relocation.lost = np.concatenate([relocation.lost, others.lost])
 
 
-def _stores_uv(elements: Elements) -> bool:
-    stored = elements.data.attributes.get(ids.SURFACE_UV)
-    return bool(stored) and (stored.data_type, stored.domain) == ("FLOAT2", elements.domain)
-
-
-def _store_uv(relocation: Relocation, maps: _UvMaps) -> Pieces:
+def _store_uv(relocation: Relocation, maps: UvMaps) -> Pieces:
     """Changes stored UVs to those of the new places."""
-    if not _stores_uv(relocation.elements):
+    if not stores_uv(relocation.elements):
         return
     try:
         on_surface = maps.of(relocation.data)
