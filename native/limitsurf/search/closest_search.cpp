@@ -244,14 +244,11 @@ class ClosestSearch {
     if (core.steps < kManySteps || level < data_.rings.firstLevel(ring)) {
       return;
     }
-    const RingLevel* at = data_.rings.level(ring, level);
-    if (!at) {
-      return;
-    }
+    const RingLevel* at = &data_.rings.level(ring, level);
     const SeenFromVertex seen = seenFrom(ring, core);
     while (!isSmall(core) && cannotMatter(*at, seen)) {
       ++core.steps;
-      at = data_.rings.level(ring, data_.patches.ringLevel(core));
+      at = &data_.rings.level(ring, data_.patches.ringLevel(core));
     }
   }
 
@@ -267,7 +264,7 @@ class ClosestSearch {
     const bool is_symmetric = !facing_ && data_.rings.isSymmetric(ring, seen.aside);
     for (; !isSmall(core); ++core.steps) {
       const int number = data_.patches.ringLevel(core);
-      const RingLevel& level = *data_.rings.level(ring, number);
+      const RingLevel& level = data_.rings.level(ring, number);
       ++leaves_;
       if (!cannotMatter(level, seen)) {
         if (is_symmetric) {

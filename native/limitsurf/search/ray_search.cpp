@@ -187,13 +187,10 @@ class RaySearch {
     if (core.steps < kManySteps || level < data_.rings.firstLevel(ring)) {
       return;
     }
-    const RingLevel* at = data_.rings.level(ring, level);
-    if (!at) {
-      return;
-    }
+    const RingLevel* at = &data_.rings.level(ring, level);
     while (!isSmall(core, how) && misses(*at, how)) {
       ++core.steps;
-      at = data_.rings.level(ring, data_.patches.ringLevel(core));
+      at = &data_.rings.level(ring, data_.patches.ringLevel(core));
     }
   }
 
@@ -204,7 +201,7 @@ class RaySearch {
     const Vector3 vertex = data_.patches.coreVertex(core);
     for (; !isSmall(core, how); ++core.steps) {
       const int number = data_.patches.ringLevel(core);
-      const RingLevel& level = *data_.rings.level(ring, number);
+      const RingLevel& level = data_.rings.level(ring, number);
       if (!misses(level, how)) {
         visitSectors(ring, number, vertex);
       }

@@ -9,9 +9,6 @@
 namespace limitsurf {
 namespace {
 
-/// Bounds of a ring with few faces are made when it has been asked for so many times: they cost as
-/// much as a search or two without them.
-constexpr int kAskedFor = 2;
 /// Levels are looked at so many at a time: the cores of the next one are at hand then.
 constexpr int kTogether = 8;
 constexpr int kGroups = SurfacePatches::kMostSteps / kTogether + 1;
@@ -33,7 +30,6 @@ struct SearchRings::Kept {
   std::array<FirstMade<std::array<RingLevel, kTogether>>, kGroups> levels;
   FirstMade<Number> asymmetry;
   std::array<FirstMade<SectorTree>, SurfacePatches::kMostSteps + 1> sectors;
-  mutable std::atomic<int> asked{0};
 };
 
 SearchRings::SearchRings(const SurfacePatches& patches, double tolerance)
@@ -96,14 +92,9 @@ std::vector<SurfacePiece> SearchRings::cores(int ring, int level) const {
   return cores;
 }
 
-const RingLevel* SearchRings::level(int ring, int level) const {
-  const Kept& own = kept(ring);
-  if (!isLarge(ring) && own.asked.load(std::memory_order_relaxed) < kAskedFor) {
-    own.asked.fetch_add(1, std::memory_order_relaxed);
-    return nullptr;
-  }
+const RingLevel& SearchRings::level(int ring, int level) const {
   const int group = (level - firstLevel(ring)) / kTogether;
-  const auto& levels = own.levels[static_cast<std::size_t>(group)].get([&] {
+  const auto& levels = kept(ring).levels[static_cast<std::size_t>(group)].get([&] {
     const Eigen::Matrix3d frame = patches_.ringFrame(ring);
     auto made = std::make_unique<std::array<RingLevel, kTogether>>();
     SurfacePatches::SplitCore split;
@@ -128,7 +119,7 @@ const RingLevel* SearchRings::level(int ring, int level) const {
     }
     return std::unique_ptr<const std::array<RingLevel, kTogether>>(std::move(made));
   });
-  return &levels[static_cast<std::size_t>(level - firstLevel(ring) - group * kTogether)];
+  return levels[static_cast<std::size_t>(level - firstLevel(ring) - group * kTogether)];
 }
 
 const SectorTree& SearchRings::sectors(int ring, int level) const {

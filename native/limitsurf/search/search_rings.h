@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -41,9 +40,8 @@ class SearchRings {
   SurfacePiece core(int ring, int place, int level) const;
   std::vector<SurfacePiece> cores(int ring, int level) const;
 
-  /// Bounds of the surface at a level from the first one on; null if the ring has few faces and has
-  /// not been asked for often enough to be worth the work.
-  const RingLevel* level(int ring, int level) const;
+  /// Bounds of the surface at a level from the first one on.
+  const RingLevel& level(int ring, int level) const;
   /// The patches between the cores of a level and those of the next.
   const SectorTree& sectors(int ring, int level) const;
 

@@ -117,6 +117,32 @@ TEST(ClosestAtPoles, NoPointOfTheSurfaceIsCloser) {
   EXPECT_GT(compared, 700);
 }
 
+/// What searches know of a vertex is made when it is first asked for. It must not change what later
+/// ones find.
+TEST(ClosestAtPoles, ResultsDoNotDependOnEarlierSearches) {
+  Random random(11);
+  for (const int faces : {3, 5, 20}) {
+    const LimitSurface surface = limitSurface(perturbed(pole(faces), 0.02, 5));
+    const Vertex vertex(surface);
+    constexpr int kCount = 300;
+    Points points(kCount, 3);
+    for (int i = 0; i < kCount; ++i) {
+      const double size = std::pow(10., random.uniform(-14, 0));
+      points.row(i) = (vertex.position + random.vector(size)).transpose();
+    }
+    const SurfaceSearch search(surface);
+    search.closest(points);
+    const Hits later = search.closest(points);
+    for (int i = 0; i < kCount; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      const Hits first = SurfaceSearch(surface).closest(points.row(i));
+      EXPECT_EQ(first.at[0].face, later.at[row].face) << faces << " " << i;
+      EXPECT_EQ(first.at[0].u, later.at[row].u) << faces << " " << i;
+      EXPECT_EQ(first.at[0].v, later.at[row].v) << faces << " " << i;
+    }
+  }
+}
+
 /// At a regular polygon any of the equally near faces may be given; a condition on normals, or a
 /// point off the axis, tells them apart.
 TEST(ClosestAtPoles, DirectionsTellTheFacesOfARegularPoleApart) {

@@ -28,28 +28,27 @@ TEST(RingBounds, HoldForPointsOfTheSurface) {
     for (int ring = 0; ring < patches.ringCount(); ++ring) {
       const Eigen::Matrix3d frame = patches.ringFrame(ring);
       for (int level = rings.firstLevel(ring); level < rings.firstLevel(ring) + 12; ++level) {
-        const RingLevel* known = nullptr;
-        while (!known) known = rings.level(ring, level);
+        const RingLevel& known = rings.level(ring, level);
         for (int place = 0; place < std::min(9, rings.coreCount(ring)); ++place) {
           SurfacePatches::SplitCore split;
           patches.split(rings.core(ring, place, level), split);
           const Vector3 vertex = patches.coreVertex(split.core);
           const Vector3 point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
           const Vector3 seen = frame * point, line = random.vector(1).normalized();
-          const double less = known->bounds.squaredDistanceLess(seen[2], seen.head<2>().norm());
+          const double less = known.bounds.squaredDistanceLess(seen[2], seen.head<2>().norm());
           const double from_line =
-              known->bounds.distanceFromLine(std::asin(std::abs((frame * line)[2])));
+              known.bounds.distanceFromLine(std::asin(std::abs((frame * line)[2])));
           for (const BezierPatch& patch : split.patches) {
             BezierPatch::Values at;
             patch.evaluate<0>(random.uniform(), random.uniform(), at);
             const Vector3 p = (patch.anchor + at.value).head<3>().matrix() - vertex;
             const Vector3 turned = frame * p;
             const double rho = turned.head<2>().norm(), z = turned[2], slack = 1e-15;
-            EXPECT_GE(rho, known->bounds.nearest - slack) << name;
-            EXPECT_LE(rho, known->bounds.farthest + slack) << name;
-            EXPECT_LE(z, known->bounds.rise * rho * rho + slack) << name;
-            EXPECT_LE(-z, known->bounds.fall * rho * rho + slack) << name;
-            EXPECT_LE(std::abs(z), known->bounds.slope * rho + slack) << name;
+            EXPECT_GE(rho, known.bounds.nearest - slack) << name;
+            EXPECT_LE(rho, known.bounds.farthest + slack) << name;
+            EXPECT_LE(z, known.bounds.rise * rho * rho + slack) << name;
+            EXPECT_LE(-z, known.bounds.fall * rho * rho + slack) << name;
+            EXPECT_LE(std::abs(z), known.bounds.slope * rho + slack) << name;
             EXPECT_GE(p.dot(p - 2 * point), less - 4 * slack) << name;
             EXPECT_GE(p.cross(line).norm(), from_line - slack) << name;
             ++compared;
@@ -58,7 +57,7 @@ TEST(RingBounds, HoldForPointsOfTheSurface) {
           patches.split(split.core, split);
           split.patches[1].evaluate<0>(random.uniform(), random.uniform(), at);
           const Vector3 p = (split.patches[1].anchor + at.value).head<3>().matrix() - vertex;
-          EXPECT_GE(p.dot(p - 2 * point), known->restSquaredDistanceLess(seen) - 1e-15) << name;
+          EXPECT_GE(p.dot(p - 2 * point), known.restSquaredDistanceLess(seen) - 1e-15) << name;
         }
       }
     }
@@ -78,7 +77,7 @@ TEST(RingBounds, TellThatTheVertexOfAConeIsNearest) {
     const double outside =
         patches.ringFrame(ring)(2, 2) > 0 ? 1 : -1;  // the cone's tip points upwards
     for (int level = rings.firstLevel(ring); level < 40; ++level) {
-      const RingBounds& bounds = rings.level(ring, level)->bounds;
+      const RingBounds& bounds = rings.level(ring, level).bounds;
       EXPECT_GE(bounds.squaredDistanceLess(outside * 0.2, 0), 0) << level;
       EXPECT_GT(bounds.distanceFromLine(kPi<double> / 2), 0.5 * bounds.nearest) << level;
     }
