@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "limitsurf/prefetch.h"
 #include "limitsurf/search/box_queries.h"
 #include "limitsurf/search/checks.h"
+#include "limitsurf/search/closest_on_cores.h"
 #include "limitsurf/search/closest_on_patch.h"
 #include "limitsurf/search/hit_evaluation.h"
 #include "limitsurf/search/normal_cones.h"
@@ -37,32 +37,16 @@ constexpr std::size_t kPrefetched = 4;
 /// Angles from here on count as pi, and then no cosine is too small.
 constexpr double kNearlyPi = kPi<double> - 1e-13, kAnyCosine = -2;
 
-/// The searching point as it is seen from an extraordinary vertex.
-struct SeenFromVertex {
-  SeenFromVertex(const SearchPoint& from, const Vector3& vertex, const Eigen::Matrix3d& frame) {
-    const Vector3 offset = vertex - from.place;
-    way = from.away - offset;
-    squared = offset.dot(offset - 2 * from.away);
-    turned = frame * way;
-    aside = std::hypot(turned[0], turned[1]);
-  }
-
-  Vector3 way;     ///< from the vertex to the point
-  Vector3 turned;  ///< the same along the axes of the ring
-  double squared;  ///< the vertex's squared distance, less the square of the range
-  double aside;    ///< the distance of the point from the ring's last axis
-};
-
 /// Searches for one point after the other.
 class ClosestSearch {
  public:
   /// With `cones`, subtrees are left out whose normals do not meet the condition. Results are the
   /// same to the last bit.
   explicit ClosestSearch(const SearchTree& data, const NormalCones* cones = nullptr)
-      : data_(data), cones_(cones), cache_(data) {}
+      : data_(data), cones_(cones), cache_(data), cores_(data, best_) {}
 
   /// The number of leaves visited so far, and of cores split.
-  std::int64_t leaves() const { return leaves_; }
+  std::int64_t leaves() const { return leaves_ + cores_.splitCount(); }
   /// Whether the last search has met so many leaves in vain that it is to be made again with cones.
   bool gaveUp() const { return gave_up_; }
 
@@ -70,7 +54,6 @@ class ClosestSearch {
   /// in the unit of the tree.
   Location find(const Vector3& point, double max_distance, const Facing* facing) {
     gave_up_ = false;
-    open_.clear();
     last_leaf_ = facing && !cones_ ? leaves_ + kPatience : kForever;
     if (facing && cones_) {
       unit_ = facing->direction.normalized();
@@ -86,9 +69,10 @@ class ClosestSearch {
                    (best_.from.isFar() ? (point - data_.middle).norm() : 0);
     if (!data_.tree->empty()) {
       point_in_boxes_ = data_.inBoxes(point);
+      cores_.begin(facing, point_in_boxes_);
       descend();
       if (!gave_up_) {
-        visitCores();
+        cores_.visit();
       }
     }
     return best_.at;
@@ -98,17 +82,7 @@ class ClosestSearch {
   static constexpr double kDistanceRounding = 1e-15;
   /// A search with a condition on normals ends after this many leaves if it has no cones.
   static constexpr std::int64_t kPatience = 8;
-  /// After so many steps a core asks what is known of all cores around its vertex. Few searches
-  /// come so far.
-  static constexpr int kManySteps = 8;
   static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
-
-  /// A lower bound of the squared distance of a box, less the square of the range.
-  template <typename Real>
-  double squaredDistance(const OrientedBox<Real>& box) const {
-    return best_.from.isFar() ? box.squaredDistanceLess(best_.from.away)
-                              : box.squaredDistance(point_in_boxes_);
-  }
 
   /// Walks down the tree, nearer boxes first.
   void descend() {
@@ -131,7 +105,7 @@ class ClosestSearch {
         continue;
       }
       const std::int32_t leaf = WideTree::leaf(next.place);
-      const double squared = squaredDistance(data_.leaves[leaf].box);
+      const double squared = squaredDistanceTo(data_.leaves[leaf].box, best_.from, point_in_boxes_);
       if (squared < best_.enough()) {
         if (leaves_ == last_leaf_) {
           gave_up_ = true;
@@ -146,179 +120,10 @@ class ClosestSearch {
   void visitLeaf(std::int32_t leaf, double squared) {
     const SearchLeaf& found = data_.leaves[leaf];
     if (found.piece.isCore()) {
-      putOff(found.piece, squared);
+      cores_.putOff(found.piece, squared);
     } else {
       closestOnPatch(cache_.patch(leaf), found.foot_bound, facing_, best_);
     }
-  }
-
-  /// A core that is left for later, or what is left of one.
-  struct OpenCore {
-    double squared;  ///< a lower bound of its squared distance
-    std::size_t split;
-    SurfacePiece core;
-
-    bool operator<(const OpenCore& other) const {  // the nearest one becomes the top of a heap
-      return squared != other.squared ? squared > other.squared : split > other.split;
-    }
-  };
-
-  /// Cores are split after all patches have been searched. The vertex of a core is a first guess,
-  /// and if it stayed the best one while its own core is split, no bound of the rest, which always
-  /// contains the vertex, would end that.
-  void putOff(const SurfacePiece& core, double squared) {
-    if (isLikeTheFirst(core)) {
-      return;
-    }
-    if (!facing_) {
-      best_.offer(data_.patches.coreVertex(core) - best_.from.place,
-                  data_.patches.rectangle(core).at(0, 0));
-    }
-    if (open_.size() == splits_.size()) {
-      splits_.emplace_back(new SurfacePatches::SplitCore);
-    }
-    open_.push_back({squared, open_.size(), core});
-  }
-
-  /// Splits the cores that were put off, always the nearest one first.
-  void visitCores() {
-    std::make_heap(open_.begin(), open_.end());
-    while (!open_.empty() && open_.front().squared < best_.enough()) {
-      std::pop_heap(open_.begin(), open_.end());
-      const OpenCore next = open_.back();
-      open_.pop_back();
-      const int ring = data_.patches.ringOf(next.core);
-      if (data_.rings.isLarge(ring)) {
-        visitRing(ring, next.core);
-        continue;
-      }
-      SurfacePiece core = next.core;
-      skipLevels(ring, core);
-      SurfacePatches::SplitCore& split = *splits_[next.split];
-      if (isSmall(core)) {
-        offerVertex(core, data_.patches.coreVertex(core));
-        continue;
-      }
-      visitParts(core, split);
-      const CoreBox rest(data_.patches.restHull(split), data_.middle);
-      const double squared = squaredDistance(rest);
-      if (!(squared < best_.enough())) {
-        continue;
-      }
-      open_.push_back({std::max(squared, next.squared), next.split, split.core});
-      std::push_heap(open_.begin(), open_.end());
-    }
-    open_.clear();
-  }
-
-  bool isSmall(const SurfacePiece& core) const {
-    return data_.patches.coreRadius(core) <= data_.tolerance ||
-           core.steps >= SurfacePatches::kMostSteps;
-  }
-
-  /// Splits a core and searches its patches.
-  void visitParts(const SurfacePiece& core, SurfacePatches::SplitCore& split) {
-    data_.patches.split(core, split);
-    ++leaves_;
-    for (const BezierPatch& patch : split.patches) {
-      closestOnPatch(patch, {}, facing_, best_);
-    }
-  }
-
-  SeenFromVertex seenFrom(int ring, const SurfacePiece& core) const {
-    return {best_.from, data_.patches.coreVertex(core), data_.patches.ringFrame(ring)};
-  }
-
-  /// Whether the point lies on the axis of a ring with the symmetry of a regular polygon, and the
-  /// core is another than the first one, to which it is as near.
-  bool isLikeTheFirst(const SurfacePiece& core) const {
-    const int ring = data_.patches.ringOf(core);
-    return !facing_ && core.tile != data_.rings.firstTile(ring) &&
-           data_.patches.ringLevel(core) >= data_.rings.firstLevel(ring) &&
-           data_.rings.isSymmetric(ring, seenFrom(ring, core).aside);
-  }
-
-  /// Takes the steps of a core that cannot lead to a closer point.
-  void skipLevels(int ring, SurfacePiece& core) const {
-    const int level = data_.patches.ringLevel(core);
-    if (core.steps < kManySteps || level < data_.rings.firstLevel(ring)) {
-      return;
-    }
-    const RingLevel* at = &data_.rings.level(ring, level);
-    const SeenFromVertex seen = seenFrom(ring, core);
-    while (!isSmall(core) && cannotMatter(*at, seen)) {
-      ++core.steps;
-      at = &data_.rings.level(ring, data_.patches.ringLevel(core));
-    }
-  }
-
-  /// Whether no point between the cores of a level and those of the next can be closer.
-  bool cannotMatter(const RingLevel& level, const SeenFromVertex& seen) const {
-    return seen.squared + level.bounds.squaredDistanceLess(seen.turned[2], seen.aside) >=
-           best_.enough();
-  }
-
-  /// Searches all cores around a vertex, level by level.
-  void visitRing(int ring, SurfacePiece core) {
-    const SeenFromVertex seen = seenFrom(ring, core);
-    const bool is_symmetric = !facing_ && data_.rings.isSymmetric(ring, seen.aside);
-    for (; !isSmall(core); ++core.steps) {
-      const int number = data_.patches.ringLevel(core);
-      const RingLevel& level = data_.rings.level(ring, number);
-      ++leaves_;
-      if (!cannotMatter(level, seen)) {
-        if (is_symmetric) {
-          visitParts(core, ring_split_);
-        } else {
-          visitSectors(ring, number, seen);
-        }
-      }
-      if (seen.squared + level.restSquaredDistanceLess(seen.turned) >= best_.enough()) {
-        return;
-      }
-    }
-    offerVertex(core, data_.patches.coreVertex(core));
-  }
-
-  /// Searches the patches between the cores of a level and those of the next, nearer ones first.
-  void visitSectors(int ring, int level, const SeenFromVertex& seen) {
-    const SectorTree& sectors = data_.rings.sectors(ring, level);
-    struct Entry {
-      int node;
-      double squared;
-    };
-    const auto entry = [&](int node) -> Entry {
-      return {node, seen.squared + sectors.box(node).squaredDistanceLess(seen.way)};
-    };
-    Entry open[SectorTree::kMostOpen];
-    int height = 0;
-    open[height++] = entry(SectorTree::kRoot);
-    while (height > 0) {
-      const Entry next = open[--height];
-      if (!(next.squared < best_.enough())) {
-        continue;
-      }
-      if (sectors.isLeaf(next.node)) {
-        visitParts(data_.rings.core(ring, sectors.core(next.node), level), ring_split_);
-        continue;
-      }
-      const int child = SectorTree::child(next.node);
-      open[height] = entry(child);
-      open[height + 1] = entry(child + 1);
-      if (open[height].squared < open[height + 1].squared) {
-        std::swap(open[height], open[height + 1]);
-      }
-      height += 2;
-    }
-  }
-
-  /// Offers the vertex in place of the rest of a core, which is smaller than the tolerance.
-  void offerVertex(const SurfacePiece& core, const Vector3& vertex) {
-    const Location at = data_.patches.rectangle(core).at(0, 0);
-    if (facing_ && !facing_->accepts(at)) {
-      return;
-    }
-    best_.offer(vertex - best_.from.place, at);
   }
 
   const SearchTree& data_;
@@ -331,9 +136,7 @@ class ClosestSearch {
   Vector3 point_in_boxes_;
   const Facing* facing_ = nullptr;
   ClosestSoFar best_;
-  std::vector<OpenCore> open_;
-  std::vector<std::unique_ptr<SurfacePatches::SplitCore>> splits_;  // of open cores
-  SurfacePatches::SplitCore ring_split_;
+  ClosestOnCores cores_;
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "limitsurf/search/box_queries.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/hit_evaluation.h"
+#include "limitsurf/search/hit_merging.h"
 #include "limitsurf/search/patch_intersection.h"
 #include "limitsurf/search/search_tree.h"
 
@@ -85,7 +86,7 @@ class RaySearch {
       hit.distance = std::max(0., hit.distance - found_.from);
     }
     if (!found_.first_only) {
-      sortAndMerge();
+      mergeHits(data_.surface, found_.tolerance, found_.hits);
     }
     return found_.hits;
   }
@@ -247,45 +248,6 @@ class RaySearch {
         z >= found_.from - found_.tolerance && z <= found_.nearest) {
       found_.add({z, data_.patches.rectangle(core).at(0, 0), vertex, 1});
     }
-  }
-
-  /// Sorts the hits and keeps one of several that are the same: each of two neighbouring patches
-  /// finds a hit on their common border, and several cells of a patch may find the same touching
-  /// point.
-  void sortAndMerge() {
-    std::vector<RayHit>& hits = found_.hits;
-    std::stable_sort(hits.begin(), hits.end(),
-                     [](const RayHit& a, const RayHit& b) { return a.distance < b.distance; });
-    double longest = 0;
-    for (const RayHit& hit : hits) {
-      longest = std::max(longest, hit.slack(found_.tolerance));
-    }
-    std::vector<RayHit> merged;
-    for (const RayHit& hit : hits) {
-      bool known = false;
-      for (auto other = merged.rbegin();
-           !known && other != merged.rend() && hit.distance - other->distance <= 2 * longest;
-           ++other) {
-        known = (hit.position - other->position).norm() <=
-                    hit.slack(found_.tolerance) + other->slack(found_.tolerance) &&
-                areNeighbours(hit.at.face, other->at.face);
-      }
-      if (!known) {
-        merged.push_back(hit);
-      }
-    }
-    hits.swap(merged);
-  }
-
-  /// Whether the faces have a vertex in common. Sheets that merely lie on each other have none.
-  bool areNeighbours(int face, int other) const {
-    const std::vector<int>& base = data_.surface.baseFace();
-    if (base[face] == base[other]) {
-      return true;
-    }
-    const Span<int> a = data_.surface.mesh().faceVertices(base[face]),
-                    b = data_.surface.mesh().faceVertices(base[other]);
-    return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
   }
 
   const SearchTree& data_;
