@@ -125,7 +125,7 @@ def test_targets_of_another_size_meanwhile_are_told_of(slowly):
     wait_for(operator._job)
     assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
     operator.report.assert_called_once_with(
-        {"ERROR"}, "The size of Target has changed since the work began"
+        {"ERROR"}, "The size of Target has changed since the work began: run the operator again"
     )
 
 

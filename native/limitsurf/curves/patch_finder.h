@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limitsurf/curves/side_cubics.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

@@ -5,7 +5,7 @@
 
 #include "limitsurf/curves/curve_cubic.h"
 #include "limitsurf/curves/edge_place.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

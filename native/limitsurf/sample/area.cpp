@@ -9,7 +9,7 @@
 #include "limitsurf/parallel.h"
 #include "limitsurf/sample/area_quadrature.h"
 #include "limitsurf/sample/geometric_series.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 namespace {

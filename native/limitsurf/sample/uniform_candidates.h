@@ -8,7 +8,7 @@
 #include "limitsurf/sample/area_cells.h"
 #include "limitsurf/sample/cell_table.h"
 #include "limitsurf/sample/density_field.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

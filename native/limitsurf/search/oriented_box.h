@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

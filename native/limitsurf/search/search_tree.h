@@ -9,10 +9,10 @@
 #include "limitsurf/prefetch.h"
 #include "limitsurf/search/foot_bound.h"
 #include "limitsurf/search/oriented_box.h"
-#include "limitsurf/search/search_rings.h"
+#include "limitsurf/search/rings/search_rings.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/search/wide_tree.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

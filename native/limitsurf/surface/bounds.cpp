@@ -5,7 +5,7 @@
 
 #include "limitsurf/bernstein.h"
 #include "limitsurf/surface/limit_surface_data.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 #include "limitsurf/uv/uv_inverse.h"
 
 namespace limitsurf {

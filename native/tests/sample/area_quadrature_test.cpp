@@ -9,7 +9,7 @@
 
 #include "limitsurf/pi.h"
 #include "limitsurf/sample/area.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 #include "support/cages/meshes.h"
 
 namespace limitsurf::test {

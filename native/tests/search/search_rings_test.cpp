@@ -2,7 +2,7 @@
 //
 // What searches know of the faces around an extraordinary vertex as a whole, compared with points
 // of the surface.
-#include "limitsurf/search/search_rings.h"
+#include "limitsurf/search/rings/search_rings.h"
 
 #include <gtest/gtest.h>
 

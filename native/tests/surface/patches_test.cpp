@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 #include "support/cages/query_cages.h"
 #include "support/truth/corner_points.h"
 #include "support/truth/witness.h"

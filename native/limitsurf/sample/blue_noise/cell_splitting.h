@@ -10,7 +10,7 @@
 #include "limitsurf/sample/blue_noise/disc_finder.h"
 #include "limitsurf/sample/blue_noise/noise_radii.h"
 #include "limitsurf/sample/blue_noise/trial_cell.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

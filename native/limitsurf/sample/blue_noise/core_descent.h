@@ -5,7 +5,7 @@
 
 #include "limitsurf/sample/area_kernels.h"
 #include "limitsurf/sample/blue_noise/bounded_patch.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

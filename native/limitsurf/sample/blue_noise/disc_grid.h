@@ -11,7 +11,7 @@
 
 #include "limitsurf/random_bits.h"
 #include "limitsurf/sample/blue_noise/noise_disc.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {

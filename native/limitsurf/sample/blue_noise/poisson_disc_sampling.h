@@ -9,7 +9,7 @@
 #include "limitsurf/sample/blue_noise/cell_trials.h"
 #include "limitsurf/sample/blue_noise/disc_grid.h"
 #include "limitsurf/sample/density_field.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

@@ -5,7 +5,7 @@
 
 #include "limitsurf/random_bits.h"
 #include "limitsurf/sample/blue_noise/noise_kernels.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/patch_intersection.h"
+#include "limitsurf/search/rays/patch_intersection.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "limitsurf/search/patch_in_ray_frame.h"
+#include "limitsurf/search/rays/patch_in_ray_frame.h"
 
 namespace limitsurf {
 

@@ -11,8 +11,8 @@
 #include "limitsurf/search/box_queries.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/search/hit_evaluation.h"
-#include "limitsurf/search/hit_merging.h"
-#include "limitsurf/search/patch_intersection.h"
+#include "limitsurf/search/rays/hit_merging.h"
+#include "limitsurf/search/rays/patch_intersection.h"
 #include "limitsurf/search/search_tree.h"
 
 namespace limitsurf {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "limitsurf/surface/limit_surface_data.h"
+#include "limitsurf/surface/patches/surface_patches_data.h"
 #include "limitsurf/surface/surface_data_poses.h"
-#include "limitsurf/surface/surface_patches_data.h"
 #include "limitsurf/surface/tile_weights.h"
 
 namespace limitsurf {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limitsurf/search/oriented_box.h"
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "limitsurf/pi.h"
-#include "limitsurf/surface/surface_patches.h"
-#include "limitsurf/surface/surface_patches_data.h"
+#include "limitsurf/surface/patches/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches_data.h"
 
 namespace limitsurf {
 

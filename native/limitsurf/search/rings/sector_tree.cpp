@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/sector_tree.h"
+#include "limitsurf/search/rings/sector_tree.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "limitsurf/surface/surface_patches.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
 

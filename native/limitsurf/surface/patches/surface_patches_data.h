@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "limitsurf/patch/tile_table.h"
+#include "limitsurf/surface/patches/surface_patches.h"
 #include "limitsurf/surface/pose.h"
-#include "limitsurf/surface/surface_patches.h"
 
 namespace limitsurf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/search_rings.h"
+#include "limitsurf/search/rings/search_rings.h"
 
 #include <algorithm>
 #include <array>

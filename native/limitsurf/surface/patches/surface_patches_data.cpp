@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The tiles of a surface, their rings' points after every step, and patches made from both.
-#include "limitsurf/surface/surface_patches_data.h"
+#include "limitsurf/surface/patches/surface_patches_data.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

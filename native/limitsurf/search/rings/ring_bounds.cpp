@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/ring_bounds.h"
+#include "limitsurf/search/rings/ring_bounds.h"
 
 #include <algorithm>
 #include <cmath>

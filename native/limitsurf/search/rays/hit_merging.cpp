@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/hit_merging.h"
+#include "limitsurf/search/rays/hit_merging.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "limitsurf/search/patch_intersection.h"
+#include "limitsurf/search/rays/patch_intersection.h"
 #include "limitsurf/surface/limit_surface.h"
 
 namespace limitsurf {

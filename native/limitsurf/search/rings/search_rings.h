@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "limitsurf/first_made.h"
-#include "limitsurf/search/ring_bounds.h"
-#include "limitsurf/search/sector_tree.h"
+#include "limitsurf/search/rings/ring_bounds.h"
+#include "limitsurf/search/rings/sector_tree.h"
 
 namespace limitsurf {
 

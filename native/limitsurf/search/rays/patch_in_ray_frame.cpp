@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/patch_in_ray_frame.h"
+#include "limitsurf/search/rays/patch_in_ray_frame.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

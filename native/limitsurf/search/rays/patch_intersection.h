@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "limitsurf/search/patch_in_ray_frame.h"
+#include "limitsurf/search/rays/patch_in_ray_frame.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
