@@ -11,6 +11,8 @@ namespace {
 /// After so many steps a core asks what is known of all cores around its vertex. Few searches come
 /// so far.
 constexpr int kManySteps = 8;
+/// More than the relative rounding of a difference of squared distances.
+constexpr double kRounding = 1e-15;
 
 }  // namespace
 
@@ -19,15 +21,17 @@ struct ClosestOnCores::SeenFromVertex {
   SeenFromVertex(const SearchPoint& from, const Vector3& vertex, const Eigen::Matrix3d& frame) {
     const Vector3 offset = vertex - from.place;
     way = from.away - offset;
-    squared = offset.dot(offset - 2 * from.away);
+    squared = offset.dot(offset - 2 * from.away) -
+              kRounding * offset.norm() * (offset.norm() + 2 * from.away.norm());
     turned = frame * way;
     aside = std::hypot(turned[0], turned[1]);
   }
 
   Vector3 way;     ///< from the vertex to the point
   Vector3 turned;  ///< the same along the axes of the ring
-  double squared;  ///< the vertex's squared distance, less the square of the range
-  double aside;    ///< the distance of the point from the ring's last axis
+  /// A lower bound of the vertex's squared distance, less the square of the range.
+  double squared;
+  double aside;  ///< the distance of the point from the ring's last axis
 };
 
 void ClosestOnCores::begin(const Facing* facing, const Vector3& point_in_boxes) {

@@ -117,6 +117,35 @@ TEST(ClosestAtPoles, NoPointOfTheSurfaceIsCloser) {
   EXPECT_GT(compared, 700);
 }
 
+/// On a flat pole the bounds of whole rings are as large as the distances that they stand for, up
+/// to rounding.
+TEST(ClosestAtPoles, PointsOfFlatPolesAreFoundAtNoDistance) {
+  const Eigen::Matrix3d turn =
+      Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized().toRotationMatrix();
+  for (const int faces : {8, 20, 40}) {
+    Cage cage = flattened(pole(faces));
+    cage.positions = (cage.positions * turn.transpose()).eval();
+    const double diagonal =
+        (cage.positions.colwise().maxCoeff() - cage.positions.colwise().minCoeff()).norm();
+    const LimitSurface surface = limitSurface(cage);
+    Random random(12);
+    std::vector<Location> places;
+    for (int i = 0; i < 2000; ++i) {
+      const double size = std::ldexp(1., -(i % 40));
+      places.push_back({i % faces, size * random.uniform(0, 1), size * random.uniform(0, 1)});
+    }
+    const Points points = surface.evaluate(places).position;
+    ClosestOptions options;
+    options.max_distance = kSearchError * diagonal;
+    const Hits hits = SurfaceSearch(surface).closest(points, options);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      EXPECT_GE(hits.at[i].face, 0) << faces << " " << i;
+      EXPECT_LE(hits.distance[static_cast<Eigen::Index>(i)], 0.21 * kSearchError * diagonal)
+          << faces << " " << i;
+    }
+  }
+}
+
 /// What searches know of a vertex is made when it is first asked for. It must not change what later
 /// ones find.
 TEST(ClosestAtPoles, ResultsDoNotDependOnEarlierSearches) {
