@@ -8,9 +8,6 @@
 namespace limitsurf {
 namespace {
 
-/// After so many steps a core asks what is known of all cores around its vertex. Few searches come
-/// so far.
-constexpr int kManySteps = 8;
 /// More than the relative rounding of a difference of squared distances.
 constexpr double kRounding = 1e-15;
 
@@ -66,7 +63,9 @@ void ClosestOnCores::visit() {
       continue;
     }
     SurfacePiece core = next.core;
-    skipLevels(ring, core);
+    data_.rings.skipLevels(
+        core, [&](const SurfacePiece& left) { return isSmall(left); },
+        [&](const RingLevel& level) { return cannotMatter(level, seenFrom(ring, core)); });
     SurfacePatches::SplitCore& split = *splits_[next.split];
     if (isSmall(core)) {
       offerVertex(core);
@@ -113,19 +112,6 @@ bool ClosestOnCores::isLikeTheFirst(const SurfacePiece& core) const {
   return !facing_ && core.tile != data_.rings.firstTile(ring) &&
          data_.patches.ringLevel(core) >= data_.rings.firstLevel(ring) &&
          data_.rings.isSymmetric(ring, seenFrom(ring, core).aside);
-}
-
-void ClosestOnCores::skipLevels(int ring, SurfacePiece& core) const {
-  const int level = data_.patches.ringLevel(core);
-  if (core.steps < kManySteps || level < data_.rings.firstLevel(ring)) {
-    return;
-  }
-  const RingLevel* at = &data_.rings.level(ring, level);
-  const SeenFromVertex seen = seenFrom(ring, core);
-  while (!isSmall(core) && cannotMatter(*at, seen)) {
-    ++core.steps;
-    at = &data_.rings.level(ring, data_.patches.ringLevel(core));
-  }
 }
 
 bool ClosestOnCores::cannotMatter(const RingLevel& level, const SeenFromVertex& seen) const {

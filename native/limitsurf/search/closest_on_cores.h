@@ -61,8 +61,6 @@ class ClosestOnCores {
   /// Whether the point lies on the axis of a ring with the symmetry of a regular polygon, and the
   /// core is another than the first one, to which it is as near.
   bool isLikeTheFirst(const SurfacePiece& core) const;
-  /// Takes the steps of a core that cannot lead to a closer point.
-  void skipLevels(int ring, SurfacePiece& core) const;
   /// Whether no point between the cores of a level and those of the next can be closer.
   bool cannotMatter(const RingLevel& level, const SeenFromVertex& seen) const;
   /// Searches all cores around a vertex, level by level.

@@ -122,12 +122,7 @@ py::object resampleStrands(const py::object& points, const py::object& offsets, 
   const Integers array = integers<std::invalid_argument>(offsets, "offsets");
   requireVector<std::invalid_argument>(array, "offsets");
   const std::vector<std::int64_t> starts(array.data(), array.data() + array.size());
-  Points made;
-  {
-    const py::gil_scoped_release release;
-    const InterruptionPoint point = interruptible();
-    made = resampledStrands(from, starts, count, threads);
-  }
+  Points made = released([&] { return resampledStrands(from, starts, count, threads); });
   return arrayIn<double>(std::move(made), {made.rows() / count, count, 3});
 }
 
@@ -179,12 +174,8 @@ py::object childStrands(const py::object& guide_points, const py::object& guide_
   const GuideStrands guides = guideStrands(guide_points, guide_normals);
   const ChildRoots children = childRoots(guide, weight, roots, normals);
   const ProgressReport report(progress);
-  FloatPoints made;
-  {
-    const py::gil_scoped_release release;
-    const InterruptionPoint point = interruptible();
-    made = limitsurf::childStrands(guides, children, threads, report);
-  }
+  FloatPoints made =
+      released([&] { return limitsurf::childStrands(guides, children, threads, report); });
   return arrayIn<float>(std::move(made), {children.position.rows(), guides.points_per_strand, 3});
 }
 

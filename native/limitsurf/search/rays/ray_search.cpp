@@ -97,9 +97,6 @@ class RaySearch {
   /// diagonals away, that is half of kSearchError; from farther away no bound is given.
   static constexpr double kRayRounding = 4 * 0x1p-53, kFarthest = 1000;
 
-  /// After so many steps a core asks what is known of all cores around its vertex. Few rays come so
-  /// far.
-  static constexpr int kManySteps = 8;
   /// Hits so many tolerances apart count as one: they are less than kSearchError apart.
   static constexpr double kSameHit = 4;
 
@@ -170,7 +167,9 @@ class RaySearch {
     SurfacePatches::SplitCore split;
     const Passing how = passing(ring, core);
     for (; !isSmall(core, how); ++core.steps) {
-      skipLevels(ring, how, core);
+      data_.rings.skipLevels(
+          core, [&](const SurfacePiece& left) { return isSmall(left, how); },
+          [&](const RingLevel& level) { return misses(level, how); });
       if (isSmall(core, how)) {
         break;
       }
@@ -180,19 +179,6 @@ class RaySearch {
       }
     }
     touchVertex(core);
-  }
-
-  /// Takes the steps of a core whose patches the ray misses for certain.
-  void skipLevels(int ring, const Passing& how, SurfacePiece& core) const {
-    const int level = data_.patches.ringLevel(core);
-    if (core.steps < kManySteps || level < data_.rings.firstLevel(ring)) {
-      return;
-    }
-    const RingLevel* at = &data_.rings.level(ring, level);
-    while (!isSmall(core, how) && misses(*at, how)) {
-      ++core.steps;
-      at = &data_.rings.level(ring, data_.patches.ringLevel(core));
-    }
   }
 
   /// Searches all cores around a vertex, level by level.

@@ -12,9 +12,6 @@ namespace {
 
 /// More than the relative rounding of polynomials' coefficients.
 constexpr double kMargin = 1e-12;
-/// More than the rounding of a difference of squared distances, relative to the lengths in it. At a
-/// point of a flat surface nothing else is left of the difference.
-constexpr double kRounding = 1e-14;
 
 }  // namespace
 
@@ -71,7 +68,7 @@ double RingBounds::squaredDistanceLess(double height, double aside) const {
   const double least = square > 0
                            ? at(std::clamp(aside / square, double{nearest}, double{farthest}))
                            : std::min(at(nearest), at(farthest));
-  return least - kRounding * farthest * (farthest + 2 * (aside + std::abs(height)));
+  return least - differenceRounding(farthest, aside + std::abs(height));
 }
 
 double RingBounds::distanceFromLine(double angle) const {

@@ -7,6 +7,13 @@
 
 namespace limitsurf {
 
+/// More than the rounding of a difference of squared distances: of places up to `reach` from a
+/// vertex, and of the vertex, from a point that is `away` from the vertex. At a point of a flat
+/// surface nothing else is left of the difference.
+inline double differenceRounding(double reach, double away) {
+  return 1e-14 * reach * (reach + 2 * away);
+}
+
 /// Bounds of the part of the surface that lies around an extraordinary vertex, between the cores of
 /// one level and those of the next.
 ///

@@ -12,15 +12,13 @@ namespace {
 /// Levels are looked at so many at a time: the cores of the next one are at hand then.
 constexpr int kTogether = 8;
 constexpr int kGroups = SurfacePatches::kMostSteps / kTogether + 1;
-/// More than the relative rounding of a difference of squared distances.
-constexpr double kRounding = 1e-14;
 
 }  // namespace
 
 double RingLevel::restSquaredDistanceLess(const Vector3& q) const {
   const Vector3 nearest = q.cwiseMax(rest_low).cwiseMin(rest_high);
   const double reach = rest_low.cwiseAbs().cwiseMax(rest_high.cwiseAbs()).norm();
-  return nearest.dot(nearest - 2 * q) - kRounding * reach * (reach + 2 * q.norm());
+  return nearest.dot(nearest - 2 * q) - differenceRounding(reach, q.norm());
 }
 
 struct SearchRings::Kept {

@@ -45,12 +45,27 @@ class SearchRings {
   /// The patches between the cores of a level and those of the next.
   const SectorTree& sectors(int ring, int level) const;
 
+  /// Takes the steps of a core that `isSkipped(level)`, until `isSmall(core)`. Only a core that has
+  /// come far asks what is known of its vertex, and few do.
+  template <typename IsSmall, typename IsSkipped>
+  void skipLevels(SurfacePiece& core, const IsSmall& isSmall, const IsSkipped& isSkipped) const {
+    const int ring = patches_.ringOf(core);
+    if (core.steps < kManySteps || patches_.ringLevel(core) < firstLevel(ring)) {
+      return;
+    }
+    while (!isSmall(core) && isSkipped(level(ring, patches_.ringLevel(core)))) {
+      ++core.steps;
+    }
+  }
+
   /// Whether the surface around the vertex has the symmetry of a regular polygon, so that the
   /// distances of all cores, at the first level and later ones, from a point on the axis differ by
   /// less than the tolerance, and also from points that are as far from the axis as `aside`.
   bool isSymmetric(int ring, double aside) const;
 
  private:
+  static constexpr int kManySteps = 8;
+
   struct Kept;
   const Kept& kept(int ring) const;
 
