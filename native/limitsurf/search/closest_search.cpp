@@ -100,7 +100,7 @@ class ClosestSearch {
         open.add(node, squared, [&](int child) {
           return squared[child] < enough &&
                  !(facing_ && cones_ && child < node.count &&
-                   cones_->ofChild(next.place, child).isBeyond(unit_, reach_));
+                   cones_->cannotFace(next.place, child, point_in_boxes_, unit_, reach_));
         });
         continue;
       }
@@ -139,6 +139,107 @@ class ClosestSearch {
   ClosestOnCores cores_;
 };
 
+/// A call of SurfaceSearch::closest().
+class ClosestRows {
+ public:
+  ClosestRows(const SearchTree& data, const Points& points, const ClosestOptions& options,
+              int threads)
+      : data_(data),
+        points_(points),
+        options_(options),
+        threads_(threads),
+        // An angle of pi accepts all normals; a cosine of -2 keeps rounding from excluding any.
+        least_cosine_(options.max_angle >= kNearlyPi ? kAnyCosine : std::cos(options.max_angle)),
+        at_(static_cast<std::size_t>(points.rows())),
+        open_(spatialOrder(points, threads)) {}
+
+  void run() {
+    search(Condition::none, nullptr);
+    if (options_.facing.rows() == 0) {
+      return;
+    }
+    // The closest point of all is also the closest of those that face the right way, if it does.
+    keepOpen(rowsFacingAway());
+    // A search that finds nothing that faces the right way would look at the whole surface. It is
+    // made again, with the help of cones.
+    keepOpen(search(Condition::facing, nullptr));
+    if (!open_.empty()) {
+      search(Condition::facing, &data_.normalCones(threads_));
+    }
+  }
+
+  std::vector<Location> takeLocations() { return std::move(at_); }
+  std::int64_t leaves() const { return leaves_; }
+
+ private:
+  enum class Condition { none, facing };
+
+  Facing facing(std::size_t row) const {
+    const auto i = static_cast<Eigen::Index>(row);
+    return {data_.surface, inUnit(options_.facing.row(i).transpose()), least_cosine_};
+  }
+
+  /// Searches for the points of the open rows. Returns for each row whether its search gave up.
+  std::vector<char> search(Condition condition, const NormalCones* cones) {
+    std::vector<char> gave_up(at_.size(), 0);
+    parallelFor(open_.size(), kRowsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
+      ClosestSearch search(data_, cones);
+      std::int64_t leaves_passed = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i + kPrefetched < end) {
+          prefetch(points_.coeffRef(static_cast<Eigen::Index>(open_[i + kPrefetched]), 0));
+        }
+        const std::size_t row = open_[i];
+        std::optional<Facing> filter;
+        if (condition == Condition::facing) {
+          filter.emplace(facing(row));
+        }
+        at_[row] =
+            search.find(data_.scale * points_.row(static_cast<Eigen::Index>(row)).transpose(),
+                        data_.scale * options_.max_distance, filter ? &*filter : nullptr);
+        gave_up[row] = search.gaveUp();
+        if (search.leaves() - leaves_passed >= kLeavesPerPass) {
+          InterruptionPoint::pass();
+          leaves_passed = search.leaves();
+        }
+      }
+      leaves_ += search.leaves();
+    });
+    return gave_up;
+  }
+
+  /// Those of the open rows stay open that are marked.
+  void keepOpen(const std::vector<char>& marked) {
+    std::vector<std::size_t> still_open;
+    for (const std::size_t row : open_) {
+      if (marked[row]) {
+        still_open.push_back(row);
+      }
+    }
+    open_.swap(still_open);
+  }
+
+  /// For each row, whether a place was found whose normal does not meet the condition.
+  std::vector<char> rowsFacingAway() const {
+    const Points normals = hitsAt(data_.surface, at_, threads_).normal;
+    std::vector<char> faces_away(at_.size());
+    for (std::size_t row = 0; row < at_.size(); ++row) {
+      const Vector3 normal = normals.row(static_cast<Eigen::Index>(row));
+      faces_away[row] = at_[row].face >= 0 && !facing(row).accepts(normal);
+    }
+    return faces_away;
+  }
+
+  const SearchTree& data_;
+  const Points& points_;
+  const ClosestOptions& options_;
+  const int threads_;
+  const double least_cosine_;
+  std::vector<Location> at_;
+  std::vector<std::size_t> open_;  // the rows that have no result yet, in the order of searches
+  std::atomic<std::int64_t> leaves_{0};
+};
+
 }  // namespace
 
 Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
@@ -147,61 +248,17 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
   const double scale = data_->scale;
   checkFinite(points, "point", scale);
   checkDistance(options.max_distance);
-  const bool facing = options.facing.rows() > 0;
-  if (facing) {
+  if (options.facing.rows() > 0) {
     checkRows(options.facing, points.rows(), "facing");
     checkDirections(options.facing);
   }
   checkAngle(options.max_angle);
-  // An angle of pi accepts all normals; a cosine of -2 keeps rounding from excluding any.
-  const double least_cosine =
-      options.max_angle >= kNearlyPi ? kAnyCosine : std::cos(options.max_angle);
-  std::vector<Location> at(static_cast<std::size_t>(points.rows()));
-  // A search that finds nothing that faces the right way would look at the whole surface. It is
-  // made again, with the help of cones.
-  std::vector<std::size_t> open = spatialOrder(points, threads);
-  std::atomic<std::int64_t> leaves{0};
-  const auto searchOpen = [&](const NormalCones* cones) {
-    std::vector<char> gave_up(open.size(), 0);
-    parallelFor(open.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-      ClosestSearch search(*data_, cones);
-      std::int64_t leaves_passed = 0;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (i + kPrefetched < end) {
-          prefetch(points.coeffRef(static_cast<Eigen::Index>(open[i + kPrefetched]), 0));
-        }
-        const auto row = static_cast<Eigen::Index>(open[i]);
-        std::optional<Facing> filter;
-        if (facing) {
-          filter.emplace(
-              Facing{data_->surface, inUnit(options.facing.row(row).transpose()), least_cosine});
-        }
-        at[open[i]] = search.find(scale * points.row(row).transpose(), scale * options.max_distance,
-                                  filter ? &*filter : nullptr);
-        gave_up[i] = search.gaveUp();
-        if (search.leaves() - leaves_passed >= kLeavesPerPass) {
-          InterruptionPoint::pass();
-          leaves_passed = search.leaves();
-        }
-      }
-      leaves += search.leaves();
-    });
-    std::vector<std::size_t> still_open;
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      if (gave_up[i]) {
-        still_open.push_back(open[i]);
-      }
-    }
-    open.swap(still_open);
-  };
-  searchOpen(nullptr);
-  if (!open.empty()) {
-    searchOpen(&data_->normalCones(threads));
-  }
+  ClosestRows rows(*data_, points, options, threads);
+  rows.run();
   if (options.leaves) {
-    *options.leaves = leaves;
+    *options.leaves = rows.leaves();
   }
-  Hits hits = hitsAt(data_->surface, std::move(at), threads);
+  Hits hits = hitsAt(data_->surface, rows.takeLocations(), threads);
   hits.distance.resize(points.rows());
   for (Eigen::Index row = 0; row < points.rows(); ++row) {
     hits.distance[row] = (scale * (hits.position.row(row) - points.row(row))).norm() / scale;

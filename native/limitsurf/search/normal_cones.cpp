@@ -16,6 +16,12 @@ constexpr double kMargin = 1e-7;
 /// If the sine of the angle between two tangents of a patch may be smaller, nothing is known of its
 /// normals: there the search asks for the surface's frame.
 constexpr double kLeastSine = 0.01;
+/// More than the rounding of a cosine.
+constexpr double kCosineRounding = 1e-14;
+/// More than the rounding of boxes and of places in them, in the unit of boxes.
+constexpr double kLeastRadius = 1e-6;
+/// Wider cones are worth the effort of making them narrower.
+constexpr double kNarrow = 0.5;
 /// The axes of two cones count as parallel if the sine of their angle is at most this: then the
 /// rounding of the direction from one to the other would exceed kMargin.
 constexpr double kLeastTurn = 1e-8;
@@ -122,17 +128,40 @@ NormalCone coneOfCore(const SearchTree& tree, SurfacePiece core) {
   return cone;
 }
 
-/// The cone of all normals on a leaf that is no patch.
-NormalCone coneOfCores(const SearchTree& tree, const SurfacePiece& leaf) {
-  NormalCone cone = coneOfCore(tree, leaf);
-  const int ring = tree.patches.ringOf(leaf);
-  if (tree.rings.isLarge(ring)) {
-    const int level = tree.patches.ringLevel(leaf);
-    for (int i = 1; i < tree.rings.coreCount(ring) && cone.angle < kPi<double>; ++i) {
-      cone = NormalCone::around(cone, coneOfCore(tree, tree.rings.core(ring, i, level)));
-    }
+/// The cone of all normals on the cores around a vertex.
+NormalCone coneOfRing(const SearchTree& tree, const SurfacePiece& first) {
+  NormalCone cone = coneOfCore(tree, first);
+  const int ring = tree.patches.ringOf(first), level = tree.patches.ringLevel(first);
+  for (int i = 1; i < tree.rings.coreCount(ring) && cone.angle < kPi<double>; ++i) {
+    cone = NormalCone::around(cone, coneOfCore(tree, tree.rings.core(ring, i, level)));
   }
   return cone;
+}
+
+/// Whether a core has no side at which the surface ends, and a normal at its vertex.
+bool isSmooth(const SearchTree& tree, const SurfacePiece& core) {
+  SurfacePatches::SplitCore split;
+  tree.patches.split(core, split);
+  for (const BezierPatch& patch : split.patches) {
+    if (patch.borders != 0) {
+      return false;
+    }
+  }
+  const Location vertex = tree.patches.rectangle(core).at(0, 0);
+  return tree.surface.evaluate({&vertex, 1}, Derivatives::first, true, 1).normal.allFinite();
+}
+
+/// Whether the way from a point to some place of a sphere, or from there to the point, may be
+/// within `angle` of a direction. `way` leads from the point to the middle of the sphere.
+bool mayLeadAlong(const Vector3& direction, const Vector3& way, double radius, double angle) {
+  const double distance = way.norm();
+  if (!(radius < distance) || angle >= kPi<double> / 2) {
+    return true;
+  }
+  // The cosine of the angle plus that between the middle and the rim of the sphere.
+  const double sine = radius / distance;
+  const double least = std::cos(angle) * std::sqrt(1 - sine * sine) - std::sin(angle) * sine;
+  return std::abs(way.dot(direction)) >= (least - kCosineRounding) * distance;
 }
 
 }  // namespace
@@ -187,38 +216,76 @@ NormalCone normalCone(const BezierPatch& patch) {
   if (!(off + kLeastSine < sine)) {
     return coneOfCoefficients(along_s, along_t);
   }
-  return {normal / sine, std::asin(off / sine) + kMargin};
+  const NormalCone cone{normal / sine, std::asin(off / sine) + kMargin};
+  if (cone.angle < kNarrow) {
+    return cone;
+  }
+  const NormalCone other = coneOfCoefficients(along_s, along_t);
+  return other.angle < cone.angle ? other : cone;
 }
 
-NormalCones::NormalCones(const SearchTree& tree, int threads) {
-  std::vector<NormalCone> leaves(tree.leaves.size());
+bool NormalCones::cannotFace(std::int32_t node, int child, const Vector3& point,
+                             const Vector3& direction, double angle) const {
+  const Normals& normals = children_[place(node, child)];
+  if (normals.cone.isBeyond(direction, angle)) {
+    return true;
+  }
+  if (!normals.is_smooth) {
+    return false;
+  }
+  Vector3 low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = tree_.node(node).bounds[axis][0][child];
+    high[axis] = tree_.node(node).bounds[axis][1][child];
+  }
+  const Vector3 way = (low + high) / 2 - point;
+  const double radius = (high - low).norm() / 2 + kLeastRadius;
+  return !mayLeadAlong(direction, way, radius, angle + kMargin) ||
+         !mayLeadAlong(normals.cone.axis, way, radius, normals.cone.angle + kMargin);
+}
+
+NormalCones::Normals NormalCones::ofLeaf(const SearchTree& tree, const SurfacePiece& leaf) {
+  if (!leaf.isCore()) {
+    const BezierPatch patch = tree.patches.patch(leaf);
+    const NormalCone cone = normalCone(patch);
+    return {cone, patch.borders == 0 && cone.angle < kPi<double>};
+  }
+  if (tree.rings.isLarge(tree.patches.ringOf(leaf))) {
+    return {coneOfRing(tree, leaf), false};
+  }
+  const NormalCone cone = coneOfCore(tree, leaf);
+  return {cone, cone.angle < kPi<double> && isSmooth(tree, leaf)};
+}
+
+NormalCones::NormalCones(const SearchTree& tree, int threads) : tree_(*tree.tree) {
+  std::vector<Normals> leaves(tree.leaves.size());
   parallelFor(leaves.size(), kLeavesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
-      const SurfacePiece& piece = tree.leaves[leaf].piece;
-      leaves[leaf] =
-          piece.isCore() ? coneOfCores(tree, piece) : normalCone(tree.patches.patch(piece));
+      leaves[leaf] = ofLeaf(tree, tree.leaves[leaf].piece);
     }
   });
-  const std::int32_t count = tree.tree->nodeCount();
+  const std::int32_t count = tree_.nodeCount();
   children_.resize(WideTree::kWidth * static_cast<std::size_t>(count));
   // Children have higher numbers than their parents.
   for (std::int32_t number = count - 1; number >= 0; --number) {
-    const WideTree::Node& node = tree.tree->node(number);
+    const WideTree::Node& node = tree_.node(number);
     for (int i = 0; i < node.count; ++i) {
       const std::int32_t child = node.children[i];
       children_[place(number, i)] = WideTree::isLeaf(child)
                                         ? leaves[static_cast<std::size_t>(WideTree::leaf(child))]
-                                        : around(child, tree.tree->node(child).count);
+                                        : together(child, tree_.node(child).count);
     }
   }
 }
 
-NormalCone NormalCones::around(std::int32_t node, int count) const {
-  NormalCone cone = ofChild(node, 0);
+NormalCones::Normals NormalCones::together(std::int32_t node, int count) const {
+  Normals all = children_[place(node, 0)];
   for (int i = 1; i < count; ++i) {
-    cone = NormalCone::around(cone, ofChild(node, i));
+    const Normals& child = children_[place(node, i)];
+    all.cone = NormalCone::around(all.cone, child.cone);
+    all.is_smooth = all.is_smooth && child.is_smooth;
   }
-  return cone;
+  return all;
 }
 
 }  // namespace limitsurf

@@ -411,8 +411,10 @@ TEST(Closest, FacingCostsLittleWhereNothingFaces) {
     for (int row = 0; row < count; ++row) {
       points.row(row) = Vector3(0.17 * row + 1, 0.13 * row + 2, 0.5 + 0.01 * row);
     }
-    std::int64_t match = 0, none = 0;
+    std::int64_t nearest = 0, match = 0, none = 0;
     ClosestOptions options;
+    options.leaves = &nearest;
+    search.closest(points, options);
     options.leaves = &match;
     options.facing = Vector3(0, 0, 1).transpose().replicate(count, 1);
     const Hits found = search.closest(points, options);
@@ -423,9 +425,10 @@ TEST(Closest, FacingCostsLittleWhereNothingFaces) {
       EXPECT_GE(found.at[row].face, 0);
       EXPECT_EQ(missed.at[row].face, -1);
     }
-    // 8 leaves for a search without cones, and then none, not even at the corners of the grid.
-    EXPECT_LE(none, 8 * count);
-    EXPECT_GT(match, 0);
+    // Where the nearest places face the right way, they are all that is looked for. Else 8 leaves
+    // are met by a search without cones, and then none, not even at the corners of the grid.
+    EXPECT_EQ(match, nearest);
+    EXPECT_LE(none, nearest + 8 * count);
   }
 }
 
@@ -455,6 +458,41 @@ TEST(Closest, FacingFindsTheOnlyPlaceThatFaces) {
         1e-9);
   }
   EXPECT_LE(leaves, 2 * (8 + 60));
+}
+
+/// The way to a place that faces the right way is along its normal, so that few patches matter even
+/// where most have normals within the angle somewhere.
+TEST(Closest, FacingLooksAlongTheDirection) {
+  const LimitSurface surface = limitSurface(perturbed(torus(32, 16), 0.03, 1));
+  const SurfaceSearch search(surface);
+  const BruteForce truth(surface, 4);
+  Random random(5);
+  const int count = 8;
+  const Points on = surface.evaluate(searchedLocations(surface, 1, random)).position.topRows(count);
+  const Vector3 direction = Vector3(0.3, -0.2, 1).normalized();
+  ClosestOptions options;
+  options.facing = direction.transpose().replicate(count, 1);
+  for (const double largest_angle : {0.1, 0.4}) {
+    std::int64_t leaves = 0;
+    options.max_angle = largest_angle;
+    options.leaves = &leaves;
+    const Hits hits = search.closest(on, options);
+    EXPECT_LE(leaves, 64 * count);  // of more than 512
+    for (int row = 0; row < count; ++row) {
+      const auto accepts = [&](const Location& at) {
+        const Vector3 normal =
+            surface.evaluate({&at, 1}, Derivatives::first, true, 1).normal.row(0);
+        return std::min({at.u, at.v, 1 - at.u, 1 - at.v}) > 1e-6 &&
+               angle(normal, direction) < largest_angle - 1e-6;
+      };
+      const BruteForce::Foot foot = truth.closest(on.row(row), accepts);
+      if (foot.at.face >= 0) {
+        ASSERT_GE(hits.at[row].face, 0);
+        EXPECT_LE(hits.distance[row],
+                  static_cast<double>(foot.distance) + kSearchError * truth.diagonal());
+      }
+    }
+  }
 }
 
 TEST(Closest, FacingMayHaveAnyLength) {
