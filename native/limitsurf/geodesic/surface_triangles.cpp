@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/geodesic/surface_triangles.h"
 
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/interruption_point.h"
-#include "limitsurf/reserve_more.h"
 #include "limitsurf/tessellate/tessellation.h"
 
 namespace limitsurf {

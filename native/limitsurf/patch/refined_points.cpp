@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/random_bits.h"
-#include "limitsurf/reserve_more.h"
 
 namespace limitsurf {
 

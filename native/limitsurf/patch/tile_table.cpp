@@ -5,13 +5,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/mesh/topology.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/patch/bilinear_tiles.h"
 #include "limitsurf/patch/refinement_level.h"
 #include "limitsurf/patch/ring_tile_maker.h"
 #include "limitsurf/patch/window.h"
-#include "limitsurf/reserve_more.h"
 
 namespace limitsurf {
 namespace {

@@ -7,7 +7,7 @@
 #include "batches.h"
 #include "choices.h"
 #include "docstrings.h"
-#include "limitsurf/reserve_more.h"
+#include "limitsurf/interruptible_vector.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {

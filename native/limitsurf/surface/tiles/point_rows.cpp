@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstring>
 
+#include "limitsurf/interruptible_vector.h"
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/random_bits.h"
-#include "limitsurf/reserve_more.h"
 
 namespace limitsurf {
 namespace {

@@ -8,6 +8,8 @@
 
 #include "limitsurf/interruption_point.h"
 
+// It takes seconds to copy a vector of gigabytes, or to give it memory. These functions do so in
+// parts, with an interruption point after each.
 namespace limitsurf {
 
 /// Moves values to the end of a vector that has room for them. That takes long where there are
