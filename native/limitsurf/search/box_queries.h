@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "limitsurf/search/closest_on_patch.h"
+#include "limitsurf/search/closest_so_far.h"
 #include "limitsurf/search/oriented_box.h"
 #include "limitsurf/search/wide_tree.h"
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/closest_on_patch.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "limitsurf/search/foot_iteration.h"
+#include "limitsurf/search/normal_polynomial.h"
+#include "limitsurf/search/squared_distance.h"
 
 namespace limitsurf {
 namespace {
@@ -37,10 +39,10 @@ class PatchSearch {
     }
     const BezierPatch::Point nearest = away_.max(low).min(high);
     const double least = (nearest * (nearest - 2 * away_)).sum();
-    if (!isBetter(least) || isBehindFoot() || facesAway()) {
+    if (!isBetter(least) || isBehindFoot() || (facing_ && facing_->excludes(patch_))) {
       return;
     }
-    if (!facing_ && isBoundUseful(bound, least) && findsFoot(bound, least)) {
+    if ((facing_ || isBoundUseful(bound, least)) && findsFoot(bound, least)) {
       return;
     }
     const SquaredDistance f(kernels_, relative_.points, away_);
@@ -55,11 +57,12 @@ class PatchSearch {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
   /// At this depth the distance over a cell varies by less than rounding.
   static constexpr int kMostDepth = 40;
-  /// A search ends after this many cells. On patches without area many points may be equally close
-  /// but for rounding, and on patches whose tangents are parallel to 1e-4 the squared distance is
-  /// convex in a narrow band only. There the result may not be the closest point
-  /// (docs/accuracy.md says by how much).
+  /// A search ends after this many cells: on patches without area many points may be equally close
+  /// but for rounding.
   static constexpr int kMostCells = 1 << 17;
+  /// After this many cells the normals of the patch are bounded, to leave out cells without feet:
+  /// if the tangents are nearly parallel, the squared distance is convex in a narrow band only.
+  static constexpr int kFewCells = 16;
   /// The squared distance is computed anew after every so many halvings.
   static constexpr int kFreshDepths = 4;
   /// The relative rounding of the squared distance's coefficients: a few units in the last place.
@@ -92,6 +95,9 @@ class PatchSearch {
                          best_.enough(), bound.radius, s, t, found);
     if (search == FootSearch::beyond) {
       return true;
+    }
+    if (facing_ && !(search == FootSearch::arrived && isFoot({{0, 0, 1}, 0}, s, t))) {
+      return false;
     }
     offer(found, s, t);
     if (search != FootSearch::arrived) {
@@ -138,39 +144,38 @@ class PatchSearch {
     return true;
   }
 
-  /// Whether no normal of the patch meets the condition: normals are sums of cross products of
-  /// differences of control points, and all of these face away.
-  bool facesAway() const {
-    if (!facing_ || !(facing_->least_cosine > 0)) {
-      return false;
-    }
-    bool any = false;
-    for (int j = 0; j < 4; ++j) {
-      for (int i = 0; i < 3; ++i) {
-        const BezierPatch::Point* p = patch_.points;
-        const Vector3 ds = (p[4 * j + i + 1] - p[4 * j + i]).head<3>();
-        const Vector3 across = facing_->direction.cross(ds);
-        for (int x = 0; x < 4; ++x) {
-          for (int y = 0; y < 3; ++y) {
-            const BezierPatch::Point dt = p[4 * (y + 1) + x] - p[4 * y + x];
-            const double towards = across[0] * dt[0] + across[1] * dt[1] + across[2] * dt[2];
-            if (towards > 0) {
-              return false;
-            }
-            any |= towards < 0 || (ds != Vector3::Zero() && (dt != 0).any());
-          }
-        }
-      }
-    }
-    return any;
-  }
-
   /// Whether the distance falls towards a side of the cell beyond which the sheet continues: then
   /// no foot is in the cell.
   bool fallsOutwards(const Cell& cell, const SquaredDistance::Shape& shape) const {
     const unsigned borders = bordersOf(cell);
     return (shape.s_strictly && (borders & (shape.s_side < 0 ? kSideS0 : kSideS1)) == 0) ||
            (shape.t_strictly && (borders & (shape.t_side < 0 ? kSideT0 : kSideT1)) == 0);
+  }
+
+  /// Whether the cell has no foot for certain: neither on its smooth part nor on a side where the
+  /// sheet ends. The closest point of a surface is a foot.
+  bool hasNoFootOfSheet(const SquaredDistance& f, const Cell& cell) {
+    const unsigned borders = bordersOf(cell);
+    for (const unsigned side : {kSideS0, kSideS1, kSideT0, kSideT1}) {
+      if (borders & side) {
+        const int slope = f.slopeAlong(side);
+        const unsigned ends = side & (kSideS0 | kSideS1) ? (slope < 0 ? kSideT1 : kSideT0)
+                                                         : (slope < 0 ? kSideS1 : kSideS0);
+        if (slope == 0 || (borders & ends)) {
+          return false;
+        }
+      }
+    }
+    if (!normals_) {
+      normals_.emplace(patch_, best_.tolerance / 10);
+    }
+    const NormalPolynomial::Cone normals = normals_->cone(cell);
+    BezierPatch::Point points[16];
+    pointsOf(cell, points);
+    for (BezierPatch::Point& point : points) {
+      point -= away_;
+    }
+    return hasNoFoot(points, normals, best_.tolerance);
   }
 
   /// The sides of the cell at which the sheet ends, as bits.
@@ -230,6 +235,9 @@ class PatchSearch {
       if (!facing_ || isFoot(cell, s, t)) {
         offer(s, t);
       }
+      return;
+    }
+    if (cells_ > kFewCells && hasNoFootOfSheet(f, cell)) {
       return;
     }
     if (!facing_) {
@@ -293,7 +301,7 @@ class PatchSearch {
     const double value = std::sqrt(dot(to_foot.value, to_foot.value));
     const auto falls = [&](const BezierPatch::Point& tangent, double outwards) {
       const double slope = outwards * dot(to_foot.value, tangent);
-      return slope < -kFlat * (value * std::sqrt(dot(tangent, tangent)));
+      return slope < -(kFlat * value + best_.tolerance) * std::sqrt(dot(tangent, tangent));
     };
     const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
     const unsigned borders = bordersOf(cell);
@@ -303,18 +311,12 @@ class PatchSearch {
         (t == t1 && !(borders & kSideT1) && falls(at.dt, 1))) {
       return false;
     }
-    // A patch has the orientation of its face, up to rotations by right angles.
-    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
-    return normal.norm() > kParallel * ds.norm() * dt.norm() ? facing_->accepts(normal)
-                                                             : facing_->accepts(patch_.on.at(s, t));
+    return facing_->accepts(patch_, s, t, at.ds.head<3>(), at.dt.head<3>());
   }
 
   /// A distance counts as falling across a side if the sine of the angle exceeds this; rounding
   /// stays below it.
   static constexpr double kFlat = 1e-9;
-  /// If the sine of the angle between the tangents is below this, rounding may turn their cross
-  /// product too far, and the surface's frame decides about the normal.
-  static constexpr double kParallel = 1e-3;
 
   const SearchKernels& kernels_ = SearchKernels::get();
   const BezierPatch& patch_;
@@ -323,20 +325,10 @@ class PatchSearch {
   const BezierPatch::Point away_;
   BezierPatch relative_;  // to the place of the searching point
   int cells_ = 0;
+  std::optional<NormalPolynomial> normals_;
 };
 
 }  // namespace
-
-SearchPoint::SearchPoint(const Vector3& point, const Vector3& middle, double diagonal)
-    : place(point) {
-  const Vector3 from_middle = point - middle;
-  const double length = from_middle.norm();
-  if (length > kFarAway * diagonal && diagonal > 0) {
-    place = middle;
-    away = from_middle * std::min(1., kFarthest * diagonal / length);
-    range = away.norm();
-  }
-}
 
 void closestOnPatch(const BezierPatch& patch, const FootBound& bound, const Facing* facing,
                     ClosestSoFar& best) {

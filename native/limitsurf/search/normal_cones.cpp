@@ -7,6 +7,7 @@
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
+#include "limitsurf/search/normal_polynomial.h"
 
 namespace limitsurf {
 namespace {
@@ -54,58 +55,16 @@ bool spread(const Vector3 (&vectors)[12], Vector3& middle, double& farthest) {
   return true;
 }
 
-/// The rounding of a Bernstein coefficient of the normal, relative to the products that it is the
-/// sum of.
-constexpr double kCoefficientRounding = 1e-14;
-
-/// A cone around the Bernstein coefficients of the normal P_s x P_t, a polynomial of degree 5 in
-/// each parameter. It costs ten times as much as spread(), and is narrow also where the tangents
-/// turn, or are nearly parallel, as at the smooth corner of a single face.
-NormalCone coneOfCoefficients(const Vector3 (&along_s)[12], const Vector3 (&along_t)[12]) {
-  constexpr double kOf2[3] = {1, 2, 1}, kOf3[4] = {1, 3, 3, 1};
-  Vector3 sums[36];
-  double sizes[36];
-  for (int c = 0; c < 36; ++c) {
-    sums[c].setZero();
-    sizes[c] = 0;
-  }
-  for (int j = 0; j < 4; ++j) {
-    for (int i = 0; i < 3; ++i) {
-      for (int l = 0; l < 3; ++l) {
-        for (int k = 0; k < 4; ++k) {
-          // Positive factors do not turn a coefficient, so that its denominators are left out.
-          const double factor = kOf2[i] * kOf3[k] * kOf3[j] * kOf2[l];
-          const Vector3 &s = along_s[3 * j + i], &t = along_t[3 * k + l];
-          const int c = 6 * (j + l) + i + k;
-          sums[c] += factor * s.cross(t);
-          sizes[c] += factor * s.norm() * t.norm();
-        }
-      }
-    }
-  }
-  Vector3 axis = Vector3::Zero();
-  for (int c = 0; c < 36; ++c) {
-    const double length = sums[c].norm();
-    sizes[c] *= kCoefficientRounding;
-    if (!(length > sizes[c])) {
-      return NormalCone::everything();
-    }
-    sums[c] /= length;
-    sizes[c] /= length;  // by how much rounding may have turned it
-    axis += sums[c];
-  }
-  const double length = axis.norm();
-  if (!(length > kLeastSine)) {
-    return NormalCone::everything();
-  }
-  axis /= length;
-  double angle = 0;
-  for (int c = 0; c < 36; ++c) {
-    angle = std::max(angle, angleBetween(axis, sums[c]) + 2 * sizes[c]);
-  }
+/// A cone around the Bernstein coefficients of the normal. It costs ten times as much as spread(),
+/// and is narrow also where the tangents turn, or are nearly parallel, as at the smooth corner of a
+/// single face.
+NormalCone coneOfCoefficients(const BezierPatch& patch) {
+  const NormalPolynomial::Cone cone = NormalPolynomial(patch, 0).cone({0, 0, 1});
+  const double angle = std::atan(cone.tangent);
   // A cone of half a turn and more is not convex, and bounds no sums of its vectors.
-  return angle < kPi<double> / 2 - kMargin ? NormalCone{axis, angle + kMargin}
-                                           : NormalCone::everything();
+  return angle < kPi<double> / 2 - kMargin
+             ? NormalCone{Vector3(cone.axis.head<3>()), angle + kMargin}
+             : NormalCone::everything();
 }
 
 /// The cone of all normals that a search finds on a core, down to its vertex.
@@ -207,14 +166,14 @@ NormalCone normalCone(const BezierPatch& patch) {
   Vector3 s, t;
   double off_s, off_t;
   if (!spread(along_s, s, off_s) || !spread(along_t, t, off_t)) {
-    return coneOfCoefficients(along_s, along_t);
+    return coneOfCoefficients(patch);
   }
   // (s + a) x (t + b) differs from s x t by less than this.
   const double off = off_s + off_t + off_s * off_t;
   const Vector3 normal = s.cross(t);
   const double sine = normal.norm();
   if (!(off + kLeastSine < sine)) {
-    return coneOfCoefficients(along_s, along_t);
+    return coneOfCoefficients(patch);
   }
   const NormalCone cone{normal / sine, std::asin(off / sine) + kMargin};
   if (cone.angle < kNarrow) {

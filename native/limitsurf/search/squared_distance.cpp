@@ -34,6 +34,20 @@ SquaredDistance::SquaredDistance(const SearchKernels& kernels, const BezierPatch
   }
 }
 
+int SquaredDistance::slopeAlong(unsigned side) const {
+  const int end = side & (kSideS0 | kSideT0) ? 0 : 6;
+  const bool along_t = (side & (kSideS0 | kSideS1)) != 0;
+  double least = kInfinity, largest = -kInfinity;
+  for (int i = 0; i < 6; ++i) {
+    const double slope =
+        along_t ? f_.at(end, i + 1) - f_.at(end, i) : f_.at(i + 1, end) - f_.at(i, end);
+    least = std::min(least, slope);
+    largest = std::max(largest, slope);
+  }
+  const double rounding = kRounding * magnitude();
+  return least > rounding ? 1 : largest < -rounding ? -1 : 0;
+}
+
 void SquaredDistance::quarter(SquaredDistance out[4]) const {
   Bernstein<6> parts[4];
   f_.quarter(parts);

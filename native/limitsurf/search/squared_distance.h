@@ -27,6 +27,9 @@ class SquaredDistance {
   double magnitude() const { return std::max({largest_, -least_, summands_}); }
   /// The value at a corner: i and j are 0 or 1.
   double corner(int i, int j) const { return f_.at(6 * i, 6 * j); }
+  /// Whether the polynomial falls (-1) or rises (1) along all of a side (kSideS0, ...), with the
+  /// other parameter, by more than rounding; 0 if unknown.
+  int slopeAlong(unsigned side) const;
   /// The polynomial on the quarters of the square.
   void quarter(SquaredDistance out[4]) const;
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/search/facing.h"
+
+#include <Eigen/Geometry>
+
+namespace limitsurf {
+namespace {
+
+/// If the sine of the angle between the tangents is below this, rounding may turn their cross
+/// product too far, and the surface's frame decides about the normal.
+constexpr double kParallel = 1e-3;
+
+}  // namespace
+
+bool Facing::accepts(const BezierPatch& patch, double s, double t, const Vector3& ds,
+                     const Vector3& dt) const {
+  // A patch has the orientation of its face, up to rotations by right angles.
+  const Vector3 normal = ds.cross(dt);
+  return normal.norm() > kParallel * ds.norm() * dt.norm() ? accepts(normal)
+                                                           : accepts(patch.on.at(s, t));
+}
+
+bool Facing::excludes(const BezierPatch& patch) const {
+  // Normals are sums of cross products of differences of control points.
+  if (!(least_cosine > 0)) {
+    return false;
+  }
+  const BezierPatch::Point* p = patch.points;
+  bool any = false;
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      const Vector3 ds = (p[4 * j + i + 1] - p[4 * j + i]).head<3>();
+      const Vector3 across = direction.cross(ds);
+      for (int x = 0; x < 4; ++x) {
+        for (int y = 0; y < 3; ++y) {
+          const BezierPatch::Point dt = p[4 * (y + 1) + x] - p[4 * y + x];
+          const double towards = across[0] * dt[0] + across[1] * dt[1] + across[2] * dt[2];
+          if (towards > 0) {
+            return false;
+          }
+          any |= towards < 0 || (ds != Vector3::Zero() && (dt != 0).any());
+        }
+      }
+    }
+  }
+  return any;
+}
+
+}  // namespace limitsurf

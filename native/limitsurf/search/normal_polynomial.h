@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limitsurf/search/parameter_square.h"
+#include "limitsurf/surface/bezier_patch.h"
+
+namespace limitsurf {
+
+/// The normal P_s x P_t of a patch: a polynomial of degree 5 in s and in t, by its Bernstein
+/// coefficients. Their directions bound those of the normal, also where the tangents turn far or
+/// are nearly parallel.
+class NormalPolynomial {
+ public:
+  /// `noise` bounds the error of the patch's points, besides rounding.
+  NormalPolynomial(const BezierPatch& patch, double noise);
+
+  /// All directions v with |v - (v . axis) axis| <= tangent * (v . axis).
+  struct Cone {
+    BezierPatch::Point axis;
+    double tangent;  ///< infinity if nothing is known
+  };
+  /// A cone around the normals on a square of the parameters.
+  Cone cone(const ParameterSquare& square) const;
+
+ private:
+  static constexpr int kSize = 6;
+
+  BezierPatch::Point at_[kSize * kSize];
+  double error_;  ///< bounds that of each coefficient
+};
+
+/// Whether no point of a patch's part is the foot of a perpendicular: where the difference from the
+/// searching point is parallel to the normal. `points` are the part's Bezier points, relative to
+/// the searching point, with errors of `noise` at most.
+bool hasNoFoot(const BezierPatch::Point points[16], const NormalPolynomial::Cone& normals,
+               double noise);
+
+}  // namespace limitsurf

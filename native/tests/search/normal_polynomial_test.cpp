@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Bounds of the normals of parts of patches, also of patches that are squeezed so that their
+// tangents are nearly parallel, and what they say about feet of perpendiculars.
+#include "limitsurf/search/normal_polynomial.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "support/random.h"
+
+namespace limitsurf::test {
+namespace {
+
+/// A patch that is squeezed along a random direction of its mean plane.
+BezierPatch squeezedPatch(double squeeze, double bumps, Random& random) {
+  const Eigen::AngleAxisd turn(random.uniform(0, 3), Vector3::UnitZ());
+  const Eigen::Matrix3d map =
+      Eigen::AngleAxisd(random.uniform(0, 3), random.vector(1).normalized()) *
+      Vector3(1, squeeze, 1).asDiagonal() * turn;
+  BezierPatch patch;
+  patch.anchor.setZero();
+  for (int i = 0; i < 16; ++i) {
+    const Vector3 bump = random.vector(0.05);
+    const Vector3 at = map * Vector3(i % 4 / 3. + bump[0], i / 4 / 3. + bump[1], bumps * bump[2]);
+    patch.points[i] = {at[0], at[1], at[2], 0};
+  }
+  return patch;
+}
+
+ParameterSquare squareIn(Random& random) {
+  const double size = std::exp2(-random.below(12));
+  return {size * random.below(static_cast<int>(1 / size)),
+          size * random.below(static_cast<int>(1 / size)), size};
+}
+
+TEST(NormalPolynomial, ConesContainTheNormals) {
+  Random random(1);
+  int known = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const double squeeze = std::pow(10., random.uniform(-6, 0));
+    const BezierPatch patch = squeezedPatch(squeeze, random.below(2) * squeeze, random);
+    const ParameterSquare square = squareIn(random);
+    const NormalPolynomial::Cone cone = NormalPolynomial(patch, 0).cone(square);
+    known += std::isfinite(cone.tangent);
+    for (int place = 0; place < 20; ++place) {
+      BezierPatch::Values at;
+      patch.evaluate<1>(square.s + square.size * random.uniform(),
+                        square.t + square.size * random.uniform(), at);
+      const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
+      const Vector3 axis = cone.axis.head<3>();
+      const double along = normal.dot(axis), rounding = 1e-15 * ds.norm() * dt.norm();
+      EXPECT_LE((normal - along * axis).norm(), cone.tangent * (along + rounding) + rounding);
+    }
+  }
+  EXPECT_GT(known, 2000);
+}
+
+/// Searching points on normals of a patch's part: it has a foot, and none of its neighbours' points
+/// takes that away.
+TEST(NormalPolynomial, FeetAreNotDenied) {
+  Random random(2);
+  int denied = 0;
+  for (int round = 0; round < 6000; ++round) {
+    const double squeeze = std::pow(10., random.uniform(-6, 0));
+    const BezierPatch patch = squeezedPatch(squeeze, random.below(2) * squeeze, random);
+    const ParameterSquare square = squareIn(random);
+    const auto part = [&](const ParameterSquare& on, const Vector3& from) {
+      std::array<BezierPatch::Point, 16> points;
+      std::copy(patch.points, patch.points + 16, points.begin());
+      for (int i = 0; i < 4; ++i) bezier::cut(&points[4 * i], 1, on.s, on.s + on.size);
+      for (int i = 0; i < 4; ++i) bezier::cut(&points[i], 4, on.t, on.t + on.size);
+      for (BezierPatch::Point& point : points)
+        point -= BezierPatch::Point(from[0], from[1], from[2], 0);
+      return points;
+    };
+    BezierPatch::Values at;
+    patch.evaluate<1>(square.s + square.size * random.uniform(),
+                      square.t + square.size * random.uniform(), at);
+    const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt).normalized();
+    const Vector3 from = Vector3(at.value.head<3>()) + random.below(2) * random.uniform() * normal;
+    const NormalPolynomial normals(patch, 0);
+    EXPECT_FALSE(hasNoFoot(part(square, from).data(), normals.cone(square), 1e-14)) << squeeze;
+    // Parts of the patch elsewhere are left out, unless the patch bends too much.
+    const ParameterSquare other = squareIn(random);
+    denied += hasNoFoot(part(other, from).data(), normals.cone(other), 1e-14);
+  }
+  EXPECT_GT(denied, 3000);
+}
+
+}  // namespace
+}  // namespace limitsurf::test
