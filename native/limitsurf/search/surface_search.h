@@ -28,7 +28,9 @@ struct RayHits : Hits {
 /// by how much the distance of the closest point exceeds the true minimum, and by how much a hit is
 /// off the ray and along it. For rays it holds for origins within 1,000 diagonals of the mesh.
 /// Closest points are found as exactly from any distance, although the rounding of a number as
-/// large as the distance itself may exceed the bound.
+/// large as the distance itself may exceed the bound. So may the rounding of a location to doubles
+/// next to a vertex with many faces that is not at (0, 0) of its faces: neighbouring locations are
+/// up to 2e-10 faces apart there.
 constexpr double kSearchError = 1e-12;
 
 struct ClosestOptions {

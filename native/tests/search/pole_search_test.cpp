@@ -146,6 +146,50 @@ TEST(ClosestAtPoles, PointsOfFlatPolesAreFoundAtNoDistance) {
   }
 }
 
+/// Next to a vertex with many faces the surface moves far with the last digit of a parameter,
+/// unless the vertex is at (0, 0) of its faces. Results there are as close as the digits of u and v
+/// allow.
+TEST(ClosestAtPoles, ResultsAreAsCloseAsTheDigitsOfLocations) {
+  const Cage cage = fan(30, true, 4);
+  Cage turned = cage;
+  for (std::vector<int>& face : turned.faces)
+    std::rotate(face.begin(), face.begin() + 2, face.end());
+  const LimitSurface surface = limitSurface(cage), other = limitSurface(turned);
+  const double diagonal = test::diagonal(cage.positions);
+  // How far apart the places next to the vertex are.
+  std::vector<Location> next = {{0, 1, 1}};
+  for (int i = 1; i < 4; ++i) next.push_back({0, 1 - (i & 1) * 0x1p-53, 1 - (i >> 1) * 0x1p-53});
+  const Points steps = other.evaluate(next).position;
+  const double apart = (steps.rowwise() - steps.row(0)).rowwise().norm().maxCoeff();
+  EXPECT_GT(apart, 1e-12 * diagonal);
+  EXPECT_LT(apart, 1e-9 * diagonal);
+
+  Random random(13);
+  std::vector<Location> places;
+  for (int i = 0; i < 2000; ++i) {
+    const double size = std::ldexp(1., -20 - i % 40);
+    places.push_back({4 * (i % 30), size * random.uniform(), size * random.uniform()});
+  }
+  Points points = surface.evaluate(places).position;
+  for (const double height : {1e-12, 1e-10, 1e-9, 1e-8, 1e-3}) {
+    const double distance = height * diagonal;
+    Points from = points;
+    for (Eigen::Index i = 0; i < from.rows(); ++i) {
+      from.row(i) += distance * random.vector(1).normalized().transpose();
+    }
+    const Hits fine = SurfaceSearch(surface).closest(from),
+               coarse = SurfaceSearch(other).closest(from);
+    for (Eigen::Index i = 0; i < from.rows(); ++i) {
+      const double allowed =
+          std::min(apart, 0.5 * apart * apart / fine.distance[i]) + 0.25 * kSearchError * diagonal;
+      EXPECT_LE(fine.distance[i], distance + 0.25 * kSearchError * diagonal) << height << " " << i;
+      EXPECT_LE(coarse.distance[i], fine.distance[i] + allowed) << height << " " << i;
+      EXPECT_GE(coarse.distance[i], fine.distance[i] - 0.25 * kSearchError * diagonal)
+          << height << " " << i;
+    }
+  }
+}
+
 /// What searches know of a vertex is made when it is first asked for. It must not change what later
 /// ones find.
 TEST(ClosestAtPoles, ResultsDoNotDependOnEarlierSearches) {
