@@ -49,6 +49,7 @@ class PatchSearch {
     const double noise = noiseOf(f);
     if (isBetter(f.least() - noise)) {
       visit(f, noise, {{0, 0, 1}, 0});
+      best_.cells += cells_;
     }
   }
 

@@ -29,9 +29,14 @@ Vector3 inUnit(const Vector3& direction) {
           std::scalbn(direction[2], -std::ilogb(largest))};
 }
 
-/// Most rows look at a few leaves, but among sheets that lie on each other at hundreds: so many
-/// take some milliseconds.
-constexpr std::int64_t kLeavesPerPass = 1024;
+/// Most rows look at a few leaves and parts of patches, but among sheets that lie on each other, or
+/// on patches that are nearly lines, at thousands. So many take about a millisecond.
+constexpr std::int64_t kWorkPerPass = 1024;
+/// A task that has looked at so many leaves its other rows to smaller tasks: the calling thread may
+/// wait for the tasks of others, and hears no interruption until these end.
+constexpr std::int64_t kWorkPerTask = 1 << 15;
+/// By how much those are smaller.
+constexpr std::size_t kSmaller = 8;
 /// Points are fetched so many searches ahead: in the order of searches they are scattered.
 constexpr std::size_t kPrefetched = 4;
 /// Angles from here on count as pi, and then no cosine is too small.
@@ -47,6 +52,8 @@ class ClosestSearch {
 
   /// The number of leaves visited so far, and of cores split.
   std::int64_t leaves() const { return leaves_ + cores_.splitCount(); }
+  /// The same and the number of cells within patches.
+  std::int64_t work() const { return leaves() + cells_; }
   /// Whether the last search has met so many leaves in vain that it is to be made again with cones.
   bool gaveUp() const { return gave_up_; }
 
@@ -75,6 +82,7 @@ class ClosestSearch {
         cores_.visit();
       }
     }
+    cells_ += best_.cells;
     return best_.at;
   }
 
@@ -129,7 +137,7 @@ class ClosestSearch {
   const SearchTree& data_;
   const NormalCones* cones_;
   PatchCache cache_;
-  std::int64_t leaves_ = 0, last_leaf_ = kForever;
+  std::int64_t leaves_ = 0, last_leaf_ = kForever, cells_ = 0;
   bool gave_up_ = false;
   Vector3 unit_;      // the direction in which the surface must face
   double reach_ = 0;  // the largest angle between them
@@ -150,21 +158,20 @@ class ClosestRows {
         threads_(threads),
         // An angle of pi accepts all normals; a cosine of -2 keeps rounding from excluding any.
         least_cosine_(options.max_angle >= kNearlyPi ? kAnyCosine : std::cos(options.max_angle)),
-        at_(static_cast<std::size_t>(points.rows())),
-        open_(spatialOrder(points, threads)) {}
+        at_(static_cast<std::size_t>(points.rows())) {}
 
   void run() {
-    search(Condition::none, nullptr);
+    search(spatialOrder(points_, threads_), Condition::none, nullptr);
     if (options_.facing.rows() == 0) {
       return;
     }
     // The closest point of all is also the closest of those that face the right way, if it does.
-    keepOpen(rowsFacingAway());
+    Rows open = facingAway();
     // A search that finds nothing that faces the right way would look at the whole surface. It is
     // made again, with the help of cones.
-    keepOpen(search(Condition::facing, nullptr));
-    if (!open_.empty()) {
-      search(Condition::facing, &data_.normalCones(threads_));
+    open = search(std::move(open), Condition::facing, nullptr);
+    if (!open.empty()) {
+      search(std::move(open), Condition::facing, &data_.normalCones(threads_));
     }
   }
 
@@ -172,6 +179,7 @@ class ClosestRows {
   std::int64_t leaves() const { return leaves_; }
 
  private:
+  using Rows = std::vector<std::size_t>;
   enum class Condition { none, facing };
 
   Facing facing(std::size_t row) const {
@@ -179,55 +187,65 @@ class ClosestRows {
     return {data_.surface, inUnit(options_.facing.row(i).transpose()), least_cosine_};
   }
 
-  /// Searches for the points of the open rows. Returns for each row whether its search gave up.
-  std::vector<char> search(Condition condition, const NormalCones* cones) {
-    std::vector<char> gave_up(at_.size(), 0);
-    parallelFor(open_.size(), kRowsPerTask, threads_, [&](std::size_t begin, std::size_t end) {
+  /// Searches for the points of some rows. Returns those whose searches gave up.
+  Rows search(Rows open, Condition condition, const NormalCones* cones) {
+    Rows gave_up;
+    for (std::size_t grain = kRowsPerTask; !open.empty();
+         grain = std::max<std::size_t>(grain / kSmaller, 1)) {
+      open = searchByTasks(open, grain, condition, cones, gave_up);
+    }
+    return gave_up;
+  }
+
+  /// The same by tasks of about `grain` rows. Appends the rows that gave up, and returns those that
+  /// are left to smaller tasks.
+  Rows searchByTasks(const Rows& rows, std::size_t grain, Condition condition,
+                     const NormalCones* cones, Rows& gave_up) {
+    enum class State : char { done, later, in_vain };
+    std::vector<State> states(rows.size(), State::later);
+    parallelFor(rows.size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
       ClosestSearch search(data_, cones);
-      std::int64_t leaves_passed = 0;
-      for (std::size_t i = begin; i < end; ++i) {
+      std::int64_t work_passed = 0;
+      for (std::size_t i = begin; i < end && (grain == 1 || search.work() < kWorkPerTask); ++i) {
         if (i + kPrefetched < end) {
-          prefetch(points_.coeffRef(static_cast<Eigen::Index>(open_[i + kPrefetched]), 0));
+          prefetch(points_.coeffRef(static_cast<Eigen::Index>(rows[i + kPrefetched]), 0));
         }
-        const std::size_t row = open_[i];
         std::optional<Facing> filter;
         if (condition == Condition::facing) {
-          filter.emplace(facing(row));
+          filter.emplace(facing(rows[i]));
         }
-        at_[row] =
-            search.find(data_.scale * points_.row(static_cast<Eigen::Index>(row)).transpose(),
+        const auto row = static_cast<Eigen::Index>(rows[i]);
+        at_[rows[i]] =
+            search.find(data_.scale * points_.row(row).transpose(),
                         data_.scale * options_.max_distance, filter ? &*filter : nullptr);
-        gave_up[row] = search.gaveUp();
-        if (search.leaves() - leaves_passed >= kLeavesPerPass) {
+        states[i] = search.gaveUp() ? State::in_vain : State::done;
+        if (search.work() - work_passed >= kWorkPerPass) {
           InterruptionPoint::pass();
-          leaves_passed = search.leaves();
+          work_passed = search.work();
         }
       }
       leaves_ += search.leaves();
     });
-    return gave_up;
-  }
-
-  /// Those of the open rows stay open that are marked.
-  void keepOpen(const std::vector<char>& marked) {
-    std::vector<std::size_t> still_open;
-    for (const std::size_t row : open_) {
-      if (marked[row]) {
-        still_open.push_back(row);
+    Rows later;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (states[i] != State::done) {
+        (states[i] == State::later ? later : gave_up).push_back(rows[i]);
       }
     }
-    open_.swap(still_open);
+    return later;
   }
 
-  /// For each row, whether a place was found whose normal does not meet the condition.
-  std::vector<char> rowsFacingAway() const {
+  /// The rows for which a place was found whose normal does not meet the condition, in the order of
+  /// searches.
+  Rows facingAway() const {
     const Points normals = hitsAt(data_.surface, at_, threads_).normal;
-    std::vector<char> faces_away(at_.size());
-    for (std::size_t row = 0; row < at_.size(); ++row) {
+    Rows rows = spatialOrder(points_, threads_);
+    const auto isDone = [&](std::size_t row) {
       const Vector3 normal = normals.row(static_cast<Eigen::Index>(row));
-      faces_away[row] = at_[row].face >= 0 && !facing(row).accepts(normal);
-    }
-    return faces_away;
+      return at_[row].face < 0 || facing(row).accepts(normal);
+    };
+    rows.erase(std::remove_if(rows.begin(), rows.end(), isDone), rows.end());
+    return rows;
   }
 
   const SearchTree& data_;
@@ -236,7 +254,6 @@ class ClosestRows {
   const int threads_;
   const double least_cosine_;
   std::vector<Location> at_;
-  std::vector<std::size_t> open_;  // the rows that have no result yet, in the order of searches
   std::atomic<std::int64_t> leaves_{0};
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <limits>
 
 #include "limitsurf/surface/bezier_patch.h"
@@ -41,6 +42,9 @@ struct ClosestSoFar {
   /// which leads there from the searching point: that at the distance `plane` from `from.place`.
   Vector3 direction = Vector3::Zero();
   double plane = std::numeric_limits<double>::infinity();
+
+  /// The number of parts of patches that the search has looked at.
+  std::int64_t cells = 0;
 
   /// Points that are closer by less than this are not searched for: a tenth of kSearchError.
   double tolerance = 0;

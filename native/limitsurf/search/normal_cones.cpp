@@ -179,7 +179,7 @@ NormalCone normalCone(const BezierPatch& patch) {
   if (cone.angle < kNarrow) {
     return cone;
   }
-  const NormalCone other = coneOfCoefficients(along_s, along_t);
+  const NormalCone other = coneOfCoefficients(patch);
   return other.angle < cone.angle ? other : cone;
 }
 

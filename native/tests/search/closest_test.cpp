@@ -466,9 +466,12 @@ TEST(Closest, FacingLooksAlongTheDirection) {
   const LimitSurface surface = limitSurface(perturbed(torus(32, 16), 0.03, 1));
   const SurfaceSearch search(surface);
   const BruteForce truth(surface, 4);
-  Random random(5);
   const int count = 8;
-  const Points on = surface.evaluate(searchedLocations(surface, 1, random)).position.topRows(count);
+  std::vector<Location> places;
+  for (int row = 0; row < count; ++row) {
+    places.push_back({61 * row, 0.1 + 0.1 * row, 0.3});
+  }
+  const Points on = surface.evaluate(places).position;
   const Vector3 direction = Vector3(0.3, -0.2, 1).normalized();
   ClosestOptions options;
   options.facing = direction.transpose().replicate(count, 1);
