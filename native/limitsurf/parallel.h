@@ -20,28 +20,37 @@ namespace limitsurf {
 constexpr std::size_t kRowsPerTask = 512;
 
 /// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or on at
-/// most `threads` of them. A range has about `grain` elements; InterruptionPoint::pass() is called
-/// after each range that the calling thread has worked on. What a body does must not depend on how
-/// the range is divided.
+/// most `threads` of them. All ranges but the last have `grain` elements; InterruptionPoint::pass()
+/// is called after each one that the calling thread has worked on. What a body does must not depend
+/// on how the range is divided.
+///
+/// Each thread works through a part of [0, count) from its beginning on, and one that has nothing
+/// left takes over the second half of what another has before it. So threads wait for each other
+/// only once, at the end, and they write to memory far apart: two that write to the same page for
+/// the first time (2 MiB where memory has large pages) would both clear it.
 template <typename Body>
 void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& body) {
-  constexpr std::size_t kGrainsPerSlab = 32;
-  const auto slab = [&](std::size_t first, std::size_t last) {
-    if (threads == 1 || last - first <= grain || !workerThreadsExist()) {
-      for (std::size_t begin = first; begin < last; begin += grain) {
-        body(begin, std::min(last, begin + grain));
-        InterruptionPoint::pass();
-      }
-      return;
+  const auto callFor = [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      body(i * grain, std::min(count, (i + 1) * grain));
+      InterruptionPoint::pass();  // it belongs to the calling thread
     }
+  };
+  const std::size_t ranges = count / grain + (count % grain > 0 ? 1 : 0);
+  if (threads == 1 || ranges <= 1 || !workerThreadsExist()) {
+    callFor(0, ranges);
+    return;
+  }
+  {
     LoopOrder order;
     const auto run = [&] {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, grain),
-                        [&](const tbb::blocked_range<std::size_t>& range) {
-                          const LoopOrder::Task task(order);
-                          body(range.begin(), range.end());
-                          InterruptionPoint::pass();  // it belongs to the calling thread
-                        });
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, ranges),
+          [&](const tbb::blocked_range<std::size_t>& some) {
+            const LoopOrder::Task task(order);
+            callFor(some.begin(), some.end());
+          },
+          tbb::simple_partitioner());
     };
     if (threads == 0) {
       run();
@@ -50,13 +59,8 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
       tbb::task_arena arena(std::min(threads, tbb::this_task_arena::max_concurrency()));
       arena.execute(run);
     }
-  };
-  for (std::size_t first = 0; first < count;) {
-    const std::size_t last = std::min(count, first + kGrainsPerSlab * grain);
-    slab(first, last);
-    InterruptionPoint::pass();
-    first = last;
   }
+  InterruptionPoint::pass();
 }
 
 }  // namespace limitsurf

@@ -50,7 +50,7 @@ def test_threads_may_share_a_surface():
 EVALUATING = """
 import ctrl_c, limitsurf as ls, numpy as np, shapes
 surface = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.pole(200)))
-uv = np.tile([[1e-4, 2e-4]], (4_000_000, 1))  # minutes
+uv = np.tile([[1e-25, 2e-25]], (4_000_000, 1))  # minutes
 ctrl_c.interrupt(lambda: surface.{method}(0, uv))
 print(surface.evaluate(0, [[0.5, 0.5]]).position.shape)
 """

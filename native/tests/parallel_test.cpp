@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace limitsurf {
+namespace {
+
+TEST(ParallelFor, RangesHaveAsManyElementsAsTheyShallHave) {
+  constexpr std::size_t kCount = 10'007, kGrain = 64;
+  for (const int threads : {0, 1, 2, 3}) {
+    std::vector<std::atomic<int>> visits(kCount);
+    std::atomic<int> others{0};
+    parallelFor(kCount, kGrain, threads, [&](std::size_t begin, std::size_t end) {
+      others += begin % kGrain != 0 || (end - begin != kGrain && end != kCount) ? 1 : 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        ++visits[i];
+      }
+    });
+    EXPECT_EQ(others, 0) << threads;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      ASSERT_EQ(visits[i], 1) << threads << ", " << i;
+    }
+  }
+  parallelFor(0, kGrain, 2, [](std::size_t, std::size_t) { FAIL(); });
+}
+
+TEST(ParallelFor, NoThreadWaitsForAnotherBeforeTheEnd) {
+  if (tbb::this_task_arena::max_concurrency() < 2) {
+    GTEST_SKIP() << "one core";
+  }
+  // One thread stays in its first range until all other ranges are done.
+  constexpr std::size_t kRanges = 1000;
+  constexpr std::chrono::seconds kLimit{60};
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<std::size_t> done{0};
+  std::atomic<bool> waits{false};
+  parallelFor(kRanges, 1, 2, [&](std::size_t, std::size_t) {
+    if (std::this_thread::get_id() == caller && !waits.exchange(true)) {
+      const auto end = std::chrono::steady_clock::now() + kLimit;
+      while (done < kRanges - 1 && std::chrono::steady_clock::now() < end) {
+        std::this_thread::yield();
+      }
+      EXPECT_EQ(done, kRanges - 1);
+    }
+    ++done;
+  });
+  EXPECT_EQ(done, kRanges);
+}
+
+TEST(ParallelFor, CallsTheInterruptionPointAfterEachRangeOfTheCaller) {
+  for (const int threads : {1, 2}) {
+    const std::thread::id caller = std::this_thread::get_id();
+    int own = 0, calls = 0;
+    bool is_late = false;
+    const InterruptionPoint point([&] { ++calls; });
+    parallelFor(100, 1, threads, [&](std::size_t, std::size_t) {
+      if (std::this_thread::get_id() == caller) {
+        is_late |= calls < own;
+        ++own;
+      }
+    });
+    EXPECT_FALSE(is_late) << threads;
+    EXPECT_GE(calls, own) << threads;
+  }
+}
+
+TEST(ParallelFor, WhatTheInterruptionPointThrowsEndsTheLoop) {
+  for (const int threads : {0, 1, 2}) {
+    std::atomic<int> ranges{0};
+    const InterruptionPoint point([] { throw std::runtime_error("enough"); });
+    EXPECT_THROW(parallelFor(100'000, 1, threads,
+                             [&](std::size_t, std::size_t) {
+                               ++ranges;
+                               std::this_thread::sleep_for(std::chrono::microseconds(10));
+                             }),
+                 std::runtime_error);
+    EXPECT_LT(ranges, 100'000) << threads;
+  }
+}
+
+}  // namespace
+}  // namespace limitsurf
