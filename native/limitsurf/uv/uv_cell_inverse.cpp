@@ -6,6 +6,11 @@
 namespace limitsurf {
 namespace {
 
+void put(const Point2& from, double to[2]) {
+  to[0] = from[0];
+  to[1] = from[1];
+}
+
 /// From the Bezier points of a cubic, `stride` apart, to its coefficients of powers about the
 /// middle.
 void toPowers(Point2* p, int stride) {
@@ -57,96 +62,66 @@ bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
   if (determinant == 0) {
     return false;
   }
-  m_s_ = Point2(derivatives.mean_t[1], -derivatives.mean_s[1]) / determinant;
-  m_t_ = Point2(-derivatives.mean_t[0], derivatives.mean_s[0]) / determinant;
+  put(Point2(derivatives.mean_t[1], -derivatives.mean_s[1]) / determinant, numbers_.m_s);
+  put(Point2(-derivatives.mean_t[0], derivatives.mean_s[0]) / determinant, numbers_.m_t);
   const double variation = variationOf(derivatives.ds, derivatives.dt);
   if (!(variation <= kMostVariation)) {
     return false;
   }
   const double newton = 2 * variation / (1 - variation);
-  contraction_ = newton / (1 - newton);
+  numbers_.contraction = newton / (1 - newton);
   setTolerance(tolerance, derivatives.secondBound());
   setPowers(cell.points);
   return true;
 }
 
 double CellInverse::variationOf(const Point2 ds[12], const Point2 dt[12]) const {
+  const Point2 m_s(numbers_.m_s[0], numbers_.m_s[1]), m_t(numbers_.m_t[0], numbers_.m_t[1]);
   Point2 from_s = Point2::Zero(), from_t = Point2::Zero();  // the entries of M J - 1, by columns
   for (int i = 0; i < 12; ++i) {
-    from_s = from_s.max((ds[i][0] * m_s_ + ds[i][1] * m_t_ - Point2(1, 0)).abs());
-    from_t = from_t.max((dt[i][0] * m_s_ + dt[i][1] * m_t_ - Point2(0, 1)).abs());
+    from_s = from_s.max((ds[i][0] * m_s + ds[i][1] * m_t - Point2(1, 0)).abs());
+    from_t = from_t.max((dt[i][0] * m_s + dt[i][1] * m_t - Point2(0, 1)).abs());
   }
   return (from_s + from_t).maxCoeff();
 }
 
 void CellInverse::setTolerance(const Point2& tolerance, const Point2& second) {
-  tolerance_ = tolerance;
+  put(tolerance, numbers_.tolerance);
   // Newton's error is half the second derivative times the squared step; a quarter of the tolerance
   // is allowed for it.
-  curvature_ = 2 * (second / tolerance).maxCoeff();
-  const double m_norm = (m_s_.abs() * tolerance[0] + m_t_.abs() * tolerance[1]).maxCoeff();
+  numbers_.curvature = 2 * (second / tolerance).maxCoeff();
+  const Point2 m_s(numbers_.m_s[0], numbers_.m_s[1]), m_t(numbers_.m_t[0], numbers_.m_t[1]);
+  const double m_norm = (m_s.abs() * tolerance[0] + m_t.abs() * tolerance[1]).maxCoeff();
   border_width_ = 8 * m_norm;
 }
 
 void CellInverse::setPowers(const Point2* points) {
-  std::copy(points, points + 16, c_);
+  Point2 c[16];
+  std::copy(points, points + 16, c);
   for (int i = 0; i < 4; ++i) {
-    toPowers(c_ + 4 * i, 1);
+    toPowers(c + 4 * i, 1);
   }
   for (int i = 0; i < 4; ++i) {
-    toPowers(c_ + i, 4);
+    toPowers(c + i, 4);
   }
-}
-
-Point2 CellInverse::guess(const Point2& target) const {
-  const Point2 r = target - c_[0];
-  return r[0] * m_s_ + r[1] * m_t_;
-}
-
-inline void CellInverse::evaluate(const Point2& x, const Point2& target, Point2& rest, Point2& ds,
-                                  Point2& dt) const {
-  const double s = x[0], t = x[1];
-  Point2 row[4], row_ds[4];
-  for (int j = 0; j < 4; ++j) {
-    const Point2* c = c_ + 4 * j;
-    const Point2 c3s = s * c[3], high = s * (c[2] + c3s);
-    row[j] = s * (c[1] + high);
-    row_ds[j] = (c[1] + high) + s * (c[2] + 2 * c3s);
+  for (int i = 0; i < 16; ++i) {
+    numbers_.coefficients[0][i] = c[i][0];
+    numbers_.coefficients[1][i] = c[i][1];
   }
-  // The constant terms are added last, since what they leave of the target is small.
-  for (int j = 1; j < 4; ++j) {
-    row[j] += c_[4 * j];
-  }
-  const Point2 r3t = t * row[3], high = t * (row[2] + r3t);
-  rest = (target - c_[0]) - (row[0] + t * (row[1] + high));
-  dt = (row[1] + high) + t * (row[2] + 2 * r3t);
-  ds = row_ds[0] + t * (row_ds[1] + t * (row_ds[2] + t * row_ds[3]));
 }
 
 void CellInverse::derivatives(const Point2& x, Point2& ds, Point2& dt) const {
-  Point2 unused;
-  evaluate(x, Point2::Zero(), unused, ds, dt);
-}
-
-bool CellInverse::find(const Point2& target, Place& out) const {
-  out.x = out.x.max(-0.5).min(0.5);
-  for (int step = 0; step < kMostSteps; ++step) {
-    Point2 rest;
-    evaluate(out.x, target, rest, out.ds, out.dt);
-    out.determinant = cross(out.ds, out.dt);
-    const Point2 move = Point2(cross(rest, out.dt), cross(out.ds, rest)) / out.determinant;
-    out.beyond = out.x + move;
-    out.x = out.beyond.max(-0.5).min(0.5);
-    const Point2 outside = out.beyond - out.x;
-    const double length = move.abs().maxCoeff();
-    if (curvature_ * length * length <= 1) {
-      return ((out.ds * outside[0] + out.dt * outside[1]).abs() <= tolerance_).all();
-    }
-    if (outside.abs().maxCoeff() > contraction_ * length) {
-      return false;
-    }
+  const double s = x[0], t = x[1];
+  Point2 row[4], row_ds[4];
+  for (int j = 0; j < 4; ++j) {
+    const Point2 one = coefficient(4 * j + 1), square = coefficient(4 * j + 2);
+    const Point2 c3s = s * coefficient(4 * j + 3), high = s * (square + c3s);
+    row[j] = coefficient(4 * j) + s * (one + high);
+    row_ds[j] = (one + high) + s * (square + 2 * c3s);
   }
-  return false;
+  const Point2 r3t = t * row[3], high = t * (row[2] + r3t);
+  dt = (row[1] + high) + t * (row[2] + 2 * r3t);
+  ds = row_ds[0] + t * (row_ds[1] + t * (row_ds[2] + t * row_ds[3]));
 }
 
 }  // namespace limitsurf

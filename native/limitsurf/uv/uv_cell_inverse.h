@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "limitsurf/uv/row_inverse.h"
 #include "limitsurf/uv/uv_cell.h"
 
 namespace limitsurf {
@@ -11,29 +12,15 @@ namespace limitsurf {
 /// maximum norm; differences of control points give q. Then the map is one-to-one, and Newton's
 /// iteration, projected back into the cell after each step, reduces the distance from the solution
 /// by a factor of 2q / (1 - q) or better. It finds the solution if the cell has one, and otherwise
-/// proves that there is none.
+/// proves that there is none. RowInverse iterates, from the numbers that are set here.
 class CellInverse {
  public:
   /// Sets the cell, and returns whether its Jacobian changes little enough; all other members
   /// require that. `tolerance` is the error allowed in each coordinate.
   bool set(const UvCell& cell, const Point2& tolerance);
 
-  /// A place in the cell, in coordinates from -1/2 to 1/2 about its middle.
-  struct Place {
-    Point2 x;
-    Point2 ds, dt;  ///< the map's derivatives before the last step
-    double determinant;
-    /// Where Newton's last step led, before the projection into the cell: a start for nearby
-    /// points.
-    Point2 beyond;
-  };
-  /// Whether the map takes the value `target` on the cell, up to the tolerance. The search begins
-  /// and ends at out.x.
-  bool find(const Point2& target, Place& out) const;
-
-  /// The place at which the linear part of the map takes that value.
-  Point2 guess(const Point2& target) const;
-  /// The derivatives of the map at a place.
+  const CellNumbers& numbers() const { return numbers_; }
+  /// The derivatives of the map at a place, in coordinates from -1/2 to 1/2 about the middle.
   void derivatives(const Point2& x, Point2& ds, Point2& dt) const;
   /// The image of a place farther than this from the cell's sides is more than four tolerances away
   /// from the images of the sides.
@@ -41,9 +28,8 @@ class CellInverse {
 
  private:
   /// The largest q. Each step then reduces the error by a factor of 2/7 or better, so that
-  /// kMostSteps steps exhaust the digits of a double.
+  /// RowInverse's steps exhaust the digits of a double.
   static constexpr double kMostVariation = 1. / 8;
-  static constexpr int kMostSteps = 32;
 
   /// q, from the control points of the derivatives along s and t; needs M.
   double variationOf(const Point2 ds[12], const Point2 dt[12]) const;
@@ -51,13 +37,11 @@ class CellInverse {
   void setTolerance(const Point2& tolerance, const Point2& second);
   /// Sets the coefficients of powers from the cell's Bezier points.
   void setPowers(const Point2* points);
-  void evaluate(const Point2& x, const Point2& target, Point2& rest, Point2& ds, Point2& dt) const;
+  Point2 coefficient(int i) const {
+    return {numbers_.coefficients[0][i], numbers_.coefficients[1][i]};
+  }
 
-  Point2 c_[16];      // coefficients of powers of s and t about the middle: [4 t + s]
-  Point2 m_s_, m_t_;  // the columns of M
-  Point2 tolerance_;
-  double curvature_;    // times a squared step this is Newton's error in units of the tolerance
-  double contraction_;  // bound on the remaining distance, in units of the last step
+  CellNumbers numbers_;
   double border_width_;
 };
 

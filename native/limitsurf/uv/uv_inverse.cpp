@@ -240,48 +240,55 @@ void LatticeInverse::addCell(const UvCell& cell, int depth) {
 
 void LatticeInverse::addRows(const UvCell& cell, const CellInverse& inverse,
                              const Lattice& inside) {
-  const RowRange rows(cell, tolerance_);
-  for (int y = inside.y0; y <= inside.y1; ++y) {
-    const Lattice row = Lattice{inside.x0, y, inside.x1, y}.within(
-        rows.at(y).grown({tolerance_[0], tolerance_[1]}));
-    CellInverse::Place place;
-    Point2 last = Point2::Zero(), step = Point2::Zero(), before = Point2::Zero();
-    for (int x = row.x0; x <= row.x1; ++x) {
-      const Point2 target(x, y);
-      const int done = x - row.x0;
-      // The start is extrapolated, quadratically as soon as three points are known.
-      place.x = done == 0 ? inverse.guess(target)
-                          : Point2(last + (done > 2 ? Point2(2 * step - before) : step));
-      if (inverse.find(target, place)) {
-        addPlace(cell, inverse, place, x, y);
+  const RowRange ranges(cell, tolerance_);
+  for (int first = inside.y0; first <= inside.y1; first += InverseRows::kCount) {
+    InverseRows rows;
+    int x0[InverseRows::kCount], longest = 0;
+    rows.count = std::min(inside.y1 - first + 1, InverseRows::kCount);
+    for (int i = 0; i < rows.count; ++i) {
+      const int y = first + i;
+      const Lattice row = Lattice{inside.x0, y, inside.x1, y}.within(
+          ranges.at(y).grown({tolerance_[0], tolerance_[1]}));
+      const int length = row.empty() ? 0 : row.x1 - row.x0 + 1;
+      x0[i] = row.x0;
+      rows.x0[i] = row.x0;
+      rows.y[i] = y;
+      rows.length[i] = length;
+      longest = std::max(longest, length);
+    }
+    for (int begin = 0; begin < longest; begin += InverseRows::kBlock) {
+      const int end = std::min(begin + InverseRows::kBlock, longest);
+      kernel_.find(inverse.numbers(), rows, begin, end);
+      for (int i = 0; i < rows.count; ++i) {
+        const int last = std::min(end, static_cast<int>(rows.length[i]));
+        for (int point = begin; point < last; ++point) {
+          const int place = point - begin;
+          if (rows.found[place][i] > 0) {
+            addPlace(cell, inverse, {rows.s[place][i], rows.t[place][i]},
+                     rows.determinant[place][i], x0[i] + point, first + i);
+          }
+        }
       }
-      if (done == 0) {
-        step = Point2(place.dt[1], -place.ds[1]) / place.determinant;
-      } else {
-        before = step;
-        step = place.beyond - last;
-      }
-      last = place.beyond;
     }
   }
 }
 
-void LatticeInverse::addPlace(const UvCell& cell, const CellInverse& inverse,
-                              const CellInverse::Place& place, int x, int y) {
+void LatticeInverse::addPlace(const UvCell& cell, const CellInverse& inverse, const Point2& place,
+                              double determinant, int x, int y) {
   Find find;
   find.x = x;
   find.y = y;
-  find.s = cell.s0 + cell.size * (place.x[0] + 0.5);
-  find.t = cell.t0 + cell.size * (place.x[1] + 0.5);
-  find.flipped = place.determinant < 0;
-  const Point2 from_sides = 0.5 - place.x.abs();
+  find.s = cell.s0 + cell.size * (place[0] + 0.5);
+  find.t = cell.t0 + cell.size * (place[1] + 0.5);
+  find.flipped = determinant < 0;
+  const Point2 from_sides = 0.5 - place.abs();
   if (from_sides.minCoeff() <= inverse.borderWidth()) {
     // The wedge lies between the directions along the sides, counter-clockwise in s and t.
     const bool at_s = from_sides[0] <= inverse.borderWidth();
     const bool at_t = from_sides[1] <= inverse.borderWidth();
-    const bool s_low = place.x[0] < 0, t_low = place.x[1] < 0;
+    const bool s_low = place[0] < 0, t_low = place[1] < 0;
     Point2 ds, dt;
-    inverse.derivatives(place.x, ds, dt);
+    inverse.derivatives(place, ds, dt);
     Wedge wedge;
     if (at_s && at_t) {
       const Point2 along_s = s_low ? ds : Point2(-ds), along_t = t_low ? dt : Point2(-dt);

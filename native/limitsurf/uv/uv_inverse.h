@@ -93,15 +93,17 @@ class LatticeInverse {
   void addCell(const UvCell& cell, int depth);
   /// Whether a cell that cannot be inverted is searched instead of quartered.
   bool isLast(const Box2& box, int depth);
-  /// Inverts a cell row by row, each point starting from its neighbours.
+  /// Inverts a cell some rows at a time, each point starting from its neighbours in the row.
   void addRows(const UvCell& cell, const CellInverse& inverse, const Lattice& inside);
-  void addPlace(const UvCell& cell, const CellInverse& inverse, const CellInverse::Place& place,
-                int x, int y);
+  /// Adds a place in the cell, in coordinates from -1/2 to 1/2 about the middle.
+  void addPlace(const UvCell& cell, const CellInverse& inverse, const Point2& place,
+                double determinant, int x, int y);
   /// Searches by least squares for the places nearest to the points.
   void addNearest(const UvCell& cell, const Lattice& inside);
 
   const Lattice lattice_;
   const Point2 tolerance_;
+  const RowInverse& kernel_ = RowInverse::get();
   FindSink& sink_;
   Work work_;
   Work limit_;          // what work_ may be after the present patch

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "limitsurf/precision/complex.h"
+#include "limitsurf/surface/batch/instruction_sets.h"
 #include "support/throws.h"
 #include "support/truth/uv_images.h"
 
@@ -89,6 +90,25 @@ TEST(UvRaster, IsSortedAndTheSameForAnyNumberOfThreads) {
     }
     EXPECT_TRUE(sameBits(texels, UvMap(named.map, 2).rasterize(options, 2))) << named.name;
   }
+}
+
+TEST(UvRaster, HasTheSameBitsWithAllInstructionSets) {
+  const InstructionSet before = instructionSet();
+  const std::vector<NamedMap> maps = uvMaps();
+  for (std::size_t i = 1; i < maps.size(); i += 5) {
+    // From many texels a face to less than one, so that rows are of all lengths.
+    for (const RasterOptions& options : {image(300, 257, 2), image(9, 40)}) {
+      const UvMap map(maps[i].map);
+      useInstructionSet(InstructionSet::baseline);
+      const Texels texels = map.rasterize(options);
+      for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+        if (!isAvailable(set)) continue;
+        useInstructionSet(set);
+        EXPECT_TRUE(sameBits(texels, map.rasterize(options))) << maps[i].name;
+      }
+    }
+  }
+  useInstructionSet(before);
 }
 
 // The centres of texels lie on every edge and every vertex of the 8 x 8 faces; some coordinates
