@@ -325,7 +325,7 @@ def test_refusals(base, sculpt):
     refused(base, "the layout UV Map", target="Sculpt", layout_kind="PTEX", create_material=True)
     refused(base, "GiB of memory: set Allow Large", target="Sculpt", width=16384, height=16384)
     cross = scenes.cross()
-    refused(base, "structures do not match: the target has 5 faces; the base's 18 become 72",
+    refused(base, "Structures do not match: the target has 5 faces; the base's 18 become 72",
             target=cross.name)  # fmt: skip
     base.data.uv_layers.remove(base.data.uv_layers[0])
     refused(base, "Holes: there is no UV map", target="Sculpt")
@@ -352,7 +352,7 @@ def test_a_face_order_that_nobody_makes(base, sculpt):
     bpy.ops.mesh.select_all(action="SELECT")
     bpy.ops.mesh.sort_elements(type="REVERSE", elements={"FACE"})
     bpy.ops.object.mode_set(mode="OBJECT")
-    refused(base, "structures do not match: face .* of the target has vertex", target="Sculpt")
+    refused(base, "Structures do not match: face .* of the target has vertex", target="Sculpt")
 
 
 def test_maps_that_overlap(base, sculpt):

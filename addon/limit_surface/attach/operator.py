@@ -13,7 +13,7 @@ from ..placing.binding import Binding
 from ..placing.binding_operator import BindingOperator
 from ..placing.followers import live_modifier_of, modifier_of
 from ..placing.posed_surface import Places, PosedSurface, at_closest
-from ..reading import cage
+from ..reading import cage, transform
 from ..tasks import polling
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
@@ -106,6 +106,7 @@ def _check(objects: list[bpy.types.Object], surface: bpy.types.Object) -> None:
     """Raises RefusalError for the first object that cannot be attached."""
     needed = dependencies.needed_by(surface)
     for ob in objects:
+        transform.check_finite(np.array(ob.matrix_world), ob.name)
         if not ob.is_editable:
             raise RefusalError(
                 f"{ob.name} is linked from another file: make it local, or make a library override"

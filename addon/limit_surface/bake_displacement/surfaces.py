@@ -12,7 +12,7 @@ import numpy as np
 from .. import ids, native
 from ..errors import RefusalError
 from ..images import texel_places
-from ..reading import attributes, cage
+from ..reading import attributes, cage, transform
 from ..reading.named import find_object
 from ..tasks.refused_faces import check_some_left
 
@@ -96,7 +96,9 @@ def _polygons(
         attributes.read(mesh, ids.CORNER_VERTEX),
         scheme="bilinear",
     )
-    return polygons, np.array(evaluated.matrix_world, np.float64)
+    matrix = np.array(evaluated.matrix_world, np.float64)
+    transform.check_finite(matrix, target.name)
+    return polygons, matrix
 
 
 def _surface(mesh: limitsurf.ControlMesh, name: str) -> limitsurf.LimitSurface:
@@ -109,8 +111,6 @@ def _carried(
     positions: np.ndarray, matrix: np.ndarray, base_matrix: np.ndarray, base_name: str
 ) -> np.ndarray:
     """Returns the positions carried from one object's space to another's, by way of the world."""
-    try:
-        relative = np.linalg.solve(base_matrix, matrix)
-    except np.linalg.LinAlgError:
-        raise RefusalError(f"{base_name} has a scale of 0 along an axis") from None
+    transform.check_invertible(base_matrix, base_name)
+    relative = np.linalg.solve(base_matrix, matrix)
     return positions @ relative[:3, :3].T + relative[:3, 3]

@@ -46,9 +46,7 @@ def _arrays(evaluated: bpy.types.Object) -> dict[str, np.ndarray]:
         found["face_vertices"] = np.empty(len(data.loops), np.int32)
         data.loops.foreach_get("vertex_index", found["face_vertices"])
     if evaluated.type == "CURVES":
-        offsets = np.empty(len(data.curves) + 1, np.int32)
-        data.curve_offset_data.foreach_get("value", offsets)
-        found["curve_offsets"] = offsets
+        found["curve_offsets"] = attributes.curve_offsets(data)
     for name in _CARRIED:
         if name in data.attributes:
             found[name] = attributes.read(data, name)

@@ -85,7 +85,12 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: Kind, uv_na
     with _opened(ob, depsgraph, kind) as (mesh, whose):
         if uv_name not in mesh.uv_layers:
             raise RefusalError(f"{whose} has no UV map {uv_name!r}")
-        return _corners(mesh, uv_name)
+        corners = _corners(mesh, uv_name)
+    if not (np.isfinite(corners.tangent).all() and np.isfinite(corners.normal).all()):
+        raise RefusalError(
+            f"{whose} has tangents that are not finite numbers: its coordinates are too large"
+        )
+    return corners
 
 
 @contextmanager

@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
-from ..reading import attributes, cage
+from ..reading import attributes, cage, transform
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from . import storage
@@ -132,4 +132,4 @@ def _read(ob: bpy.types.Object, found: cage.Cage, surface: str) -> _Part:
     known = (face[there] >= 0) & (face[there] < found.ptex_face_count)
     if not (known.all() and ((uv[there] >= 0) & (uv[there] <= 1)).all()):
         raise RefusalError(f"{ob.name} stands on faces that {surface} does not have")
-    return _Part(ObjectKey.of(ob), face, uv, np.array(ob.matrix_world, np.float64), found)
+    return _Part(ObjectKey.of(ob), face, uv, transform.world_matrix(ob), found)

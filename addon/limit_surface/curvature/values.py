@@ -49,7 +49,7 @@ class CurvedSurface:
         self._to_world = found.matrix
         self._is_inwards = False
         if in_world:
-            WorldSpace(found.matrix)  # refuses objects whose scale is 0 along an axis
+            WorldSpace(found.matrix, found.name)  # refuses objects whose scale is 0 along an axis
             self._to_world = np.eye(4)
             self._is_inwards = found.is_mirrored
 

@@ -19,6 +19,7 @@ from ..placing.posed_surface import at_closest, transformed
 from ..placing.roots import Locations
 from ..placing.rotations import WorldSpace
 from ..reading import splines as blender_splines
+from ..reading import transform
 from . import splines
 from .fitting import Spline
 from .ground import Ground
@@ -106,7 +107,7 @@ def _kept_locations(ob: bpy.types.Object, ground: Ground, removed: Sequence[int]
 
 def check_places(ob: bpy.types.Object, ground: Ground) -> None:
     """Raises RefusalError for a Curve object whose points cannot be compared with the surface."""
-    WorldSpace(np.array(ob.matrix_world, np.float64))  # refuses a scale of 0
+    transform.world_matrix(ob)  # refuses a scale of 0
     for number, spline in enumerate(ob.data.splines):
         points = blender_splines.points(spline)
         names = ("co", "handle_left", "handle_right") if spline.type == "BEZIER" else ("co",)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
+from ..errors import RefusalError
 from ..placing.posed_surface import PosedSurface, transformed
 from ..reading import cage
 from ..tasks.refused_faces import check_some_left
@@ -38,6 +39,8 @@ class Ground:
         self.outward = -1.0 if self.posed.cage.is_mirrored else 1.0
         low, high = self.surface.bounds()
         self.size = float(np.linalg.norm(high - low))
+        if not self.size > 0:
+            raise RefusalError(f"All points of {ob.name} lie at one place")
 
     def tolerance(self, chosen: float) -> float:
         """Returns the tolerance in world units; 0 chooses one by the surface's size."""

@@ -67,7 +67,7 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.t
         tolerance = ground.tolerance(self.tolerance)
         fit = Fit(self.spline, tolerance, self.offset)
         laid: list[tuple[list[Spline], list[int]]] = []
-        count = sum(len(ob.data.splines) for ob in curves)
+        count = max(1, sum(len(ob.data.splines) for ob in curves))
         for ob in curves:
             done = sum(len(numbers) for _made, numbers in laid)
             laid.append((yield from _laid(ob, ground, fit, tolerance, done / count, 1 / count)))

@@ -15,9 +15,10 @@ from ..nodes import children as nodes
 from ..nodes import groups
 from ..placing import following, live_children, tables
 from ..placing.binding import Binding
+from ..placing.places import ROOT_KINDS
 from ..placing.posed_surface import PosedSurface
 from ..placing.roots import Locations
-from ..reading import attributes, cage
+from ..reading import attributes, cage, transform
 from ..tasks.piecewise_job import Pieces
 
 
@@ -66,6 +67,7 @@ def _read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Curves:
     following.check_editable(ob)
     if ob.data.users > 1:
         raise RefusalError(f"{ob.name} shares its data: make it a single user first")
+    attributes.check_names(ob, ROOT_KINDS, "CURVE")
     surface, table = live_children.surface_of(ob), live_children.table_of(ob)
     count = live_children.count_of(ob)
     modifier = live_children.modifier_of(ob)
@@ -89,5 +91,5 @@ def _read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Curves:
     u, v, face = attributes.read(table.data, ids.POSITION).T
     at = Locations(face.astype(np.int32), np.stack([u, v], axis=1))
     posed = PosedSurface(cage.read(surface, depsgraph))
-    binding = Binding.at(posed, at, np.array(ob.matrix_world, np.float64))
+    binding = Binding.at(posed, at, transform.world_matrix(ob))
     return _Curves(ob, len(position) // count, position, radius, binding)

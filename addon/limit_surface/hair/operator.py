@@ -88,7 +88,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, SteeringProperties, bpy.types.Op
         steering.draw_image_place(layout, properties, surface, STEERED, DENSITY.source)
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Strands]:
-        space = WorldSpace(found.matrix)
+        space = WorldSpace(found.matrix, found.name)
         length, points, tilt = self.length, self.points, np.array(self.tilt)
         random, random_length = self.random, self.random_length
         flow_angle = self.flow_angle

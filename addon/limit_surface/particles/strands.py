@@ -88,6 +88,6 @@ def _radius(
     if "radius" not in shown.data.attributes:
         return _RADIUS, _RADIUS
     radius = attributes.read(shown.data, "radius")
-    scale = WorldSpace(np.array(shown.matrix_world, np.float64)).mean_scale
+    scale = WorldSpace(np.array(shown.matrix_world, np.float64), shown.name).mean_scale
     at_root, at_tip = radius[offsets[:-1]].mean(), radius[offsets[1:] - 1].mean()
     return float(scale * at_root), float(scale * at_tip)

@@ -130,7 +130,7 @@ class OBJECT_OT_limit_hair_from_particles(
             following.request_for(self.follow, surface, depsgraph),
             self.snap_roots,
         )
-        scale = WorldSpace(target.found.matrix).mean_scale
+        scale = WorldSpace(target.found.matrix, target.found.name).mean_scale
         key = ObjectKey.of(surface)
 
         def pieces() -> Pieces:

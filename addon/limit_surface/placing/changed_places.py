@@ -91,6 +91,12 @@ class Closest(Finder):
 
     def __call__(self, elements: Elements, rows: np.ndarray) -> Pieces:
         roots = elements.roots()[rows]
+        lost = np.flatnonzero(~np.isfinite(roots).all(axis=1))
+        if len(lost):
+            raise RefusalError(
+                f"Root {rows[lost[0]]} of {elements.ob.name} has a coordinate that is not a finite "
+                "number: delete it, or choose another method"
+            )
         hits = yield from aside(
             lambda progress: self.posed.in_world.closest(
                 roots, self.max_distance, progress=progress
@@ -115,8 +121,11 @@ class ByUv(Finder):
             )
         uv = attributes.read(elements.data, ids.SURFACE_UV)[rows].astype(np.float64)
         on_surface = self._maps.of(elements.data)
-        at = yield from aside(lambda progress: on_surface.locate(uv, progress=progress))
-        return Found(at.face, at.uv)
+        known = np.isfinite(uv).all(axis=1)
+        at = yield from aside(lambda progress: on_surface.locate(uv[known], progress=progress))
+        face = np.full(len(uv), NOWHERE, at.face.dtype)
+        face[known], uv[known] = at.face, at.uv
+        return Found(face, uv)
 
 
 class ByFace(Finder):

@@ -15,14 +15,13 @@ from .. import ids
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow_curve import FOLLOW_CURVE, POINTS
-from ..reading import attributes, cage, splines
+from ..reading import attributes, cage, splines, transform
 from ..tasks.refused_faces import check_some_left
 from . import following, tables
 from .binding import Binding
 from .followers import curve_table, surface_of
 from .posed_surface import PosedSurface, at_closest, transformed
 from .roots import Locations
-from .rotations import WorldSpace
 
 #: The largest difference between a bound root and its place that counts as none, as a share of the
 #: largest coordinate: some times what single precision rounds off.
@@ -95,7 +94,7 @@ def check_pose(ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurf
             f"{ob.name} is bound to faces that no longer exist: use Rebind to Limit Surface"
         )
     found = Locations(face, attributes.read(table.data, ids.UV))
-    now = Binding.at(posed, found, np.array(ob.matrix_world, np.float64)).root
+    now = Binding.at(posed, found, transform.world_matrix(ob)).root
     bound = attributes.read(table.data, ids.REST_ROOT)
     size = np.abs(bound).max(initial=0.0)
     if np.abs(now - bound).max(initial=0.0) > MOVED * size:
@@ -151,9 +150,14 @@ def has_others(ob: bpy.types.Object) -> bool:
 def _places(
     ob: bpy.types.Object, points: np.ndarray, posed: PosedSurface, known: Locations | None
 ) -> Binding:
-    matrix = np.array(ob.matrix_world, np.float64)
-    WorldSpace(matrix)  # refuses a scale of 0
+    matrix = transform.world_matrix(ob)
     if known is not None:
         return Binding.at(posed, known, matrix)
-    hits = posed.in_world.closest(transformed(matrix, points.astype(np.float64)))
+    at = transformed(matrix, points.astype(np.float64))
+    lost = np.flatnonzero(~np.isfinite(at).all(axis=1))
+    if len(lost):
+        raise RefusalError(
+            f"Control point {lost[0]} of {ob.name} has a coordinate that is not a finite number"
+        )
+    hits = posed.in_world.closest(at)
     return Binding.at(posed, at_closest(posed, hits), matrix)

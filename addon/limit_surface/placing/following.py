@@ -88,6 +88,8 @@ class Request:
         check_surface(surface, depsgraph.scene)
         for ob in things:
             check_thing(ob, surface)
+            if modifier_of(ob) is None:
+                check_first(ob)
         followers = [ob for ob in followers_of(surface) if ob not in without]
         for ob in followers:
             check_thing(ob, surface)
@@ -299,6 +301,15 @@ def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
         if carrier == ob:
             raise RefusalError(f"{ob.name} cannot follow itself, nor what is parented to it")
         carrier = carrier.parent
+
+
+def check_first(ob: bpy.types.Object) -> None:
+    """Raises RefusalError for an object before whose first modifier no other can be put."""
+    if ob.modifiers and ob.modifiers[0].type == "MULTIRES":
+        raise RefusalError(
+            f"{ob.name}: Multiresolution ({ob.modifiers[0].name}) must be the first modifier, "
+            "which following needs to be: apply it first"
+        )
 
 
 def check_editable(ob: bpy.types.Object) -> None:

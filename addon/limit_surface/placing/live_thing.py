@@ -19,7 +19,7 @@ from mathutils import Matrix
 
 from .. import ids
 from ..reading import attributes, linked_attributes
-from .places import NOWHERE
+from .places import NOWHERE, ROOT_KINDS
 
 if TYPE_CHECKING:
     import limitsurf
@@ -95,10 +95,18 @@ def leave(data: bpy.types.ID) -> None:
 
 
 def missing(data: bpy.types.ID) -> str:
-    """Returns the name of an attribute without which the data cannot follow, or None."""
-    needed = (ids.LIVE_REST, ids.LIVE_FINGERPRINT, *_BINDING)
-    there = data.attributes.keys()
-    return next((name for name in needed if name not in there), "")
+    """Returns the name of an attribute without which the data cannot follow: it does not exist, or
+    is of another type or domain. Returns nothing where all are there.
+    """
+    own = "CURVE" if isinstance(data, bpy.types.Curves) else "POINT"
+    needed = {ids.LIVE_REST: ("FLOAT_VECTOR", "POINT"), ids.LIVE_FINGERPRINT: ("INT", own)}
+    needed |= {name: (kind, own) for name, kind in ROOT_KINDS.items()}
+    there = data.attributes
+    for name, wanted in needed.items():
+        stored = there.get(name)
+        if stored is None or (stored.data_type, stored.domain) != wanted:
+            return name
+    return ""
 
 
 def written(data: bpy.types.ID) -> Written | None:
@@ -253,9 +261,7 @@ class LiveThing:
         binding = {name: attributes.read(data, name) for name in _BINDING}
         binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
         if isinstance(data, bpy.types.Curves):
-            offsets = np.empty(len(data.curves) + 1, np.int32)
-            data.curve_offset_data.foreach_get("value", offsets)
-            binding["offsets"] = offsets
+            binding["offsets"] = attributes.curve_offsets(data)
         if (
             self._poser is None
             or limit is not self._limit

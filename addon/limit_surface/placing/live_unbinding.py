@@ -10,9 +10,10 @@ import bpy
 import numpy as np
 
 from .. import ids, native
-from ..reading import attributes, cage
+from ..reading import attributes, cage, transform
 from . import followers, following, live, live_binding, live_thing
 from .places import Places
+from .posed_surface import Places as PosedPlaces
 from .posed_surface import PosedSurface
 
 
@@ -36,14 +37,19 @@ class LiveUnbinding:
             surface: PosedSurface(cage.read(surface, depsgraph))
             for surface in set(self._surfaces.values()) - {None}
         }
+        self._now = {
+            ob: _places_now(ob, surface, self._posed[surface])
+            for ob, surface in self._surfaces.items()
+            if shape == "SHOWN" and surface is not None and not live_thing.missing(ob.data)
+        }
 
     def write(self, depsgraph: bpy.types.Depsgraph) -> str:
         """Changes the file, and returns a report."""
-        for ob, surface in self._surfaces.items():
-            if self._shape == "REST" or surface is None or live_thing.missing(ob.data):
+        for ob in self._surfaces:
+            if ob not in self._now:
                 live_binding.end(ob, depsgraph)
                 continue
-            self._bind_here(ob, self._posed[surface])
+            _bind_here(ob, *self._now[ob])
             live_thing.leave(ob.data)
             modifier = followers.live_modifier_of(ob)
             if modifier is not None:
@@ -54,16 +60,22 @@ class LiveUnbinding:
         where = "where they are shown now" if self._shape == "SHOWN" else "where they are at rest"
         return f"Unbound {where}: {names}"
 
-    def _bind_here(self, ob: bpy.types.Object, posed: PosedSurface) -> None:
-        """Makes the places of this frame those at rest, so that what is bound again does not
-        move.
-        """
-        data, stored = ob.data, Places.read(ob.data)
-        places = posed.places(stored.face, stored.uv, np.array(ob.matrix_world, np.float64))
-        for name, kind, values in (
-            (ids.REST_ROOT, "FLOAT_VECTOR", places.position),
-            (ids.REST_ROTATION, "QUATERNION", native.limitsurf.quaternions(places.frame)),
-        ):
-            new = attributes.read(data, name)
-            new[stored.rows] = values
-            attributes.write(data, name, kind, followers.domain_of(ob), new)
+
+def _places_now(
+    ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurface
+) -> tuple[np.ndarray, PosedPlaces]:
+    """Returns the rows of the elements that have a place, and their places in this frame."""
+    stored = Places.read(ob.data)
+    stored.check(posed.in_object.face_count, surface.name)
+    return stored.rows, posed.places(stored.face, stored.uv, transform.world_matrix(ob))
+
+
+def _bind_here(ob: bpy.types.Object, rows: np.ndarray, places: PosedPlaces) -> None:
+    """Makes the places of this frame those at rest, so that what is bound again does not move."""
+    for name, kind, values in (
+        (ids.REST_ROOT, "FLOAT_VECTOR", places.position),
+        (ids.REST_ROTATION, "QUATERNION", native.limitsurf.quaternions(places.frame)),
+    ):
+        new = attributes.read(ob.data, name)
+        new[rows] = values
+        attributes.write(ob.data, name, kind, followers.domain_of(ob), new)

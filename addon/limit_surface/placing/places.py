@@ -38,6 +38,15 @@ class Places:
 
     @classmethod
     def read(cls, data: bpy.types.ID) -> Places:
+        """Raises RefusalError where an attribute is missing, or holds something else."""
+        domain = "CURVE" if isinstance(data, bpy.types.Curves) else "POINT"
+        for name, kind in ROOT_KINDS.items():
+            there = data.attributes.get(name)
+            if there is None or (there.data_type, there.domain) != (kind, domain):
+                raise RefusalError(
+                    f"{data.name} stores no locations on a limit surface: its attribute {name} is "
+                    "missing, or of another type or domain"
+                )
         return cls.among({name: attributes.read(data, name) for name in ROOT_KINDS})
 
     @classmethod
@@ -67,12 +76,18 @@ class Places:
         return self.count - len(self.rows)
 
     def check(self, faces: int, surface: str) -> None:
-        """Raises RefusalError where a face does not exist."""
+        """Raises RefusalError for locations that do not exist."""
         wrong = self.face[self.face >= faces]
         if len(wrong):
             raise RefusalError(
                 f"A location is on face {wrong[0]}, but {surface} has {faces} faces: its topology "
                 "has changed since things were placed on it"
+            )
+        if not (self.uv.min(initial=0) >= 0 and self.uv.max(initial=0) <= 1):
+            u, v = self.uv[(~((self.uv >= 0) & (self.uv <= 1))).any(axis=1).argmax()]
+            raise RefusalError(
+                f"A location on {surface} has u = {u:g} and v = {v:g}, which must be 0 to 1: "
+                f"somebody has changed the attribute {ids.UV}"
             )
 
     def check_count(self, data: bpy.types.ID) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..reading import cage
+from ..reading import cage, transform
 from .roots import Locations, off_vertices
 from .rotations import WorldSpace
 
@@ -29,7 +29,7 @@ class PosedSurface:
     """
 
     def __init__(self, found: cage.Cage) -> None:
-        WorldSpace(found.matrix)  # refuses objects whose scale is 0 along an axis
+        WorldSpace(found.matrix, found.name)  # refuses objects whose scale is 0 along an axis
         self.cage = found
 
     @cached_property
@@ -59,7 +59,7 @@ def seen_from(space: np.ndarray, places: Places, matrix: np.ndarray) -> Places:
     """
     if np.array_equal(space, matrix):
         return places
-    relation = np.linalg.solve(space, matrix)
+    relation = relation_of(space, matrix)
     frame = WorldSpace(relation).frames(places.frame)
     frame[:, :, 1] = np.cross(frame[:, :, 2], frame[:, :, 0])
     return Places(transformed(relation, places.position), frame)
@@ -69,7 +69,13 @@ def positions_seen_from(space: np.ndarray, points: np.ndarray, matrix: np.ndarra
     """Returns the positions that `seen_from` gives."""
     if np.array_equal(space, matrix):
         return points
-    return transformed(np.linalg.solve(space, matrix), points)
+    return transformed(relation_of(space, matrix), points)
+
+
+def relation_of(space: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Returns the matrix from an object's space to that of another object."""
+    transform.check_invertible(space, "An object")
+    return np.linalg.solve(space, matrix)
 
 
 def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:

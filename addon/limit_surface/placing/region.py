@@ -138,6 +138,8 @@ class Region:
     def border_sums(self) -> BorderSums:
         with self.in_world():
             curves = self.edge_curves()
+            if not curves.lengths.sum() > 0:
+                raise RefusalError("The border has no length")
             at = self.surface.scatter_along(curves, count=BORDER_SAMPLES)
         weight = np.ones(1) if self.density is None else self.density(at.face, at.uv)
         return BorderSums(float(curves.lengths.sum()), float(weight.clip(max=1).mean()))

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
-from ..reading import attributes, ragged_rows, splines
+from ..reading import attributes, ragged_rows, splines, transform
 from . import live_thing
 from .followers import domain_of, holder_of, is_placed, live_modifier_of
 from .places import NOWHERE, ROOT_KINDS, Places
@@ -32,7 +32,7 @@ class Elements:
         self.ob, self.data, self.domain = ob, holder, domain_of(ob)
         if ob.type in TYPES:
             attributes.check_names(ob, ROOT_KINDS, self.domain)
-        self.matrix = np.array(ob.matrix_world, np.float64)
+        self.matrix = transform.world_matrix(ob)
         self._stores_rest = at_rest and live_modifier_of(ob) is not None
         if ids.POSITION not in holder.attributes:
             raise RefusalError(f"{ob.name} has no points")

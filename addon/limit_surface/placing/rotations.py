@@ -4,7 +4,7 @@
 import numpy as np
 
 from .. import native
-from ..errors import RefusalError
+from ..reading import transform
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:
@@ -23,12 +23,14 @@ def within_disc(count: int, rng: np.random.Generator) -> np.ndarray:
 class WorldSpace:
     """Converts frames of an object's surface to world space, whatever the object's scale."""
 
-    def __init__(self, matrix: np.ndarray) -> None:
+    def __init__(self, matrix: np.ndarray, called: str = "The object") -> None:
+        """Raises RefusalError, with the object's name in messages, for a matrix that has no
+        inverse.
+        """
+        transform.check_invertible(matrix, called)
         self._linear = matrix[:3, :3]
-        singular_values = np.linalg.svd(self._linear, compute_uv=False)
-        if singular_values[-1] <= 1e-12 * singular_values[0]:
-            raise RefusalError("The object has a scale of 0 along an axis")
         self._inverse = np.linalg.inv(self._linear)
+        singular_values = np.linalg.svd(self._linear, compute_uv=False)
         self.mean_scale = float(np.cbrt(singular_values.prod()))
 
     def frames(self, frame: np.ndarray) -> np.ndarray:

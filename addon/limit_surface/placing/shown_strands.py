@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..reading import attributes
+from ..reading import attributes, transform
 from .posed_surface import transformed
 
 
@@ -25,8 +25,7 @@ def read(
             f"The modifiers of {ob.name} change its number of strands, from {count:,} to "
             f"{len(shown.data.curves):,}: disable or apply them"
         )
-    offsets = np.empty(count + 1, np.int32)
-    shown.data.curve_offset_data.foreach_get("value", offsets)
+    offsets = attributes.curve_offsets(shown.data)
     points = attributes.read(shown.data, "position").astype(np.float64)
     lost = ~np.isfinite(points).all(axis=1)
     if lost.any():
@@ -34,7 +33,7 @@ def read(
         raise RefusalError(
             f"Strand {strand} of {ob.name} has coordinates that are not finite numbers: delete it"
         )
-    matrix = np.array(shown.matrix_world, np.float64)
+    matrix = transform.world_matrix(shown)
     if np.array_equal(matrix, space):
         return points, offsets
     return transformed(np.linalg.solve(space, matrix), points), offsets

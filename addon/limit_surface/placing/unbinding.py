@@ -14,11 +14,11 @@ from .. import ids, native
 from ..errors import CageError, RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE, TILES
-from ..reading import attributes, cage
+from ..reading import attributes, cage, transform
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from . import followers, following, proxy, tables
-from .places import NOWHERE
+from .places import NOWHERE, Places
 from .posed_surface import PosedSurface
 
 Shape = Literal["SHOWN", "REST"]
@@ -131,16 +131,24 @@ def _freeze(
     data, frozen = ob.data, _Frozen(ob.data)
     frozen.values = _shown(ob, depsgraph)
     yield 0.0
+    if any(len(attributes.read(data, name)) != len(v) for name, v in frozen.values.items()):
+        raise RefusalError(
+            f"The modifier by which {ob.name} follows makes another number of points of it: let it "
+            "go back to rest"
+        )
     if all(np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()):
         return frozen  # it is at rest, because its tables do not fit
+    if not (followers.is_placed(ob) and ids.TILE in data.attributes):
+        return frozen  # somebody has removed or changed its places
     follows = attributes.read(data, ids.TILE) > 0
     if posed is None or not following.holds(data, following.signature(posed.cage)):
         face = attributes.read(data, ids.FACE)
         face[follows] = NOWHERE
         frozen.values[ids.FACE] = face
         return frozen
+    Places.read(data).check(posed.in_object.face_count, posed.cage.name)
     face, uv = (attributes.read(data, name)[follows] for name in (ids.FACE, ids.UV))
-    matrix = np.array(ob.matrix_world, np.float64)
+    matrix = transform.world_matrix(ob)
 
     def place(_progress: Progress) -> tuple[np.ndarray, np.ndarray]:
         places = posed.places(face, uv.astype(np.float64), matrix)

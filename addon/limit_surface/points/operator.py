@@ -120,7 +120,7 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
         steering.draw_image_place(layout, properties, surface, images, DENSITY.source)
 
     def maker(self, found: cage.Cage) -> Callable[[Ground, Progress], Points]:
-        space, settings = WorldSpace(found.matrix), posing.Settings.of(self)
+        space, settings = WorldSpace(found.matrix, found.name), posing.Settings.of(self)
 
         def make(ground: Ground, progress: Progress) -> Points:
             count, poser = len(ground.locations), Poser(settings.seed)

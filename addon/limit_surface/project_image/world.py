@@ -21,7 +21,7 @@ class WorldSurface:
 
     def __init__(self, found: cage.Cage, called: str) -> None:
         self.cage = found
-        self.axes = WorldSpace(found.matrix)  # refuses objects whose scale is 0 along an axis
+        self.axes = WorldSpace(found.matrix, called)  # refuses a scale of 0
         self.is_mirrored = found.is_mirrored
         self.from_world = MIRROR if self.is_mirrored else np.eye(4)
         self.surface, self.local = found.surface(), found.surface()
@@ -37,7 +37,14 @@ class WorldSurface:
         return projector.matrix @ np.linalg.inv(self.from_world)
 
     def check_eye(self, projector: Projector) -> None:
-        if projector.has_eye and self.surface.eye_is_inside(self.clip_matrix(projector)):
+        """Raises RefusalError for a projector from which nothing can be seen."""
+        try:
+            is_inside = self.surface.eye_is_inside(self.clip_matrix(projector))
+        except ValueError as error:  # no matrix in double precision can hold both
+            raise RefusalError(
+                f"{projector.called} and the surface are too far apart, or too different in size"
+            ) from error
+        if projector.has_eye and is_inside:
             raise RefusalError(f"{projector.called} is inside the surface: move it outside")
 
     def bounds(self) -> np.ndarray:

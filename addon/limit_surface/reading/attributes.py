@@ -47,6 +47,8 @@ def write(data: bpy.types.ID, name: str, kind: str, domain: str, values: np.ndar
         attribute = None
     if attribute is None:
         attribute = data.attributes.new(name, kind, domain)
+    if attribute is None:  # attributes and vertex groups must not have the same name
+        raise RefusalError(f"{data.name} has a vertex group {name}: rename or remove it")
     layout = LAYOUTS[kind]
     values = np.ascontiguousarray(values, layout.dtype)
     if values.size != len(attribute.data) * layout.width:
@@ -63,6 +65,14 @@ def read(data: bpy.types.ID, name: str) -> np.ndarray:
     values: np.ndarray = np.empty(len(attribute.data) * layout.width, layout.dtype)
     attribute.data.foreach_get(layout.key, values)
     return values if layout.width == 1 else values.reshape(-1, layout.width)
+
+
+def curve_offsets(data: bpy.types.Curves) -> np.ndarray:
+    """Returns the first point of each curve, and the number of all points at the end (n + 1,)."""
+    offsets = np.zeros(len(data.curves) + 1, np.int32)
+    if len(data.curves):  # Blender stores nothing for data without curves
+        data.curve_offset_data.foreach_get("value", offsets)
+    return offsets
 
 
 def size_in_bytes(attribute: bpy.types.Attribute) -> int:

@@ -19,7 +19,7 @@ import numpy as np
 
 from .. import ids, native
 from ..errors import CageError
-from . import attributes, private_scene, rules, sharpness, subdivided_mesh, uv_map
+from . import attributes, private_scene, rules, sharpness, subdivided_mesh, transform, uv_map
 from .rules import Interpolation
 from .uv_map import UvMap
 
@@ -41,6 +41,7 @@ def is_busy() -> bool:
 
 @dataclass(frozen=True)
 class Cage:
+    name: str  # of the object, for messages
     mesh: limitsurf.ControlMesh
     rules: rules.Rules
     face_sizes: np.ndarray
@@ -148,6 +149,8 @@ def opened(
     adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
 ) -> Iterator[tuple[Cage, bpy.types.Mesh]]:
     """Yields the cage, and the mesh that it is read from, which lasts as long as the context."""
+    if ob.data.is_editmode:  # the mesh has no faces for others then
+        raise CageError(f"{ob.name} is in Edit Mode: leave it first")
     subsurf = rules.find_subsurf(ob)
     cut = ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
     check_modifiers(ob, cut)
@@ -156,12 +159,15 @@ def opened(
         mesh = evaluated.data
         if not mesh.polygons:
             raise CageError(f"{ob.name} has no faces")
+        matrix = np.array(evaluated.matrix_world, np.float64)
+        transform.check_finite(matrix, ob.name)
         active, without = _read_uv_map(ob, mesh)
         read_cage = Cage(
+            name=ob.name,
             mesh=_control_mesh(mesh, found, ob.name),
             rules=found,
             face_sizes=attributes.face_sizes(mesh),
-            matrix=np.array(evaluated.matrix_world, np.float64),
+            matrix=matrix,
             uv_map=active,
             without_uv_map=without,
             shown_uv_interpolation=rules.shown_uv_interpolation(ob, depsgraph.scene),
@@ -175,15 +181,18 @@ def _control_mesh(mesh: bpy.types.Mesh, found: rules.Rules, whose: str) -> limit
         sharp = sharpness.NOTHING  # all of its edges are infinitely sharp
     else:
         sharp = sharpness.read(mesh, found.use_creases, whose)
-    return native.limitsurf.ControlMesh(
-        attributes.read(mesh, "position").astype(np.float64),
-        attributes.face_sizes(mesh),
-        attributes.read(mesh, ids.CORNER_VERTEX),
-        edge_sharpness=(sharp.edges, sharp.edge_values),
-        vertex_sharpness=(sharp.vertices, sharp.vertex_values),
-        boundary=found.boundary,
-        scheme=found.scheme,
-    )
+    try:
+        return native.limitsurf.ControlMesh(
+            attributes.read(mesh, "position").astype(np.float64),
+            attributes.face_sizes(mesh),
+            attributes.read(mesh, ids.CORNER_VERTEX),
+            edge_sharpness=(sharp.edges, sharp.edge_values),
+            vertex_sharpness=(sharp.vertices, sharp.vertex_values),
+            boundary=found.boundary,
+            scheme=found.scheme,
+        )
+    except native.limitsurf.MeshError as error:
+        raise CageError(f"{whose}: {error}") from error
 
 
 @contextmanager

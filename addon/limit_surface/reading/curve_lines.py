@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import ids
 from ..errors import RefusalError
-from . import attributes, cage
+from . import attributes, cage, transform
 
 TYPES = {"CURVE", "CURVES"}
 
@@ -39,6 +39,7 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
     if not len(lines):
         raise RefusalError(f"{ob.name} has no curves")
     matrix = np.array(ob.evaluated_get(depsgraph).matrix_world, np.float64)
+    transform.check_finite(matrix, ob.name)
     return lines @ matrix[:3, :3].T + matrix[:3, 3]
 
 

@@ -12,9 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import RefusalError
-
-SINGULAR = 1e-12  # as a share of the largest singular value
+from . import transform
 
 
 @dataclass(frozen=True)
@@ -42,10 +40,8 @@ class Projector:
 
 
 def inverse(matrix: np.ndarray, called: str) -> np.ndarray:
-    """Raises RefusalError where an object's scale is 0 along an axis."""
-    values = np.linalg.svd(matrix[:3, :3], compute_uv=False)
-    if not values[-1] > SINGULAR * values[0]:
-        raise RefusalError(f"{called} has a scale of 0 along an axis")
+    """Raises RefusalError where an object's matrix has no inverse."""
+    transform.check_invertible(matrix, called)
     return np.linalg.inv(matrix)
 
 

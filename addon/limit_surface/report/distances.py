@@ -51,6 +51,8 @@ def measure_all(
     surface. Blender's data is not touched.
     """
     surface = found.surface(in_world=True)
+    if not np.ptp(surface.positions, axis=0).any():
+        raise RefusalError(f"All points of {found.name} lie at one place")
     refused = len(surface.refused)
     if refused == len(found.face_sizes):
         raise RefusalError(f"No face has a limit surface: {next(iter(surface.refused.values()))}")
@@ -77,7 +79,8 @@ def measure(
             face, uv = part.locations()
             positions = found.to_world(shown.positions(face, uv))
             areas = part.areas(positions)
-            apart = surface.closest(positions).distance
+            searching = part_of(progress, done / total, (done + part.count) / total)
+            apart = surface.closest(positions, progress=searching).distance
             result.apart.add(part, apart, areas)
             part.keep_largest(result.at_vertices, apart)
             slide = positions - surface.evaluate(face, uv).position

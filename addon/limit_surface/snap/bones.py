@@ -28,7 +28,7 @@ class SnappedBones:
 
     def __init__(self, ob: bpy.types.Object) -> None:
         self._matrix = np.array(ob.matrix_world, np.float64)
-        self._space = WorldSpace(self._matrix)
+        self._space = WorldSpace(self._matrix, ob.name)
         chosen = [b for b in _parents_first(ob.data) if _is_shown(b) and _is_head_chosen(b)]
         self._bones = [bone for bone in chosen if not bone.lock]
         self._left_out = Counter({"the bone is locked": len(chosen) - len(self._bones)})

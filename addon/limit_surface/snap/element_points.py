@@ -23,7 +23,7 @@ class SnappedPoints(ABC):
     def __init__(self, ob: bpy.types.Object) -> None:
         self.ob = ob
         self._matrix = np.array(ob.matrix_world, np.float64)
-        self._space = WorldSpace(self._matrix)
+        self._space = WorldSpace(self._matrix, ob.name)
         points, selected = self.read()
         self._rows = np.flatnonzero(selected)
         self._points = transformed(self._matrix, points[self._rows].astype(np.float64))

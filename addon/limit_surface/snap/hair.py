@@ -62,7 +62,7 @@ class SnappedHair:
 
     def _read_transform(self) -> None:
         self._matrix = np.array(self._ob.matrix_world, np.float64)
-        self._space = WorldSpace(self._matrix)
+        self._space = WorldSpace(self._matrix, self._ob.name)
 
     def _strands(self, curves: np.ndarray) -> tuple[Strands, np.ndarray]:
         """Returns the strands in world space, and the rows of their points."""

@@ -138,6 +138,8 @@ class WatchedOperator(SummaryProperty):
             return step(*arguments)
         except native.refusals as error:
             reason = str(error)
+            if isinstance(error, native.errors):  # which name what a sentence begins with
+                reason = reason[:1].upper() + reason[1:]
         except MemoryError:
             reason = self.too_large
         self.report({"ERROR"}, reason)
