@@ -70,6 +70,7 @@ def removed(ob: bpy.types.Object) -> None:
     curves = ob.data
     bpy.data.objects.remove(ob)
     bpy.data.hair_curves.remove(curves)
+    bpy.context.view_layer.update()  # frees Blender's copy, which is no part of the next run
 
 
 def ours(surface: bpy.types.Object, hairs: int, split: Split) -> dict[str, float]:

@@ -45,10 +45,30 @@ class Order:
     is_encoded: bool  # values are mapped to 0..1
 
 
+class _Canvas:
+    """Opaque pixels where values are painted, and transparent black ones elsewhere."""
+
+    def __init__(self, width: int, height: int) -> None:
+        self.pixels = np.zeros((height, width, 4), np.float32)
+        self._some = np.ones((PAINTED, 4), np.float32)
+        # numpy moves a pixel at once where it takes it for one number of 16 bytes
+        self._whole_pixels, self._whole_some = (
+            of.reshape(-1, 4).view(np.complex128)[:, 0] for of in (self.pixels, self._some)
+        )
+
+    def paint(self, at: np.ndarray, values: np.ndarray) -> None:
+        """Paints values (n, 3) or (n,) at these pixels, which are counted row by row."""
+        for begin in range(0, len(values), PAINTED):
+            part = values[begin : begin + PAINTED]
+            self._some[: len(part), :3] = part if part.ndim == 2 else part[:, None]
+            self._whole_pixels[at[begin : begin + PAINTED]] = self._whole_some[: len(part)]
+
+
 @dataclass
 class _Tile:
     texels: limitsurf.Texels
-    values: dict[str, np.ndarray]  # (n, 3) or (n,) float32
+    values: dict[str, np.ndarray]  # (n, 3) or (n,) float32, of maps that depend on all values
+    canvases: dict[str, _Canvas]  # of all others
 
 
 @dataclass
@@ -95,27 +115,33 @@ def _values(order: Order, tile: int, made: Baked, progress: Progress) -> _Tile:
     made.texels += int(np.count_nonzero(texels.inside))
     made.overlapping += overlap.overlapping(texels)
     plain = [name for name in order.maps if name != NORMAL_TANGENT]
-    values: dict[str, np.ndarray] = {}
+    at_once = [name for name in plain if not (order.is_encoded or name == AREA_DISTORTION)]
+    made_of = _Tile(texels, {}, {name: _Canvas(*order.size) for name in at_once if count})
+    values = made_of.values
     for rows in texel_places.parts(count, part_of(progress, MAPPED, 0.8)):
         places = Places(order.body, texels.face[rows], texels.uv[rows], order.settings.radius)
+        at = _flat(texels, order.size[0], rows)
         for name in plain:
             found = KINDS[name].values(places, order.settings)
+            if name in at_once:
+                made_of.canvases[name].paint(at, _without_lost(found, made))
+                continue
             if name not in values:
                 values[name] = np.empty((count, *found.shape[1:]), np.float32)
-            values[name][rows] = found
-            _black_out_lost(values[name][rows], made)
+            values[name][rows] = _without_lost(found, made)
     if order.polygons and count:
-        values[NORMAL_TANGENT] = _in_tangent_space(order, tile, texels, made, progress)
-        _black_out_lost(values[NORMAL_TANGENT], made)
-    return _Tile(texels, values)
+        found = _in_tangent_space(order, tile, texels, made, progress)
+        values[NORMAL_TANGENT] = _without_lost(found, made)
+    return made_of
 
 
-def _black_out_lost(values: np.ndarray, made: Baked) -> None:
-    """Counts the texels whose values have no limit, and makes the values 0."""
+def _without_lost(values: np.ndarray, made: Baked) -> np.ndarray:
+    """Counts the texels whose values have no limit, and returns the values with 0 there."""
     finite = np.isfinite(values)
     if not finite.all():
         made.without_values += int(np.count_nonzero(~finite.reshape(len(values), -1).all(axis=1)))
-        values[~finite] = 0
+        return np.where(finite, values, np.float32(0))
+    return values
 
 
 def _in_tangent_space(
@@ -150,32 +176,22 @@ def _compare(tiles: dict[int, _Tile]) -> None:
 
 
 def _paint(order: Order, name: str, tiles: dict[int, _Tile], made: Baked) -> None:
+    """Moves the pixels of a map into `made`."""
     if order.is_encoded:
         inside = [tile.values[name][tile.texels.inside] for tile in tiles.values()]
         made.ranges[name] = KINDS[name].range(order.body, order.settings, np.concatenate(inside))
-    width, height = order.size
     made.pixels[name] = {}
     for number, tile in tiles.items():
-        values = tile.values.pop(name)
-        if order.is_encoded:
-            values = encoded(values, made.ranges[name])
-        made.pixels[name][number] = _pixels(tile.texels, values, width, height)
+        canvas = tile.canvases.pop(name, None)
+        if canvas is None:
+            values = tile.values.pop(name)
+            if order.is_encoded:
+                values = encoded(values, made.ranges[name])
+            canvas = _Canvas(*order.size)
+            canvas.paint(_flat(tile.texels, order.size[0]), values)
+        made.pixels[name][number] = canvas.pixels
 
 
-def _pixels(texels: limitsurf.Texels, values: np.ndarray, width: int, height: int) -> np.ndarray:
-    """Returns opaque pixels with these values, and transparent black ones elsewhere."""
-    pixels = np.zeros((height * width, 4), np.float32)
-    some = np.ones((min(PAINTED, len(values)), 4), np.float32)
-    # numpy moves a pixel at once where it takes it for one number of 16 bytes
-    whole_pixels, whole_some = (of.view(np.complex128)[:, 0] for of in (pixels, some))
-    for begin in range(0, len(values), PAINTED):
-        part = values[begin : begin + PAINTED]
-        rows = slice(begin, begin + len(part))
-        some[: len(part), :3] = part if part.ndim == 2 else part[:, None]
-        at = texels.y[rows].astype(np.int64) * width + texels.x[rows]
-        whole_pixels[at] = whole_some[: len(part)]
-    return pixels.reshape(height, width, 4)
-
-
-def _flat(texels: limitsurf.Texels, width: int) -> np.ndarray:
-    return texels.y.astype(np.int64) * width + texels.x
+def _flat(texels: limitsurf.Texels, width: int, rows: slice = slice(None)) -> np.ndarray:
+    """Returns the numbers of the texels' pixels, counted row by row."""
+    return texels.y[rows].astype(np.int64) * width + texels.x[rows]
