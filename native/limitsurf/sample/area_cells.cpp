@@ -25,6 +25,9 @@ constexpr double kTail = 0.25;
 /// By what the areas of a core's steps shrink at least, for an estimate, and by what they do around
 /// a regular vertex.
 constexpr double kSlowest = 0.5, kUsual = 0.25;
+/// A number in double precision that is multiplied with this does not grow when it is rounded to
+/// single precision.
+constexpr double kRoundedDown = 1 - 0x1p-22;
 /// The number of tiles that one task cuts into cells.
 constexpr std::size_t kTilesPerTask = 64;
 
@@ -94,11 +97,11 @@ class CellMaker {
 
   /// Adds the cells of all patches that wait.
   void addWaiting() {
-    double bounds[SquareBlock::kCount], means[SquareBlock::kCount];
+    double bounds[SquareBlock::kCount], means[SquareBlock::kCount], least[SquareBlock::kCount];
     for (int place = count_; count_ > 0 && place < SquareBlock::kCount; ++place) {
       block_.copy(0, place);
     }
-    AreaKernels::get().bounds(block_, count_, bounds, means);
+    AreaKernels::get().bounds(block_, count_, bounds, means, least);
     for (int i = 0; i < count_; ++i) {
       AreaCell cell;
       cell.piece = waiting_[i].piece;
@@ -109,6 +112,7 @@ class CellMaker {
         const AreaForm form(patch);
         addCell(cell, form, 1, form.mean());
       } else {
+        cell.least = least[i] > 0 ? static_cast<float>(kRoundedDown * least[i]) : 0;
         addCell(cell, bounds[i], means[i]);
       }
     }

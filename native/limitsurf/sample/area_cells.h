@@ -18,6 +18,7 @@ struct AreaCell {
   /// a core, the sum of such bounds over its patches, by CoreTail.
   float bound = 0;
   float area = 0;       ///< estimated
+  float least = 0;      ///< a lower bound of |ds x dt|, 0 where none is known
   float outer[3] = {};  ///< of a core: what CoreTail starts from
 };
 

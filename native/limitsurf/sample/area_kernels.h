@@ -57,9 +57,10 @@ struct AreaKernels {
   using Rule = void (*)(const SquareBlock& squares, double areas[SquareBlock::kCount]);
   Rule four, six, eight;
 
-  /// Of the first `count` squares, an upper bound of |ds x dt| and an estimate of its mean.
+  /// Of the first `count` squares, an upper bound of |ds x dt|, an estimate of its mean, and a
+  /// lower bound, which is above 0 only on squares that are bent little.
   void (*bounds)(const SquareBlock& squares, int count, double bounds[SquareBlock::kCount],
-                 double means[SquareBlock::kCount]);
+                 double means[SquareBlock::kCount], double least[SquareBlock::kCount]);
   void (*normals)(const SquareBlock& squares, int count, NormalBounds& out);
 
   /// For the instruction set in use.

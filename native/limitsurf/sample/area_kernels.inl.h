@@ -187,13 +187,24 @@ inline void forEachNormal(const SquareDerivatives& d, const Visit& visit) {
   }
 }
 
-/// The largest squared length of these points.
-inline Squares largestSquare(const SquareDerivatives& d) {
-  Squares largest = Squares::of(0);
+/// The largest length of these points, and the least part of one along the normal in the middle.
+inline void lengthBounds(const SquareDerivatives& d, Squares& largest, Squares& least) {
+  SquareVector s, t;
+  Squares unused;
+  meanAndSpread(d.ds, s, unused);
+  meanAndSpread(d.dt, t, unused);
+  SquareVector upright = crossProduct(s, t);
+  const Squares length = squareRoot(squaredLength(upright));
+  for (Squares& coordinate : upright.axis) {
+    coordinate = coordinate / length;
+  }
+  Squares square = Squares::of(0);
+  least = length;
   forEachNormal(d, [&](const SquareVector& normal) {
-    largest = Squares::larger(largest, squaredLength(normal));
+    square = Squares::larger(square, squaredLength(normal));
+    least = Squares::smaller(least, dotProduct(normal, upright));
   });
-  return largest;
+  largest = squareRoot(square);
 }
 
 inline void normalBounds(const SquareBlock& squares, int count, NormalBounds& out) {
@@ -222,11 +233,15 @@ inline void normalBounds(const SquareBlock& squares, int count, NormalBounds& ou
 }
 
 inline void boundsAndMeans(const SquareBlock& squares, int count,
-                           double bounds[SquareBlock::kCount], double means[SquareBlock::kCount]) {
-  constexpr double kMoreThanRounding = 1 + 1e-12;
+                           double bounds[SquareBlock::kCount], double means[SquareBlock::kCount],
+                           double least[SquareBlock::kCount]) {
+  constexpr double kMoreThanRounding = 1 + 1e-12, kLessThanRounding = 1 - 1e-12;
   for (int first = 0; first < count; first += kLanes) {
     const SquareDerivatives d(squares, first);
-    (kMoreThanRounding * squareRoot(largestSquare(d))).store(bounds + first);
+    Squares high, low;
+    lengthBounds(d, high, low);
+    (kMoreThanRounding * high).store(bounds + first);
+    (kLessThanRounding * low).store(least + first);
     quadrature(d, kGauss3).store(means + first);
   }
 }

@@ -97,6 +97,11 @@ bool UniformCandidates::accept(std::uint64_t stream, KeptPatch& kept, Location& 
     t = side * (cell.row + t);
     size = side * side;
   }
+  // Where the area is nowhere small enough for a rejection it need not be calculated.
+  if (density_.isConstant() && test * bound * table_.largest(choice.cell) < cell.least) {
+    at = patches_.rectangle(piece).at(s, t);
+    return true;
+  }
   if (!(kept.piece == piece)) {
     kept = {piece, patches_.patch(piece)};
   }
