@@ -55,6 +55,7 @@ CageMesh::CageMesh(const ControlMesh& mesh, const Topology& topology) : topology
   averaged_edges_ = topology.seams().averaged_edges;
   lasting_corners_ = topology.seams().corners;
   fans_.resize(topology.splitFans().size());
+  fan_sharpness_.resize(topology.splitFans().size());
   marks_.resize(static_cast<std::size_t>(vertex_count_));
   if (!topology.splitFans().empty()) {
     own_corner_vertices_ = mesh.faceVertices();
@@ -96,10 +97,9 @@ void CageMesh::splitVertices() {
 
 void CageMesh::setSplitFan(int vertex) {
   const Topology::SplitFan& split = topology_.splitFans()[vertex - own_points_];
-  fans_[vertex - own_points_] = {{split.faces[0].first, split.faces[0].second},
-                                 static_cast<int>(split.faces.size()),
-                                 split.closed,
-                                 cage_sharpness_ ? cage_sharpness_[split.vertex] : 0};
+  fans_[vertex - own_points_] = {cornerNumber({split.faces[0].first, split.faces[0].second}),
+                                 static_cast<int>(split.faces.size()), split.closed};
+  fan_sharpness_[vertex - own_points_] = cage_sharpness_ ? cage_sharpness_[split.vertex] : 0;
   copyEntry(averaged_edges_, split.vertex, vertex);
   copyEntry(lasting_corners_, split.vertex, vertex);
   const auto& level = topology_.level();

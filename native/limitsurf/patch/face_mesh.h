@@ -90,7 +90,10 @@ class FaceMesh {
 
   VertexFan fan(int vertex) const {
     if (vertex >= own_points_) {
-      return fans_[vertex - own_points_];
+      const int i = vertex - own_points_;
+      const StoredFan& stored = fans_[i];
+      return {cornerAt(stored.first), stored.faces, stored.closed,
+              i < static_cast<int>(fan_sharpness_.size()) ? fan_sharpness_[i] : 0};
     }
     const Adjacency::Fan& fan = cage_fans_[vertex];
     return {fan.first < 0 ? FaceCorner{} : cornerAt(fan.first), fan.faces, fan.closed,
@@ -200,8 +203,14 @@ class FaceMesh {
   const Adjacency::Fan* cage_fans_ = nullptr;
   const float* cage_sharpness_ = nullptr;  ///< null if none is sharp
   // Of the other vertices.
-  std::vector<VertexFan> fans_;
-  std::vector<int> points_;  ///< -1: not made yet
+  struct StoredFan {
+    int first;  ///< the number of the corner
+    int faces : 31;
+    bool closed : 1;
+  };
+  std::vector<StoredFan> fans_;
+  std::vector<float> fan_sharpness_;  ///< of those that come first; the others are smooth
+  std::vector<int> points_;           ///< -1: not made yet
   std::map<int, std::vector<float>> other_fans_edges_;
   std::map<int, CreaseEnds> crease_ends_;
   // As SeamSharpness has them, at this level.

@@ -54,28 +54,24 @@ void RefinedMesh::markVertices(const std::vector<int>& faces, bool with_neighbou
 }
 
 void RefinedMesh::makeChildren() {
-  // Where all faces of a mesh of quads are refined, each vertex has four corners, two edges and one
-  // face for its own.
+  // Where all faces of a mesh of quads are refined, each vertex has four corners for its own.
   origin_.reserve(4 * refined_vertices_.size());
-  fans_.reserve(4 * refined_vertices_.size());
-  new_vertices_.reserve(3 * refined_vertices_.size());
   InterruptionStride stride;
   for (const int vertex : refined_vertices_) {
     stride.step();
     const VertexFan fan = parent_.fan(vertex);
-    fans_.push_back({{static_cast<int>(origin_.size()), 0},
-                     fan.faces,
-                     fan.closed,
-                     childVertexSharpness(vertex, fan.sharpness)});
+    fans_.push_back({4 * static_cast<int>(origin_.size()), fan.faces, fan.closed});
+    fan_sharpness_.push_back(childVertexSharpness(vertex, fan.sharpness));
     parent_.forEachAround(fan, [&](FaceCorner at) {
-      child_of_corner_[parent_.cornerNumber(at)] = static_cast<int>(origin_.size());
-      origin_.push_back(at);
+      const int corner = parent_.cornerNumber(at);
+      child_of_corner_[corner] = static_cast<int>(origin_.size());
+      origin_.push_back(corner);
     });
   }
 }
 
-int RefinedMesh::newVertex(Origin origin, FaceCorner at, const VertexFan& fan) {
-  new_vertices_.push_back({origin, at});
+int RefinedMesh::newVertex(NewVertex origin, StoredFan fan) {
+  new_vertices_.push_back(origin);
   fans_.push_back(fan);
   return static_cast<int>(fans_.size()) - 1;
 }
@@ -84,8 +80,9 @@ int RefinedMesh::newVertex(Origin origin, FaceCorner at, const VertexFan& fan) {
 void RefinedMesh::setMidpoint(FaceCorner side) {
   const FaceCorner beyond = parent_.twin(side);
   const bool closed = beyond.exists();
-  const int vertex =
-      newVertex(kEdge, side, {{child(parent_.after(side, 1)), 3}, closed ? 4 : 2, closed, 0});
+  const int first = 4 * child(parent_.after(side, 1)) + 3;
+  const int vertex = newVertex({static_cast<unsigned>(parent_.cornerNumber(side)), false},
+                               {first, closed ? 4 : 2, closed});
   const auto set = [&](FaceCorner half) {
     const int begin = child(half), end = child(parent_.after(half, 1));
     if (begin >= 0) {
@@ -104,7 +101,8 @@ void RefinedMesh::setMidpoint(FaceCorner side) {
 /// Makes the vertex in the middle of a face, and sets it at its children.
 void RefinedMesh::setMiddle(int face) {
   const int size = parent_.faceSize(face);
-  const int vertex = newVertex(kFace, {face, 0}, {{child({face, 0}), 2}, size, true, 0});
+  const int vertex = newVertex({static_cast<unsigned>(parent_.cornerNumber({face, 0})), true},
+                               {4 * child({face, 0}) + 2, size, true});
   for (int corner = 0; corner < size; ++corner) {
     if (const int at = child({face, corner}); at >= 0) {
       corner_vertices_own_[4 * at + 2] = vertex;
@@ -113,24 +111,27 @@ void RefinedMesh::setMiddle(int face) {
 }
 
 void RefinedMesh::makeVertices() {
+  // Each child has a side and a face at its vertex; the system hands out memory when it is used.
+  new_vertices_.reserve(refined_vertices_.size() + 2 * origin_.size());
+  fans_.reserve(2 * refined_vertices_.size() + 2 * origin_.size());
   corner_vertices_own_.assign(4 * origin_.size(), -1);
   corner_vertices_ = corner_vertices_own_.data();
   corner_count_ = static_cast<int>(corner_vertices_own_.size());
   InterruptionStride stride;
   for (std::size_t v = 0; v < refined_vertices_.size(); ++v) {
     stride.step();
-    const int first = fans_[v].first.face;
+    const int first = fans_[v].first / 4;
     for (int c = first; c < first + fans_[v].faces; ++c) {
       int* const corners = &corner_vertices_own_[4 * c];
       corners[0] = static_cast<int>(v);
       if (corners[1] < 0) {
-        setMidpoint(origin_[c]);
+        setMidpoint(origin(c));
       }
       if (corners[3] < 0) {
-        setMidpoint(parent_.before(origin_[c]));
+        setMidpoint(parent_.before(origin(c)));
       }
       if (corners[2] < 0) {
-        setMiddle(origin_[c].face);
+        setMiddle(origin(c).face);
       }
     }
   }
@@ -149,7 +150,7 @@ void RefinedMesh::makeTwins() {
   InterruptionStride stride;
   for (int c = 0; c < static_cast<int>(origin_.size()); ++c) {
     stride.step();
-    const FaceCorner at = origin_[c];
+    const FaceCorner at = origin(c);
     const FaceCorner beyond = parent_.twin(at);
     if (beyond.exists()) {
       link(c, 0, parent_.after(beyond, 1), 3);
@@ -193,7 +194,7 @@ void RefinedMesh::subdivideSharpness() {
   side_sharpness_own_.assign(corner_vertices_own_.size(), 0);
   side_sharpness_ = side_sharpness_own_.data();
   // Of new vertices, only those in the middle of a sharp edge are not smooth.
-  for (const VertexFan& fan : fans_) {
+  for (const StoredFan& fan : fans_) {
     smooth_.push_back(fan.closed);
   }
   InterruptionStride stride;
@@ -203,7 +204,7 @@ void RefinedMesh::subdivideSharpness() {
     if (parent_.isSmooth(refined_vertices_[v])) {
       continue;
     }
-    const VertexFan& fan = fans_[v];
+    const VertexFan fan = this->fan(static_cast<int>(v));
     getSubdivided(refined_vertices_[v], around);
     smooth_[v] = fan.closed && fan.sharpness == 0 &&
                  std::none_of(around.child_edges.begin(), around.child_edges.end(), isSharp);

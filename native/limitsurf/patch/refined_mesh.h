@@ -29,10 +29,10 @@ class RefinedMesh final : public FaceMesh {
   }
 
  private:
-  enum Origin { kEdge, kFace };
+  /// What a new vertex is the point of: the parent's edge as a side, or the face at a corner.
   struct NewVertex {
-    Origin origin;
-    FaceCorner at;  ///< the parent's edge as a side; the face's first corner
+    unsigned corner : 31;
+    bool of_face : 1;
   };
 
   void markVertices(const std::vector<int>& faces, bool with_neighbours);
@@ -43,7 +43,9 @@ class RefinedMesh final : public FaceMesh {
   void makeTwins();
   void subdivideSharpness();
   void followCreases();
-  int newVertex(Origin origin, FaceCorner at, const VertexFan& fan);
+  int newVertex(NewVertex origin, StoredFan fan);
+  /// The parent's corner at which a child stands.
+  FaceCorner origin(int child) const { return parent_.cornerAt(origin_[child]); }
 
   /// Sets the sharpness around one of the parent's vertices, before and after a step.
   void getSubdivided(int parent_vertex, SharpnessAround& around) const;
@@ -69,7 +71,7 @@ class RefinedMesh final : public FaceMesh {
   RefinedPoints& refined_points_;
 
   std::vector<int> refined_vertices_;  // of the parent; they are the first vertices here
-  std::vector<FaceCorner> origin_;     // per child: the parent's corner. The children around a
+  std::vector<int> origin_;            // per child: the parent's corner. The children around a
                                        // refined vertex have successive numbers
   std::vector<int> child_of_corner_;   // by the parent's corner; -1: none
   std::vector<int> corner_vertices_own_, twins_own_;

@@ -14,7 +14,8 @@ int RefinedMesh::makePoint(int vertex) {
     return vertexPoint(vertex);
   }
   const NewVertex& made = new_vertices_[vertex - refined];
-  return made.origin == kFace ? facePoint(made.at.face) : edgePoint(made.at);
+  const FaceCorner at = parent_.cornerAt(static_cast<int>(made.corner));
+  return made.of_face ? facePoint(at.face) : edgePoint(at);
 }
 
 int RefinedMesh::facePoint(int face) {
@@ -89,10 +90,10 @@ int RefinedMesh::farEnd(int vertex, const VertexFan& parent_fan, int edge) {
       return (*ends)[parent_fan.closed ? edge - parent_fan.faces : 1];
     }
   }
-  const int first = fans_[vertex].first.face;
+  const int first = fans_[vertex].first / 4;
   return edge < parent_fan.faces
-             ? parent_.point(parent_.vertexAfter(origin_[first + edge], 1))
-             : parent_.point(parent_.vertex(parent_.before(origin_[first + parent_fan.faces - 1])));
+             ? parent_.point(parent_.vertexAfter(origin(first + edge), 1))
+             : parent_.point(parent_.vertex(parent_.before(origin(first + parent_fan.faces - 1))));
 }
 
 int RefinedMesh::smoothVertexPoint(int vertex, const VertexFan& parent_fan) {
@@ -108,7 +109,7 @@ int RefinedMesh::smoothVertexPoint(int vertex, const VertexFan& parent_fan) {
   for (int i = 0; i < parent_fan.faces; ++i) {
     sources.push_back(farEnd(vertex, parent_fan, i));
   }
-  const int first = fans_[vertex].first.face;
+  const int first = fans_[vertex].first / 4;
   for (int i = 0; i < parent_fan.faces; ++i) {
     sources.push_back(middle(first + i));
   }
@@ -140,7 +141,7 @@ int RefinedMesh::sharpVertexPoint(int vertex, const VertexFan& parent_fan) {
       add(farEnd(vertex, parent_fan, edge), mask.edges[i]);
     }
   }
-  const int first = fans_[vertex].first.face;
+  const int first = fans_[vertex].first / 4;
   for (std::size_t i = 0; i < mask.faces.size(); ++i) {
     if (mask.faces[i] != 0) {
       add(middle(first + static_cast<int>(i)), mask.faces[i]);

@@ -85,20 +85,20 @@ int RefinedPoints::addReflection(int inner, int next) {
 }
 
 void RefinedPoints::shrink() {
-  shrinkToSize(offsets_);
-  shrinkToSize(sources_);
-  shrinkToSize(mask_of_);
-  shrinkToSize(weights_);
-  shrinkToSize(mask_offsets_);
+  source_offsets_.shrink();
+  sources_.shrink();
+  mask_of_.shrink();
+  weights_.shrink();
+  masks_.shrink_to_fit();
 }
 
 int RefinedPoints::add(Span<int> sources, int mask) {
-  reserveMore(mask_of_, 1);
-  reserveMore(sources_, sources.size());
-  reserveMore(offsets_, 1);
+  const std::size_t first = sources_.append(sources.data(), sources.size());
+  if (mask_of_.size() % kPointsPerBase == 0) {
+    first_sources_.push_back(first);
+  }
+  source_offsets_.push_back(static_cast<std::uint32_t>(first - first_sources_.back()));
   mask_of_.push_back(mask);
-  sources_.insert(sources_.end(), sources.begin(), sources.end());
-  offsets_.push_back(sources_.size());
   return size() - 1;
 }
 
@@ -116,9 +116,8 @@ int RefinedPoints::known(KnownMasks& masks, int number, const Make& make) {
 }
 
 int RefinedPoints::addMask(Span<double> weights) {
-  weights_.insert(weights_.end(), weights.begin(), weights.end());
-  mask_offsets_.push_back(weights_.size());
-  return static_cast<int>(mask_offsets_.size()) - 2;
+  masks_.push_back({weights_.append(weights.data(), weights.size()), weights.size()});
+  return static_cast<int>(masks_.size()) - 1;
 }
 
 }  // namespace limitsurf

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "limitsurf/part_array.h"
 #include "limitsurf/rules/subdivision_rules.h"
 #include "limitsurf/types.h"
 
@@ -61,14 +62,17 @@ class RefinedPoints {
   /// Burley 2007, figure 2).
   int addReflection(int inner, int next);
 
-  /// Gives back memory that was reserved for more points.
+  /// Frees the room for more points.
   void shrink();
 
   Span<int> sources(int point) const {
-    const std::size_t i = static_cast<std::size_t>(point - cage_points_);
-    return Span<int>(sources_).subspan(offsets_[i], offsets_[i + 1] - offsets_[i]);
+    const auto i = static_cast<std::size_t>(point - cage_points_);
+    const std::size_t first = first_sources_[i / kPointsPerBase] + source_offsets_[i];
+    return Span<int>(&sources_[first], masks_[mask_of_[i]].size);
   }
-  Span<double> weights(int point) const { return mask(mask_of_[point - cage_points_]); }
+  Span<double> weights(int point) const {
+    return mask(mask_of_[static_cast<std::size_t>(point - cage_points_)]);
+  }
 
   const SubdivisionRules<double>& rules() const { return rules_; }
 
@@ -76,9 +80,11 @@ class RefinedPoints {
   /// The mask of a rule that depends on one number, by that number; -1: not made yet.
   using KnownMasks = std::vector<int>;
 
+  struct Mask {
+    std::size_t first, size;  ///< in `weights_`
+  };
   Span<double> mask(int i) const {
-    return Span<double>(weights_).subspan(mask_offsets_[i],
-                                          mask_offsets_[i + 1] - mask_offsets_[i]);
+    return Span<double>(&weights_[masks_[i].first], masks_[i].size);
   }
   int add(Span<int> sources, int mask);
   /// The known mask to a number, or the one that make(out) writes.
@@ -88,13 +94,16 @@ class RefinedPoints {
 
   int cage_points_;
   SubdivisionRules<double> rules_;
-  std::vector<std::size_t> offsets_ = {0};
-  std::vector<int> sources_;
-  std::vector<int> mask_of_;
+  // So many points have their places in `sources_` relative to the first one's, which takes half
+  // the memory.
+  static constexpr std::size_t kPointsPerBase = 4096;
+  std::vector<std::size_t> first_sources_;
+  PartArray<std::uint32_t> source_offsets_;
+  PartArray<int> sources_, mask_of_;
   std::vector<int> gathered_;  // by Sources
 
-  std::vector<double> weights_;  // of all masks
-  std::vector<std::size_t> mask_offsets_ = {0};
+  PartArray<double> weights_;  // of all masks
+  std::vector<Mask> masks_;
   KnownMasks reflections_, face_masks_, midpoints_, edge_masks_, vertex_masks_[3];
   // Some of the masks that were made lately, each at a place that follows from its weights. Most
   // masks of fractional sharpness occur once, so that it would not pay to know all.

@@ -12,13 +12,8 @@ namespace limitsurf {
 
 /// A level of refinement, with what is known of its vertices.
 struct RefinementLevel {
-  /// The cage; the other arguments are those of Sectors.
-  RefinementLevel(CageMesh& cage_mesh, bool is_sharp, const std::vector<int>& first_places,
-                  int place_count)
-      : mesh(cage_mesh),
-        cage(&cage_mesh),
-        sectors(cage_mesh, is_sharp, first_places.data(), place_count),
-        has_sharpness(is_sharp) {}
+  RefinementLevel(CageMesh& cage_mesh, bool is_sharp)
+      : mesh(cage_mesh), cage(&cage_mesh), sectors(cage_mesh, is_sharp), has_sharpness(is_sharp) {}
   RefinementLevel(RefinedMesh& refined_mesh, bool is_sharp)
       : mesh(refined_mesh),
         refined(&refined_mesh),

@@ -5,13 +5,12 @@
 
 namespace limitsurf {
 
-Sectors::Sectors(const FaceMesh& mesh, bool has_sharpness, const int* first_places, int place_count)
+Sectors::Sectors(const FaceMesh& mesh, bool has_sharpness)
     : mesh_(mesh),
       has_sharpness_(has_sharpness),
-      first_places_(first_places),
       states_(static_cast<std::size_t>(mesh.vertexCount()), State::unknown),
-      first_sector_(states_.size(), -1),
-      corners_(static_cast<std::size_t>(first_places ? place_count : mesh.cornerCount())) {}
+      first_sector_(states_.size()),
+      corners_(static_cast<std::size_t>(mesh.cornerCount())) {}
 
 Sectors::State Sectors::classify(int vertex) {
   const VertexFan fan = mesh_.fan(vertex);
@@ -19,7 +18,7 @@ Sectors::State Sectors::classify(int vertex) {
     if (fan.closed && fan.faces == 4 && fan.sharpness == 0 && !mesh_.creaseEnds(vertex)) {
       return State::regular;
     }
-    first_sector_[vertex] = sectorCount();
+    first_sector_.set(vertex, sectorCount());
     gatherCorners(fan);
     addSector(wholeKind(vertex, fan, isSharp(fan.sharpness)), 0, fan.faces);
     return State::settled;
@@ -54,7 +53,7 @@ void Sectors::gatherCorners(const VertexFan& fan) {
 /// The vertex has the sharpness `sharpness_`, no semi-sharp one.
 void Sectors::settle(int vertex, const VertexFan& fan) {
   gatherCorners(fan);
-  first_sector_[vertex] = sectorCount();
+  first_sector_.set(vertex, sectorCount());
   const std::vector<float>& edges = sharpness_.edges;
   cuts_.clear();
   for (int i = 0; i < fan.edges(); ++i) {
@@ -81,7 +80,7 @@ void Sectors::settle(int vertex, const VertexFan& fan) {
 void Sectors::addSector(RingKind kind, int first, int faces) {
   const int count = static_cast<int>(around_.size());
   for (int i = 0, j = first; i < faces; ++i, ++j) {
-    corners_[place(around_[j < count ? j : j - count])] = {sectorCount(), i};
+    corners_.set(mesh_.cornerNumber(around_[j < count ? j : j - count]), {sectorCount(), i});
   }
   sectors_.push_back({Ring{kind, faces}, around_[first]});
 }

@@ -6,6 +6,7 @@
 
 #include "limitsurf/eigen/ring.h"
 #include "limitsurf/patch/face_mesh.h"
+#include "limitsurf/sparse_array.h"
 
 namespace limitsurf {
 
@@ -34,11 +35,7 @@ struct Sector {
 /// The sectors around the vertices of a level. They are found when they are first asked for.
 class Sectors {
  public:
-  /// `first_places` saves memory where a few faces are asked for: for each face, the number of its
-  /// first corner among the corners of these faces, of which there are `place_count`. A face with a
-  /// corner at a vertex whose state is asked for has to be one of them. If it is null, all are.
-  Sectors(const FaceMesh& mesh, bool has_sharpness, const int* first_places = nullptr,
-          int place_count = 0);
+  Sectors(const FaceMesh& mesh, bool has_sharpness);
 
   enum class State : std::uint8_t {
     unknown,
@@ -57,8 +54,8 @@ class Sectors {
 
   /// The sector to which a face's corner at a settled vertex belongs, and the position of the face
   /// within that sector.
-  int sectorOf(FaceCorner at) const { return corners_[place(at)].sector; }
-  int positionOf(FaceCorner at) const { return corners_[place(at)].position; }
+  int sectorOf(FaceCorner at) const { return corners_[mesh_.cornerNumber(at)].sector; }
+  int positionOf(FaceCorner at) const { return corners_[mesh_.cornerNumber(at)].position; }
   const Sector& sector(int i) const { return sectors_[i]; }
   int sectorCount() const { return static_cast<int>(sectors_.size()); }
   /// The first of a settled vertex's sectors; the others follow, counter-clockwise.
@@ -74,16 +71,12 @@ class Sectors {
   struct Corner {
     int sector = -1, position = 0;
   };
-  int place(FaceCorner at) const {
-    return first_places_ ? first_places_[at.face] + at.corner : mesh_.cornerNumber(at);
-  }
 
   const FaceMesh& mesh_;
   const bool has_sharpness_;
-  const int* const first_places_;
   std::vector<State> states_;
-  std::vector<int> first_sector_;
-  std::vector<Corner> corners_;
+  SparseArray<int> first_sector_;  // of settled vertices
+  SparseArray<Corner> corners_;    // at settled vertices
   std::vector<Sector> sectors_;
   // Of the vertex being classified: its corners, its sharpness, its sharp edges.
   std::vector<FaceCorner> around_;

@@ -8,6 +8,7 @@
 #include "limitsurf/interruptible_vector.h"
 #include "limitsurf/mesh/topology.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/part_array.h"
 #include "limitsurf/patch/bilinear_tiles.h"
 #include "limitsurf/patch/refinement_level.h"
 #include "limitsurf/patch/ring_tile_maker.h"
@@ -98,8 +99,7 @@ class Builder {
         table_.faces[ptex_.first[face]] = {TileRef::kBSpline, static_cast<std::uint32_t>(i)};
       }
     });
-    moveInParts(irregular_bsplines_, table_.bsplines);
-    irregular_bsplines_ = {};
+    irregular_bsplines_.moveTo(table_.bsplines);
   }
 
   /// The other faces, level by level.
@@ -107,16 +107,7 @@ class Builder {
     if (std::find(kinds_.begin(), kinds_.end(), kIrregular) == kinds_.end()) {
       return;
     }
-    std::vector<int> first_places(kinds_.size(), -1);
-    int places = 0;
-    for (int face = 0; face < mesh_.faceCount(); ++face) {
-      if (kinds_[face] != kRegular) {
-        first_places[face] = places;
-        places += mesh_.faceSize(face);
-      }
-    }
-    levels_.push_back(
-        std::make_unique<RefinementLevel>(cage_, topology_.hasSharpness(), first_places, places));
+    levels_.push_back(std::make_unique<RefinementLevel>(cage_, topology_.hasSharpness()));
     std::vector<Split> splits;
     for (int face = 0; face < mesh_.faceCount(); ++face) {
       stride_.step();
@@ -189,14 +180,13 @@ class Builder {
       table_.ring_tiles.back().depth = depth;
       return {TileRef::kRing, static_cast<std::uint32_t>(table_.ring_tiles.size() - 1)};
     }
-    reserveMore(irregular_bsplines_, 1);
-    irregular_bsplines_.push_back(bsplineTile(mesh, face, corners.diagonal));
-    BSplineTile& tile = irregular_bsplines_.back();
+    BSplineTile tile = bsplineTile(mesh, face, corners.diagonal);
     tile.fine = fine;
     if (corners.creases > 0) {
       tile.crease = mesh.sharpness({face, corners.crease_side});
       tile.crease_side = static_cast<std::int8_t>(corners.crease_side);
     }
+    irregular_bsplines_.push_back(tile);
     return {TileRef::kBSpline,
             static_cast<std::uint32_t>(regular_count_ + irregular_bsplines_.size() - 1)};
   }
@@ -211,7 +201,7 @@ class Builder {
   RingTileMaker ring_tiles_;
   std::vector<FaceKind> kinds_;
   std::size_t regular_count_ = 0;
-  std::vector<BSplineTile> irregular_bsplines_;  // which follow those of regular faces
+  PartArray<BSplineTile> irregular_bsplines_;  // which follow those of regular faces
   InterruptionStride stride_;
 };
 

@@ -134,7 +134,9 @@ void Pose::refinePoint(int i) {
     return kFine ? residual(point) : Padded(Padded::Zero());
   };
   const auto setResidual = [&](const Padded& value) {
-    residuals_[i - refined.cagePoints()] = (value / residual_unit_).cast<float>();
+    for (int c = 0; c < 3; ++c) {
+      residuals_[i - refined.cagePoints()][c] = static_cast<float>(value[c] / residual_unit_);
+    }
   };
   Padded base, sum;
   if (sources.size() == 2 && weights[0] == weights[1]) {

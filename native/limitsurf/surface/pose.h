@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -61,7 +62,7 @@ class Pose {
     const int refined = i - table_->points.cagePoints();
     return refined < 0 || residuals_.empty()
                ? Padded(Padded::Zero())
-               : Padded(residual_unit_ * residuals_[refined].cast<double>());
+               : Padded(residual_unit_ * widened(residuals_[refined]));
   }
   /// The vector between two points, rounded relative to its own size.
   Padded difference(int to, int from) const {
@@ -76,6 +77,8 @@ class Pose {
   int gridSteps(const RingTile& tile) const { return grid_steps_[tile.depth]; }
 
  private:
+  static Padded widened(const std::array<float, 3>& v) { return {v[0], v[1], v[2], 0}; }
+
   template <bool kFine>
   void refinePoint(int point);
   void refinePoints();
@@ -92,8 +95,8 @@ class Pose {
   double extent_ = 0;
   int grid_steps_[TileTable::kMostDepth + 1];  // by depth
   std::vector<Padded> points_;
-  std::vector<Eigen::Array4f> residuals_;  // of the refined points, over residual_unit_
-  double residual_unit_ = 1;               // a power of two of about the size of the coordinates
+  std::vector<std::array<float, 3>> residuals_;  // of the refined points, over residual_unit_
+  double residual_unit_ = 1;  // a power of two of about the size of the coordinates
   std::vector<RingPose> rings_;
   std::vector<RingTilePose> ring_tiles_;
   std::vector<int> first_tile_;  // per ring, and one more entry
