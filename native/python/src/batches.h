@@ -10,8 +10,7 @@
 #include "limitsurf/surface/location_batch.h"
 #include "limitsurf/thread_count.h"
 #include "limitsurf/types.h"
-#include "locks/call_lock.h"
-#include "locks/signals.h"
+#include "locks/long_call.h"
 
 namespace limitsurf::python {
 
@@ -86,9 +85,7 @@ constexpr std::size_t kRowsPerChunk = std::size_t{1} << 17;
 /// lock guards does not change meanwhile, and Ctrl-C ends the call.
 template <typename Body>
 void inChunks(const CallLock& lock, const CheckedLocations& at, const Body& body) {
-  const py::gil_scoped_release release;
-  const CallLock::Hold hold(lock);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(lock);
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerChunk) {
     body(begin, at.part(begin, std::min(kRowsPerChunk, at.size() - begin)));
   }

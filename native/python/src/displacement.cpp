@@ -79,9 +79,7 @@ py::object vectorDisplacement(const SharedSurface& base, const SharedSurface& ta
   const FrameRows all_frames = framesOf(frames, at.size());
   Output output(py::dtype("float64"), {static_cast<py::ssize_t>(at.size()), 3});
   {
-    const py::gil_scoped_release release;
-    const CallLock::HoldTwo held(base.lock, target.lock);
-    const InterruptionPoint point = interruptible();
+    const LongCall<CallLock::HoldTwo> call(base.lock, target.lock);
     const SubdividedFaces faces(*base.mesh, *target.mesh);
     inParts(at, report, [&](std::size_t begin, const LocationBatch& some) {
       Points vectors =
@@ -107,9 +105,7 @@ py::object scalarDisplacement(const SharedSurface& base, const SharedSurface& ta
   checkDistance(max_distance);
   Output output(py::dtype("float64"), {static_cast<py::ssize_t>(at.size())});
   {
-    const py::gil_scoped_release release;
-    const CallLock::HoldTwo held(base.lock, target.lock);
-    const InterruptionPoint point = interruptible();
+    const LongCall<CallLock::HoldTwo> call(base.lock, target.lock);
     const SurfaceSearch& search = target.search.get(target.surface(), threads);
     inParts(at, report, [&](std::size_t begin, const LocationBatch& some) {
       const Eigen::VectorXd distances =

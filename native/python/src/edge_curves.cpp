@@ -67,9 +67,7 @@ std::unique_ptr<BoundEdgeCurves> makeCurves(const SharedSurface& shared, const p
   } else {
     given = pairsOf(edges, "edges");
   }
-  const py::gil_scoped_release release;
-  const HeldPose held(shared);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock);
   return std::make_unique<BoundEdgeCurves>(shared,
                                            chosen ? EdgeCurves(shared.surface(), *chosen, threads)
                                                   : EdgeCurves(shared.surface(), given, threads));
@@ -103,9 +101,7 @@ py::object curvesAt(const BoundEdgeCurves& self, const py::object& curve, const 
   const std::vector<double> lengths(arcs.data(), arcs.data() + arcs.size());
   AlongCurves found;
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(self.surface());
-    const InterruptionPoint point = interruptible();
+    const LongCall call(self.surface().lock);
     self.check(self.surface());
     found = pointsAlong(self.surface().surface(), self.curves(), rows, lengths, on, threads);
   }
@@ -131,9 +127,7 @@ py::object scatterAlong(const SharedSurface& shared, const BoundEdgeCurves& curv
   const Progress tell = progress.is_none() ? Progress() : Progress(report);
   AlongCurves found;
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     curves.check(shared);
     found = limitsurf::scatterAlong(shared.surface(), curves.curves(), options, threads, tell);
   }

@@ -38,9 +38,7 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
     outputs[i] = Output(type, {static_cast<py::ssize_t>(at.size()), 3});
   }
   {
-    const py::gil_scoped_release release;
-    const CallLock::Hold hold(shared.lock);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     const auto into = outputs[0].isSingle() ? evaluateInto<float> : evaluateInto<double>;
     into(shared.surface(), at.batch(), static_cast<Derivatives>(derivatives), outputs, threads);
   }

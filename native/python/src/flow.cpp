@@ -44,9 +44,7 @@ py::object curveDirections(const SharedSurface& shared, const py::object& points
   Output output(floatType(dtype), {static_cast<py::ssize_t>(at.size()), 3});
   const ProgressReport report(progress);
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     const Points found = limitsurf::curveDirections(shared.surface(), curves, at, threads, report);
     output.put(0, found.data(), 3 * at.size());
   }

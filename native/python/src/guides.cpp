@@ -106,9 +106,7 @@ py::object guideWeights(const SharedSurface& shared, const py::object& guide_fac
       threads, ProgressReport(progress)};
   GuideWeights found;
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     found = limitsurf::guideWeights(shared.surface(), guides, at, options);
   }
   return result("GuideWeights")(table(std::move(found.guide), at.size(), count),

@@ -20,8 +20,7 @@ namespace limitsurf::python {
 namespace {
 
 Points currentPositions(const SharedSurface& shared) {
-  const py::gil_scoped_release release;
-  const HeldPose held(shared);
+  const LongCall call(shared.lock);
   return shared.surface().positions();
 }
 
@@ -34,9 +33,7 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
                     std::to_string(shared.mesh->vertexCount()) + ", 3)");
   }
   const Points points = pointsOf(array);
-  const py::gil_scoped_release release;
-  const CallLock::Hold hold(shared.lock, CallLock::Access::change);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock, CallLock::Access::change);
   shared.setPositions(points, threads);
 }
 
@@ -50,9 +47,7 @@ py::array_t<double> bounds(const SharedSurface& shared, int threads) {
   checkThreads(threads);
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> box;
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     box = shared.surface().bounds(threads);
   }
   return py::array_t<double>({2, 3}, box.data());

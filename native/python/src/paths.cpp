@@ -141,9 +141,7 @@ SpaceCurves spaceCurves(const py::object& points, const py::object& left, const 
 /// The result of work(surface, search), called without the GIL.
 template <typename Work>
 auto onSurface(const SharedSurface& shared, int threads, const Work& work) {
-  const py::gil_scoped_release release;
-  const HeldPose held(shared);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock);
   return work(shared.surface(), shared.search.get(shared.surface(), threads));
 }
 

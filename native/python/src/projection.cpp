@@ -88,9 +88,7 @@ py::object project(const SharedSurface& shared, const SharedData& uv_map, const 
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   ProjectionArrays arrays(static_cast<py::ssize_t>(at.size()));
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     checkProject(shared.surface(), map, projector, size, options);
     const SurfaceSearch* occluder =
         occlusion ? &shared.search.get(shared.surface(), threads) : nullptr;
@@ -122,9 +120,7 @@ py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   ProjectionArrays arrays(static_cast<py::ssize_t>(at.size()));
   {
-    const py::gil_scoped_release release;
-    const CallLock::HoldTwo held(shared.lock, source.lock);
-    const InterruptionPoint point = interruptible();
+    const LongCall<CallLock::HoldTwo> call(shared.lock, source.lock);
     checkProjectAlongNormals(shared.surface(), map, source.surface(), other_map, size, options);
     const SurfaceSearch& search = source.search.get(source.surface(), threads);
     projectInParts(
@@ -140,9 +136,7 @@ py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv
 bool eyeIsInside(const SharedSurface& shared, const py::object& matrix, int threads) {
   checkThreads(threads);
   const Eigen::Matrix4d projector = matrixOf(matrix, "matrix");
-  const py::gil_scoped_release release;
-  const HeldPose held(shared);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock);
   return limitsurf::eyeIsInside(shared.surface(), shared.search.get(shared.surface(), threads),
                                 projector, threads);
 }

@@ -73,9 +73,7 @@ auto sampled(const SharedSurface& shared, const py::object& density, int threads
   const DensityArgument argument(density);
   const ProgressReport report(progress);
   const Progress tell = progress.is_none() ? Progress() : Progress(report);
-  const py::gil_scoped_release release;
-  const HeldPose held(shared);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock);
   const AreaSampler& sampler = shared.sampler.get(shared.surface(), threads);
   return sample(sampler, argument.on(shared.surface(), threads), tell);
 }
@@ -84,9 +82,7 @@ py::object area(const SharedSurface& shared, bool error, int threads) {
   checkThreads(threads);
   SurfaceArea area;
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     area = measuredArea(shared.surface(), threads);
   }
   if (error) {

@@ -81,9 +81,7 @@ template <typename Body>
 void searchInParts(const SharedSurface& shared, Eigen::Index rows, int threads,
                    const py::object& progress, const Body& body) {
   const ProgressReport report(progress);
-  const py::gil_scoped_release release;
-  const HeldPose held(shared);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock);
   const SurfaceSearch& search = shared.search.get(shared.surface(), threads);
   for (Eigen::Index begin = 0; begin < rows; begin += kRowsPerSearch) {
     const Eigen::Index count = std::min(kRowsPerSearch, rows - begin);

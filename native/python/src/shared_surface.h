@@ -13,6 +13,7 @@
 #include "limitsurf/surface/limit_surface.h"
 #include "locks/call_lock.h"
 #include "locks/kept_value.h"
+#include "locks/long_call.h"
 
 namespace limitsurf::python {
 
@@ -48,15 +49,6 @@ struct SharedSurface {
  private:
   LimitSurface surface_;
   std::atomic<std::uint64_t> pose_{0};
-};
-
-/// Keeps a surface's pose unchanged during a call.
-class HeldPose {
- public:
-  explicit HeldPose(const SharedSurface& shared) : hold_(shared.lock) {}
-
- private:
-  CallLock::Hold hold_;
 };
 
 // The methods of LimitSurface by subject.

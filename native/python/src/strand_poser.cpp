@@ -174,9 +174,7 @@ py::object posed(const BoundStrandPoser& self, const py::object& object, const c
   const Eigen::Map<const Rows<Columns>> input = viewOf<Columns>(from);
   RowsMap<Columns> output(to.mutable_data(), to.shape(0), Columns);
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(self.surface());
-    const InterruptionPoint point = interruptible();
+    const LongCall call(self.surface().lock);
     body(input, output, map);
   }
   return std::move(to);
@@ -264,9 +262,7 @@ std::unique_ptr<BoundStrandPoser> makePoser(const SharedSurface& shared, const p
   const FloatRotations rotations = floatRotations(rest_rotations);
   const std::vector<std::int64_t> starts = strandOffsets(offsets);
   const Eigen::Map<const Rows<3>> root_rows = viewOf<3>(roots);
-  const py::gil_scoped_release release;
-  const HeldPose held(shared);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock);
   return std::make_unique<BoundStrandPoser>(
       shared, StrandPoser(surface, at, root_rows, rotations, starts, threads));
 }

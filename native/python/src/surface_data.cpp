@@ -51,9 +51,7 @@ py::object evaluate(const SharedData& shared, const py::object& face, const py::
 void setValues(SharedData& shared, const py::object& values, int threads) {
   checkThreads(threads);
   DataRows rows = rowsOf(values);
-  const py::gil_scoped_release release;
-  const CallLock::Hold hold(shared.lock, CallLock::Access::change);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock, CallLock::Access::change);
   shared.setValues(std::move(rows), threads);
 }
 

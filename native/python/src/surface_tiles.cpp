@@ -74,9 +74,7 @@ py::object surfaceTiles(const SharedSurface& shared, const py::object& face, con
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   SurfaceTiles tiles;
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     tiles = shared.surface().tiles(at, max_depth.value_or(SurfaceTiles::kDefaultDepth), threads);
   }
   return tilesResult(std::move(tiles));
@@ -118,7 +116,7 @@ py::object tileQuadtree(const SharedSurface& shared, const std::optional<int>& m
   TileQuadtree tree;
   {
     const py::gil_scoped_release release;
-    const HeldPose held(shared);
+    const CallLock::Hold hold(shared.lock);
     // The steps of the work are long: what has been done is told again meanwhile.
     const InterruptionPoint point = interruptible([&] { report(part); });
     tree =

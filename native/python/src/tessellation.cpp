@@ -50,9 +50,7 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
       refuseLevel("levels", valueText(levels), leastLevel(*shared.mesh));
     }
     const int level = static_cast<int>(wide);
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     return tessellate(shared.surface(), level, options);
   }
   const Integers each = integers<std::invalid_argument>(levels, "levels");
@@ -68,9 +66,7 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
     }
     of_faces[static_cast<std::size_t>(face)] = is_int ? static_cast<int>(level) : 0;
   }
-  const py::gil_scoped_release release;
-  const HeldPose held(shared);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock);
   return tessellate(shared.surface(), std::move(of_faces), options);
 }
 
@@ -122,9 +118,7 @@ py::object levelsWithin(const SharedSurface& shared, double tolerance, int most,
   const LevelOptions options{most, threads, ProgressReport(progress)};
   FaceLevels found;
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     found = limitsurf::levelsWithin(shared.surface(), tolerance, options);
   }
   return faceLevels(found);
@@ -148,9 +142,7 @@ py::object levelsOfLength(const SharedSurface& shared, double length, const py::
   const PictureView view = in_picture ? viewOf(matrix, nearest) : PictureView();
   FaceLevels found;
   {
-    const py::gil_scoped_release release;
-    const HeldPose held(shared);
-    const InterruptionPoint point = interruptible();
+    const LongCall call(shared.lock);
     found =
         limitsurf::levelsOfLength(shared.surface(), length, in_picture ? &view : nullptr, options);
   }

@@ -26,9 +26,7 @@ template <typename Use>
 auto withMap(const SharedData& shared, int threads, const Use& use) {
   checkThreads(threads);
   const SurfaceData& data = shared.data();
-  const py::gil_scoped_release release;
-  const CallLock::Hold hold(shared.lock);
-  const InterruptionPoint point = interruptible();
+  const LongCall call(shared.lock);
   return use(shared.uv_map.get(data, threads));
 }
 
