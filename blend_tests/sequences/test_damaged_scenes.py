@@ -21,7 +21,7 @@ FEW = 24
 LONGEST = 500
 #: What messages of programs look like
 NOT_PLAIN = re.compile(
-    r"Traceback|NoneType|ndarray|numpy|dtype|bpy_|\w+Error\b|object at 0x|\barray\(|^[a-z]+\(\)"
+    r"Traceback|bpy\.ops|bpy_|NoneType|ndarray|numpy|dtype|\w+Error\b|object at 0x|\barray\("
 )
 FIRST = re.compile(r"[A-Z0-9_']")
 
@@ -47,6 +47,7 @@ FOUND = {
     ("rebind", "thing attributes NaN"),
     ("rebind uv", "thing attributes NaN"),
     ("rebind uv", "thing nothing in it"),
+    ("rebind children", "surface removed"),
 }
 #: What takes minutes: distances along the surface settle slowly on triangles that are 1e30 times
 #: longer than wide (guide_weights), and closest points where nothing has an extent beside rounding.

@@ -5,7 +5,7 @@ import bpy
 
 from .. import ids
 from ..errors import RefusalError
-from ..placing import live_children
+from ..placing import followers, live_children
 
 
 def make_again(context: bpy.types.Context, ob: bpy.types.Object) -> str:
@@ -18,6 +18,11 @@ def make_again(context: bpy.types.Context, ob: bpy.types.Object) -> str:
         raise RefusalError(
             f"The guides of {ob.name} were deleted: choose other guides in its modifier "
             f"{ids.CHILDREN_GROUP}"
+        )
+    if followers.ground_of(guides) is None:
+        raise RefusalError(
+            f"{ob.name} could not be made again: its guides, {guides.name}, stand on no mesh any "
+            "more"
         )
     # the operator belongs to another capability, which this one does not import
     operator = bpy.ops.object.limit_children_add

@@ -14,7 +14,8 @@ class BindingOperator(WatchedOperator):
     """Mixin for operators that write tables of a surface. A subclass provides `bind`.
 
     `tasks/watched_operator.py` says where this stands among the steps of an operator. The last
-    piece of `bind` is the one that changes something.
+    piece of `bind` is the one that changes something. It is not divided: Blender pushes an undo
+    step only when an operator has finished, so that nothing could take back a part of the change.
     """
 
     doing = "Binding"  # what the status bar shows
