@@ -48,6 +48,7 @@ FOUND = {
     ("rebind uv", "thing attributes NaN"),
     ("rebind uv", "thing nothing in it"),
     ("rebind children", "surface removed"),
+    ("particles", "surface all points huge"),
 }
 #: What takes minutes: distances along the surface settle slowly on triangles that are 1e30 times
 #: longer than wide (guide_weights), and closest points where nothing has an extent beside rounding.

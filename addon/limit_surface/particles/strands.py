@@ -18,6 +18,9 @@ from ..reading import attributes, cage
 from .creation import Particles
 
 _RADIUS = 0.01  # Blender's own where curves store none
+#: Squares of larger coordinates exceed single precision, and Blender crashes when it looks for the
+#: polygons that are closest to roots.
+_LARGEST = 1e18
 
 
 def read(
@@ -36,7 +39,13 @@ def read(
     if keys < 2:
         raise RefusalError("A particle needs at least 2 keys: its root and its tip")
     strands = _with_keys(points, offsets, keys)
-    place = _places(found, places, strands[:, 0], _standing(surface, found))
+    standing = _standing(surface, found)
+    if max(np.abs(strands).max(initial=0), np.abs(standing).max()) > _LARGEST:
+        raise RefusalError(
+            f"{hair.name} or {surface.name} has coordinates beyond {_LARGEST:g}, of which Blender "
+            "cannot make particles"
+        )
+    place = _places(found, places, strands[:, 0], standing)
     radius = _radius(hair, offsets, depsgraph)
     resampled = int(np.count_nonzero(sizes != keys))
     return Particles(hair.name, place, strands, radius), resampled
