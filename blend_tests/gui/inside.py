@@ -20,6 +20,7 @@ preferences.view.show_tooltips = False
 
 import actions  # noqa: E402
 import texture_actions  # noqa: E402
+import waiting_actions  # noqa: E402
 
 actions.smooth_lines(False)
 
@@ -29,7 +30,7 @@ POLL = 0.005  # seconds
 #: calls `tick`, and draws what has changed. What is drawn anew under the mouse gets a move of the
 #: mouse in the next round, and a button that is used by a key is lit for 0.02 s before it acts.
 ROUNDS = 6
-ACTIONS = {**vars(actions), **vars(texture_actions)}
+ACTIONS = {**vars(actions), **vars(texture_actions), **vars(waiting_actions)}
 
 
 def serve() -> None:
