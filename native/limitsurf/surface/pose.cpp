@@ -195,6 +195,7 @@ void Pose::setRing(int ring_index, int threads, RingMemory& memory) {
   }
   memory.levels = memory.points;
   ring.basis->projectInPlace(memory.points.data(), pose.coefficients);
+  pose.largest = pose.coefficients.bottomRows(pose.coefficients.rows() - 1).cwiseAbs().maxCoeff();
   const Padded to_limit = padded(pose.coefficients.row(0));
   pose.limit = vertex + to_limit;
   // The coefficient of the constant mode relative to the limit as it is stored: its rounding error.

@@ -34,6 +34,7 @@ class Pose {
   struct RingPose {
     Padded limit;         ///< the limit position of the extraordinary vertex
     Points coefficients;  ///< of the modes, relative to the limit
+    double largest = 0;   ///< the largest coordinate of a coefficient but that of the constant mode
 
     /// The rounding error of `limit`.
     Padded constant() const {

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "limitsurf/own_unit.h"
@@ -26,6 +27,10 @@ constexpr double kEqualGrowth = 1e-13;
 /// Only the modes with the largest eigenvalues can lead, and of a large ring all others are left
 /// out.
 constexpr std::size_t kLeadingModes = 24;
+/// They are among so many first modes, unless the ring is a dart: two or four modes follow each
+/// other for each frequency of the spokes, and the larger eigenvalue of a frequency decreases as
+/// that grows and is above 1/4, the smaller one below.
+constexpr int kFirstModes = 256;
 
 /// A term n^power growth^n of du and dv.
 struct Term {
@@ -77,8 +82,13 @@ double sizeOf(const Eigenbasis& basis, int mode) {
 /// The terms of the derivatives on the way to the vertex of one face.
 class ApproachTerms {
  public:
-  ApproachTerms(const Eigenbasis& basis, int face, const Points& coefficients)
-      : basis_(basis), face_(face), coefficients_(coefficients), window_(outermost(basis, face)) {}
+  /// Coefficients are multiplied by `scale`.
+  ApproachTerms(const Eigenbasis& basis, int face, const Points& coefficients, double scale)
+      : basis_(basis),
+        face_(face),
+        coefficients_(coefficients),
+        scale_(scale),
+        window_(outermost(basis, face)) {}
 
   /// All terms, dominant ones first; terms that grow alike are added up.
   std::vector<Term> sorted() {
@@ -105,16 +115,19 @@ class ApproachTerms {
   /// The modes with the largest eigenvalues but the constant one. (The factor 2^n that both
   /// derivatives have in common does not change the order.)
   std::vector<int> leadingModes() const {
-    std::vector<int> modes(basis_.modeCount() - 1);
-    for (int mode = 1; mode < basis_.modeCount(); ++mode) {
-      modes[mode - 1] = mode;
-    }
+    const int first = basis_.ring().kind == RingKind::dart
+                          ? basis_.modeCount()
+                          : std::min(basis_.modeCount(), kFirstModes);
+    std::vector<int> modes(static_cast<std::size_t>(first) - 1);
+    std::iota(modes.begin(), modes.end(), 1);
     const std::size_t kept = std::min(kLeadingModes, modes.size());
     std::partial_sort(modes.begin(), modes.begin() + static_cast<std::ptrdiff_t>(kept), modes.end(),
                       [&](int a, int b) { return sizeOf(basis_, a) > sizeOf(basis_, b); });
     modes.resize(kept);
     return modes;
   }
+
+  Vector3 coefficientOf(int mode) const { return scale_ * coefficients_.row(mode).transpose(); }
 
   bool inPair(int mode) const {
     return std::any_of(basis_.pairs().begin(), basis_.pairs().end(),
@@ -131,7 +144,7 @@ class ApproachTerms {
   }
 
   void addMode(int mode) {
-    const Vector3 coefficient = coefficients_.row(mode);
+    const Vector3 coefficient = coefficientOf(mode);
     add(mode, basis_.eigenvalue(mode), 0, coefficient);
     for (const Eigenbasis::Chain& chain : basis_.chains()) {
       if (chain.from == mode) {
@@ -142,7 +155,7 @@ class ApproachTerms {
   }
 
   void addPair(const ModePair& pair) {
-    const Vector3 a = coefficients_.row(pair.a), b = coefficients_.row(pair.b);
+    const Vector3 a = coefficientOf(pair.a), b = coefficientOf(pair.b);
     const double square = pair.forth * pair.back;
     if (square < 0) {  // a complex pair, turned by whole circles: both modes as they are
       add(pair.a, largerSize(pair), 0, a);
@@ -173,6 +186,7 @@ class ApproachTerms {
   const Eigenbasis& basis_;
   const int face_;
   const Points& coefficients_;
+  const double scale_;
   const GridWindow window_;
   std::vector<Term> terms_;
 };
@@ -225,14 +239,13 @@ Vector3 leadingNormal(const std::vector<Term>& terms, double least) {
 
 VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring_tile, int turns) {
   const RingTile& tile = table.ring_tiles[ring_tile];
-  const Points& in_pose = pose.ring(tile.ring).coefficients;
+  const Pose::RingPose& ring = pose.ring(tile.ring);
   // Only directions are wanted. In a unit near their own size, products of lengths can be formed.
-  const double largest = in_pose.bottomRows(in_pose.rows() - 1).cwiseAbs().maxCoeff();
-  const Points coefficients = scaleToOwnUnit(largest) * in_pose;
+  const double scale = scaleToOwnUnit(ring.largest);
   std::vector<Term> terms =
-      ApproachTerms(*table.rings[tile.ring].basis, tile.face, coefficients).sorted();
+      ApproachTerms(*table.rings[tile.ring].basis, tile.face, ring.coefficients, scale).sorted();
   turnBack(terms, turns);
-  const double size = coefficients.bottomRows(coefficients.rows() - 1).cwiseAbs().maxCoeff();
+  const double size = scale * ring.largest;
   return {firstPresent(terms, &Term::du, kVanishing * size),
           firstPresent(terms, &Term::dv, kVanishing * size),
           leadingNormal(terms, kVanishing * size * size)};
