@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "limitsurf/pi.h"
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"
 #include "support/truth/witness.h"
@@ -159,6 +160,33 @@ TEST(Frames, AtCreasesAreTheLimitAlongTheDiagonal) {
 TEST(Frames, AtSharpCornersAreTheLimitAlongTheDiagonal) {
   compareAtVertices(sharpFans({0}, true, {3, 5, 6}), 5);
   compareAtVertices(sharpFans({0, 1, 3}, false, {5, 6, 7, 9}), 6);
+}
+
+/// The known masks of Catmull and Clark's tangents at a vertex of n quads.
+TEST(Frames, AtVerticesWithManyFacesHaveTheNormalOfTheTangentMasks) {
+  for (const int count : {5, 127, 128, 129, 300}) {
+    const Cage cage = fan(count, true, 3);
+    const double turn = 2 * kPi<double> / count;
+    const double edges =
+        1 + std::cos(turn) + std::cos(turn / 2) * std::sqrt(2 * (9 + std::cos(turn)));
+    Vector3 tangents[2] = {Vector3::Zero(), Vector3::Zero()};
+    for (int i = 0; i < count; ++i) {
+      const std::vector<int>& face = cage.faces[4 * i];  // the vertex, an edge's end, across, next
+      const Vector3 edge = cage.positions.row(face[1]), across = cage.positions.row(face[2]);
+      for (int t = 0; t < 2; ++t) {
+        const auto wave = [&](int k) { return t == 0 ? std::cos(turn * k) : std::sin(turn * k); };
+        tangents[t] += edges * wave(i) * edge + (wave(i) + wave(i + 1)) * across;
+      }
+    }
+    const Vector3 normal = tangents[0].cross(tangents[1]).normalized();
+    const LimitSurface surface = limitSurface(cage);
+    for (const int sector : {0, count / 3, count - 1}) {
+      const Location at{4 * sector, 0, 0};
+      const Vector3 found = surface.evaluate({&at, 1}, Derivatives::first, true).normal.row(0);
+      EXPECT_LE((found - normal).norm(), 1e-10) << count << " faces, sector " << sector;
+      EXPECT_LE((frameOf(surface, at).col(2) - normal).norm(), 1e-10) << count;
+    }
+  }
 }
 
 TEST(Frames, AtOtherCornersAreTheSameAsSeenFromTheVertex) {
