@@ -83,6 +83,7 @@ class TileAreas {
 
   void measure(std::size_t begin, std::size_t end, double relative, SurfaceArea* areas) {
     cores_.clear();
+    open_.clear();
     squares_.clear();
     tiles_.clear();
     for (std::size_t tile = begin; tile < end; ++tile) {
@@ -91,6 +92,7 @@ class TileAreas {
       patches_.appendPieces(static_cast<int>(tile), pieces_);
       for (const SurfacePiece& piece : pieces_) {
         if (piece.isCore()) {
+          open_.push_back(cores_.size());
           cores_.emplace_back(piece, relative);
         } else {
           squares_.emplace_back(patches_.patch(piece), relative, 0);
@@ -102,7 +104,7 @@ class TileAreas {
     for (std::size_t i = 0; i < squares_.size(); ++i) {
       add(squares_[i].result(), areas[tiles_[i]]);
     }
-    while (!cores_.empty()) {
+    while (!open_.empty()) {
       measureStep(areas);
     }
   }
@@ -120,9 +122,10 @@ class TileAreas {
   /// Integrates the next patches of all cores, and finishes those that need no more.
   void measureStep(SurfaceArea* areas) {
     squares_.clear();
-    for (Core& core : cores_) {
+    for (const std::size_t i : open_) {
+      Core& core = cores_[i];
       const SurfacePiece whole = core.split.core;
-      patches_.split(whole, core.split);
+      patches_.splitPatches(whole, core.split);
       const Effort& effort = core.sum.step();
       for (const BezierPatch& patch : core.split.patches) {
         squares_.emplace_back(patch, effort.relative, effort.absolute);
@@ -130,23 +133,20 @@ class TileAreas {
     }
     quadrature_.measure(squares_);
     std::size_t left = 0;
-    for (std::size_t i = 0; i < cores_.size(); ++i) {
+    for (std::size_t i = 0; i < open_.size(); ++i) {
       SurfaceArea step;
       for (std::size_t quarter = 0; quarter < 3; ++quarter) {
         add(squares_[3 * i + quarter].result(), step);
       }
-      Core& core = cores_[i];
+      Core& core = cores_[open_[i]];
       const SurfacePiece& rest = core.split.core;
       if (core.sum.add(step) || rest.steps >= SurfacePatches::kMostSteps) {
         areas[rest.tile] = core.sum.result();
       } else {
-        if (left != i) {
-          cores_[left] = core;
-        }
-        ++left;
+        open_[left++] = open_[i];
       }
     }
-    cores_.erase(cores_.begin() + static_cast<std::ptrdiff_t>(left), cores_.end());
+    open_.resize(left);
   }
 
   const SurfacePatches& patches_;
@@ -155,6 +155,7 @@ class TileAreas {
   std::vector<AreaSquare> squares_;
   std::vector<std::size_t> tiles_;  // of each square that is a regular patch
   std::vector<Core> cores_;
+  std::vector<std::size_t> open_;  // the cores that need more steps
 };
 
 /// The area of a tile in which squares are quartered. At most `most_squares` are made.
@@ -178,7 +179,7 @@ SurfaceArea refinedArea(const SurfacePatches& patches, int tile, double toleranc
   bool is_done = false;
   while (!is_done && split.core.steps < SurfacePatches::kMostSteps) {
     const SurfacePiece whole = split.core;
-    patches.split(whole, split);
+    patches.splitPatches(whole, split);
     squares.clear();
     for (const BezierPatch& patch : split.patches) {
       squares.emplace_back(patch, 0, sum.step().absolute);
@@ -222,7 +223,7 @@ std::vector<std::size_t> worstTiles(const std::vector<SurfaceArea>& areas, doubl
 
 SurfaceArea measuredArea(const LimitSurface& surface, int threads) {
   checkThreads(threads);
-  const SurfacePatches patches(surface, threads, PatchUnit::own);
+  const SurfacePatches patches(surface, threads, PatchUnit::own, RingHulls::none);
   std::vector<SurfaceArea> areas(static_cast<std::size_t>(patches.tileCount()));
   parallelFor(areas.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     TileAreas tiles(patches);

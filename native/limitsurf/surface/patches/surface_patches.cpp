@@ -27,14 +27,15 @@ void multiply(BezierPatch& patch, double scale) {
 
 }  // namespace
 
-SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads, PatchUnit unit)
+SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads, PatchUnit unit,
+                               RingHulls hulls)
     : data_(std::make_unique<Data>(surface.data_->table, surface.data_->pose, unit)) {
-  data_->setLevels(threads);
+  data_->setLevels(threads, hulls);
 }
 SurfacePatches::SurfacePatches(const SurfaceData& data, int threads)
     : data_(std::make_unique<Data>(data.data_->tiles->table, data.data_->poses.front(),
                                    PatchUnit::coordinates)) {
-  data_->setLevels(threads);
+  data_->setLevels(threads, RingHulls::kept);
 }
 SurfacePatches::~SurfacePatches() = default;
 SurfacePatches::SurfacePatches(SurfacePatches&&) noexcept = default;
@@ -78,7 +79,7 @@ BezierPatch SurfacePatches::patch(const SurfacePiece& piece) const {
   return out;
 }
 
-void SurfacePatches::split(const SurfacePiece& core, SplitCore& out) const {
+void SurfacePatches::splitPatches(const SurfacePiece& core, SplitCore& out) const {
   const int steps = core.steps + 1;
   const RingTile& tile = data_->ringTile(core);
   static_assert(sizeof out.grid_ == sizeof(Padded) * tile_grid::kSlots);
@@ -92,9 +93,19 @@ void SurfacePatches::split(const SurfacePiece& core, SplitCore& out) const {
     patch.anchor = anchor;
     data_->quarterPatch(tile, grid, steps, quarter, patch);
     multiply(patch, data_->scale);
-    patch.on = data_->rectangle(out.pieces[quarter]);
   }
   out.core = {core.tile, static_cast<std::int16_t>(steps), SurfacePiece::kCore};
+}
+
+void SurfacePatches::split(const SurfacePiece& whole, SplitCore& out) const {
+  const SurfacePiece core = whole;  // which may be the one that is set
+  splitPatches(core, out);
+  for (int quarter = 0; quarter < 3; ++quarter) {
+    out.patches[quarter].on = data_->rectangle(out.pieces[quarter]);
+  }
+  const RingTile& tile = data_->ringTile(core);
+  const Padded* grid = out.grid_;
+  const Padded anchor = data_->pose.ring(tile.ring).limit;
   // The rest lies in the convex hull of the ring's points and of the slots around its own square.
   const Vector3 vertex = coreVertex(core), reach = Vector3::Constant(coreRadius(out.core));
   out.core_box = {vertex - reach, vertex + reach};

@@ -61,6 +61,9 @@ enum class PatchUnit {
   own
 };
 
+/// What is kept of the rings of cores for searches.
+enum class RingHulls { kept, none };
+
 /// The limit surface in its present pose as bicubic patches, for searches and integrals.
 ///
 /// A face without extraordinary vertices is one patch, or a few strips along a semi-sharp edge. A
@@ -80,8 +83,10 @@ class SurfacePatches {
   /// Around vertices with more faces than this, the ring's points are kept for all steps.
   static constexpr int kFewFaces = 16;
 
+  /// Without hulls, which integrals do not need, restHull() and the frames of rings do not exist.
   explicit SurfacePatches(const LimitSurface& surface, int threads = 0,
-                          PatchUnit unit = PatchUnit::coordinates);
+                          PatchUnit unit = PatchUnit::coordinates,
+                          RingHulls hulls = RingHulls::kept);
   /// The first three columns of data, as if they were positions. Missing columns are 0.
   explicit SurfacePatches(const SurfaceData& data, int threads = 0);
   ~SurfacePatches();
@@ -114,6 +119,8 @@ class SurfacePatches {
   /// Cost: O(1) for the first few steps, then O(valence) for valences to kFewFaces; for larger ones
   /// O(1) if `out` holds the split of which `core` is the rest.
   void split(const SurfacePiece& core, SplitCore& out) const;
+  /// The same, but sets neither `core_box` nor where on the face the patches are.
+  void splitPatches(const SurfacePiece& core, SplitCore& out) const;
 
   /// A box around the rest of a split. Its axes are those of the ring, so that it is as flat as the
   /// ring is, whichever way the surface lies.

@@ -91,11 +91,13 @@ int SurfacePatches::Data::flatSteps(int ring) const {
   return std::max(keptSteps(ring), kFlatSteps);
 }
 
-void SurfacePatches::Data::setLevels(int threads) {
+void SurfacePatches::Data::setLevels(int threads, RingHulls hulls) {
   radii.resize(table.rings.size() * (kMostSteps + 1));
   first_level.resize(table.rings.size());
   first_extent.resize(table.rings.size());
-  frames.resize(table.rings.size());
+  if (hulls == RingHulls::kept) {
+    frames.resize(table.rings.size());
+  }
   std::size_t size = 0, steps = 0;
   for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
     first_level[ring] = size;
@@ -108,7 +110,9 @@ void SurfacePatches::Data::setLevels(int threads) {
       shrinkages_[basis] = ringShrinkage(*basis, kMostSteps - kept);
     }
   }
-  extents.resize(steps);
+  if (hulls == RingHulls::kept) {
+    extents.resize(steps);
+  }
   // The system hands out memory when it is first written to, which may take long.
   levels.reserve(size);
   while (levels.size() < size) {
@@ -118,7 +122,9 @@ void SurfacePatches::Data::setLevels(int threads) {
   parallelFor(table.rings.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
       setRingLevels(static_cast<int>(ring));
-      setExtents(static_cast<int>(ring));
+      if (hulls == RingHulls::kept) {
+        setExtents(static_cast<int>(ring));
+      }
     }
   });
 }

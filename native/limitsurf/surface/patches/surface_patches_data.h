@@ -19,8 +19,8 @@ struct SurfacePatches::Data {
 
   Data(const TileTable& tile_table, const Pose& control_points, PatchUnit patch_unit);
 
-  /// Fills `radii`, `levels`, `frames` and `extents`.
-  void setLevels(int threads);
+  /// Fills `radii` and `levels`, and if there are to be hulls `frames` and `extents`.
+  void setLevels(int threads, RingHulls hulls);
 
   const RingTile& ringTile(const SurfacePiece& piece) const {
     return table.ring_tiles[tiles[piece.tile].ref.index];
