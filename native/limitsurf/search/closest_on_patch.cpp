@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "limitsurf/search/foot_iteration.h"
-#include "limitsurf/search/normal_polynomial.h"
+#include "limitsurf/search/normals/normal_polynomial.h"
 #include "limitsurf/search/squared_distance.h"
 
 namespace limitsurf {

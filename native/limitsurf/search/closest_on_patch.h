@@ -2,8 +2,8 @@
 #pragma once
 
 #include "limitsurf/search/closest_so_far.h"
-#include "limitsurf/search/facing.h"
 #include "limitsurf/search/foot_bound.h"
+#include "limitsurf/search/normals/facing.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {

@@ -14,7 +14,7 @@
 #include "limitsurf/search/closest_on_cores.h"
 #include "limitsurf/search/closest_on_patch.h"
 #include "limitsurf/search/hit_evaluation.h"
-#include "limitsurf/search/normal_cones.h"
+#include "limitsurf/search/normals/normal_cones.h"
 #include "limitsurf/search/search_tree.h"
 #include "limitsurf/search/spatial_order.h"
 

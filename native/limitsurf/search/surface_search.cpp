@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "limitsurf/parallel.h"
-#include "limitsurf/search/normal_cones.h"
+#include "limitsurf/search/normals/normal_cones.h"
 #include "limitsurf/search/search_tree.h"
 
 namespace limitsurf {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Cones of normals contain what they were made of.
-#include "limitsurf/search/normal_cones.h"
+#include "limitsurf/search/normals/normal_cones.h"
 
 #include <gtest/gtest.h>
 

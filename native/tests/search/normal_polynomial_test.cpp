@@ -2,7 +2,7 @@
 //
 // Bounds of the normals of parts of patches, also of patches that are squeezed so that their
 // tangents are nearly parallel, and what they say about feet of perpendiculars.
-#include "limitsurf/search/normal_polynomial.h"
+#include "limitsurf/search/normals/normal_polynomial.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/normal_cones.h"
+#include "limitsurf/search/normals/normal_cones.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
-#include "limitsurf/search/normal_polynomial.h"
+#include "limitsurf/search/normals/normal_polynomial.h"
 
 namespace limitsurf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/facing.h"
+#include "limitsurf/search/normals/facing.h"
 
 #include <Eigen/Geometry>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/normal_polynomial.h"
+#include "limitsurf/search/normals/normal_polynomial.h"
 
 #include <algorithm>
 #include <cmath>
