@@ -79,7 +79,7 @@ class OBJECT_OT_limit_snap(
     )
     max_distance: FloatProperty(
         name="Maximum Distance",
-        description="Largest distance to the surface. Elements that are further away do not move. "
+        description="Largest distance to the surface. Elements that are farther away do not move. "
         "0 sets no limit",
         default=0.0,
         min=0.0,
@@ -88,12 +88,12 @@ class OBJECT_OT_limit_snap(
     use_facing: BoolProperty(
         name="Facing",
         description="Snap only to places where the surface normal is close to the element's own "
-        "normal, so that nothing moves through a thin sheet to its other side",
+        "direction, so that nothing moves through a thin sheet to its other side",
         default=False,
     )
     max_angle: FloatProperty(
         name="Maximum Angle",
-        description="Largest angle between the surface normal and the element's own normal",
+        description="Largest angle between the surface normal and the element's own direction",
         default=np.pi / 2,
         min=0.0,
         max=np.pi,
