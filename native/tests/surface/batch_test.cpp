@@ -172,6 +172,31 @@ TEST_P(Batch, RunsOfAnyLengthDoNotChangeABit) {
   }
 }
 
+// Many rows of a face are put in order by the parts of the face, again and again.
+TEST_P(Batch, ManyRowsOfAFaceDoNotChangeABit) {
+  const LimitSurface surface = limitSurface(cage());
+  Random random(4);
+  for (int face = 0; face < surface.faceCount(); ++face) {
+    std::vector<Location> at = anywhere(face, 3000, random);
+    for (std::size_t i = 0; i < at.size(); i += 7) at[i].u = i % 2 == 0 ? 0 : 0.5;
+    for (std::size_t i = 3; i < at.size(); i += 11) at[i].v = i % 2 == 0 ? 1 : 0.25;
+    const auto evaluate = [&](std::size_t first, std::size_t count) {
+      return surface.evaluate(Span<Location>(at).subspan(first, count), Derivatives::first, true);
+    };
+    const Evaluation all = evaluate(0, at.size());
+    for (std::size_t first : {0, 1000, 2999}) {
+      for (std::size_t row = first; row < std::min(first + 100, at.size()); ++row) {
+        const Evaluation alone = evaluate(row, 1);
+        const auto i = static_cast<Eigen::Index>(row);
+        for (const auto member :
+             {&Evaluation::position, &Evaluation::du, &Evaluation::dv, &Evaluation::normal}) {
+          ASSERT_TRUE(sameBits((all.*member).row(i), alone.*member)) << describe(at[row]);
+        }
+      }
+    }
+  }
+}
+
 // Numbers below 0 are refused, and -0 is none of them.
 TEST_P(Batch, NegativeZeroIsZero) {
   const LimitSurface surface = limitSurface(cage());

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "limitsurf/error.h"
-#include "limitsurf/prefetch.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/tile_weights.h"
 #include "limitsurf/surface/vertex_approach.h"
@@ -45,7 +44,7 @@ void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& ord
     if (begin + 1 == end || at.face(order[begin + 1]) != face) {
       evaluateSingle(at, order[begin]);
       if (++begin < end) {
-        prefetchTile(tileOf(at.face(order[begin])));
+        runs_.prefetchTile(tileOf(at.face(order[begin])));
       }
       continue;
     }
@@ -71,7 +70,7 @@ void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& ord
       throwChanged();
     }
     if (next != face) {
-      prefetchTile(tileOf(next));
+      runs_.prefetchTile(tileOf(next));
     }
     std::fill_n(u + count, PatchRun::kReadBeyond, 0.);
     std::fill_n(v + count, PatchRun::kReadBeyond, 0.);
@@ -163,26 +162,14 @@ RowParts& BatchEvaluator<Real>::partsAt(int depth) {
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::prefetchTile(TileRef tile) const {
-  if (tile.kind == TileRef::kRing) {
-    const int index = static_cast<int>(tile.index);
-    prefetch(table_.ring_tiles[index]);
-    prefetch(pose_.grid(index, 1));  // three quarters of the locations lie there
-  } else if (tile.kind == TileRef::kSplit) {
-    for (const TileRef child : table_.splits[tile.index]) {
-      if (child.kind != TileRef::kSplit) {
-        prefetchTile(child);
-      }
-    }
-  }
-}
-
-template <typename Real>
 void BatchEvaluator<Real>::evaluateSplit(TileRef tile, int turns, int depth, const TileRows& rows) {
   RowParts& parts = partsAt(depth);
   parts.sortByChild(rows);
   parts.forEachPart([&](unsigned part, const TileRows& some) {
     const int child = static_cast<int>(part);
+    if (child < 3) {
+      runs_.prefetchTile(table_.splits[tile.index][child + 1]);
+    }
     evaluateTile(table_.splits[tile.index][child], turns + child, depth + 1, some);
   });
 }
@@ -203,17 +190,45 @@ void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth,
     evaluateQuarters(tile, turns, depth, rows);
     return;
   }
-  evaluateOnGrids(tile, turns, depth, rows);
+  const TileRows left = evaluateFirstQuarters(tile, turns, depth, rows);
+  evaluateOnGrids(tile, turns, depth, left);
   if (below > 0) {
     unsigned count = 0;
-    for (unsigned i = 0; i < rows.count; ++i) {
-      rows.u[count] = rows.u[i];
-      rows.v[count] = rows.v[i];
-      rows.rows[count] = rows.rows[i];
-      count += std::max(rows.u[i], rows.v[i]) < least ? 1 : 0;
+    for (unsigned i = 0; i < left.count; ++i) {
+      if (std::max(left.u[i], left.v[i]) < least) {  // few are
+        left.u[count] = left.u[i];
+        left.v[count] = left.v[i];
+        left.rows[count] = left.rows[i];
+        ++count;
+      }
     }
-    evaluateQuarters(tile, turns, depth, {rows.u, rows.v, rows.rows, count});
+    evaluateQuarters(tile, turns, depth, {left.u, left.v, left.rows, count});
   }
+}
+
+template <typename Real>
+TileRows BatchEvaluator<Real>::evaluateFirstQuarters(TileRef tile, int turns, int depth,
+                                                     TileRows rows) {
+  constexpr unsigned kFewestRows = 128;  // with fewer, sorting does not pay
+  const int kept = pose_.gridSteps(table_.ring_tiles[tile.index]);
+  for (int steps = 1; steps <= kept && rows.count >= kFewestRows; ++steps) {
+    RowParts& parts = quarters_[steps - 1];
+    if (!parts.sortsFast()) {
+      break;
+    }
+    parts.sortByQuarterAfter(steps, rows);
+    rows.count = 0;
+    parts.forEachPart([&](unsigned part, const TileRows& some) {
+      if (part == 0) {
+        rows = some;
+        return;
+      }
+      const TilePatch patch{
+          tile, turns, depth, steps, static_cast<int>(part & 1), static_cast<int>(part >> 1)};
+      evaluatePatch(patch, powerOfTwo(steps), some);
+    });
+  }
+  return rows;
 }
 
 template <typename Real>
@@ -250,6 +265,13 @@ void BatchEvaluator<Real>::completeNormals(TileRef tile, int turns, int depth,
 template <typename Real>
 void BatchEvaluator<Real>::evaluateQuarters(TileRef tile, int turns, int depth,
                                             const TileRows& rows) {
+  constexpr unsigned kFewestRows = 3;  // sorting fewer takes longer than it saves
+  if (rows.count < kFewestRows) {
+    for (unsigned i = 0; i < rows.count; ++i) {
+      evaluateOne({tile, rows.u[i], rows.v[i], turns, depth}, rows.rows[i]);
+    }
+    return;
+  }
   bool is_any_on_spoke = false;
   for (unsigned i = 0; i < rows.count; ++i) {
     is_any_on_spoke |= (rows.u[i] == 0) | (rows.v[i] == 0);

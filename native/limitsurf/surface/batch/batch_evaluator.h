@@ -42,12 +42,12 @@ class BatchEvaluator {
   void evaluateSingles();
   /// The rows of a part of a face, on which the tile lies, split as often as `depth`.
   void evaluateTile(TileRef tile, int turns, int depth, const TileRows& rows);
-  /// Fetches what most locations on a tile will read.
-  void prefetchTile(TileRef tile) const;
   void evaluateSplit(TileRef tile, int turns, int depth, const TileRows& rows);
   void evaluateRingTile(TileRef tile, int turns, int depth, const TileRows& rows);
   /// Rows whose parameters are in the ring tile's frame, patch by patch.
   void evaluateQuarters(TileRef tile, int turns, int depth, const TileRows& rows);
+  /// The same for the first quarters, of which each has many rows; returns the other rows.
+  TileRows evaluateFirstQuarters(TileRef tile, int turns, int depth, TileRows rows);
   /// Such rows on the grids that are kept. Those below get results without meaning.
   void evaluateOnGrids(TileRef tile, int turns, int depth, const TileRows& rows);
   /// The parameters are in the tile's frame. They are `scale` times as large in that of the patch.
@@ -82,7 +82,8 @@ class BatchEvaluator {
     std::size_t rows[kMost];
   };
   Singles singles_;
-  std::deque<RowParts> parts_;  // by depth; their addresses stay
+  std::deque<RowParts> parts_;               // by depth; their addresses stay
+  RowParts quarters_[Pose::kMostGridSteps];  // by step
 };
 
 extern template class BatchEvaluator<double>;

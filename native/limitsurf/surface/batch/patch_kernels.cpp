@@ -71,6 +71,10 @@ inline void interleavePadded(const Lanes<2> xyz[3], Lanes<2> out[4]) {
     out[2 * row + 1] = pairOf(z[row], 0);
   }
 }
+[[gnu::always_inline]] inline void storeThree(double* to, const Lanes<4>& point) {
+  Lanes<2>{{point.numbers[0], point.numbers[1]}}.store(to);
+  to[2] = point.numbers[2];
+}
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace baseline
 
@@ -83,6 +87,10 @@ constexpr std::size_t kFewestLanes = 3;
 inline double squareRoot(double a) { return __builtin_sqrt(a); }
 inline Lanes<4> squareRoot(const Lanes<4>& a) { return {_mm256_sqrt_pd(a.numbers)}; }
 #include "limitsurf/surface/batch/interleave_four.inl.h"
+[[gnu::always_inline]] inline void storeThree(double* to, const Lanes<4>& point) {
+  Lanes<2>{{point.numbers[0], point.numbers[1]}}.store(to);
+  to[2] = point.numbers[2];
+}
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx2
 #include "limitsurf/surface/batch/target_end.inl.h"
@@ -143,6 +151,9 @@ inline void interleavePadded(const Lanes<8> xyz[3], Lanes<8> out[4]) {
       _mm256_mask_storeu_pd(to + 3 * rows[i], 7, padded[i].numbers);
     }
   }
+}
+[[gnu::always_inline]] inline void storeThree(double* to, const Lanes<4>& point) {
+  _mm256_mask_storeu_pd(to, 7, point.numbers);
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx512

@@ -219,9 +219,8 @@ struct PointWeights {
   }
 };
 
-inline void putPoint(double* to, const Lanes<4>& point) {
-  Lanes<2>{{point.numbers[0], point.numbers[1]}}.store(to);
-  to[2] = point.numbers[2];
+[[gnu::always_inline]] inline void putPoint(double* to, const Lanes<4>& point) {
+  storeThree(to, point);
 }
 inline void putPoint(float* to, const Lanes<4>& point) {
   for (int c = 0; c < 3; ++c) {

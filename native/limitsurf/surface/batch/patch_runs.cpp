@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "limitsurf/prefetch.h"
 #include "limitsurf/surface/tile_evaluator.h"
 
 namespace limitsurf {
@@ -39,6 +40,22 @@ GridRun PatchRuns::onGrids(int tile, int turns, int depth) const {
   copy(grid.limit(), run.anchor);
   run.depth_scale = powerOfTwo(depth);
   return run;
+}
+
+void PatchRuns::prefetchTile(TileRef tile) const {
+  if (tile.kind == TileRef::kRing) {
+    const int index = static_cast<int>(tile.index);
+    prefetch(table_.ring_tiles[index]);
+    prefetch(pose_.grid(index, 1));  // three quarters of the locations lie there
+    if (pose_.gridSteps(table_.ring_tiles[index]) > 1) {
+      prefetch(pose_.grid(index, 2));
+    }
+  } else if (tile.kind == TileRef::kSplit) {
+    const TileRef child = table_.splits[tile.index][0];
+    if (child.kind != TileRef::kSplit) {
+      prefetchTile(child);
+    }
+  }
 }
 
 void PatchRuns::setBSpline(const TilePatch& patch, PatchRun& run) {

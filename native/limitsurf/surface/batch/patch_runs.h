@@ -36,6 +36,10 @@ class PatchRuns {
   /// On the grids that are kept of a ring tile.
   GridRun onGrids(int tile, int turns, int depth) const;
 
+  /// Has the processor fetch what most locations on a ring tile will read, or on the first child of
+  /// a split tile.
+  void prefetchTile(TileRef tile) const;
+
   bool hasCrease(TileRef tile) const { return table_.bsplines[tile.index].crease > 0; }
 
  private:

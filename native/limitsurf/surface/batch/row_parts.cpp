@@ -30,26 +30,48 @@ unsigned quarterOf(double u, double v) {
 
 void RowParts::reserve(unsigned count) {
   count_ = count;
-  if (part_.size() < count) {
-    u_.resize(count + PatchRun::kReadBeyond);
-    v_.resize(count + PatchRun::kReadBeyond);
+  if (rows_.size() < count) {
+    parameters_.resize(2 * (count + PatchRun::kReadBeyond));
     rows_.resize(count);
-    part_.resize(count);
-    sorted_.resize(count);
+    part_.resize(2 * count);
   }
 }
 
 void RowParts::beginParts(unsigned last) {
   unsigned next = 0;
   for (unsigned part = 0; part <= last; ++part) {
-    next += std::exchange(end_[part], next);
+    const unsigned count = std::exchange(end_[part], next);
+    if (count > 0) {
+      sorted()[next] = static_cast<std::uint8_t>(part);
+    }
+    next += count;
   }
+}
+
+void RowParts::sortByQuarterAfter(int steps, const TileRows& rows) {
+  reserve(rows.count);
+  const double bound = std::ldexp(1., -steps);
+  kernels_->count(rows, bound, end_);
+  beginParts(PartKernels::kParts - 1);
+  kernels_->sort(rows, bound, end_, sortedRows());
 }
 
 void RowParts::sortByChild(const TileRows& rows) {
   reserve(rows.count);
+  if (kernels_) {
+    kernels_->count(rows, 0.5, end_);
+    std::swap(end_[2], end_[3]);  // children are counted anticlockwise
+    beginParts(3);
+    unsigned next[PartKernels::kParts] = {end_[0], end_[1], end_[3], end_[2]};
+    kernels_->sortByChild(rows, next, sortedRows());
+    end_[0] = next[0];
+    end_[1] = next[1];
+    end_[2] = next[3];
+    end_[3] = next[2];
+    return;
+  }
   const double *const u = rows.u, *const v = rows.v;
-  std::uint8_t *const part = part_.data(), *const sorted = sorted_.data();
+  std::uint8_t* const part = part_.data();
   std::fill_n(end_, 4, 0);
   for (unsigned i = 0; i < rows.count; ++i) {
     const unsigned right = u[i] >= 0.5, top = v[i] >= 0.5;
@@ -60,8 +82,9 @@ void RowParts::sortByChild(const TileRows& rows) {
   beginParts(3);
   // The child's parameters are distances from the edges at its corner. They change places in
   // children 1 and 3.
-  double* const along[2] = {u_.data(), v_.data()};
-  std::size_t* const to_rows = rows_.data();
+  const TileRows to_all = sortedRows();
+  double* const along[2] = {to_all.u, to_all.v};
+  std::size_t* const to_rows = to_all.rows;
   for (unsigned i = 0; i < rows.count; ++i) {
     const unsigned child = part[i], is_turned = child & 1, to = end_[child]++;
     const int right = static_cast<int>((child ^ child >> 1) & 1);
@@ -69,14 +92,13 @@ void RowParts::sortByChild(const TileRows& rows) {
     along[is_turned][to] = 2 * std::abs(right - u[i]);
     along[1 - is_turned][to] = 2 * std::abs(top - v[i]);
     to_rows[to] = rows.rows[i];
-    sorted[to] = static_cast<std::uint8_t>(child);
   }
 }
 
 void RowParts::sortByQuarter(const TileRows& rows, bool spokes_are_deep) {
   reserve(rows.count);
   const double *const u = rows.u, *const v = rows.v;
-  std::uint8_t *const part = part_.data(), *const sorted = sorted_.data();
+  std::uint8_t* const part = part_.data();
   static_assert(kParts <= 256);
   std::fill_n(end_, kParts, 0);
   unsigned last = 0;
@@ -89,15 +111,15 @@ void RowParts::sortByQuarter(const TileRows& rows, bool spokes_are_deep) {
     ++end_[here];
   }
   beginParts(last);
-  double *const to_u = u_.data(), *const to_v = v_.data();
-  std::size_t* const to_rows = rows_.data();
+  const TileRows to_all = sortedRows();
+  double *const to_u = to_all.u, *const to_v = to_all.v;
+  std::size_t* const to_rows = to_all.rows;
   for (unsigned i = 0; i < rows.count; ++i) {
     const std::uint8_t here = part[i];
     const unsigned to = end_[here]++;
     to_u[to] = u[i];
     to_v[to] = v[i];
     to_rows[to] = rows.rows[i];
-    sorted[to] = here;
   }
 }
 
