@@ -30,7 +30,11 @@ POLL = 0.005  # seconds
 #: calls `tick`, and draws what has changed. What is drawn anew under the mouse gets a move of the
 #: mouse in the next round, and a button that is used by a key is lit for 0.02 s before it acts.
 ROUNDS = 6
-ACTIONS = {**vars(actions), **vars(texture_actions), **vars(waiting_actions)}
+ACTIONS = {}
+for module in (actions, texture_actions, waiting_actions):
+    for word, action in vars(module).items():
+        if callable(action) and ACTIONS.setdefault(word, action) is not action:
+            raise ImportError(f"two functions for the window tests have the name {word}")
 
 
 def serve() -> None:

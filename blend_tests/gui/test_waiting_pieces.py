@@ -16,15 +16,15 @@ FEW = {FOLLOW: 20, LAY: 2}
 def test_esc_ends_it_and_nothing_has_changed(blender, operator):
     things = {FOLLOW: "points_above_sheet", LAY: "lines_above_sheet"}[operator]
     blender.call(things, MANY[operator])
-    threads, before = blender.call("threads"), blender.call("contents")
-    blender.call("start", operator)
+    threads, before = blender.call("threads"), blender.call("parts_of_file")
+    blender.call("remember_and_start", operator)
     assert blender.call("running") == [class_name(operator)]
     blender.key("Escape")
     blender.await_value([], "running")
     blender.await_value(threads, "threads")
-    assert blender.call("contents") == before
+    assert blender.call("parts_of_file") == before
     blender.call(things, FEW[operator])  # afterwards the operator can be called again
-    before = blender.call("contents")
-    blender.call("start", operator)
+    before = blender.call("parts_of_file")
+    blender.call("remember_and_start", operator)
     blender.await_value([], "running")
-    assert blender.call("contents") != before
+    assert blender.call("parts_of_file") != before

@@ -3,7 +3,8 @@
 
 import bpy
 import numpy as np
-from actions import activate, remember, sheet, view
+from actions import activate, remember, sheet
+from texture_actions import start
 
 
 def points_above_sheet(count: int) -> None:
@@ -35,16 +36,13 @@ def _add_to_sheet(name: str, data: bpy.types.ID) -> None:
     activate(ob, bpy.data.objects["Sheet"])
 
 
-def start(operator: str) -> None:
-    """Calls an operator as a menu does."""
+def remember_and_start(operator: str) -> None:
+    """Starts the operator after a step for undo."""
     remember()
-    area, window = view()
-    group, _, name = operator.partition(".")
-    with bpy.context.temp_override(area=area, region=window):
-        getattr(getattr(bpy.ops, group), name)("INVOKE_DEFAULT")
+    start(operator)
 
 
-def contents() -> dict[str, object]:
+def parts_of_file() -> dict[str, object]:
     """Returns what the file has: all data-blocks by name, and what objects consist of."""
     kinds = [p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION"]
     blocks = {kind: getattr(bpy.data, kind) for kind in kinds}
