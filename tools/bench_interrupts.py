@@ -44,7 +44,7 @@ def positions_and_faces(kind: str) -> tuple[Any, Any]:
     elif kind in ("triangles", "some triangles"):
         side = 200 if kind == "triangles" else 12
         positions, quads = shapes.grid(side, side)
-        faces = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+        faces = shapes.halves(quads)
     elif kind == "sharp":
         positions, faces = shapes.grid(250, 250)
     elif kind == "pole":

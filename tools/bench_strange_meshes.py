@@ -38,8 +38,8 @@ def wavy(columns: int, rows: int) -> tuple[Any, Any]:
     return positions + rng.normal(0, 0.1 / max(columns, rows), positions.shape), faces
 
 
-def halves(faces: Any) -> Any:
-    return faces[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+def in_triangles(positions: Any, quads: Any) -> tuple[Any, Any]:
+    return positions, shapes.halves(quads)
 
 
 def polygon(corners: int) -> tuple[Any, list[list[int]]]:
@@ -92,7 +92,7 @@ OBLIQUE = (np.outer([0, 1, 1.37, 0.37], [0.3, 0.7, 0.11]), [[0, 1, 2, 3]])
 
 MESHES: dict[str, Callable[[], tuple[Any, Any]]] = {
     "quads": lambda: wavy(100, 100),
-    "triangles": lambda: (wavy(70, 70)[0], halves(wavy(70, 70)[1])),
+    "triangles": lambda: in_triangles(*wavy(70, 70)),
     "a pole of 64": lambda: bowl(64),
     "a pole of 512": lambda: bowl(512),
     "a pole of 32,000": lambda: bowl(32_000),

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "limitsurf/interruption_point.h"
-#include "limitsurf/types.h"
 
 namespace limitsurf {
 
@@ -16,6 +15,9 @@ namespace limitsurf {
 template <typename T>
 class PartArray {
  public:
+  /// The most elements that can lie next to each other.
+  static constexpr std::size_t mostTogether() { return kPart; }
+
   /// Appends elements that will lie next to each other, and returns the index of the first one.
   /// Where the last part has too little room for them, some indices are skipped.
   std::size_t append(const T* elements, std::size_t count) {

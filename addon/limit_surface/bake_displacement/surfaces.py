@@ -111,6 +111,5 @@ def _carried(
     positions: np.ndarray, matrix: np.ndarray, base_matrix: np.ndarray, base_name: str
 ) -> np.ndarray:
     """Returns the positions carried from one object's space to another's, by way of the world."""
-    transform.check_invertible(base_matrix, base_name)
-    relative = np.linalg.solve(base_matrix, matrix)
+    relative = transform.relation(base_matrix, matrix, base_name)
     return positions @ relative[:3, :3].T + relative[:3, 3]

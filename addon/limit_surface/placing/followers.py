@@ -14,7 +14,7 @@ from ..nodes.follow import SURFACE, TILES
 from ..nodes.follow_curve import FOLLOW_CURVE, POINTS
 from ..nodes.groups import Kind
 from ..reading import attributes
-from .places import ROOT_KINDS
+from .places import lacking, root_attributes
 
 _GROUPS = (
     ids.FOLLOW_HAIR_GROUP,
@@ -56,13 +56,7 @@ def domain_of(ob: bpy.types.Object) -> str:
 def is_placed(ob: bpy.types.Object) -> bool:
     """Tells whether locations on a surface are stored for the object."""
     holder = holder_of(ob)
-    if holder is None:
-        return False
-    stored = holder.attributes
-    return all(
-        name in stored and (stored[name].data_type, stored[name].domain) == (kind, domain_of(ob))
-        for name, kind in ROOT_KINDS.items()
-    )
+    return holder is not None and not lacking(holder, root_attributes(holder))
 
 
 def modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:

@@ -19,7 +19,7 @@ from mathutils import Matrix
 
 from .. import ids
 from ..reading import attributes, linked_attributes
-from .places import NOWHERE, ROOT_KINDS
+from .places import NOWHERE, ROOT_KINDS, domain_of, lacking, root_attributes
 
 if TYPE_CHECKING:
     import limitsurf
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 _POINTS = (ids.POSITION, ids.HANDLE_LEFT, ids.HANDLE_RIGHT)
 _VECTORS = (ids.NORMAL, ids.TANGENT)
 _CURVE_TYPES = ("CATMULL_ROM", "POLY", "BEZIER", "NURBS")  # by Blender's number
-_BINDING = (ids.FACE, ids.UV, ids.REST_ROOT, ids.REST_ROTATION)
 
 
 class Written(NamedTuple):
@@ -98,15 +97,11 @@ def missing(data: bpy.types.ID) -> str:
     """Returns the name of an attribute without which the data cannot follow: it does not exist, or
     is of another type or domain. Returns nothing where all are there.
     """
-    own = "CURVE" if isinstance(data, bpy.types.Curves) else "POINT"
-    needed = {ids.LIVE_REST: ("FLOAT_VECTOR", "POINT"), ids.LIVE_FINGERPRINT: ("INT", own)}
-    needed |= {name: (kind, own) for name, kind in ROOT_KINDS.items()}
-    there = data.attributes
-    for name, wanted in needed.items():
-        stored = there.get(name)
-        if stored is None or (stored.data_type, stored.domain) != wanted:
-            return name
-    return ""
+    needed = {
+        ids.LIVE_REST: ("FLOAT_VECTOR", "POINT"),
+        ids.LIVE_FINGERPRINT: ("INT", domain_of(data)),
+    }
+    return lacking(data, needed | root_attributes(data))
 
 
 def written(data: bpy.types.ID) -> Written | None:
@@ -258,7 +253,7 @@ class LiveThing:
         if self._poser and limit is self._limit and self._source == _source(data):
             return self._poser
         self._rests.clear()
-        binding = {name: attributes.read(data, name) for name in _BINDING}
+        binding = {name: attributes.read(data, name) for name in ROOT_KINDS}
         binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
         if isinstance(data, bpy.types.Curves):
             binding["offsets"] = attributes.curve_offsets(data)

@@ -25,6 +25,27 @@ ROOT_KINDS = {
 }
 
 
+def domain_of(data: bpy.types.ID) -> str:
+    """Returns the domain on which locations are stored in data of this type."""
+    return "CURVE" if isinstance(data, bpy.types.Curves) else "POINT"
+
+
+def root_attributes(data: bpy.types.ID) -> dict[str, tuple[str, str]]:
+    """Returns the type and the domain of each attribute of locations in data of this type."""
+    return {name: (kind, domain_of(data)) for name, kind in ROOT_KINDS.items()}
+
+
+def lacking(data: bpy.types.ID, needed: Mapping[str, tuple[str, str]]) -> str:
+    """Returns the name of the first of these attributes that does not exist, or is of another type
+    or domain than these; nothing where all are there.
+    """
+    for name, wanted in needed.items():
+        stored = data.attributes.get(name)
+        if stored is None or (stored.data_type, stored.domain) != wanted:
+            return name
+    return ""
+
+
 @dataclass(frozen=True)
 class Places:
     """The locations of the elements that have one. All attributes of curves that were added later
@@ -39,14 +60,11 @@ class Places:
     @classmethod
     def read(cls, data: bpy.types.ID) -> Places:
         """Raises RefusalError where an attribute is missing, or holds something else."""
-        domain = "CURVE" if isinstance(data, bpy.types.Curves) else "POINT"
-        for name, kind in ROOT_KINDS.items():
-            there = data.attributes.get(name)
-            if there is None or (there.data_type, there.domain) != (kind, domain):
-                raise RefusalError(
-                    f"{data.name} stores no locations on a limit surface: its attribute {name} is "
-                    "missing, or of another type or domain"
-                )
+        if name := lacking(data, root_attributes(data)):
+            raise RefusalError(
+                f"{data.name} stores no locations on a limit surface: its attribute {name} is "
+                "missing, or of another type or domain"
+            )
         return cls.among({name: attributes.read(data, name) for name in ROOT_KINDS})
 
     @classmethod

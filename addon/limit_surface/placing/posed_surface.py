@@ -59,7 +59,7 @@ def seen_from(space: np.ndarray, places: Places, matrix: np.ndarray) -> Places:
     """
     if np.array_equal(space, matrix):
         return places
-    relation = relation_of(space, matrix)
+    relation = transform.relation(space, matrix, "An object")
     frame = WorldSpace(relation).frames(places.frame)
     frame[:, :, 1] = np.cross(frame[:, :, 2], frame[:, :, 0])
     return Places(transformed(relation, places.position), frame)
@@ -69,13 +69,7 @@ def positions_seen_from(space: np.ndarray, points: np.ndarray, matrix: np.ndarra
     """Returns the positions that `seen_from` gives."""
     if np.array_equal(space, matrix):
         return points
-    return transformed(relation_of(space, matrix), points)
-
-
-def relation_of(space: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    """Returns the matrix from an object's space to that of another object."""
-    transform.check_invertible(space, "An object")
-    return np.linalg.solve(space, matrix)
+    return transformed(transform.relation(space, matrix, "An object"), points)
 
 
 def transformed(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:

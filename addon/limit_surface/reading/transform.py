@@ -20,6 +20,14 @@ def world_matrix(ob: bpy.types.Object) -> np.ndarray:
     return matrix
 
 
+def relation(space: np.ndarray, matrix: np.ndarray, called: str) -> np.ndarray:
+    """Returns the matrix to an object's space, whose name is for messages, from that of another
+    object. Raises RefusalError where there is none.
+    """
+    check_invertible(space, called)
+    return np.linalg.solve(space, matrix)
+
+
 def check_finite(matrix: np.ndarray, called: str) -> None:
     """Raises RefusalError for the transform of an object, by its name in messages, that holds
     infinite numbers or none at all.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "limitsurf/interruptible_vector.h"
+#include "limitsurf/mesh/limits.h"
 #include "limitsurf/random_bits.h"
 
 namespace limitsurf {
@@ -116,6 +116,7 @@ int RefinedPoints::known(KnownMasks& masks, int number, const Make& make) {
 }
 
 int RefinedPoints::addMask(Span<double> weights) {
+  static_assert(2 * kMaxValence + 1 <= PartArray<double>::mostTogether(), "the longest mask");
   masks_.push_back({weights_.append(weights.data(), weights.size()), weights.size()});
   return static_cast<int>(masks_.size()) - 1;
 }

@@ -71,10 +71,6 @@ class PatchSearch {
 
   using Values = BezierPatch::Values;
 
-  static double dot(const BezierPatch::Point& a, const BezierPatch::Point& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  }
-
   /// Beyond so many radii FootBound::holds() seldom does.
   static constexpr double kUsefulRadii = 2;
   bool isBoundUseful(const FootBound& bound, double least) const {

@@ -161,12 +161,13 @@ class ClosestRows {
         at_(static_cast<std::size_t>(points.rows())) {}
 
   void run() {
-    search(spatialOrder(points_, threads_), Condition::none, nullptr);
+    Rows open = spatialOrder(points_, threads_);
+    search(open, Condition::none, nullptr);
     if (options_.facing.rows() == 0) {
       return;
     }
     // The closest point of all is also the closest of those that face the right way, if it does.
-    Rows open = facingAway();
+    removeDone(open);
     // A search that finds nothing that faces the right way would look at the whole surface. It is
     // made again, with the help of cones.
     open = search(std::move(open), Condition::facing, nullptr);
@@ -235,17 +236,14 @@ class ClosestRows {
     return later;
   }
 
-  /// The rows for which a place was found whose normal does not meet the condition, in the order of
-  /// searches.
-  Rows facingAway() const {
+  /// Leaves the rows for which a place was found whose normal does not meet the condition.
+  void removeDone(Rows& rows) const {
     const Points normals = hitsAt(data_.surface, at_, threads_).normal;
-    Rows rows = spatialOrder(points_, threads_);
     const auto isDone = [&](std::size_t row) {
       const Vector3 normal = normals.row(static_cast<Eigen::Index>(row));
       return at_[row].face < 0 || facing(row).accepts(normal);
     };
     rows.erase(std::remove_if(rows.begin(), rows.end(), isDone), rows.end());
-    return rows;
   }
 
   const SearchTree& data_;

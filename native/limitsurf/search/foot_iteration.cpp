@@ -25,10 +25,6 @@ constexpr double kIndefinite = 1e-12;
 /// singular but for rounding, and only one parameter moves.
 constexpr double kSingular = 1e-14;
 
-double dot(const BezierPatch::Point& a, const BezierPatch::Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// A step of the parameters.
 struct Step {
   double s = 0, t = 0;

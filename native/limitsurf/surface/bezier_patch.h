@@ -54,6 +54,11 @@ struct BezierPatch {
   void evaluate(double s, double t, Values& out) const;
 };
 
+/// The scalar product of the coordinates, without the padding.
+inline double dot(const BezierPatch::Point& a, const BezierPatch::Point& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 namespace bezier {
 
 /// A cubic's value and derivatives from its Bezier points, by differences: equal points give

@@ -23,6 +23,11 @@ def grid_faces(columns: int, rows: int):
     return first[:, None] + [0, 1, columns + 2, columns + 1]
 
 
+def halves(quads):
+    """Two triangles for each quad."""
+    return quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+
+
 def cube():
     positions = np.array([[i % 2, i // 2 % 2, i // 4] for i in range(8)], float)
     faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]

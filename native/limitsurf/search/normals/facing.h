@@ -7,6 +7,12 @@
 
 namespace limitsurf {
 
+/// The third axis of the surface's frame, which exists also where there is no normal.
+inline Vector3 frameNormal(const LimitSurface& surface, const Location& at) {
+  const auto frame = surface.frames({&at, 1}, 1);
+  return {frame(0, 2), frame(0, 5), frame(0, 8)};
+}
+
 /// A condition on feet: the normal must be within an angle of a direction.
 struct Facing {
   const LimitSurface& surface;
@@ -18,10 +24,7 @@ struct Facing {
   }
   /// The same test with the surface's frame, for places where the tangents do not determine the
   /// normal.
-  bool accepts(const Location& at) const {
-    const auto frame = surface.frames({&at, 1}, 1);
-    return accepts(Vector3(frame(0, 2), frame(0, 5), frame(0, 8)));
-  }
+  bool accepts(const Location& at) const { return accepts(frameNormal(surface, at)); }
   /// The same at (s, t) of a patch, whose derivatives there are `ds` and `dt`.
   bool accepts(const BezierPatch& patch, double s, double t, const Vector3& ds,
                const Vector3& dt) const;

@@ -7,6 +7,7 @@
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
+#include "limitsurf/search/normals/facing.h"
 #include "limitsurf/search/normals/normal_polynomial.h"
 
 namespace limitsurf {
@@ -69,15 +70,13 @@ NormalCone coneOfCoefficients(const BezierPatch& patch) {
 
 /// The cone of all normals that a search finds on a core, down to its vertex.
 NormalCone coneOfCore(const SearchTree& tree, SurfacePiece core) {
-  const Location vertex = tree.patches.rectangle(core).at(0, 0);
-  const auto frame = tree.surface.frames({&vertex, 1}, 1);
   NormalCone cone;
-  cone.axis = Vector3(frame(0, 2), frame(0, 5), frame(0, 8));
+  cone.axis = frameNormal(tree.surface, tree.patches.rectangle(core).at(0, 0));
   SurfacePatches::SplitCore split;
   InterruptionStride stride;
   do {
     stride.step();
-    tree.patches.split(core, split);
+    tree.patches.splitPatches(core, split);
     for (const BezierPatch& patch : split.patches) {
       cone = NormalCone::around(cone, normalCone(patch));
     }
@@ -100,7 +99,7 @@ NormalCone coneOfRing(const SearchTree& tree, const SurfacePiece& first) {
 /// Whether a core has no side at which the surface ends, and a normal at its vertex.
 bool isSmooth(const SearchTree& tree, const SurfacePiece& core) {
   SurfacePatches::SplitCore split;
-  tree.patches.split(core, split);
+  tree.patches.splitPatches(core, split);
   for (const BezierPatch& patch : split.patches) {
     if (patch.borders != 0) {
       return false;

@@ -15,7 +15,6 @@ constexpr double kCoefficientRounding = 1e-14, kRounding = 1e-15;
 /// Directions whose sum is shorter have no common axis.
 constexpr double kLeastAxis = 0.01;
 
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 double norm(const Point& a) { return std::sqrt(dot(a, a)); }
 Point cross(const Point& a, const Point& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0};
