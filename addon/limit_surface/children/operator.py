@@ -52,7 +52,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
 
     mode: EnumProperty(
         name="Mode",
-        description="What children are",
+        description="Whether children are curves in the file, or grow live in each frame",
         items=(
             (
                 "MADE",

@@ -23,8 +23,7 @@ NOTHING = "Select curves, and make the mesh to lay them on active"
 
 class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.types.Operator):
     """Lay the selected curves onto the exact limit surface of the active mesh along their whole
-    length: new splines replace theirs, which are nowhere farther from the surface than the
-    tolerance"""
+    length. New splines replace the old ones, and are within the tolerance of the surface"""
 
     bl_idname = ids.CURVE_LAY
     bl_label = "Lay Curves on Limit Surface"

@@ -48,8 +48,8 @@ class VIEW3D_OT_limit_draw(
     )
     steadying: IntProperty(
         name="Steady",
-        description="How much strokes are smoothed as they are drawn: the number of smoothing "
-        "steps. The steps of the mouse's pixels vanish after 8",
+        description="Number of smoothing steps for new strokes. 8 of them remove the stairs that "
+        "come from the pixels of the screen",
         default=8,
         min=0,
         max=200,
@@ -66,7 +66,7 @@ class VIEW3D_OT_limit_draw(
     )
     use_join: BoolProperty(
         name="Join",
-        description="Continue a stroke where a new one begins at its end, and close a stroke that "
+        description="Continue a stroke if a new one begins at its end, and close a stroke if it "
         "ends where it began",
         default=True,
     )

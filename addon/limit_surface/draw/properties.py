@@ -61,8 +61,8 @@ class DrawingProperties(FitProperties):
     )
     bevel_resolution: IntProperty(
         name="Bevel Resolution",
-        description="Roundness of the tube around the curves, as Bevel Resolution of curves: "
-        "a quarter of the tube has one segment more than this number",
+        description="Roundness of the tube around the curves: each quarter of it has one segment "
+        "more than this number",
         default=2,
         min=0,
         max=32,

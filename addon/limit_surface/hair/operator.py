@@ -48,8 +48,9 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, SteeringProperties, bpy.types.Op
     )
     tilt: FloatVectorProperty(
         name="Tilt",
-        description="Angles by which strands are tilted away from the surface normal, in the "
-        "direction of growing u and of growing v of their face",
+        description="Angles by which strands lean away from the surface normal, in the direction "
+        "of growing u and of growing v of their face. Along a border, the first angle turns them "
+        "from the normal to outwards and beyond, and the second one along the border",
         size=2,
         default=(0.0, 0.0),
         min=-np.pi,

@@ -34,7 +34,7 @@ class SteeringProperties(flow_properties.FlowProperties):
         **RANDOM.properties("the random part", "Factor of Random and Random Length"),
         "random_length": FloatProperty(
             name="Random Length",
-            description="Largest part of its length by which a strand is shorter, at random",
+            description="Largest random part of its length by which a strand is shorter",
             default=0.0,
             min=0.0,
             max=1.0,

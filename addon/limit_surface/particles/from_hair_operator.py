@@ -43,8 +43,8 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
     keys: IntProperty(
         name="Keys",
         description="Number of keys on each particle, including the root. 0 means the number of "
-        "points of the strands, or the largest one where strands differ. Strands with another "
-        "number of points are resampled at equal distances",
+        "points of the strands, or the largest such number if strands differ. Strands with "
+        "another number of points are resampled at equal distances",
         default=0,
         min=0,
         max=1024,

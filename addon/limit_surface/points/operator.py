@@ -41,8 +41,8 @@ class Points:
 
 
 class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.Operator):
-    """Scatter points over the active mesh's limit surface: vertices that carry the surface's
-    normal, tangent and rotation, and optionally an instance of an object or a scale on each"""
+    """Scatter points over the active mesh's limit surface. Each can show an instance of an object
+    or of a collection's member, or a scale, and stores its rotation and the surface's normal"""
 
     bl_idname = ids.POINTS_ADD
     bl_label = "Add Points on Limit Surface"
@@ -53,7 +53,7 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
         description="What stands on each point",
         items=(
             ("OBJECT", "Object", "Put an instance of an object on each point, if one is named", 0),
-            ("SCALE", "Scale", "Put a scale on each point, as of a fish or a lizard", 1),
+            ("SCALE", "Scale", "Put a scale, like that of a fish, on each point", 1),
             (
                 "COLLECTION",
                 "Collection",

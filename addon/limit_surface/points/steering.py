@@ -41,7 +41,7 @@ class SteeringProperties(flow_properties.FlowProperties):
         ),
         "random_scale": FloatProperty(
             name="Random Scale",
-            description="Largest part of its size by which an instance is smaller, at random",
+            description="Largest random part of its size by which an instance is smaller",
             default=0.0,
             min=0.0,
             max=1.0,
@@ -67,7 +67,7 @@ class SteeringProperties(flow_properties.FlowProperties):
         "tilt": FloatVectorProperty(
             name="Tilt",
             description="Angles by which the Z axis of instances leans, towards their X axis and "
-            "towards their Y axis",
+            "towards their Y axis. Along a border, the Y axis runs along the border",
             size=2,
             default=(0.0, 0.0),
             min=-math.pi,
@@ -101,6 +101,7 @@ class SteeringProperties(flow_properties.FlowProperties):
         **INDEX.properties(
             "the choice from the collection",
             "Place in the collection, from 0 for its first member to 1 for its last one,",
+            unsteered="Choose members at random",
         ),
     }
 

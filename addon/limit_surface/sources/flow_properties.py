@@ -22,9 +22,9 @@ class FlowProperties:
 
     flow_source: EnumProperty(
         name="Flow From",
-        description="Source of the directions along the surface in which things lean",
+        description="Source of directions along the surface in which things lean or point",
         items=(
-            ("NONE", "None", "Let nothing lean along the surface", "", 0),
+            ("NONE", "None", "Use no such directions", "", 0),
             (
                 "IMAGE",
                 "Image",
@@ -52,7 +52,7 @@ class FlowProperties:
                 "CURVATURE_1",
                 "Larger Curvature",
                 "Use the principal direction of the larger curvature, which runs along a limb. Of "
-                "its two ends, the lower one is taken",
+                "the two opposite directions, the one that points downwards is used",
                 "SPHERECURVE",
                 4,
             ),
@@ -60,7 +60,7 @@ class FlowProperties:
                 "CURVATURE_2",
                 "Smaller Curvature",
                 "Use the principal direction of the smaller curvature, which runs around a limb. "
-                "Of its two ends, the lower one is taken",
+                "Of the two opposite directions, the one that points downwards is used",
                 "SPHERECURVE",
                 5,
             ),

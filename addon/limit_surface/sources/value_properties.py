@@ -61,17 +61,19 @@ class SourceNames:
         parts = ("source", "vertex_group", "image", "attribute", "channel", "range")
         return cls(label, label, *(f"{prefix}_{part}" for part in parts))
 
-    def properties(self, what: str, low: str) -> dict[str, Any]:
+    def properties(self, what: str, low: str, unsteered: str = "") -> dict[str, Any]:
         """Returns the annotations of a mixin class. `what` is steered; `low` says what its value
-        is at the ends of the range.
+        is at the ends of the range, and `unsteered` what happens without a source, if that is not
+        the same everywhere.
         """
         colors = (_COLOR_ATTRIBUTE,) if self.color_attribute else ()
+        unsteered = unsteered or f"Use the same {what.removeprefix('the ')} everywhere"
         return {
             self.source: EnumProperty(
                 name=f"{self.label} From",
                 description=f"Source of numbers that make {what} different from place to place",
                 items=(
-                    ("NONE", "None", f"Use the same {what.removeprefix('the ')} everywhere", "", 0),
+                    ("NONE", "None", unsteered, "", 0),
                     *_SOURCES,
                     *colors,
                     _ATTRIBUTE,
