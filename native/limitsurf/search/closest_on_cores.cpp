@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "limitsurf/search/rings/vertex_minimum.h"
+
 namespace limitsurf {
 namespace {
 
@@ -97,10 +99,12 @@ void ClosestOnCores::visitParts(const SurfacePiece& core, SurfacePatches::SplitC
 
 void ClosestOnCores::offerVertex(const SurfacePiece& core) {
   const Location at = data_.patches.rectangle(core).at(0, 0);
-  if (facing_ && !facing_->accepts(at)) {
+  const Vector3 offset = data_.patches.coreVertex(core) - best_.from.place;
+  if (facing_ && !(facing_->accepts(at) && isMinimumAtVertex(data_, data_.patches.ringOf(core),
+                                                             best_.from.away - offset))) {
     return;
   }
-  best_.offer(data_.patches.coreVertex(core) - best_.from.place, at);
+  best_.offer(offset, at);
 }
 
 ClosestOnCores::SeenFromVertex ClosestOnCores::seenFrom(int ring, const SurfacePiece& core) const {

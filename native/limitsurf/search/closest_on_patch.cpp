@@ -7,6 +7,7 @@
 
 #include "limitsurf/search/foot_iteration.h"
 #include "limitsurf/search/normals/normal_polynomial.h"
+#include "limitsurf/search/normals/tangent_cone.h"
 #include "limitsurf/search/squared_distance.h"
 
 namespace limitsurf {
@@ -93,7 +94,7 @@ class PatchSearch {
     if (search == FootSearch::beyond) {
       return true;
     }
-    if (facing_ && !(search == FootSearch::arrived && isFoot({{0, 0, 1}, 0}, s, t))) {
+    if (facing_ && !(search == FootSearch::arrived && isFoot(s, t))) {
       return false;
     }
     offer(found, s, t);
@@ -229,9 +230,14 @@ class PatchSearch {
       }
     }
     if (done) {
-      if (!facing_ || isFoot(cell, s, t)) {
-        offer(s, t);
+      if (facing_) {
+        // Over a small cell the distance may vary by less than `slack` although it falls.
+        minimizeDistance(kernels_, relative_, away_, cell, 0, kNever, kNever, s, t, found);
+        if (!isFoot(s, t)) {
+          return;
+        }
       }
+      offer(s, t);
       return;
     }
     if (cells_ > kFewCells && hasNoFootOfSheet(f, cell)) {
@@ -285,35 +291,28 @@ class PatchSearch {
     best_.offer(found.head<3>().matrix(), patch_.on.at(s, t));
   }
 
-  /// Whether the minimum over a convex cell is a minimum over the smooth sheet around it as well,
-  /// with a normal that meets the condition. Where it lies on a side of the cell beyond which the
-  /// sheet continues, the distance must not fall across that side.
-  bool isFoot(const Cell& cell, double s, double t) const {
+  /// Whether a place of the patch is a foot: the distance falls in no direction of the sheet around
+  /// it, and the normal meets the condition.
+  bool isFoot(double s, double t) const {
     // Tangents are computed from the patch's own points, so that they keep all their digits however
     // far away the searching point is.
     Values at, to_foot;
     patch_.evaluate<1>(s, t, at);
     relative_.evaluate<0>(s, t, to_foot);
     to_foot.value -= away_;
-    const double value = std::sqrt(dot(to_foot.value, to_foot.value));
-    const auto falls = [&](const BezierPatch::Point& tangent, double outwards) {
-      const double slope = outwards * dot(to_foot.value, tangent);
-      return slope < -(kFlat * value + best_.tolerance) * std::sqrt(dot(tangent, tangent));
-    };
-    const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
-    const unsigned borders = bordersOf(cell);
-    if ((s == cell.s && !(borders & kSideS0) && falls(at.ds, -1)) ||
-        (s == s1 && !(borders & kSideS1) && falls(at.ds, 1)) ||
-        (t == cell.t && !(borders & kSideT0) && falls(at.dt, -1)) ||
-        (t == t1 && !(borders & kSideT1) && falls(at.dt, 1))) {
-      return false;
-    }
-    return facing_->accepts(patch_, s, t, at.ds.head<3>(), at.dt.head<3>());
+    const double s_inwards = inwards(s, kSideS0, kSideS1), t_inwards = inwards(t, kSideT0, kSideT1);
+    const TangentCone cone(at.ds.head<3>(), s_inwards, at.dt.head<3>(), t_inwards);
+    return !cone.falls(to_foot.value.head<3>(), best_.tolerance) &&
+           facing_->accepts(patch_, s, t, at.ds.head<3>(), at.dt.head<3>());
   }
 
-  /// A distance counts as falling across a side if the sine of the angle exceeds this; rounding
-  /// stays below it.
-  static constexpr double kFlat = 1e-9;
+  /// The direction in which the sheet goes on from one of the sides at which it ends, 1 or -1; 0
+  /// where it goes on both ways.
+  double inwards(double parameter, unsigned low_side, unsigned high_side) const {
+    return parameter == 0 && (patch_.borders & low_side)    ? 1
+           : parameter == 1 && (patch_.borders & high_side) ? -1
+                                                            : 0;
+  }
 
   const SearchKernels& kernels_ = SearchKernels::get();
   const BezierPatch& patch_;

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "limitsurf/search/search_tree.h"
+
+namespace limitsurf {
+
+/// Whether the distance from a point has a local minimum at an extraordinary vertex, among the
+/// points of the smooth sheet around it. `way` leads from the vertex to the point, in the unit of
+/// the tree.
+///
+/// The distances of places on all faces around the vertex decide, at two scales that are small
+/// compared with the way. So vertices of all kinds are treated alike, whether they have a normal or
+/// not. A vertex counts as a minimum if the distance falls nowhere by a slope of more than
+/// kFlatSlope.
+///
+/// Cost: O(faces around the vertex). A vertex that is no minimum is often recognised on the first
+/// face.
+bool isMinimumAtVertex(const SearchTree& tree, int ring, const Vector3& way);
+
+}  // namespace limitsurf

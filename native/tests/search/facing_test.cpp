@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Closest points with a condition on their normals are local minima of the distance. The distances
+// of neighbours tell, whatever the search assumes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "limitsurf/pi.h"
+#include "limitsurf/search/surface_search.h"
+#include "support/cages/meshes.h"
+#include "support/cages/query_cages.h"
+#include "support/truth/witness.h"
+
+namespace limitsurf::test {
+namespace {
+
+/// How steeply the distance from a point falls from a location of a face towards places of the same
+/// face next to it: the largest difference of distances, divided by that of the places. About 0 or
+/// less at a local minimum. `steps` are differences of parameters.
+double steepestFall(const LimitSurface& surface, const Vector3& point, const Location& at,
+                    const std::vector<double>& steps) {
+  constexpr int kDirections = 64;
+  double fall = -1;
+  for (const double step : steps) {
+    std::vector<Location> places{at};
+    for (int i = 0; i < kDirections; ++i) {
+      const double turn = 2 * kPi<double> * i / kDirections;
+      places.push_back({at.face, std::clamp(at.u + step * std::cos(turn), 0., 1.),
+                        std::clamp(at.v + step * std::sin(turn), 0., 1.)});
+    }
+    const Points on = surface.evaluate(places).position;
+    const double distance = (on.row(0).transpose() - point).norm();
+    const double rounding = 1e-15 * on.cwiseAbs().maxCoeff() + 1e-15 * point.cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 1; i < on.rows(); ++i) {
+      const double apart = (on.row(i) - on.row(0)).norm();
+      if (apart > 0) {
+        fall =
+            std::max(fall, (distance - (on.row(i).transpose() - point).norm() - rounding) / apart);
+      }
+    }
+  }
+  return fall;
+}
+
+TEST(Facing, AVertexWhereTheDistanceFallsIsNoResult) {
+  // The normals of the vertices face the right way, and no place where the distance has a minimum.
+  const LimitSurface surface = limitSurface(cube());
+  Points point(1, 3);
+  point << 2, 0.5, 0.5;
+  ClosestOptions options;
+  options.facing = Eigen::RowVector3d(-1, 1, 1);
+  options.max_angle = 1;
+  EXPECT_EQ(SurfaceSearch(surface).closest(point, options).at[0].face, -1);
+}
+
+TEST(Facing, ResultsAreLocalMinima) {
+  Random random(1);
+  constexpr int kPoints = 60;
+  int found = 0;
+  for (const auto& [name, cage] : queryCages()) {
+    const LimitSurface surface = limitSurface(cage);
+    const SurfaceSearch search(surface);
+    const Eigen::RowVector3d low = surface.positions().colwise().minCoeff(),
+                             high = surface.positions().colwise().maxCoeff();
+    const Eigen::RowVector3d middle = (low + high) / 2, size = high - low;
+    for (const double max_angle : {0.7, kPi<double> / 2}) {
+      Points points(kPoints, 3);
+      ClosestOptions options;
+      options.max_angle = max_angle;
+      options.facing.resize(kPoints, 3);
+      for (int i = 0; i < kPoints; ++i) {
+        const Eigen::RowVector3d away = random.vector(0.8).transpose();
+        points.row(i) = middle + away.cwiseProduct(size);
+        options.facing.row(i) = random.vector(1).transpose();
+      }
+      const Hits hits = search.closest(points, options);
+      for (int i = 0; i < kPoints; ++i) {
+        if (hits.at[i].face >= 0) {
+          ++found;
+          EXPECT_LE(steepestFall(surface, points.row(i), hits.at[i], {1e-7, 1e-8}), 1e-3)
+              << name << ", row " << i << ": " << describe(hits.at[i]);
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 1000);
+}
+
+/// The corners of all faces at a place.
+std::vector<Location> cornersAt(const LimitSurface& surface, const Vector3& place, double margin) {
+  std::vector<Location> corners;
+  for (int face = 0; face < surface.faceCount(); ++face) {
+    for (int corner = 0; corner < 4 && surface.refused().count(surface.baseFace()[face]) == 0;
+         ++corner) {
+      corners.push_back(cornerLocation(face, corner));
+    }
+  }
+  const Points on = surface.evaluate(corners).position;
+  std::vector<Location> found;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if ((on.row(static_cast<Eigen::Index>(i)).transpose() - place).norm() < margin) {
+      found.push_back(corners[i]);
+    }
+  }
+  return found;
+}
+
+TEST(Facing, AVertexIsFoundFromPointsOnItsNormal) {
+  int checked = 0;
+  for (const auto& [name, cage] : queryCages()) {
+    const LimitSurface surface = limitSurface(cage);
+    const SurfaceSearch search(surface);
+    const double diagonal =
+        (surface.positions().colwise().maxCoeff() - surface.positions().colwise().minCoeff())
+            .norm();
+    for (const Location& at : surface.vertexLocations()) {
+      if (at.face < 0) {
+        continue;
+      }
+      const Evaluation vertex = surface.evaluate({&at, 1}, Derivatives::first, true);
+      if (!vertex.normal.allFinite()) {
+        continue;
+      }
+      const std::vector<Location> corners =
+          cornersAt(surface, vertex.position.row(0), 1e-12 * diagonal);
+      ClosestOptions options;
+      options.facing = vertex.normal;
+      options.max_angle = 0.01;
+      for (const double height : {-1e-3, 1e-6, 1e-3}) {
+        const Points point = vertex.position + height * diagonal * vertex.normal;
+        const Hits hits = search.closest(point, options);
+        // Towards the hollow side of a vertex where the curvature has no bound, there is no
+        // minimum.
+        const auto falls = [&](const Location& corner) {
+          return steepestFall(surface, point.row(0), corner, {1e-3, 1e-4, 1e-5, 1e-6}) > 1e-8;
+        };
+        if (std::any_of(corners.begin(), corners.end(), falls)) {
+          continue;
+        }
+        ++checked;
+        ASSERT_GE(hits.at[0].face, 0) << name << ", " << describe(at) << ", height " << height;
+        EXPECT_LE(hits.distance[0], (std::abs(height) + kSearchError) * diagonal)
+            << name << ", " << describe(at) << ", height " << height;
+      }
+    }
+  }
+  EXPECT_GT(checked, 1000);
+}
+
+}  // namespace
+}  // namespace limitsurf::test
