@@ -15,6 +15,10 @@ inline std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+/// The key of a seed: the bits of a counter are mixed(key ^ mixed(counter)). With the key
+/// mixed(seed), the bits of counter a of seed b would be those of counter b of seed a.
+inline std::uint64_t keyOf(std::uint64_t seed) { return mixed(mixed(seed)); }
+
 /// A number in [0, 1), uniformly distributed if the bits are.
 inline double uniformIn01(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 

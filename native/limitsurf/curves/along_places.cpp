@@ -114,7 +114,7 @@ AlongPlaces alongPlaces(const EdgeCurves& curves, const std::vector<std::int64_t
       static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
   result.curve.reserve(all);
   result.arc.reserve(all);
-  const std::uint64_t key = mixed(mixed(options.seed) ^ mixed(static_cast<std::uint64_t>(row)));
+  const std::uint64_t key = mixed(keyOf(options.seed) ^ mixed(static_cast<std::uint64_t>(row)));
   for (int curve = 0; curve < curves.count(); ++curve) {
     const std::uint64_t stream = mixed(key ^ mixed(static_cast<std::uint64_t>(curve)));
     const double phase = options.phase.value_or(uniformIn01(mixed(stream)));

@@ -37,7 +37,7 @@ std::vector<Location> scatterJittered(const LimitSurface& surface, int per_side,
                                 std::to_string(kMostLocations) + " locations");
   }
   std::vector<Location> result(faces.size() * per_face);
-  const std::uint64_t key = mixed(seed);
+  const std::uint64_t key = keyOf(seed);
   parallelFor(result.size(), kLocationsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t stratum = i % per_face, column = stratum % side, row = stratum / side;

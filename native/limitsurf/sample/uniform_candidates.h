@@ -19,7 +19,7 @@ class UniformCandidates {
  public:
   UniformCandidates(const SurfacePatches& patches, const std::vector<AreaCell>& cells,
                     const CellTable& table, const DensityField& density, std::uint64_t seed)
-      : patches_(patches), cells_(cells), table_(table), density_(density), key_(mixed(seed)) {}
+      : patches_(patches), cells_(cells), table_(table), density_(density), key_(keyOf(seed)) {}
 
   /// The next candidate of a sample that is accepted. `attempt` counts the candidates tried.
   Location next(std::size_t sample, std::uint32_t& attempt) const;

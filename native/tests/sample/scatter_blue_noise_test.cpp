@@ -166,12 +166,19 @@ TEST(BlueNoise, OnANarrowStripIsARow) {
   cage.positions.col(0) *= 1e4;
   const LimitSurface surface = limitSurface(cage);
   const int count = 400;
-  int reports = 0;
-  const BlueNoise noise =
-      AreaSampler(surface).blueNoise(byCount(count), 0, [&](double) { ++reports; });
-  ASSERT_EQ(noise.at.size(), 400u);
-  EXPECT_GT(noise.radius, 0.97 * 0.7476 * 30e4 / count);
-  EXPECT_LE(reports, 40);  // one for each round of each attempt, and for the end
+  const AreaSampler sampler(surface);
+  double mean = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    int reports = 0;
+    const BlueNoise noise = sampler.blueNoise(byCount(count, seed), 0, [&](double) { ++reports; });
+    ASSERT_EQ(noise.at.size(), 400u);
+    // A few points too many are sampled, 3 % on average, give or take 1 %, and then removed.
+    const double part = noise.radius / (0.7476 * 30e4 / count);
+    EXPECT_GT(part, 0.94) << "seed " << seed;
+    mean += part / 8;
+    EXPECT_LE(reports, 40) << "seed " << seed;  // one for each round of each attempt, and the end
+  }
+  EXPECT_GT(mean, 0.965);
 }
 
 TEST(BlueNoise, OnDistantIslandsIsAsDenseAsElsewhere) {

@@ -28,7 +28,7 @@ PoissonDiscSampling::PoissonDiscSampling(const SurfacePatches& patches, const Bo
     : surface_{patches, NoiseRadii(density, radius, patches.diagonal()),
                gap,     kMostCellsPerPoint * expected + kSpareCells,
                {0},     std::vector<CoreExtent>(static_cast<std::size_t>(patches.tileCount()))},
-      key_(mixed(seed)),
+      key_(keyOf(seed)),
       threads_(threads),
       accepted_(box, surface_.radii.smallest(), surface_.radii.largest()),
       candidates_(box, surface_.radii.smallest(), surface_.radii.largest()) {
