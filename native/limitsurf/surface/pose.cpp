@@ -12,10 +12,7 @@ namespace {
 
 /// Tasks take 100 microseconds and more. Small meshes are one task, because waking other cores
 /// would take as long.
-constexpr std::size_t kPointsPerTask = 65536, kRingsPerTask = 256, kTilesPerTask = 256;
-
-/// Rings with more faces are set one after the other, each on all cores.
-constexpr int kManyFaces = 512;
+constexpr std::size_t kPointsPerTask = 65536, kRingsPerTask = 256;
 
 Padded padded(const Vector3& v) { return {v[0], v[1], v[2], 0}; }
 
@@ -39,9 +36,9 @@ void fill(std::vector<T>& values, std::size_t count, const Value&... value) {
 
 }  // namespace
 
-Pose::Pose(const TileTable& table) : table_(&table), first_tile_(table.rings.size() + 1, 0) {
+Pose::Pose(const TileTable& table)
+    : table_(&table), ring_steps_(table.rings.size(), 0), steps_made_(table.ring_tiles.size()) {
   fill(rings_, table.rings.size());
-  fill(ring_tiles_, table.ring_tiles.size());
   std::size_t tiles[TileTable::kMostDepth + 1] = {};
   for (const RingTile& tile : table.ring_tiles) {
     ++tiles[tile.depth];
@@ -57,15 +54,24 @@ Pose::Pose(const TileTable& table) : table_(&table), first_tile_(table.rings.siz
       break;
     }
   }
-  // The system hands out their memory, page by page, when set() first writes to it.
-  grids_.reset(new Grid[grids]);
+  first_grid_.reserve(table.ring_tiles.size());
   std::size_t next = 0;
-  for (std::size_t t = 0; t < ring_tiles_.size(); ++t) {
-    const RingTile& tile = table.ring_tiles[t];
-    first_tile_[tile.ring + 1] = static_cast<int>(t) + 1;
-    ring_tiles_[t].first_grid = next;
+  for (const RingTile& tile : table.ring_tiles) {
+    first_grid_.push_back(next);
     next += static_cast<std::size_t>(gridSteps(tile));
+    int& steps = ring_steps_[tile.ring];
+    steps = std::max(steps, tile.ring_steps + gridSteps(tile));
   }
+  first_level_.reserve(table.rings.size());
+  std::size_t level_points = 0;
+  for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
+    first_level_.push_back(level_points);
+    level_points +=
+        table.rings[ring].points.size() * static_cast<std::size_t>(ring_steps_[ring] + 1);
+  }
+  // The system hands out their memory, page by page, when it is first written to.
+  grids_.reset(new Grid[grids]);
+  ring_levels_.reset(new Padded[level_points]);
 }
 
 namespace {
@@ -104,24 +110,13 @@ void Pose::set(const Points& cage, int threads) {
   extent_ = (box.high - box.low).maxCoeff();
   residual_unit_ = powerOfTwo(box.low.abs().max(box.high.abs()).maxCoeff());
   refinePoints();
-  std::vector<int> large;
-  for (std::size_t ring = 0; ring < rings_.size(); ++ring) {
-    if (table_->rings[ring].basis->ring().faces > kManyFaces) {
-      large.push_back(static_cast<int>(ring));
-    }
-  }
+  steps_made_.clear();
   parallelFor(rings_.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    RingMemory memory;
+    std::vector<Padded> memory;
     for (std::size_t ring = begin; ring < end; ++ring) {
-      if (table_->rings[ring].basis->ring().faces <= kManyFaces) {
-        setRing(static_cast<int>(ring), 1, memory);
-      }
+      setRing(static_cast<int>(ring), memory);
     }
   });
-  RingMemory memory;
-  for (const int ring : large) {
-    setRing(ring, threads, memory);
-  }
   is_set_ = true;
 }
 
@@ -184,17 +179,17 @@ void Pose::refinePoints() {
   }
 }
 
-void Pose::setRing(int ring_index, int threads, RingMemory& memory) {
+void Pose::setRing(int ring_index, std::vector<Padded>& memory) {
   const RingPoints& ring = table_->rings[ring_index];
   RingPose& pose = rings_[ring_index];
   const Padded vertex = points_[ring.points[0]];
   const std::size_t size = ring.points.size();
-  memory.points.resize(size);
+  Padded* const levels = ringLevels(ring_index);
   for (std::size_t i = 0; i < size; ++i) {
-    memory.points[i] = difference(ring.points[i], ring.points[0]);
+    levels[i] = difference(ring.points[i], ring.points[0]);
   }
-  memory.levels = memory.points;
-  ring.basis->projectInPlace(memory.points.data(), pose.coefficients);
+  memory.assign(levels, levels + size);
+  ring.basis->projectInPlace(memory.data(), pose.coefficients);
   pose.largest = pose.coefficients.bottomRows(pose.coefficients.rows() - 1).cwiseAbs().maxCoeff();
   const Padded to_limit = padded(pose.coefficients.row(0));
   pose.limit = vertex + to_limit;
@@ -202,55 +197,67 @@ void Pose::setRing(int ring_index, int threads, RingMemory& memory) {
   pose.coefficients.row(0) =
       ((vertex - pose.limit) + (to_limit + residual(ring.points[0]))).head<3>().transpose();
 
-  std::vector<Padded>& levels = memory.levels;
-  for (Padded& point : levels) {
-    point -= to_limit;
+  for (std::size_t i = 0; i < size; ++i) {
+    levels[i] -= to_limit;
   }
-  const int first = first_tile_[ring_index], end = first_tile_[ring_index + 1];
-  int steps = 0;
-  for (int t = first; t < end; ++t) {
-    const RingTile& tile = table_->ring_tiles[t];
-    steps = std::max(steps, tile.ring_steps + gridSteps(tile));
-  }
-  levels.resize(size * (static_cast<std::size_t>(steps) + 1));
-  for (int step = 0; step < steps; ++step) {
-    const Padded* before = &levels[size * static_cast<std::size_t>(step)];
-    Padded* after = &levels[size * (static_cast<std::size_t>(step) + 1)];
+  for (int step = 0; step < ring_steps_[ring_index]; ++step) {
+    const Padded* const before = levels + size * static_cast<std::size_t>(step);
+    Padded* const after = levels + size * (static_cast<std::size_t>(step) + 1);
     ring.basis->step().apply([=](int i) -> const Padded& { return before[i]; },
                              [=](int i) -> Padded& { return after[i]; });
   }
-  parallelFor(static_cast<std::size_t>(end - first), kTilesPerTask, threads,
-              [&](std::size_t begin_tile, std::size_t end_tile) {
-                for (std::size_t t = begin_tile; t < end_tile; ++t) {
-                  setRingTile(first + static_cast<int>(t), levels);
-                }
-              });
 }
 
-void Pose::setRingTile(int t, const std::vector<Padded>& ring_levels) {
+Pose::OuterPoints Pose::outerPoints(int t) const {
+  const RingTile& tile = table_->ring_tiles[t];
+  const Padded& limit = rings_[tile.ring].limit;
+  const std::size_t count = table_->rings[tile.ring].basis->outerModes(tile.face).slots().size();
+  OuterPoints outer;
+  for (std::size_t i = 0; i < count; ++i) {
+    outer.points[i] = (points_[tile.outer[i]] - limit) + residual(tile.outer[i]);
+  }
+  return outer;
+}
+
+const Pose::Grid* Pose::madeGrids(int tile, int steps, OwnGrids& own) const {
+  const int made = steps_made_.claim(tile);
+  if (made == StepsMade::kClaimedByOther) {
+    own.resize(kMostGridSteps);
+    makeGrids(tile, 0, steps, own.data());
+    return own.data();
+  }
+  Grid* const kept = &grids_[first_grid_[tile]];
+  makeGrids(tile, made, steps, kept);
+  steps_made_.put(tile, std::max(made, steps));  // another thread may have made more meanwhile
+  return kept;
+}
+
+void Pose::makeGrids(int t, int made, int steps, Grid grids[]) const {
   const RingTile& tile = table_->ring_tiles[t];
   const Eigenbasis& basis = *table_->rings[tile.ring].basis;
-  const Padded& limit = rings_[tile.ring].limit;
-  const Padded constant = rings_[tile.ring].constant();  // the ring's points are without it
+  const RingPose& ring = rings_[tile.ring];
   const std::size_t ring_size = table_->rings[tile.ring].points.size();
-  const Padded* ring = &ring_levels[ring_size * static_cast<std::size_t>(tile.ring_steps)];
-  RingTilePose& pose = ring_tiles_[t];
+  const Padded* points =  // of the ring
+      ringLevels(tile.ring) + ring_size * static_cast<std::size_t>(tile.ring_steps + made);
 
   const GridStep step(basis.ring(), tile.face);
   Grid start;  // what has no slot there is not read
-  step.setRing(ring, start.points);
-  const std::vector<int>& slots = basis.outerModes(tile.face).slots();
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    pose.outer[i] = (points_[tile.outer[i]] - limit) + residual(tile.outer[i]);
-    start.points[slots[i]] = pose.outer[i] - constant;
+  if (made == 0) {
+    step.setRing(points, start.points);
+    const OuterPoints outer = outerPoints(t);
+    const std::vector<int>& slots = basis.outerModes(tile.face).slots();
+    const Padded constant = ring.constant();  // the ring's points are without it
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      start.points[slots[i]] = outer.points[i] - constant;
+    }
   }
-  const Padded* before = start.points;
-  for (int n = 1; n <= gridSteps(tile); ++n) {
-    Padded* after = grids_[pose.first_grid + n - 1].points;
-    ring += ring_size;
-    step.apply(ring, before, after);
+  const Padded* before = made == 0 ? start.points : grids[made - 1].points;
+  for (; made < steps; ++made) {
+    Padded* after = grids[made].points;
+    points += ring_size;
+    step.apply(points, before, after);
     step.clearUnused(after);
-    after[tile_grid::slot(-1, -1)] = limit;
+    after[tile_grid::slot(-1, -1)] = ring.limit;
     before = after;
   }
 }

@@ -8,6 +8,7 @@
 #include "limitsurf/eigen/tile_grid.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/jet.h"
+#include "limitsurf/surface/steps_made.h"
 
 namespace limitsurf {
 
@@ -15,7 +16,8 @@ namespace limitsurf {
 ///
 /// Regular tiles read the points themselves. A ring keeps the coefficients of its modes, and a ring
 /// tile keeps the control grids of its first subdivision steps, because a random location lies
-/// deeper than n steps with a probability of only 4^-n.
+/// deeper than n steps with a probability of only 4^-n. Grids are made when they are first needed:
+/// a pose of which only some locations are evaluated does without most of them.
 class Pose {
  public:
   /// The number of steps whose grids are kept in a tile that is a whole Ptex face: 1 location in
@@ -30,6 +32,8 @@ class Pose {
 
     const Padded& limit() const { return points[tile_grid::slot(-1, -1)]; }
   };
+  /// The caller's memory for grids that another thread is just making: nobody waits for another.
+  using OwnGrids = std::vector<Grid>;
 
   struct RingPose {
     Padded limit;         ///< the limit position of the extraordinary vertex
@@ -42,9 +46,9 @@ class Pose {
     }
   };
 
-  struct RingTilePose {
-    std::size_t first_grid = 0;
-    Padded outer[tile_grid::kOuter];  ///< relative to the ring's limit
+  /// The outer points of a ring tile, relative to the ring's limit.
+  struct OuterPoints {
+    Padded points[tile_grid::kOuter];
   };
 
   explicit Pose(const TileTable& table);
@@ -70,11 +74,14 @@ class Pose {
     return (points_[to] - points_[from]) + (residual(to) - residual(from));
   }
   const RingPose& ring(int i) const { return rings_[i]; }
-  const RingTilePose& ringTile(int i) const { return ring_tiles_[i]; }
-  /// The grid after `steps` >= 1 steps.
-  const Grid& grid(int tile, int steps) const {
-    return grids_[ring_tiles_[tile].first_grid + steps - 1];
+  OuterPoints outerPoints(int tile) const;
+  /// The grids after 1, 2, ... `steps` <= gridSteps() steps. They are valid as long as the pose and
+  /// `own`, and until `own` is used again.
+  const Grid* grids(int tile, int steps, OwnGrids& own) const {
+    return steps_made_.has(tile, steps) ? keptGrids(tile) : madeGrids(tile, steps, own);
   }
+  /// The place of the grids, which may not be made yet.
+  const Grid* keptGrids(int tile) const { return &grids_[first_grid_[tile]]; }
   int gridSteps(const RingTile& tile) const { return grid_steps_[tile.depth]; }
 
  private:
@@ -83,13 +90,13 @@ class Pose {
   template <bool kFine>
   void refinePoint(int point);
   void refinePoints();
-  /// Working memory that one ring after the other uses.
-  struct RingMemory {
-    std::vector<Padded> points;
-    std::vector<Padded> levels;  // the ring's points after 0, 1, 2, ... steps
-  };
-  void setRing(int ring, int threads, RingMemory& memory);
-  void setRingTile(int tile, const std::vector<Padded>& ring_levels);
+  /// `memory` is working memory that one ring after the other uses.
+  void setRing(int ring, std::vector<Padded>& memory);
+  /// A ring's points relative to its limit after 0, 1, 2, ... steps, one behind the other.
+  Padded* ringLevels(int ring) const { return &ring_levels_[first_level_[ring]]; }
+  const Grid* madeGrids(int tile, int steps, OwnGrids& own) const;
+  /// Makes the grids from the one after `made` steps on.
+  void makeGrids(int tile, int made, int steps, Grid grids[]) const;
 
   const TileTable* table_;
   bool is_set_ = false;
@@ -99,9 +106,11 @@ class Pose {
   std::vector<std::array<float, 3>> residuals_;  // of the refined points, over residual_unit_
   double residual_unit_ = 1;  // a power of two of about the size of the coordinates
   std::vector<RingPose> rings_;
-  std::vector<RingTilePose> ring_tiles_;
-  std::vector<int> first_tile_;  // per ring, and one more entry
+  std::vector<int> ring_steps_;  // per ring: the most that one of its tiles needs
+  std::vector<std::size_t> first_level_, first_grid_;
+  std::unique_ptr<Padded[]> ring_levels_;
   std::unique_ptr<Grid[]> grids_;
+  StepsMade steps_made_;
 };
 
 }  // namespace limitsurf

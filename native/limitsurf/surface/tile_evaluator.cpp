@@ -116,14 +116,14 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
     if (!needsNets(basis, Order)) {
       Padded grid[tile_grid::kSlots];
       basis.controlGrid(tile.face, quarter.steps, tile.ring_steps,
-                        pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer, grid);
+                        pose_.ring(tile.ring).coefficients, pose_.outerPoints(index).points, grid);
       evaluateWindow<Order>(grid + window.b * tile_grid::kSize + window.a, tile_grid::kSize,
                             window.u, window.v, patch);
     } else {
       using derivative_nets::Net, derivative_nets::Selection;
       Padded nets[derivative_nets::kCount];
       basis.derivativeNets(tile.face, quarter.steps, tile.ring_steps,
-                           pose_.ring(tile.ring).coefficients, pose_.ringTile(index).outer,
+                           pose_.ring(tile.ring).coefficients, pose_.outerPoints(index).points,
                            Selection::window(quarter.a, quarter.b), nets);
       const int first = window.b * tile_grid::kSize + window.a;
       evaluateNets<Order>(
@@ -139,7 +139,7 @@ void TileEvaluator::evaluateRing(const TileLocation& at, Jet& jet) {
     patch.dv *= 2;
     return;
   }
-  const Pose::Grid& grid = pose_.grid(index, quarter.steps);
+  const Pose::Grid& grid = pose_.grids(index, quarter.steps, own_grids_)[quarter.steps - 1];
   jet.anchor = grid.limit();
   evaluateWindow<Order>(grid.points + window.b * tile_grid::kSize + window.a, tile_grid::kSize,
                         window.u, window.v, patch);
@@ -156,13 +156,14 @@ void TileEvaluator::evaluateByModes(const RingTile& tile, int index, int steps,
   table_.rings[tile.ring].basis->weights(tile.face, steps, tile.ring_steps, window, mode_weights_,
                                          outer_weights_);
   const Points& modes = pose_.ring(tile.ring).coefficients;
+  const Pose::OuterPoints outer = pose_.outerPoints(index);
   Padded* const values[6] = {&patch.value, &patch.du,  &patch.dv,
                              &patch.duu,   &patch.duv, &patch.dvv};
   for (int d = 0; d < window.count(); ++d) {
     const Vector3 sum = modes.transpose() * mode_weights_.row(d).transpose();
     *values[d] = Padded(sum[0], sum[1], sum[2], 0);
     for (Eigen::Index i = 0; i < outer_weights_.cols(); ++i) {
-      *values[d] += outer_weights_(d, i) * pose_.ringTile(index).outer[i];
+      *values[d] += outer_weights_(d, i) * outer.points[i];
     }
   }
 }
@@ -239,12 +240,13 @@ void TileEvaluator::gatherModes(const TileLocation& at, int order, ModeProducts&
                                          gridWindow(quarter, tile.sides, order), mode_weights_,
                                          outer_weights_);
   const Points& modes = pose_.ring(tile.ring).coefficients;
+  const Pose::OuterPoints outer = pose_.outerPoints(index);
   products = ModeProducts(order, modes.rows() - 1 + outer_weights_.cols());
   for (Eigen::Index i = 1; i < modes.rows(); ++i) {
     products.add(mode_weights_.col(i), modes.row(i).transpose());
   }
   for (Eigen::Index i = 0; i < outer_weights_.cols(); ++i) {
-    products.add(outer_weights_.col(i), pose_.ringTile(index).outer[i].head<3>().matrix());
+    products.add(outer_weights_.col(i), outer.points[i].head<3>().matrix());
   }
   products.sort();
 }

@@ -111,6 +111,7 @@ class TileEvaluator {
   int last_ = -1, loaded_ = -1;  // the last regular tile, and the one whose points are kept
   Padded window_[16];            // the points of the latter, relative to its anchor
   Eigen::MatrixXd mode_weights_, outer_weights_;
+  Pose::OwnGrids own_grids_;
 };
 
 }  // namespace limitsurf

@@ -180,18 +180,22 @@ void BatchEvaluator<Real>::evaluateRingTile(TileRef tile, int turns, int depth,
   const RingTile& ring_tile = table_.ring_tiles[tile.index];
   const int corner = ring_tile.corner;
   turns = (turns + corner) & 3;
-  const double least = powerOfTwo(-pose_.gridSteps(ring_tile));  // on the grids that are kept
+  const int kept = pose_.gridSteps(ring_tile);
+  const double least = powerOfTwo(-kept);  // on the grids that are kept
+  double lowest = 1;
   unsigned below = 0;
   for (unsigned i = 0; i < rows.count; ++i) {
     turnParameters(corner, rows.u[i], rows.v[i]);
-    below += std::max(rows.u[i], rows.v[i]) < least ? 1 : 0;
+    const double larger = std::max(rows.u[i], rows.v[i]);
+    lowest = std::min(lowest, larger);
+    below += larger < least ? 1 : 0;
   }
   if (below > rows.count / 4) {
     evaluateQuarters(tile, turns, depth, rows);
     return;
   }
   const TileRows left = evaluateFirstQuarters(tile, turns, depth, rows);
-  evaluateOnGrids(tile, turns, depth, left);
+  evaluateOnGrids(tile, std::min(kept, Quarter::stepsTo(lowest)), turns, depth, left);
   if (below > 0) {
     unsigned count = 0;
     for (unsigned i = 0; i < left.count; ++i) {
@@ -232,16 +236,19 @@ TileRows BatchEvaluator<Real>::evaluateFirstQuarters(TileRef tile, int turns, in
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluateOnGrids(TileRef tile, int turns, int depth,
+void BatchEvaluator<Real>::evaluateOnGrids(TileRef tile, int steps, int turns, int depth,
                                            const TileRows& rows) {
-  GridRun run = runs_.onGrids(static_cast<int>(tile.index), turns, depth);
+  if (rows.count == 0) {
+    return;
+  }
+  GridRun run = runs_.onGrids(static_cast<int>(tile.index), steps, turns, depth);
   run.u = rows.u;
   run.v = rows.v;
   run.rows = rows.rows;
   run.count = rows.count;
   const bool has_normals = order_ >= 1 && results_.normal;
   if (has_normals) {
-    run.normal_limits = alone_.normalLimits(run.steps, depth);
+    run.normal_limits = alone_.normalLimits(steps, depth);
   }
   grid_kernel_(run, results_);
   if (has_normals) {

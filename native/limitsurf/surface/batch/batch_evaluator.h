@@ -48,8 +48,8 @@ class BatchEvaluator {
   void evaluateQuarters(TileRef tile, int turns, int depth, const TileRows& rows);
   /// The same for the first quarters, of which each has many rows; returns the other rows.
   TileRows evaluateFirstQuarters(TileRef tile, int turns, int depth, TileRows rows);
-  /// Such rows on the grids that are kept. Those below get results without meaning.
-  void evaluateOnGrids(TileRef tile, int turns, int depth, const TileRows& rows);
+  /// Such rows on the grids after up to so many steps. Those below get results without meaning.
+  void evaluateOnGrids(TileRef tile, int steps, int turns, int depth, const TileRows& rows);
   /// The parameters are in the tile's frame. They are `scale` times as large in that of the patch.
   void evaluatePatch(const TilePatch& patch, double scale, const TileRows& rows);
   /// Computes the normals that the kernels have left out.

@@ -28,16 +28,16 @@ PatchRun PatchRuns::onPatch(const TilePatch& patch, bool is_single) {
   return run;
 }
 
-GridRun PatchRuns::onGrids(int tile, int turns, int depth) const {
+GridRun PatchRuns::onGrids(int tile, int steps, int turns, int depth) {
   const RingTile& ring_tile = table_.ring_tiles[tile];
-  const Pose::Grid& grid = pose_.grid(tile, 1);
+  const Pose::Grid* const grids = pose_.grids(tile, steps, own_grids_);
   GridRun run;
-  run.grids = numbersOf(grid.points);
-  run.steps = pose_.gridSteps(ring_tile);
+  run.grids = numbersOf(grids->points);
+  run.steps = steps;
   run.u_low = onRight(ring_tile.sides);
   run.v_low = onLeft(ring_tile.sides);
   run.turns = turns;
-  copy(grid.limit(), run.anchor);
+  copy(grids->limit(), run.anchor);
   run.depth_scale = powerOfTwo(depth);
   return run;
 }
@@ -46,9 +46,10 @@ void PatchRuns::prefetchTile(TileRef tile) const {
   if (tile.kind == TileRef::kRing) {
     const int index = static_cast<int>(tile.index);
     prefetch(table_.ring_tiles[index]);
-    prefetch(pose_.grid(index, 1));  // three quarters of the locations lie there
+    const Pose::Grid* const grids = pose_.keptGrids(index);
+    prefetch(grids[0]);  // three quarters of the locations lie there
     if (pose_.gridSteps(table_.ring_tiles[index]) > 1) {
-      prefetch(pose_.grid(index, 2));
+      prefetch(grids[1]);
     }
   } else if (tile.kind == TileRef::kSplit) {
     const TileRef child = table_.splits[tile.index][0];
@@ -85,7 +86,7 @@ void PatchRuns::setRing(const TilePatch& patch, bool is_single, PatchRun& run) {
   const RingTile& tile = table_.ring_tiles[index];
   const Padded* grid;
   if (patch.steps <= pose_.gridSteps(tile)) {
-    const Pose::Grid& kept = pose_.grid(index, patch.steps);
+    const Pose::Grid& kept = pose_.grids(index, patch.steps, own_grids_)[patch.steps - 1];
     grid = kept.points;
     copy(kept.limit(), run.anchor);
     run.value_scale = 1;
@@ -118,15 +119,15 @@ void PatchRuns::setDeep(const TilePatch& patch, bool is_single) {
   const RingTile& tile = table_.ring_tiles[index];
   const Eigenbasis& basis = *table_.rings[tile.ring].basis;
   const Points& coefficients = pose_.ring(tile.ring).coefficients;
-  const Padded* const outer = pose_.ringTile(index).outer;
+  const Pose::OuterPoints outer = pose_.outerPoints(index);
   deep_tile_ = patch.tile.index;
   deep_steps_ = patch.steps;
   if (!TileEvaluator::needsNets(basis, order_)) {
-    basis.controlGrid(tile.face, patch.steps, tile.ring_steps, coefficients, outer, deep_);
+    basis.controlGrid(tile.face, patch.steps, tile.ring_steps, coefficients, outer.points, deep_);
     return;
   }
   using derivative_nets::Selection;
-  basis.derivativeNets(tile.face, patch.steps, tile.ring_steps, coefficients, outer,
+  basis.derivativeNets(tile.face, patch.steps, tile.ring_steps, coefficients, outer.points,
                        is_single ? Selection::window(patch.a, patch.b) : Selection::whole(), deep_);
   if (is_single) {
     deep_steps_ = 0;  // the other quarters are missing

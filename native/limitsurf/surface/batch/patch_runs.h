@@ -33,8 +33,8 @@ class PatchRuns {
 
   /// If `is_single`, the run is for a single row.
   PatchRun onPatch(const TilePatch& patch, bool is_single);
-  /// On the grids that are kept of a ring tile.
-  GridRun onGrids(int tile, int turns, int depth) const;
+  /// On the grids of a ring tile after its first steps, which are kept.
+  GridRun onGrids(int tile, int steps, int turns, int depth);
 
   /// Has the processor fetch what most locations on a ring tile will read, or on the first child of
   /// a split tile.
@@ -57,6 +57,7 @@ class PatchRuns {
   Padded deep_[derivative_nets::kCount];  // of the last ring tile below the grids that are kept
   std::uint32_t deep_tile_ = 0;
   int deep_steps_ = 0;
+  Pose::OwnGrids own_grids_;
 };
 
 }  // namespace limitsurf

@@ -131,11 +131,12 @@ Box SurfacePatches::coreBox(const SurfacePiece& core) const {
   for (const int point : data_->table.rings[tile.ring].points) {
     box.include(pose.point(point).head<3>().matrix());
   }
-  const Pose::RingTilePose& outer = pose.ringTile(data_->tiles[core.tile].ref.index);
+  const Pose::OuterPoints outer =
+      pose.outerPoints(static_cast<int>(data_->tiles[core.tile].ref.index));
   const std::size_t count =
       data_->table.rings[tile.ring].basis->outerModes(tile.face).slots().size();
   for (std::size_t i = 0; i < count; ++i) {
-    box.include((pose.ring(tile.ring).limit + outer.outer[i]).head<3>().matrix());
+    box.include((pose.ring(tile.ring).limit + outer.points[i]).head<3>().matrix());
   }
   box.low *= data_->scale;
   box.high *= data_->scale;

@@ -337,13 +337,14 @@ Padded SurfacePatches::Data::ringGrid(const SurfacePiece& piece, int steps,
   const int index = static_cast<int>(tiles[piece.tile].ref.index);
   const RingTile& tile = table.ring_tiles[index];
   if (steps <= pose.gridSteps(tile)) {
-    const Pose::Grid& kept = pose.grid(index, steps);
+    Pose::OwnGrids own;
+    const Pose::Grid& kept = pose.grids(index, steps, own)[steps - 1];
     std::copy(kept.points, kept.points + tile_grid::kSlots, grid);
     return kept.limit();
   }
   const Pose::RingPose& ring = pose.ring(tile.ring);
   table.rings[tile.ring].basis->controlGrid(tile.face, steps, tile.ring_steps, ring.coefficients,
-                                            pose.ringTile(index).outer, grid);
+                                            pose.outerPoints(index).points, grid);
   const double shrinkage = powerOfTwo(1 - steps);
   for (int c = 0; c < tile_grid::kSlots; ++c) {
     grid[c] = shrinkage * grid[c] + ring.constant();
