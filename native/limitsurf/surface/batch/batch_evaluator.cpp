@@ -42,10 +42,12 @@ void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& ord
   while (begin < end) {
     const std::int64_t face = at.face(order[begin]);
     if (begin + 1 == end || at.face(order[begin + 1]) != face) {
-      evaluateSingle(at, order[begin]);
-      if (++begin < end) {
-        runs_.prefetchTile(tileOf(at.face(order[begin])));
+      constexpr std::size_t kAhead = 8;  // rows, until the tile has arrived
+      if (begin + kAhead < end) {
+        runs_.prefetchTile(tileOf(at.face(order[begin + kAhead])));
       }
+      evaluateSingle(at, order[begin]);
+      ++begin;
       continue;
     }
     const std::size_t stop = std::min<std::size_t>(end, begin + kMostRows);

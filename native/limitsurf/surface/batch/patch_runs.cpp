@@ -43,7 +43,9 @@ GridRun PatchRuns::onGrids(int tile, int steps, int turns, int depth) {
 }
 
 void PatchRuns::prefetchTile(TileRef tile) const {
-  if (tile.kind == TileRef::kRing) {
+  if (tile.kind == TileRef::kBSpline) {
+    prefetch(table_.bsplines[tile.index]);
+  } else if (tile.kind == TileRef::kRing) {
     const int index = static_cast<int>(tile.index);
     prefetch(table_.ring_tiles[index]);
     const Pose::Grid* const grids = pose_.keptGrids(index);
