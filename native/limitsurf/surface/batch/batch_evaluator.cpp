@@ -37,57 +37,60 @@ BatchEvaluator<Real>::BatchEvaluator(const TileTable& table, const Pose& pose, i
 template <typename Real>
 void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& order,
                                     std::size_t begin, std::size_t end) {
+  std::int64_t faces[kMostRows];
   double u[kMostRows + PatchRun::kReadBeyond], v[kMostRows + PatchRun::kReadBeyond];
   std::size_t rows[kMostRows];
   while (begin < end) {
-    const std::int64_t face = at.face(order[begin]);
-    if (begin + 1 == end || at.face(order[begin + 1]) != face) {
-      constexpr std::size_t kAhead = 8;  // rows, until the tile has arrived
-      if (begin + kAhead < end) {
-        runs_.prefetchTile(tileOf(at.face(order[begin + kAhead])));
-      }
-      evaluateSingle(at, order[begin]);
-      ++begin;
-      continue;
-    }
-    const std::size_t stop = std::min<std::size_t>(end, begin + kMostRows);
-    unsigned count = 0;
+    // Many rows are read before the first one is evaluated. In another order each may have to come
+    // from memory, and the processor does not wait for one before it asks for the next.
+    const auto count = static_cast<unsigned>(std::min<std::size_t>(kMostRows, end - begin));
     bool good = true;
-    std::int64_t next = face;
-    do {
-      const std::size_t row = order[begin];
-      next = at.face(row);
-      if (next != face) {
-        break;
-      }
+    for (unsigned i = 0; i < count; ++i) {
+      const std::size_t row = order[begin++];
       const double u_here = at.u(row), v_here = at.v(row);
       good &= (u_here >= 0) & (u_here <= 1) & (v_here >= 0) & (v_here <= 1);
-      u[count] = u_here;
-      v[count] = v_here;
-      rows[count] = row;
-      ++count;
-    } while (++begin < stop);
-    const TileRef tile = tileOf(face);
-    if (!good || tile.kind == TileRef::kNone) {
-      throwChanged();
+      faces[i] = at.face(row);
+      u[i] = u_here;
+      v[i] = v_here;
+      rows[i] = row;
     }
-    if (next != face) {
-      runs_.prefetchTile(tileOf(next));
+    if (!good) {
+      throwChanged();
     }
     std::fill_n(u + count, PatchRun::kReadBeyond, 0.);
     std::fill_n(v + count, PatchRun::kReadBeyond, 0.);
-    evaluateTile(tile, 0, 0, {u, v, rows, count});
+    evaluateFaces(faces, {u, v, rows, count});
   }
   evaluateSingles();
 }
 
 template <typename Real>
-void BatchEvaluator<Real>::evaluateSingle(const LocationBatch& at, std::size_t row) {
-  double u = at.u(row), v = at.v(row);
-  const TileRef tile = tileOf(at.face(row));
-  if (!((u >= 0) & (u <= 1) & (v >= 0) & (v <= 1)) || tile.kind == TileRef::kNone) {
-    throwChanged();
+void BatchEvaluator<Real>::evaluateFaces(const std::int64_t faces[], const TileRows& rows) {
+  constexpr unsigned kAhead = 8;  // single rows, until a tile has arrived
+  for (unsigned first = 0, last; first < rows.count; first = last) {
+    last = first + 1;
+    while (last < rows.count && faces[last] == faces[first]) {
+      ++last;
+    }
+    const TileRef tile = tileOf(faces[first]);
+    if (tile.kind == TileRef::kNone) {
+      throwChanged();
+    }
+    const unsigned next = last == first + 1 ? first + kAhead : last;
+    if (next < rows.count) {
+      runs_.prefetchTile(tileOf(faces[next]));
+    }
+    const TileRows some{rows.u + first, rows.v + first, rows.rows + first, last - first};
+    if (some.count == 1) {
+      evaluateSingle(tile, some);
+    } else {
+      evaluateTile(tile, 0, 0, some);
+    }
   }
+}
+
+template <typename Real>
+void BatchEvaluator<Real>::evaluateSingle(TileRef tile, const TileRows& row) {
   if (tile.kind == TileRef::kBSpline) {
     const BSplineTile& regular = table_.bsplines[tile.index];
     const bool has_ends = regular.x_low | regular.x_high | regular.y_low | regular.y_high;
@@ -95,16 +98,16 @@ void BatchEvaluator<Real>::evaluateSingle(const LocationBatch& at, std::size_t r
       const unsigned i = singles_.count++;
       singles_.tiles[i] = tile;
       singles_.indices[i] = regular.points.data();
-      singles_.u[i] = u;
-      singles_.v[i] = v;
-      singles_.rows[i] = row;
+      singles_.u[i] = *row.u;
+      singles_.v[i] = *row.v;
+      singles_.rows[i] = *row.rows;
       if (singles_.count == Singles::kMost) {
         evaluateSingles();
       }
       return;
     }
   }
-  evaluateTile(tile, 0, 0, {&u, &v, &row, 1});
+  evaluateTile(tile, 0, 0, row);
 }
 
 template <typename Real>

@@ -31,13 +31,15 @@ class BatchEvaluator {
   void evaluate(const LocationBatch& at, const RowOrder& order, std::size_t begin, std::size_t end);
 
  private:
-  /// At most so many rows are put in order at a time.
+  /// At most so many rows are read and put in order at a time.
   static constexpr unsigned kMostRows = 2048;
 
   /// The tile of a face, of kind kNone if there is no such face.
   TileRef tileOf(std::int64_t face) const;
+  /// Rows on the faces given, one for each.
+  void evaluateFaces(const std::int64_t faces[], const TileRows& rows);
   /// A row that follows none of its face. It may wait until there are more of them.
-  void evaluateSingle(const LocationBatch& at, std::size_t row);
+  void evaluateSingle(TileRef tile, const TileRows& row);
   /// Those that wait.
   void evaluateSingles();
   /// The rows of a part of a face, on which the tile lies, split as often as `depth`.
