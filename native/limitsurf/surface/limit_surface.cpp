@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "limitsurf/surface/curvature/irregular_curvature.h"
 #include "limitsurf/surface/differential.h"
@@ -40,11 +41,11 @@ const std::vector<int>& LimitSurface::baseFace() const { return data_->ptex.base
 const std::vector<int>& LimitSurface::corner() const { return data_->ptex.corner; }
 const std::map<int, std::string>& LimitSurface::refused() const { return data_->refused; }
 
-void LimitSurface::setPositions(const Points& positions, int threads) {
+void LimitSurface::setPositions(Points positions, int threads) {
   checkThreads(threads);
-  checkPositions(positions, data_->mesh.vertexCount());
+  checkPositions(positions, data_->mesh.vertexCount(), threads);
   data_->pose.set(positions, threads);
-  data_->positions = positions;
+  data_->positions = std::move(positions);
 }
 
 bool LimitSurface::isPosed() const { return data_->pose.isSet(); }

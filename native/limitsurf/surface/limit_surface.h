@@ -145,9 +145,9 @@ class LimitSurface {
   /// Gives the same topology another pose. Throws MeshError as ControlMesh does for positions, and
   /// then leaves the surface as it was. Must not be called while another thread evaluates.
   ///
-  /// If an InterruptionPoint ends it, positions() are as before and isPosed() is false: then
+  /// If an InterruptionPoint ends it, positions() are as before and isPosed() may be false: then
   /// setPositions(positions()) restores the pose, and nothing may be evaluated before.
-  void setPositions(const Points& positions, int threads = 0);
+  void setPositions(Points positions, int threads = 0);
   bool isPosed() const;
 
   // Faces and locations.

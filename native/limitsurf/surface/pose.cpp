@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/batch/grid_step.h"
@@ -78,16 +79,11 @@ namespace {
 
 /// The bounding box of some points.
 struct Box {
-  Padded low = Padded::Zero(), high = Padded::Zero();
+  Padded low = Padded::Constant(std::numeric_limits<double>::infinity()), high = -low;
 
-  Box(const Padded* points, std::size_t count) {
-    if (count > 0) {
-      low = high = points[0];
-    }
-    for (std::size_t i = 1; i < count; ++i) {
-      low = low.min(points[i]);
-      high = high.max(points[i]);
-    }
+  void include(const Padded& least, const Padded& most) {
+    low = low.min(least);
+    high = high.max(most);
   }
 };
 
@@ -100,13 +96,24 @@ void Pose::set(const Points& cage, int threads) {
   is_set_ = false;
   const RefinedPoints& refined = table_->points;
   points_.resize(static_cast<std::size_t>(refined.size()));
-  parallelFor(static_cast<std::size_t>(cage.rows()), kPointsPerTask, threads,
-              [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) {
-                  points_[i] = padded(cage.row(static_cast<Eigen::Index>(i)).transpose());
-                }
-              });
-  const Box box(points_.data(), static_cast<std::size_t>(cage.rows()));
+  const auto count = static_cast<std::size_t>(cage.rows());
+  std::vector<Box> parts((count + kPointsPerTask - 1) / kPointsPerTask);
+  parallelFor(count, kPointsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    Box part;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Padded point = padded(cage.row(static_cast<Eigen::Index>(i)).transpose());
+      points_[i] = point;
+      part.include(point, point);
+    }
+    parts[begin / kPointsPerTask] = part;
+  });
+  Box box;
+  for (const Box& part : parts) {
+    box.include(part.low, part.high);
+  }
+  if (count == 0) {
+    box.low = box.high = Padded::Zero();
+  }
   extent_ = (box.high - box.low).maxCoeff();
   residual_unit_ = powerOfTwo(box.low.abs().max(box.high.abs()).maxCoeff());
   refinePoints();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limitsurf/error.h"
+#include "limitsurf/parallel.h"
 
 namespace limitsurf::python {
 namespace {
@@ -187,11 +188,16 @@ std::vector<std::pair<std::int64_t, std::int64_t>> pairsOf(const py::handle& obj
   return pairs;
 }
 
-Points pointsOf(const Doubles& array) {
+Points pointsOf(const Doubles& array, int threads) {
+  constexpr std::size_t kRowsPerTask = 65536;
   Points points(array.shape(0), 3);
   const double* const from = array.data();
-  forEachRow(static_cast<std::size_t>(array.shape(0)),
-             [&](std::size_t row) { std::copy_n(from + 3 * row, 3, points.data() + 3 * row); });
+  const WithoutGil released;
+  const InterruptionPoint point = interruptible();
+  parallelFor(static_cast<std::size_t>(array.shape(0)), kRowsPerTask, threads,
+              [&](std::size_t begin, std::size_t end) {
+                std::copy(from + 3 * begin, from + 3 * end, points.data() + 3 * begin);
+              });
   return points;
 }
 

@@ -104,14 +104,24 @@ void requireRows(Array& array, const char* name, int columns) {
   }
 }
 
-/// Calls body(i) for i below `count`, without the GIL, which may have been released before; Ctrl-C
-/// ends that. For what passes over large arrays.
+/// Releases the GIL, which may have been released before.
+class WithoutGil {
+ public:
+  WithoutGil() {
+    if (PyGILState_Check() == 1) {
+      release_.emplace();
+    }
+  }
+
+ private:
+  std::optional<py::gil_scoped_release> release_;
+};
+
+/// Calls body(i) for i below `count`, without the GIL; Ctrl-C ends that. For what passes over large
+/// arrays.
 template <typename Body>
 void forEachRow(std::size_t count, const Body& body) {
-  std::optional<py::gil_scoped_release> release;
-  if (PyGILState_Check() == 1) {
-    release.emplace();
-  }
+  const WithoutGil released;
   const InterruptionPoint point = interruptible();
   InterruptionStride stride;
   for (std::size_t i = 0; i < count; ++i) {
@@ -167,7 +177,7 @@ std::vector<std::pair<std::int64_t, std::int64_t>> pairsOf(const py::handle& obj
                                                            const char* name);
 
 /// The points of an (n, 3) array, and the (n, 3) array of points. Ctrl-C ends what copies.
-Points pointsOf(const Doubles& array);
+Points pointsOf(const Doubles& array, int threads = 1);
 py::array_t<double> pointArray(Points points);
 
 /// An array of results, float64 or float32. Without a shape it is None.

@@ -32,9 +32,9 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
     throw MeshError("positions has shape " + shapeText(array) + "; expected (" +
                     std::to_string(shared.mesh->vertexCount()) + ", 3)");
   }
-  const Points points = pointsOf(array);
+  Points points = pointsOf(array, threads);
   const LongCall call(shared.lock, CallLock::Access::change);
-  shared.setPositions(points, threads);
+  shared.setPositions(std::move(points), threads);
 }
 
 std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {

@@ -26,9 +26,9 @@ struct SharedSurface {
 
   /// Sets the positions. If something is thrown, the surface is as before as soon as somebody reads
   /// it. The lock must be held for a change.
-  void setPositions(const Points& positions, int threads) {
+  void setPositions(Points positions, int threads) {
     try {
-      surface_.setPositions(positions, threads);
+      surface_.setPositions(std::move(positions), threads);
     } catch (...) {
       lock.setWhole(surface_.isPosed());
       throw;
@@ -42,7 +42,7 @@ struct SharedSurface {
   std::uint64_t pose() const { return pose_; }
 
   std::shared_ptr<BoundMesh> mesh;
-  CallLock lock{"LimitSurface", [this] { surface_.setPositions(Points(surface_.positions()), 0); }};
+  CallLock lock{"LimitSurface", [this] { surface_.setPositions(surface_.positions(), 0); }};
   KeptValue<SurfaceSearch, LimitSurface> search{"search tree of a LimitSurface"};
   KeptValue<AreaSampler, LimitSurface> sampler{"area of a LimitSurface"};
 

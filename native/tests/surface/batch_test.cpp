@@ -11,6 +11,7 @@
 #include <string>
 #include <tuple>
 
+#include "limitsurf/mesh/control_mesh.h"
 #include "support/cages/meshes.h"
 #include "support/truth/witness.h"
 
@@ -287,6 +288,40 @@ TEST(SetPositions, RefusesWhatIsNotFiniteAndKeepsThePose) {
   EXPECT_THROW(surface.setPositions(cross().positions.topRows(11)), MeshError);
   EXPECT_TRUE(sameBits(before, surface.evaluate(at, Derivatives::second, true)));
   EXPECT_TRUE(sameBits(surface.positions(), cross().positions));
+}
+
+TEST(CheckPositions, FindsOneBadNumberAmongManyAndNamesTheFirstRow) {
+  constexpr int kRows = 140'003;  // three parts, the last of which ends in an odd number of rows
+  const Points good = Points::Random(kRows, 3);
+  const double inf = std::numeric_limits<double>::infinity(), nan = inf - inf;
+  for (const int threads : {1, 3}) {
+    checkPositions(good, kRows, threads);
+    for (const int row : {0, 1, 65'535, 65'536, 139'999, 140'000, 140'002}) {
+      for (const double value : {nan, inf, -inf, 2 * kLargestCoordinate, -2 * kLargestCoordinate}) {
+        Points bad = good;
+        bad(row, row % 3) = value;
+        bad(kRows - 1, 0) = nan;
+        try {
+          checkPositions(bad, kRows, threads);
+          ADD_FAILURE() << row << ", " << value;
+        } catch (const MeshError& error) {
+          const std::string begin = "vertex " + std::to_string(row) + " ";
+          EXPECT_EQ(std::string(error.what()).substr(0, begin.size()), begin) << value;
+        }
+      }
+    }
+  }
+}
+
+TEST(CheckPositions, RefusesWhatIsTooSmall) {
+  Points points = Points::Constant(7, 3, 5);
+  checkPositions(points, 7, 1);
+  points.setZero();
+  points(6, 2) = kLeastExtent;
+  checkPositions(points, 7, 1);
+  points(6, 2) = kLeastExtent / 2;
+  EXPECT_THROW(checkPositions(points, 7, 1), MeshError);
+  checkPositions(Points(0, 3), 0, 1);
 }
 
 }  // namespace
