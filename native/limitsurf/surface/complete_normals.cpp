@@ -3,14 +3,26 @@
 
 #include <vector>
 
+#include "limitsurf/parallel.h"
+
 namespace limitsurf {
 
-void completeNormals(const LimitSurface& surface, const LocationBatch& at, Points& normal,
-                     int threads) {
+void completeNormals(const LimitSurface& surface, const LocationBatch& at,
+                     Eigen::Ref<Points> normal, int threads) {
+  constexpr std::size_t kRowsPerPart = 16384;
+  const auto count = static_cast<std::size_t>(normal.rows());
+  std::vector<std::vector<Eigen::Index>> parts((count + kRowsPerPart - 1) / kRowsPerPart);
+  parallelFor(count, kRowsPerPart, threads, [&](std::size_t begin, std::size_t end) {
+    for (auto row = static_cast<Eigen::Index>(begin); row < static_cast<Eigen::Index>(end); ++row) {
+      if (!normal.row(row).allFinite()) {
+        parts[begin / kRowsPerPart].push_back(row);
+      }
+    }
+  });
   std::vector<Location> without;
   std::vector<Eigen::Index> rows;
-  for (Eigen::Index row = 0; row < normal.rows(); ++row) {
-    if (!normal.row(row).allFinite()) {
+  for (const std::vector<Eigen::Index>& part : parts) {
+    for (const Eigen::Index row : part) {
       without.push_back(at[static_cast<std::size_t>(row)]);
       rows.push_back(row);
     }

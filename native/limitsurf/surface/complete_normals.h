@@ -10,7 +10,7 @@ namespace limitsurf {
 /// exactly at some irregular vertices; those rows get the third column of LimitSurface::frames() at
 /// their location. `normal` has one row per location. Cost: O(rows), and frames() for the rows that
 /// are replaced.
-void completeNormals(const LimitSurface& surface, const LocationBatch& at, Points& normal,
-                     int threads = 0);
+void completeNormals(const LimitSurface& surface, const LocationBatch& at,
+                     Eigen::Ref<Points> normal, int threads = 0);
 
 }  // namespace limitsurf

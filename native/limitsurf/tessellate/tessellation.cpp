@@ -45,27 +45,50 @@ std::size_t leastPoints(const ControlMesh& mesh, const std::vector<int>& levels)
   return points;
 }
 
-/// Evaluates positions and normals part by part.
-template <typename Take>
-void evaluateParts(const LimitSurface& surface, Span<Location> at, int threads, const Take& take) {
+/// Evaluates positions and normals of up to kRowsPerPart locations at a time. The memory for du and
+/// dv serves all parts: fresh memory costs as much as filling it.
+class PartEvaluator {
+ public:
+  PartEvaluator(const LimitSurface& surface, std::size_t count, int threads)
+      : surface_(surface), threads_(threads) {
+    const auto most = static_cast<Eigen::Index>(std::min(kRowsPerPart, count));
+    du_.resize(most, 3);
+    dv_.resize(most, 3);
+  }
+
+  /// Writes a row for each location.
+  void operator()(Span<Location> part, double* position, double* normal) {
+    const std::size_t count = part.size();
+    const EvaluationArrays<double> results{
+        {position, count}, {du_.data(), count}, {dv_.data(), count}, {}, {}, {}, {normal, count}};
+    surface_.evaluate(part, Derivatives::first, results, threads_);
+    completeNormals(surface_, part, Eigen::Map<Points>(normal, static_cast<Eigen::Index>(count), 3),
+                    threads_);
+  }
+
+ private:
+  const LimitSurface& surface_;
+  int threads_;
+  Points du_, dv_;
+};
+
+/// Calls body(begin, part) for the parts of the locations.
+template <typename Body>
+void forEachPart(Span<Location> at, const Body& body) {
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
-    const Span<Location> part = at.subspan(begin, std::min(kRowsPerPart, at.size() - begin));
-    Evaluation e = surface.evaluate(part, Derivatives::first, true, threads);
-    completeNormals(surface, part, e.normal, threads);
-    take(begin, e);
+    body(begin, at.subspan(begin, std::min(kRowsPerPart, at.size() - begin)));
   }
 }
 
 void evaluatePoints(const LimitSurface& surface, Tessellation& result, int threads,
                     const Progress& progress) {
-  const auto count = static_cast<Eigen::Index>(result.locations.size());
-  result.positions.resize(count, 3);
-  result.normals.resize(count, 3);
-  evaluateParts(surface, result.locations, threads, [&](std::size_t begin, const Evaluation& e) {
-    const auto first = static_cast<Eigen::Index>(begin);
-    result.positions.middleRows(first, e.position.rows()) = e.position;
-    result.normals.middleRows(first, e.normal.rows()) = e.normal;
-    progress(static_cast<double>(first + e.position.rows()) / static_cast<double>(count));
+  const std::size_t count = result.locations.size();
+  result.positions.resize(static_cast<Eigen::Index>(count), 3);
+  result.normals.resize(static_cast<Eigen::Index>(count), 3);
+  PartEvaluator evaluate(surface, count, threads);
+  forEachPart(result.locations, [&](std::size_t begin, Span<Location> part) {
+    evaluate(part, result.positions.data() + 3 * begin, result.normals.data() + 3 * begin);
+    progress(static_cast<double>(begin + part.size()) / static_cast<double>(count));
   });
 }
 
@@ -92,12 +115,15 @@ void evaluateCornerNormals(const LimitSurface& surface, Tessellation& result, in
       }
     }
   }
-  evaluateParts(surface, others, threads, [&](std::size_t begin, const Evaluation& e) {
-    for (Eigen::Index row = 0; row < e.normal.rows(); ++row) {
-      result.corner_normals.row(rows[begin + static_cast<std::size_t>(row)]) = e.normal.row(row);
+  PartEvaluator evaluate(surface, others.size(), threads);
+  const auto most = static_cast<Eigen::Index>(std::min(kRowsPerPart, others.size()));
+  Points position(most, 3), normal(most, 3);
+  forEachPart(others, [&](std::size_t begin, Span<Location> part) {
+    evaluate(part, position.data(), normal.data());
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      result.corner_normals.row(rows[begin + i]) = normal.row(static_cast<Eigen::Index>(i));
     }
-    progress(static_cast<double>(begin + static_cast<std::size_t>(e.normal.rows())) /
-             static_cast<double>(others.size()));
+    progress(static_cast<double>(begin + part.size()) / static_cast<double>(others.size()));
   });
 }
 
