@@ -81,14 +81,21 @@ void checkDerivatives(int derivatives, int highest);
 /// The number of rows evaluated at a time: the results are copied while they are in the cache.
 constexpr std::size_t kRowsPerChunk = std::size_t{1} << 17;
 
+/// Calls body(first row, number of rows) for chunk after chunk.
+template <typename Body>
+void forEachChunk(std::size_t rows, const Body& body) {
+  for (std::size_t begin = 0; begin < rows; begin += kRowsPerChunk) {
+    body(begin, std::min(kRowsPerChunk, rows - begin));
+  }
+}
+
 /// Calls body(first row, locations) for chunk after chunk of a batch, without the GIL. What the
 /// lock guards does not change meanwhile, and Ctrl-C ends the call.
 template <typename Body>
 void inChunks(const CallLock& lock, const CheckedLocations& at, const Body& body) {
   const LongCall call(lock);
-  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerChunk) {
-    body(begin, at.part(begin, std::min(kRowsPerChunk, at.size() - begin)));
-  }
+  forEachChunk(at.size(),
+               [&](std::size_t begin, std::size_t count) { body(begin, at.part(begin, count)); });
 }
 
 /// A limitsurf.Locations of these locations; where face is -1, (u, v) is NaN.

@@ -48,22 +48,21 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
 }
 
 /// Frames, and the positions for an output that is wanted.
-void framesInto(const SharedSurface& shared, const CheckedLocations& at, Output& position,
+void framesInto(const SharedSurface& shared, const LocationArrays& at, Output& position,
                 Output& frame, int threads) {
-  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
-    const std::size_t count = chunk.size();
-    if (double* const rotations = frame.numbers<double>()) {
-      double* const positions = position.numbers<double>();
-      shared.surface().frames(
-          chunk,
-          {{positions ? positions + 3 * begin : nullptr, count}, {rotations + 9 * begin, count}},
-          threads);
-      return;
-    }
+  const LongCall call(shared.lock);
+  const LocationBatch checked = shared.surface().checkLocations(at.batch());
+  if (double* const rotations = frame.numbers<double>()) {
+    shared.surface().frames(
+        checked, {{position.numbers<double>(), at.size()}, {rotations, at.size()}}, threads);
+    return;
+  }
+  forEachChunk(at.size(), [&](std::size_t begin, std::size_t count) {
     Points positions(position.wanted() ? count : 0, 3);
     Rotations rotations(count, 9);
     shared.surface().frames(
-        chunk, {{position.wanted() ? positions.data() : nullptr, count}, {rotations.data(), count}},
+        checked.rows(begin, count),
+        {{position.wanted() ? positions.data() : nullptr, count}, {rotations.data(), count}},
         threads);
     if (position.wanted()) {
       position.put(3 * begin, positions.data(), 3 * count);
@@ -76,7 +75,7 @@ py::object frames(const SharedSurface& shared, const py::object& face, const py:
                   int threads, const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  const LocationArrays at(face, uv);
   Output position, frame(type, {static_cast<py::ssize_t>(at.size()), 3, 3});
   framesInto(shared, at, position, frame, threads);
   return frame.object();
@@ -86,7 +85,7 @@ py::object placedFrames(const SharedSurface& shared, const py::object& face, con
                         int threads, const py::object& dtype) {
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
-  const CheckedLocations at = locationsOn(shared.surface(), face, uv);
+  const LocationArrays at(face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   Output position(type, {rows, 3}), frame(type, {rows, 3, 3});
   framesInto(shared, at, position, frame, threads);

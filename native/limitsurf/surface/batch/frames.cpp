@@ -3,6 +3,7 @@
 // LimitSurface::frames().
 #include <algorithm>
 
+#include "limitsurf/error.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/row_check.h"
 #include "limitsurf/surface/batch/frame_kernels.h"
@@ -17,6 +18,15 @@ namespace {
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 15;
 
 using Frame = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+
+/// Throws LocationError for a face that has no tile. The batch has been checked, but an array of
+/// another program may have been changed since by another of its threads.
+void checkFace(const TileTable& table, int face) {
+  const auto index = static_cast<std::size_t>(face);
+  if (index >= table.faces.size() || table.faces[index].kind == TileRef::kNone) {
+    throw LocationError("the locations were changed while they were evaluated");
+  }
+}
 
 }  // namespace
 
@@ -66,6 +76,7 @@ void LimitSurface::frames(const LocationBatch& at, const FrameArrays& results, i
         Frame rotation(numbers);
         const Location location = part[i];
         if (isCorner(location)) {
+          checkFace(data_->table, location.face);
           const TileLocation place = evaluator.locate(location);
           if (place.atVertex()) {
             const VertexApproach towards = data_->approachTo(place);
