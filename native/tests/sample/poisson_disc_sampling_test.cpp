@@ -45,6 +45,11 @@ TEST(PoissonDiscSampling, TakesFewTrialsForEachPoint) {
   EXPECT_LE(trialsPerPoint(triangles), 36);
 }
 
+/// First cells no larger than discs would be slivers: they took 453 trials for each point.
+TEST(PoissonDiscSampling, TakesFewerTrialsOnSliversWithLargeFirstCells) {
+  EXPECT_LE(trialsPerPoint(pole(512)), 345);
+}
+
 TEST(PoissonDiscSampling, CoresLieWithinTheirReachAndTheirCones) {
   Random random(4);
   int with_cone = 0, all = 0;
