@@ -10,7 +10,7 @@ namespace {
 /// The first cells have a reach of at most this many radii. Chosen for speed: parts of a cell that
 /// a disc covers are never made, so that large cells save many where faces are slivers. With cells
 /// much larger than discs there are more rounds, each with few points.
-constexpr double kFirstReach = 2;
+constexpr double kFirstReach = 3;
 /// A cell more than this many times as long as wide is halved across its longer side only.
 constexpr double kOblong = 1.5;
 
