@@ -37,6 +37,7 @@ void ClosestOnCores::begin(const Facing* facing, const Vector3& point_in_boxes) 
   facing_ = facing;
   point_in_boxes_ = point_in_boxes;
   open_.clear();
+  asked_ring_ = -1;
 }
 
 void ClosestOnCores::putOff(const SurfacePiece& core, double squared) {
@@ -69,6 +70,9 @@ void ClosestOnCores::visit() {
         core, [&](const SurfacePiece& left) { return isSmall(left); },
         [&](const RingLevel& level) { return cannotMatter(level, seenFrom(ring, core)); });
     SurfacePatches::SplitCore& split = *splits_[next.split];
+    if (hasNoFoot(ring, core)) {
+      continue;
+    }
     if (isSmall(core)) {
       offerVertex(core);
       continue;
@@ -107,6 +111,21 @@ void ClosestOnCores::offerVertex(const SurfacePiece& core) {
   best_.offer(offset, at);
 }
 
+bool ClosestOnCores::hasNoFoot(int ring, const SurfacePiece& core) {
+  if (!facing_) {
+    return false;
+  }
+  const Vector3 way = seenFrom(ring, core).way;
+  if (!isNearVertex(data_, core, way)) {
+    return false;
+  }
+  if (asked_ring_ != ring) {
+    asked_ring_ = ring;
+    may_have_minimum_ = mayHaveMinimumNear(data_, ring, way);
+  }
+  return !may_have_minimum_;
+}
+
 ClosestOnCores::SeenFromVertex ClosestOnCores::seenFrom(int ring, const SurfacePiece& core) const {
   return {best_.from, data_.patches.coreVertex(core), data_.patches.ringFrame(ring)};
 }
@@ -127,6 +146,9 @@ void ClosestOnCores::visitRing(int ring, SurfacePiece core) {
   const SeenFromVertex seen = seenFrom(ring, core);
   const bool is_symmetric = !facing_ && data_.rings.isSymmetric(ring, seen.aside);
   for (; !isSmall(core); ++core.steps) {
+    if (hasNoFoot(ring, core)) {
+      return;
+    }
     const int number = data_.patches.ringLevel(core);
     const RingLevel& level = data_.rings.level(ring, number);
     ++split_count_;

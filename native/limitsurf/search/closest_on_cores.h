@@ -57,6 +57,10 @@ class ClosestOnCores {
   /// Offers the vertex in place of the rest of a core, which is smaller than the tolerance.
   void offerVertex(const SurfacePiece& core);
 
+  /// With a condition on normals: whether what is left of a core is so small, as seen from the
+  /// point, that the surface around the vertex tells that there is no minimum in it.
+  bool hasNoFoot(int ring, const SurfacePiece& core);
+
   SeenFromVertex seenFrom(int ring, const SurfacePiece& core) const;
   /// Whether the point lies on the axis of a ring with the symmetry of a regular polygon, and the
   /// core is another than the first one, to which it is as near.
@@ -76,6 +80,9 @@ class ClosestOnCores {
   std::vector<OpenCore> open_;
   std::vector<std::unique_ptr<SurfacePatches::SplitCore>> splits_;  // of open cores
   SurfacePatches::SplitCore ring_split_;
+  /// The ring that hasNoFoot() asked about last, and what it found.
+  int asked_ring_ = -1;
+  bool may_have_minimum_ = true;
 };
 
 }  // namespace limitsurf

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "limitsurf/search/foot_iteration.h"
+#include "limitsurf/search/normals/local_minimum.h"
 #include "limitsurf/search/normals/normal_polynomial.h"
-#include "limitsurf/search/normals/tangent_cone.h"
 #include "limitsurf/search/squared_distance.h"
 
 namespace limitsurf {
@@ -291,19 +291,20 @@ class PatchSearch {
     best_.offer(found.head<3>().matrix(), patch_.on.at(s, t));
   }
 
-  /// Whether a place of the patch is a foot: the distance falls in no direction of the sheet around
-  /// it, and the normal meets the condition.
+  /// Whether a place of the patch is a foot: a local minimum of the distance with a normal that
+  /// meets the condition.
   bool isFoot(double s, double t) const {
     // Tangents are computed from the patch's own points, so that they keep all their digits however
     // far away the searching point is.
-    Values at, to_foot;
-    patch_.evaluate<1>(s, t, at);
+    SheetPlace place;
+    patch_.evaluate<2>(s, t, place.at);
+    place.s_inwards = inwards(s, kSideS0, kSideS1);
+    place.t_inwards = inwards(t, kSideT0, kSideT1);
+    Values to_foot;
     relative_.evaluate<0>(s, t, to_foot);
     to_foot.value -= away_;
-    const double s_inwards = inwards(s, kSideS0, kSideS1), t_inwards = inwards(t, kSideT0, kSideT1);
-    const TangentCone cone(at.ds.head<3>(), s_inwards, at.dt.head<3>(), t_inwards);
-    return !cone.falls(to_foot.value.head<3>(), best_.tolerance) &&
-           facing_->accepts(patch_, s, t, at.ds.head<3>(), at.dt.head<3>());
+    return isLocalMinimum(place, to_foot.value.head<3>(), best_.tolerance) &&
+           facing_->accepts(patch_, s, t, place.at.ds.head<3>(), place.at.dt.head<3>());
   }
 
   /// The direction in which the sheet goes on from one of the sides at which it ends, 1 or -1; 0

@@ -55,6 +55,46 @@ TEST(Facing, AVertexWhereTheDistanceFallsIsNoResult) {
   EXPECT_EQ(SurfaceSearch(surface).closest(point, options).at[0].face, -1);
 }
 
+TEST(Facing, MaximaAndSaddlesAreNoResults) {
+  const auto find = [](const LimitSurface& surface, const Vector3& point, const Vector3& facing,
+                       double max_angle) {
+    ClosestOptions options;
+    options.facing = facing.transpose();
+    options.max_angle = max_angle;
+    return SurfaceSearch(surface).closest(point.transpose(), options);
+  };
+  // The farthest vertex of a cube. Places next to it have hardly any slope.
+  EXPECT_EQ(find(limitSurface(cube()), {2, 2, 2}, {-1, -1, -1}, 0.6).at[0].face, -1);
+
+  // A saddle on a face, above its centre of curvature.
+  Cage saddle = fullGrid(4, 4);
+  for (int i = 0; i < saddle.vertexCount(); ++i) {
+    const double x = saddle.positions(i, 0) - 2, y = saddle.positions(i, 1) - 2;
+    saddle.positions.row(i) << x, y, 0.5 * x * y;
+  }
+  EXPECT_EQ(find(limitSurface(saddle), {0, 0, 5}, {0, 0, 1}, 0.05).at[0].face, -1);
+
+  // A bowl, seen from above its centre of curvature, hides a floor below.
+  Cage bowl = fullGrid(5, 5);
+  const Cage floor = fullGrid(3, 3);
+  for (int i = 0; i < bowl.vertexCount(); ++i) {
+    const double x = bowl.positions(i, 0) - 2.5, y = bowl.positions(i, 1) - 2.5;
+    bowl.positions.row(i) << x, y, 0.5 * (x * x + y * y);
+  }
+  const int count = bowl.vertexCount();
+  for (const std::vector<int>& face : floor.faces) {
+    bowl.faces.push_back(face);
+    for (int& vertex : bowl.faces.back()) vertex += count;
+  }
+  bowl.positions.conservativeResize(count + floor.vertexCount(), 3);
+  for (int i = 0; i < floor.vertexCount(); ++i) {
+    bowl.positions.row(count + i) << 4 * floor.positions(i, 0) - 6, 4 * floor.positions(i, 1) - 6,
+        -6;
+  }
+  const Hits below = find(limitSurface(bowl), {0, 0, 3}, {0, 0, 1}, 0.05);
+  EXPECT_NEAR(below.distance[0], 9, 1e-12);
+}
+
 TEST(Facing, ResultsAreLocalMinima) {
   Random random(1);
   constexpr int kPoints = 60;
@@ -81,6 +121,13 @@ TEST(Facing, ResultsAreLocalMinima) {
           ++found;
           EXPECT_LE(steepestFall(surface, points.row(i), hits.at[i], {1e-7, 1e-8}), 1e-3)
               << name << ", row " << i << ": " << describe(hits.at[i]);
+          // Farther away, maxima and saddles fall, too.
+          const double to_sides =
+              std::min({hits.at[i].u, 1 - hits.at[i].u, hits.at[i].v, 1 - hits.at[i].v});
+          if (to_sides > 1e-3) {
+            EXPECT_LE(steepestFall(surface, points.row(i), hits.at[i], {1e-3}), 1e-5)
+                << name << ", row " << i << ": " << describe(hits.at[i]);
+          }
         }
       }
     }

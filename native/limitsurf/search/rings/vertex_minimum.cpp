@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "limitsurf/interruption_point.h"
-#include "limitsurf/search/normals/tangent_cone.h"
+#include "limitsurf/search/normals/local_minimum.h"
 
 namespace limitsurf {
 namespace {
@@ -13,11 +13,15 @@ namespace {
 /// falls, it falls along a side of the sheet or in a wide range of directions.
 constexpr int kPlaces = 5;
 
-/// The surface is looked at within these parts of the way to the searching point from the vertex.
-/// On the smaller one its curvature changes slopes by less than kFlatSlope, and on the larger one
-/// the curvature decides where the slopes vanish. Nearer ones tell less: the points along a border
-/// approach the vertex faster than others, and lose digits.
+/// The surface is looked at within these parts of the way to the searching point from the vertex,
+/// or of the diagonal if that is shorter. On the smaller one its curvature changes slopes by less
+/// than kFlatSlope, and on the larger one the curvature decides where the slopes vanish. Nearer
+/// ones tell less: the points along a border approach the vertex faster than others, and lose
+/// digits.
 constexpr double kCurved = 1e-4, kFlat = 1e-7;
+/// Cores must be this many times smaller than the larger one, so that a minimum in them is near the
+/// vertex compared with the places that are looked at.
+constexpr double kFarther = 64;
 
 /// The rounding of points relative to the vertex, of the tolerance, which is 1e-13 of the diagonal.
 constexpr double kPointRounding = 0.01;
@@ -72,15 +76,24 @@ int levelWithin(const SearchTree& tree, int ring, double distance) {
   return level;
 }
 
+/// What the scales are parts of.
+double unitOf(const SearchTree& tree, const Vector3& way) {
+  return std::min(way.norm(), tree.patches.diagonal());
+}
+
 }  // namespace
 
+bool isNearVertex(const SearchTree& tree, const SurfacePiece& core, const Vector3& way) {
+  return tree.patches.coreRadius(core) <= kCurved / kFarther * unitOf(tree, way);
+}
+
+bool mayHaveMinimumNear(const SearchTree& tree, int ring, const Vector3& way) {
+  return !fallsAtLevel(tree, ring, levelWithin(tree, ring, kCurved * unitOf(tree, way)), way);
+}
+
 bool isMinimumAtVertex(const SearchTree& tree, int ring, const Vector3& way) {
-  for (const double near : {kCurved, kFlat}) {
-    if (fallsAtLevel(tree, ring, levelWithin(tree, ring, near * way.norm()), way)) {
-      return false;
-    }
-  }
-  return true;
+  return mayHaveMinimumNear(tree, ring, way) &&
+         !fallsAtLevel(tree, ring, levelWithin(tree, ring, kFlat * unitOf(tree, way)), way);
 }
 
 }  // namespace limitsurf
