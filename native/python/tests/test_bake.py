@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapes
 
-STEP = 1e-4
+STEP = 2e-5
 
 
 @pytest.fixture
