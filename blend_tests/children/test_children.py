@@ -97,7 +97,8 @@ def test_without_a_parting_sides_mix():
     made = add_children(two_sided(sheet()))
     strands = scenes.strands(made)
     leans = np.abs(strands[:, -1, 0] - strands[:, 0, 0]) / lengths(strands)
-    assert leans.min() < 0.5
+    # With a parting all lean by more than 0.9.
+    assert (leans < 0.9).any()
 
 
 def test_seams_part():

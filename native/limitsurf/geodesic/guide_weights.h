@@ -14,7 +14,7 @@ namespace limitsurf {
 
 /// Bound on the error of the distances of guide_weights, on smooth surfaces: relative to the
 /// distance, where that is at least an eighth of a face's side. On flat surfaces the error is below
-/// 1e-3 of such a side, as far as no cut or border stands in the way.
+/// 5e-3 of such a side, as far as no cut or border stands in the way.
 constexpr double kGuideDistanceError = 0.01;
 
 /// The nearest guides of places on a surface, `count` in each row, the nearest first. Where there

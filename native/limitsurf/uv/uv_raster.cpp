@@ -34,7 +34,8 @@ constexpr double kFewestBandsPerReport = 4, kMostBandsPerReport = 16;
 /// The number of texels with a margin, relative to those without, that is seldom exceeded. Chosen.
 constexpr double kShareWithMargin = 1.5;
 
-void checkRange(const char* name, double value, double least, double most) {
+template <typename Number>
+void checkRange(const char* name, Number value, Number least, Number most) {
   if (!(value >= least && value <= most)) {
     std::ostringstream message;
     message << name << " is " << value << "; it must be " << least << " to " << most;
@@ -285,7 +286,7 @@ void checkOptions(const RasterOptions& options) {
   checkRange("height", options.height, 1, RasterOptions::kMostTexels);
   checkRange("tile's column", options.tile_x, -RasterOptions::kMostTile, RasterOptions::kMostTile);
   checkRange("tile's row", options.tile_y, -RasterOptions::kMostTile, RasterOptions::kMostTile);
-  checkRange("margin", options.margin, 0, RasterOptions::kMostMargin);
+  checkRange<double>("margin", options.margin, 0, RasterOptions::kMostMargin);
 }
 
 Texels rasterize(const UvPatches& map, const std::function<const UvBorders&()>& borders,

@@ -48,7 +48,7 @@ fewer guides can be reached, guide is -1, weight 0 and distance inf.
 
 Error: distances are measured on triangles whose vertices lie on the surface, by fast marching with
 circular wave fronts. They are within 1 % from an eighth of a face's side on, and on flat surfaces within
-1e-3 of such a side, except behind cuts and borders. Distances are those of the present pose; for
+5e-3 of such a side, except behind cuts and borders. Distances are those of the present pose; for
 distances in the world, pose the surface there. The result has the same bits for any number of threads.
 
 Raises LocationError and MeshError as evaluate() does, MeshError for cuts that are no edges of the mesh,

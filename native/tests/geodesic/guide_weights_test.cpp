@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -55,19 +56,25 @@ TEST(GuideWeights, AreEuclideanOnAFlatSheet) {
   cage = perturbed(cage, 0.2, 5);
   cage.positions.col(2).setZero();
   const LimitSurface surface = limitSurface(cage);
-  const Locations guides = scatterJittered(surface, 1, 3);
-  const Locations at = scatterJittered(surface, 6, 4);
-  const GuideWeights found = guideWeights(surface, guides, at);
-  const Points p = positionsOf(surface, at), g = positionsOf(surface, guides);
-  for (Eigen::Index row = 0; row < p.rows(); ++row) {
-    Eigen::VectorXd truth = (g.rowwise() - p.row(row)).rowwise().norm();
-    const std::size_t first = static_cast<std::size_t>(row) * 4;
-    for (std::size_t k = first; k < first + 4; ++k) {
-      EXPECT_NEAR(found.distance[k], truth(found.guide[k]), 2e-4);
+  constexpr double kLargest = 5e-3;  // of a face's side, as the header states
+  double worst = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    const Locations guides = scatterJittered(surface, 1, 2 * seed);
+    const Locations at = scatterJittered(surface, 6, 2 * seed + 1);
+    const GuideWeights found = guideWeights(surface, guides, at);
+    const Points p = positionsOf(surface, at), g = positionsOf(surface, guides);
+    for (Eigen::Index row = 0; row < p.rows(); ++row) {
+      Eigen::VectorXd truth = (g.rowwise() - p.row(row)).rowwise().norm();
+      const std::size_t first = static_cast<std::size_t>(row) * 4;
+      for (std::size_t k = first; k < first + 4; ++k) {
+        EXPECT_NEAR(found.distance[k], truth(found.guide[k]), kLargest);
+        worst = std::max(worst, std::abs(found.distance[k] - truth(found.guide[k])));
+      }
+      std::sort(truth.begin(), truth.end());
+      EXPECT_NEAR(found.distance[first + 3], truth(3), kLargest);
     }
-    std::sort(truth.begin(), truth.end());
-    EXPECT_NEAR(found.distance[first + 3], truth(3), 2e-4);
   }
+  std::printf("worst error on a flat sheet: %.2g sides\n", worst);
 }
 
 TEST(GuideWeights, GoAroundATorus) {
