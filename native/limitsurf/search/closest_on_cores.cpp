@@ -104,9 +104,12 @@ void ClosestOnCores::visitParts(const SurfacePiece& core, SurfacePatches::SplitC
 void ClosestOnCores::offerVertex(const SurfacePiece& core) {
   const Location at = data_.patches.rectangle(core).at(0, 0);
   const Vector3 offset = data_.patches.coreVertex(core) - best_.from.place;
-  if (facing_ && !(facing_->accepts(at) && isMinimumAtVertex(data_, data_.patches.ringOf(core),
-                                                             best_.from.away - offset))) {
-    return;
+  if (facing_) {
+    const int ring = data_.patches.ringOf(core);
+    const Vector3 way = best_.from.away - offset;
+    if (!facing_->accepts(at) || !mayHaveMinimum(ring, way) || !isFlatAtVertex(data_, ring, way)) {
+      return;
+    }
   }
   best_.offer(offset, at);
 }
@@ -116,14 +119,15 @@ bool ClosestOnCores::hasNoFoot(int ring, const SurfacePiece& core) {
     return false;
   }
   const Vector3 way = seenFrom(ring, core).way;
-  if (!isNearVertex(data_, core, way)) {
-    return false;
-  }
+  return isNearVertex(data_, core, way) && !mayHaveMinimum(ring, way);
+}
+
+bool ClosestOnCores::mayHaveMinimum(int ring, const Vector3& way) {
   if (asked_ring_ != ring) {
     asked_ring_ = ring;
     may_have_minimum_ = mayHaveMinimumNear(data_, ring, way);
   }
-  return !may_have_minimum_;
+  return may_have_minimum_;
 }
 
 ClosestOnCores::SeenFromVertex ClosestOnCores::seenFrom(int ring, const SurfacePiece& core) const {

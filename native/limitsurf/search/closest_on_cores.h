@@ -60,6 +60,8 @@ class ClosestOnCores {
   /// With a condition on normals: whether what is left of a core is so small, as seen from the
   /// point, that the surface around the vertex tells that there is no minimum in it.
   bool hasNoFoot(int ring, const SurfacePiece& core);
+  /// mayHaveMinimumNear(), asked once for the cores of a ring that follow each other.
+  bool mayHaveMinimum(int ring, const Vector3& way);
 
   SeenFromVertex seenFrom(int ring, const SurfacePiece& core) const;
   /// Whether the point lies on the axis of a ring with the symmetry of a regular polygon, and the
@@ -80,7 +82,7 @@ class ClosestOnCores {
   std::vector<OpenCore> open_;
   std::vector<std::unique_ptr<SurfacePatches::SplitCore>> splits_;  // of open cores
   SurfacePatches::SplitCore ring_split_;
-  /// The ring that hasNoFoot() asked about last, and what it found.
+  /// The ring that mayHaveMinimum() was asked about last, and its answer.
   int asked_ring_ = -1;
   bool may_have_minimum_ = true;
 };

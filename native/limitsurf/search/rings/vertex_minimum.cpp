@@ -91,9 +91,8 @@ bool mayHaveMinimumNear(const SearchTree& tree, int ring, const Vector3& way) {
   return !fallsAtLevel(tree, ring, levelWithin(tree, ring, kCurved * unitOf(tree, way)), way);
 }
 
-bool isMinimumAtVertex(const SearchTree& tree, int ring, const Vector3& way) {
-  return mayHaveMinimumNear(tree, ring, way) &&
-         !fallsAtLevel(tree, ring, levelWithin(tree, ring, kFlat * unitOf(tree, way)), way);
+bool isFlatAtVertex(const SearchTree& tree, int ring, const Vector3& way) {
+  return !fallsAtLevel(tree, ring, levelWithin(tree, ring, kFlat * unitOf(tree, way)), way);
 }
 
 }  // namespace limitsurf

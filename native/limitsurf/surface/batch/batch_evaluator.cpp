@@ -6,20 +6,13 @@
 #include <limits>
 #include <utility>
 
-#include "limitsurf/error.h"
+#include "limitsurf/surface/batch/changed_locations.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/tile_weights.h"
 #include "limitsurf/surface/vertex_approach.h"
 #include "limitsurf/surface/vertex_limit.h"
 
 namespace limitsurf {
-namespace {
-
-[[noreturn]] void throwChanged() {
-  throw LocationError("the locations were changed while they were evaluated");
-}
-
-}  // namespace
 
 template <typename Real>
 BatchEvaluator<Real>::BatchEvaluator(const TileTable& table, const Pose& pose, int order,
@@ -55,7 +48,7 @@ void BatchEvaluator<Real>::evaluate(const LocationBatch& at, const RowOrder& ord
       rows[i] = row;
     }
     if (!good) {
-      throwChanged();
+      throwChangedLocations();
     }
     std::fill_n(u + count, PatchRun::kReadBeyond, 0.);
     std::fill_n(v + count, PatchRun::kReadBeyond, 0.);
@@ -74,7 +67,7 @@ void BatchEvaluator<Real>::evaluateFaces(const std::int64_t faces[], const TileR
     }
     const TileRef tile = tileOf(faces[first]);
     if (tile.kind == TileRef::kNone) {
-      throwChanged();
+      throwChangedLocations();
     }
     const unsigned next = last == first + 1 ? first + kAhead : last;
     if (next < rows.count) {

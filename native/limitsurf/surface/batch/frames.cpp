@@ -3,9 +3,9 @@
 // LimitSurface::frames().
 #include <algorithm>
 
-#include "limitsurf/error.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/row_check.h"
+#include "limitsurf/surface/batch/changed_locations.h"
 #include "limitsurf/surface/batch/frame_kernels.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/face_corner.h"
@@ -19,12 +19,11 @@ constexpr std::size_t kRowsPerPart = std::size_t{1} << 15;
 
 using Frame = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
-/// Throws LocationError for a face that has no tile. The batch has been checked, but an array of
-/// another program may have been changed since by another of its threads.
+/// Throws LocationError for a face that has no tile.
 void checkFace(const TileTable& table, int face) {
   const auto index = static_cast<std::size_t>(face);
   if (index >= table.faces.size() || table.faces[index].kind == TileRef::kNone) {
-    throw LocationError("the locations were changed while they were evaluated");
+    throwChangedLocations();
   }
 }
 
