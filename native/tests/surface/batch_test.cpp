@@ -239,6 +239,42 @@ TEST(Batch, SignsOfZerosDoNotDependOnTheBatch) {
 }
 
 // The batch is checked while it is evaluated, by tasks that end in any order.
+/// The mesh has few rows on each face and enough of them that those on regular faces stay in the
+/// order given, and only the others are sorted (RowOrder).
+TEST(Batch, OrderDoesNotChangeABitOfManyRowsOnManyFaces) {
+  constexpr int kSide = 60, kRows = 40'000;
+  Random random(31);
+  Cage cage = gridWithHoles(kSide, kSide, {5, 77, 78, 1000, 1061, 2500});
+  for (Eigen::Index i = 0; i < cage.positions.rows(); ++i) {
+    cage.positions.row(i) += random.vector(0.2);
+  }
+  const LimitSurface surface = limitSurface(cage);
+  const int faces = static_cast<int>(ptexFaces(cage).size());
+  std::vector<Location> mixed(kRows);
+  for (Location& at : mixed) {
+    at = {random.below(faces), random.uniform(), random.uniform()};
+  }
+  std::vector<int> order(mixed.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return mixed[a].face < mixed[b].face; });
+  std::vector<Location> sorted;
+  for (const int i : order) sorted.push_back(mixed[i]);
+  const Evaluation a = surface.evaluate(mixed, Derivatives::second, true);
+  const Evaluation b = surface.evaluate(sorted, Derivatives::second, true);
+  for (const auto& [in_any, in_order] :
+       {std::pair(&a.position, &b.position), std::pair(&a.du, &b.du), std::pair(&a.dv, &b.dv),
+        std::pair(&a.duu, &b.duu), std::pair(&a.duv, &b.duv), std::pair(&a.dvv, &b.dvv),
+        std::pair(&a.normal, &b.normal)}) {
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      ASSERT_EQ(
+          std::memcmp(in_any->data() + 3 * order[i], in_order->data() + 3 * i, 3 * sizeof(double)),
+          0)
+          << describe(sorted[i]);
+    }
+  }
+}
+
 TEST(Batch, NamesTheFirstRowThatIsWrong) {
   const LimitSurface surface = limitSurface(cross());
   std::vector<Location> at = manyLocations(cross(), 30000);

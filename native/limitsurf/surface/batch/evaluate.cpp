@@ -34,10 +34,16 @@ template <typename Real>
 void evaluateInto(const TiledSurface& tiles, const Pose& pose, const LocationBatch& at,
                   Derivatives derivatives, const PatchResults<Real>& results, int threads) {
   const TileTable& table = tiles.table;
-  const RowOrder order(at, static_cast<int>(table.faces.size()), threads);
+  constexpr std::size_t kRowBytes = 3 * sizeof(Real);
+  std::size_t row_bytes = 0;
+  const auto arrays = {results.position, results.du,  results.dv,    results.duu,
+                       results.duv,      results.dvv, results.normal};
+  for (const Real* const numbers : arrays) {
+    row_bytes += numbers != nullptr ? kRowBytes : 0;
+  }
+  const RowOrder order(at, table, row_bytes, threads);
   if (order.isSorted()) {
-    for (Real* const numbers : {results.position, results.du, results.dv, results.duu, results.duv,
-                                results.dvv, results.normal}) {
+    for (Real* const numbers : arrays) {
       takeMemory(numbers, 3 * at.size(), threads);
     }
   }
