@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limitsurf/geodesic/curve_cuts.h"
+#include "limitsurf/geodesic/delaunay_flips.h"
 #include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
@@ -135,32 +136,63 @@ void GeodesicMesh::listAround() {
 }
 
 void GeodesicMesh::listNeighbors() {
-  wedges_.reserve(around_.size());
+  const std::vector<FlatTriangle> flipped = flippedTriangles(triangles_);
+  struct Corner {
+    int triangle, k;
+  };
+  std::vector<int> end(triangles_.points.size() + 1, 0);
+  for (const FlatTriangle& triangle : flipped) {
+    for (const int vertex : triangle.vertices) {
+      ++end[vertex + 1];
+    }
+  }
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<Corner> corners(3 * flipped.size());
+  for (std::size_t number = 0; number < flipped.size(); ++number) {
+    for (int k = 0; k < 3; ++k) {
+      corners[end[flipped[number].vertices[k]]++] = {static_cast<int>(number), k};
+    }
+  }
+  wedges_.reserve(around_.size() + corners.size());
+  first_wedge_.reserve(triangles_.points.size() + 1);
+  first_wedge_.push_back(0);
   first_neighbor_.reserve(triangles_.points.size() + 1);
-  neighbors_.reserve(around_.size() + around_.size() / 8);
+  neighbors_.reserve(around_.size() + around_.size() / 8 + corners.size());
   first_neighbor_.push_back(0);
   InterruptionStride stride;
   for (int vertex = 0; vertex < vertexCount(); ++vertex) {
     stride.step();
     const auto first = static_cast<std::size_t>(first_neighbor_.back());
-    // Poles have many neighbors: each is looked for from the last one, beside which it mostly is.
-    const auto number_of = [&](int other) {
-      for (std::size_t i = neighbors_.size(); i-- > first;) {
-        if (neighbors_[i].vertex == other) {
+    // Poles have many neighbors: each is looked for among the last ones, beside which it mostly is.
+    // One that is listed twice does no harm.
+    constexpr std::size_t kLookBack = 64;
+    const auto number_of = [&](int other, double distance) {
+      const std::size_t size = neighbors_.size();
+      for (std::size_t i = size; i-- > std::max(first, size - std::min(size, kLookBack));) {
+        if (neighbors_[i].vertex == other && neighbors_[i].distance == distance) {
           return static_cast<int>(i - first);
         }
       }
-      neighbors_.push_back({other, distance(vertex, other)});
-      return static_cast<int>(neighbors_.size() - 1 - first);
+      neighbors_.push_back({other, distance});
+      return static_cast<int>(size - first);
     };
     for (const int number : trianglesAt(vertex)) {
-      const std::array<int, 3>& corners = triangle(number);
-      const int k = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
-      const int b = corners[(k + 1) % 3], c = corners[(k + 2) % 3];
-      const int b_number = number_of(b), c_number = number_of(c);
+      const std::array<int, 3>& around = triangle(number);
+      const int k = around[0] == vertex ? 0 : around[1] == vertex ? 1 : 2;
+      const int b = around[(k + 1) % 3], c = around[(k + 2) % 3];
+      const int b_number = number_of(b, distance(vertex, b));
+      const int c_number = number_of(c, distance(vertex, c));
       wedges_.push_back({b_number, c_number, distance(b, c)});
     }
+    for (int i = vertex == 0 ? 0 : end[vertex - 1]; i < end[vertex]; ++i) {
+      const FlatTriangle& flat = flipped[corners[i].triangle];
+      const std::size_t k = corners[i].k, next = (k + 1) % 3, last = (k + 2) % 3;
+      const int b_number = number_of(flat.vertices[next], flat.sides[k]);
+      const int c_number = number_of(flat.vertices[last], flat.sides[last]);
+      wedges_.push_back({b_number, c_number, flat.sides[next]});
+    }
     first_neighbor_.push_back(static_cast<int>(neighbors_.size()));
+    first_wedge_.push_back(static_cast<int>(wedges_.size()));
   }
 }
 

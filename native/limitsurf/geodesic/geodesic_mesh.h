@@ -54,18 +54,19 @@ class GeodesicMesh {
     double distance;
   };
   /// A triangle at a vertex: its other two vertices, as numbers of neighbors, and their distance.
+  /// Where triangles are long and thin there are also better shaped ones (delaunay_flips.h).
   struct Wedge {
     int b, c;
     double distance;
   };
-  /// The vertices that share a side with a vertex.
+  /// The vertices that share a side of a wedge with a vertex. One may be listed more than once.
   Span<Neighbor> neighborsAt(int vertex) const {
     return Span<Neighbor>(neighbors_)
         .subspan(first_neighbor_[vertex], first_neighbor_[vertex + 1] - first_neighbor_[vertex]);
   }
   Span<Wedge> wedgesAt(int vertex) const {
-    return Span<Wedge>(wedges_).subspan(first_around_[vertex],
-                                        first_around_[vertex + 1] - first_around_[vertex]);
+    return Span<Wedge>(wedges_).subspan(first_wedge_[vertex],
+                                        first_wedge_[vertex + 1] - first_wedge_[vertex]);
   }
   double distance(int a, int b) const { return (position(a) - position(b)).norm(); }
   /// The triangle in which a location lies, on a face that has a limit surface.
@@ -79,7 +80,8 @@ class GeodesicMesh {
   SurfaceTriangles triangles_;  // whose points are the vertices
   TriangleCells cells_;
   std::vector<int> first_around_, around_;
-  std::vector<Wedge> wedges_;  // in the order of around_
+  std::vector<int> first_wedge_;
+  std::vector<Wedge> wedges_;
   std::vector<int> first_neighbor_;
   std::vector<Neighbor> neighbors_;
 };

@@ -2,6 +2,7 @@
 #include "limitsurf/geodesic/nearest_sources.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <tuple>
@@ -13,10 +14,18 @@
 namespace limitsurf {
 namespace {
 
-/// A distance is replaced by one that is shorter by more than this share. Among long thin
-/// triangles, as around a pole, distances approach their limits over thousands of rounds; what is
-/// left of that is far below kGuideDistanceError.
-constexpr double kShorter = 1 - 1e-6;
+/// A distance is replaced by one that is shorter by more than this share, at first.
+constexpr double kLeastShortening = 1e-6;
+/// A vertex that has passed on a distance so many times does so again only if it has become shorter
+/// by twice the share of the time before. Distances approach their limits slowly where triangles
+/// are long and thin, and where they are well shaped, no distance is passed on more than ten times.
+constexpr int kUsualTimes = 24;
+
+/// The distance below which one that has been passed on so many times is replaced.
+double replaceable(double distance, int times) {
+  const int more = std::max(0, times - kUsualTimes);
+  return distance * (1 - std::min(1., std::ldexp(kLeastShortening, more)));
+}
 /// The number of steps between two reports of progress.
 constexpr std::size_t kStepsPerReport = std::size_t{1} << 16;
 
@@ -84,8 +93,8 @@ void NearestSources::offer(int vertex, int source, double distance, Entry* entry
         return;
       }
     }
-    *entry = {source, distance};
-  } else if (distance < entry->distance * kShorter) {
+    *entry = {source, 0, distance};
+  } else if (distance < replaceable(entry->distance, entry->times)) {
     entry->distance = distance;
   } else {
     return;
@@ -116,7 +125,9 @@ void NearestSources::passOn(int vertex, int source, double distance) {
     }
   }
   for (std::size_t i = 0; i < neighbors.size(); ++i) {
-    offer(neighbors[i].vertex, source, offered_[i], known_[i]);
+    // One that is listed twice may know the source by now.
+    Entry* const entry = known_[i] ? known_[i] : findEntry(neighbors[i].vertex, source);
+    offer(neighbors[i].vertex, source, offered_[i], entry);
   }
 }
 
@@ -145,9 +156,12 @@ void NearestSources::spread(const Progress& progress) {
         continue;
       }
       std::swap(*entry, *end);
+      entry = end;
       ++finals_[next.vertex];
       ++accepted;
     }
+    ++entry->times;
+    ++times_passed_on_;
     passOn(next.vertex, next.source, next.distance);
   }
   heap_ = {};
@@ -188,7 +202,7 @@ void NearestSources::find(const MeshPlace& place, std::vector<Entry>& found) con
           }
         }
       }
-      found.push_back({entry.source, distance});
+      found.push_back({entry.source, 0, distance});
     }
   }
 }

@@ -26,6 +26,7 @@ class NearestSources {
  public:
   struct Entry {
     int source;
+    int times = 0;  ///< how often it has been passed on
     double distance;
   };
 
@@ -38,6 +39,11 @@ class NearestSources {
     return Span<Entry>(entries_.data() + static_cast<std::size_t>(vertex) * capacity_,
                        counts_[vertex]);
   }
+
+  /// How often vertices have passed on a distance: what the cost is proportional to. Mostly little
+  /// more than once for each entry; where triangles are so long and thin that even better shaped
+  /// ones (delaunay_flips.h) do not help, up to about fifty times.
+  std::size_t timesPassedOn() const { return times_passed_on_; }
 
   /// The distances of all sources that the vertices of the place's triangle know, in no particular
   /// order.
@@ -60,6 +66,7 @@ class NearestSources {
   const std::vector<MeshPlace>& sources_;
   std::size_t most_, capacity_;
   double reach_;
+  std::size_t times_passed_on_ = 0;
   // The first entries of a vertex are final, up to finals_; those that follow may still shrink.
   std::vector<Entry> entries_;
   std::vector<unsigned short> counts_, finals_;
