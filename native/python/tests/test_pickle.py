@@ -17,7 +17,7 @@ def same_surface(a, b):
     return a.evaluate(face, uv).position.tobytes() == b.evaluate(face, uv).position.tobytes()
 
 
-@pytest.mark.parametrize("protocol", range(2, pickle.HIGHEST_PROTOCOL + 1))
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
 def test_meshes(mesh, protocol):
     again = pickle.loads(pickle.dumps(mesh, protocol))
     np.testing.assert_array_equal(again.positions, mesh.positions)
@@ -47,6 +47,29 @@ def test_surfaces_keep_their_pose(surface):
     for again in (pickle.loads(pickle.dumps(surface)), copy.deepcopy(surface)):
         assert same_surface(surface, again)
         np.testing.assert_array_equal(again.mesh.positions, surface.mesh.positions)
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_surfaces_of_any_protocol_and_what_does_not_pickle(protocol):
+    # In a process of its own: a crash must not take the other tests along.
+    code = f"""
+import pickle
+import limitsurf as ls
+square = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+surface = ls.LimitSurface(ls.ControlMesh.from_faces(square, [[0, 1, 2, 3]]))
+again = pickle.loads(pickle.dumps(surface, {protocol}))
+at = [[0.3, 0.6]]
+print((again.evaluate(0, at).position == surface.evaluate(0, at).position).all())
+for thing in (surface.edge_curves(), surface.vertex_data(surface.positions)):
+    try:
+        pickle.dumps(thing, {protocol})
+    except TypeError as error:
+        print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    is_same, *refused = done.stdout.splitlines()
+    assert is_same == "True"
+    assert [line.partition(" '")[0] for line in refused] == ["cannot pickle"] * 2
 
 
 @pytest.mark.parametrize("cls", ["ControlMesh", "LimitSurface"])
