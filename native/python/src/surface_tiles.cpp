@@ -87,7 +87,7 @@ All bicubic tiles of this surface, and for each Ptex face a quadtree that leads 
 tile. With them another program can evaluate the limit surface at any location.
 
 Parameters
-    max_depth: as in tiles(). What lies closer to an irregular vertex gets the tile beside it.
+    max_depth: 1 to 48, otherwise as in tiles(). What lies closer to an irregular vertex gets the tile beside it.
     threads: 0 uses all cores.
     progress: a function that is called from time to time with the part of the work that is done, 0
         to 1. An exception that it raises ends the call.

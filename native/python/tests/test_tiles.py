@@ -264,5 +264,13 @@ def test_quadtrees_of_faces_without_a_surface():
     tree = surface.tile_quadtree()
     assert tree.child[1] == -(2**23)
     assert (tree.child[[0, 2, 3, 4, 5]] > -(2**23)).all()
-    with pytest.raises(ValueError, match="max_depth is 0; expected 1 to 256"):
+    with pytest.raises(ValueError, match="max_depth is 0; expected 1 to 48"):
         surface.tile_quadtree(0)
+
+
+def test_quadtrees_grow_evenly_with_depth():
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.cube()))
+    nodes = [len(surface.tile_quadtree(depth).child) for depth in (12, 24, 36, 48)]
+    assert len(set(np.diff(nodes))) == 1
+    with pytest.raises(ValueError, match="max_depth is 49; expected 1 to 48"):
+        surface.tile_quadtree(49)

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -61,6 +63,10 @@ std::vector<Cell> wholeFaces(const LimitSurface& surface) {
 
 TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth, int threads,
                           const Progress& progress) {
+  if (max_depth < 1 || max_depth > TileQuadtree::kLargestDepth) {
+    throw std::invalid_argument("max_depth is " + std::to_string(max_depth) + "; expected 1 to " +
+                                std::to_string(TileQuadtree::kLargestDepth));
+  }
   const auto tell = [&](double part) {
     if (progress) {
       progress(part);

@@ -21,6 +21,9 @@ namespace limitsurf {
 struct TileQuadtree {
   /// In `child`, for faces that have no limit surface. Single precision holds it exactly.
   static constexpr int kNoTile = -(1 << 23);
+  /// Deeper squares of a face cannot be told apart at corners with u = 1 or v = 1: (u, v) are
+  /// rounded there to multiples of 2^-53.
+  static constexpr int kLargestDepth = 48;
 
   std::vector<int> child;
   SurfaceTiles tiles;  ///< with one location or more for each tile, in its middle
@@ -31,8 +34,8 @@ struct TileQuadtree {
 /// The tiles of all faces that have a limit surface. What lies closer to an irregular vertex than
 /// LimitSurface::tiles() allows for this depth gets the tile beside it.
 ///
-/// Depends on the topology alone, not on the pose. Errors and exceptions as those of
-/// LimitSurface::tiles(). Cost: O(max_depth) nodes at each irregular vertex, and that of
+/// Depends on the topology alone, not on the pose. Throws std::invalid_argument for a depth beyond 1
+/// to TileQuadtree::kLargestDepth, otherwise errors as LimitSurface::tiles() does. Cost: O(max_depth) nodes at each irregular vertex, and that of
 /// LimitSurface::tiles() for the middles of all tiles.
 TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth = SurfaceTiles::kDefaultDepth,
                           int threads = 0, const Progress& progress = {});
