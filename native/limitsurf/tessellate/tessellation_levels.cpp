@@ -236,12 +236,17 @@ double seenLength(const PictureView& view, const Vector3& from, const Vector3& t
   return (a.head<2>() / a.w() - b.head<2>() / b.w()).norm();
 }
 
+/// The length of a segment in space, or in the picture of `view`.
+double lengthOf(const PictureView* view, const Vector3& from, const Vector3& to) {
+  return view ? seenLength(*view, from, to) : (to - from).norm();
+}
+
 /// The largest distance between neighbouring samples of a face.
 double longestStep(const LimitSurface& surface, const Squares& squares, int face,
                    const PictureView* view) {
   double longest = 0;
   const auto look = [&](const Vector3& from, const Vector3& to) {
-    longest = std::max(longest, view ? seenLength(*view, from, to) : (to - from).norm());
+    longest = std::max(longest, lengthOf(view, from, to));
   };
   for (int square = 0; square < squares.count(face); ++square) {
     const Samples at(surface, squares.first(face) + square, kLengthSamples, false);
@@ -249,6 +254,41 @@ double longestStep(const LimitSurface& surface, const Squares& squares, int face
       for (int i = 0; i < at.side(); ++i) {
         look(at.position(i, j), at.position(i + 1, j));
         look(at.position(j, i), at.position(j, i + 1));
+      }
+    }
+  }
+  return longest;
+}
+
+/// The longest side of the four quads at each corner of a face's squares, of which each side has so
+/// many quads. Beside an irregular vertex sides become smaller from level to level, but not by half
+/// as elsewhere.
+double longestAtCorners(const LimitSurface& surface, const Squares& squares, int face, int quads,
+                        const PictureView* view) {
+  constexpr int kSide = 3;  // points
+  std::vector<Location> at;
+  for (int square = 0; square < squares.count(face); ++square) {
+    for (const auto& [right, top] : {std::pair(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
+      for (int j = 0; j < kSide; ++j) {
+        for (int i = 0; i < kSide; ++i) {
+          const auto place = [&](int k, int far) {
+            return static_cast<double>(far ? quads - k : k) / quads;
+          };
+          at.push_back({squares.first(face) + square, place(i, right), place(j, top)});
+        }
+      }
+    }
+  }
+  const Points points = surface.evaluate(at, Derivatives::none, false, 1).position;
+  double longest = 0;
+  const auto look = [&](Eigen::Index from, Eigen::Index to) {
+    longest = std::max(longest, lengthOf(view, points.row(from), points.row(to)));
+  };
+  for (Eigen::Index first = 0; first < points.rows(); first += kSide * kSide) {
+    for (Eigen::Index j = 0; j < kSide; ++j) {
+      for (Eigen::Index i = 0; i + 1 < kSide; ++i) {
+        look(first + kSide * j + i, first + kSide * j + i + 1);
+        look(first + kSide * i + j, first + kSide * (i + 1) + j);
       }
     }
   }
@@ -338,10 +378,17 @@ FaceLevels levelsOfLength(const LimitSurface& surface, double length, const Pict
     const int face = faces[i];
     const double whole = kLengthSamples * longestStep(surface, squares, face, view);
     int& level = result.levels[face];
-    while (level < options.most && whole / squares.quads(face, level) > length) {
-      ++level;
+    double& measure = result.measure[face];
+    for (;; ++level) {
+      const int quads = squares.quads(face, level);
+      measure = whole / quads;
+      if (quads > kLengthSamples && (measure <= length || level == options.most)) {
+        measure = std::max(measure, longestAtCorners(surface, squares, face, quads, view));
+      }
+      if (measure <= length || level == options.most) {
+        break;
+      }
     }
-    result.measure[face] = whole / squares.quads(face, level);
   });
   squares.grade(result.levels);
   return result;

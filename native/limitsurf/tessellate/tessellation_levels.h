@@ -50,7 +50,9 @@ struct PictureView {
 
 /// The lowest levels at which the sides of polygons are no longer than `length`, in space or in the
 /// picture of `view`. Lengths are measured between places at 1/8, 2/8, ... of each side of a Ptex
-/// face; `measure` is the longest. A face that is not visible has no length, and the lowest level.
+/// face; where a side of it has more quads than that, those at its corners are measured as well.
+/// `measure` is the longest. Between these places sides may be longer: they are not bounded. A face
+/// that is not visible has no length, and the lowest level.
 ///
 /// Throws std::invalid_argument unless length is finite and above 0, 1 <= most <= 12, and all
 /// numbers of the view are finite.

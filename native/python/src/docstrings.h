@@ -191,7 +191,8 @@ indices : (sum of the mesh's face_sizes,) array of int
     The row of values of each corner, one face after the other, in the order of face_vertices.
 interpolation : str
     Where the data are linear, by OpenSubdiv's rules FVAR_LINEAR_*:
-    'none': nowhere. Seams and boundaries are smooth curves, also around corners of one face.
+    'none': nowhere. Seams and boundaries are smooth curves, also around corners of one face, but for
+        vertices that the mesh's own rules pin (boundary='corners', infinitely sharp vertices).
     'corners_only': at values that have only one face at a vertex: these are interpolated.
     'corners_plus1': also at junctions of more than two values, and at values across a seam from one
     that a sharp edge pins.
@@ -403,12 +404,13 @@ for each point of the tessellation.
 )";
 
 constexpr const char* kLevelsOfLengthDoc =
-    R"(The lowest levels for tessellate() at which no side of a polygon is longer than `length`.
+    R"(The lowest levels for tessellate() at which the sides of polygons are no longer than `length`.
 
 With a matrix (4, 4) lengths are measured in a picture: matrix @ (x, y, z, 1) are its homogeneous
 coordinates, and points with w < nearest are not visible and have no length. Lengths are measured between
-places at eighths of each side of a Ptex face. Levels of neighbours are raised until they differ by at
-most 2 across an edge.
+places at eighths of each side of a Ptex face and, where a side has more quads than that, along the quads
+at its corners; between these places sides may be longer. Levels of neighbours are raised until they
+differ by at most 2 across an edge.
 
 Returns FaceLevels: .levels (F,) int32, and .measure (F,), the longest side at that level or, if a
 neighbour raised it, at a lower one; it exceeds `length` where the level `most` is too low. Refused faces

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "limitsurf/pi.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/tessellate/tessellation_levels.h"
 #include "support/cages/meshes.h"
@@ -243,6 +244,41 @@ TEST(LevelsOfLength, RefusesWhatMeansNothing) {
   }
   EXPECT_THROW(tessellate(surface, std::vector<int>{1, 2}), std::invalid_argument);
   EXPECT_THROW(tessellate(surface, std::vector<int>{1, 2, 3, 4, 5, 13}), std::invalid_argument);
+}
+
+/// Beside an irregular vertex of high valence the sides of quads shrink less from level to level
+/// than elsewhere.
+TEST(LevelsOfLength, HoldBesideIrregularVertices) {
+  for (const int valence : {3, 5, 13}) {
+    Cage cage;
+    cage.positions.setZero(2 * valence + 1, 3);
+    for (int i = 0; i < valence; ++i) {
+      const double angle = 2 * kPi<double> * i / valence, half = kPi<double> / valence;
+      cage.positions.row(1 + i) << std::cos(angle), std::sin(angle), 0;
+      cage.positions.row(1 + valence + i) << 1.5 * std::cos(angle + half),
+          1.5 * std::sin(angle + half), 0;
+      cage.faces.push_back({0, 1 + i, 1 + valence + i, 1 + (i + 1) % valence});
+    }
+    const LimitSurface surface = limitSurface(cage);
+    for (const double length : {0.1, 0.03}) {
+      LevelOptions options;
+      options.most = 10;
+      const FaceLevels found = levelsOfLength(surface, length, nullptr, options);
+      const Tessellation made = tessellate(surface, found.levels);
+      double longest = 0;
+      std::size_t first = 0;
+      for (const int size : made.face_sizes) {
+        for (int k = 0; k < size; ++k) {
+          const int a = made.face_vertices[first + k],
+                    b = made.face_vertices[first + (k + 1) % size];
+          longest = std::max(longest, (made.positions.row(a) - made.positions.row(b)).norm());
+        }
+        first += size;
+      }
+      EXPECT_LE(longest, length) << "valence " << valence;
+      EXPECT_GE(found.measure.maxCoeff(), longest * (1 - 1e-12)) << "valence " << valence;
+    }
+  }
 }
 
 TEST(LevelsOfLength, RefusedFacesHaveNone) {
