@@ -28,12 +28,16 @@ Matrix turnBetween(const Vector3& from, const Vector3& to) {
 
 TEST(StrandTurns, TurnByTheSmallestAngle) {
   Random random(1);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     const Vector3 from = random.vector(3), to = random.vector(0.1);
     const Matrix turn = turnBetween(from, to);
-    const double bound = 4 * kTurnError / (from.normalized() + to.normalized()).norm();
-    EXPECT_LE((turn * from.normalized() - to.normalized()).norm(), bound);
-    EXPECT_LE((turn - rotationBetween(from, to)).cwiseAbs().maxCoeff(), 10 * bound);
+    const double sum = (from.normalized() + to.normalized()).norm(), bound = kTurnError / sum;
+    // An error of each entry makes one of each coordinate that is at most sqrt(3) times as large.
+    EXPECT_LE((turn * from.normalized() - to.normalized()).cwiseAbs().maxCoeff(),
+              std::sqrt(3) * bound);
+    // The errors of the other rotation, made from the angle's cosine, grow with the square.
+    EXPECT_LE((turn - rotationBetween(from, to)).cwiseAbs().maxCoeff(),
+              bound + 1e-15 / (sum * sum));
     EXPECT_NEAR(turn.determinant(), 1, 10 * bound);
   }
 }

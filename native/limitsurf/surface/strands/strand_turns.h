@@ -13,17 +13,17 @@ namespace limitsurf {
 using Quaternions = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
 /// Bound on the error of each entry of shortestTurns(), divided by the length of the sum of the two
-/// unit vectors: it grows where they are almost opposite.
-constexpr double kTurnError = 1e-15;
+/// unit vectors: it grows where they are almost opposite. The largest that was measured is 4.1e-15.
+constexpr double kTurnError = 8e-15;
 
 /// The rotation that turns one vector to the direction of another, as shortestTurns() has it.
 Eigen::Matrix3d shortestTurn(const Vector3& from, const Vector3& to);
 
 /// The rotations that turn each vector of `from` to the direction of that of `to` by the smallest
 /// angle. Vectors may have any length. Where they are opposite (closer than 1e-9 to it) they turn
-/// about an axis that is perpendicular to both and to the world's axis that is least aligned with
-/// them. Where `from` is not finite the rotation is the identity, and NaN where another vector has
-/// no direction.
+/// about an axis that is perpendicular to `from`, as near as possible to the world's axis that is
+/// least aligned with it. Where `from` is not finite the rotation is the identity, and NaN where
+/// another vector has no direction.
 ///
 /// Throws std::invalid_argument if the numbers of rows differ.
 Rotations shortestTurns(const Points& from, const Points& to);
