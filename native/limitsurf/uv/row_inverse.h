@@ -9,6 +9,7 @@ struct CellNumbers {
   double m_s[2], m_t[2];       ///< the columns of the inverse of the mean Jacobian matrix
   double tolerance[2];
   double curvature, contraction;
+  double reach;  ///< how far beyond the cell the place of a point within the tolerance may lie
 };
 
 /// Rows of lattice points, side by side, of which a cell is inverted. Each point starts from those
@@ -24,7 +25,8 @@ struct InverseRows {
   double last[2][kCount] = {}, step[2][kCount] = {}, before[2][kCount] = {};
 
   // Of each point of the block: its place, in coordinates from -1/2 to 1/2 about the middle of the
-  // cell, the Jacobian determinant, and whether the cell has the point (1 or 0).
+  // cell, the Jacobian determinant, and whether the cell has the point (1 or 0; between them if
+  // that is doubtful: then the place is one on a side near it).
   double s[kBlock][kCount], t[kBlock][kCount], determinant[kBlock][kCount], found[kBlock][kCount];
 };
 

@@ -107,9 +107,9 @@ inline RowPoints within(const RowPoints& a) {
                                               Rows settled, RowPlaces& out) {
   constexpr int kMostSteps = 32;  // see CellInverse
   const RowCell map(cell);
-  const Rows zero = Rows::of(0), one = Rows::of(1);
+  const Rows zero = Rows::of(0), one = Rows::of(1), doubtful = Rows::of(0.5);
   out.x = within(out.x);
-  out.found = zero;
+  out.found = doubtful;
   for (int step = 0; step < kMostSteps && !allSettled(settled); ++step) {
     RowPoints rest, ds, dt;
     map.evaluate(out.x, target, rest, ds, dt);
@@ -126,10 +126,15 @@ inline RowPoints within(const RowPoints& a) {
     const Rows has_it = Rows::whereAtLeast(Rows::of(cell.tolerance[0]), sizeOf(off.x), one, zero) *
                         Rows::whereAtLeast(Rows::of(cell.tolerance[1]), sizeOf(off.y), one, zero);
     const Rows is_close = Rows::whereAtLeast(one, cell.curvature * length * length, one, zero);
-    const Rows is_lost = Rows::whereAtLeast(
-        cell.contraction * length, Rows::larger(sizeOf(outside.x), sizeOf(outside.y)), zero, one);
-    out.found = chosen(settled, out.found, is_close * has_it);
-    settled = Rows::larger(settled, Rows::larger(is_close, is_lost));
+    const Rows far = Rows::larger(sizeOf(outside.x), sizeOf(outside.y));
+    const Rows is_lost =
+        Rows::whereAtLeast(cell.contraction * length + Rows::of(cell.reach), far, zero, one);
+    // Steps this short do not tell any more on which side of the border the place is.
+    const Rows is_short = Rows::whereAtLeast(Rows::of(2 * cell.reach), length, one, zero) *
+                          Rows::whereAtLeast(zero, far, zero, one);
+    const Rows found = Rows::larger(is_close * has_it, doubtful * (one - is_lost));
+    out.found = chosen(settled, out.found, found);
+    settled = Rows::larger(settled, Rows::larger(Rows::larger(is_close, is_lost), is_short));
   }
 }
 

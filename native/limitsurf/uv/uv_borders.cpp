@@ -161,7 +161,7 @@ void appendFolds(const UvCell& cell, const FaceRectangle& on, const Box2& around
     cell.evaluate(0.5, 0.5, curve.points[0], ds, dt);
     std::fill_n(curve.points + 1, 3, curve.points[0]);
     curve.on = on;
-    curve.begin = curve.end = Point2(cell.s0, cell.t0) + 0.5 * cell.size;
+    curve.begin = curve.end = cell.low + 0.5 * cell.size;
     curve.flipped = cross(ds, dt) < 0;
     out.push_back(curve);
     return;

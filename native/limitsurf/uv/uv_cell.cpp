@@ -9,7 +9,7 @@ namespace limitsurf {
 namespace {
 
 /// From the Bezier points of a cubic, `stride` apart, to those of its halves.
-void halve(const Point2* p, int stride, Point2* low, Point2* high) {
+void halveCubic(const Point2* p, int stride, Point2* low, Point2* high) {
   const Point2 ab = 0.5 * (p[0] + p[stride]), bc = 0.5 * (p[stride] + p[2 * stride]),
                cd = 0.5 * (p[2 * stride] + p[3 * stride]);
   const Point2 abc = 0.5 * (ab + bc), bcd = 0.5 * (bc + cd);
@@ -33,19 +33,27 @@ Box2 UvCell::box() const {
   return box;
 }
 
-void UvCell::quarter(UvCell out[4]) const {
-  Point2 low[16], high[16];
-  for (int row = 0; row < 4; ++row) {
-    halve(points + 4 * row, 1, low + 4 * row, high + 4 * row);
-  }
-  for (int column = 0; column < 4; ++column) {
-    halve(low + column, 4, out[0].points + column, out[2].points + column);
-    halve(high + column, 4, out[1].points + column, out[3].points + column);
-  }
+void UvCell::halve(int direction, UvCell out[2]) const {
+  const int along = direction == 0 ? 1 : 4, across = 5 - along;
   for (int i = 0; i < 4; ++i) {
-    out[i].size = 0.5 * size;
-    out[i].s0 = s0 + (i & 1) * out[i].size;
-    out[i].t0 = t0 + (i >> 1) * out[i].size;
+    const int first = i * across;
+    halveCubic(points + first, along, out[0].points + first, out[1].points + first);
+  }
+  for (int i = 0; i < 2; ++i) {
+    out[i].size = size;
+    out[i].size[direction] *= 0.5;
+    out[i].low = low;
+    out[i].low[direction] += i * out[i].size[direction];
+  }
+}
+
+void UvCell::quarter(UvCell out[4]) const {
+  UvCell sides[2], columns[2];
+  halve(0, sides);
+  for (int side = 0; side < 2; ++side) {
+    sides[side].halve(1, columns);
+    out[side] = columns[0];
+    out[2 + side] = columns[1];
   }
 }
 

@@ -70,7 +70,8 @@ bool CellInverse::set(const UvCell& cell, const Point2& tolerance) {
   }
   const double newton = 2 * variation / (1 - variation);
   numbers_.contraction = newton / (1 - newton);
-  setTolerance(tolerance, derivatives.secondBound());
+  const double reach = setTolerance(tolerance, derivatives.secondBound());
+  numbers_.reach = reach / (1 - variation) / (1 - newton);
   setPowers(cell.points);
   return true;
 }
@@ -85,7 +86,7 @@ double CellInverse::variationOf(const Point2 ds[12], const Point2 dt[12]) const 
   return (from_s + from_t).maxCoeff();
 }
 
-void CellInverse::setTolerance(const Point2& tolerance, const Point2& second) {
+double CellInverse::setTolerance(const Point2& tolerance, const Point2& second) {
   put(tolerance, numbers_.tolerance);
   // Newton's error is half the second derivative times the squared step; a quarter of the tolerance
   // is allowed for it.
@@ -93,6 +94,7 @@ void CellInverse::setTolerance(const Point2& tolerance, const Point2& second) {
   const Point2 m_s(numbers_.m_s[0], numbers_.m_s[1]), m_t(numbers_.m_t[0], numbers_.m_t[1]);
   const double m_norm = (m_s.abs() * tolerance[0] + m_t.abs() * tolerance[1]).maxCoeff();
   border_width_ = 8 * m_norm;
+  return m_norm;
 }
 
 void CellInverse::setPowers(const Point2* points) {

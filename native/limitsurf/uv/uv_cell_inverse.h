@@ -13,6 +13,11 @@ namespace limitsurf {
 /// iteration, projected back into the cell after each step, reduces the distance from the solution
 /// by a factor of 2q / (1 - q) or better. It finds the solution if the cell has one, and otherwise
 /// proves that there is none. RowInverse iterates, from the numbers that are set here.
+///
+/// The cell also has points that its image reaches only up to the tolerance. Their solutions may
+/// lie far beyond a side if du and dv are nearly parallel, farther than Newton's steps are long. So
+/// a point is given up only if its solution is proved to be more than `reach` beyond the side, as
+/// far as the tolerance can take it; what is neither found nor given up is doubtful.
 class CellInverse {
  public:
   /// Sets the cell, and returns whether its Jacobian changes little enough; all other members
@@ -33,8 +38,9 @@ class CellInverse {
 
   /// q, from the control points of the derivatives along s and t; needs M.
   double variationOf(const Point2 ds[12], const Point2 dt[12]) const;
-  /// Sets what depends on the tolerance; `second` bounds the second derivatives. Needs M.
-  void setTolerance(const Point2& tolerance, const Point2& second);
+  /// Sets what depends on the tolerance, and returns how long a vector of the tolerance is that M
+  /// has taken to the cell; `second` bounds the second derivatives. Needs M.
+  double setTolerance(const Point2& tolerance, const Point2& second);
   /// Sets the coefficients of powers from the cell's Bezier points.
   void setPowers(const Point2* points);
   Point2 coefficient(int i) const {

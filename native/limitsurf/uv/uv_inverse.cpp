@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "limitsurf/uv/uv_cell_nearest.h"
+
 namespace limitsurf {
 namespace {
 
@@ -96,75 +98,63 @@ class Strip {
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
 };
 
-/// The place in a cell whose image is nearest to a point, by the Levenberg-Marquardt iteration from
-/// the middle of the cell.
-class LeastSquares {
- public:
-  LeastSquares(const UvCell& cell, const Point2& target) : cell_(cell), target_(target) {
-    evaluate(at_, rest_, ds_, dt_);
-    double damping = kFirstDamping;
-    for (int step = 0; step < kMostSteps && rest_.matrix().squaredNorm() > 0; ++step) {
-      const double ss = (ds_ * ds_).sum(), st = (ds_ * dt_).sum(), tt = (dt_ * dt_).sum();
-      const double added = damping * (ss + tt);
-      const Point2 right((ds_ * rest_).sum(), (dt_ * rest_).sum());
-      const double determinant = (ss + added) * (tt + added) - st * st;
-      const Point2 move =
-          Point2((tt + added) * right[0] - st * right[1], (ss + added) * right[1] - st * right[0]) /
-          determinant;
-      const Point2 beyond = at_ + move;
-      const Point2 next = beyond.max(0.).min(1.);
-      if (isStill(beyond, next, right)) {
-        break;
-      }
-      Point2 rest, ds, dt;
-      evaluate(next, rest, ds, dt);
-      if (rest.matrix().squaredNorm() < rest_.matrix().squaredNorm()) {
-        at_ = next;
-        rest_ = rest;
-        ds_ = ds;
-        dt_ = dt;
-        damping *= kLessDamping;
-      } else {
-        damping *= kMoreDamping;
+/// By how much the derivatives along s and t change on a cell when s changes, and when t does,
+/// relative to their sizes.
+Point2 changesOfDerivatives(const UvCell& cell) {
+  const Point2* p = cell.points;
+  Point2 size = Point2::Zero();        // of the derivatives along s and t
+  double same[2] = {}, other[2] = {};  // their changes along themselves and along each other
+  const auto sizeOf = [](const Point2& a) { return a.abs().maxCoeff(); };
+  for (int direction = 0; direction < 2; ++direction) {
+    const int along = direction == 0 ? 1 : 4, across = 5 - along;
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        const Point2* at = p + j * across + i * along;
+        const Point2 derivative = at[along] - at[0];
+        size[direction] = std::max(size[direction], sizeOf(derivative));
+        if (i > 0) {
+          same[direction] = std::max(same[direction], sizeOf(derivative - (at[0] - at[-along])));
+        }
+        if (j > 0) {
+          other[direction] =
+              std::max(other[direction], sizeOf(derivative - (at[along - across] - at[-across])));
+        }
       }
     }
   }
+  const auto larger = [&](int one) {
+    return std::max(2 * same[one] / size[one], 3 * other[1 - one] / size[1 - one]);
+  };
+  return {larger(0), larger(1)};
+}
 
-  double s() const { return at_[0]; }
-  double t() const { return at_[1]; }
-  const Point2& rest() const { return rest_; }
-  double determinant() const { return cross(ds_, dt_); }
-
- private:
-  /// The number of steps at most, the damping at first relative to the trace of the matrix, and the
-  /// factors by which it changes after a step that led nearer and after one that did not. Chosen,
-  /// not derived.
-  static constexpr int kMostSteps = 60;
-  static constexpr double kFirstDamping = 1e-3, kLessDamping = 0.1, kMoreDamping = 10;
-
-  /// Whether no step leads anywhere: each coordinate stays by rounding, or because this step and
-  /// the steepest descent both lead out of the cell.
-  bool isStill(const Point2& beyond, const Point2& next, const Point2& descent) const {
-    for (int i = 0; i < 2; ++i) {
-      const bool is_outside = beyond[i] != next[i] && (beyond[i] > next[i]) == (descent[i] > 0);
-      if (next[i] != at_[i] || (beyond[i] != at_[i] && !is_outside)) {
-        return false;
-      }
+/// Divides a cell that cannot be inverted, and returns the number of parts.
+///
+/// It is halved along one parameter if the derivatives change mostly with that one, else quartered.
+/// So the cells beside an edge that is mapped to a point, or beside a fold, become thin at once: a
+/// row of squares along the edge would have as many cells as the edge is longer than they are.
+int divide(const UvCell& cell, UvCell parts[4]) {
+  constexpr double kMostly = 4;
+  const Point2 changes = changesOfDerivatives(cell);
+  for (int direction = 0; direction < 2; ++direction) {
+    if (changes[direction] > kMostly * changes[1 - direction]) {
+      cell.halve(direction, parts);
+      return 2;
     }
-    return true;
   }
+  cell.quarter(parts);
+  return 4;
+}
 
-  void evaluate(const Point2& at, Point2& rest, Point2& ds, Point2& dt) const {
-    Point2 value;
-    cell_.evaluate(at[0], at[1], value, ds, dt);
-    rest = target_ - value;
-  }
-
-  const UvCell& cell_;
-  const Point2 target_;
-  Point2 at_ = Point2::Constant(0.5);
-  Point2 rest_, ds_, dt_;
-};
+/// Whether a cell that cannot be inverted is mirrored at a place with this Jacobian determinant. On
+/// an edge that is mapped to a point it is 0, up to rounding: then the rest of the cell decides.
+bool isFlipped(const UvCell& cell, double determinant) {
+  constexpr double kUnclear = 1e-3;
+  const JacobianBounds around(cell);
+  const double largest = std::max(std::abs(around.least), std::abs(around.largest));
+  return std::abs(determinant) > kUnclear * largest ? determinant < 0
+                                                    : around.least + around.largest < 0;
+}
 
 }  // namespace
 
@@ -178,7 +168,7 @@ bool LatticeInverse::isFlat(const UvCell& patch) const {
 void LatticeInverse::begin(const Lattice& inside) {
   const std::int64_t points = static_cast<std::int64_t>(inside.x1 - inside.x0 + 1) *
                               static_cast<std::int64_t>(inside.y1 - inside.y0 + 1);
-  limit_.quartered = work_.quartered + kMostCells + points;
+  limit_.divided = work_.divided + kMostCells + points;
   limit_.searches = work_.searches + kMostSearches + 2 * points;
   limit_.trials = work_.trials + kMostTrials + 64 * points;
   deep_cells_ = 0;
@@ -188,7 +178,7 @@ void LatticeInverse::add(const UvCell& patch) {
   const Lattice inside = within(patch.box());
   if (!inside.empty() && !isFlat(patch)) {
     begin(inside);
-    addCell(patch, 0);
+    addCell(patch);
   }
 }
 
@@ -201,18 +191,19 @@ void LatticeInverse::addPart(const UvCell& part) {
   if (isFlat(part)) {
     addNearest(part, inside);
   } else {
-    addCell(part, 0);
+    addCell(part);
   }
 }
 
-bool LatticeInverse::isLast(const Box2& box, int depth) {
-  if (((box.high - box.low) <= kTiny * tolerance_).all() || work_.quartered == limit_.quartered) {
+bool LatticeInverse::isLast(const UvCell& cell, const Box2& box) {
+  if (((box.high - box.low) <= kTiny * tolerance_).all() || work_.divided == limit_.divided ||
+      (cell.size <= kLeastSide).any()) {
     return true;
   }
-  return depth >= kQuarterings && (depth == kMostQuarterings || deep_cells_++ > kMostDeepCells);
+  return cell.size.prod() <= kFreeArea && deep_cells_++ > kMostDeepCells;
 }
 
-void LatticeInverse::addCell(const UvCell& cell, int depth) {
+void LatticeInverse::addCell(const UvCell& cell) {
   const Box2 box = cell.box();
   const Lattice inside = within(box);
   if (inside.empty()) {
@@ -223,18 +214,18 @@ void LatticeInverse::addCell(const UvCell& cell, int depth) {
     addRows(cell, inverse, inside);
     return;
   }
-  if (depth > 0 && Strip(cell, tolerance_).isBeside(inside)) {
+  if (Strip(cell, tolerance_).isBeside(inside)) {
     return;
   }
-  if (isLast(box, depth)) {
+  if (isLast(cell, box)) {
     addNearest(cell, inside);
     return;
   }
-  ++work_.quartered;
-  UvCell quarters[4];
-  cell.quarter(quarters);
-  for (const UvCell& quarter : quarters) {
-    addCell(quarter, depth + 1);
+  ++work_.divided;
+  UvCell parts[4];
+  const int count = divide(cell, parts);
+  for (int i = 0; i < count; ++i) {
+    addCell(parts[i]);
   }
 }
 
@@ -263,9 +254,11 @@ void LatticeInverse::addRows(const UvCell& cell, const CellInverse& inverse,
         const int last = std::min(end, static_cast<int>(rows.length[i]));
         for (int point = begin; point < last; ++point) {
           const int place = point - begin;
-          if (rows.found[place][i] > 0) {
-            addPlace(cell, inverse, {rows.s[place][i], rows.t[place][i]},
-                     rows.determinant[place][i], x0[i] + point, first + i);
+          const Point2 at(rows.s[place][i], rows.t[place][i]);
+          if (rows.found[place][i] == 1) {
+            addPlace(cell, inverse, at, rows.determinant[place][i], x0[i] + point, first + i);
+          } else if (rows.found[place][i] > 0) {
+            addDoubtful(cell, inverse, at, x0[i] + point, first + i);
           }
         }
       }
@@ -278,8 +271,8 @@ void LatticeInverse::addPlace(const UvCell& cell, const CellInverse& inverse, co
   Find find;
   find.x = x;
   find.y = y;
-  find.s = cell.s0 + cell.size * (place[0] + 0.5);
-  find.t = cell.t0 + cell.size * (place[1] + 0.5);
+  find.s = cell.low[0] + cell.size[0] * (place[0] + 0.5);
+  find.t = cell.low[1] + cell.size[1] * (place[1] + 0.5);
   find.flipped = determinant < 0;
   const Point2 from_sides = 0.5 - place.abs();
   if (from_sides.minCoeff() <= inverse.borderWidth()) {
@@ -308,6 +301,19 @@ void LatticeInverse::addPlace(const UvCell& cell, const CellInverse& inverse, co
   sink_.add(find);
 }
 
+void LatticeInverse::addDoubtful(const UvCell& cell, const CellInverse& inverse,
+                                 const Point2& start, int x, int y) {
+  const bool has_wedges = inverse.borderWidth() <= kWidestBorder;
+  if (work_.searches == limit_.searches || !(has_wedges || sink_.wants(x, y, cell))) {
+    return;
+  }
+  ++work_.searches;
+  const CellNearest nearest(cell, Point2(x, y), tolerance_, start + 0.5);
+  if (nearest.isReached()) {
+    addPlace(cell, inverse, nearest.at() - 0.5, nearest.determinant(), x, y);
+  }
+}
+
 void LatticeInverse::addNearest(const UvCell& cell, const Lattice& inside) {
   const Strip strip(cell, tolerance_);
   for (int y = inside.y0; y <= inside.y1; ++y) {
@@ -320,14 +326,14 @@ void LatticeInverse::addNearest(const UvCell& cell, const Lattice& inside) {
         continue;
       }
       ++work_.searches;
-      LeastSquares search(cell, Point2(x, y));
-      if ((search.rest().abs() <= tolerance_).all()) {
+      const CellNearest nearest(cell, Point2(x, y), tolerance_, Point2::Constant(0.5));
+      if (nearest.isReached()) {
         Find find;
         find.x = x;
         find.y = y;
-        find.s = cell.s0 + cell.size * search.s();
-        find.t = cell.t0 + cell.size * search.t();
-        find.flipped = search.determinant() < 0;
+        find.s = cell.low[0] + cell.size[0] * nearest.at()[0];
+        find.t = cell.low[1] + cell.size[1] * nearest.at()[1];
+        find.flipped = isFlipped(cell, nearest.determinant());
         find.on_border = true;
         sink_.add(find);
       }

@@ -38,14 +38,14 @@ class FindSink {
 
 /// Finds all places at which patches take the values of lattice points.
 ///
-/// A patch is quartered until the control hull of a cell contains no lattice point, or CellInverse
-/// can invert the cell. Neither happens where the Jacobian determinant vanishes: there quartering
-/// ends at the size of the tolerance or after kMostDeepCells cells (a whole edge of a patch that is
-/// mapped to one lattice point takes more), and a least-squares iteration searches for one place in
-/// each remaining cell. Patches whose image has no area take no values.
+/// A patch is divided until the control hull of a cell contains no lattice point, or CellInverse
+/// can invert the cell. Neither happens where the Jacobian determinant vanishes: there division
+/// ends at the size of the tolerance or after kMostDeepCells cells, and a least-squares iteration
+/// searches for one place in each remaining cell. It also decides about points that are so close to
+/// a side of a cell that Newton's iteration cannot. Patches whose image has no area take no values.
 ///
 /// The cost of a patch is bounded, whatever its points are: for n lattice points in its box, at
-/// most kMostCells + n cells are quartered, kMostSearches + 2n searches are made, and remaining
+/// most kMostCells + n cells are divided, kMostSearches + 2n searches are made, and remaining
 /// cells are compared with points kMostTrials + 64n times. A patch that needs more is degenerate
 /// nearly everywhere, or tolerances are larger than the distances of lattice points; places on it
 /// may be missed.
@@ -70,19 +70,19 @@ class LatticeInverse {
                                 kMostTrials = 1 << 22;
   /// What has been done so far, for all patches.
   struct Work {
-    std::int64_t quartered = 0;  ///< cells
-    std::int64_t searches = 0;   ///< by least squares
-    std::int64_t trials = 0;     ///< pairs of a remaining cell and a point
+    std::int64_t divided = 0;   ///< cells
+    std::int64_t searches = 0;  ///< by least squares
+    std::int64_t trials = 0;    ///< pairs of a remaining cell and a point
   };
   const Work& work() const { return work_; }
 
  private:
-  /// Every patch may be quartered kQuarterings times; beyond, at most kMostDeepCells cells of a
-  /// patch are, down to kMostQuarterings times. Chosen, not derived.
-  static constexpr int kQuarterings = 10;
-  static constexpr int kMostQuarterings = 40;
+  /// Cells are divided if they are larger than this part of their patch; of smaller ones, at most
+  /// kMostDeepCells of a patch are, down to sides of this length. Chosen, not derived.
+  static constexpr double kFreeArea = 0x1p-20;
   static constexpr int kMostDeepCells = 1024;
-  /// A cell whose image is at most this many tolerances large is not quartered any more.
+  static constexpr double kLeastSide = 0x1p-40;
+  /// A cell whose image is at most this many tolerances large is not divided any more.
   static constexpr double kTiny = 16;
   /// If the border of a cell (CellInverse::borderWidth()) is wider than this part of its side, the
   /// cell is too small for directions.
@@ -90,14 +90,18 @@ class LatticeInverse {
 
   /// Begins with a patch or a part of one.
   void begin(const Lattice& inside);
-  void addCell(const UvCell& cell, int depth);
-  /// Whether a cell that cannot be inverted is searched instead of quartered.
-  bool isLast(const Box2& box, int depth);
+  void addCell(const UvCell& cell);
+  /// Whether a cell that cannot be inverted is searched instead of divided.
+  bool isLast(const UvCell& cell, const Box2& box);
   /// Inverts a cell some rows at a time, each point starting from its neighbours in the row.
   void addRows(const UvCell& cell, const CellInverse& inverse, const Lattice& inside);
   /// Adds a place in the cell, in coordinates from -1/2 to 1/2 about the middle.
   void addPlace(const UvCell& cell, const CellInverse& inverse, const Point2& place,
                 double determinant, int x, int y);
+  /// Adds the nearest place in the cell if the cell has the point, up to the tolerance: the
+  /// iteration has ended beside a side, at `start`, and does not tell.
+  void addDoubtful(const UvCell& cell, const CellInverse& inverse, const Point2& start, int x,
+                   int y);
   /// Searches by least squares for the places nearest to the points.
   void addNearest(const UvCell& cell, const Lattice& inside);
 
@@ -107,7 +111,7 @@ class LatticeInverse {
   FindSink& sink_;
   Work work_;
   Work limit_;          // what work_ may be after the present patch
-  int deep_cells_ = 0;  // cells of the present patch quartered more than kQuarterings times
+  int deep_cells_ = 0;  // cells of the present patch that are smaller than kFreeArea
 };
 
 }  // namespace limitsurf

@@ -254,7 +254,7 @@ void LatticeFinds::add(const Find& find) {
 }
 
 bool LatticeFinds::wants(int x, int y, const UvCell& cell) const {
-  const FaceRectangle on = on_.part(cell.s0, cell.t0, cell.size, cell.size);
+  const FaceRectangle on = on_.part(cell.low[0], cell.low[1], cell.size[0], cell.size[1]);
   const double s = on.us < 0 || on.vs < 0 ? 1 : 0, t = on.ut < 0 || on.vt < 0 ? 1 : 0;
   return isBefore(on.at(s, t), at(x, y));
 }

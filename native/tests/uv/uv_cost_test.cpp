@@ -90,7 +90,7 @@ TEST(UvCost, StrayValuesCostLittle) {
       found += result.found;
       EXPECT_LE(result.error, kMapError);
       // Without the stray value there are some thousand cells, and no searches.
-      EXPECT_LE(result.work.quartered, 20'000);
+      EXPECT_LE(result.work.divided, 20'000);
       EXPECT_LE(result.work.searches, 10'000);
     }
   }
@@ -104,8 +104,48 @@ TEST(UvCost, IsBoundedWhereTheErrorExceedsATexel) {
     Random random(seed);
     const Searched result = search(surface, valuesWithAStray(random, 1e13), 48);
     EXPECT_LE(result.error, kMapError);
-    EXPECT_LE(result.work.quartered, 30'000);
+    EXPECT_LE(result.work.divided, 30'000);
     EXPECT_LE(result.work.searches, 60'000);
+  }
+}
+
+// The lower edge of the map is one point, and that point is searched for.
+TEST(UvCost, CollapsedEdgesCostLittle) {
+  const LimitSurface surface = grid();
+  for (const double span : {1., 3., 6.}) {
+    for (const Interpolation interpolation :
+         {Interpolation::none, Interpolation::boundaries, Interpolation::all}) {
+      SCOPED_TRACE(std::to_string(span) + " " + std::to_string(static_cast<int>(interpolation)));
+      DataRows values(kColumns * kRows, 2);
+      std::vector<std::int64_t> corners;
+      for (int i = 0; i < kColumns * kRows; ++i) {
+        const double angle = span * (i % kColumns) / (kColumns - 1), far = i / kColumns;
+        values.row(i) << 0.3 + far * std::cos(angle), 0.2 + far * std::sin(angle);
+      }
+      for (int y = 0; y + 1 < kRows; ++y) {
+        for (int x = 0; x + 1 < kColumns; ++x) {
+          const int corner = kColumns * y + x;
+          for (const int vertex : {corner, corner + 1, corner + kColumns + 1, corner + kColumns}) {
+            corners.push_back(vertex);
+          }
+        }
+      }
+      const SurfaceData data = surface.faceVarying(values, corners, interpolation);
+      const UvPatches map(data, 1);
+      const Location on_edge{1, 0.3, 0};
+      const Eigen::RowVector2d point = data.evaluate({&on_edge, 1}).value.row(0);
+      constexpr Lattice kOnePoint{0, 0, 0, 0};
+      const PlaneFrame frame{point.transpose().array(), Point2::Ones(), 0};
+      std::vector<LatticeFinds::Slot> slots;
+      LatticeFinds finds(kOnePoint, slots);
+      LatticeInverse inverse(kOnePoint, Point2::Constant(map.tolerance()), finds);
+      for (const UvPiece& piece : map.pieces()) map.invert(piece, frame, inverse, finds);
+      finds.finish();
+      EXPECT_GE(finds.at(0, 0).face, 0);
+      // Four faces have the edge. One square cell after the other along it would be thousands.
+      EXPECT_LE(inverse.work().divided, 5'000);
+      EXPECT_LE(inverse.work().searches, 200);
+    }
   }
 }
 
