@@ -33,7 +33,9 @@ void checkPoints(const PlanePoints& points) {
       std::ostringstream message;
       message << "row " << row << ": the point (" << numberText(points(row, 0)) << ", "
               << numberText(points(row, 1)) << ") "
-              << (points.row(row).allFinite() ? "is too far away" : "is not finite");
+              << (points.row(row).allFinite()
+                      ? "is too far away; coordinates must be at most " + numberText(kFarthest)
+                      : "is not finite");
       throw std::invalid_argument(message.str());
     }
   }

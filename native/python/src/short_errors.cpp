@@ -9,14 +9,21 @@ namespace py = pybind11;
 /// The function of pybind11 that calls all others: it is the same for all of them.
 PyCFunction dispatcher = nullptr;
 
-/// Shortens the TypeError that is set, if pybind11 has made it.
-PyObject* shortError() {
-  if (PyErr_ExceptionMatches(PyExc_TypeError) == 0) {
-    return nullptr;
-  }
+/// Makes a TypeError name the argument of a wrong type, if pybind11 has made it, or shortens it.
+PyObject* shortError(py::error_already_set& error, const py::tuple& positional,
+                     const py::dict& named) {
   constexpr py::ssize_t kMost = 200;
-  py::error_already_set error;
   const py::object text = py::str(error.value());
+  try {
+    const py::object explanation = py::module_::import("limitsurf._argument_errors")
+                                       .attr("explanation")(text, positional, named);
+    if (!explanation.is_none()) {
+      PyErr_SetObject(PyExc_TypeError, explanation.ptr());
+      return nullptr;
+    }
+  } catch (py::error_already_set&) {
+    // An argument whose methods raise cannot be explained.
+  }
   const py::str quoting("\nInvoked with: ");
   const auto at = py::cast<py::ssize_t>(text.attr("find")(quoting));
   const py::ssize_t most = at + static_cast<py::ssize_t>(py::len(quoting)) + kMost;
@@ -33,7 +40,12 @@ PyObject* shortWithTuple(PyObject* self, PyObject* arguments, PyObject* named) {
   const auto call =
       reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<void (*)()>(dispatcher));
   PyObject* const result = call(self, arguments, named);
-  return result != nullptr ? result : shortError();
+  if (result != nullptr || PyErr_ExceptionMatches(PyExc_TypeError) == 0) {
+    return result;
+  }
+  py::error_already_set error;
+  return shortError(error, py::reinterpret_borrow<py::tuple>(arguments),
+                    named == nullptr ? py::dict() : py::reinterpret_borrow<py::dict>(named));
 }
 
 using FastFunction = PyObject* (*)(PyObject*, PyObject* const*, Py_ssize_t, PyObject*);
@@ -42,7 +54,20 @@ PyObject* shortWithArray(PyObject* self, PyObject* const* arguments, Py_ssize_t 
                          PyObject* names) {
   const auto call = reinterpret_cast<FastFunction>(reinterpret_cast<void (*)()>(dispatcher));
   PyObject* const result = call(self, arguments, count, names);
-  return result != nullptr ? result : shortError();
+  if (result != nullptr || PyErr_ExceptionMatches(PyExc_TypeError) == 0) {
+    return result;
+  }
+  py::error_already_set error;
+  const py::ssize_t places = PyVectorcall_NARGS(static_cast<std::size_t>(count));
+  py::list positional;
+  for (py::ssize_t i = 0; i < places; ++i) {
+    positional.append(py::handle(arguments[i]));
+  }
+  py::dict named;
+  for (py::ssize_t i = 0; names != nullptr && i < PyTuple_GET_SIZE(names); ++i) {
+    named[PyTuple_GET_ITEM(names, i)] = py::handle(arguments[places + i]);
+  }
+  return shortError(error, py::tuple(positional), named);
 }
 
 void shorten(py::handle function) {

@@ -530,3 +530,31 @@ def test_vertices_that_are_named_again():
         match="^vertex_sharpness row 2, vertex 5 has sharpness inf, but row 0 gives it 1$",
     ):
         corners([1.0, 2.0, float("inf")])
+
+
+def test_errors_name_the_argument_of_a_wrong_type():
+    positions, faces = shapes.grid(2, 2)
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
+    calls = {
+        "threads is 1.5; expected an integer": lambda: surface.evaluate(0, [[0, 0]], threads=1.5),
+        "derivatives is 'x'; expected an integer": lambda: surface.evaluate(0, [[0, 0]], "x"),
+        "max_angle is 'x'; expected a number": lambda: surface.closest([[0, 0, 0]], max_angle="x"),
+        "interpolation is 3; expected a string": lambda: surface.face_varying([[0, 0]], [0], 3),
+    }
+    for message, call in calls.items():
+        with pytest.raises(TypeError) as error:
+            call()
+        assert str(error.value) == message
+
+
+def test_arguments_that_raise_or_are_missing_leave_the_whole_signature():
+    class Raises:
+        def __index__(self):
+            raise KeyError("no number")
+
+    positions, faces = shapes.grid(2, 2)
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
+    with pytest.raises(TypeError, match="incompatible function arguments"):
+        surface.evaluate(0, [[0, 0]], threads=Raises())
+    with pytest.raises(TypeError, match="incompatible function arguments"):
+        surface.evaluate(0)

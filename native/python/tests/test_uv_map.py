@@ -223,11 +223,36 @@ def test_refused_types(uv_map):
         uv_map.rasterize(4, 4, progress=3)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"tile": (0.5, 0)}, "tile is (0.5, 0); expected two integers"),
+        ({"tile": (1, 2, 3)}, "tile is (1, 2, 3); expected two integers"),
+        ({"width": 1.5}, "width is 1.5; expected an integer"),
+        ({"height": "a"}, "height is 'a'; expected an integer"),
+        ({"width": 2**40}, "width is 1099511627776; expected an integer below 2147483648"),
+        ({"threads": 1.5}, "threads is 1.5; expected an integer"),
+        ({"margin": "x"}, "margin is 'x'; expected a number"),
+    ],
+)
+def test_errors_name_the_argument_of_a_wrong_type(uv_map, arguments, message):
+    with pytest.raises(TypeError) as error:
+        uv_map.rasterize(**{"width": 4, "height": 4, **arguments})
+    assert str(error.value) == message
+
+
+def test_positional_arguments_of_a_wrong_type_are_named_too(uv_map):
+    with pytest.raises(TypeError, match=r"^height is 4\.5; expected an integer$"):
+        uv_map.rasterize(4, 4.5)
+    with pytest.raises(TypeError, match=r"^threads is 1\.5; expected an integer$"):
+        uv_map.locate([[0, 0]], threads=1.5)
+
+
 def test_refused_points(uv_map):
     for value, text in [(np.nan, "nan"), (np.inf, "inf")]:
         with pytest.raises(ValueError, match=f"row 1: the point .*{text}.* is not finite"):
             uv_map.locate([[0, 0], [0.5, value]])
-    with pytest.raises(ValueError, match="too far away"):
+    with pytest.raises(ValueError, match=r"too far away; coordinates must be at most 1e\+150"):
         uv_map.locate([[1e200, 0]])
     with pytest.raises(ValueError, match=r"points has shape \(2, 3\)"):
         uv_map.locate(np.zeros((2, 3)))
