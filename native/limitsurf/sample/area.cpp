@@ -15,10 +15,10 @@ namespace limitsurf {
 namespace {
 
 /// At first each patch is integrated until its error is this part of its area.
-constexpr double kFirstTolerance = kAreaError / 20;
+constexpr double kFirstTolerance = kAreaError / 10;
 /// The patches with the largest errors are refined until the sum of all errors is this part of the
 /// area.
-constexpr double kTolerance = kAreaError / 8;
+constexpr double kTolerance = kAreaError / 4;
 /// Refinement makes so many squares of all patches together, and at least so many of each patch
 /// that it takes up.
 constexpr int kMostSquares = 1 << 17, kFewSquares = 64;
@@ -26,7 +26,9 @@ constexpr int kMostSquares = 1 << 17, kFewSquares = 64;
 constexpr double kCoreShare = 4;
 /// The last change of a core's extrapolated area may be this many times its tolerance: it is far
 /// larger than the error that is left.
-constexpr double kSeriesShare = 8;
+constexpr double kSeriesShare = 4;
+/// After so many steps, the patches of a core are so flat that few points are enough for most.
+constexpr int kFlatSteps = 4;
 /// The number of tiles that one task integrates side by side.
 constexpr std::size_t kTilesPerTask = 32;
 
@@ -42,20 +44,32 @@ void add(const SurfaceArea& part, SurfaceArea& sum) {
 }
 
 /// The area of a core, which is a sequence of triples of patches towards the extraordinary vertex.
-/// Their areas become a sum of geometric sequences, so that the areas of the first steps tell the
-/// rest.
+///
+/// What is left after some steps is nearly flat, so that its area is hardly more than the length of
+/// the integral of ds x dt over it. That integral is what the steps have left of the whole core's.
+/// The sum of the steps' areas and this length approaches the area as a sum of geometric sequences,
+/// so that the first steps tell its limit. Where the whole core's integral is not known, the sum of
+/// the areas alone does so, more slowly.
 class CoreSum {
  public:
-  explicit CoreSum(const Effort& effort)
-      : tolerance_(effort.absolute), step_{effort.relative, effort.absolute / kCoreShare} {}
+  CoreSum(const SurfacePatches& patches, const SurfacePiece& core, const Effort& effort)
+      : tolerance_(effort.absolute), step_{effort.relative, effort.absolute / kCoreShare} {
+    is_rest_known_ = patches.coreNormal(core, rest_);
+    if (is_rest_known_) {
+      sum_.error = rest_.rounding;
+      series_.add(rest_.normal.norm());
+    }
+  }
 
   /// How exactly the patches of the next step are to be integrated.
   const Effort& step() const { return step_; }
 
-  /// Adds the three patches of a step. Returns whether the rest needs no more steps.
-  bool add(const SurfaceArea& area) {
+  /// Adds the three patches of a step, with the integral of ds x dt over them. Returns whether the
+  /// rest needs no more steps.
+  bool add(const SurfaceArea& area, const Vector3& normal) {
     limitsurf::add(area, sum_);
-    series_.add(area.value);
+    rest_.normal -= normal;
+    series_.add(sum_.value + (is_rest_known_ ? rest_.normal.norm() : 0));
     if (step_.relative > 0) {
       const double share = step_.relative * area.value;
       tolerance_ = std::max(tolerance_, kSeriesShare * share);
@@ -71,6 +85,8 @@ class CoreSum {
  private:
   double tolerance_;
   Effort step_;
+  bool is_rest_known_;
+  CoreNormal::Value rest_ = {Vector3::Zero(), 0};
   SurfaceArea sum_;
   GeometricSeries series_;
 };
@@ -93,7 +109,7 @@ class TileAreas {
       for (const SurfacePiece& piece : pieces_) {
         if (piece.isCore()) {
           open_.push_back(cores_.size());
-          cores_.emplace_back(piece, relative);
+          cores_.emplace_back(patches_, piece, relative);
         } else {
           squares_.emplace_back(patches_.patch(piece), relative, 0);
           tiles_.push_back(tile);
@@ -111,7 +127,8 @@ class TileAreas {
 
  private:
   struct Core {
-    Core(const SurfacePiece& piece, double relative) : sum(Effort{relative, 0}) {
+    Core(const SurfacePatches& patches, const SurfacePiece& piece, double relative)
+        : sum(patches, piece, Effort{relative, 0}) {
       split.core = piece;
     }
 
@@ -131,16 +148,19 @@ class TileAreas {
         squares_.emplace_back(patch, effort.relative, effort.absolute);
       }
     }
-    quadrature_.measure(squares_);
+    quadrature_.measure(squares_, cores_[open_.front()].split.core.steps >= kFlatSteps);
     std::size_t left = 0;
     for (std::size_t i = 0; i < open_.size(); ++i) {
       SurfaceArea step;
+      Vector3 normal = Vector3::Zero();
       for (std::size_t quarter = 0; quarter < 3; ++quarter) {
-        add(squares_[3 * i + quarter].result(), step);
+        const AreaSquare& square = squares_[3 * i + quarter];
+        add(square.result(), step);
+        normal += square.normal;
       }
       Core& core = cores_[open_[i]];
       const SurfacePiece& rest = core.split.core;
-      if (core.sum.add(step) || rest.steps >= SurfacePatches::kMostSteps) {
+      if (core.sum.add(step, normal) || rest.steps >= SurfacePatches::kMostSteps) {
         areas[rest.tile] = core.sum.result();
       } else {
         open_[left++] = open_[i];
@@ -173,7 +193,7 @@ SurfaceArea refinedArea(const SurfacePatches& patches, int tile, double toleranc
     refined.refine(tolerance, most_squares);
     return refined.result();
   }
-  CoreSum sum({0, tolerance});
+  CoreSum sum(patches, pieces.front(), {0, tolerance});
   SurfacePatches::SplitCore split;
   split.core = pieces.front();
   bool is_done = false;
@@ -186,7 +206,7 @@ SurfaceArea refinedArea(const SurfacePatches& patches, int tile, double toleranc
     }
     refined.start(squares);
     refined.refine(sum.step().absolute, most_squares);
-    is_done = sum.add(refined.result());
+    is_done = sum.add(refined.result(), refined.normal());
     // The shares of later steps in the area fall by a factor of 4 or so.
     most_squares /= 2;
   }
@@ -223,7 +243,8 @@ std::vector<std::size_t> worstTiles(const std::vector<SurfaceArea>& areas, doubl
 
 SurfaceArea measuredArea(const LimitSurface& surface, int threads) {
   checkThreads(threads);
-  const SurfacePatches patches(surface, threads, PatchUnit::own, RingHulls::none);
+  SurfacePatches patches(surface, threads, PatchUnit::own, RingHulls::none);
+  patches.prepareCoreNormals();
   std::vector<SurfaceArea> areas(static_cast<std::size_t>(patches.tileCount()));
   parallelFor(areas.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     TileAreas tiles(patches);

@@ -15,8 +15,8 @@ constexpr double kAreaError = 1e-9;
 /// An area, and what is known about it.
 struct SurfaceArea {
   double value = 0;
-  /// An estimate of the error, in the same unit: what the quadrature still changed in its last
-  /// refinement, and rounding. An adaptive rule can be misled, so this is no strict bound.
+  /// An estimate of the error, in the same unit: of the quadrature, of the extrapolation around
+  /// extraordinary vertices, and of rounding. A rule can be misled, so this is no strict bound.
   double error = 0;
   /// The number of places at which du x dv was evaluated: what the cost is proportional to.
   std::int64_t evaluations = 0;

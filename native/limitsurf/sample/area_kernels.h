@@ -34,12 +34,22 @@ struct SquareBlock {
   }
 };
 
-/// What is computed of each square of a block at first.
-struct FirstRules {
-  double one[SquareBlock::kCount], two[SquareBlock::kCount], three[SquareBlock::kCount];  ///< areas
+/// What is known of each square of a block before any quadrature.
+struct SquareShapes {
   double rounding[SquareBlock::kCount];  ///< more than the rounding errors of any quadrature
   /// Above 0 only if (ds x dt) n > 0 everywhere, n the normal in the middle.
   double upright[SquareBlock::kCount];
+};
+
+/// What a rule finds on each square of a block.
+struct RuleResults {
+  double area[SquareBlock::kCount];
+  double normal[3][SquareBlock::kCount];  ///< the integral of ds x dt
+  /// How fast the coefficients of an expansion in Legendre polynomials fall. What is expanded is
+  /// |ds x dt| less its part along the mean normal, which all rules integrate exactly. These are
+  /// the squared norms of the coefficients of degree PairedRule::kHighest along s or t, and of
+  /// degree PairedRule::kLower.
+  double highest[SquareBlock::kCount], lower[SquareBlock::kCount];
 };
 
 /// The mean of ds x dt on each square of a block, and how far it differs from that at most.
@@ -51,10 +61,9 @@ struct NormalBounds {
 /// Quadratures and bounds, compiled for one instruction set. A square's results do not depend on
 /// the set, nor on the other squares of its block.
 struct AreaKernels {
-  /// Gauss's rules with 1, 2 and 3 points a side.
-  void (*first_rules)(const SquareBlock& squares, FirstRules& out);
-  /// The rules with 4, 6 and 8 points a side.
-  using Rule = void (*)(const SquareBlock& squares, double areas[SquareBlock::kCount]);
+  void (*shapes)(const SquareBlock& squares, SquareShapes& out);
+  /// Gauss's rules with 4, 6 and 8 points a side.
+  using Rule = void (*)(const SquareBlock& squares, RuleResults& out);
   Rule four, six, eight;
 
   /// Of the first `count` squares, an upper bound of |ds x dt|, an estimate of its mean, and a

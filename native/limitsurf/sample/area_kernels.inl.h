@@ -122,34 +122,224 @@ inline Squares uprightness(const SquareDerivatives& d) {
   return squareRoot(squaredLength(crossProduct(s, t))) - kMoreThanRounding * change;
 }
 
-inline void firstRules(const SquareBlock& squares, FirstRules& out) {
+inline void squareShapes(const SquareBlock& squares, SquareShapes& out) {
   constexpr double kRounding = 4e-15;
   for (int first = 0; first < SquareBlock::kCount; first += kLanes) {
     const SquareDerivatives d(squares, first);
-    quadrature(d, kGauss1).store(out.one + first);
-    quadrature(d, kGauss2).store(out.two + first);
-    quadrature(d, kGauss3).store(out.three + first);
     (kRounding * largestCoordinate(d.ds) * largestCoordinate(d.dt)).store(out.rounding + first);
     uprightness(d).store(out.upright + first);
   }
 }
 
+/// A polynomial in powers of the distance from the middle.
+struct CenteredCubic {
+  Squares c[4];
+
+  static CenteredCubic of(const Squares& p0, const Squares& p1, const Squares& p2,
+                          const Squares& p3) {
+    const Squares whole = p3 - p0, middle = p2 - p1;
+    return {{0.125 * ((p0 + p3) + 3 * (p1 + p2)), 0.75 * (whole + middle),
+             1.5 * ((p0 + p3) - (p1 + p2)), whole - 3 * middle}};
+  }
+};
+
+/// The derivatives of bicubic patches in powers of the distances from their middle, as
+/// [power of t][power of s].
+struct CenteredDerivatives {
+  CenteredDerivatives(const SquareBlock& squares, int first) {
+    for (int axis = 0; axis < 3; ++axis) {
+      CenteredCubic rows[4];
+      for (int row = 0; row < 4; ++row) {
+        const double (*p)[SquareBlock::kCount] = squares.points[axis] + 4 * row;
+        rows[row] = CenteredCubic::of(Squares::load(p[0] + first), Squares::load(p[1] + first),
+                                      Squares::load(p[2] + first), Squares::load(p[3] + first));
+      }
+      for (int i = 0; i < 4; ++i) {
+        const CenteredCubic column =
+            CenteredCubic::of(rows[0].c[i], rows[1].c[i], rows[2].c[i], rows[3].c[i]);
+        for (int j = 0; j < 4; ++j) {
+          if (i > 0) {
+            ds[axis][j][i - 1] = static_cast<double>(i) * column.c[j];
+          }
+          if (j > 0) {
+            dt[axis][j - 1][i] = static_cast<double>(j) * column.c[j];
+          }
+        }
+      }
+    }
+  }
+
+  Squares ds[3][4][3], dt[3][3][4];
+};
+
+/// Values at two places at the same distance from the middle, before and beyond it.
+struct PairOfValues {
+  Squares before, beyond;
+
+  static PairOfValues ofQuadratic(const Squares& c0, const Squares& c1, const Squares& c2,
+                                  double at) {
+    return of(c0 + (at * at) * c2, at * c1);
+  }
+  static PairOfValues ofCubic(const Squares& c0, const Squares& c1, const Squares& c2,
+                              const Squares& c3, double at) {
+    return of(c0 + (at * at) * c2, at * (c1 + (at * at) * c3));
+  }
+  static PairOfValues of(const Squares& even, const Squares& odd) {
+    return {even - odd, even + odd};
+  }
+};
+
+/// ds x dt, integrated over each square: half the integral of p x dp around it, which follows from
+/// the points of its sides.
+inline SquareVector integratedNormal(const SquareBlock& squares, int first) {
+  const auto between = [&](int from, int to) {
+    SquareVector difference;
+    for (int axis = 0; axis < 3; ++axis) {
+      difference.axis[axis] = Squares::load(squares.points[axis][to] + first) -
+                              Squares::load(squares.points[axis][from] + first);
+    }
+    return difference;
+  };
+  SquareVector sum = crossProduct(between(0, 15), between(3, 12));
+  for (Squares& coordinate : sum.axis) {
+    coordinate = 0.5 * coordinate;
+  }
+  constexpr struct {
+    int begin, step;
+    double sign;
+  } kSides[4] = {{0, 1, 1}, {3, 4, 1}, {12, 1, -1}, {0, 4, -1}};
+  for (const auto& side : kSides) {
+    const SquareVector a = between(side.begin, side.begin + side.step),
+                       b = between(side.begin, side.begin + 2 * side.step),
+                       c = between(side.begin, side.begin + 3 * side.step);
+    const SquareVector first_part = crossProduct(
+        a, SquareVector{{b.axis[0] + c.axis[0], b.axis[1] + c.axis[1], b.axis[2] + c.axis[2]}});
+    const SquareVector second_part = crossProduct(b, c);
+    for (int axis = 0; axis < 3; ++axis) {
+      sum.axis[axis] = sum.axis[axis] +
+                       (0.15 * side.sign) * (first_part.axis[axis] + 2 * second_part.axis[axis]);
+    }
+  }
+  return sum;
+}
+
+/// Values at the points of a rule. In each direction, those beyond the middle come first, then
+/// their partners.
 template <int N>
-inline void areas(const SquareBlock& squares, const GaussRule<N>& rule,
-                  double out[SquareBlock::kCount]) {
-  for (int first = 0; first < SquareBlock::kCount; first += kLanes) {
-    quadrature(SquareDerivatives(squares, first), rule).store(out + first);
+using RuleValues = Squares[N][N];
+
+/// Sets `lengths` to |ds x dt| and `excess` to what this is more than the part along `normal`.
+template <int N>
+inline void evaluate(const CenteredDerivatives& d, const PairedRule<N>& rule,
+                     const SquareVector& normal, RuleValues<N>& lengths, RuleValues<N>& excess) {
+  constexpr int kPairs = N / 2;
+  for (int j = 0; j < kPairs; ++j) {
+    Squares p[2][3][3], q[2][3][4];
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < 3; ++i) {
+        const PairOfValues pair = PairOfValues::ofCubic(
+            d.ds[axis][0][i], d.ds[axis][1][i], d.ds[axis][2][i], d.ds[axis][3][i], rule.offset[j]);
+        p[0][axis][i] = pair.beyond;
+        p[1][axis][i] = pair.before;
+      }
+      for (int i = 0; i < 4; ++i) {
+        const PairOfValues pair = PairOfValues::ofQuadratic(d.dt[axis][0][i], d.dt[axis][1][i],
+                                                            d.dt[axis][2][i], rule.offset[j]);
+        q[0][axis][i] = pair.beyond;
+        q[1][axis][i] = pair.before;
+      }
+    }
+    for (int half = 0; half < 2; ++half) {
+      const int row = j + half * kPairs;
+      for (int i = 0; i < kPairs; ++i) {
+        SquareVector s[2], t[2];
+        for (int axis = 0; axis < 3; ++axis) {
+          const Squares *a = p[half][axis], *b = q[half][axis];
+          const PairOfValues ds = PairOfValues::ofQuadratic(a[0], a[1], a[2], rule.offset[i]);
+          const PairOfValues dt = PairOfValues::ofCubic(b[0], b[1], b[2], b[3], rule.offset[i]);
+          s[0].axis[axis] = ds.beyond;
+          s[1].axis[axis] = ds.before;
+          t[0].axis[axis] = dt.beyond;
+          t[1].axis[axis] = dt.before;
+        }
+        for (int side = 0; side < 2; ++side) {
+          const SquareVector product = crossProduct(s[side], t[side]);
+          const Squares length = squareRoot(squaredLength(product));
+          lengths[row][i + side * kPairs] = length;
+          excess[row][i + side * kPairs] = length - dotProduct(product, normal);
+        }
+      }
+    }
   }
 }
 
-inline void fourPoints(const SquareBlock& squares, double out[SquareBlock::kCount]) {
-  areas(squares, kGauss4, out);
+template <int N>
+inline Squares integral(const RuleValues<N>& values, const PairedRule<N>& rule) {
+  constexpr int kPairs = N / 2;
+  Squares sum = Squares::of(0);
+  for (int j = 0; j < N; ++j) {
+    Squares row = Squares::of(0);
+    for (int i = 0; i < kPairs; ++i) {
+      row = row + rule.weight[i] * (values[j][i] + values[j][i + kPairs]);
+    }
+    sum = sum + rule.weight[j % kPairs] * row;
+  }
+  return sum;
 }
-inline void sixPoints(const SquareBlock& squares, double out[SquareBlock::kCount]) {
-  areas(squares, kGauss6, out);
+
+/// The squared norms of the Legendre coefficients of two degrees (RuleResults). The sum over rows
+/// and columns does not come out small by accident, as one coefficient may.
+template <int N>
+inline void coefficientNorms(const RuleValues<N>& values, const PairedRule<N>& rule,
+                             Squares& highest, Squares& lower) {
+  constexpr int kPairs = N / 2;
+  highest = lower = Squares::of(0);
+  for (int line = 0; line < N; ++line) {
+    Squares high[2] = {Squares::of(0), Squares::of(0)}, low[2] = {high[0], high[0]};
+    for (int i = 0; i < kPairs; ++i) {
+      const Squares differences[2] = {values[line][i] - values[line][i + kPairs],
+                                      values[i][line] - values[i + kPairs][line]};
+      for (int way = 0; way < 2; ++way) {
+        high[way] = high[way] + rule.highest[i] * differences[way];
+        low[way] = low[way] + rule.lower[i] * differences[way];
+      }
+    }
+    const double weight = rule.weight[line % kPairs];
+    highest = highest + weight * (high[0] * high[0] + high[1] * high[1]);
+    lower = lower + weight * (low[0] * low[0] + low[1] * low[1]);
+  }
+  highest = (2 * PairedRule<N>::kHighest + 1) * highest;
+  lower = (2 * PairedRule<N>::kLower + 1) * lower;
 }
-inline void eightPoints(const SquareBlock& squares, double out[SquareBlock::kCount]) {
-  areas(squares, kGauss8, out);
+
+template <int N>
+inline void ruleResults(const SquareBlock& squares, const PairedRule<N>& rule, RuleResults& out) {
+  for (int first = 0; first < SquareBlock::kCount; first += kLanes) {
+    SquareVector normal = integratedNormal(squares, first);
+    const Squares length = squareRoot(squaredLength(normal));
+    const Squares scale = Squares::of(1) / Squares::unlessZero(length, Squares::of(1));
+    for (int axis = 0; axis < 3; ++axis) {
+      normal.axis[axis].store(out.normal[axis] + first);
+      normal.axis[axis] = scale * normal.axis[axis];
+    }
+    RuleValues<N> lengths, excess;
+    evaluate(CenteredDerivatives(squares, first), rule, normal, lengths, excess);
+    integral(lengths, rule).store(out.area + first);
+    Squares highest, lower;
+    coefficientNorms(excess, rule, highest, lower);
+    highest.store(out.highest + first);
+    lower.store(out.lower + first);
+  }
+}
+
+inline void fourPoints(const SquareBlock& squares, RuleResults& out) {
+  ruleResults(squares, kGauss4, out);
+}
+inline void sixPoints(const SquareBlock& squares, RuleResults& out) {
+  ruleResults(squares, kGauss6, out);
+}
+inline void eightPoints(const SquareBlock& squares, RuleResults& out) {
+  ruleResults(squares, kGauss8, out);
 }
 
 /// Calls visit() for the 36 Bezier points of ds x dt, which is of degree 5 in both directions.
@@ -246,5 +436,5 @@ inline void boundsAndMeans(const SquareBlock& squares, int count,
   }
 }
 
-constexpr AreaKernels kKernels = {firstRules,  fourPoints,     sixPoints,
-                                  eightPoints, boundsAndMeans, normalBounds};
+constexpr AreaKernels kKernels = {squareShapes, fourPoints,     sixPoints,
+                                  eightPoints,  boundsAndMeans, normalBounds};

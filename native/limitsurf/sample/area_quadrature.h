@@ -17,6 +17,7 @@ struct AreaSquare {
   double relative, absolute;
 
   double area, error, rounding;
+  Vector3 normal;  ///< the integral of ds x dt
   std::int64_t evaluations;
 
   /// Of a whole patch, in its own unit (PatchUnit).
@@ -27,30 +28,37 @@ struct AreaSquare {
   bool operator<(const AreaSquare& other) const { return error < other.error; }
 };
 
-/// The areas of squares, by rules of more and more points, until two of them agree. The errors of
-/// Gauss's rules fall geometrically with the number of points where the integrand is smooth; the
-/// last two differences tell the ratio, and with it the error of the last rule. Squares are
-/// measured side by side; none has any influence on another.
+/// The areas of squares, by Gauss's rules of more and more points until one is exact enough.
+///
+/// The error of a rule is estimated from one application of it: where the integrand is smooth, its
+/// coefficients in Legendre polynomials fall geometrically with the degree, and two of them tell
+/// those of the degrees at which the rule fails. Unlike the difference between two rules, this does
+/// not come out small by accident. Squares are measured side by side; none has any influence on
+/// another.
 class AreaQuadrature {
  public:
-  void measure(std::vector<AreaSquare>& squares);
+  /// The first rule has 6 points a side, or 4 if most squares are nearly flat. Where the error may
+  /// be a part of the area (AreaSquare::relative), no less than a tenth of that is stated: the
+  /// estimate may be wrong where it is very small.
+  void measure(std::vector<AreaSquare>& squares, bool nearly_flat = false);
 
  private:
-  /// A square, and the differences between the results of one rule and the next.
+  /// A square that needs the next rule.
   struct Open {
     std::size_t square;
     bool upright;
-    double differences[5];
+    /// The squared norms of coefficients (RuleResults) that the last rule found.
+    double highest, lower;
   };
 
-  struct NextRule;
-  /// Applies the rules of up to 4 points to squares side by side. Those that are not exact enough
-  /// are open.
-  void measureFirst(std::vector<AreaSquare>& squares, std::size_t first, std::size_t count);
+  struct Rule;
+  /// Applies the first rule to up to a block of squares. Those that are not exact enough are open.
+  void measureFirst(std::vector<AreaSquare>& squares, std::size_t first, std::size_t count,
+                    const Rule& rule);
   /// Applies the next rule to all open squares. Those that are exact enough are open no longer.
-  void measureOpen(std::vector<AreaSquare>& squares, const NextRule& next);
-  /// Takes the next rule's area of a square. Returns whether it is exact enough.
-  static bool isExact(AreaSquare& square, Open& open, double area, const NextRule& next);
+  void measureOpen(std::vector<AreaSquare>& squares, const Rule& rule);
+  /// Takes the area that a rule found. Returns whether it is exact enough.
+  static bool isExact(AreaSquare& square, Open& open, const Rule& rule, double area);
   /// Whether a square whose rule of 6 points is not exact enough has to be left so: where there are
   /// folds, which count as errors then, or where 8 points do not promise to be enough.
   static bool isDone(AreaSquare& square, const Open& open);
@@ -68,6 +76,8 @@ class RefinedArea {
   void refine(double tolerance, int most);
   /// All squares together.
   SurfaceArea result() const;
+  /// The integral of ds x dt over all squares.
+  Vector3 normal() const;
 
  private:
   /// A quarter of a square needs no smaller error than this part of the tolerance of all squares.

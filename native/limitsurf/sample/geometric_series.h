@@ -6,12 +6,12 @@
 
 namespace limitsurf {
 
-/// The limit of a series whose terms approach a sum of geometric sequences, by Aitken's
+/// The limit of a sequence whose differences approach a sum of geometric sequences, by Aitken's
 /// extrapolation (the delta-squared process), applied twice.
 class GeometricSeries {
  public:
-  void add(double term) {
-    const double once = sum_.add(term > 0 ? sum_.last() + term : sum_.last());
+  void add(double value) {
+    const double once = once_.add(value);
     const double before = limit_;
     limit_ = twice_.add(once);
     // Two estimates may agree by accident, but hardly three.
@@ -38,7 +38,6 @@ class GeometricSeries {
       difference_ = difference;
       return limit;
     }
-    double last() const { return last_; }
 
    private:
     /// Sequences that converge more slowly than that are not extrapolated.
@@ -47,9 +46,9 @@ class GeometricSeries {
     double last_ = 0, difference_ = 0;
   };
 
-  static constexpr double kCaution = 8;
+  static constexpr double kCaution = 2;
 
-  Aitken sum_, twice_;
+  Aitken once_, twice_;
   double limit_ = 0, error_ = 0, change_ = 0;
 };
 

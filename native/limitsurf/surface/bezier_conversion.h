@@ -38,14 +38,16 @@ void convertBothWays(Padded points[16], const Convert& convert) {
 }
 
 /// Fills the missing points of a side by linear continuation (Lacewell & Burley 2007, figure 2).
-inline void continueLow(Padded* p, int along, int across) {
+template <typename Point>
+void continueLow(Point* p, int along, int across) {
   for (int i = 0; i < 4; ++i) {
     p[i * along] = 2 * p[i * along + across] - p[i * along + 2 * across];
   }
 }
 
 /// Fills the missing points of all sides that have none.
-inline void continueSides(Padded window[16], bool x_low, bool x_high, bool y_low, bool y_high) {
+template <typename Point>
+void continueSides(Point window[16], bool x_low, bool x_high, bool y_low, bool y_high) {
   if (x_low) {
     continueLow(window, 4, 1);
   }

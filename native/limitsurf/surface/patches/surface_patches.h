@@ -8,6 +8,7 @@
 
 #include "limitsurf/surface/bezier_patch.h"
 #include "limitsurf/surface/limit_surface.h"
+#include "limitsurf/surface/patches/core_normal.h"
 
 namespace limitsurf {
 
@@ -157,6 +158,13 @@ class SurfacePatches {
   /// points that ought to coincide. Infinity if the faces do not go all around the vertex, if
   /// `cores` are not all of the ring's, or if it is not less than `enough`.
   double ringAsymmetry(const std::vector<SurfacePiece>& cores, double enough) const;
+
+  /// Makes coreNormal() known for the kinds of cores that the surface has many of.
+  void prepareCoreNormals();
+  /// The integral of ds x dt over a whole core (steps = 0). Returns false if it is not known, or if
+  /// it is not what many steps leave turned by a small angle only: where the surface turns over
+  /// close to the vertex, this integral tells nothing of the area.
+  bool coreNormal(const SurfacePiece& core, CoreNormal::Value& out) const;
 
   /// The limit position of the core's vertex.
   Vector3 coreVertex(const SurfacePiece& core) const;

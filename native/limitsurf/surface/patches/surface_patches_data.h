@@ -66,6 +66,8 @@ struct SurfacePatches::Data {
   std::vector<Eigen::Matrix3d> frames;    // for each ring, an axis in each row
   std::vector<std::size_t> first_extent;  // for each ring
   std::vector<Extent> extents;            // after each step to flatSteps()
+  /// Known for some kinds of cores: of a basis and the face that normalFace() tells.
+  std::map<std::pair<const Eigenbasis*, int>, CoreNormal> core_normals;
   Box cage_box;
   double unit = 1;   ///< the patches' own, as in PatchUnit
   double scale = 1;  ///< SurfacePatches::scale(); what is kept here is in the pose's unit

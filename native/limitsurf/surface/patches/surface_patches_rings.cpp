@@ -11,6 +11,75 @@
 #include "limitsurf/surface/patches/surface_patches_data.h"
 
 namespace limitsurf {
+namespace {
+
+/// The cube of the number of a core's points over this is the number of cores from which on it
+/// pays to make their CoreNormal.
+constexpr int kWorth = 300;
+/// The cosine of the angle between the normals of a core and of what many steps leave of it is at
+/// least this where coreNormal() is of use.
+constexpr double kLeastCosine = 0.7;
+
+/// Whether all faces of a ring have the same form but for a turn.
+bool turns(const Ring& ring) { return ring.closed() && ring.kind != RingKind::dart; }
+
+/// The number of a ring's point after a turn by some faces.
+int turnedPoint(const Ring& ring, int faces, int point) {
+  if (point == 0 || point > 2 * ring.faces) {
+    return point;
+  }
+  const int first = point < ring.face(0) ? ring.edge(0) : ring.face(0);
+  return first + (point - first + faces) % ring.faces;
+}
+
+}  // namespace
+
+void SurfacePatches::prepareCoreNormals() {
+  const TileTable& table = data_->table;
+  std::map<std::pair<const Eigenbasis*, int>, int> counts;
+  for (const RingTile& tile : table.ring_tiles) {
+    const Eigenbasis& basis = *table.rings[tile.ring].basis;
+    if (basis.ring().faces <= kFewFaces) {
+      ++counts[{&basis, turns(basis.ring()) ? 0 : tile.face}];
+    }
+  }
+  for (const auto& [key, count] : counts) {
+    const int size = key.first->ring().size() + tile_grid::kOuter;
+    if (count >= size * size * size / kWorth) {
+      data_->core_normals.emplace(key, CoreNormal(*key.first, key.second));
+    }
+  }
+}
+
+bool SurfacePatches::coreNormal(const SurfacePiece& core, CoreNormal::Value& out) const {
+  const RingTile& tile = data_->ringTile(core);
+  const Eigenbasis& basis = *data_->table.rings[tile.ring].basis;
+  const Ring& ring = basis.ring();
+  const bool turned = turns(ring);
+  const auto found = data_->core_normals.find({&basis, turned ? 0 : tile.face});
+  if (found == data_->core_normals.end() || tile.ring_steps > data_->keptSteps(tile.ring)) {
+    return false;
+  }
+  constexpr int kMostPoints = 2 * kFewFaces + 2 + tile_grid::kOuter;
+  Padded points[kMostPoints];
+  const Padded* of_ring = data_->ringPoints(tile.ring, tile.ring_steps);
+  for (int i = 0; i < ring.size(); ++i) {
+    points[i] = data_->scale * of_ring[turned ? turnedPoint(ring, tile.face, i) : i];
+  }
+  const Pose::OuterPoints outer =
+      data_->pose.outerPoints(static_cast<int>(data_->tiles[core.tile].ref.index));
+  const std::size_t outer_count = basis.outerModes(tile.face).slots().size();
+  for (std::size_t i = 0; i < outer_count; ++i) {
+    points[static_cast<std::size_t>(ring.size()) + i] = data_->scale * outer.points[i];
+  }
+  out = found->second.value(points);
+  const Padded* deep = data_->ringPoints(tile.ring, data_->keptSteps(tile.ring));
+  const auto along = [&](int edge) -> Vector3 {
+    return (data_->scale * (deep[edge] - deep[0])).head<3>().matrix();
+  };
+  const Vector3 left = along(ring.edge(tile.face)).cross(along(ring.nextEdge(tile.face)));
+  return out.normal.dot(left) >= kLeastCosine * out.normal.norm() * left.norm();
+}
 
 int SurfacePatches::ringCount() const { return static_cast<int>(data_->table.rings.size()); }
 
