@@ -34,9 +34,10 @@ struct TileQuadtree {
 /// The tiles of all faces that have a limit surface. What lies closer to an irregular vertex than
 /// LimitSurface::tiles() allows for this depth gets the tile beside it.
 ///
-/// Depends on the topology alone, not on the pose. Throws std::invalid_argument for a depth beyond 1
-/// to TileQuadtree::kLargestDepth, otherwise errors as LimitSurface::tiles() does. Cost: O(max_depth) nodes at each irregular vertex, and that of
-/// LimitSurface::tiles() for the middles of all tiles.
+/// Depends on the topology alone, not on the pose. Throws std::invalid_argument for a depth beyond
+/// 1 to TileQuadtree::kLargestDepth, otherwise errors as LimitSurface::tiles() does. Cost:
+/// O(max_depth) nodes at each irregular vertex, and that of LimitSurface::tiles() for the middles
+/// of all tiles.
 TileQuadtree tileQuadtree(const LimitSurface& surface, int max_depth = SurfaceTiles::kDefaultDepth,
                           int threads = 0, const Progress& progress = {});
 
