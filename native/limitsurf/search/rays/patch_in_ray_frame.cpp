@@ -11,7 +11,7 @@ namespace {
 
 /// Limits of iterations that converge in a few steps except on degenerate patches; chosen, not
 /// derived. The iteration along a side always takes kSideSteps steps.
-constexpr int kMostCrossSteps = 24, kMostApproachSteps = 40, kSideSteps = 6;
+constexpr int kMostCrossSteps = 24, kMostApproachSteps = 40, kMostPointSteps = 24, kSideSteps = 6;
 /// A Newton step this short leaves an error of its square.
 constexpr double kLastStep = 1e-8;
 /// Damping of the Levenberg-Marquardt iteration, relative to the trace of the matrix: at first, its
@@ -110,6 +110,24 @@ double PatchInRayFrame::along(double s, double t) const {
   return sum;
 }
 
+PatchInRayFrame::Along PatchInRayFrame::alongWithDerivatives(double s, double t) const {
+  double vs[4], ds[3], vt[4], dt[3];
+  bernstein(s, vs, ds);
+  bernstein(t, vt, dt);
+  Along seen{};
+  double rows[4];
+  for (int j = 0; j < 4; ++j) {
+    const double* p = z.row(j);
+    rows[j] = vs[0] * p[0] + vs[1] * p[1] + vs[2] * p[2] + vs[3] * p[3];
+    seen.zs += vt[j] * (ds[0] * (p[1] - p[0]) + ds[1] * (p[2] - p[1]) + ds[2] * (p[3] - p[2]));
+    seen.z += vt[j] * rows[j];
+  }
+  for (int j = 0; j < 3; ++j) {
+    seen.zt += dt[j] * (rows[j + 1] - rows[j]);
+  }
+  return seen;
+}
+
 bool PatchInRayFrame::cross(const ParameterSquare& cell, double tolerance, double& s,
                             double& t) const {
   double before = std::numeric_limits<double>::infinity();
@@ -167,6 +185,33 @@ bool PatchInRayFrame::approach(const ParameterSquare& cell, double tolerance, do
     }
   }
   return residual <= enough;
+}
+
+bool PatchInRayFrame::approachPoint(const ParameterSquare& cell, double place, double tolerance,
+                                    double& s, double& t) const {
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostPointSteps; ++i) {
+    const Aside f = aside(s, t);
+    const Along g = alongWithDerivatives(s, t);
+    const double ahead = g.z - place, residual = f.squared() + ahead * ahead;
+    if (residual <= tolerance * tolerance) {
+      return true;
+    }
+    const double gs = f.x * f.xs + f.y * f.ys + ahead * g.zs,
+                 gt = f.x * f.xt + f.y * f.yt + ahead * g.zt;
+    const double ss = f.xs * f.xs + f.ys * f.ys + g.zs * g.zs,
+                 tt = f.xt * f.xt + f.yt * f.yt + g.zt * g.zt,
+                 st = f.xs * f.xt + f.ys * f.yt + g.zs * g.zt;
+    const double a = ss + kLeastDamping * (ss + tt), b = tt + kLeastDamping * (ss + tt);
+    const double determinant = a * b - st * st;
+    if (!(determinant > 0) || !(residual < before)) {
+      return false;
+    }
+    before = residual;
+    s = std::clamp(s + (st * gt - b * gs) / determinant, cell.s, cell.s + cell.size);
+    t = std::clamp(t + (st * gs - a * gt) / determinant, cell.t, cell.t + cell.size);
+  }
+  return false;
 }
 
 bool PatchInRayFrame::approachSide(const ParameterSquare& cell, int side, double tolerance,

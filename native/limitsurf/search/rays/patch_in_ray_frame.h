@@ -32,6 +32,11 @@ class PatchInRayFrame {
     double squared() const { return x * x + y * y; }
   };
   Aside aside(double s, double t) const;
+  /// How far along the ray a point lies, with its derivatives.
+  struct Along {
+    double z, zs, zt;
+  };
+  Along alongWithDerivatives(double s, double t) const;
   /// How far along the ray a point lies.
   double along(double s, double t) const;
 
@@ -44,8 +49,13 @@ class PatchInRayFrame {
   /// within the tolerance.
   bool approach(const ParameterSquare& square, double tolerance, double& s, double& t) const;
 
-  /// The same on one side of the square: sides 0 and 1 lie along s, at the low and the high end of
-  /// t, sides 2 and 3 along t.
+  /// The same iteration for the least distance from the point of the ray at `place`, not from the
+  /// ray.
+  bool approachPoint(const ParameterSquare& square, double place, double tolerance, double& s,
+                     double& t) const;
+
+  /// approach() on one side of the square: sides 0 and 1 lie along s, at the low and the high end
+  /// of t, sides 2 and 3 along t.
   bool approachSide(const ParameterSquare& square, int side, double tolerance, double& s,
                     double& t) const;
 };

@@ -93,6 +93,7 @@ class PatchIntersection {
     }
     if (isWithin(cell.x, out_.tolerance) && isWithin(cell.y, out_.tolerance)) {
       touchCorners(cell);
+      touchBeginning(cell.on);
       return;
     }
     const Precondition p(cell);
@@ -153,6 +154,21 @@ class PatchIntersection {
     }
   }
 
+  /// Takes the beginning of the ray if it lies on a square of the patch. Where the ray runs within
+  /// the patch or along a tangent, the points at which it touches or crosses it may be behind its
+  /// beginning.
+  void touchBeginning(const ParameterSquare& on) {
+    touchBeginning(on, on.s + on.size / 2, on.t + on.size / 2);
+  }
+  /// The same, from (s, t) on. Returns whether the ray begins there.
+  bool touchBeginning(const ParameterSquare& on, double s, double t) {
+    const bool begins = seen_.approachPoint(on, out_.from, out_.tolerance, s, t);
+    if (begins) {
+      touch(s, t);
+    }
+    return begins;
+  }
+
   /// Searches the quarters of a cell, those that begin nearer first.
   void divide(const Cell& cell) {
     Cubic x[4], y[4], z[4];
@@ -189,7 +205,11 @@ class PatchIntersection {
   /// that control hulls cannot separate the cells around that point from the ray. Takes the point.
   bool touchesIn(const Cell& cell) {
     double s = cell.on.s + cell.on.size / 2, t = cell.on.t + cell.on.size / 2;
-    if (!isThin(cell, seen_.aside(s, t)) || !seen_.approach(cell.on, out_.tolerance, s, t)) {
+    if (!isThin(cell, seen_.aside(s, t))) {
+      return false;
+    }
+    touchBeginning(cell.on);
+    if (!seen_.approach(cell.on, out_.tolerance, s, t)) {
       return false;
     }
     touch(s, t);
@@ -240,10 +260,18 @@ class PatchIntersection {
   /// Whether the ray reaches the distance z.
   bool counts(double z) const { return z >= out_.from - out_.tolerance && z <= out_.nearest; }
 
+  /// Takes the point at which the ray crosses the patch. If it is as near to the beginning of the
+  /// ray as the patch may stay near the ray, the ray may begin on the patch: then that is taken.
   void report(double s, double t) {
+    constexpr double kNear = 4;
     const double z = seen_.along(s, t);
+    const RayHit hit = hitAt(s, t, z);
+    if (std::abs(z - out_.from) <= kNear * hit.slack(out_.tolerance) &&
+        touchBeginning({0, 0, 1}, s, t)) {
+      return;
+    }
     if (counts(z)) {
-      out_.add(hitAt(s, t, z));
+      out_.add(hit);
     }
   }
 
