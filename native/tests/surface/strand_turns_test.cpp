@@ -72,6 +72,13 @@ TEST(StrandTurns, ConvertQuaternionsOfAnyLength) {
     EXPECT_LE((matrixOf(found, row) * probe - expected * probe).norm(), 1e-14);
   }
   EXPECT_TRUE(rotationsOf(Quaternions::Zero(1, 4)).hasNaN());
+  // The turn by 120 degrees about (1, 1, 1), which takes each axis to the next
+  Matrix cyclic;
+  cyclic << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  for (const double size : {1e308, 1.0, 1e-308, 5e-324}) {
+    const Matrix turn = matrixOf(rotationsOf(Quaternions::Constant(1, 4, size)), 0);
+    EXPECT_LE((turn - cyclic).cwiseAbs().maxCoeff(), 1e-15) << size;
+  }
 }
 
 TEST(StrandTurns, MoveEachStrandWithItsRoot) {

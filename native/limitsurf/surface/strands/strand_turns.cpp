@@ -67,7 +67,10 @@ Rotations rotationsOf(const Quaternions& quaternions) {
   InterruptionStride stride;
   for (Eigen::Index row = 0; row < quaternions.rows(); ++row) {
     stride.step();
-    const Eigen::RowVector4d q = quaternions.row(row) / quaternions.row(row).stableNorm();
+    // By their largest number first: the length of very long ones is infinite, and that of very
+    // short ones has few digits.
+    const Eigen::RowVector4d given = quaternions.row(row);
+    const Eigen::RowVector4d q = (given / given.cwiseAbs().maxCoeff()).normalized();
     Eigen::Map<Matrix>(rotations.row(row).data()) =
         Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
   }
