@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 
+#include "limitsurf/geodesic/unfolding.h"
 #include "limitsurf/interruption_point.h"
 
 namespace limitsurf {
@@ -23,22 +23,11 @@ constexpr double kLargestRatio = 1e6;
 constexpr std::size_t kMostFlips = 32;
 constexpr int kNone = -1;
 
-/// The third corner of a triangle whose first side lies on the x axis, from 0 to `base`. Its y is
-/// not negative.
-struct Apex {
-  double x, y;
-
-  Apex(double base, double to_start, double to_end)
-      : x(((to_start - to_end) * (to_start + to_end) / base + base) / 2),
-        y(std::sqrt(std::max(0., (to_start - x) * (to_start + x)))) {}
-
-  /// Of the angle there.
-  double cotangent(double base) const {
-    const double cosine = y * y - x * (base - x), sine = base * y;
-    return sine > 0 ? cosine / sine
-                    : std::copysign(std::numeric_limits<double>::infinity(), cosine);
-  }
-};
+/// Of the angle at the apex of a triangle.
+double cotangent(const Apex& apex, double base) {
+  const double cosine = apex.y * apex.y - apex.x * (base - apex.x), sine = base * apex.y;
+  return sine > 0 ? cosine / sine : std::copysign(std::numeric_limits<double>::infinity(), cosine);
+}
 
 /// Triangles that are glued side to side. Side k of a triangle goes from its corner k to the next.
 class GluedTriangles {
@@ -50,18 +39,17 @@ class GluedTriangles {
 
  private:
   void glue(const SurfaceTriangles& triangles);
-  void link(int a, int b) {
-    if (a != kNone) {
-      across_[a] = b;
-    }
-    if (b != kNone) {
-      across_[b] = a;
+  /// Glues a side to another one, or to none.
+  void link(int side, int other) {
+    across_[side] = other;
+    if (other != kNone) {
+      across_[other] = side;
     }
   }
   /// Flips a side, numbered 3 * triangle + k, if its angles ask for it.
   bool flip(int side);
   void wait(int side) {
-    if (side != kNone && across_[side] != kNone && !is_waiting_[side / 3][side % 3]) {
+    if (across_[side] != kNone && !is_waiting_[side / 3][side % 3]) {
       is_waiting_[side / 3][side % 3] = true;
       waiting_.push_back(side);
     }
@@ -146,11 +134,11 @@ bool GluedTriangles::flip(int side) {
   const double ab = length(side);
   const auto [least, most] = std::minmax({ab, length(bc), length(ca), length(ad), length(db)});
   const int a = start(side), b = start(bc), c = start(ca), d = start(db);
-  if (c == d || !(most <= kLargestRatio * least)) {
+  if (c == d || !(least > 0 && most <= kLargestRatio * least)) {
     return false;
   }
   const Apex above(ab, length(ca), length(bc)), below(ab, length(ad), length(db));
-  if (!(above.cotangent(ab) + below.cotangent(ab) < kLeastCotangents)) {
+  if (!(cotangent(above, ab) + cotangent(below, ab) < kLeastCotangents)) {
     return false;
   }
   const double cd = std::hypot(above.x - below.x, above.y + below.y);
@@ -172,11 +160,7 @@ bool GluedTriangles::flip(int side) {
     return of;
   };
   for (int i = 0; i < 4; ++i) {
-    const int partner = moved(beyond[i]);
-    across_[to[i]] = partner;
-    if (partner != kNone) {
-      across_[partner] = to[i];
-    }
+    link(to[i], moved(beyond[i]));
   }
   link(t + 1, s + 2);
   for (const int outer : to) {

@@ -12,6 +12,16 @@ struct TriangleSides {
   double ab, ac, bc;
 };
 
+/// The third corner of a triangle whose side of length `base`, above 0, lies on the x axis, from
+/// the origin on. Its y is not negative.
+struct Apex {
+  double x, y;
+
+  Apex(double base, double to_start, double to_end)
+      : x(((to_start - to_end) * (to_start + to_end) * (1 / base) + base) / 2),
+        y(std::sqrt(std::max(0., (to_start - x) * (to_start + x)))) {}
+};
+
 /// A straight way across the side ab of a triangle.
 struct UnfoldedWay {
   double distance = std::numeric_limits<double>::infinity();
@@ -27,21 +37,18 @@ inline UnfoldedWay unfoldedWay(double to_a, double to_b, const TriangleSides& si
     return {};
   }
   // a lies at the origin and b at (ab, 0); the source is below them, c above
-  const double inverse = 1 / ab;
-  const double source_x = ((to_a - to_b) * (to_a + to_b) * inverse + ab) / 2;
-  const double x = ((sides.ac - sides.bc) * (sides.ac + sides.bc) * inverse + ab) / 2;
-  const double source_y = std::sqrt(std::max(0., (to_a - source_x) * (to_a + source_x)));
-  const double y = std::sqrt(std::max(0., (sides.ac - x) * (sides.ac + x)));
-  const double height = source_y + y;
+  // a lies at the origin and b at (ab, 0); c is above them, and the source as far below as its y
+  const Apex source(ab, to_a, to_b), c(ab, sides.ac, sides.bc);
+  const double height = source.y + c.y;
   if (!(height > 0)) {
     return {};
   }
-  const double crossing = source_x + (x - source_x) * (source_y / height);
+  const double crossing = source.x + (c.x - source.x) * (source.y / height);
   if (crossing < 0 || crossing > ab) {
     return {};
   }
-  const double beside = x - source_x;
-  return {std::sqrt(beside * beside + height * height), std::clamp(crossing * inverse, 0., 1.)};
+  const double beside = c.x - source.x;
+  return {std::sqrt(beside * beside + height * height), std::clamp(crossing * (1 / ab), 0., 1.)};
 }
 
 /// The distance of unfoldedWay().

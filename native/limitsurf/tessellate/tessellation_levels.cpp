@@ -379,13 +379,14 @@ FaceLevels levelsOfLength(const LimitSurface& surface, double length, const Pict
     const double whole = kLengthSamples * longestStep(surface, squares, face, view);
     int& level = result.levels[face];
     double& measure = result.measure[face];
+    const auto is_done = [&] { return measure <= length || level == options.most; };
     for (;; ++level) {
       const int quads = squares.quads(face, level);
       measure = whole / quads;
-      if (quads > kLengthSamples && (measure <= length || level == options.most)) {
+      if (is_done() && quads > kLengthSamples) {
         measure = std::max(measure, longestAtCorners(surface, squares, face, quads, view));
       }
-      if (measure <= length || level == options.most) {
+      if (is_done()) {
         break;
       }
     }

@@ -55,9 +55,8 @@ a call is interrupted, some rows of `out` are written and others are not.
 None: they are the same. P is transformed as a point. F consists of the direction of the transformed du,
 the normal of the transformed surface (on the side to which the surface's normal is transformed) and
 normal x tangent. So F is a rotation whatever the matrix is, and strands stay on the outside if the
-matrix mirrors. Where du or the normal has no limit (as at the vertex of a crease's end, where evaluate() gives the du of one
-side) or vanishes, F is made in the same way from the
-columns of frames().
+matrix mirrors. Where du or the normal has no limit (as at the vertex where a crease ends, at which
+evaluate() gives the du of one side) or vanishes, F is made in the same way from the columns of frames().
 
 All methods raise ValueError for arrays of other shapes and for matrices that are not finite, and
 TypeError for an `out` of another kind.

@@ -56,6 +56,22 @@ TEST(DelaunayFlips, LeaveWellShapedTrianglesAlone) {
   EXPECT_TRUE(flippedTriangles(trianglesOf(perturbed(fullGrid(6, 6), 0.1, 3), 3)).empty());
 }
 
+TEST(DelaunayFlips, LeaveTrianglesWithoutSizeAlone) {
+  Cage cage = fullGrid(3, 3);
+  cage.positions.topRows(12).setZero();
+  const LimitSurface surface = limitSurface(cage);
+  for (const FlatTriangle& triangle : flippedTriangles(trianglesOf(cage, 3))) {
+    for (const double side : triangle.sides) {
+      EXPECT_GT(side, 0);
+    }
+  }
+  const GuideWeights found = guideWeights(surface, Locations{{0, 0.5, 0.5}, {8, 0.5, 0.5}},
+                                          Locations{{1, 0.25, 0.5}, {7, 0.5, 0.5}});
+  for (const double distance : found.distance) {
+    EXPECT_FALSE(std::isnan(distance));
+  }
+}
+
 TEST(DelaunayFlips, GiveTrianglesOfTheSamePlane) {
   for (const Cage& cage : {flatPole(100), sheared(10)}) {
     const SurfaceTriangles triangles = trianglesOf(cage, 3);
