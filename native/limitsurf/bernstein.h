@@ -30,6 +30,7 @@ class Bernstein {
   double at(int i, int j) const { return c_[kStride * j + i]; }
   /// All coefficients, row by row with their padding.
   double* data() { return c_; }
+  const double* data() const { return c_; }
   /// The coefficients along s, for one j.
   const double* row(int j) const { return c_ + kStride * j; }
   /// Sets the padding. Must be called after coefficients have been set one by one.

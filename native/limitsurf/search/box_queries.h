@@ -84,17 +84,21 @@ class BoxRay {
     }
   }
 
-  /// Where the ray enters the boxes of a node's children, or a little before, but not before
-  /// `begin`, and where it leaves them, but not after `end`. It meets those that it enters before
-  /// it leaves them.
-  void meet(const WideTree::Node& node, float begin, float end, Row& from, Row& to) const {
+  /// Returns a bit for each of a node's children whose box the ray meets between `begin` and `end`,
+  /// and where it enters the boxes, or a little before.
+  unsigned meet(const WideTree::Node& node, float begin, float end, Row& from) const {
     from.setConstant(begin);
-    to.setConstant(end);
+    Row to = Row::Constant(end);
     for (int axis = 0; axis < 3; ++axis) {
       const Row* const ends = node.bounds[axis];
       from = from.max((ends[first_[axis]] - enter_[axis]) * inverse_[axis]);
       to = to.min((ends[1 - first_[axis]] - leave_[axis]) * inverse_[axis]);
     }
+    unsigned met = 0;
+    for (int child = 0; child < WideTree::kWidth; ++child) {
+      met |= static_cast<unsigned>((child < node.count) & (from[child] <= to[child])) << child;
+    }
+    return met;
   }
 
  private:

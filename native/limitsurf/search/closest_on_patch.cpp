@@ -108,7 +108,7 @@ class PatchSearch {
     }
     const BezierPatch::Point direction = way / distance;
     double z[16];
-    kernels_.along(reinterpret_cast<const double (*)[4]>(relative_.points), direction.data(), z);
+    kernels_.along(numbersOf(relative_.points), direction.data(), z);
     return bound.holds(z, distance);
   }
 

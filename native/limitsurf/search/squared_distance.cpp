@@ -23,7 +23,7 @@ SquaredDistance::SquaredDistance(const SearchKernels& kernels, const BezierPatch
   static_assert(
       Bernstein<6>::kStride == kDistanceStride && sizeof f_ == sizeof(double[kDistanceSize]),
       "the kernels write the coefficients");
-  kernels.squaredDistance(reinterpret_cast<const double (*)[4]>(points), away.data(), f_.data());
+  kernels.squaredDistance(numbersOf(points), away.data(), f_.data());
   kernels.extremes(f_.data(), least_, largest_);
   const double range = std::sqrt(away.square().sum());
   if (range > 0) {

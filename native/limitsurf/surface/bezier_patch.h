@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 
+#include "limitsurf/surface/padded.h"
 #include "limitsurf/types.h"
 
 namespace limitsurf {
@@ -34,8 +34,8 @@ constexpr unsigned kSideS0 = 1, kSideS1 = 2, kSideT0 = 4, kSideT1 = 8;
 
 /// A rectangle of a Ptex face on which the limit surface is one bicubic polynomial, in Bezier form.
 struct BezierPatch {
-  /// Three coordinates, padded so that they fill whole registers; the fourth is 0.
-  using Point = Eigen::Array4d;
+  /// Three coordinates; the fourth number is 0.
+  using Point = Padded;
 
   /// Value and derivatives with respect to (s, t); the value is relative to the anchor.
   struct Values {

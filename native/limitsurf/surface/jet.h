@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <utility>
 
 #include "limitsurf/eigen/bspline_window.h"
+#include "limitsurf/surface/padded.h"
 
 namespace limitsurf {
-
-/// A point or vector, padded to four doubles so that it fills whole registers.
-using Padded = Eigen::Array4d;
 
 /// 2^exponent for -1022 <= exponent <= 1023. (std::ldexp takes half as long as an evaluation.)
 inline double powerOfTwo(int exponent) {

@@ -4,6 +4,7 @@
 #include "limitsurf/bernstein.h"
 #include "limitsurf/search/oriented_box.h"
 #include "limitsurf/search/parameter_square.h"
+#include "limitsurf/search/rays/ray_kernels.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
@@ -25,20 +26,22 @@ class PatchInRayFrame {
   Bernstein<3> x, y;  ///< aside, along the ray's two axes
   Bernstein<3> z;     ///< along the ray
 
-  /// The offset of a point from the ray, with its derivatives.
-  struct Aside {
-    double x, y, xs, ys, xt, yt;
+  /// Tells at which points the ray meets a part of a patch.
+  RayMeeting meet(const Bernstein<3>& part_x, const Bernstein<3>& part_y,
+                  const Bernstein<3>& part_z, const RayLimits& limits) const {
+    return kernels_->meet(part_x.data(), part_y.data(), part_z.data(), limits);
+  }
 
-    double squared() const { return x * x + y * y; }
-  };
-  Aside aside(double s, double t) const;
-  /// How far along the ray a point lies, with its derivatives.
-  struct Along {
-    double z, zs, zt;
-  };
-  Along alongWithDerivatives(double s, double t) const;
-  /// How far along the ray a point lies.
-  double along(double s, double t) const;
+  OffsetFromRay offset(double s, double t) const {
+    OffsetFromRay result;
+    kernels_->offset(x.data(), y.data(), s, t, result);
+    return result;
+  }
+  PlaceAlongRay place(double s, double t) const {
+    PlaceAlongRay result;
+    kernels_->place(z.data(), s, t, result);
+    return result;
+  }
 
   /// Newton's iteration, within the square, for the point at which the ray crosses the patch.
   /// Returns whether the point at which it ends is within the tolerance of the ray.
@@ -49,15 +52,18 @@ class PatchInRayFrame {
   /// within the tolerance.
   bool approach(const ParameterSquare& square, double tolerance, double& s, double& t) const;
 
-  /// The same iteration for the least distance from the point of the ray at `place`, not from the
-  /// ray.
-  bool approachPoint(const ParameterSquare& square, double place, double tolerance, double& s,
+  /// The same iteration for the least distance from the point of the ray at `distance`, not
+  /// from the ray.
+  bool approachPoint(const ParameterSquare& square, double distance, double tolerance, double& s,
                      double& t) const;
 
   /// approach() on one side of the square: sides 0 and 1 lie along s, at the low and the high end
   /// of t, sides 2 and 3 along t.
   bool approachSide(const ParameterSquare& square, int side, double tolerance, double& s,
                     double& t) const;
+
+ private:
+  const RayKernels* kernels_;
 };
 
 }  // namespace limitsurf

@@ -30,30 +30,6 @@ struct Cell {
   Cubic z;     ///< along the ray
 };
 
-/// The mean derivatives of a patch on a cell, from the differences of its corners. Their inverse is
-/// the preconditioner.
-struct Precondition {
-  explicit Precondition(const Cell& cell) {
-    xs = mean(cell.x, true);
-    xt = mean(cell.x, false);
-    ys = mean(cell.y, true);
-    yt = mean(cell.y, false);
-    determinant = xs * yt - xt * ys;
-    scale = std::sqrt((xs * xs + ys * ys) * (xt * xt + yt * yt));
-  }
-
-  /// The derivatives are linearly dependent if the sine of their angle is at most kSingularSine.
-  bool isSingular() const { return !(std::abs(determinant) > kSingularSine * scale); }
-  static constexpr double kSingularSine = 1e-9;
-
-  static double mean(const Cubic& f, bool along_s) {
-    return along_s ? ((f.at(3, 0) - f.at(0, 0)) + (f.at(3, 3) - f.at(0, 3))) / 2
-                   : ((f.at(0, 3) - f.at(0, 0)) + (f.at(3, 3) - f.at(3, 0))) / 2;
-  }
-
-  double xs, xt, ys, yt, determinant, scale;
-};
-
 /// The search for the points at which a ray meets one patch.
 class PatchIntersection {
  public:
@@ -74,52 +50,26 @@ class PatchIntersection {
   /// of that stretch is kept.
   static constexpr double kWithinSine = 1e-9;
 
-  static bool isWithin(const Cubic& f, double margin) {
-    return f.least() >= -margin && f.largest() <= margin;
-  }
-
-  static bool misses(const Cubic& f, double margin) {
-    return f.least() > margin || f.largest() < -margin;
-  }
-
-  bool isBeyond(const Cell& cell) const {
-    return cell.z.least() > out_.nearest || cell.z.largest() < out_.from - out_.tolerance;
-  }
-
   /// Searches a cell.
   void visit(const Cell& cell) {
-    if (misses(cell.x, out_.margin()) || misses(cell.y, out_.margin()) || isBeyond(cell)) {
-      return;
-    }
-    if (isWithin(cell.x, out_.tolerance) && isWithin(cell.y, out_.tolerance)) {
-      touchCorners(cell);
-      touchBeginning(cell.on);
-      return;
-    }
-    const Precondition p(cell);
-    if (!p.isSingular()) {
-      // The preconditioned coordinates are nearly s - s0 and t - t0, with the hit at (s0, t0).
-      Cubic a, b;
-      const double inverse = 1 / p.determinant;
-      for (int j = 0; j < 4; ++j) {
-        for (int i = 0; i < 4; ++i) {
-          const double x = cell.x.at(i, j), y = cell.y.at(i, j);
-          a.at(i, j) = (p.yt * x - p.xt * y) * inverse;
-          b.at(i, j) = (p.xs * y - p.ys * x) * inverse;
-        }
-      }
-      const double margin = out_.margin() * std::abs(inverse);
-      if (misses(a, margin * (std::abs(p.yt) + std::abs(p.xt))) ||
-          misses(b, margin * (std::abs(p.ys) + std::abs(p.xs)))) {
+    const RayLimits limits{out_.from - out_.tolerance, out_.nearest, out_.margin(), out_.tolerance};
+    switch (seen_.meet(cell.x, cell.y, cell.z, limits)) {
+      case RayMeeting::none:
         return;
-      }
-      if (isInjective(a, b)) {
+      case RayMeeting::everywhere:
+        touchCorners(cell);
+        touchBeginning(cell.on);
+        return;
+      case RayMeeting::once_at_most: {
         double s = cell.on.s + cell.on.size / 2, t = cell.on.t + cell.on.size / 2;
         if (seen_.cross(cell.on, out_.tolerance, s, t)) {
           report(s, t);
           return;
         }
+        break;
       }
+      case RayMeeting::unknown:
+        break;
     }
     if (cell.depth >= kTouchDepth && touchesIn(cell)) {
       return;
@@ -139,7 +89,7 @@ class PatchIntersection {
 
   /// Takes a point at which the ray touches the patch, or at which a stretch within it begins.
   void touch(double s, double t) {
-    const double z = seen_.along(s, t);
+    const double z = seen_.place(s, t).z;
     if (!counts(z)) {
       return;
     }
@@ -186,26 +136,11 @@ class PatchIntersection {
     }
   }
 
-  /// Whether the ray sees no two points of the cell at the same place: the preconditioned
-  /// derivatives form a matrix that is diagonally dominant on the whole cell.
-  static bool isInjective(const Cubic& a, const Cubic& b) {
-    double as = kFar, bt = kFar, at = 0, bs = 0;
-    for (int j = 0; j < 4; ++j) {
-      for (int i = 0; i < 3; ++i) {
-        as = std::min(as, a.at(i + 1, j) - a.at(i, j));
-        bs = std::max(bs, std::abs(b.at(i + 1, j) - b.at(i, j)));
-        bt = std::min(bt, b.at(j, i + 1) - b.at(j, i));
-        at = std::max(at, std::abs(a.at(j, i + 1) - a.at(j, i)));
-      }
-    }
-    return as > 0 && bt > 0 && as * bt > at * bs;
-  }
-
   /// Whether the ray touches the surface in the cell without crossing it, or runs within it, so
   /// that control hulls cannot separate the cells around that point from the ray. Takes the point.
   bool touchesIn(const Cell& cell) {
     double s = cell.on.s + cell.on.size / 2, t = cell.on.t + cell.on.size / 2;
-    if (!isThin(cell, seen_.aside(s, t))) {
+    if (!isThin(cell, seen_.offset(s, t))) {
       return false;
     }
     touchBeginning(cell.on);
@@ -224,7 +159,7 @@ class PatchIntersection {
 
   /// Whether the whole cell lies within kThin tolerances of the plane through the ray that is
   /// tangent to the patch in the middle.
-  bool isThin(const Cell& cell, const PatchInRayFrame::Aside& middle) const {
+  bool isThin(const Cell& cell, const OffsetFromRay& middle) const {
     const bool along_s = std::hypot(middle.xs, middle.ys) > std::hypot(middle.xt, middle.yt);
     double nx = along_s ? -middle.ys : -middle.yt, ny = along_s ? middle.xs : middle.xt;
     const double length = std::hypot(nx, ny);
@@ -249,12 +184,19 @@ class PatchIntersection {
 
   /// The hit at (s, t), at the distance z along the ray.
   RayHit hitAt(double s, double t, double z) const {
+    if (out_.first_only) {
+      return {z, patch_.on.at(s, t)};
+    }
     BezierPatch::Values at;
     patch_.evaluate<1>(s, t, at);
+    return {z, patch_.on.at(s, t), (patch_.anchor + at.value).head<3>().matrix(), sineOf(at)};
+  }
+
+  /// The sine of the angle between the ray and the patch.
+  double sineOf(const BezierPatch::Values& at) const {
     const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
     const double length = normal.norm();
-    return {z, patch_.on.at(s, t), (patch_.anchor + at.value).head<3>().matrix(),
-            length > 0 ? std::abs(normal.dot(ray_.direction)) / length : 0};
+    return length > 0 ? std::abs(normal.dot(ray_.direction)) / length : 0;
   }
 
   /// Whether the ray reaches the distance z.
@@ -263,19 +205,25 @@ class PatchIntersection {
   /// Takes the point at which the ray crosses the patch. If it is as near to the beginning of the
   /// ray as the patch may stay near the ray, the ray may begin on the patch: then that is taken.
   void report(double s, double t) {
-    constexpr double kNear = 4;
-    const double z = seen_.along(s, t);
-    const RayHit hit = hitAt(s, t, z);
-    if (std::abs(z - out_.from) <= kNear * hit.slack(out_.tolerance) &&
-        touchBeginning({0, 0, 1}, s, t)) {
+    const double z = seen_.place(s, t).z;
+    if (mayBeginAt(s, t, z) && touchBeginning({0, 0, 1}, s, t)) {
       return;
     }
     if (counts(z)) {
-      out_.add(hit);
+      out_.add(hitAt(s, t, z));
     }
   }
 
-  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  bool mayBeginAt(double s, double t, double z) const {
+    constexpr double kNear = 4;
+    const double away = std::abs(z - out_.from);
+    if (away > kNear * RayHit::slack(0, out_.tolerance)) {  // at any angle
+      return false;
+    }
+    BezierPatch::Values at;
+    patch_.evaluate<1>(s, t, at);
+    return away <= kNear * RayHit::slack(sineOf(at), out_.tolerance);
+  }
 
   const BezierPatch& patch_;
   const RayFrame& ray_;

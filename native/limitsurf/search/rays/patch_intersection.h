@@ -13,14 +13,18 @@ namespace limitsurf {
 struct RayHit {
   double distance;
   Location at;
-  Vector3 position;
+  /// Not set where only the first hit is wanted, which is compared with no other.
+  Vector3 position{};
   /// The sine of the angle between the ray and the surface; 0 where the surface's tangents are
-  /// parallel.
-  double sine;
+  /// parallel. Not set where only the first hit is wanted.
+  double sine = 0;
 
   /// How far along the ray the surface stays within twice the tolerance of it: another hit so near
   /// may be the same.
-  double slack(double tolerance) const { return 2 * tolerance / std::max(sine, kGrazingSine); }
+  double slack(double tolerance) const { return slack(sine, tolerance); }
+  static double slack(double sine, double tolerance) {
+    return 2 * tolerance / std::max(sine, kGrazingSine);
+  }
   /// At smaller angles the curvature of the surface, not the angle, leads it away from the ray.
   static constexpr double kGrazingSine = 1e-7;
 };

@@ -9,12 +9,6 @@
 
 namespace limitsurf {
 
-/// The numbers of points, as the kernels read them.
-inline const double (*numbersOf(const Padded* points))[4] {
-  static_assert(sizeof(Padded) == 4 * sizeof(double));
-  return reinterpret_cast<const double (*)[4]>(points);
-}
-
 /// A bicubic patch of a tile: all of a regular tile, or what a quarter of a ring tile is after some
 /// steps.
 struct TilePatch {
