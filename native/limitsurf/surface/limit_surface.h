@@ -285,13 +285,13 @@ class LimitSurface {
   /// smooth and sharp. Faces that have no limit surface have no data either.
   ///
   /// Throws MeshError, which names the first index that is no row of `values` or the first row that
-  /// is not finite. Cost: as for the construction of a surface.
+  /// is not finite or beyond kLargestCoordinate. Cost: as for the construction of a surface.
   SurfaceData faceVarying(const DataRows& values, const std::vector<std::int64_t>& indices,
                           Interpolation interpolation, int threads = 0) const;
 
   /// Data at the vertices, one row for each, interpolated as positions are. Throws MeshError for
-  /// another number of rows and for the first row that is not finite. Cost: that of setPositions()
-  /// for every three columns.
+  /// another number of rows and for the first row that is not finite or beyond kLargestCoordinate.
+  /// Cost: that of setPositions() for every three columns.
   SurfaceData vertexData(const DataRows& values, int threads = 0) const;
 
   /// Data at the vertices that are linear along edges and bilinear on each Ptex face: a sub-face of

@@ -25,10 +25,11 @@ void checkValues(const DataRows& values) {
   }
   for (Eigen::Index row = 0; row < values.rows(); ++row) {
     for (Eigen::Index column = 0; column < values.cols(); ++column) {
-      if (!std::isfinite(values(row, column))) {
+      const double value = values(row, column);
+      if (!(std::abs(value) <= kLargestCoordinate)) {  // NaN included
         std::ostringstream message;
-        message << "row " << row << " of values has " << numberText(values(row, column))
-                << " in column " << column << "; values must be finite";
+        message << "row " << row << " of values has " << numberText(value) << " in column "
+                << column << "; values must be finite, and at most " << kLargestCoordinate;
         throw MeshError(message.str());
       }
     }

@@ -36,10 +36,10 @@ class SurfaceData {
   Eigen::Index columns() const;
 
   /// Replaces the values. Throws MeshError for another number of rows or columns, and for the first
-  /// row that is not finite, which it names, and then leaves the data as they were. Must not be
-  /// called while another thread evaluates. Cost: that of LimitSurface::setPositions() for every
-  /// three columns. If an InterruptionPoint ends it, isSet() is false until values are set again,
-  /// and nothing may be evaluated before.
+  /// row that is not finite or beyond kLargestCoordinate, which it names, and then leaves the data
+  /// as they were. Must not be called while another thread evaluates. Cost: that of
+  /// LimitSurface::setPositions() for every three columns. If an InterruptionPoint ends it, isSet()
+  /// is false until values are set again, and nothing may be evaluated before.
   void setValues(const DataRows& values, int threads = 0);
   bool isSet() const;
 

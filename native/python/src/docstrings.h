@@ -186,7 +186,7 @@ is a seam.
 Parameters
 ----------
 values : (m, d) or (m,) array of float
-    Values must be finite; (m,) means (m, 1).
+    Values must be finite and at most 2^400 (2.6e120); (m,) means (m, 1).
 indices : (sum of the mesh's face_sizes,) array of int
     The row of values of each corner, one face after the other, in the order of face_vertices.
 interpolation : str
@@ -208,7 +208,8 @@ faces that have a limit surface.
 Raises
 ------
 MeshError
-    For an index out of range, naming the corner, and for values that are not finite, naming the row.
+    For an index out of range, naming the corner, and for values that are not finite or too large,
+    naming the row.
 TypeError
     For indices that are not integers.
 
@@ -218,8 +219,8 @@ Cost: that of making the surface.
 constexpr const char* kVertexDataDoc =
     R"(Data at the vertices, (V, d) or (V,) float, subdivided exactly as positions are: SurfaceData.
 
-Raises MeshError for another number of rows and for values that are not finite. Cost: that of
-set_positions() for every three columns.
+Raises MeshError for another number of rows and for values that are not finite or beyond 2^400. Cost:
+that of set_positions() for every three columns.
 )";
 
 constexpr const char* kVaryingDoc =

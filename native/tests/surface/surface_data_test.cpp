@@ -329,6 +329,12 @@ TEST(SurfaceData, ValuesAreChecked) {
   for (int how = 0; how < 3; ++how) {
     expectThrow<MeshError>([&] { make(how); }, {"row 7", "inf", "column 1"});
   }
+  values(7, 1) = -1.7e308;  // sums with other values would overflow
+  for (int how = 0; how < 3; ++how) {
+    expectThrow<MeshError>([&] { make(how); }, {"row 7", "-1.7e+308", "at most 2.58"});
+  }
+  values(7, 1) = -kLargestCoordinate;
+  for (int how = 0; how < 3; ++how) make(how);
   values.resize(12, 0);
   for (int how = 0; how < 3; ++how) expectThrow<MeshError>([&] { make(how); }, {"no columns"});
   values = randomRows(11, 2, 1);
