@@ -94,11 +94,7 @@ class BoxRay {
       from = from.max((ends[first_[axis]] - enter_[axis]) * inverse_[axis]);
       to = to.min((ends[1 - first_[axis]] - leave_[axis]) * inverse_[axis]);
     }
-    unsigned met = 0;
-    for (int child = 0; child < WideTree::kWidth; ++child) {
-      met |= static_cast<unsigned>((child < node.count) & (from[child] <= to[child])) << child;
-    }
-    return met;
+    return WideTree::children(node, [&](int child) { return from[child] <= to[child]; });
   }
 
  private:

@@ -27,23 +27,15 @@ class PatchSearch {
     const BezierPatch::Point offset =
         patch.anchor - BezierPatch::Point(place[0], place[1], place[2], 0);
     relative_.anchor.setZero();
-    for (int i = 0; i < 16; ++i) {
-      relative_.points[i] = patch.points[i] + offset;
-    }
+    least_ = kernels_.move(numbersOf(patch.points), offset.data(), away_.data(),
+                           numbersOf(relative_.points));
   }
 
   void run(const FootBound& bound) {
-    BezierPatch::Point low = relative_.points[0], high = low;
-    for (int i = 1; i < 16; ++i) {
-      low = low.min(relative_.points[i]);
-      high = high.max(relative_.points[i]);
-    }
-    const BezierPatch::Point nearest = away_.max(low).min(high);
-    const double least = (nearest * (nearest - 2 * away_)).sum();
-    if (!isBetter(least) || isBehindFoot() || (facing_ && facing_->excludes(patch_))) {
+    if (!isBetter(least_) || isBehindFoot() || (facing_ && facing_->excludes(patch_))) {
       return;
     }
-    if ((facing_ || isBoundUseful(bound, least)) && findsFoot(bound, least)) {
+    if ((facing_ || isBoundUseful(bound)) && findsFoot(bound)) {
       return;
     }
     const SquaredDistance f(kernels_, relative_.points, away_);
@@ -74,19 +66,18 @@ class PatchSearch {
 
   /// Beyond so many radii FootBound::holds() seldom does.
   static constexpr double kUsefulRadii = 2;
-  bool isBoundUseful(const FootBound& bound, double least) const {
+  bool isBoundUseful(const FootBound& bound) const {
     const double reach = kUsefulRadii * double{bound.radius} + best_.from.range;
-    return bound.stretch > 0 && least + best_.from.range * best_.from.range < reach * reach;
+    return bound.stretch > 0 && least_ + best_.from.range * best_.from.range < reach * reach;
   }
 
   /// Looks for the closest point of the whole patch by first-order conditions. Returns whether it
-  /// is found or cannot matter, for certain. `least` is a lower bound of the squared distance less
-  /// that of the range.
-  bool findsFoot(const FootBound& bound, double least) {
+  /// is found or cannot matter, for certain.
+  bool findsFoot(const FootBound& bound) {
     double s, t;
     guess(s, t);
     const double range = best_.from.range;
-    const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., least + range * range)));
+    const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., least_ + range * range)));
     BezierPatch::Point found;
     const FootSearch search =
         minimizeDistance(kernels_, relative_, away_, {0, 0, 1}, reach * best_.tolerance,
@@ -321,6 +312,7 @@ class PatchSearch {
   ClosestSoFar& best_;
   const BezierPatch::Point away_;
   BezierPatch relative_;  // to the place of the searching point
+  double least_;          // a lower bound of the squared distance less the square of the range
   int cells_ = 0;
   std::optional<NormalPolynomial> normals_;
 };

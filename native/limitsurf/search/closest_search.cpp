@@ -74,6 +74,13 @@ class ClosestSearch {
     // way that it stands for.
     best_.excess = max_distance * (1 + kDistanceRounding) + 2 * data_.tolerance -
                    (best_.from.isFar() ? (point - data_.middle).norm() : 0);
+    if (has_last_ && !facing && !best_.from.isFar()) {
+      // The place that the last search found is no closer than the closest one: farther parts need
+      // not be looked at. Searches follow each other through space.
+      const double distance = (last_ - point).norm();
+      const double rounding = kDistanceRounding * (distance + last_.cwiseAbs().maxCoeff());
+      best_.excess = std::min(best_.excess, distance + rounding + 2 * data_.tolerance);
+    }
     if (!data_.tree->empty()) {
       point_in_boxes_ = data_.inBoxes(point);
       cores_.begin(facing, point_in_boxes_);
@@ -83,6 +90,11 @@ class ClosestSearch {
       }
     }
     cells_ += best_.cells;
+    // On a surface without extent, where the tolerance is 0, the bound would leave out the place.
+    has_last_ = best_.at.face >= 0 && data_.tolerance > 0;
+    if (has_last_) {
+      last_ = best_.from.place + best_.offset;
+    }
     return best_.at;
   }
 
@@ -105,11 +117,12 @@ class ClosestSearch {
         const WideTree::Node& node = data_.tree->node(next.place);
         const WideTree::Row squared = box_point.squaredDistances(node);
         const double enough = best_.enough();
-        open.add(node, squared, [&](int child) {
+        const auto matters = [&](int child) {
           return squared[child] < enough &&
                  !(facing_ && cones_ && child < node.count &&
                    cones_->cannotFace(next.place, child, point_in_boxes_, unit_, reach_));
-        });
+        };
+        open.add(node, squared, WideTree::children(node, matters));
         continue;
       }
       const std::int32_t leaf = WideTree::leaf(next.place);
@@ -142,6 +155,8 @@ class ClosestSearch {
   Vector3 unit_;      // the direction in which the surface must face
   double reach_ = 0;  // the largest angle between them
   Vector3 point_in_boxes_;
+  bool has_last_ = false;
+  Vector3 last_;  // the place that the last search found, if it found one
   const Facing* facing_ = nullptr;
   ClosestSoFar best_;
   ClosestOnCores cores_;

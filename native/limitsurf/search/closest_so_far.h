@@ -38,6 +38,8 @@ struct ClosestSoFar {
   /// Its distance less the range of the searching point.
   double excess = std::numeric_limits<double>::infinity();
   Location at;
+  /// It, less `from.place`.
+  Vector3 offset = Vector3::Zero();
   /// The surface matters only before a plane through the found point, perpendicular to `direction`,
   /// which leads there from the searching point: that at the distance `plane` from `from.place`.
   Vector3 direction = Vector3::Zero();
@@ -56,20 +58,21 @@ struct ClosestSoFar {
     return least + from.range > 0 ? least * (least + 2 * from.range)
                                   : -std::numeric_limits<double>::infinity();
   }
-  /// Takes the point at `where` if it is closer. `offset` leads there from `from.place`.
-  void offer(const Vector3& offset, const Location& where) {
-    const Vector3 way = offset - from.away;
+  /// Takes the point at `where` if it is closer. `place` is relative to `from.place`.
+  void offer(const Vector3& place, const Location& where) {
+    const Vector3 way = place - from.away;
     const double distance = way.norm();
     const double found =
-        from.isFar() ? offset.dot(way - from.away) / (distance + from.range) : distance;
+        from.isFar() ? place.dot(way - from.away) / (distance + from.range) : distance;
     if (found < excess) {
       excess = found;
       at = where;
+      offset = place;
       direction = distance > 0 ? Vector3(way / distance) : Vector3::Zero();
-      // direction . offset = found + (range + direction . away), where direction . away is nearly
-      // -range: the sum in brackets is (range found + offset . away) / distance.
+      // direction . place = found + (range + direction . away), where direction . away is nearly
+      // -range: the sum in brackets is (range found + place . away) / distance.
       plane =
-          from.isFar() ? found + (from.range * found + offset.dot(from.away)) / distance : distance;
+          from.isFar() ? found + (from.range * found + place.dot(from.away)) / distance : distance;
     }
   }
 };

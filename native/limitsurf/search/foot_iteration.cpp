@@ -145,8 +145,8 @@ class FootIteration {
 
   /// Returns the squared distance less that of `away`, and sets the value to the offset of `point`.
   double evaluate(double s, double t, Values& at, BezierPatch::Point& point) const {
-    static_assert(sizeof(Values) == sizeof(double[6][4]), "the kernel writes the values");
-    kernels_.evaluate(numbersOf(patch_.points), s, t, reinterpret_cast<double (*)[4]>(&at));
+    static_assert(sizeof(Values) == sizeof(double[6][4]), "the kernel writes all values");
+    kernels_.evaluate(numbersOf(patch_.points), s, t, numbersOf(&at.value));
     point = at.value;
     at.value = point - away_;
     const double squared = dot(point, at.value - away_);

@@ -21,6 +21,10 @@ struct DifferenceBounds {
 /// The inner loops of searches for closest points, compiled for the instruction set that is in use
 /// (instruction_sets.h). All sets give the same bits.
 struct SearchKernels {
+  /// Moves a patch's points by `offset`. Returns a lower bound of its squared distance from `away`,
+  /// less the square of `away`: that of the box around the points.
+  double (*move)(const double points[16][4], const double offset[4], const double away[4],
+                 double out[16][4]);
   /// The squared distance of a patch from `away`, less the square of `away`: |P|^2 - 2 P away.
   void (*squaredDistance)(const double points[16][4], const double away[4],
                           double out[kDistanceSize]);

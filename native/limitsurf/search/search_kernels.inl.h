@@ -8,6 +8,22 @@
 
 using Four = Lanes<4>;
 
+inline double move(const double points[16][4], const double offset[4], const double away[4],
+                   double out[16][4]) {
+  const Four by = Four::load(offset), to = Four::load(away);
+  Four low = Four::of(__builtin_inf()), high = Four::of(-__builtin_inf());
+  for (int i = 0; i < 16; ++i) {
+    const Four point = Four::load(points[i]) + by;
+    point.store(out[i]);
+    low = Four::smaller(low, point);
+    high = Four::larger(high, point);
+  }
+  const Four nearest = Four::smaller(Four::larger(to, low), high);
+  double squared[4];
+  (nearest * (nearest - 2 * to)).store(squared);
+  return squared[0] + squared[1] + squared[2];  // the fourth numbers are padding
+}
+
 inline void squaredDistance(const double points[16][4], const double away[4],
                             double out[kDistanceSize]) {
   constexpr double kBinomial3[4] = {1, 3, 3, 1};
@@ -169,4 +185,5 @@ inline void along(const double points[16][4], const double direction[4], double 
   }
 }
 
-constexpr SearchKernels kKernels = {squaredDistance, extremes, differenceBounds, evaluate, along};
+constexpr SearchKernels kKernels = {move, squaredDistance, extremes, differenceBounds, evaluate,
+                                    along};

@@ -35,6 +35,16 @@ class WideTree {
   static bool isLeaf(std::int32_t child) { return child < 0; }
   static std::int32_t leaf(std::int32_t child) { return ~child; }
 
+  /// A bit for each child of a node for which `matters(child)`.
+  template <typename Matters>
+  static unsigned children(const Node& node, const Matters& matters) {
+    unsigned bits = 0;
+    for (int child = 0; child < kWidth; ++child) {
+      bits |= static_cast<unsigned>((child < node.count) & matters(child)) << child;
+    }
+    return bits;
+  }
+
   /// A walk from the root that puts all children but one aside at each node puts at most so many.
   static constexpr int kMostOpen = (kWidth - 1) * BoxTree::kMostDepth + 1;
 
@@ -52,17 +62,22 @@ class NearestFirst {
     float key;           ///< how near it is
   };
 
-  /// Adds those children of a node for which `matters(child)`.
-  template <typename Matters>
-  void add(const WideTree::Node& node, const WideTree::Row& keys, const Matters& matters) {
+  /// Adds those children of a node that have a bit in `bits`.
+  void add(const WideTree::Node& node, const WideTree::Row& keys, unsigned bits) {
+    static_assert(WideTree::kWidth == 4, "a network that sorts four");
+    if ((bits & (bits - 1)) == 0) {  // there is one, as at most nodes, or none
+      const auto child = static_cast<int>((bits >> 1) - (bits >> 3));
+      entries_[height_] = {node.children[child], keys[child]};
+      height_ += bits != 0 ? 1 : 0;
+      return;
+    }
     // Which child is nearer is hard to predict, so that they are sorted without branches: by
     // numbers that grow with the key and then the place among the children.
-    static_assert(WideTree::kWidth == 4, "a network that sorts four");
     std::uint64_t order[4];
     for (int child = 0; child < 4; ++child) {
       const std::uint64_t number = static_cast<std::uint64_t>(ordered(keys[child])) << 32 |
                                    static_cast<std::uint64_t>(child);
-      order[child] = ((child < node.count) & matters(child)) ? number : kNone;
+      order[child] = (bits >> child & 1) != 0 ? number : kNone;
     }
     sortTwo(order[0], order[1]);
     sortTwo(order[2], order[3]);

@@ -539,6 +539,41 @@ TEST(Closest, BitsDependNeitherOnThreadsNorOnTheBatch) {
   }
 }
 
+/// Searches make use of what the one before has found. Where several places are equally close that
+/// must not decide which of them is taken.
+TEST(Closest, BitsDoNotDependOnTheBatchWhereSeveralPlacesAreClosest) {
+  Cage sheets = fullGrid(4, 4);
+  const int count = sheets.vertexCount();
+  sheets.positions.conservativeResize(2 * count, 3);
+  sheets.positions.bottomRows(count) = sheets.positions.topRows(count);
+  const std::vector<std::vector<int>> faces = sheets.faces;
+  for (std::vector<int> face : faces) {
+    for (int& vertex : face) vertex += count;
+    sheets.faces.push_back(face);
+  }
+  Random random(11);
+  for (const Cage& cage : {cube(), fullGrid(4, 4), sheets, inTriangles(cube())}) {
+    const LimitSurface surface = limitSurface(cage);
+    const SurfaceSearch search(surface);
+    const Middle middle(surface);
+    // On planes of symmetry, and close together, so that the last place is a good bound.
+    Points points(400, 3);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        points(i, axis) = middle.at[axis] + 0.125 * (random.below(9) - 4) * middle.diagonal;
+      }
+    }
+    const Hits all = search.closest(points, {}, 1);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const Hits one = search.closest(points.row(i));
+      const Location &alone = one.at[0], &together = all.at[static_cast<std::size_t>(i)];
+      EXPECT_TRUE(alone.face == together.face && alone.u == together.u && alone.v == together.v &&
+                  one.distance[0] == all.distance[i])
+          << textOf(points.row(i).transpose());
+    }
+  }
+}
+
 TEST(Closest, TellsWhatIsWrongWithItsArguments) {
   const LimitSurface surface = limitSurface(cube());
   const SurfaceSearch search(surface);

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "limitsurf/bernstein.h"
 #include "limitsurf/surface/batch/instruction_sets.h"
@@ -57,6 +59,30 @@ TEST(SearchKernels, ThePolynomialIsTheSquaredDistance) {
       }
       EXPECT_NEAR(sum, direct, 1e-12);
     }
+  }
+}
+
+TEST(SearchKernels, MovedPointsLieInABoxNoNearerThanTold) {
+  Random random(4);
+  for (int round = 0; round < 50; ++round) {
+    const RandomPatch patch(random);
+    const double offset[4] = {random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5),
+                              0};
+    double moved[16][4];
+    const double least = SearchKernels::get().move(patch.points, offset, patch.away, moved);
+    double of_box = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (int i = 0; i < 16; ++i) {
+        EXPECT_EQ(moved[i][axis], patch.points[i][axis] + offset[axis]);
+        low = std::min(low, moved[i][axis]);
+        high = std::max(high, moved[i][axis]);
+      }
+      const double nearest = std::clamp(patch.away[axis], low, high);
+      of_box += (nearest - patch.away[axis]) * (nearest - patch.away[axis]) -
+                patch.away[axis] * patch.away[axis];
+    }
+    EXPECT_NEAR(least, of_box, 1e-11);
   }
 }
 
@@ -113,7 +139,7 @@ TEST(SearchKernels, AllInstructionSetsGiveTheSameBits) {
     const RandomPatch patch(random);
     const double s = random.uniform(), t = random.uniform();
     struct {
-      double polynomial[kDistanceSize], extremes[2], values[6][4], along[16];
+      double polynomial[kDistanceSize], extremes[2], values[6][4], along[16], moved[16][4], least;
       DifferenceBounds bounds;
     } results[3];
     int count = 0;
@@ -127,6 +153,8 @@ TEST(SearchKernels, AllInstructionSetsGiveTheSameBits) {
       SearchKernels::get().extremes(result.polynomial, result.extremes[0], result.extremes[1]);
       SearchKernels::get().evaluate(patch.points, s, t, result.values);
       SearchKernels::get().along(patch.points, patch.away, result.along);
+      result.least =
+          SearchKernels::get().move(patch.points, patch.away, patch.points[0], result.moved);
       for (int i = 0; i < 16; ++i) {
         const double* p = patch.points[i];
         const double* a = patch.away;

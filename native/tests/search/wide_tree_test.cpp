@@ -89,7 +89,7 @@ TEST(WideTree, NearestFirstKeepsTheOrderOfKeys) {
     }
     std::stable_sort(expected.begin(), expected.end(),
                      [](const auto& a, const auto& b) { return a.key < b.key; });
-    open.add(node, keys, [&](int child) { return matters[child]; });
+    open.add(node, keys, WideTree::children(node, [&](int child) { return matters[child]; }));
     NearestFirst::Entry next;
     for (const NearestFirst::Entry& entry : expected) {
       ASSERT_TRUE(open.take(next));

@@ -57,13 +57,7 @@ class RaySearch {
       const WideTree::Node& node = data_.tree->node(next_.place);
       WideTree::Row from;
       const unsigned met = box_ray_.meet(node, begin_, roundedUp(end()), from);
-      if (met != 0 && (met & (met - 1)) == 0) {  // one child, as at most nodes
-        const auto child = static_cast<int>((met >> 1) - (met >> 3));
-        next_ = {node.children[child], from[child]};
-        expectNext();
-        return true;
-      }
-      open_.add(node, from, [met](int child) { return (met >> child & 1) != 0; });
+      open_.add(node, from, met);
       return takeNext();
     }
     const std::int32_t leaf = WideTree::leaf(next_.place);
@@ -117,16 +111,12 @@ class RaySearch {
         return false;
       }
     } while (next_.key > end());
-    expectNext();
-    return true;
-  }
-
-  void expectNext() const {
     if (WideTree::isLeaf(next_.place)) {
       prefetch(data_.leaves[WideTree::leaf(next_.place)]);
     } else {
       prefetch(data_.tree->node(next_.place));
     }
+    return true;
   }
 
   /// How a ray passes an extraordinary vertex.
