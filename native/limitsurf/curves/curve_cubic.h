@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "limitsurf/surface/bezier_patch.h"
 
@@ -40,6 +41,10 @@ struct CurveCubic {
 
   /// The length of the part between two parameters, by Gauss-Legendre quadrature on 10 points.
   double quadrature(double from, double to) const;
+
+  /// The parameters inside (0, 1), in ascending order, at which the speed has a minimum far below
+  /// its largest value: those of cusps and of the sharpest turns. Between them it has no kinks.
+  std::vector<double> turns() const;
 };
 
 }  // namespace limitsurf

@@ -19,14 +19,21 @@ constexpr int kMostHalvings = 40;
 /// The number of edges that one task measures.
 constexpr std::size_t kEdgesPerTask = 16;
 
-/// Halves parts of a cubic until quadrature has converged, and lists them.
+/// Halves parts of a cubic until quadrature has converged, and lists them. They end at cusps: one
+/// closer to an end of a part than all points of the quadrature would be seen neither by it nor by
+/// that of the halves.
 class Measure {
  public:
   Measure(const CurveCubic& cubic, int number, double& arc, std::vector<CurveLeaf>& leaves)
       : cubic_(cubic), number_(number), arc_(arc), leaves_(leaves) {
-    const double whole = cubic.quadrature(0, 1);
-    negligible_ = kNegligible * whole;
-    add(0, 1, whole, kMostHalvings);
+    std::vector<double> ends = cubic.turns();
+    ends.push_back(1);
+    negligible_ = kNegligible * cubic.quadrature(0, 1);
+    double from = 0;
+    for (const double to : ends) {
+      add(from, to, cubic.quadrature(from, to), kMostHalvings);
+      from = to;
+    }
   }
 
  private:

@@ -114,6 +114,57 @@ TEST(EdgeCurves, CuspsAndNarrowTurnsKeepTheBound) {
   }
 }
 
+/// A strip whose boundary runs back and forth along a line: each cusp of the spline divides an edge
+/// in two, anywhere, also closer to its end than all points of a quadrature.
+TEST(EdgeCurves, CuspsAnywhereKeepTheBound) {
+  Random random(5);
+  int close_to_an_end = 0;
+  for (int round = 0; round < 200; ++round) {
+    const int length = 6;
+    Cage cage = fullGrid(length, 1);
+    std::array<double, length + 1> x;
+    for (int i = 0; i <= length; ++i) {
+      x[static_cast<std::size_t>(i)] = (i & 1) + 0.05 * random.uniform(-1, 1);
+      cage.positions.row(i) << x[static_cast<std::size_t>(i)], 0, 0;
+      cage.positions.row(length + 1 + i) << x[static_cast<std::size_t>(i)], 0, 1;
+    }
+    for (int i = 1; i + 2 <= length; ++i) {
+      const EdgeCurves curves(limitSurface(cage), {{i, i + 1}});
+      // The total variation of the spline, which is a cubic polynomial of one coordinate
+      const double* p = &x[static_cast<std::size_t>(i - 1)];
+      const auto value = [&](double t) {
+        const double s = 1 - t;
+        return (s * s * s * p[0] + (3 * t * t * t - 6 * t * t + 4) * p[1] +
+                (-3 * t * t * t + 3 * t * t + 3 * t + 1) * p[2] + t * t * t * p[3]) /
+               6;
+      };
+      const double a = (p[3] - 3 * p[2] + 3 * p[1] - p[0]) / 2, b = p[0] - 2 * p[1] + p[2],
+                   c = (p[2] - p[0]) / 2, root = std::sqrt(std::max(0., b * b - 4 * a * c));
+      std::vector<double> ends = {0, 1};
+      for (const double t : {2 * c / (-b + root), 2 * c / (-b - root)}) {
+        if (t > 0 && t < 1) {
+          ends.push_back(t);
+          close_to_an_end += std::min(t, 1 - t) < 0.0065;
+        }
+      }
+      std::sort(ends.begin(), ends.end());
+      double truth = 0;
+      for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+        truth += std::abs(value(ends[k + 1]) - value(ends[k]));
+      }
+      EXPECT_NEAR(curves.length(0), truth, kCurveLengthError * truth) << round << ", edge " << i;
+      // Half of it is where half of the variation is.
+      const EdgeCurves::Point half = curves.at(0, truth / 2, CurveSide::left);
+      double before = 0;
+      for (std::size_t k = 0; k + 1 < ends.size() && ends[k] < half.fraction; ++k) {
+        before += std::abs(value(std::min(ends[k + 1], half.fraction)) - value(ends[k]));
+      }
+      EXPECT_NEAR(before, truth / 2, 2 * kCurveLengthError * truth) << round << ", edge " << i;
+    }
+  }
+  EXPECT_GT(close_to_an_end, 5);
+}
+
 TEST(EdgeCurves, InfinitelySharpCreasesAreSplines) {
   Cage cage = perturbed(torus(8, 6), 0.1, 4);
   // The edges of one ring, through which only the crease runs.
