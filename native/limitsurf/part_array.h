@@ -26,10 +26,21 @@ class PartArray {
     }
     std::vector<T>& part = parts_.back();
     const std::size_t index = ((parts_.size() - 1) << kPartBits) + part.size();
-    part.insert(part.end(), elements, elements + count);
+    if (count <= kFew) {
+      for (std::size_t i = 0; i < count; ++i) {
+        part.push_back(elements[i]);
+      }
+    } else {
+      part.insert(part.end(), elements, elements + count);
+    }
     return index;
   }
-  void push_back(const T& element) { append(&element, 1); }
+  void push_back(const T& element) {
+    if (parts_.empty() || parts_.back().size() == parts_.back().capacity()) {
+      makeRoom(1);
+    }
+    parts_.back().push_back(element);
+  }
 
   const T& operator[](std::size_t index) const {
     return parts_[index >> kPartBits][index & (kPart - 1)];
@@ -58,6 +69,9 @@ class PartArray {
   }
 
  private:
+  /// Inserting fewer as a range takes longer than one by one.
+  static constexpr std::size_t kFew = 6;
+
   static constexpr int bitsOf(std::size_t bytes) {
     int bits = 0;
     while ((sizeof(T) << (bits + 1)) <= bytes) {
