@@ -22,7 +22,7 @@ from ..nodes.capture import CAPTURE, crease_sum, topology_sum
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, rules
 from ..tasks.object_keys import ObjectKey
-from . import proxy, tables
+from . import live_thing, proxy, tables
 from .follow_properties import follows
 from .followers import (
     ensure_modifier,
@@ -31,11 +31,13 @@ from .followers import (
     holders,
     is_placed,
     live_followers_of,
+    live_modifier_of,
     modifier_of,
+    sharers,
     surface_of,
 )
 from .places import Places
-from .relocation import Relocation
+from .relocation import TYPES, Relocation
 from .roots import Locations
 
 if TYPE_CHECKING:
@@ -134,6 +136,8 @@ class Request:
         for data, place in zip(data_blocks, made.places, strict=True):
             if data not in moved:
                 place.check_count(data)
+        for ob in followers:
+            settle(ob)
         for relocation in self._relocated:
             relocation.write()
         ensure_capture(surface)
@@ -237,6 +241,15 @@ def check_holds(ob: bpy.types.Object, surface: bpy.types.Object, now: str) -> No
             f"{ob.name} was bound before the faces of {surface.name} changed: rebind it, or unbind "
             "it first"
         )
+
+
+def settle(ob: bpy.types.Object) -> None:
+    """Puts strands and points of an object that does not follow live back to rest where they
+    followed live before they were joined to it.
+    """
+    is_live = any(live_modifier_of(user) for user in (ob, *sharers(ob)))
+    if ob.type in TYPES and not is_live and not live_thing.missing(ob.data):
+        live_thing.stop(ob.data)
 
 
 def ensure_capture(surface: bpy.types.Object) -> None:

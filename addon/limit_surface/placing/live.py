@@ -185,6 +185,14 @@ def start(ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.
     _thing(ob).read_anew()
 
 
+def admit(ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+    """Has strands and points follow that were added later. Raises CageError, MeshError or
+    LocationError where they do not belong to the surface.
+    """
+    LiveThing().admit(ob.data, _surface(surface, depsgraph).limit)
+    _thing(ob).read_anew()
+
+
 def _surface(surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> LiveSurface:
     key = ObjectKey.of(surface)
     known = _surfaces.get(key)

@@ -16,6 +16,7 @@ from ..nodes.live import FOLLOW_LIVE
 from ..reading import cage
 from ..tasks.piecewise_job import Pieces, at_once
 from . import followers, following, live, live_surface, live_thing, newcomers
+from .places import Places
 from .relocation import Relocation
 from .unbinding import Unbinding
 
@@ -61,6 +62,7 @@ class LiveRequest:
         for ob in self._things:
             if ob.data not in relocated:
                 following.check_holds(ob, self._surface, self._signature)
+                Places.read(ob.data).check(limit.face_count, self._surface.name)
                 live_thing.check(ob.data, limit)
         self._relocations = located
 
@@ -75,6 +77,8 @@ class LiveRequest:
         for ob in self._things:
             if followers.live_modifier_of(ob) and not live_thing.missing(ob.data):
                 live.take_up_edits(ob, context.evaluated_depsgraph_get())
+            elif live_thing.written(ob.data) is None:
+                following.settle(ob)
         for relocation in self._relocations or ():
             relocation.write()
         if self._by_nodes:
@@ -91,6 +95,9 @@ class LiveRequest:
         for ob in self._things:
             if live_thing.missing(ob.data):
                 live.start(ob, self._surface, depsgraph)
+            else:
+                live.take_up_edits(ob, depsgraph)
+                live.admit(ob, self._surface, depsgraph)
         live.pose_all(depsgraph)
         blocks = followers.holders(self._things)
         count = sum(len(data.attributes[ids.FACE].data) for data in blocks)
@@ -145,6 +152,8 @@ def finish_rebinding(
     for ob in things:
         ob.data[ids.SIGNATURE] = signature
     depsgraph = context.evaluated_depsgraph_get()
+    for ob in things:
+        live.admit(ob, surface, depsgraph)
     if live.is_enabled(depsgraph.scene):
         live.pose_all(depsgraph)
 

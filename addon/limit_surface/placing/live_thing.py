@@ -6,6 +6,9 @@ holds them at rest, `limit_fingerprint` a number for each strand that tells whet
 changed its points since they were written, and the custom property `limit_written` the frame and
 the matrix of that moment. All of it belongs to the data: it survives saving, undo, deleted strands
 and linking. What is shown in a frame depends on the shape at rest and on the frame alone.
+
+Strands whose fingerprint is 0 are new: they were added or joined later, or have just got another
+place. They stay where they are, whatever their other attributes say, until they are admitted.
 """
 
 from __future__ import annotations
@@ -76,10 +79,28 @@ def check(data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
 
 def stop(data: bpy.types.ID) -> None:
     """Puts the data's points where they are at rest. Edits must have been taken up before."""
+    is_new = added(data)
     for name in moved_names(data):
         if rest_name(name) in data.attributes:
-            _write(data, name, attributes.read(data, rest_name(name)))
+            values = attributes.read(data, rest_name(name))
+            resting = _rows(data, name, is_new)
+            values[resting] = attributes.read(data, name)[resting]
+            _write(data, name, values)
     leave(data)
+
+
+def added(data: bpy.types.ID) -> np.ndarray:
+    """Tells which strands are new."""
+    is_new: np.ndarray = attributes.read(data, ids.LIVE_FINGERPRINT) == 0
+    return is_new
+
+
+def begin_anew(data: bpy.types.ID, strands: np.ndarray) -> None:
+    """Makes strands new ones that have got another place: they are at rest where they are now."""
+    if not missing(data):
+        prints = attributes.read(data, ids.LIVE_FINGERPRINT)
+        prints[strands] = 0
+        _write(data, ids.LIVE_FINGERPRINT, prints)
 
 
 def leave(data: bpy.types.ID) -> None:
@@ -132,6 +153,7 @@ class LiveThing:
         self._source: tuple[object, ...] | None = None  # what the binding was read from
         self._rests: set[str] = set()  # attributes at rest that the buffers hold
         self._prints = np.empty(0, np.int32)  # the fingerprints that were written last
+        self._known = np.empty(0, np.int32)  # the same, but not 0 for new strands
 
     def read_anew(self) -> None:
         """Is called when somebody may have changed the data-block."""
@@ -145,20 +167,10 @@ class LiveThing:
         prints = self._read(data, ids.LIVE_FINGERPRINT)
         if not _same_bits(prints, self._prints):
             self.read_anew()
-            self._prints = prints.copy()
-            self._leave_new_ones(data, prints == 0)
-        edited: np.ndarray = self._fingerprints(data, self._poser_on(data, limit)) != prints
+            self._prints, self._known = prints.copy(), prints.copy()
+        edited: np.ndarray = self._fingerprints(data, self._poser_on(data, limit)) != self._known
         self._is_current = True
         return edited if edited.any() else None
-
-    def _leave_new_ones(self, data: bpy.types.ID, is_new: np.ndarray) -> None:
-        """Strands that were added since the last time have no fingerprint, and belong to no place
-        of the surface, whatever their other attributes say.
-        """
-        if is_new.any():
-            rotation = attributes.read(data, ids.REST_ROTATION)
-            rotation[is_new] = 0
-            _write(data, ids.REST_ROTATION, rotation)
 
     def take_up(
         self,
@@ -168,28 +180,43 @@ class LiveThing:
         matrix: np.ndarray,
     ) -> None:
         """Changes the shape at rest of edited strands, so that they are posed to where they are
-        now, on the surface in the pose for which they were written.
+        now, on the surface in the pose for which they were written. New ones are at rest there.
         """
         poser = self._poser_on(data, limit)
         for name in _points_of(data):
             rest = self._at_rest(data, name)
             poser.unpose(self._read(data, name), matrix, rest, only=edited)
             _write(data, rest_name(name), rest)
-        self._mark(data, poser)
+        is_new = edited & (self._prints == 0)
+        if is_new.any():
+            self._take_up_vectors(data, is_new)
+        self._write_prints(data, self._fingerprints(data, poser))
+
+    def _take_up_vectors(self, data: bpy.types.ID, is_new: np.ndarray) -> None:
+        for name in moved_names(data):
+            if name not in _POINTS and rest_name(name) in data.attributes:
+                rest, rows = self._at_rest(data, name), _rows(data, name, is_new)
+                rest[rows] = attributes.read(data, name)[rows]
+                _write(data, rest_name(name), rest)
 
     def mark(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
-        """Takes the points for those that were written."""
-        self._mark(data, self._poser_on(data, limit))
-
-    def _mark(self, data: bpy.types.ID, poser: limitsurf.StrandPoser) -> None:
-        prints = self._fingerprints(data, poser)
+        """Takes the points for those that were written. All strands follow from now on."""
+        prints = self._fingerprints(data, self._poser_on(data, limit))
         if ids.LIVE_FINGERPRINT not in data.attributes:
             data.attributes.new(ids.LIVE_FINGERPRINT, "INT", _domain(data))
-        self._write_prints(data, prints)
+        _write(data, ids.LIVE_FINGERPRINT, prints)
+
+    def admit(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
+        """Has new strands follow from now on. Their edits must have been taken up before."""
+        prints = self._read(data, ids.LIVE_FINGERPRINT)
+        own = self._fingerprints(data, self._poser_on(data, limit))
+        _write(data, ids.LIVE_FINGERPRINT, np.where(prints == 0, own, prints))
 
     def _write_prints(self, data: bpy.types.ID, prints: np.ndarray) -> None:
-        _write(data, ids.LIVE_FINGERPRINT, prints)
-        self._prints = prints
+        """Writes the fingerprints of all but new strands."""
+        self._known = prints
+        self._prints = np.where(self._prints == 0, np.int32(0), prints)
+        _write(data, ids.LIVE_FINGERPRINT, self._prints)
 
     def pose(
         self, data: bpy.types.ID, limit: limitsurf.LimitSurface, matrix: np.ndarray, frame: float
@@ -255,6 +282,8 @@ class LiveThing:
         self._rests.clear()
         binding = {name: attributes.read(data, name) for name in ROOT_KINDS}
         binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
+        if ids.LIVE_FINGERPRINT in data.attributes:
+            binding[ids.REST_ROTATION][added(data)] = 0
         if isinstance(data, bpy.types.Curves):
             binding["offsets"] = attributes.curve_offsets(data)
         if (
@@ -346,6 +375,15 @@ def _source(data: bpy.types.ID) -> tuple[object, ...]:
     kinds = {bpy.types.Curves: "curves", bpy.types.Mesh: "vertices"}
     elements = getattr(data, kinds.get(type(data), "points"))
     return data.as_pointer(), len(elements), *data.attributes.keys()
+
+
+def _rows(data: bpy.types.ID, name: str, strands: np.ndarray) -> np.ndarray:
+    """Tells which elements of an attribute belong to these strands (a mask)."""
+    if isinstance(data, bpy.types.Curves):
+        return np.repeat(strands, np.diff(attributes.curve_offsets(data)))
+    if data.attributes[name].domain == "CORNER":
+        return strands[attributes.read(data, ids.CORNER_VERTEX)]
+    return strands
 
 
 def _domain(data: bpy.types.ID) -> str:

@@ -38,7 +38,7 @@ class LiveUnbinding:
             for surface in set(self._surfaces.values()) - {None}
         }
         self._now = {
-            ob: _places_now(ob, surface, self._posed[surface])
+            ob: places_now(ob, surface, self._posed[surface])
             for ob, surface in self._surfaces.items()
             if shape == "SHOWN" and surface is not None and not live_thing.missing(ob.data)
         }
@@ -61,13 +61,15 @@ class LiveUnbinding:
         return f"Unbound {where}: {names}"
 
 
-def _places_now(
+def places_now(
     ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurface
 ) -> tuple[np.ndarray, PosedPlaces]:
-    """Returns the rows of the elements that have a place, and their places in this frame."""
+    """Returns the rows of the elements that follow, and their places in this frame."""
     stored = Places.read(ob.data)
     stored.check(posed.in_object.face_count, surface.name)
-    return stored.rows, posed.places(stored.face, stored.uv, transform.world_matrix(ob))
+    follows = ~live_thing.added(ob.data)[stored.rows]
+    places = posed.places(stored.face[follows], stored.uv[follows], transform.world_matrix(ob))
+    return stored.rows[follows], places
 
 
 def _bind_here(ob: bpy.types.Object, rows: np.ndarray, places: PosedPlaces) -> None:

@@ -92,6 +92,8 @@ class Rebinding:
             following.check_thing(ob, surface)
         self._live = [ob for ob in kept if live_modifier_of(ob)]
         live_binding.prepare_rebinding(self._live, depsgraph)
+        for ob in kept:
+            following.settle(ob)
         blocks = {holder_of(ob): ob for ob in reversed(kept)}
         self._elements = [Elements(ob, at_rest=True) for ob in blocks.values()]
         with cage.opened(surface, depsgraph) as (found, mesh):
