@@ -105,3 +105,16 @@ def test_strands_follow_animated_creases_of_a_deforming_mesh():
         at_rest.check(ob, hair)
         areas.add(round(scenes.surface_without_addon(ob).area(), 4))
     assert len(areas) == len(TWELVE_FRAMES)
+
+
+@pytest.mark.parametrize("ways", [["LIVE"], ["LIVE", "NODES"]])
+def test_the_surface_alone_restores_everything_in_its_own_way(ways):
+    ob = deforming("cross")
+    things = [scenes.add_hair(ob, follow=way) for way in ways]
+    before = [[modifier.name for modifier in thing.modifiers] for thing in things]
+    ob.modifiers.remove(ob.modifiers[ids.CAPTURE_GROUP])
+    bpy.ops.object.select_all(action="DESELECT")
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_follow() == {"FINISHED"}
+    assert ids.CAPTURE_GROUP in ob.modifiers
+    assert [[modifier.name for modifier in thing.modifiers] for thing in things] == before

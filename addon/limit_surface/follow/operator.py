@@ -10,11 +10,14 @@ from .. import ids
 from ..errors import RefusalError
 from ..placing import curve_points, following, live_binding, newcomers
 from ..placing.binding_operator import BindingOperator
+from ..placing.followers import live_modifier_of
 from ..tasks import polling
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary
 from .subjects import BINDABLE, selected, to_bind
+
+Things = dict[bpy.types.Object, list[bpy.types.Object]]  # by their surface
 
 NOTHING = (
     "Select hair or points that stand on a limit surface, or select other hair, points or "
@@ -77,8 +80,10 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         by_surface = to_bind(context)
         if not by_surface:
             raise RefusalError(NOTHING)
-        bind = self._live if self.mode == "LIVE" else self._by_nodes
-        lines = yield from bind(context, by_surface)
+        live, others = self._divided(context, by_surface)
+        requests = yield from self._located(context, live)
+        lines = (yield from self._by_nodes(context, others)) if others else []
+        lines += [str(request.write(context)) for request in requests]
         self.summary = "\n".join(lines)
         self.report({"INFO"}, "; ".join(lines))
         self._take_over(by_surface)
@@ -89,11 +94,20 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         """None, which keeps what there is, unless the property has been set."""
         return self.use_proxy if self.properties.is_property_set("use_proxy") else None
 
-    def _by_nodes(
-        self,
-        context: bpy.types.Context,
-        by_surface: dict[bpy.types.Object, list[bpy.types.Object]],
-    ) -> Pieces:
+    def _divided(self, context: bpy.types.Context, by_surface: Things) -> tuple[Things, Things]:
+        """Returns what is to follow live, and what by nodes. What follows a selected surface live
+        and is not selected itself goes on so.
+        """
+        chosen = selected(context)
+        live, others = Things(), Things()
+        for on, things in by_surface.items():
+            for ob in things:
+                goes_on = ob not in chosen and live_modifier_of(ob) is not None
+                way = live if self.mode == "LIVE" or goes_on else others
+                way.setdefault(on, []).append(ob)
+        return live, others
+
+    def _by_nodes(self, context: bpy.types.Context, by_surface: Things) -> Pieces:
         requests = []
         for on, obs in by_surface.items():
             depsgraph = context.evaluated_depsgraph_get()
@@ -123,18 +137,15 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
             outcomes += bound_curves.write(context)
         return [str(outcome) for outcome in outcomes]
 
-    def _live(
-        self,
-        context: bpy.types.Context,
-        by_surface: dict[bpy.types.Object, list[bpy.types.Object]],
-    ) -> Pieces:
+    def _located(self, context: bpy.types.Context, by_surface: Things) -> Pieces:
+        """Returns requests (list[LiveRequest]) that can be written."""
         depsgraph = context.evaluated_depsgraph_get()
         requests = [live_binding.LiveRequest(on, depsgraph, obs) for on, obs in by_surface.items()]
         for request in requests:
             yield from request.locate(context.evaluated_depsgraph_get())
-        return [str(request.write(context)) for request in requests]
+        return requests
 
-    def _take_over(self, by_surface: dict[bpy.types.Object, list[bpy.types.Object]]) -> None:
+    def _take_over(self, by_surface: Things) -> None:
         """Makes the surface known to hair, and ends what else moves it."""
         for surface, things in by_surface.items():
             for ob in things:

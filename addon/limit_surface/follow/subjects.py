@@ -52,7 +52,7 @@ def to_bind(
     things = [ob for ob in selected(context) if ob.type in BINDABLE]
     if active is not None and active.type == "MESH" and not is_placed(active):
         things.remove(active)
-        things = things or [*followers_of(active), *strays_of(active)]
+        things = things or [*followers_of(active), *live_followers_of(active), *strays_of(active)]
         return {active: things} if things else {}
     surfaces = {surface_of(ob) for ob in things}
     found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
