@@ -27,9 +27,9 @@ def loose_hair(count: int = 30) -> bpy.types.Object:
     return hair
 
 
-def snap(hair: bpy.types.Object, ob: bpy.types.Object, **properties: object) -> None:
+def snap(thing: bpy.types.Object, ob: bpy.types.Object, **properties: object) -> None:
     bpy.ops.object.select_all(action="DESELECT")
-    hair.select_set(True)
+    thing.select_set(True)
     ob.select_set(True)
     scenes.activate(ob)
     assert bpy.ops.object.limit_snap(**properties) == {"FINISHED"}
@@ -89,3 +89,82 @@ def test_hair_that_follows_changes_to_another_surface(follow):
     snap(hair, other)
     assert hair.data.surface == other
     check(other, hair)
+
+
+def combed(hair: bpy.types.Object) -> np.ndarray:
+    """Combs some strands of hair that was placed, and returns all as they are shown in frame 20."""
+    points = scenes.strands(hair).copy()
+    points[::2, 1:] += [0.1, 0.2, -0.05]
+    attributes.write(hair.data, ids.POSITION, "FLOAT_VECTOR", "POINT", points)
+    hair.data.update_tag()
+    bpy.context.scene.frame_set(20)
+    return live_scenes.follow_truth.shown_strands(hair)
+
+
+@pytest.mark.parametrize("is_edited", [False, True])
+@pytest.mark.parametrize("align", ["NONE", "NORMAL_DU"])
+@pytest.mark.parametrize("part", ["STRAND", "ROOT"])
+@pytest.mark.parametrize("follow", ["NODES", "LIVE"])
+def test_what_follows_and_is_on_the_surface_stays_there(follow, part, align, is_edited):
+    """Also in a frame in which the mesh has another shape than when the hair was bound."""
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow=follow, points=4, per_side=2)
+    shown = combed(hair)
+    if is_edited:
+        bpy.context.scene.limit_surface.target = ob
+        scenes.activate(hair)
+        bpy.ops.object.mode_set(mode="EDIT")
+        assert bpy.ops.object.limit_snap(hair=part, align=align) == {"FINISHED"}
+        bpy.ops.object.mode_set(mode="OBJECT")
+    else:
+        snap(hair, ob, hair=part, align=align)
+    np.testing.assert_allclose(live_scenes.follow_truth.shown_strands(hair), shown, atol=2e-5)
+    check(ob, hair)
+
+
+@pytest.mark.parametrize("part", ["STRAND", "ROOT", "BLEND"])
+@pytest.mark.parametrize("follow", ["NODES", "LIVE"])
+def test_a_strand_that_follows_is_dragged_from_where_it_is_shown(follow, part):
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow=follow, points=4, per_side=2)
+    shown = combed(hair)
+    bpy.context.scene.limit_surface.target = ob
+    scenes.activate(hair)
+    assert bpy.ops.view3d.limit_snap_modal(face=5, uv=(0.5, 0.25), element=3, hair=part) == {
+        "FINISHED"
+    }
+    now = live_scenes.follow_truth.shown_strands(hair)
+    np.testing.assert_allclose(np.delete(now, 3, 0), np.delete(shown, 3, 0), atol=2e-5)
+    limit = scenes.surface_without_addon(ob)
+    root = limit.evaluate([5], [[0.5, 0.25]]).position
+    root = scenes.transformed(live_scenes.relation(ob, hair), root)[0]
+    share = {"STRAND": [1, 1, 1, 1], "ROOT": [1, 0, 0, 0]}.get(part)
+    if share is None:
+        world = scenes.transformed(hair.matrix_world, shown[3].astype(np.float64))
+        along = np.cumsum([0, *np.linalg.norm(np.diff(world, axis=0), axis=1)])
+        share = 1 - along / along[-1]
+    expected = shown[3] + np.multiply.outer(share, root - shown[3, 0])
+    np.testing.assert_allclose(now[3], expected, atol=2e-5)
+    check(ob, hair)
+
+
+def test_only_selected_strands_get_another_shape_at_rest():
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow="NODES", points=4, per_side=2)
+    before = scenes.strands(hair).copy()
+    bpy.context.scene.frame_set(20)
+    shown = live_scenes.follow_truth.shown_strands(hair)
+    chosen = np.zeros(len(before), bool)
+    chosen[::3] = True
+    attributes.write(hair.data, ids.SELECTION, "BOOLEAN", "CURVE", chosen)
+    bpy.context.scene.limit_surface.target = ob
+    scenes.activate(hair)
+    bpy.ops.object.mode_set(mode="SCULPT_CURVES")
+    assert bpy.ops.object.limit_snap(offset=0.1) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    np.testing.assert_array_equal(scenes.strands(hair)[~chosen], before[~chosen])
+    now = live_scenes.follow_truth.shown_strands(hair)
+    np.testing.assert_allclose(now[~chosen], shown[~chosen], atol=2e-5)
+    apart = np.array(hair.matrix_world)[:3, :3] @ (now - shown)[chosen].reshape(-1, 3).T
+    np.testing.assert_allclose(np.linalg.norm(apart, axis=0), 0.1, atol=2e-5)
+    check(ob, hair)

@@ -16,7 +16,7 @@ from ..nodes import groups
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, transform
 from ..tasks.job import Progress
-from ..tasks.piecewise_job import Pieces, aside
+from ..tasks.piecewise_job import Pieces, aside, at_once
 from . import followers, following, proxy, tables
 from .places import NOWHERE, Places
 from .posed_surface import PosedSurface
@@ -120,6 +120,15 @@ def _posed(surface: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> 
         return PosedSurface(cage.read(surface, depsgraph)) if surface else None
     except CageError:
         return None
+
+
+def shown_now(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, np.ndarray]:
+    """Returns the attributes of what follows by nodes as they would be if it was unbound as shown.
+    Raises RefusalError where that is impossible.
+    """
+    posed = _posed(followers.surface_of(ob), depsgraph)
+    frozen: _Frozen = at_once(_freeze(ob, posed, depsgraph))
+    return frozen.values
 
 
 def _freeze(

@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import ids, native
 from ..placing.posed_surface import transformed
+from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace, unit
 from ..reading import attributes, ragged_rows
 from .aim import Elements, Placement
@@ -27,6 +28,7 @@ class SnappedHair:
 
     def __init__(self, ob: bpy.types.Object, surface: TargetSurface, selected_only: bool) -> None:
         self._ob = ob
+        self._shape = PresentShape(ob, bpy.context.evaluated_depsgraph_get())
         self._read_transform()
         self._sizes = np.empty(len(ob.data.curves), np.int32)
         ob.data.curves.foreach_get("points_length", self._sizes)
@@ -34,7 +36,7 @@ class SnappedHair:
         if selected_only:
             chosen = _selected(ob.data, self._sizes)
         self._chosen = np.flatnonzero(chosen)
-        self._binding = HairBinding(ob.data, surface, is_whole=bool(chosen.all()))
+        self._binding = HairBinding(self._shape, surface, is_whole=bool(chosen.all()))
 
     @property
     def follower(self) -> bpy.types.Object:
@@ -69,7 +71,7 @@ class SnappedHair:
         taken = np.zeros(len(self._sizes), bool)
         taken[curves] = True
         rows = np.flatnonzero(np.repeat(taken, self._sizes))
-        points = attributes.read(self._ob.data, ids.POSITION)[rows].astype(np.float64)
+        points = self._shape.read(ids.POSITION)[rows].astype(np.float64)
         return Strands(transformed(self._matrix, points), self._sizes[curves]), rows
 
     def _turns(
@@ -112,19 +114,23 @@ class SnappedHair:
             regained = strands.restored_lengths(moved) - moved
         for name in _HANDLES:
             if name in self._ob.data.attributes:
-                handles = attributes.read(self._ob.data, name).astype(np.float64)
-                own = transformed(self._matrix, handles[rows])
+                handles = self._shape.read(name)[rows].astype(np.float64)
+                own = transformed(self._matrix, handles)
                 own_moves = strands.moves(own, placement.position, turn, weights)
-                handles[rows] += self._space.to_local(own_moves + regained)
-                attributes.write(self._ob.data, name, "FLOAT_VECTOR", "POINT", handles)
+                self._write(name, rows, handles + self._space.to_local(own_moves + regained))
 
-        points = attributes.read(self._ob.data, ids.POSITION).astype(np.float64)
-        points[rows] += self._space.to_local(moves + regained)
+        points = self._shape.read(ids.POSITION)[rows].astype(np.float64)
+        points += self._space.to_local(moves + regained)
         # The roots are put exactly where the stored locations say, to the last bit.
         bound = self._binding.places(placement.face, placement.uv, self._matrix).position
         off = placement.position - transformed(self._matrix, bound)
-        points[rows[strands.root]] = bound + self._space.to_local(off)
-        attributes.write(self._ob.data, ids.POSITION, "FLOAT_VECTOR", "POINT", points)
+        points[strands.root] = bound + self._space.to_local(off)
+        self._write(ids.POSITION, rows, points)
+
+    def _write(self, name: str, rows: np.ndarray, values: np.ndarray) -> None:
+        stored = attributes.read(self._ob.data, name)
+        stored[rows] = values
+        attributes.write(self._ob.data, name, "FLOAT_VECTOR", "POINT", stored)
 
 
 def _selected(data: bpy.types.Curves, sizes: np.ndarray) -> np.ndarray:

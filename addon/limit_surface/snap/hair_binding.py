@@ -6,7 +6,9 @@ import numpy as np
 
 from .. import ids, native
 from ..errors import RefusalError
+from ..placing import live_thing
 from ..placing.posed_surface import Places
+from ..placing.present_shape import PresentShape
 from ..reading import attributes
 from .surface import TargetSurface
 
@@ -25,8 +27,10 @@ class HairBinding:
     that the hair can change to another surface.
     """
 
-    def __init__(self, data: bpy.types.Curves, surface: TargetSurface, is_whole: bool) -> None:
-        self._data, self._surface, self._is_whole = data, surface, is_whole
+    def __init__(self, shape: PresentShape, surface: TargetSurface, is_whole: bool) -> None:
+        data: bpy.types.Curves = shape.data
+        self._data, self._shape = data, shape
+        self._surface, self._is_whole = surface, is_whole
         for name, kind in _KINDS.items():
             attribute = data.attributes.get(name)
             if attribute and (attribute.data_type, attribute.domain) != (kind, "CURVE"):
@@ -45,12 +49,12 @@ class HairBinding:
 
     def rest_frames(self, curves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Returns which of the curves are bound to a surface already, and their frames (m, 3, 3)
-        there.
+        there: at rest, or of hair that follows, as it is now.
         """
         if not {ids.FACE, ids.REST_ROTATION} <= set(self._data.attributes.keys()):
             return np.zeros(len(curves), bool), np.tile(np.eye(3), (len(curves), 1, 1))
-        rotation = attributes.read(self._data, ids.REST_ROTATION)[curves].astype(np.float64)
-        bound = attributes.read(self._data, ids.FACE)[curves] != NOWHERE
+        rotation = self._shape.read(ids.REST_ROTATION)[curves].astype(np.float64)
+        bound = self._shape.read(ids.FACE)[curves] != NOWHERE
         return bound, native.limitsurf.rotation_matrices(rotation)
 
     def write(
@@ -64,6 +68,7 @@ class HairBinding:
         self._store(
             ids.REST_ROTATION, (1, 0, 0, 0), curves, native.limitsurf.quaternions(places.frame)
         )
+        live_thing.begin_anew(self._data, curves)
         self._data.surface = self._surface.ob
         without = self._why_no_uvs()
         if without:

@@ -13,6 +13,7 @@ import numpy as np
 from .. import ids, native
 from ..errors import RefusalError
 from ..placing.posed_surface import Places, transformed
+from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace
 from ..snap.hair_binding import HairBinding
 from ..snap.object_move import ObjectMove
@@ -106,35 +107,44 @@ class DraggedStrand:
         self._data, self._curve = ob.data, np.array([curve])
         self._matrix = np.array(ob.matrix_world, np.float64)
         self._space = WorldSpace(self._matrix)
-        self._binding = HairBinding(ob.data, surface, is_whole=len(ob.data.curves) == 1)
-        info = ob.data.curves[curve]
+        shape = PresentShape(ob, bpy.context.evaluated_depsgraph_get())
+        self._binding = HairBinding(shape, surface, is_whole=len(ob.data.curves) == 1)
+        info, stored = ob.data.curves[curve], ob.data.attributes
         self._rows = range(info.first_point_index, info.first_point_index + info.points_length)
+        names = [name for name in _CURVE_POINTS if name in stored]
         self._kept = {
-            name: np.array([ob.data.attributes[name].data[i].vector for i in self._rows])
-            for name in _CURVE_POINTS
-            if name in ob.data.attributes
+            name: np.array([stored[name].data[i].vector for i in self._rows]) for name in names
         }
-        points = transformed(self._matrix, self._kept[ids.POSITION].astype(np.float64))
+        self._shown = {name: shape.read(name)[self._rows] for name in names}
+        self._tile = stored[ids.TILE].data[curve].value if ids.TILE in stored else None
+        points = transformed(self._matrix, self._shown[ids.POSITION].astype(np.float64))
         self._strand = Strands(points, np.array([len(points)]))
 
     def put(self, place: Place, align: str, hair: str) -> None:
         root, weights = place.position[None], self._strand.weights(hair)
         turn = self._turn(place, align)
-        for name, kept in self._kept.items():
-            points = transformed(self._matrix, kept.astype(np.float64))
+        self._follow(0)  # nodes would move it from where it is dragged to
+        for name, shown in self._shown.items():
+            points = transformed(self._matrix, shown.astype(np.float64))
             moves = self._strand.moves(points, root, turn, weights)
-            values = kept + self._space.to_local(moves)
+            values = shown + self._space.to_local(moves)
             if name == ids.POSITION:
                 values[0] = self._root(place)
             self._write(name, values)
 
     def restore(self) -> None:
+        self._follow(self._tile)
         for name, kept in self._kept.items():
             self._write(name, kept)
 
     def confirm(self, place: Place) -> None:
         self._binding.write(self._curve, np.array([place.face]), place.uv[None], self._matrix)
         self._data.update_tag()
+
+    def _follow(self, tile: int | None) -> None:
+        """Has nodes move the strand by this tile; by none if it is 0."""
+        if self._tile is not None:
+            self._data.attributes[ids.TILE].data[self._curve[0]].value = tile
 
     def _turn(self, place: Place, align: str) -> np.ndarray:
         """Returns the rotation (1, 3, 3) in world space."""

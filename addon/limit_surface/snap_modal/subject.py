@@ -9,7 +9,7 @@ import numpy as np
 from .. import ids
 from ..errors import RefusalError
 from ..placing.posed_surface import transformed
-from ..reading import attributes
+from ..placing.present_shape import PresentShape
 from ..snap.mesh_vertices import as_edited
 from ..snap.selection import ancestors
 from ..snap.surface import TargetSurface
@@ -39,7 +39,8 @@ class Subject:
         data = self.ob.data
         first = np.empty(len(data.curves), np.int32)
         data.curves.foreach_get("first_point_index", first)
-        return transformed(matrix, attributes.read(data, ids.POSITION)[first].astype(np.float64))
+        shape = PresentShape(self.ob, bpy.context.evaluated_depsgraph_get())
+        return transformed(matrix, shape.read(ids.POSITION)[first].astype(np.float64))
 
     def handle(self, element: int, surface: TargetSurface) -> Handle:
         if self.kind == "OBJECT":
