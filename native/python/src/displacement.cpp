@@ -181,7 +181,7 @@ void bindSubdividedFaces(py::module_& module) {
       });
 }
 
-void bindDisplacement(py::class_<SharedSurface>& type) {
+void bindDisplacement(SurfaceClass& type) {
   using namespace py::literals;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   type.def("vector_displacement", &vectorDisplacement, "target"_a.none(false), "face"_a, "uv"_a,

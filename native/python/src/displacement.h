@@ -9,6 +9,6 @@ namespace limitsurf::python {
 void bindSubdividedFaces(py::module_& module);
 
 /// vector_displacement(), scalar_displacement() and displaced()
-void bindDisplacement(py::class_<SharedSurface>& type);
+void bindDisplacement(SurfaceClass& type);
 
 }  // namespace limitsurf::python

@@ -21,17 +21,17 @@
 namespace limitsurf::python {
 namespace {
 
-/// Curves, and the pose of which they were made. Python keeps the surface alive as long as this.
+/// Curves, the surface, which lives as long as they do, and the pose of which they were made.
 struct BoundEdgeCurves {
   BoundEdgeCurves(const SharedSurface& of, EdgeCurves made)
-      : surface_(&of), pose_(of.pose()), curves_(std::move(made)) {}
+      : surface_(of.shared_from_this()), pose_(of.pose()), curves_(std::move(made)) {}
 
   const EdgeCurves& curves() const { return curves_; }
   const SharedSurface& surface() const { return *surface_; }
 
   /// Throws unless they were made of this surface, as it is now posed. Its lock must be held.
   void check(const SharedSurface& of) const {
-    if (&of != surface_) {
+    if (&of != surface_.get()) {
       throw std::invalid_argument(
           "the curves were made by another surface: call edge_curves() of this one");
     }
@@ -43,7 +43,7 @@ struct BoundEdgeCurves {
   }
 
  private:
-  const SharedSurface* surface_;
+  std::shared_ptr<const SharedSurface> surface_;
   std::uint64_t pose_;
   EdgeCurves curves_;
 };
@@ -216,10 +216,10 @@ void bindEdgeCurves(py::module_& module) {
            kEdgeCurvesAtDoc);
 }
 
-void bindEdgeCurveMakers(py::class_<SharedSurface>& type) {
+void bindEdgeCurveMakers(SurfaceClass& type) {
   using namespace py::literals;
   type.def("edge_curves", &makeCurves, "edges"_a = "boundary", py::kw_only(), "threads"_a = 0,
-           py::keep_alive<0, 1>(), kEdgeCurvesMakerDoc)
+           kEdgeCurvesMakerDoc)
       .def("scatter_along", &scatterAlong, "curves"_a, "count"_a = py::none(),
            "spacing"_a = py::none(), "jitter"_a = 0., "seed"_a = 0, py::kw_only(),
            "phase"_a = py::none(), "side"_a = "left", "rows"_a = 1, "row_distance"_a = 0.,

@@ -10,6 +10,6 @@ namespace limitsurf::python {
 /// The class EdgeCurves.
 void bindEdgeCurves(py::module_& module);
 /// LimitSurface.edge_curves() and LimitSurface.scatter_along()
-void bindEdgeCurveMakers(py::class_<SharedSurface>& type);
+void bindEdgeCurveMakers(SurfaceClass& type);
 
 }  // namespace limitsurf::python

@@ -158,7 +158,7 @@ py::object stencils(const SharedSurface& shared, const py::object& face, const p
 
 }  // namespace
 
-void bindEvaluation(py::class_<SharedSurface>& type) {
+void bindEvaluation(SurfaceClass& type) {
   using namespace py::literals;
   const py::object float64 = py::dtype("float64");
   type.def("evaluate", &evaluate, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),

@@ -53,7 +53,7 @@ py::object curveDirections(const SharedSurface& shared, const py::object& points
 
 }  // namespace
 
-void bindFlow(py::class_<SharedSurface>& type) {
+void bindFlow(SurfaceClass& type) {
   using namespace py::literals;
   type.def("curve_directions", &curveDirections, "points"_a, "offsets"_a, "face"_a, "uv"_a,
            py::kw_only(), "threads"_a = 0, "dtype"_a = py::dtype("float64"),

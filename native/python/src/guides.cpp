@@ -179,7 +179,7 @@ py::object childStrands(const py::object& guide_points, const py::object& guide_
 
 }  // namespace
 
-void bindGuideWeights(py::class_<SharedSurface>& type) {
+void bindGuideWeights(SurfaceClass& type) {
   using namespace py::literals;
   type.def("guide_weights", &guideWeights, "guide_face"_a, "guide_uv"_a, "face"_a, "uv"_a,
            "count"_a = GuideOptions().count, py::kw_only(), "cuts"_a = py::none(),

@@ -37,10 +37,10 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
   shared.setPositions(std::move(points), threads);
 }
 
-std::unique_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {
+std::shared_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {
   const py::gil_scoped_release release;
   const InterruptionPoint point = interruptible();
-  return std::make_unique<SharedSurface>(mesh);
+  return std::make_shared<SharedSurface>(mesh);
 }
 
 py::array_t<double> bounds(const SharedSurface& shared, int threads) {
@@ -70,7 +70,7 @@ py::tuple pickled(const SharedSurface& shared) {
   return py::make_tuple(py::cast(shared.mesh), pointArray(currentPositions(shared)));
 }
 
-std::unique_ptr<SharedSurface> unpickled(const py::tuple& state) {
+std::shared_ptr<SharedSurface> unpickled(const py::tuple& state) {
   if (state.size() != 2 || !py::isinstance<BoundMesh>(state[0])) {
     throw py::value_error("no state of a LimitSurface");
   }
@@ -80,7 +80,7 @@ std::unique_ptr<SharedSurface> unpickled(const py::tuple& state) {
 }
 
 /// What the topology alone decides.
-void bindTopology(py::class_<SharedSurface>& type) {
+void bindTopology(SurfaceClass& type) {
   type.def_readonly("mesh", &SharedSurface::mesh,
                     "The ControlMesh of which the surface was made, with its original positions.")
       .def_property_readonly(
@@ -103,7 +103,7 @@ void bindTopology(py::class_<SharedSurface>& type) {
 }
 
 /// The present pose, and what follows from it.
-void bindPose(py::class_<SharedSurface>& type) {
+void bindPose(SurfaceClass& type) {
   using namespace py::literals;
   type.def_property_readonly(
           "positions",
@@ -121,7 +121,7 @@ void bindPose(py::class_<SharedSurface>& type) {
 
 void bindLimitSurface(py::module_& module) {
   using namespace py::literals;
-  auto type = boundClass<py::class_<SharedSurface>>(module, "LimitSurface", kLimitSurfaceDoc);
+  auto type = boundClass<SurfaceClass>(module, "LimitSurface", kLimitSurfaceDoc);
   type.def(py::init([](BoundMesh& mesh) { return makeSurface(mesh.shared_from_this()); }),
            "mesh"_a.none(false))
       .def("__repr__", &representation)

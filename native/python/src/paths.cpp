@@ -221,7 +221,7 @@ py::object evenPath(const SharedSurface& shared, const py::object& face, const p
 
 }  // namespace
 
-void bindPaths(py::class_<SharedSurface>& type) {
+void bindPaths(SurfaceClass& type) {
   using namespace py::literals;
   type.def("lay_path", &layPath, "points"_a, "tolerance"_a, py::kw_only(),
            "handle_left"_a = py::none(), "handle_right"_a = py::none(), "offsets"_a = py::none(),

@@ -143,7 +143,7 @@ bool eyeIsInside(const SharedSurface& shared, const py::object& matrix, int thre
 
 }  // namespace
 
-void bindProjection(py::class_<SharedSurface>& type) {
+void bindProjection(SurfaceClass& type) {
   using namespace py::literals;
   const ProjectOptions defaults;
   const DepthRange depth = defaults.depth.value_or(DepthRange());

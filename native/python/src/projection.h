@@ -5,6 +5,6 @@
 
 namespace limitsurf::python {
 
-void bindProjection(py::class_<SharedSurface>& type);
+void bindProjection(SurfaceClass& type);
 
 }  // namespace limitsurf::python

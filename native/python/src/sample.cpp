@@ -126,7 +126,7 @@ py::object scatterBlueNoise(const SharedSurface& shared, std::optional<std::int6
 
 }  // namespace
 
-void bindSampling(py::class_<SharedSurface>& type) {
+void bindSampling(SurfaceClass& type) {
   using namespace py::literals;
   type.def("area", &area, py::kw_only(), "error"_a = false, "threads"_a = 0, kAreaDoc)
       .def("scatter_jittered", &scatterJittered, "per_side"_a, "seed"_a = 0, py::kw_only(),

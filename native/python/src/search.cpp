@@ -173,7 +173,7 @@ py::object rayCastAll(const SharedSurface& shared, const py::object& origins,
 
 }  // namespace
 
-void bindSearch(py::class_<SharedSurface>& type) {
+void bindSearch(SurfaceClass& type) {
   using namespace py::literals;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const py::object float64 = py::dtype("float64");

@@ -18,7 +18,7 @@
 namespace limitsurf::python {
 
 /// A surface whose positions may be set while other Python threads evaluate it without the GIL.
-struct SharedSurface {
+struct SharedSurface : std::enable_shared_from_this<SharedSurface> {
   explicit SharedSurface(std::shared_ptr<BoundMesh> m) : mesh(std::move(m)), surface_(*mesh) {}
 
   const LimitSurface& surface() const { return surface_; }
@@ -51,23 +51,25 @@ struct SharedSurface {
   std::atomic<std::uint64_t> pose_{0};
 };
 
+using SurfaceClass = py::class_<SharedSurface, std::shared_ptr<SharedSurface>>;
+
 // The methods of LimitSurface by subject.
 /// evaluate(), frames(), curvature(), stencils()
-void bindEvaluation(py::class_<SharedSurface>& type);
+void bindEvaluation(SurfaceClass& type);
 /// face_varying(), vertex_data(), varying()
-void bindDataMakers(py::class_<SharedSurface>& type);
+void bindDataMakers(SurfaceClass& type);
 /// tessellate(), levels_within(), levels_of_length()
-void bindTessellation(py::class_<SharedSurface>& type);
+void bindTessellation(SurfaceClass& type);
 /// closest(), ray_cast(), ray_cast_all()
-void bindSearch(py::class_<SharedSurface>& type);
+void bindSearch(SurfaceClass& type);
 /// lay_path(), fit_path(), smooth_path(), even_path()
-void bindPaths(py::class_<SharedSurface>& type);
+void bindPaths(SurfaceClass& type);
 /// area() and the scatter methods
-void bindSampling(py::class_<SharedSurface>& type);
+void bindSampling(SurfaceClass& type);
 /// curve_directions()
-void bindFlow(py::class_<SharedSurface>& type);
+void bindFlow(SurfaceClass& type);
 /// tiles()
-void bindGuideWeights(py::class_<SharedSurface>& type);
-void bindSurfaceTiles(py::class_<SharedSurface>& type);
+void bindGuideWeights(SurfaceClass& type);
+void bindSurfaceTiles(SurfaceClass& type);
 
 }  // namespace limitsurf::python

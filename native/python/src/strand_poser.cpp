@@ -103,16 +103,16 @@ Keep the checksums of points that you write; strands whose checksums differ late
 different strands have the same checksum only in one case in 2^32.
 )";
 
-/// Python keeps the surface alive as long as this.
+/// The surface lives as long as this.
 struct BoundStrandPoser {
   BoundStrandPoser(const SharedSurface& of, StrandPoser made)
-      : surface_(&of), poser_(std::move(made)) {}
+      : surface_(of.shared_from_this()), poser_(std::move(made)) {}
 
   const SharedSurface& surface() const { return *surface_; }
   const StrandPoser& poser() const { return poser_; }
 
  private:
-  const SharedSurface* surface_;
+  std::shared_ptr<const SharedSurface> surface_;
   StrandPoser poser_;
 };
 
@@ -307,11 +307,10 @@ void bindStrandPoser(py::module_& module) {
            kFingerprintsDoc);
 }
 
-void bindStrandPoserMaker(py::class_<SharedSurface>& type) {
+void bindStrandPoserMaker(SurfaceClass& type) {
   using namespace py::literals;
   type.def("strand_poser", &makePoser, "face"_a, "uv"_a, "rest_roots"_a, "rest_rotations"_a,
-           "offsets"_a = py::none(), py::kw_only(), "threads"_a = 0, py::keep_alive<0, 1>(),
-           kMakerDoc);
+           "offsets"_a = py::none(), py::kw_only(), "threads"_a = 0, kMakerDoc);
 }
 
 }  // namespace limitsurf::python

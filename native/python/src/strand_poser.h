@@ -15,6 +15,6 @@ std::vector<std::int64_t> strandOffsets(const py::object& offsets);
 /// The class StrandPoser.
 void bindStrandPoser(py::module_& module);
 /// LimitSurface.strand_poser()
-void bindStrandPoserMaker(py::class_<SharedSurface>& type);
+void bindStrandPoserMaker(SurfaceClass& type);
 
 }  // namespace limitsurf::python

@@ -131,7 +131,7 @@ void bindSurfaceData(py::module_& module) {
   bindUvMap(type);
 }
 
-void bindDataMakers(py::class_<SharedSurface>& type) {
+void bindDataMakers(SurfaceClass& type) {
   using namespace py::literals;
   type.def("face_varying", &faceVarying, "values"_a, "indices"_a, "interpolation"_a, py::kw_only(),
            "threads"_a = 0, kFaceVaryingDoc)

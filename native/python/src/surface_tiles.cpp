@@ -129,7 +129,7 @@ py::object tileQuadtree(const SharedSurface& shared, const std::optional<int>& m
 
 }  // namespace
 
-void bindSurfaceTiles(py::class_<SharedSurface>& type) {
+void bindSurfaceTiles(SurfaceClass& type) {
   using namespace py::literals;
   type.def("tiles", &surfaceTiles, "face"_a, "uv"_a, "max_depth"_a = py::none(), py::kw_only(),
            "threads"_a = 0, kTilesDoc)

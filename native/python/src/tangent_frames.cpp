@@ -114,7 +114,7 @@ void bindShadingFrames(py::module_& module) {
              "normals"_a, "tangents"_a, "signs"_a, kOutOfShadingFramesDoc);
 }
 
-void bindTangentFrames(py::class_<SharedSurface>& type) {
+void bindTangentFrames(SurfaceClass& type) {
   using namespace py::literals;
   const py::object float64 = py::dtype("float64");
   type.def("tangent_frames", &tangentFrames, "uv_map"_a, "face"_a, "uv"_a, py::kw_only(),

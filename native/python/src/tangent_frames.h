@@ -6,7 +6,7 @@
 namespace limitsurf::python {
 
 /// tangent_frames() and map_distortion()
-void bindTangentFrames(py::class_<SharedSurface>& type);
+void bindTangentFrames(SurfaceClass& type);
 /// into_shading_frames() and out_of_shading_frames()
 void bindShadingFrames(py::module_& module);
 

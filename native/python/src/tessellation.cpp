@@ -151,7 +151,7 @@ py::object levelsOfLength(const SharedSurface& shared, double length, const py::
 
 }  // namespace
 
-void bindTessellation(py::class_<SharedSurface>& type) {
+void bindTessellation(SurfaceClass& type) {
   using namespace py::literals;
   type.def("tessellate", &tessellate, "levels"_a, py::kw_only(), "corner_normals"_a = false,
            "threads"_a = 0, "progress"_a = py::none(), kTessellateDoc)

@@ -236,6 +236,11 @@ def array_parameters(name):
     return [a.arg for a in (*at.args, *at.kwonlyargs) if a.annotation and is_array(a.annotation)]
 
 
+def names_of(name):
+    at = FUNCTIONS[name].args
+    return [a.arg for a in (*at.args, *at.kwonlyargs)]
+
+
 def test_all_functions_are_here():
     wanted = {name for name in FUNCTIONS if array_parameters(name)}
     assert wanted == set(CASES)
@@ -558,3 +563,11 @@ def test_arguments_that_raise_or_are_missing_leave_the_whole_signature():
         surface.evaluate(0, [[0, 0]], threads=Raises())
     with pytest.raises(TypeError, match="incompatible function arguments"):
         surface.evaluate(0)
+
+
+@pytest.mark.parametrize("name", [n for n in CASES if "threads" in names_of(n)])
+@pytest.mark.parametrize("wrong", [None, "a", 1.5, 2**31])
+def test_threads_of_a_wrong_type(name, wrong):
+    call, given = CASES[name]
+    with pytest.raises(TypeError, match=rf"^threads is {wrong!r}; expected an integer"):
+        call(**given, threads=wrong)
