@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "limitsurf/types.h"
+#include "locks/gil.h"
 #include "locks/signals.h"
 
 namespace limitsurf::python {
@@ -114,7 +115,7 @@ class WithoutGil {
   }
 
  private:
-  std::optional<py::gil_scoped_release> release_;
+  std::optional<GilRelease> release_;
 };
 
 /// Calls body(i) for i below `count`, without the GIL; Ctrl-C ends that. For what passes over large
@@ -133,7 +134,7 @@ void forEachRow(std::size_t count, const Body& body) {
 /// What `work` gives, without the GIL; Ctrl-C ends it.
 template <typename Work>
 auto released(const Work& work) {
-  const py::gil_scoped_release release;
+  const GilRelease release;
   const InterruptionPoint point = interruptible();
   return work();
 }

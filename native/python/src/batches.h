@@ -71,7 +71,7 @@ template <typename Surface>
 CheckedLocations locationsOn(const Surface& surface, const py::object& face, const py::object& uv,
                              const char* face_name = "face", const char* uv_name = "uv") {
   Locations at = locationsOf(surface.faceCount(), face, uv, FaceCheck::size, face_name, uv_name);
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return CheckedLocations(surface, std::move(at));
 }
 

@@ -95,7 +95,7 @@ std::shared_ptr<BoundMesh> makeMesh(const py::object& positions, const py::objec
   requireVector<MeshError>(sizes, "face_sizes");
   requireVector<MeshError>(vertices, "face_vertices");
   const std::vector<std::int64_t> size_vector = vectorOf(sizes), vertex_vector = vectorOf(vertices);
-  const py::gil_scoped_release release;
+  const GilRelease release;
   const InterruptionPoint point = interruptible();
   return std::shared_ptr<BoundMesh>(new BoundMesh(points, size_vector, vertex_vector, options));
 }

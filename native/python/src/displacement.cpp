@@ -30,7 +30,7 @@ py::object locate(const SubdividedFaces& faces, const py::object& face, const py
   checkThreads(threads);
   Locations at = locationsOf(faces.baseFaceCount(), face, uv);
   {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     const InterruptionPoint point = interruptible();
     at = faces.locate(at, threads);
   }
@@ -158,7 +158,7 @@ void bindSubdividedFaces(py::module_& module) {
   using namespace py::literals;
   boundClass<py::class_<SubdividedFaces>>(module, "SubdividedFaces", kSubdividedFacesDoc)
       .def(py::init([](const BoundMesh& base, const BoundMesh& target) {
-             const py::gil_scoped_release release;
+             const GilRelease release;
              const InterruptionPoint point = interruptible();
              return std::make_unique<SubdividedFaces>(base, target);
            }),

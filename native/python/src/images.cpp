@@ -44,7 +44,7 @@ std::unique_ptr<FilteredImage> makeImage(const py::object& pixels, const std::st
     refuseShape(array, "pixels",
                 "(h, w, c) with at least one pixel, at most 2^20 a side, c = 1 to 4");
   }
-  const py::gil_scoped_release release;
+  const GilRelease release;
   const InterruptionPoint point = interruptible();
   return std::make_unique<FilteredImage>(
       array.data(), static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
@@ -69,7 +69,7 @@ py::object sample(const FilteredImage& image, const py::object& st, const py::ob
   const Eigen::Map<const Footprints> all_steps(steps.data(), rows, 4);
   float* to = out.mutable_data();
   {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     const InterruptionPoint point = interruptible();
     checkSamples(all_places, all_steps);
     for (Eigen::Index begin = 0; begin < rows; begin += kRowsPerSampling) {

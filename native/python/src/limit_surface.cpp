@@ -38,7 +38,7 @@ void setPositions(SharedSurface& shared, const py::object& positions, int thread
 }
 
 std::shared_ptr<SharedSurface> makeSurface(const std::shared_ptr<BoundMesh>& mesh) {
-  const py::gil_scoped_release release;
+  const GilRelease release;
   const InterruptionPoint point = interruptible();
   return std::make_shared<SharedSurface>(mesh);
 }

@@ -9,6 +9,7 @@
 #include "images.h"
 #include "limit_surface.h"
 #include "limitsurf/error.h"
+#include "locks/python_calls.h"
 #include "ptex_layout.h"
 #include "short_errors.h"
 #include "strand_poser.h"
@@ -19,6 +20,7 @@
 // PyInit_limitsurf_in_main_interpreter(), which PyInit__limitsurf() calls.
 PYBIND11_MODULE(limitsurf_in_main_interpreter, module) {
   namespace py = pybind11;
+  limitsurf::python::guardNumpyCalls();
   module.doc() = "The native part of limitsurf.";
   module.attr("__version__") = LIMITSURF_VERSION;
   py::register_exception<limitsurf::MeshError>(module, "MeshError", PyExc_ValueError).doc() =

@@ -16,8 +16,7 @@ class ProgressReport {
   }
   void operator()(double part) const {
     if (!report_.is_none()) {
-      const py::gil_scoped_acquire acquire;
-      report_(part);
+      withGil([&] { report_(part); });
     }
   }
 

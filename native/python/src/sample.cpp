@@ -16,27 +16,30 @@
 namespace limitsurf::python {
 namespace {
 
-/// A density function that calls a Python function of (face, uv).
+/// Writes what a Python function of (face, uv) gives. The thread must hold the GIL.
+void writeWeights(const py::object& function, Span<Location> at, double* weights) {
+  const auto rows = static_cast<py::ssize_t>(at.size());
+  py::array_t<int> face(rows);
+  py::array_t<double> uv({rows, py::ssize_t{2}});
+  int* faces = face.mutable_data();
+  double* uvs = uv.mutable_data();
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    faces[i] = at[i].face;
+    uvs[2 * i] = at[i].u;
+    uvs[2 * i + 1] = at[i].v;
+  }
+  const Doubles values = doubles(function(face, uv), "density's result");
+  if (values.ndim() != 1 || values.shape(0) != rows) {
+    throw std::invalid_argument("density returned shape " + shapeText(values) + " for " +
+                                std::to_string(rows) + " locations; expected (" +
+                                std::to_string(rows) + ",)");
+  }
+  std::copy(values.data(), values.data() + rows, weights);
+}
+
 Density::Function densityFunction(const py::object& function) {
   return [&function](Span<Location> at, double* weights) {
-    const py::gil_scoped_acquire acquire;
-    const auto rows = static_cast<py::ssize_t>(at.size());
-    py::array_t<int> face(rows);
-    py::array_t<double> uv({rows, py::ssize_t{2}});
-    int* faces = face.mutable_data();
-    double* uvs = uv.mutable_data();
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      faces[i] = at[i].face;
-      uvs[2 * i] = at[i].u;
-      uvs[2 * i + 1] = at[i].v;
-    }
-    const Doubles values = doubles(function(face, uv), "density's result");
-    if (values.ndim() != 1 || values.shape(0) != rows) {
-      throw std::invalid_argument("density returned shape " + shapeText(values) + " for " +
-                                  std::to_string(rows) + " locations; expected (" +
-                                  std::to_string(rows) + ",)");
-    }
-    std::copy(values.data(), values.data() + rows, weights);
+    withGil([&] { writeWeights(function, at, weights); });
   };
 }
 
@@ -96,7 +99,7 @@ py::object scatterJittered(const SharedSurface& shared, int per_side, std::uint6
   checkThreads(threads);
   Locations at;
   {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     const InterruptionPoint point = interruptible();
     at = limitsurf::scatterJittered(shared.surface(), per_side, seed, threads);
   }

@@ -245,7 +245,7 @@ py::object fingerprints(const BoundStrandPoser& self, const py::object& points, 
   const Eigen::Map<const Rows<3>> input = viewOf<3>(from);
   std::vector<std::int32_t> numbers;
   {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     const InterruptionPoint point = interruptible();
     numbers = self.poser().fingerprints(input, threads);
   }

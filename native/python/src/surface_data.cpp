@@ -64,7 +64,7 @@ std::unique_ptr<SharedData> faceVarying(const SharedSurface& shared, const py::o
   const Integers picked = integers<MeshError>(indices, "indices");
   requireVector<MeshError>(picked, "indices");
   const std::vector<std::int64_t> corners(picked.data(), picked.data() + picked.size());
-  const py::gil_scoped_release release;
+  const GilRelease release;
   const InterruptionPoint point = interruptible();
   SurfaceData data = shared.surface().faceVarying(rows, corners, rule, threads);
   return std::make_unique<SharedData>(std::move(data), std::move(rows));
@@ -76,7 +76,7 @@ std::unique_ptr<SharedData> perVertex(const SharedSurface& shared, const py::obj
                                       int threads) {
   checkThreads(threads);
   DataRows rows = rowsOf(values);
-  const py::gil_scoped_release release;
+  const GilRelease release;
   const InterruptionPoint point = interruptible();
   SurfaceData data = (shared.surface().*make)(rows, threads);
   return std::make_unique<SharedData>(std::move(data), std::move(rows));

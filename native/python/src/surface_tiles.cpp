@@ -115,7 +115,7 @@ py::object tileQuadtree(const SharedSurface& shared, const std::optional<int>& m
   double part = 0;
   TileQuadtree tree;
   {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     const CallLock::Hold hold(shared.lock);
     // The steps of the work are long: what has been done is told again meanwhile.
     const InterruptionPoint point = interruptible([&] { report(part); });

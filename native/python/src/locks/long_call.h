@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include "call_lock.h"
+#include "gil.h"
 #include "signals.h"
 
 namespace limitsurf::python {
@@ -18,7 +17,7 @@ class LongCall {
   explicit LongCall(const Arguments&... arguments) : hold_(arguments...) {}
 
  private:
-  const pybind11::gil_scoped_release release_;
+  const GilRelease release_;
   const Hold hold_;
   const InterruptionPoint point_ = interruptible();
 };

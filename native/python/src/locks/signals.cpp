@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "signals.h"
 
-#include <pybind11/pybind11.h>
-
 #include <chrono>
 #include <utility>
+
+#include "gil.h"
 
 namespace limitsurf::python {
 
@@ -16,10 +16,11 @@ constexpr std::chrono::milliseconds kBetween{20};
 }  // namespace
 
 void lookForSignals() {
-  const pybind11::gil_scoped_acquire acquire;
-  if (PyErr_CheckSignals() != 0) {
-    throw pybind11::error_already_set();
-  }
+  withGil([] {
+    if (PyErr_CheckSignals() != 0) {
+      throw pybind11::error_already_set();
+    }
+  });
 }
 
 InterruptionPoint interruptible(std::function<void()> also) {
