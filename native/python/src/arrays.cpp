@@ -213,6 +213,7 @@ Floats resultArray(const py::object& out, const std::string& name,
   if (out.is_none()) {
     return Floats(shape);
   }
+  refuseMasked(out, name.c_str());
   if (!py::isinstance<Floats>(out)) {
     throw py::type_error(name + " is no contiguous array of float32");
   }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -163,6 +164,13 @@ FloatRotations floatRotations(const py::object& object) {
   return result;
 }
 
+/// Whether one of two arrays begins within the other.
+bool overlapInPart(const Floats& a, const Floats& b) {
+  const std::less<> before;
+  return a.data() != b.data() && before(a.data(), b.data() + b.size()) &&
+         before(b.data(), a.data() + a.size());
+}
+
 /// Calls body(input, output, matrix) without the GIL, while the surface keeps its pose.
 template <int Columns, typename Body>
 py::object posed(const BoundStrandPoser& self, const py::object& object, const char* name,
@@ -172,6 +180,10 @@ py::object posed(const BoundStrandPoser& self, const py::object& object, const c
   const Floats from = floatRows<Columns>(object, name);
   const Eigen::Matrix4d map = matrixOrNone(matrix, "matrix");
   Floats to = resultArray(out, out_name, {self.poser().pointCount(), Columns});
+  if (overlapInPart(from, to)) {
+    throw py::value_error(std::string(out_name) + " overlaps " + name +
+                          " in part; expected the same array, or another one");
+  }
   const Eigen::Map<const Rows<Columns>> input = viewOf<Columns>(from);
   RowsMap<Columns> output(to.mutable_data(), to.shape(0), Columns);
   {

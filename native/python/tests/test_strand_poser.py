@@ -137,6 +137,31 @@ def test_rest_rotations_may_be_matrices(hair):
     )
 
 
+def test_results_may_not_overlap_the_input_in_part(hair):
+    poser = hair.poser(offsets=None)
+    for call, columns in ((poser.pose, 3), (poser.unpose, 3), (poser.pose_vectors, 3),
+                          (poser.pose_rotations, 4)):  # fmt: skip
+        rows = np.random.default_rng(3).normal(size=(1001, columns)).astype(np.float32)
+        given, beside = rows[:500], rows[500:1000]
+        expected = call(given.copy())
+        for shift in (1, 499):
+            with pytest.raises(ValueError, match=r"^out overlaps \w+ in part"):
+                call(rows[shift:][:500], out=given)
+            with pytest.raises(ValueError, match=r"^out overlaps \w+ in part"):
+                call(given, out=rows[shift:][:500])
+        np.testing.assert_array_equal(call(given, out=beside), expected)
+        np.testing.assert_array_equal(call(given, out=given), expected)
+    rows = np.zeros((501, 3), np.float32)
+    with pytest.raises(ValueError, match=r"^points overlaps rest_points in part"):
+        poser.repose(rows[1:], rows[:-1])
+
+
+def test_masked_results_are_refused(hair):
+    poser = hair.poser()
+    with pytest.raises(TypeError, match=r"^out is a masked array"):
+        poser.pose(hair.points, out=np.ma.masked_array(hair.points.copy()))
+
+
 def test_results_may_replace_the_input(hair):
     poser = hair.poser()
     expected = poser.pose(hair.points)
