@@ -35,7 +35,7 @@ void requireResolution(int resolution) {
 PtexLayout::PtexLayout(int faces, int resolution)
     : faces_(faces), resolution_(resolution), columns_(faces > 0 ? leastSquareRoot(faces) : 0) {
   if (faces < 1) {
-    throw std::invalid_argument("faces is " + std::to_string(faces) + "; expected 1 or more");
+    throw std::invalid_argument("face_count is " + std::to_string(faces) + "; expected 1 or more");
   }
   requireResolution(resolution);
   const long long side = static_cast<long long>(columns_) * (resolution + 1);

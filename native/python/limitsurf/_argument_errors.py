@@ -1,55 +1,99 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Says which argument of a call has a wrong type; the module asks when pybind11 refuses one."""
+"""Says what is wrong with the arguments of a call; the module asks when pybind11 refuses them."""
 
 import re
 import reprlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 INTEGER = "typing.SupportsInt | typing.SupportsIndex"
 REAL = "typing.SupportsFloat | typing.SupportsIndex"
-TWO_INTEGERS = f'typing.Annotated[collections.abc.Sequence[{INTEGER}], "FixedSize(2)"]'
+OR_NONE = " | None"
+NATIVE = "limitsurf._limitsurf."
 
-# pybind11's signature of the only form of a function, and where a parameter begins in it.
-SIGNATURE = re.compile(r"supported:\n    1\. \((.*)\) -> [^\n]*\n(?!    2\.)")
+#: The least and the largest integer of an argument, if they are not those of 32 bits
+RANGES = {"seed": (0, 2**64 - 1), "count": (-(2**63), 2**63 - 1)}
+
+# pybind11's signature of the only form of a function or a constructor, and where a parameter begins
+# in it.
+SIGNATURE = re.compile(
+    r"(?P<function>\w+)\(\): incompatible .*supported:\n"
+    r"    1\. (?P<made>[\w.]*)\((?P<parameters>.*)\)( -> [^\n]*)?\n(?!    2\.)"
+)
 PARAMETER = re.compile(r"(?:^|, )(\w+): ")
+BY_NAME_ONLY = ", *"
+
+
+class Parameter(NamedTuple):
+    kind: str
+    may_be_left_out: bool
 
 
 def explanation(text: str, positional: Sequence[object], named: Mapping[str, object]) -> str | None:
-    """The message for the first argument of a wrong type, or None if none is known to be."""
-    signature = SIGNATURE.search(text)
-    if signature is None:
+    """The message for the first argument that is wrong, or None if none is known to be."""
+    found = SIGNATURE.match(text)
+    if found is None:
         return None
-    types = _parameter_types(signature[1])
-    given = dict(zip(types, positional, strict=False)) | dict(named)
+    parameters, places = _parameters(found["parameters"])
+    if found["made"]:  # by a constructor, whose signature does not name the object
+        positional = positional[1:]
+    function = found["made"].removeprefix(NATIVE) or found["function"]
+    given = dict(zip(parameters, positional, strict=False)) | dict(named)
     for name, value in given.items():
-        expected = _complaint(types.get(name, ""), value)
+        expected = name in parameters and _complaint(parameters[name].kind, name, value)
         if expected:
             return f"{name} is {reprlib.repr(value)}; expected {expected}"
+    if len(positional) > places:
+        uncounted = "self" in parameters
+        return (
+            f"{function}() takes at most {places - uncounted} arguments by position; "
+            f"{len(positional) - uncounted} given"
+        )
+    for name in named:
+        if name not in parameters:
+            return f"{function}() has no argument {reprlib.repr(name)}"
+        if name in list(parameters)[: len(positional)]:
+            return f"{function}() is given the argument {name} twice"
+    for name, parameter in parameters.items():
+        if name not in given and not parameter.may_be_left_out:
+            return f"{function}() lacks the argument {name}"
     return None
 
 
-def _parameter_types(signature: str) -> dict[str, str]:
+def _parameters(signature: str) -> tuple[dict[str, Parameter], int]:
+    """The parameters, and the number of those that may be given without a name."""
     starts = list(PARAMETER.finditer(signature))
     ends = [start.start() for start in starts[1:]] + [len(signature)]
-    return {
-        start[1]: signature[start.end() : end].removesuffix(", *").split(" = ")[0]
-        for start, end in zip(starts, ends, strict=True)
-    }
+    parameters = {}
+    places = len(starts)
+    for start, end in zip(starts, ends, strict=True):
+        kind, has_default, default = signature[start.end() : end].partition(" = ")
+        parameters[start[1]] = Parameter(kind.removesuffix(BY_NAME_ONLY), bool(has_default))
+        if (default or kind).endswith(BY_NAME_ONLY):
+            places = len(parameters)
+    return parameters, places
 
 
-def _complaint(kind: str, value: object) -> str | None:
+def _complaint(kind: str, name: str, value: object) -> str | None:
     """What was expected instead of the value; None if its type is right, or not one of these."""
+    if kind.endswith(OR_NONE):
+        kind = kind.removesuffix(OR_NONE)
+        if value is None:
+            return None
     if kind == INTEGER:
         if not hasattr(value, "__index__"):
             return "an integer"
-        if not -(2**31) <= value.__index__() < 2**31:
-            return "an integer below 2147483648"
+        least, most = RANGES.get(name, (-(2**31), 2**31 - 1))
+        if value.__index__() > most:
+            return f"an integer below {most + 1}"
+        if value.__index__() < least:
+            return f"an integer of at least {least}"
     if kind == REAL and not (hasattr(value, "__float__") or hasattr(value, "__index__")):
         return "a number"
-    if kind == TWO_INTEGERS:
-        parts = list(value) if isinstance(value, Iterable) else []
-        if len(parts) != 2 or any(_complaint(INTEGER, part) for part in parts):
-            return "two integers"
+    if kind.startswith(NATIVE):
+        wanted = kind.removeprefix(NATIVE)
+        if wanted not in [base.__name__ for base in type(value).__mro__]:
+            return f"{'an' if wanted[0] in 'AEIOU' else 'a'} {wanted}"
     if kind == "str" and not isinstance(value, str | bytes):
         return "a string"
     if kind == "bool" and not hasattr(value, "__bool__"):

@@ -55,6 +55,23 @@ std::string elementText(const py::array& array, const char* name, py::ssize_t pl
   return indices.empty() ? name : name + ("[" + indices + "]");
 }
 
+/// The two numbers of a sequence. An array without dimensions is one for Python, too.
+template <typename Number>
+std::pair<Number, Number> twoOf(const py::object& object, const char* name, const char* expected) {
+  const auto throw_error = [&] {
+    throw py::type_error(std::string(name) + " is " + valueText(object) + "; expected " + expected);
+  };
+  if (!py::isinstance<py::sequence>(object) || !py::isinstance<py::iterable>(object) ||
+      py::len(object) != 2) {
+    throw_error();
+  }
+  py::detail::make_caster<std::pair<Number, Number>> numbers;
+  if (!numbers.load(object, true)) {
+    throw_error();
+  }
+  return py::detail::cast_op<std::pair<Number, Number>>(numbers);
+}
+
 std::string dtypeText(const py::array& array) {
   return py::cast<std::string>(py::str(array.dtype()));
 }
@@ -159,6 +176,14 @@ Floats floats(const py::object& object, const char* name) {
   const bool is_small = array.dtype().kind() == 'f' && array.dtype().itemsize() <= 4;
   return py::cast<Floats>((is_small ? array : py::array(doubles(array, name)))
                               .attr("astype")("float32", py::arg("copy") = false));
+}
+
+std::pair<double, double> twoNumbers(const py::object& object, const char* name) {
+  return twoOf<double>(object, name, "two numbers");
+}
+
+std::pair<int, int> twoIntegers(const py::object& object, const char* name) {
+  return twoOf<int>(object, name, "two integers");
 }
 
 py::array_t<bool> booleans(const py::handle& object, const char* name) {

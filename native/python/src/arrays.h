@@ -83,6 +83,10 @@ void requireVector(const py::array& array, const char* name) {
   }
 }
 
+/// The two numbers, or integers, of a tuple or another sequence. Throws TypeError for all else.
+std::pair<double, double> twoNumbers(const py::object& object, const char* name);
+std::pair<int, int> twoIntegers(const py::object& object, const char* name);
+
 /// An array of booleans; [] is an empty one. Throws TypeError for all else.
 py::array_t<bool> booleans(const py::handle& object, const char* name);
 

@@ -35,6 +35,9 @@ std::vector<std::int64_t> vectorOf(const Integers& array) {
 }
 
 std::pair<py::object, py::object> pairOf(const py::object& object, const char* name) {
+  if (!py::isinstance<py::iterable>(object)) {
+    throw py::type_error(std::string(name) + " is " + valueText(object) + "; expected two arrays");
+  }
   const py::tuple pair = py::tuple(object);
   if (pair.size() != 2) {
     throw MeshError(std::string(name) + " has " + std::to_string(pair.size()) +
@@ -109,6 +112,9 @@ std::pair<py::object, py::object> flattened(const py::object& faces) {
       throw MeshError("faces has shape " + shapeText(array) + "; expected (F, k)");
     }
     return {numpy.attr("full")(array.shape(0), array.shape(1)), array.attr("ravel")()};
+  }
+  if (!py::isinstance<py::iterable>(faces)) {
+    throw py::type_error("faces is " + valueText(faces) + "; expected lists of vertex indices");
   }
   std::vector<std::int64_t> sizes;
   py::list vertices;

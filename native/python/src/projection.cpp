@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "batches.h"
@@ -65,24 +66,28 @@ void projectInParts(const CheckedLocations& at, const ProgressReport& report,
 }
 
 py::object project(const SharedSurface& shared, const SharedData& uv_map, const py::object& face,
-                   const py::object& uv, const py::object& matrix, std::pair<double, double> texel,
-                   std::pair<double, double> facing, bool two_sided, bool occlusion, int samples,
+                   const py::object& uv, const py::object& matrix, const py::object& texel,
+                   const py::object& facing, bool two_sided, bool occlusion, int samples,
                    std::optional<double> bias, double soft_edge, bool frame,
-                   std::optional<std::pair<double, double>> depth, const py::object& world,
-                   int threads, const py::object& progress) {
+                   const py::object& depth, const py::object& world, int threads,
+                   const py::object& progress) {
   checkThreads(threads);
   const Eigen::Matrix4d projector = matrixOf(matrix, "matrix");
   ProjectOptions options;
-  options.facing_start = facing.first;
-  options.facing_end = facing.second;
+  std::tie(options.facing_start, options.facing_end) = twoNumbers(facing, "facing");
   options.two_sided = two_sided;
   options.samples = samples;
   options.bias = bias;
   options.soft_edge = soft_edge;
   options.frame = frame;
-  options.depth = depth ? std::optional<DepthRange>({depth->first, depth->second}) : std::nullopt;
+  options.depth.reset();
+  if (!depth.is_none()) {
+    const auto [least, most] = twoNumbers(depth, "depth");
+    options.depth = DepthRange{least, most};
+  }
   options.world = matrixOrNone(world, "world");
-  const Eigen::Vector2d size(texel.first, texel.second);
+  const auto [width, height] = twoNumbers(texel, "texel");
+  const Eigen::Vector2d size(width, height);
   const SurfaceData& map = uv_map.data();
   const ProgressReport report(progress);
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
@@ -105,7 +110,7 @@ py::object project(const SharedSurface& shared, const SharedData& uv_map, const 
 py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv_map,
                                const py::object& face, const py::object& uv,
                                const SharedSurface& source, const SharedData& source_map,
-                               std::pair<double, double> texel, double max_distance,
+                               const py::object& texel, double max_distance,
                                const std::string& direction, const py::object& transform,
                                const py::object& world, int threads, const py::object& progress) {
   checkThreads(threads);
@@ -114,7 +119,8 @@ py::object projectAlongNormals(const SharedSurface& shared, const SharedData& uv
   options.direction = choice(direction, "direction", kRayDirections);
   options.transform = matrixOrNone(transform, "transform");
   options.world = matrixOrNone(world, "world");
-  const Eigen::Vector2d size(texel.first, texel.second);
+  const auto [width, height] = twoNumbers(texel, "texel");
+  const Eigen::Vector2d size(width, height);
   const SurfaceData &map = uv_map.data(), &other_map = source_map.data();
   const ProgressReport report(progress);
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
@@ -148,11 +154,11 @@ void bindProjection(SurfaceClass& type) {
   const ProjectOptions defaults;
   const DepthRange depth = defaults.depth.value_or(DepthRange());
   type.def("project", &project, "uv_map"_a, "face"_a, "uv"_a, "matrix"_a, "texel"_a, py::kw_only(),
-           "facing"_a = std::pair(defaults.facing_start, defaults.facing_end),
+           "facing"_a = py::make_tuple(defaults.facing_start, defaults.facing_end),
            "two_sided"_a = defaults.two_sided, "occlusion"_a = true, "samples"_a = defaults.samples,
            "bias"_a = py::none(), "soft_edge"_a = defaults.soft_edge, "frame"_a = defaults.frame,
-           "depth"_a = std::pair(depth.near, depth.far), "world"_a = py::none(), "threads"_a = 0,
-           "progress"_a = py::none(), kProjectDoc)
+           "depth"_a = py::make_tuple(depth.near, depth.far), "world"_a = py::none(),
+           "threads"_a = 0, "progress"_a = py::none(), kProjectDoc)
       .def("project_along_normals", &projectAlongNormals, "uv_map"_a, "face"_a, "uv"_a, "source"_a,
            "source_map"_a, "texel"_a, py::kw_only(),
            "max_distance"_a = std::numeric_limits<double>::infinity(), "direction"_a = "both",

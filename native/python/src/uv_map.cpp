@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/uv/uv_map.h"
 
-#include <pybind11/stl.h>
-
-#include <array>
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -52,16 +50,14 @@ py::array_t<bool> flags(std::vector<std::uint8_t, Allocator>&& from) {
   return taken<bool>(std::move(from));
 }
 
-py::object rasterize(const SharedData& shared, int width, int height,
-                     const std::array<int, 2>& tile, double margin, int threads,
-                     const py::object& progress) {
+py::object rasterize(const SharedData& shared, int width, int height, const py::object& tile,
+                     double margin, int threads, const py::object& progress) {
   const ProgressReport report(progress);
   const Progress tell = progress.is_none() ? Progress() : Progress(report);
   RasterOptions options;
   options.width = width;
   options.height = height;
-  options.tile_x = tile[0];
-  options.tile_y = tile[1];
+  std::tie(options.tile_x, options.tile_y) = twoIntegers(tile, "tile");
   options.margin = margin;
   Texels texels = withMap(shared, threads,
                           [&](const UvMap& map) { return map.rasterize(options, threads, tell); });
@@ -104,7 +100,7 @@ py::object locate(const SharedData& shared, const py::object& points, int thread
 
 void bindUvMap(py::class_<SharedData>& type) {
   using namespace py::literals;
-  type.def("rasterize", &rasterize, "width"_a, "height"_a, "tile"_a = std::array<int, 2>{0, 0},
+  type.def("rasterize", &rasterize, "width"_a, "height"_a, "tile"_a = py::make_tuple(0, 0),
            "margin"_a = 0., py::kw_only(), "threads"_a = 0, "progress"_a = py::none(),
            kRasterizeDoc)
       .def("locate", &locate, "points"_a, py::kw_only(), "threads"_a = 0, "progress"_a = py::none(),

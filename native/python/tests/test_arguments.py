@@ -6,6 +6,7 @@ array.
 
 import ast
 import re
+from typing import Any
 
 import catmull_clark
 import limitsurf as ls
@@ -552,17 +553,13 @@ def test_errors_name_the_argument_of_a_wrong_type():
         assert str(error.value) == message
 
 
-def test_arguments_that_raise_or_are_missing_leave_the_whole_signature():
+def test_arguments_that_raise_leave_the_whole_signature():
     class Raises:
         def __index__(self):
             raise KeyError("no number")
 
-    positions, faces = shapes.grid(2, 2)
-    surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, faces))
     with pytest.raises(TypeError, match="incompatible function arguments"):
-        surface.evaluate(0, [[0, 0]], threads=Raises())
-    with pytest.raises(TypeError, match="incompatible function arguments"):
-        surface.evaluate(0)
+        SURFACE.evaluate(0, [[0, 0]], threads=Raises())
 
 
 @pytest.mark.parametrize("name", [n for n in CASES if "threads" in names_of(n)])
@@ -571,3 +568,95 @@ def test_threads_of_a_wrong_type(name, wrong):
     call, given = CASES[name]
     with pytest.raises(TypeError, match=rf"^threads is {wrong!r}; expected an integer"):
         call(**given, threads=wrong)
+
+
+EYE = np.eye(4)
+ANY_MAP: Any = SURFACE.vertex_data(SQUARES[:, :2])
+# mypy would see what is wrong.
+ANY_SURFACE: Any = SURFACE
+LS: Any = ls
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda: ANY_SURFACE.scatter_uniform(1, 2**64),
+            f"seed is {2**64}; expected an integer below {2**64}",
+        ),
+        (
+            lambda: ANY_SURFACE.scatter_uniform(1, -1),
+            "seed is -1; expected an integer of at least 0",
+        ),
+        (
+            lambda: ANY_SURFACE.scatter_uniform(2**63),
+            f"count is {2**63}; expected an integer below {2**63}",
+        ),
+        (
+            lambda: LS.ControlMesh(SQUARES, [4], FACES[0], boundary=None),
+            "boundary is None; expected a string",
+        ),
+        (lambda: LS.LimitSurface(None), "mesh is None; expected a ControlMesh"),
+        (lambda: LS.FilteredImage(PIXELS, 3), "extension is 3; expected a string"),
+        (
+            lambda: LS.PtexLayout(2**40, 1),
+            f"face_count is {2**40}; expected an integer below {2**31}",
+        ),
+        (lambda: LS.PtexLayout(1, "a"), "resolution is 'a'; expected an integer"),
+        (lambda: LS.PtexLayout(-1, 2), "face_count is -1; expected 1 or more"),
+        (
+            lambda: ANY_SURFACE.tiles(FACE, UV, max_depth=1.5),
+            "max_depth is 1.5; expected an integer",
+        ),
+        (
+            lambda: ANY_SURFACE.scatter_along(CURVES, spacing="a"),
+            "spacing is 'a'; expected a number",
+        ),
+        (lambda: ANY_SURFACE.scatter_along(None, 3), "curves is None; expected an EdgeCurves"),
+        (
+            lambda: ANY_SURFACE.tangent_frames(None, FACE, UV),
+            "uv_map is None; expected a SurfaceData",
+        ),
+        (
+            lambda: LS.LimitSurface.strand_poser(1, [0], UV, UV, UV),
+            "self is 1; expected a LimitSurface",
+        ),
+        (
+            lambda: LS.ControlMesh.from_faces(SQUARES, None),
+            "faces is None; expected lists of vertex indices",
+        ),
+        (
+            lambda: LS.ControlMesh.from_faces(SQUARES, FACES, 3),
+            "edge_sharpness is 3; expected two arrays",
+        ),
+        (lambda: ANY_MAP.rasterize(3, 3, np.array(2)), "tile is array(2); expected two integers"),
+        *(
+            (
+                lambda texel=texel: ANY_SURFACE.project(ANY_MAP, FACE, UV, EYE, texel),
+                f"texel is {texel!r}; expected two numbers",
+            )
+            for texel in (3, None, "ab", (1,), {1: 2, 3: 4}, np.array(2))
+        ),
+        (
+            lambda: ANY_SURFACE.project(ANY_MAP, FACE, UV, EYE, (1, 1), facing=3),
+            "facing is 3; expected two numbers",
+        ),
+        (
+            lambda: ANY_SURFACE.project(ANY_MAP, FACE, UV, EYE, (1, 1), depth=()),
+            "depth is (); expected two numbers",
+        ),
+        (lambda: ANY_SURFACE.evaluate(0), "evaluate() lacks the argument uv"),
+        (lambda: ANY_SURFACE.evaluate(0, UV, uvs=3), "evaluate() has no argument 'uvs'"),
+        (lambda: ANY_SURFACE.evaluate(0, UV, uv=UV), "evaluate() is given the argument uv twice"),
+        (lambda: ANY_SURFACE.bounds(3), "bounds() takes at most 0 arguments by position; 1 given"),
+        (
+            lambda: LS.PtexLayout(1, 2, 3),
+            "PtexLayout() takes at most 2 arguments by position; 3 given",
+        ),
+        (lambda: LS.PtexLayout(1), "PtexLayout() lacks the argument resolution"),
+    ],
+)
+def test_the_argument_is_named_in_a_line(call, message):
+    with pytest.raises((TypeError, ValueError)) as error:
+        call()
+    assert str(error.value) == message

@@ -336,7 +336,7 @@ def test_tiles_are_read_without_their_neighbours(anywhere):
 def test_layouts_without_meaning():
     assert ls.PtexLayout(1_000_000, 64).width == 65_000
     for faces, resolution, message in (
-        (0, 4, "faces is 0"),
+        (0, 4, "face_count is 0"),
         (5, 3, "resolution is 3; expected a power of two"),
         (5, 8192, "resolution is 8192"),
         (1_100_000, 64, "1100000 faces at a resolution of 64 need an image 68185 pixels wide"),
