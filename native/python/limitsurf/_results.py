@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The results of calls on arrays: named arrays with a row for each location."""
 
-from dataclasses import dataclass
+from dataclasses import FrozenInstanceError, dataclass, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -292,3 +292,18 @@ class Tessellation:
         """The locations of the polygons' corners, each on its polygon's own Ptex face."""
         face = np.repeat(self.ptex_face, self.face_sizes)
         return Locations(face, self.corner_uv.astype(np.float64))
+
+
+def _refuse_value(self: object, name: str, value: object) -> None:
+    raise FrozenInstanceError(f"cannot assign to {name!r}: results do not change")
+
+
+def _refuse_deletion(self: object, name: str) -> None:
+    raise FrozenInstanceError(f"cannot delete {name!r}: results do not change")
+
+
+# What dataclass() itself adds to classes with slots fails at names that are no field.
+for _class in list(vars().values()):
+    if isinstance(_class, type) and is_dataclass(_class):
+        setattr(_class, "__setattr__", _refuse_value)  # noqa: B010 (mypy refuses the assignment)
+        setattr(_class, "__delattr__", _refuse_deletion)  # noqa: B010

@@ -3,19 +3,29 @@
 
 #include <pybind11/pybind11.h>
 
-#include <algorithm>
 #include <string>
 #include <typeinfo>
 
 namespace limitsurf::python {
 
+/// What pickle and copy make an object of: the class, and what its __getstate__() returns.
+inline pybind11::tuple reduced(const pybind11::object& self) {
+  const pybind11::type type = pybind11::type::of(self);
+  if (!pybind11::hasattr(type, "__setstate__")) {
+    throw pybind11::type_error("cannot pickle '" +
+                               std::string(pybind11::str(type.attr("__name__"))) + "' object");
+  }
+  return pybind11::make_tuple(pybind11::module_::import("copyreg").attr("__newobj__"),
+                              pybind11::make_tuple(type), self.attr("__getstate__")());
+}
+
 /// A new class of the module, a py::class_. Python can make an object without initialising it
 /// (`cls.__new__(cls)`), for which pybind11 would allocate memory when a function first takes it:
 /// such objects raise TypeError instead.
 ///
-/// Protocols 0 and 1 of pickle would make an object of pybind11's base class, which ends the
-/// process. Objects are reduced as for protocol 2 instead: those that do not pickle raise
-/// TypeError.
+/// Python's own __reduce__(), and protocols 0 and 1 of pickle, would make an object of pybind11's
+/// base class, which ends the process. Objects are reduced as for protocol 2 instead: those that do
+/// not pickle raise TypeError.
 template <typename Class>
 Class boundClass(pybind11::module_& module, const char* name, const char* doc) {
   Class type(module, name, doc);
@@ -25,11 +35,7 @@ Class boundClass(pybind11::module_& module, const char* name, const char* doc) {
     throw pybind11::type_error("this " + std::string(of) +
                                " was never initialised: its __init__() has not been called");
   };
-  type.def("__reduce_ex__", [](const pybind11::object& self, int protocol) {
-    constexpr int kLeastProtocol = 2;
-    const pybind11::object base = pybind11::module_::import("builtins").attr("object");
-    return base.attr("__reduce_ex__")(self, std::max(protocol, kLeastProtocol));
-  });
+  type.def("__reduce__", &reduced);
   return type;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "short_errors.h"
 
+#include <string>
+
 namespace limitsurf::python {
 namespace {
 
@@ -36,7 +38,28 @@ PyObject* shortError(py::error_already_set& error, const py::tuple& positional,
   return nullptr;
 }
 
+/// Whether an earlier call has made the object: pybind11 would ignore another one of a constructor.
+bool isMade(PyObject* object) {
+  py::detail::internals& pybind = py::detail::get_internals();
+  auto* const type = reinterpret_cast<PyObject*>(Py_TYPE(object));
+  return PyObject_TypeCheck(type, pybind.default_metaclass) != 0 &&
+         reinterpret_cast<py::detail::instance*>(object)
+             ->get_value_and_holder()
+             .instance_registered();
+}
+
+/// Sets the error of a constructor that is called for an object that has been made.
+PyObject* refuseMade(PyObject* object) {
+  const py::object name = py::type::of(object).attr("__name__");
+  PyErr_Format(PyExc_TypeError, "this %U has been made already: make another one", name.ptr());
+  return nullptr;
+}
+
+template <bool makes>
 PyObject* shortWithTuple(PyObject* self, PyObject* arguments, PyObject* named) {
+  if (makes && PyTuple_GET_SIZE(arguments) > 0 && isMade(PyTuple_GET_ITEM(arguments, 0))) {
+    return refuseMade(PyTuple_GET_ITEM(arguments, 0));
+  }
   const auto call =
       reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<void (*)()>(dispatcher));
   PyObject* const result = call(self, arguments, named);
@@ -50,15 +73,19 @@ PyObject* shortWithTuple(PyObject* self, PyObject* arguments, PyObject* named) {
 
 using FastFunction = PyObject* (*)(PyObject*, PyObject* const*, Py_ssize_t, PyObject*);
 
+template <bool makes>
 PyObject* shortWithArray(PyObject* self, PyObject* const* arguments, Py_ssize_t count,
                          PyObject* names) {
+  const py::ssize_t places = PyVectorcall_NARGS(static_cast<std::size_t>(count));
+  if (makes && places > 0 && isMade(arguments[0])) {
+    return refuseMade(arguments[0]);
+  }
   const auto call = reinterpret_cast<FastFunction>(reinterpret_cast<void (*)()>(dispatcher));
   PyObject* const result = call(self, arguments, count, names);
   if (result != nullptr || PyErr_ExceptionMatches(PyExc_TypeError) == 0) {
     return result;
   }
   py::error_already_set error;
-  const py::ssize_t places = PyVectorcall_NARGS(static_cast<std::size_t>(count));
   py::list positional;
   for (py::ssize_t i = 0; i < places; ++i) {
     positional.append(py::handle(arguments[i]));
@@ -70,12 +97,20 @@ PyObject* shortWithArray(PyObject* self, PyObject* const* arguments, Py_ssize_t 
   return shortError(error, py::tuple(positional), named);
 }
 
-void shorten(py::handle function) {
+template <bool makes>
+PyCFunction shortCall(bool takes_array) {
+  return reinterpret_cast<PyCFunction>(takes_array
+                                           ? reinterpret_cast<void (*)()>(&shortWithArray<makes>)
+                                           : reinterpret_cast<void (*)()>(&shortWithTuple<makes>));
+}
+
+/// `makes`: whether it is a constructor.
+void shorten(py::handle function, bool makes) {
   if (PyInstanceMethod_Check(function.ptr())) {
     function = PyInstanceMethod_GET_FUNCTION(function.ptr());
   } else if (Py_TYPE(function.ptr()) == &PyStaticMethod_Type) {
     const py::object inner = function.attr("__func__");  // which the static method keeps
-    shorten(inner);
+    shorten(inner, makes);
     return;
   }
   if (!PyCFunction_Check(function.ptr())) {
@@ -83,9 +118,7 @@ void shorten(py::handle function) {
   }
   PyMethodDef& definition = *reinterpret_cast<PyCFunctionObject*>(function.ptr())->m_ml;
   const bool takes_array = (definition.ml_flags & METH_FASTCALL) != 0;
-  const auto ours =
-      reinterpret_cast<PyCFunction>(takes_array ? reinterpret_cast<void (*)()>(&shortWithArray)
-                                                : reinterpret_cast<void (*)()>(&shortWithTuple));
+  const PyCFunction ours = makes ? shortCall<true>(takes_array) : shortCall<false>(takes_array);
   if (definition.ml_meth == ours) {
     return;
   }
@@ -102,10 +135,11 @@ void shorten(py::handle function) {
 void shortenErrors(const py::module_& module) {
   const py::dict members = module.attr("__dict__");
   for (const auto& [name, member] : members) {
-    shorten(member);
+    shorten(member, false);
     if (PyType_Check(member.ptr())) {
       for (const py::handle key : py::list(member.attr("__dict__"))) {
-        shorten(member.attr("__dict__")[key]);
+        const auto method = py::cast<std::string>(key);
+        shorten(member.attr("__dict__")[key], method == "__init__" || method == "__setstate__");
       }
     }
   }

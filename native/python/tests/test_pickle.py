@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import copy
+import dataclasses
 import multiprocessing
 import pickle
 import subprocess
@@ -61,15 +62,38 @@ again = pickle.loads(pickle.dumps(surface, {protocol}))
 at = [[0.3, 0.6]]
 print((again.evaluate(0, at).position == surface.evaluate(0, at).position).all())
 for thing in (surface.edge_curves(), surface.vertex_data(surface.positions)):
-    try:
-        pickle.dumps(thing, {protocol})
-    except TypeError as error:
-        print(error)
+    for reduced in (
+        lambda: pickle.dumps(thing, {protocol}),
+        lambda: thing.__reduce__(),
+        lambda: object.__reduce_ex__(thing, {protocol}),
+    ):
+        try:
+            reduced()
+        except TypeError as error:
+            print(error)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     is_same, *refused = done.stdout.splitlines()
     assert is_same == "True"
-    assert [line.partition(" '")[0] for line in refused] == ["cannot pickle"] * 2
+    assert [line.partition(" '")[0] for line in refused] == ["cannot pickle"] * 6
+
+
+class Mine(ls.LimitSurface):
+    def __reduce__(self):
+        return super().__reduce__()
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_classes_made_of_a_surface(cube, protocol):
+    mine = Mine(cube.mesh)
+    for again in (
+        pickle.loads(pickle.dumps(mine, protocol)),
+        copy.copy(mine),
+        copy.deepcopy(mine),
+    ):
+        assert type(again) is Mine
+        assert same_surface(mine, again)
+    assert cube.__reduce__()[1] == object.__reduce_ex__(cube, protocol)[1] == (ls.LimitSurface,)
 
 
 @pytest.mark.parametrize("cls", ["ControlMesh", "LimitSurface"])
@@ -96,6 +120,29 @@ def test_other_processes(cube):
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         there = pool.apply(middle_of, (cube,))
     np.testing.assert_array_equal(there, middle_of(cube))
+
+
+def test_objects_are_made_once(cube):
+    other = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.house()))
+    before = middle_of(cube)
+    with pytest.raises(TypeError, match=r"^this LimitSurface has been made already"):
+        cube.__init__(other.mesh)
+    for state in (other.__getstate__(), (), "garbage"):
+        with pytest.raises(TypeError, match="has been made already"):
+            cube.__setstate__(state)
+    np.testing.assert_array_equal(middle_of(cube), before)
+    layout = ls.PtexLayout(3, 4)
+    with pytest.raises(TypeError, match="has been made already"):
+        layout.__init__(5, 4)
+
+
+def test_results_do_not_change(cube):
+    here = cube.evaluate(0, [[0.5, 0.5]])
+    for name in ("position", "foo"):
+        with pytest.raises(dataclasses.FrozenInstanceError, match=name):
+            setattr(here, name, 1)
+        with pytest.raises(dataclasses.FrozenInstanceError, match=name):
+            delattr(here, name)
 
 
 def test_results():
