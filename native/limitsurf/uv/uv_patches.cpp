@@ -32,10 +32,10 @@ Box2 boxOf(const BezierPatch& patch) {
 constexpr int kSignSteps = 8;
 
 /// The Jacobian determinant of a patch at its (0, 0), up to a positive factor.
-double jacobianAtCorner(const BezierPatch& patch) {
+double jacobianAtCorner(const BezierPatch& patch, const PlaneFrame& frame) {
   const Point2 ds = (patch.points[1] - patch.points[0]).head<2>();
   const Point2 dt = (patch.points[4] - patch.points[0]).head<2>();
-  return cross(ds, dt);
+  return cross(ds * frame.scale, dt * frame.scale);
 }
 
 /// Returns the map itself, so that a constructor can check it before its first member is made.
@@ -106,7 +106,7 @@ void UvPatches::invertCore(const UvPiece& piece, const PlaneFrame& frame, Lattic
   for (;;) {
     patches_.split(core, split);
     if (core.steps <= kSignSteps) {
-      flipped = jacobianAtCorner(split.patches[1]) < 0;
+      flipped = jacobianAtCorner(split.patches[1], frame) < 0;
     }
     bool is_flat = core.steps == 0;
     for (const BezierPatch& patch : split.patches) {

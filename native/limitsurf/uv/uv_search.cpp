@@ -66,7 +66,7 @@ MapLocations UvSearch::locate(const PlanePoints& points, int threads) const {
     std::vector<LatticeFinds::Slot> slots;
     for (std::size_t row = begin; row < end; ++row) {
       LatticeFinds finds(kOnePoint, slots);
-      LatticeInverse inverse(kOnePoint, Point2::Constant(map_.tolerance()), finds);
+      LatticeInverse inverse(kOnePoint, Point2::Constant(map_.tolerance() * scale_), finds);
       find(points.row(static_cast<Eigen::Index>(row)).transpose().array(), inverse, finds);
       finds.finish();
       const LatticeFinds::Slot& slot = finds.at(0, 0);
@@ -84,7 +84,7 @@ void UvSearch::find(const Point2& point, LatticeInverse& inverse, UvPatches::Sin
   if (tree_->empty()) {
     return;
   }
-  const PlaneFrame frame{point, Point2::Ones(), 0};
+  const PlaneFrame frame{point, Point2::Constant(scale_), 0};  // small areas would vanish
   const Point2 in_boxes = (point - middle_) * scale_;
   std::int32_t stack[BoxTree::kMostDepth + 1] = {0};
   int depth = 1;

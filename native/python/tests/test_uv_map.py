@@ -112,6 +112,19 @@ def test_vertices_of_maps_that_neither_fold_nor_flip(faces, is_closed, interpola
     assert not found.flipped.any()
 
 
+@pytest.mark.parametrize("exponent", [100, -200, -540, -900])
+def test_points_of_maps_of_any_size(exponent):
+    positions, faces = shapes.pole(5)
+    mesh = ls.ControlMesh.from_faces(positions, faces)
+    plane = positions[:, :2] + 0.2 * positions[:, 2:]
+    points = plane.mean(0) + 0.3 * np.random.default_rng(2).normal(size=(300, 2))
+    maps = [ls.LimitSurface(mesh).vertex_data(s * plane) for s in (1, 2.0**exponent)]
+    found, scaled = maps[0].locate(points), maps[1].locate(2.0**exponent * points)
+    assert (found.face >= 0).sum() > 20
+    for name in ("face", "uv", "overlap", "flipped"):
+        np.testing.assert_array_equal(getattr(scaled, name), getattr(found, name))
+
+
 def test_stacked_and_mirrored_islands():
     positions, faces = shapes.grid(2, 2)
     mesh = ls.ControlMesh.from_faces(positions, faces)

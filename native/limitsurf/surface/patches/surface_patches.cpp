@@ -221,11 +221,7 @@ Vector3 SurfacePatches::coreVertex(const SurfacePiece& core) const {
   return data_->scale * data_->pose.ring(data_->ringTile(core).ring).limit.head<3>().matrix();
 }
 
-double SurfacePatches::diagonal() const {
-  return data_->table.faces.empty()
-             ? 0
-             : (data_->scale * (data_->cage_box.high - data_->cage_box.low)).norm();
-}
+double SurfacePatches::diagonal() const { return data_->scale * data_->diagonal; }
 
 Vector3 SurfacePatches::middle() const {
   return data_->scale * (data_->cage_box.low / 2 + data_->cage_box.high / 2);

@@ -53,7 +53,11 @@ SurfacePatches::Data::Data(const TileTable& tile_table, const Pose& control_poin
   for (int i = 0; i < table.points.cagePoints(); ++i) {
     cage_box.include(pose.point(i).head<3>().matrix());
   }
-  const double diagonal = table.faces.empty() ? 0 : (cage_box.high - cage_box.low).norm();
+  if (!table.faces.empty()) {
+    const Vector3 size = cage_box.high - cage_box.low;
+    const double to_unit = scaleToOwnUnit(size.maxCoeff());  // small squares would vanish
+    diagonal = (to_unit * size).norm() / to_unit;
+  }
   unit = 1 / scaleToOwnUnit(diagonal);
   scale = patch_unit == PatchUnit::own ? 1 / unit : 1;
   tiles.reserve(table.faces.size());

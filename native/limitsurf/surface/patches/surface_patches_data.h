@@ -69,8 +69,9 @@ struct SurfacePatches::Data {
   /// Known for some kinds of cores: of a basis and the face that normalFace() tells.
   std::map<std::pair<const Eigenbasis*, int>, CoreNormal> core_normals;
   Box cage_box;
-  double unit = 1;   ///< the patches' own, as in PatchUnit
-  double scale = 1;  ///< SurfacePatches::scale(); what is kept here is in the pose's unit
+  double diagonal = 0;  ///< of the cage_box; 0 without faces
+  double unit = 1;      ///< the patches' own, as in PatchUnit
+  double scale = 1;     ///< SurfacePatches::scale(); what is kept here is in the pose's unit
 
  private:
   /// Radii are rounded to float: this makes them upper bounds again.
