@@ -34,8 +34,8 @@ condition number of the matrix. Raises ValueError for arrays of other shapes. Co
 constexpr char kLeaningDoc[] =
     R"((n, 3) unit vectors: the last columns of frames (n, 3, 3), turned towards the first two columns.
 
-angles (n, 2) are in radians; the two are combined into one rotation about one axis. Error: 2e-15. Raises
-ValueError for arrays of other shapes. Cost: O(n).
+angles (n, 2) are in radians; the two are combined into one rotation about one axis. Error: 2e-15
+times (1 + angle / 8). Raises ValueError for arrays of other shapes. Cost: O(n).
 )";
 
 constexpr char kStraightStrandsDoc[] =

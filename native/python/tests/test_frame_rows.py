@@ -75,6 +75,18 @@ def test_leaning_is_a_turn_about_one_axis():
     np.testing.assert_array_equal(found[0], own[0, :, 2].astype(np.float64))
 
 
+def test_leaning_by_large_angles():
+    size = 10.0 ** np.arange(13)[:, None]
+    angles = size * np.random.default_rng(4).uniform(-1, 1, (13, 2))
+    wide = angles.astype(np.longdouble)
+    angle = np.sqrt((wide * wide).sum(1))
+    expected = np.column_stack([(np.sin(angle) / angle)[:, None] * wide, np.cos(angle)])
+    found = ls.leaning(np.broadcast_to(np.eye(3), (13, 3, 3)), angles)
+    assert (np.abs(found - expected).max(1) <= ERROR * (1 + angle / 8)).all()
+    huge = ls.leaning(np.broadcast_to(np.eye(3), (2, 3, 3)), [[1e200, -1e200], [0, 1e308]])
+    np.testing.assert_allclose(np.linalg.norm(huge, axis=1), 1, atol=1e-15)
+
+
 @pytest.mark.parametrize("points", [1, 2, 3, 8])
 def test_straight_strands_are_evenly_spaced(points):
     rng = np.random.default_rng(5)

@@ -128,6 +128,9 @@ def test_resampled_strands_have_equal_steps():
         made[0], [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 2, 0], [1, 3, 0]], atol=1e-15
     )
     np.testing.assert_allclose(made[1, :, 2], [5, 5.25, 5.5, 5.75, 6])
+    for size in (2.0**530, 2.0**-560):  # the squares of lengths overflow, or vanish
+        scaled = ls.resample_strands(size * np.array(points), [0, 3, 5], 5)
+        np.testing.assert_array_equal(scaled, size * made)
     single = ls.resample_strands([[1, 2, 3]], [0, 1], 3)
     np.testing.assert_array_equal(single, np.full((1, 3, 3), [1, 2, 3]))
 

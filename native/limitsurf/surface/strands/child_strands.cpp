@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/row_check.h"
 #include "limitsurf/surface/strands/strand_offsets.h"
@@ -20,10 +21,11 @@ constexpr std::size_t kStrandsPerPart = std::size_t{1} << 15;
 using Strand = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 using StrandRef = Eigen::Ref<const Strand, 0, Eigen::OuterStride<3>>;
 
-double lengthOf(const StrandRef& points) {
+/// The length of a strand whose coordinates are multiplied by `scale`.
+double lengthOf(const StrandRef& points, double scale = 1) {
   double length = 0;
   for (Eigen::Index i = 1; i < points.rows(); ++i) {
-    length += (points.row(i) - points.row(i - 1)).norm();
+    length += (scale * points.row(i) - scale * points.row(i - 1)).norm();
   }
   return length;
 }
@@ -41,7 +43,9 @@ void checkOffsets(const std::vector<std::int64_t>& offsets, Eigen::Index points)
 }
 
 void resample(const StrandRef& from, Eigen::Ref<Strand, 0, Eigen::OuterStride<3>> to) {
-  const double step = lengthOf(from) / static_cast<double>(to.rows() - 1);
+  // Squares of large and of small coordinates would overflow and vanish.
+  const double scale = scaleToOwnUnit(from.cwiseAbs().maxCoeff());
+  const double step = lengthOf(from, scale) / static_cast<double>(to.rows() - 1);
   to.row(0) = from.row(0);
   double passed = 0;  // the length before the segment
   Eigen::Index segment = 0;
@@ -49,7 +53,7 @@ void resample(const StrandRef& from, Eigen::Ref<Strand, 0, Eigen::OuterStride<3>
     const double wanted = step * static_cast<double>(i);
     double length = 0;
     while (segment + 1 < from.rows()) {
-      length = (from.row(segment + 1) - from.row(segment)).norm();
+      length = (scale * from.row(segment + 1) - scale * from.row(segment)).norm();
       if (passed + length >= wanted || segment + 2 == from.rows()) {
         break;
       }

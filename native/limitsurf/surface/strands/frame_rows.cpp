@@ -94,7 +94,7 @@ Points leaning(const Eigen::Ref<const Rotations>& frames, const Eigen::Ref<const
   forEachRow(frames.rows(), threads, [&](Eigen::Index row) {
     const Frame frame(frames.row(row).data());
     const Eigen::Vector2d lean = angles.row(row);
-    const double angle = lean.norm();
+    const double angle = std::hypot(lean[0], lean[1]);  // squares of large angles overflow
     const double sine_part = angle > 0 ? std::sin(angle) / angle : 1;
     const Vector3 sideways = frame.leftCols<2>() * lean;
     result.row(row) = std::cos(angle) * frame.col(2) + sine_part * sideways;
