@@ -22,6 +22,8 @@ constexpr double kJump = 1. / 8;
 /// The foot of a gap's middle narrows the gap if the squares of what is left sum up to at most this
 /// share of the gap's; then the sum of all squares shrinks, however often gaps are halved.
 constexpr double kNarrower = 0.999;
+/// The number of points of all paths, each of which takes some hundred bytes and microseconds.
+constexpr double kMostPoints = 1e7;
 /// The number of points that may join a gap.
 constexpr int kMostBridges = 512;
 /// Relative to the size of coordinates: points that are nearer than this are the same.
@@ -62,6 +64,7 @@ class Layer {
   LaidPaths lay() {
     begin();
     while (!open_.empty()) {
+      checkSize();
       refine();
       measure();
       InterruptionPoint::pass();
@@ -79,6 +82,19 @@ class Layer {
   }
 
  private:
+  /// Throws if the paths will have too many points: the open spans need some for each step.
+  void checkSize() const {
+    auto points = static_cast<double>(nodes_.size());
+    for (const Span& span : open_) {
+      points += (nodes_[span.to].position - nodes_[span.from].position).norm() / options_.max_step;
+    }
+    if (!(points <= kMostPoints)) {
+      throw std::invalid_argument("max_step is " + numberText(options_.max_step) +
+                                  " and tolerance " + numberText(options_.tolerance) +
+                                  "; the paths would have more than ten million points");
+    }
+  }
+
   /// Makes the nodes at control points and a span for each segment.
   void begin() {
     const Hits hits = feet(search_, curves_.points, options_.threads);

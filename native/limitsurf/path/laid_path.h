@@ -56,7 +56,8 @@ constexpr double kLongestWay = 4;
 /// each of them the distances of the triangles that are near enough.
 ///
 /// Throws what SpaceCurves::check() throws, std::invalid_argument for a tolerance or a step that is
-/// not above 0, and MeshError for a surface without faces.
+/// not above 0 and for paths of more than ten million points, and MeshError for a surface without
+/// faces.
 LaidPaths layCurves(const LimitSurface& surface, const SurfaceSearch& search,
                     const SpaceCurves& curves, const LayOptions& options);
 

@@ -40,10 +40,12 @@ Bounds: points are as exact as those of closest(). .deviation is measured at 15 
 and refined around the farthest of them. It is at most tolerance, or 1e-12 of the largest coordinate. The
 true maximum may be larger: by 1 % where the distance along a segment has one maximum, and by more where
 a feature is narrower than a sixteenth of a segment, which max_step prevents. Cost: some 40 searches for
-each segment; the first short way needs a tessellation of the surface, too.
+each segment, a tenth of a millisecond; the first short way needs a tessellation of the surface, too. A
+path has about as many segments as its length has steps of max_step, or of sqrt(8 tolerance / curvature).
 
 Raises ValueError for arrays of other shapes, rows that are not finite, offsets that do not cover the
-points, and a tolerance or max_step that is not above 0; MeshError where no face has a limit surface.
+points, a tolerance or max_step that is not above 0, and paths of more than ten million points;
+MeshError where no face has a limit surface.
 )";
 
 constexpr const char* kFitPathDoc =

@@ -129,6 +129,12 @@ def test_steps_are_short_where_that_is_asked(flat):
     assert len(steps) <= 2 * 0.6708 / 0.01
 
 
+def test_endless_paths_are_refused(flat):
+    for step in (1e-9, 1e-300):
+        with pytest.raises(ValueError, match=rf"^max_step is {step!r} and .* ten million points$"):
+            flat.lay_path(ZIGZAG, 0.1, max_step=step)
+
+
 def test_curves_of_a_batch_do_not_depend_on_each_other(wavy):
     rng = np.random.default_rng(3)
     counts = rng.integers(2, 7, 20)
