@@ -12,7 +12,7 @@ enum class Boundary {
 /// How the sharpness of edges decays.
 enum class Creasing {
   uniform,  ///< the sharpness of a child edge is its parent's minus 1
-  chaikin,  ///< before 1 is subtracted, it is averaged with that of the sharp edges at the end
+  chaikin,  ///< before 1 is subtracted, it is averaged with that of the semi-sharp edges at the end
             ///< vertex
 };
 

@@ -25,8 +25,8 @@ boundary : 'smooth' or 'corners'
     'smooth': every boundary is a uniform cubic B-spline curve (OpenSubdiv's EDGE_ONLY, Blender's
     'ALL'). 'corners': boundary vertices with one face are interpolated.
 creasing : 'uniform' or 'chaikin'
-    'chaikin' averages the sharpness of an edge with that of the other sharp edges at its vertices in
-    each step of subdivision.
+    'chaikin' averages the sharpness of an edge with that of the other semi-sharp edges at its vertices
+    in each step of subdivision; infinitely sharp ones do not count.
 triangles : 'catmark' or 'smooth'
     The rule for triangles; 'smooth' is OpenSubdiv's TRI_SUB_SMOOTH.
 scheme : 'catmark' or 'bilinear'
@@ -179,9 +179,10 @@ irregular vertex.
 constexpr const char* kFaceVaryingDoc =
     R"(Data given at the corners of faces, such as a UV map: SurfaceData.
 
-Each corner of a face refers to a row of values. If all corners at a vertex refer to the same row, the
-data are as smooth there as the surface. An edge whose two faces refer to different rows at either end
-is a seam.
+Each corner of a face refers to a row of values. An edge whose two faces refer to different rows at
+either end is a seam. Where no seam meets a vertex, the data are as smooth there as the surface.
+By 'none', 'corners_only' and 'corners_plus1' a seam that ends at a vertex ends as a crease does, even if
+all corners at the vertex refer to the same row.
 
 Parameters
 ----------
@@ -192,7 +193,9 @@ indices : (sum of the mesh's face_sizes,) array of int
 interpolation : str
     Where the data are linear, by OpenSubdiv's rules FVAR_LINEAR_*:
     'none': nowhere. Seams and boundaries are smooth curves, also around corners of one face, but for
-        vertices that the mesh's own rules pin (boundary='corners', infinitely sharp vertices).
+        vertices that the mesh's own rules pin (boundary='corners', infinitely sharp vertices). Where
+        two rows alternate around a vertex (A, B, A, B), it depends on the order of the faces which
+        corners are pinned, as in OpenSubdiv.
     'corners_only': at values that have only one face at a vertex: these are interpolated.
     'corners_plus1': also at junctions of more than two values, and at values across a seam from one
     that a sharp edge pins.

@@ -110,8 +110,9 @@ singular, those at 1/1024 of the way towards the face's centre are used; where t
 too, the footprint is 0. Vectors longer than four images are shortened to four.
 
 Raises ValueError for a matrix that is singular or not finite, for options out of range, and for a map
-that has other than two columns or belongs to another surface; LocationError and MeshError as evaluate().
-Cost: 1 to 3 microseconds for each texel and ray.
+that has other than two columns or another number of Ptex faces than the surface; LocationError and
+MeshError as evaluate(). A map of another surface with as many Ptex faces is not noticed. Cost: 1 to 3
+microseconds for each texel and ray.
 )";
 
 constexpr const char* kProjectAlongNormalsDoc =

@@ -24,8 +24,9 @@ MikkTSpace's frames converge to these as a mesh on the limit surface is tessella
 Frames are always finite: at an irregular vertex the tangent is that 2^-20 inside the face; where the
 map or the surface is singular the frame is that of frames().
 
-Raises ValueError for a map that belongs to another surface or has other than two columns, and the
-errors of evaluate(). Cost: two evaluations a location.
+Raises ValueError for a map that has other than two columns or another number of Ptex faces than the
+surface, and the errors of evaluate(). A map of another surface with as many Ptex faces is not noticed.
+Cost: two evaluations a location.
 )";
 
 constexpr const char* kMapDistortionDoc =
