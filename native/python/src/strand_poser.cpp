@@ -49,8 +49,8 @@ constexpr char kClassDoc[] =
     R"(Strands that are bound to a limit surface (LimitSurface.strand_poser()). They cannot be pickled.
 
 All arrays of points are float32, as Blender's attributes are; others are converted. `out` receives the
-result: a contiguous float32 array, which may be the input itself; without it a new array is returned. If
-a call is interrupted, some rows of `out` are written and others are not.
+result: a contiguous float32 array, which may be the input itself, but not overlap it in part; without it
+a new array is returned. If a call is interrupted, some rows of `out` are written and others are not.
 
 `matrix` (4, 4) transforms from the surface's space to that of the strands; its last row is (0, 0, 0, 1).
 None: they are the same. P is transformed as a point. F consists of the direction of the transformed du,
@@ -59,8 +59,8 @@ normal x tangent. So F is a rotation whatever the matrix is, and strands stay on
 matrix mirrors. Where du or the normal has no limit (as at the vertex where a crease ends, at which
 evaluate() gives the du of one side) or vanishes, F is made in the same way from the columns of frames().
 
-All methods raise ValueError for arrays of other shapes and for matrices that are not finite, and
-TypeError for an `out` of another kind.
+All methods raise ValueError for arrays of other shapes, for such an overlap and for matrices that are
+not finite, and TypeError for an `out` of another kind.
 )";
 
 constexpr char kPoseDoc[] =
