@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Says what is wrong with the arguments of a call; the module asks when pybind11 refuses them."""
 
+import operator
 import re
 import reprlib
 from collections.abc import Mapping, Sequence
@@ -81,14 +82,16 @@ def _complaint(kind: str, name: str, value: object) -> str | None:
         if value is None:
             return None
     if kind == INTEGER:
-        if not hasattr(value, "__index__"):
+        try:
+            number = operator.index(value)  # type: ignore[arg-type]
+        except TypeError:
             return "an integer"
         least, most = RANGES.get(name, (-(2**31), 2**31 - 1))
-        if value.__index__() > most:
+        if number > most:
             return f"an integer below {most + 1}"
-        if value.__index__() < least:
+        if number < least:
             return f"an integer of at least {least}"
-    if kind == REAL and not (hasattr(value, "__float__") or hasattr(value, "__index__")):
+    if kind == REAL and not (_has(value, "__float__") or _has(value, "__index__")):
         return "a number"
     if kind.startswith(NATIVE):
         wanted = kind.removeprefix(NATIVE)
@@ -96,6 +99,10 @@ def _complaint(kind: str, name: str, value: object) -> str | None:
             return f"{'an' if wanted[0] in 'AEIOU' else 'a'} {wanted}"
     if kind == "str" and not isinstance(value, str | bytes):
         return "a string"
-    if kind == "bool" and not hasattr(value, "__bool__"):
+    if kind == "bool" and not _has(value, "__bool__"):
         return "True or False"
     return None
+
+
+def _has(value: object, method: str) -> bool:
+    return hasattr(type(value), method)  # a class has the methods of its objects

@@ -645,6 +645,18 @@ LS: Any = ls
             lambda: ANY_SURFACE.project(ANY_MAP, FACE, UV, EYE, (1, 1), depth=()),
             "depth is (); expected two numbers",
         ),
+        (
+            lambda: ANY_SURFACE.evaluate(0, UV, threads=int),
+            "threads is <class 'int'>; expected an integer",
+        ),
+        (
+            lambda: ANY_SURFACE.closest(POINTS, float),
+            "max_distance is <class 'float'>; expected a number",
+        ),
+        (
+            lambda: ANY_SURFACE.area(error=bool),
+            "error is <class 'bool'>; expected True or False",
+        ),
         (lambda: ANY_SURFACE.evaluate(0), "evaluate() lacks the argument uv"),
         (lambda: ANY_SURFACE.evaluate(0, UV, uvs=3), "evaluate() has no argument 'uvs'"),
         (lambda: ANY_SURFACE.evaluate(0, UV, uv=UV), "evaluate() is given the argument uv twice"),
