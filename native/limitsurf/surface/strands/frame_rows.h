@@ -19,8 +19,8 @@ using Pairs = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 /// Bound on the error of each component of quaternionsOf() and leaning(), for frames that are
 /// rotations up to rounding, and of framesInWorld(), where it is multiplied by the condition number
 /// of `linear`. Each is a dozen roundings of numbers of size 1: four times the largest component of
-/// a unit quaternion is at least 2, so that no digits cancel. leaning() also rounds the length of the
-/// angle: the bound is multiplied by 1 + angle / 8.
+/// a unit quaternion is at least 2, so that no digits cancel. leaning() also rounds the length of
+/// the angle: the bound is multiplied by 1 + angle / 8.
 constexpr double kFrameRowError = 2e-15;
 
 /// Rotations as unit quaternions w, x, y, z with w >= 0; NaN for rows that are not finite.
