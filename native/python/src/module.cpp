@@ -9,7 +9,7 @@
 #include "images.h"
 #include "limit_surface.h"
 #include "limitsurf/error.h"
-#include "locks/python_calls.h"
+#include "locks/numpy_calls.h"
 #include "ptex_layout.h"
 #include "short_errors.h"
 #include "strand_poser.h"
