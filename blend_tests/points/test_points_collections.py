@@ -33,7 +33,7 @@ def trees():
 
 
 def add_trees(ob, **properties):
-    return add_points(ob, instances="COLLECTION", collection="Trees", **properties)
+    return add_points(ob, **{"instances": "COLLECTION", "collection": "Trees"} | properties)
 
 
 def shown(points):
@@ -169,3 +169,22 @@ def test_save_and_load(trees, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "trees.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "trees.blend"))
     np.testing.assert_array_equal(shown(bpy.data.objects[name])[1], before)
+
+
+@pytest.mark.parametrize("instances", ["COLLECTION", "OBJECT"])
+def test_points_are_not_put_into_the_collection_that_they_show(trees, instances):
+    """They would be instances of themselves."""
+    ob = scenes.flat_grid(4)
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(empty)
+    empty.instance_type, empty.instance_collection = "COLLECTION", trees
+    layer = bpy.context.view_layer.layer_collection.children["Trees"]
+    for active in (layer, layer.children["Cedar"]):
+        bpy.context.view_layer.active_layer_collection = active
+        points = add_trees(ob, per_side=1, instances=instances, instance="Empty")
+        assert points.users_collection == (bpy.context.scene.collection,)
+        assert bpy.context.active_object == points
+        if instances == "COLLECTION":
+            check_shown(points)
+    bpy.context.view_layer.active_layer_collection = layer
+    assert add_points(ob).users_collection == (trees,)

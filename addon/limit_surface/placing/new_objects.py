@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import ids
 from ..reading import attributes, ragged_rows
+from . import dependencies
 
 # From this version on normals can be stored as vectors; before, they are stored as angles of 16
 # bits, from the mean normal of the corners of a vertex between sharp edges.
@@ -13,12 +14,18 @@ FREE_NORMALS = bpy.app.version >= (4, 5)
 
 
 def add_on_surface(
-    context: bpy.types.Context, name: str, data: bpy.types.ID, surface: bpy.types.Object
+    context: bpy.types.Context,
+    name: str,
+    data: bpy.types.ID,
+    surface: bpy.types.Object,
+    shown: bpy.types.Object | bpy.types.Collection | None = None,
 ) -> bpy.types.Object:
-    """Adds an object that shares the surface's transform, makes it active and selects it alone."""
+    """Adds an object that shares the surface's transform, makes it active and selects it alone.
+    `shown` is that of which it will show instances.
+    """
     ob = bpy.data.objects.new(name, data)
     put_on_surface(ob, surface)
-    _collection(context).objects.link(ob)
+    _collection(context, shown).objects.link(ob)
     if context.space_data and getattr(context.space_data, "local_view", None):
         ob.local_view_set(context.space_data, True)
     for other in context.selected_objects:
@@ -66,12 +73,16 @@ def set_corner_normals(mesh: bpy.types.Mesh, normals: np.ndarray) -> None:
         mesh.normals_split_custom_set(normals)
 
 
-def _collection(context: bpy.types.Context) -> bpy.types.Collection:
+def _collection(
+    context: bpy.types.Context, shown: bpy.types.Object | bpy.types.Collection | None
+) -> bpy.types.Collection:
     """Returns the active collection, or the scene's own where the active one is hidden, linked, or
-    the override of a linked one, to which objects cannot be added.
+    the override of a linked one, to which objects cannot be added, or where the object would show
+    itself.
     """
     active = context.view_layer.active_layer_collection
     collection = active.collection
-    if active.is_visible and collection.is_editable and not collection.override_library:
-        return active.collection
+    takes_it = active.is_visible and collection.is_editable and not collection.override_library
+    if takes_it and not (shown and collection in dependencies.collections_shown_by(shown)):
+        return collection
     return context.scene.collection

@@ -156,14 +156,25 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
             if made.member is not None:
                 attributes.write(mesh, ids.MEMBER, "INT", "POINT", made.member)
             mesh.update()
-            ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, surface)
+            shown = _shown(self)
+            ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, surface, shown)
             if self.instances == "SCALE":
                 put_scales(ob, self.scale_length / made.world_scale)
             elif self.instances == "COLLECTION":
-                instances.put_members(ob, bpy.data.collections[self.collection])
-            elif self.instance:
-                instances.put_instances(ob, bpy.data.objects[self.instance])
+                instances.put_members(ob, shown)
+            elif shown:
+                instances.put_instances(ob, shown)
             return ob
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
+
+
+def _shown(
+    properties: bpy.types.OperatorProperties,
+) -> bpy.types.Object | bpy.types.Collection | None:
+    """Returns that of which instances are put on the points."""
+    if properties.instances == "COLLECTION":
+        return bpy.data.collections[properties.collection]
+    named = properties.instances == "OBJECT" and properties.instance
+    return bpy.data.objects[properties.instance] if named else None
