@@ -136,6 +136,7 @@ ASSET_LIBRARY = "Limit Surface"
 CURVE_TABLE = "Limit Curve"
 CARRIER = "Limit Carrier"
 CARRIER_MARK = "limit_surface_carrier"  # custom property of carriers
+CARRIED_BY = "limit_carrier"  # custom property of attached objects: their carrier
 LINKED_SURFACE = "limit_linked_surface"  # custom property of what lies on a linked surface
 PROXY_OBJECT = "Limit Proxy"
 CAGE_POSITION = "cage_position"

@@ -354,6 +354,21 @@ def test_unbinding_the_surface_holds_the_objects(shape):
         assert np.abs(matrices(objects) - expected).max() < AXES_BOUND
 
 
+def test_a_carrier_that_carries_nothing_any_more_is_removed():
+    ob = deforming("grid with holes")
+    objects = props(ob)
+    attach(ob, objects)
+    bpy.ops.object.select_all(action="DESELECT")
+    scenes.activate(ob)
+    bpy.ops.object.limit_unbind()
+    attach(ob, objects[:3])
+    assert len(carriers()) == 2  # the first one holds the others where they are
+    before = matrices(objects)
+    attach(ob, objects)
+    assert np.abs(matrices(objects) - before).max() < AXES_BOUND
+    check(ob, objects, before)
+
+
 def test_rebinding_the_surface_keeps_the_objects():
     ob = deforming("cross")
     objects = props(ob, 4)

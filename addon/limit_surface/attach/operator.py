@@ -19,7 +19,7 @@ from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary
 from ..tasks.refused_faces import check_some_left
-from .carrier import Extension, is_carrier
+from .carrier import Extension, is_carrier, remove_unused
 from .parenting import attach, parent_matrices
 
 _WORLD = np.eye(4)
@@ -77,6 +77,7 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
         now = parent_matrices(context, [(new.carrier, vertices) for vertices in new.vertices])
         for ob, vertices, before, after in zip(objects, new.vertices, was, now, strict=True):
             attach(ob, new.carrier, vertices, before, after)
+        remove_unused()
         context.view_layer.update()
         self._report(
             surface, len(objects), len(attached), np.linalg.norm(origins - places.position, axis=1)

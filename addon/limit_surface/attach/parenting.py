@@ -13,6 +13,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from .. import ids
+
 
 def parent_matrices(
     context: bpy.types.Context, parents: Sequence[tuple[bpy.types.Object, Sequence[int]]]
@@ -45,6 +47,9 @@ def attach(
     inverse = np.linalg.solve(now, was @ np.array(ob.matrix_parent_inverse, np.float64))
     _set_parent(ob, parent, vertices)
     ob.matrix_parent_inverse = Matrix(inverse)
+    # Blender saves an object only if it has users. A scene can be deleted, and an object's children
+    # are no users, but custom properties are.
+    ob[ids.CARRIED_BY] = parent
 
 
 def _set_parent(ob: bpy.types.Object, parent: bpy.types.Object, vertices: Sequence[int]) -> None:

@@ -62,9 +62,9 @@ class AllTiles:
         table = of_surface(surface)
         points = tables.PointsTable(self.tree.tiles, self._bound.vertices)
         holder = tables.points_of(table) if table else None
-        holder = holder or tables.new_object(ids.ALL_POINTS_TABLE, surface)
+        holder = tables.hidden_object(ids.ALL_POINTS_TABLE, surface, holder)
         points.fill(holder.data)
-        table = table or tables.new_object(ids.ALL_TILES_TABLE, surface)
+        table = tables.hidden_object(ids.ALL_TILES_TABLE, surface, table)
         table[ids.ALL_TILES_MARK] = self._depth
         tables.connect(table, holder, surface, points, self._bound)
         self._fill(table.data, points.origin)
@@ -102,7 +102,7 @@ class AllTiles:
 
     def _write_faces(self, surface: bpy.types.Object) -> None:
         assert self._levels is not None
-        ob = faces_of(surface) or tables.new_object(ids.FACES_TABLE, surface)
+        ob = tables.hidden_object(ids.FACES_TABLE, surface, faces_of(surface))
         new_objects.put_on_surface(ob, surface)
         ob[ids.FACES_MARK] = self._levels
         mesh = ob.data

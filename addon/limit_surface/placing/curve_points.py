@@ -109,7 +109,7 @@ def _store(ob: bpy.types.Object, points: np.ndarray, places: Binding) -> None:
     """Writes the places of a curve into its table, which is made if it has none of its own."""
     table = curve_table(ob)
     if table is None or len(tables.readers(table)) > 1:  # a copy of the curve reads it
-        table = tables.new_object(ids.CURVE_TABLE, ob)
+        table = tables.hidden_object(ids.CURVE_TABLE, ob)
     tables.fill(table.data, points)
     places.write(table.data, "POINT")
     table.data.pop(ids.SIGNATURE, None)  # that of the places before

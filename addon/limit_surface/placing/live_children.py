@@ -71,7 +71,7 @@ def add(
         curves.surface = surface
         for material in guides.data.materials:
             curves.materials.append(material)
-        holder = tables.new_object(ids.CHILDREN_TABLE, surface)
+        holder = tables.hidden_object(ids.CHILDREN_TABLE, surface)
         table.fill(holder.data)
         ob = add_on_surface(context, ids.CHILDREN_OBJECT, curves, surface)
     except BaseException:
@@ -100,7 +100,7 @@ def make_again(
     assert modifier is not None
     if not CHILDREN.matches(modifier.node_group):
         modifier.node_group = CHILDREN.group()
-    holder = table_of(ob) or tables.new_object(ids.CHILDREN_TABLE, surface)
+    holder = tables.hidden_object(ids.CHILDREN_TABLE, surface, table_of(ob))
     table.fill(holder.data)
     groups.set_input(modifier, nodes.TABLE, holder)
     _connect(ob, surface, guides, tiles, settings)

@@ -35,6 +35,8 @@ def update(surface: bpy.types.Object | None, table: bpy.types.Object, wanted: bo
 
 def _copy(surface: bpy.types.Object) -> bpy.types.Object:
     proxy = surface.copy()
+    for collection in proxy.users_collection:  # the copy of a rigid body is one, too
+        collection.objects.unlink(proxy)
     capture = next(groups.modifiers(proxy, ids.CAPTURE_GROUP))
     for modifier in proxy.modifiers[proxy.modifiers.find(capture.name) + 1 :]:
         proxy.modifiers.remove(modifier)

@@ -148,9 +148,9 @@ def write(surface: bpy.types.Object, tiles: limitsurf.Tiles, bound: Bound) -> bp
     held = points_of(table) if table else _unread_points(surface)
     if held is not None and not _is_own(held):
         held = None
-    holder = held or new_object(ids.POINTS_TABLE, surface)
+    holder = hidden_object(ids.POINTS_TABLE, surface, held)
     points.fill(holder.data)
-    table = table or new_object(ids.TILES_TABLE, surface)
+    table = hidden_object(ids.TILES_TABLE, surface, table)
     connect(table, holder, surface, points, bound)
     TilesTable(tiles, points.origin).fill(table.data)
     return table
@@ -238,15 +238,29 @@ def remove_object(table: bpy.types.Object) -> None:
         bpy.data.meshes.remove(mesh)
 
 
-def new_object(kind: str, whose: bpy.types.Object) -> bpy.types.Object:
-    """Adds a hidden object with an empty mesh, beside the object that it belongs to."""
-    name = _name(kind, whose)
-    ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
-    # objects cannot be added to the overrides of linked collections
-    homes = (c for c in whose.users_collection if c.is_editable and not c.override_library)
-    home = next(homes, None)
-    (home or bpy.context.scene.collection).objects.link(ob)
-    ob.hide_viewport = ob.hide_render = ob.hide_select = True
+def hidden_object(
+    kind: str, whose: bpy.types.Object, found: bpy.types.Object | None = None
+) -> bpy.types.Object:
+    """Returns a hidden object that belongs to another one: what was found, or a new object with an
+    empty mesh.
+
+    It stands in the scene's own collection, never beside its owner. Blender makes a rigid body of
+    whatever comes into the collection of the rigid bodies, and users put the members of collections
+    on points. Nodes evaluate the objects that they read wherever these are.
+    """
+    ob = found
+    if ob is None:
+        name = _name(kind, whose)
+        ob = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+        ob.hide_viewport = ob.hide_render = ob.hide_select = True
+    home = bpy.context.scene.collection
+    # earlier versions of the extension put it beside its owner
+    for collection in set(ob.users_collection).intersection(whose.users_collection) - {home}:
+        # objects cannot be removed from the overrides of linked collections
+        if collection.is_editable and not collection.override_library:
+            collection.objects.unlink(ob)
+    if not ob.users_collection:
+        home.objects.link(ob)
     return ob
 
 
