@@ -124,3 +124,13 @@ def test_tangents_of_another_map_are_warned_of(both, capfd):
         target=sculpt.name, width=32, height=32, uv_map="Flat", create_material=True
     )
     assert "Renders take tangents from the UV map Other: make Flat" in capfd.readouterr().out
+
+
+def test_a_material_that_no_face_has_is_warned_of(both, capfd):
+    ob, sculpt = both
+    ob.data.materials.append(bpy.data.materials.new("Plain"))  # it has no nodes
+    scenes.activate(ob)
+    bpy.ops.object.limit_bake_displacement(
+        target=sculpt.name, width=32, height=32, create_material=True
+    )
+    assert "No face of Holes has the material Holes Displacement" in capfd.readouterr().out

@@ -53,7 +53,8 @@ def test_pixels_are_read_and_written(kind, tmp_path):
     np.testing.assert_allclose(image_pixels.read(image), some_pixels(0), atol=1e-6)
     image_pixels.write(image, some_pixels(1))
     np.testing.assert_allclose(raw(image), some_pixels(1), atol=1e-6)
-    assert image.is_dirty
+    assert image.is_dirty == kind.startswith("file")
+    assert bool(image_pixels.unsaved(image)) == kind.startswith("file")
     assert image.colorspace_settings.name == described.colorspace
 
 
@@ -223,6 +224,48 @@ def test_new_images_that_nothing_uses_outlast_saving(tmp_path):
     for tile, pixels in tiles.items():
         found = image_pixels.read(bpy.data.images["tiled"], tile)
         np.testing.assert_allclose(found, pixels, atol=1e-6)
+
+
+def numbers(image: bpy.types.Image) -> np.ndarray:
+    """Returns pixels as the image can hold them, partly transparent."""
+    pixels = np.random.default_rng(9).integers(1, 255, (SIZE[1], SIZE[0], 4)).astype(np.float32)
+    if image.is_float:
+        pixels[0, 0] = 51, 12.75, 0, 1e-4
+    return pixels / np.float32(255)
+
+
+@pytest.mark.parametrize("is_new", [True, False], ids=["new", "existing"])
+@pytest.mark.parametrize("space", ["sRGB", "Linear Rec.709", "Non-Color"])
+@pytest.mark.parametrize("depth", ["8", "float"])
+def test_pixels_that_the_file_holds_outlast_saving(depth, space, is_new, tmp_path):
+    """Whatever alpha means, unless Blender converts the pixels of packed images."""
+    expected = {}
+    for alpha_mode in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED"):
+        for source in ("generated", "packed"):
+            is_float = depth == "float"
+            name = f"{source} {alpha_mode}"
+            if is_new:
+                image = image_pixels.new(name, *SIZE, is_float=is_float, is_data=False)
+            else:
+                image = bpy.data.images.new(name, *SIZE, alpha=True, float_buffer=is_float)
+                image.use_fake_user = True
+                image.alpha_mode = alpha_mode
+            if not is_float or space != "sRGB":
+                image.colorspace_settings.name = space
+            if source == "packed":
+                image.pack()
+            image_pixels.write(image, numbers(image), is_new=is_new)
+            is_converted = depth == "8" and image.alpha_mode == "PREMUL" and space != "Non-Color"
+            assert bool(image_pixels.unsaved(image)) == is_converted
+            if not is_converted:
+                expected[name] = raw(image)
+                np.testing.assert_allclose(expected[name], numbers(image), rtol=1e-6)
+    assert len(expected) >= 4
+    path = str(tmp_path / "saved.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    for name, pixels in expected.items():
+        np.testing.assert_array_equal(raw(bpy.data.images[name]), pixels)
 
 
 def test_a_write_that_fails_leaves_the_pixels(tmp_path):

@@ -11,7 +11,7 @@ import bpy
 
 from .. import ids
 from ..errors import RefusalError
-from ..images import image_files, image_pixels, overlap
+from ..images import image_files, image_pixels, material_slots, overlap
 from ..images.image_files import EXR_32
 from ..images.image_pixels import FIRST_TILE
 from ..images.texture_operator import TextureOperator
@@ -78,7 +78,12 @@ class OBJECT_OT_limit_bake_displacement(
         image[ids.DISPLACEMENT] = json.dumps(self._described(request))
         if self.create_material:
             map_name = request.surfaces.found.chosen_uv_map.name
-            material.show(ob, image, map_name, is_vector=request.is_vector, space=self._space)
+            shown_by = material.show(
+                ob, image, map_name, is_vector=request.is_vector, space=self._space
+            )
+            unseen = material_slots.unseen(ob, shown_by)
+            if unseen:
+                self.report({"WARNING"}, unseen)
             self._warn_of_tangents(ob, map_name, request)
         self._tell(ob, image, request, measured)
         return {"FINISHED"}

@@ -85,6 +85,7 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         lines = text.ranges(made.baked)
         self.summary = "\n".join(lines)
         warnings = text.warnings(made.baked, made.flat_faces)
+        warnings += filter(None, (image_pixels.unsaved(image) for image in named))
         if warnings:
             self.report({"WARNING"}, "; ".join(warnings))
         names = ", ".join(image.name for image in named)

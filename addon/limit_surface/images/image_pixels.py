@@ -100,9 +100,10 @@ def write(
     their pixels. `is_new` means that the same operator has made the image, so that undo removes it;
     such an image is packed, too.
 
-    The change takes part in undo and redo. The image is marked as changed, so that Blender asks to
-    save it; tiled images are packed instead, because their files must not change without the user's
-    knowledge.
+    The change takes part in undo and redo. Where the .blend file holds the image, packed or as a
+    generated one, the new pixels are packed, and so are those of tiled images, because their files
+    must not change without the user's knowledge. Other images are marked as changed, so that
+    Blender asks to save them (`unsaved`).
     """
     described = checked(image, to_write=True)
     given = pixels if isinstance(pixels, Mapping) else {tile: pixels}
@@ -117,10 +118,44 @@ def write(
         image_tiles.write_some(image, given)
         image.pack()
     else:
+        is_kept = _is_kept(image, described)
         with pixel_undo.recorded(image) as tell:
+            if is_kept:
+                _read_back_unchanged(image)
             image_tiles.write_some(image, given)
             if described.is_float and described.channels == 4 and image.source != "TILED":
                 tell(given)  # the image holds just these numbers
+            if is_kept:
+                image.pack()
+
+
+def unsaved(image: bpy.types.Image) -> str:
+    """Returns a warning if the pixels of an image are not saved with the .blend file."""
+    if not image.is_dirty:
+        return ""
+    return (
+        f"The .blend file does not store the changed pixels of {image.name}: save the image as well"
+    )
+
+
+def _is_kept(image: bpy.types.Image, described: Description) -> bool:
+    """Tells whether the .blend file holds the image, and can store new pixels unchanged: Blender
+    packs the buffer as it is, and converts it when it reads it. The tiles of tiled images are
+    packed by `image_tiles`.
+    """
+    if image.source == "TILED" or not (image.source == "GENERATED" or image.packed_file):
+        return False
+    if described.is_float:
+        return described.colorspace in image_files.UNCONVERTED
+    return described.is_data or image.alpha_mode != "PREMUL"
+
+
+def _read_back_unchanged(image: bpy.types.Image) -> None:
+    """Has Blender take the colors of a packed float image for what its buffer holds. Where alpha is
+    straight, it multiplies them by alpha once more whenever it reads them.
+    """
+    if image.is_float and image.alpha_mode == "STRAIGHT":
+        image.alpha_mode = "PREMUL"
 
 
 def new(
@@ -134,6 +169,7 @@ def new(
     )
     image.generated_color = (0.0, 0.0, 0.0, 0.0 if alpha else 1.0)
     image.use_fake_user = True
+    _read_back_unchanged(image)
     return image
 
 

@@ -2,6 +2,7 @@
 """Material slots into which operators put the materials that they make."""
 
 import bpy
+import numpy as np
 
 from ..errors import RefusalError
 
@@ -26,6 +27,16 @@ def put(ob: bpy.types.Object, material: bpy.types.Material) -> None:
         return
     ob.data.materials.append(material)
     ob.active_material_index = len(ob.material_slots) - 1
+
+
+def unseen(ob: bpy.types.Object, material: bpy.types.Material) -> str:
+    """Returns a warning if no face of the object's mesh has the material."""
+    slots, mesh = ob.material_slots, ob.data
+    used = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("material_index", used)
+    if any(slots[i].material == material for i in np.unique(used.clip(0, len(slots) - 1))):
+        return ""
+    return f"No face of {ob.name} has the material {material.name}: assign it to see the image"
 
 
 def _takes_its_own(ob: bpy.types.Object) -> bool:

@@ -9,6 +9,7 @@ in Blender, by rendering images that scripts have filled.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import bpy
 import numpy as np
@@ -20,8 +21,11 @@ from ..reading import srgb
 SRGB = "sRGB"
 LINEAR = "Linear Rec.709"  # the primaries of sRGB, without its curve
 
-SMALLEST_ALPHA = 1e-6  # below this alpha a multiplied color is not divided
+SMALLEST_ALPHA = 1e-30  # below this alpha a multiplied color is not divided: it would overflow
 UNCHANGED = 1e-5  # of primaries: Blender's single precision leaves this error
+
+# texels of float images may hold infinity, or the largest number
+_quietly = partial(np.errstate, over="ignore", invalid="ignore")
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,9 @@ class Encoding:
         if self.primaries is not None:
             out[..., :3] = out[..., :3] @ self.primaries.T
         if self.is_multiplied:
-            out[..., :3] /= _divisor(out[..., 3:])
+            alpha = out[..., 3:]
+            with _quietly():
+                out[..., :3] /= np.where(alpha > SMALLEST_ALPHA, alpha, 1)
         if not self.has_alpha:
             out[..., 3] = 1
         return out
@@ -48,7 +54,8 @@ class Encoding:
         """Converts what shaders read to the image's own values."""
         out = np.array(values, np.float32)
         if self.is_multiplied:
-            out[..., :3] *= _divisor(out[..., 3:])
+            with _quietly():
+                out[..., :3] *= out[..., 3:]
         if self.primaries is not None:
             out[..., :3] = out[..., :3] @ np.linalg.inv(self.primaries).T
         if self.is_curved:
@@ -87,7 +94,3 @@ def _primaries() -> np.ndarray | None:
     columns = [Color(c).from_srgb_to_scene_linear() for c in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
     found = np.array(columns, np.float32).T
     return None if np.abs(found - np.eye(3)).max() < UNCHANGED else found
-
-
-def _divisor(alpha: np.ndarray) -> np.ndarray:
-    return np.where(alpha > SMALLEST_ALPHA, alpha, 1)

@@ -66,7 +66,7 @@ class Made:
             f"resolution, or the offset to {1.1 * self.sag:.2g}"
         )
 
-    def put(self, context: bpy.types.Context, surface: bpy.types.Object) -> str:
+    def put(self, context: bpy.types.Context, surface: bpy.types.Object) -> tuple[str, list[str]]:
         image = bpy.data.images.get(self.order.image)
         if image is None:
             raise RefusalError(f"{self.order.image} does not exist any more")
@@ -76,7 +76,9 @@ class Made:
         if self.bindings:
             self.bindings.write(made)
         text = f"{len(self.placed.sizes):,} polygons on {surface.name}"
-        return f"{text}; they follow the surface by Geometry Nodes" if self.bindings else text
+        if self.bindings:
+            text += "; they follow the surface by Geometry Nodes"
+        return text, [self.warning]
 
 
 def order(

@@ -48,10 +48,10 @@ class OBJECT_OT_limit_project_image(
         self, context: bpy.types.Context, made: texture_job.Made | decal_job.Made
     ) -> set[str]:
         ob = made.order.surface.find()
-        self.summary = made.put(context, ob)
+        self.summary, warnings = made.put(context, ob)
         world = made.order.world
-        if made.warning:
-            self.report({"WARNING"}, made.warning)
+        for warning in filter(None, warnings):
+            self.report({"WARNING"}, warning)
         refused = len(world.surface.refused)
         if refused:
             self.report({"WARNING"}, left_out(refused, len(world.cage.face_sizes)))

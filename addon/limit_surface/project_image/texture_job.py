@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..images import image_pixels, overlap, texel_places
+from ..images import image_pixels, material_slots, overlap, texel_places
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from . import colours, inputs, material
@@ -73,7 +73,7 @@ class Made:
     count: int
     warning: str
 
-    def put(self, _context: bpy.types.Context, surface: bpy.types.Object) -> str:
+    def put(self, _context: bpy.types.Context, surface: bpy.types.Object) -> tuple[str, list[str]]:
         target, canvases = self.order.target, self.order.canvases
         if isinstance(target, NewImage):
             image = image_pixels.new(
@@ -95,9 +95,11 @@ class Made:
                 )
         pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
         image_pixels.write(image, pixels, is_new=isinstance(target, NewImage))
+        warnings = [self.warning, image_pixels.unsaved(image)]
         if self.order.create_material:
-            material.show(surface, image, self.order.world.cage.chosen_uv_map.name)
-        return f"{self.count:,} texels of {image.name}"
+            shown_by = material.show(surface, image, self.order.world.cage.chosen_uv_map.name)
+            warnings.append(material_slots.unseen(surface, shown_by))
+        return f"{self.count:,} texels of {image.name}", warnings
 
 
 def order(
