@@ -4,6 +4,8 @@
 Mouse and keys are tested in blend_tests/gui.
 """
 
+from dataclasses import replace
+
 import bpy
 import draw_scenes as drawn
 import numpy as np
@@ -31,6 +33,7 @@ def draw(strokes, **properties):
 
 ACROSS = drawn.Given([0, 0, 1], [(0.2, 0.3), (0.8, 0.6), (0.5, 0.5)])
 WITHIN = drawn.Given([2, 2, 2], [(0.1, 0.1), (0.9, 0.2), (0.5, 0.9)])
+ONE_PLACE = drawn.Given([2, 2], [(0.5, 0.5), (0.5, 0.5)])
 
 
 @pytest.mark.parametrize("spline", ["BEZIER", "POLY"])
@@ -146,6 +149,14 @@ REFUSED = [
     ({}, "scripts set `strokes`"),
     ({"strokes": drawn.points(drawn.Given([99, 99], [(0, 0), (1, 1)]))}, "face 99 is not"),
     ({"strokes": drawn.points(drawn.Given([0], [(0, 0)]))}, "at least two"),
+    ({"strokes": drawn.points(ONE_PLACE)}, "at least two different points"),
+    ({"strokes": drawn.points(ONE_PLACE), "output": "GUIDES"}, "at least two different points"),
+    ({"strokes": drawn.points(ACROSS), "offset": np.nan}, "Offset is not a number"),
+    ({"strokes": drawn.points(ACROSS), "radius": np.nan}, "Radius is not a number"),
+    (
+        {"strokes": drawn.points(replace(WITHIN, radius=(1.0, np.nan, 1.0)))},
+        "The radius of a point is not a number",
+    ),
     (
         {"strokes": drawn.points(ACROSS), "removed": [{"name": "", "index": 0}]},
         "no curve is active",
@@ -159,6 +170,11 @@ def test_refusals_change_nothing(target, properties, reason):
     with pytest.raises(RuntimeError, match=reason):
         bpy.ops.view3d.limit_draw(**properties)
     assert scenes.file_contents() == before
+
+
+def test_strokes_at_one_place_are_left_out(target):
+    draw([WITHIN, ONE_PLACE, ACROSS])
+    assert len(bpy.context.active_object.data.splines) == 2
 
 
 def test_only_where_there_is_something_to_draw_on():

@@ -6,6 +6,7 @@ Blender calls these methods of the operators where there is a window; here a sta
 Python that has them is called instead.
 """
 
+from types import SimpleNamespace
 from unittest.mock import MagicMock
 
 import bpy
@@ -24,6 +25,7 @@ def stand_in(cls, **properties):
     own = {name: value for name, value in vars(cls).items() if callable(value)}
     own |= {"cancelled": cls.cancelled, "report": MagicMock()}
     made = type("StandIn", (WatchedOperator,), own)()
+    made.properties = SimpleNamespace(bl_rna=SimpleNamespace(properties=[]))
     for name, value in properties.items():
         setattr(made, name, value)
     return made

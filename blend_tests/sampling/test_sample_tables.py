@@ -134,7 +134,8 @@ def waiting(monkeypatch):
     monkeypatch.setattr(all_tiles.AllTiles, "compute", wait)
     monkeypatch.setattr(watched_operator, "PATIENCE", 0.01)
     made = SimpleNamespace(depth=3, levels=1, report=MagicMock())
-    made.properties = SimpleNamespace(is_property_set=lambda name: True)
+    rna = SimpleNamespace(properties=[])
+    made.properties = SimpleNamespace(is_property_set=lambda name: True, bl_rna=rna)
     operator = tables_operator.OBJECT_OT_limit_sample_tables
     for name in ("start", "finish", "too_large", "cancelled"):
         setattr(_Tables, name, operator.__dict__[name])

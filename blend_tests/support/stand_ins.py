@@ -42,6 +42,7 @@ def with_properties(made, kind, chosen):
             setattr(made, prop.identifier, chosen.get(prop.identifier, value))
     made.is_property_set = chosen.__contains__
     made.properties = made
+    made.bl_rna = kind
     made.report = MagicMock()
     return made
 

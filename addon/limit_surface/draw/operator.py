@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, CollectionProperty, IntProperty
 from .. import ids, native
 from ..errors import RefusalError
 from ..placing.follow_properties import FollowProperties
-from ..tasks.properties import SummaryProperty, draw_summary
+from ..tasks.properties import SummaryProperty, check_numbers, draw_summary
 from . import curve_object, properties, result, splines, stroke, subject
 from .ground import Ground
 from .pen import Pen
@@ -165,6 +165,7 @@ class VIEW3D_OT_limit_draw(
         """Puts the strokes into the file. The stored strokes are read back, so that the redo panel
         makes the same of them.
         """
+        check_numbers(self.properties)
         self.changes_active = found.edited is not None
         tolerance = ground.tolerance(self.tolerance)
         if found.edited is not None:

@@ -21,12 +21,16 @@ def read_strokes(
     points: bpy.types.bpy_prop_collection, ground: Ground, tolerance: float
 ) -> list[Stroke]:
     """Returns the strokes of an operator's property, laid onto the surface between their points.
-    Raises LocationError or MeshError for points that have no place on the surface.
+    Those whose points are all at one place are left out, like those of one point. Raises
+    LocationError or MeshError for points that have no place on the surface.
     """
     found = []
     for face, uv, radius, is_closed in stroke.read(points):
+        if np.isnan(radius).any():
+            raise RefusalError("The radius of a point is not a number")
         begun = ground.stroke(face, uv.astype(np.float64), radius)
-        found += ground.lay(begun.position, radius, tolerance, is_closed)
+        if np.ptp(begun.position.astype(np.float32), axis=0).any():
+            found += ground.lay(begun.position, radius, tolerance, is_closed)
     if points and not found:
         raise RefusalError("A stroke needs at least two different points")
     return found

@@ -10,6 +10,7 @@ from ..errors import RefusalError
 from ..snap.binding_again import bind_again
 from ..snap.properties import ALIGNMENTS, HAIR, PlacingProperties
 from ..snap.surface import TargetSurface
+from ..tasks.properties import check_numbers
 from ..viewport import ray
 from .drag import Drag, Glide, nearest_in_sight, offset_step
 from .drawing import Drawing, Mark
@@ -84,6 +85,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
                 "Dragging needs a window and a mouse: set `face` and `uv`, or use object.limit_snap"
             )
         try:
+            check_numbers(self.properties)
             subject = find_subject(context)
             surface = TargetSurface(subject.target, context.evaluated_depsgraph_get(), self.target)
             self._check_element(subject)

@@ -2,8 +2,10 @@
 """Properties that operators share, whatever they make."""
 
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, StringProperty
 
+from ..errors import RefusalError
 from . import wrapped_text
 
 
@@ -27,6 +29,15 @@ class LargeCountProperty:
         default=False,
         options={"SKIP_SAVE"},
     )
+
+
+def check_numbers(properties: bpy.types.OperatorProperties) -> None:
+    """Raises RefusalError for the first property that is not a number: whatever its limits, Blender
+    accepts NaN from scripts.
+    """
+    for each in properties.bl_rna.properties:
+        if each.type == "FLOAT" and np.isnan(getattr(properties, each.identifier)).any():
+            raise RefusalError(f"{each.name} is not a number")
 
 
 def draw_summary(layout: bpy.types.UILayout, summary: str) -> None:

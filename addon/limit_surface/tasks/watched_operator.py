@@ -32,7 +32,7 @@ from .. import native
 from .job import Job
 from .polling import mesh_in_object_mode
 from .progress import TICK, Waiting, progress_bar
-from .properties import SummaryProperty
+from .properties import SummaryProperty, check_numbers
 
 #: Where a user waits, work that is not done after so many seconds shows its progress while Blender
 #: stays usable.
@@ -81,7 +81,7 @@ class WatchedOperator(SummaryProperty):
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        return self._guarded(self.start, context)
+        return self._guarded(self._start, context)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type == "ESC" and event.value == "PRESS":
@@ -129,6 +129,10 @@ class WatchedOperator(SummaryProperty):
         """
         job, self._job = self._job, None
         return job
+
+    def _start(self, context: bpy.types.Context) -> set[str]:
+        check_numbers(self.properties)
+        return self.start(context)
 
     def _finish(self, context: bpy.types.Context, job: Job) -> set[str]:
         return self.finish(context, job.result())
