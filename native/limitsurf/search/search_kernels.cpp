@@ -3,30 +3,15 @@
 
 #include "limitsurf/surface/batch/instruction_sets.h"
 
+#define LIMITSURF_KERNELS "limitsurf/search/search_kernels.inl.h"
+
 namespace limitsurf {
 namespace {
 
-namespace baseline {
-#include "limitsurf/search/search_kernels.inl.h"
-}  // namespace baseline
-
-#if LIMITSURF_X86_SETS
-#include "limitsurf/surface/batch/target_avx2.inl.h"
-namespace avx2 {
-#include "limitsurf/search/search_kernels.inl.h"
-}  // namespace avx2
-#include "limitsurf/surface/batch/target_end.inl.h"
-#endif
+#include "limitsurf/search/kernels_of_four.inl.h"
 
 }  // namespace
 
-const SearchKernels& SearchKernels::get() {
-#if LIMITSURF_X86_SETS
-  if (instructionSet() != InstructionSet::baseline) {  // vectors of four: AVX-512 adds nothing
-    return avx2::kKernels;
-  }
-#endif
-  return baseline::kKernels;
-}
+const SearchKernels& SearchKernels::get() { return kernelsInUse(); }
 
 }  // namespace limitsurf

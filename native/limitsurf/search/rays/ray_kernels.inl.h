@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The inner loops of searches along rays. ray_kernels.cpp includes this file once for each
+// The inner loops of searches along rays. ray_kernels.cpp compiles this file once for each
 // instruction set, inside a namespace. Nothing here may call a function that is defined elsewhere:
 // its code could be that of another set.
 
