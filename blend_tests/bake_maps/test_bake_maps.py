@@ -357,7 +357,8 @@ def test_escape_leaves_everything(monkeypatch):
     kind, go_on = bpy.types.OBJECT_OT_limit_bake_maps, threading.Event()
     own = ("start", "finish", "_output", "too_large", "cancelled")
     operator = type("StandIn", (WatchedOperator,), {name: getattr(kind, name) for name in own})()
-    for prop in bpy.ops.object.limit_bake_maps.get_rna_type().properties:
+    operator.properties, operator.bl_rna = operator, bpy.ops.object.limit_bake_maps.get_rna_type()
+    for prop in operator.bl_rna.properties:
         if prop.identifier not in ("rna_type", "maps"):
             setattr(operator, prop.identifier, prop.default)
     operator.maps, operator.width, operator.height = {"POSITION"}, 16, 16

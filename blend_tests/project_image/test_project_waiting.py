@@ -27,8 +27,8 @@ def waiting_operator(**chosen):
     own = ("start", "finish", "invoke", "draw", "too_large", "cancelled")
     cls = type("StandIn", (WatchedOperator,), {name: getattr(kind, name) for name in own})
     operator = cls()
-    rna = bpy.ops.object.limit_project_image.get_rna_type().properties
-    for p in rna:
+    operator.bl_rna = bpy.ops.object.limit_project_image.get_rna_type()
+    for p in operator.bl_rna.properties:
         is_vector = getattr(p, "array_length", 0)
         value = tuple(p.default_array) if is_vector else getattr(p, "default", None)
         setattr(operator, p.identifier, chosen.get(p.identifier, value))

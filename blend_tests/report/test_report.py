@@ -378,6 +378,7 @@ def watched(**chosen):
     own = ("start", "finish", "_kinds", "_report", "too_large", "cancelled")
     cls = type("StandIn", (WatchedOperator,), {name: getattr(kind, name) for name in own})
     operator = cls()
+    operator.properties, operator.bl_rna = operator, bpy.ops.object.limit_report.get_rna_type()
     operator.levels, operator.level, operator.full_color = "VIEWPORT", 3, 0.0
     operator.report = MagicMock()
     context = MagicMock(wraps=bpy.context)
