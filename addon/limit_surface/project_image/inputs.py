@@ -33,7 +33,7 @@ def image(name: str) -> bpy.types.Image:
     if found is None:
         raise RefusalError(f"There is no image {name!r}")
     if list(image_pixels.checked(found).tiles) != [image_pixels.FIRST_TILE]:
-        raise RefusalError(f"The image {name} is tiled (UDIM): such images cannot be projected")
+        raise RefusalError(f"The image {name} is tiled (UDIM): its only tile must be 1001")
     return found
 
 
