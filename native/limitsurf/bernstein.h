@@ -68,16 +68,9 @@ class Bernstein {
     }
   }
 
- private:
-  using Row = Eigen::Array<double, kStride, 1>;
-
-  Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16> all() const {
-    return Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16>(c_);
-  }
-  Eigen::Map<Row, Eigen::Aligned16> vector(int j) {
-    return Eigen::Map<Row, Eigen::Aligned16>(c_ + kStride * j);
-  }
-
+  /// Splits a polynomial of one parameter in the middle, by de Casteljau's algorithm: calls
+  /// low(i, coefficient) and high(i, coefficient) with those of both halves. `p` holds the
+  /// coefficients, and is overwritten.
   template <typename Value, typename Low, typename High>
   [[gnu::always_inline]] static inline void halve(Value p[kSize], const Low& low,
                                                   const High& high) {
@@ -90,6 +83,16 @@ class Bernstein {
         p[i] = 0.5 * (p[i] + p[i + 1]);
       }
     }
+  }
+
+ private:
+  using Row = Eigen::Array<double, kStride, 1>;
+
+  Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16> all() const {
+    return Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16>(c_);
+  }
+  Eigen::Map<Row, Eigen::Aligned16> vector(int j) {
+    return Eigen::Map<Row, Eigen::Aligned16>(c_ + kStride * j);
   }
 
   alignas(16) double c_[kStride * kSize];

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "limitsurf/bernstein.h"
+
 namespace limitsurf {
 namespace {
 
@@ -25,10 +27,9 @@ struct Polynomial {
 
   /// Splits it in the middle.
   void halve(Polynomial& low, Polynomial& high) const {
-    const double ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), cd = 0.5 * (c[2] + c[3]),
-                 abc = 0.5 * (ab + bc), bcd = 0.5 * (bc + cd), middle = 0.5 * (abc + bcd);
-    low = {{c[0], ab, abc, middle}};
-    high = {{middle, bcd, cd, c[3]}};
+    double p[4] = {c[0], c[1], c[2], c[3]};
+    Bernstein<3>::halve(
+        p, [&](int i, double x) { low.c[i] = x; }, [&](int i, double x) { high.c[i] = x; });
   }
 };
 

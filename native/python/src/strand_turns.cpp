@@ -19,7 +19,8 @@ constexpr char kShortestTurnsDoc[] =
 Vectors may have any length. If the two are opposite (closer than 1e-9 to it), the rotation axis is
 perpendicular to the source, as near as possible to the world axis that is least aligned with it. The
 rotation is the identity if the source is not finite, and NaN if another vector has no direction. Error:
-8e-15, divided by the length of the sum of the two unit vectors. Raises ValueError for arrays of other shapes. Cost: O(n).
+8e-15, divided by the length of the sum of the two unit vectors. Raises ValueError for arrays of other
+shapes. Cost: O(n).
 )";
 
 constexpr char kRotationMatricesDoc[] =
