@@ -46,26 +46,33 @@ class Bernstein {
   /// The polynomial on the square's quarters, by de Casteljau's algorithm: out[0] at (0, 0), out[1]
   /// at (1/2, 0), out[2] at (0, 1/2), out[3] at (1/2, 1/2).
   void quarter(Bernstein out[4]) const {
+    halveAlongS(out[0], out[1]);
+    out[0].halveAlongT(out[0], out[2]);
+    out[1].halveAlongT(out[1], out[3]);
+  }
+  /// The polynomial on the halves of the square where s is low and where it is high.
+  void halveAlongS(Bernstein& low, Bernstein& high) const {
     for (int j = 0; j < kSize; ++j) {
       double p[kSize];
       for (int i = 0; i < kSize; ++i) {
         p[i] = at(i, j);
       }
       halve(
-          p, [&](int i, double x) { out[0].at(i, j) = x; },
-          [&](int i, double x) { out[1].at(i, j) = x; });
+          p, [&](int i, double x) { low.at(i, j) = x; },
+          [&](int i, double x) { high.at(i, j) = x; });
     }
-    out[0].pad();
-    out[1].pad();
-    for (int half = 0; half < 2; ++half) {
-      Row p[kSize];
-      for (int j = 0; j < kSize; ++j) {
-        p[j] = out[half].vector(j);
-      }
-      halve(
-          p, [&](int j, const Row& x) { out[half].vector(j) = x; },
-          [&](int j, const Row& x) { out[half + 2].vector(j) = x; });
+    low.pad();
+    high.pad();
+  }
+  /// The same for t. One of the halves may be this polynomial itself.
+  void halveAlongT(Bernstein& low, Bernstein& high) const {
+    Row p[kSize];
+    for (int j = 0; j < kSize; ++j) {
+      p[j] = vector(j);
     }
+    halve(
+        p, [&](int j, const Row& x) { low.vector(j) = x; },
+        [&](int j, const Row& x) { high.vector(j) = x; });
   }
 
   /// Splits a polynomial of one parameter in the middle, by de Casteljau's algorithm: calls
@@ -90,6 +97,9 @@ class Bernstein {
 
   Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16> all() const {
     return Eigen::Map<const Eigen::Array<double, kStride * kSize, 1>, Eigen::Aligned16>(c_);
+  }
+  Eigen::Map<const Row, Eigen::Aligned16> vector(int j) const {
+    return Eigen::Map<const Row, Eigen::Aligned16>(c_ + kStride * j);
   }
   Eigen::Map<Row, Eigen::Aligned16> vector(int j) {
     return Eigen::Map<Row, Eigen::Aligned16>(c_ + kStride * j);

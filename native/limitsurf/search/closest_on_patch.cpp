@@ -13,8 +13,8 @@
 namespace limitsurf {
 namespace {
 
-/// A dyadic square of the patch's parameters.
-struct Cell : ParameterSquare {
+/// A dyadic rectangle of the patch's parameters.
+struct Cell : ParameterRectangle {
   int depth;
 };
 
@@ -41,7 +41,7 @@ class PatchSearch {
     const SquaredDistance f(kernels_, relative_.points, away_);
     const double noise = noiseOf(f);
     if (isBetter(f.least() - noise)) {
-      visit(f, noise, {{0, 0, 1}, 0});
+      visit(f, noise, {{0, 0, 1, 1}, 0});
       best_.cells += cells_;
     }
   }
@@ -49,15 +49,18 @@ class PatchSearch {
  private:
   /// No squared distance is large enough to end an iteration early.
   static constexpr double kNever = std::numeric_limits<double>::infinity();
-  /// At this depth the distance over a cell varies by less than rounding.
-  static constexpr int kMostDepth = 40;
+  /// Over a cell as small as this the distance varies by less than rounding.
+  static constexpr double kLeastSize = 0x1p-40;
+  /// Cells are divided along one parameter alone if second differences along it are this many times
+  /// those along the other one: where a patch is long and thin.
+  static constexpr double kLong = 4;
   /// A search ends after this many cells: on patches without area many points may be equally close
   /// but for rounding.
   static constexpr int kMostCells = 1 << 17;
   /// After this many cells the normals of the patch are bounded, to leave out cells without feet:
   /// if the tangents are nearly parallel, the squared distance is convex in a narrow band only.
   static constexpr int kFewCells = 16;
-  /// The squared distance is computed anew after every so many halvings.
+  /// The squared distance is computed anew after every so many divisions.
   static constexpr int kFreshDepths = 4;
   /// The relative rounding of the squared distance's coefficients: a few units in the last place.
   static constexpr double kRounding = 1e-15;
@@ -80,7 +83,7 @@ class PatchSearch {
     const double reach = std::max(best_.tolerance, std::sqrt(std::max(0., least_ + range * range)));
     BezierPatch::Point found;
     const FootSearch search =
-        minimizeDistance(kernels_, relative_, away_, {0, 0, 1}, reach * best_.tolerance,
+        minimizeDistance(kernels_, relative_, away_, {0, 0, 1, 1}, reach * best_.tolerance,
                          best_.enough(), bound.radius, s, t, found);
     if (search == FootSearch::beyond) {
       return true;
@@ -169,22 +172,22 @@ class PatchSearch {
 
   /// The sides of the cell at which the sheet ends, as bits.
   unsigned bordersOf(const Cell& cell) const {
-    return patch_.borders &
-           ((cell.s == 0 ? kSideS0 : 0u) | (cell.t == 0 ? kSideT0 : 0u) |
-            (cell.s + cell.size == 1 ? kSideS1 : 0u) | (cell.t + cell.size == 1 ? kSideT1 : 0u));
+    return patch_.borders & ((cell.s == 0 ? kSideS0 : 0u) | (cell.t == 0 ? kSideT0 : 0u) |
+                             (cell.s + cell.s_size == 1 ? kSideS1 : 0u) |
+                             (cell.t + cell.t_size == 1 ? kSideT1 : 0u));
   }
 
-  /// Bound on the rounding of the coefficients, and of those of the quarters.
+  /// Bound on the rounding of the coefficients, and of those of the parts.
   static double noiseOf(const SquaredDistance& f) { return kRounding * f.magnitude(); }
 
   /// The control points of the patch on a cell, relative to the searching point.
   void pointsOf(const Cell& cell, BezierPatch::Point out[16]) const {
     std::copy(relative_.points, relative_.points + 16, out);
     for (int i = 0; i < 4; ++i) {
-      bezier::cut(out + 4 * i, 1, cell.s, cell.s + cell.size);
+      bezier::cut(out + 4 * i, 1, cell.s, cell.s + cell.s_size);
     }
     for (int i = 0; i < 4; ++i) {
-      bezier::cut(out + i, 4, cell.t, cell.t + cell.size);
+      bezier::cut(out + i, 4, cell.t, cell.t + cell.t_size);
     }
   }
 
@@ -204,10 +207,10 @@ class PatchSearch {
     double s, t;
     BezierPatch::Point found;
     f.guess(s, t);
-    s = cell.s + sideOr(shape.s_side, s) * cell.size;
-    t = cell.t + sideOr(shape.t_side, t) * cell.size;
+    s = cell.s + sideOr(shape.s_side, s) * cell.s_size;
+    t = cell.t + sideOr(shape.t_side, t) * cell.t_size;
     const bool corner = shape.s_side != 0 && shape.t_side != 0;
-    bool done = cell.depth == kMostDepth || ++cells_ > kMostCells || corner;
+    bool done = std::max(cell.s_size, cell.t_size) <= kLeastSize || ++cells_ > kMostCells || corner;
     if (!done && shape.convex) {
       const FootSearch search = minimizeDistance(kernels_, relative_, away_, cell, slack,
                                                  best_.enough() + noise, kNever, s, t, found);
@@ -243,30 +246,53 @@ class PatchSearch {
       for (int i = 0; i < 4; ++i) {
         const double squared = f.corner(i & 1, i >> 1);
         if (isBetter(squared)) {
-          offer(cell.s + (i & 1) * cell.size, cell.t + (i >> 1) * cell.size);
+          offer(cell.s + (i & 1) * cell.s_size, cell.t + (i >> 1) * cell.t_size);
         }
       }
     }
-    SquaredDistance quarters[4];
-    f.quarter(quarters);
+    visitParts(f, noise, cell, divisionOf(cell, shape));
+  }
+
+  static SquaredDistance::Division divisionOf(const Cell& cell,
+                                              const SquaredDistance::Shape& shape) {
+    using Division = SquaredDistance::Division;
+    if (cell.t_size <= kLeastSize ||
+        (cell.s_size > kLeastSize && shape.s_bend > kLong * shape.t_bend)) {
+      return Division::s;
+    }
+    if (cell.s_size <= kLeastSize || shape.t_bend > kLong * shape.s_bend) {
+      return Division::t;
+    }
+    return Division::both;
+  }
+
+  /// Searches the parts of a cell, nearer ones first.
+  void visitParts(const SquaredDistance& f, double noise, const Cell& cell,
+                  SquaredDistance::Division along) {
+    SquaredDistance parts[4];
+    f.divide(along, parts);
+    const double s_size = along == SquaredDistance::Division::t ? cell.s_size : cell.s_size / 2;
+    const double t_size = along == SquaredDistance::Division::s ? cell.t_size : cell.t_size / 2;
     double least[4];
     for (int q = 0; q < 4; ++q) {
-      least[q] = quarters[q].least();
+      const bool is_part =
+          ((q & 1) == 0 || s_size < cell.s_size) && ((q >> 1) == 0 || t_size < cell.t_size);
+      least[q] = is_part ? parts[q].least() : std::numeric_limits<double>::infinity();
     }
-    const double half = cell.size / 2;
     for (const int q : ascending(least)) {
       if (!isBetter(least[q] - noise) || isBehindFoot()) {
         continue;
       }
-      const Cell next{{cell.s + (q & 1) * half, cell.t + (q >> 1) * half, half}, cell.depth + 1};
+      const Cell next{{cell.s + (q & 1) * s_size, cell.t + (q >> 1) * t_size, s_size, t_size},
+                      cell.depth + 1};
       if (next.depth % kFreshDepths == 0) {
-        // Quarters inherit the rounding of the whole; points computed for the cell have less.
+        // Parts inherit the rounding of the whole; points computed for the cell have less.
         BezierPatch::Point points[16];
         pointsOf(next, points);
         const SquaredDistance fresh(kernels_, points, away_);
         visit(fresh, noiseOf(fresh), next);
       } else {
-        visit(quarters[q], noise, next);
+        visit(parts[q], noise, next);
       }
     }
   }

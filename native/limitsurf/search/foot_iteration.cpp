@@ -89,15 +89,16 @@ bool leadsOut(double x, double step, double low, double high) {
 class FootIteration {
  public:
   FootIteration(const SearchKernels& kernels, const BezierPatch& patch,
-                const BezierPatch::Point& away, const ParameterSquare& square, double& s, double& t)
+                const BezierPatch::Point& away, const ParameterRectangle& on, double& s, double& t)
       : kernels_(kernels),
         patch_(patch),
         away_(away),
-        size_(square.size),
-        s0_(square.s),
-        s1_(square.s + square.size),
-        t0_(square.t),
-        t1_(square.t + square.size),
+        s_size_(on.s_size),
+        t_size_(on.t_size),
+        s0_(on.s),
+        s1_(on.s + on.s_size),
+        t0_(on.t),
+        t1_(on.t + on.t_size),
         s_(s),
         t_(t) {
     squared_ = evaluate(s_, t_, at_, found_);
@@ -123,8 +124,9 @@ class FootIteration {
         case Descent::kNoMove:
           return FootSearch::arrived;
         case Descent::kNoDescent:
-          return is_last ||
-                         (std::abs(free_s ? g.s : 0) + std::abs(free_t ? g.t : 0)) * size_ <= slack
+          return is_last || (free_s ? std::abs(g.s) * s_size_ : 0) +
+                                    (free_t ? std::abs(g.t) * t_size_ : 0) <=
+                                slack
                      ? FootSearch::arrived
                      : FootSearch::failed;
         case Descent::kDescended:
@@ -230,7 +232,7 @@ class FootIteration {
   const SearchKernels& kernels_;
   const BezierPatch& patch_;
   const BezierPatch::Point away_;
-  const double size_, s0_, s1_, t0_, t1_;
+  const double s_size_, t_size_, s0_, s1_, t0_, t1_;
   double &s_, &t_;
   Values at_;
   BezierPatch::Point found_;
@@ -240,10 +242,10 @@ class FootIteration {
 }  // namespace
 
 FootSearch minimizeDistance(const SearchKernels& kernels, const BezierPatch& patch,
-                            const BezierPatch::Point& away, const ParameterSquare& square,
+                            const BezierPatch::Point& away, const ParameterRectangle& on,
                             double slack, double enough, double radius, double& s, double& t,
                             BezierPatch::Point& found) {
-  FootIteration iteration(kernels, patch, away, square, s, t);
+  FootIteration iteration(kernels, patch, away, on, s, t);
   const FootSearch search = iteration.run(slack, enough, radius);
   found = iteration.found();
   return search;

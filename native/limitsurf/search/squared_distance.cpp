@@ -48,15 +48,27 @@ int SquaredDistance::slopeAlong(unsigned side) const {
   return least > rounding ? 1 : largest < -rounding ? -1 : 0;
 }
 
-void SquaredDistance::quarter(SquaredDistance out[4]) const {
-  Bernstein<6> parts[4];
-  f_.quarter(parts);
-  for (int i = 0; i < 4; ++i) {
-    out[i].kernels_ = kernels_;
-    out[i].f_ = parts[i];
-    out[i].summands_ = summands_;
-    kernels_->extremes(out[i].f_.data(), out[i].least_, out[i].largest_);
+void SquaredDistance::divide(Division along, SquaredDistance out[4]) const {
+  if (along == Division::t) {
+    f_.halveAlongT(out[0].f_, out[2].f_);
+    out[0].finish(*this);
+    out[2].finish(*this);
+    return;
   }
+  f_.halveAlongS(out[0].f_, out[1].f_);
+  for (int half = 0; half < 2; ++half) {
+    if (along == Division::both) {
+      out[half].f_.halveAlongT(out[half].f_, out[half + 2].f_);
+      out[half + 2].finish(*this);
+    }
+    out[half].finish(*this);
+  }
+}
+
+void SquaredDistance::finish(const SquaredDistance& whole) {
+  kernels_ = whole.kernels_;
+  summands_ = whole.summands_;
+  kernels_->extremes(f_.data(), least_, largest_);
 }
 
 void SquaredDistance::guess(double& s, double& t) const {
@@ -76,6 +88,8 @@ SquaredDistance::Shape SquaredDistance::shape(double slack) const {
   const double rounding = kRounding * magnitude();
   DifferenceBounds d;
   kernels_->differenceBounds(f_.row(0), d);
+  shape.s_bend = std::max(-d.least_ss, d.largest_ss);
+  shape.t_bend = std::max(-d.least_tt, d.largest_tt);
   shape.s_side = d.least_s >= 0 ? -1 : d.largest_s <= 0 ? 1 : 0;
   shape.s_strictly = d.least_s > rounding || d.largest_s < -rounding;
   shape.t_side = d.least_t >= 0 ? -1 : d.largest_t <= 0 ? 1 : 0;

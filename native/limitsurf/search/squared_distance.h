@@ -30,8 +30,12 @@ class SquaredDistance {
   /// Whether the polynomial falls (-1) or rises (1) along all of a side (kSideS0, ...), with the
   /// other parameter, by more than rounding; 0 if unknown.
   int slopeAlong(unsigned side) const;
-  /// The polynomial on the quarters of the square.
-  void quarter(SquaredDistance out[4]) const;
+  /// How a square is divided: into quarters, or into halves along one parameter.
+  enum class Division { both, s, t };
+  /// The polynomial on the parts: out[0] at (0, 0), out[1] at (1/2, 0), out[2] at (0, 1/2), out[3]
+  /// at (1/2, 1/2). Where only s is divided, out[2] and out[3] are left as they are; where only t
+  /// is, out[1] and out[3].
+  void divide(Division along, SquaredDistance out[4]) const;
 
   /// A guess of the place of the minimum: that of the least coefficient.
   void guess(double& s, double& t) const;
@@ -42,6 +46,8 @@ class SquaredDistance {
     int s_side = 0, t_side = 0;
     /// The polynomial falls towards that side everywhere, by more than rounding.
     bool s_strictly = false, t_strictly = false;
+    /// The sizes of the second differences of the coefficients along s and along t.
+    double s_bend = 0, t_bend = 0;
     /// A point of the square, or of the sides named above, that meets the first-order conditions of
     /// a minimum exceeds the true minimum by `slack` at most.
     bool convex = false;
@@ -53,6 +59,8 @@ class SquaredDistance {
   bool isNowhereConvex() const;
 
  private:
+  /// Sets the bounds, and what this has in common with a part of it.
+  void finish(const SquaredDistance& whole);
   /// Whether the smaller eigenvalue of the Hessian is at least -slack everywhere.
   static bool isConvex(const DifferenceBounds& d, double slack);
 

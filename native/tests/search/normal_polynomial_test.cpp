@@ -30,10 +30,10 @@ BezierPatch squeezedPatch(double squeeze, double bumps, Random& random) {
   return patch;
 }
 
-ParameterSquare squareIn(Random& random) {
-  const double size = std::exp2(-random.below(12));
-  return {size * random.below(static_cast<int>(1 / size)),
-          size * random.below(static_cast<int>(1 / size)), size};
+ParameterRectangle rectangleIn(Random& random) {
+  const double s_size = std::exp2(-random.below(12)), t_size = std::exp2(-random.below(12));
+  return {s_size * random.below(static_cast<int>(1 / s_size)),
+          t_size * random.below(static_cast<int>(1 / t_size)), s_size, t_size};
 }
 
 TEST(NormalPolynomial, ConesContainTheNormals) {
@@ -42,13 +42,13 @@ TEST(NormalPolynomial, ConesContainTheNormals) {
   for (int round = 0; round < 3000; ++round) {
     const double squeeze = std::pow(10., random.uniform(-6, 0));
     const BezierPatch patch = squeezedPatch(squeeze, random.below(2) * squeeze, random);
-    const ParameterSquare square = squareIn(random);
-    const NormalPolynomial::Cone cone = NormalPolynomial(patch, 0).cone(square);
+    const ParameterRectangle on = rectangleIn(random);
+    const NormalPolynomial::Cone cone = NormalPolynomial(patch, 0).cone(on);
     known += std::isfinite(cone.tangent);
     for (int place = 0; place < 20; ++place) {
       BezierPatch::Values at;
-      patch.evaluate<1>(square.s + square.size * random.uniform(),
-                        square.t + square.size * random.uniform(), at);
+      patch.evaluate<1>(on.s + on.s_size * random.uniform(), on.t + on.t_size * random.uniform(),
+                        at);
       const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
       const Vector3 axis = cone.axis.head<3>();
       const double along = normal.dot(axis), rounding = 1e-15 * ds.norm() * dt.norm();
@@ -66,25 +66,24 @@ TEST(NormalPolynomial, FeetAreNotDenied) {
   for (int round = 0; round < 6000; ++round) {
     const double squeeze = std::pow(10., random.uniform(-6, 0));
     const BezierPatch patch = squeezedPatch(squeeze, random.below(2) * squeeze, random);
-    const ParameterSquare square = squareIn(random);
-    const auto part = [&](const ParameterSquare& on, const Vector3& from) {
+    const ParameterRectangle on = rectangleIn(random);
+    const auto part = [&](const ParameterRectangle& of, const Vector3& from) {
       std::array<BezierPatch::Point, 16> points;
       std::copy(patch.points, patch.points + 16, points.begin());
-      for (int i = 0; i < 4; ++i) bezier::cut(&points[4 * i], 1, on.s, on.s + on.size);
-      for (int i = 0; i < 4; ++i) bezier::cut(&points[i], 4, on.t, on.t + on.size);
+      for (int i = 0; i < 4; ++i) bezier::cut(&points[4 * i], 1, of.s, of.s + of.s_size);
+      for (int i = 0; i < 4; ++i) bezier::cut(&points[i], 4, of.t, of.t + of.t_size);
       for (BezierPatch::Point& point : points)
         point -= BezierPatch::Point(from[0], from[1], from[2], 0);
       return points;
     };
     BezierPatch::Values at;
-    patch.evaluate<1>(square.s + square.size * random.uniform(),
-                      square.t + square.size * random.uniform(), at);
+    patch.evaluate<1>(on.s + on.s_size * random.uniform(), on.t + on.t_size * random.uniform(), at);
     const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt).normalized();
     const Vector3 from = Vector3(at.value.head<3>()) + random.below(2) * random.uniform() * normal;
     const NormalPolynomial normals(patch, 0);
-    EXPECT_FALSE(hasNoFoot(part(square, from).data(), normals.cone(square), 1e-14)) << squeeze;
+    EXPECT_FALSE(hasNoFoot(part(on, from).data(), normals.cone(on), 1e-14)) << squeeze;
     // Parts of the patch elsewhere are left out, unless the patch bends too much.
-    const ParameterSquare other = squareIn(random);
+    const ParameterRectangle other = rectangleIn(random);
     denied += hasNoFoot(part(other, from).data(), normals.cone(other), 1e-14);
   }
   EXPECT_GT(denied, 3000);

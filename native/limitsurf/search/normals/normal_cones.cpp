@@ -60,7 +60,7 @@ bool spread(const Vector3 (&vectors)[12], Vector3& middle, double& farthest) {
 /// and is narrow also where the tangents turn, or are nearly parallel, as at the smooth corner of a
 /// single face.
 NormalCone coneOfCoefficients(const BezierPatch& patch) {
-  const NormalPolynomial::Cone cone = NormalPolynomial(patch, 0).cone({0, 0, 1});
+  const NormalPolynomial::Cone cone = NormalPolynomial(patch, 0).cone({0, 0, 1, 1});
   const double angle = std::atan(cone.tangent);
   // A cone of half a turn and more is not convex, and bounds no sums of its vectors.
   return angle < kPi<double> / 2 - kMargin

@@ -75,14 +75,14 @@ NormalPolynomial::NormalPolynomial(const BezierPatch& patch, double noise) {
   error_ = kCoefficientRounding * largest_s * largest_t + 2 * noise * (largest_s + largest_t);
 }
 
-NormalPolynomial::Cone NormalPolynomial::cone(const ParameterSquare& square) const {
+NormalPolynomial::Cone NormalPolynomial::cone(const ParameterRectangle& on) const {
   Point part[kSize * kSize];
   std::copy(at_, at_ + kSize * kSize, part);
   for (int i = 0; i < kSize; ++i) {
-    cut(part + kSize * i, 1, square.s, square.s + square.size);
+    cut(part + kSize * i, 1, on.s, on.s + on.s_size);
   }
   for (int i = 0; i < kSize; ++i) {
-    cut(part + i, kSize, square.t, square.t + square.size);
+    cut(part + i, kSize, on.t, on.t + on.t_size);
   }
   const double unknown = std::numeric_limits<double>::infinity();
   Cone cone{Point::Zero(), 0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limitsurf/search/parameter_square.h"
+#include "limitsurf/search/parameter_rectangle.h"
 #include "limitsurf/surface/bezier_patch.h"
 
 namespace limitsurf {
@@ -19,8 +19,8 @@ class NormalPolynomial {
     BezierPatch::Point axis;
     double tangent;  ///< infinity if nothing is known
   };
-  /// A cone around the normals on a square of the parameters.
-  Cone cone(const ParameterSquare& square) const;
+  /// A cone around the normals on a rectangle of the parameters.
+  Cone cone(const ParameterRectangle& on) const;
 
  private:
   static constexpr int kSize = 6;

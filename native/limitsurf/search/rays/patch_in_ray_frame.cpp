@@ -20,10 +20,10 @@ constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-12, kMostDamping = 1e8
 
 /// Newton's step. Where it leads out of the cell, the other parameter is solved for on the side
 /// that the step crosses.
-void step(const OffsetFromRay& f, const ParameterSquare& cell, double s, double t, double& next_s,
-          double& next_t) {
+void step(const OffsetFromRay& f, const ParameterRectangle& cell, double s, double t,
+          double& next_s, double& next_t) {
   const double determinant = f.xs * f.yt - f.xt * f.ys;
-  const double s1 = cell.s + cell.size, t1 = cell.t + cell.size;
+  const double s1 = cell.s + cell.s_size, t1 = cell.t + cell.t_size;
   next_s = s - (f.yt * f.x - f.xt * f.y) / determinant;
   next_t = t - (f.xs * f.y - f.ys * f.x) / determinant;
   const double beyond_s = std::max(cell.s - next_s, next_s - s1),
@@ -63,7 +63,7 @@ PatchInRayFrame::PatchInRayFrame(const BezierPatch& patch, const RayFrame& ray)
   kernels_->see(numbersOf(patch.points), directions, offset, x.data(), y.data(), z.data());
 }
 
-bool PatchInRayFrame::cross(const ParameterSquare& cell, double tolerance, double& s,
+bool PatchInRayFrame::cross(const ParameterRectangle& cell, double tolerance, double& s,
                             double& t) const {
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMostCrossSteps; ++i) {
@@ -86,7 +86,7 @@ bool PatchInRayFrame::cross(const ParameterSquare& cell, double tolerance, doubl
   return false;
 }
 
-bool PatchInRayFrame::approach(const ParameterSquare& cell, double tolerance, double& s,
+bool PatchInRayFrame::approach(const ParameterRectangle& cell, double tolerance, double& s,
                                double& t) const {
   const double enough = tolerance * tolerance;
   double damping = kFirstDamping;
@@ -102,9 +102,9 @@ bool PatchInRayFrame::approach(const ParameterSquare& cell, double tolerance, do
       return false;
     }
     const double next_s =
-        std::clamp(s + (st * gt - b * gs) / determinant, cell.s, cell.s + cell.size);
+        std::clamp(s + (st * gt - b * gs) / determinant, cell.s, cell.s + cell.s_size);
     const double next_t =
-        std::clamp(t + (st * gs - a * gt) / determinant, cell.t, cell.t + cell.size);
+        std::clamp(t + (st * gs - a * gt) / determinant, cell.t, cell.t + cell.t_size);
     const OffsetFromRay next = offset(next_s, next_t);
     const double next_residual = next.squared();
     if (next_residual < residual) {
@@ -122,8 +122,8 @@ bool PatchInRayFrame::approach(const ParameterSquare& cell, double tolerance, do
   return residual <= enough;
 }
 
-bool PatchInRayFrame::approachPoint(const ParameterSquare& cell, double distance, double tolerance,
-                                    double& s, double& t) const {
+bool PatchInRayFrame::approachPoint(const ParameterRectangle& cell, double distance,
+                                    double tolerance, double& s, double& t) const {
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMostPointSteps; ++i) {
     const OffsetFromRay f = offset(s, t);
@@ -143,20 +143,21 @@ bool PatchInRayFrame::approachPoint(const ParameterSquare& cell, double distance
       return false;
     }
     before = residual;
-    s = std::clamp(s + (st * gt - b * gs) / determinant, cell.s, cell.s + cell.size);
-    t = std::clamp(t + (st * gs - a * gt) / determinant, cell.t, cell.t + cell.size);
+    s = std::clamp(s + (st * gt - b * gs) / determinant, cell.s, cell.s + cell.s_size);
+    t = std::clamp(t + (st * gs - a * gt) / determinant, cell.t, cell.t + cell.t_size);
   }
   return false;
 }
 
-bool PatchInRayFrame::approachSide(const ParameterSquare& cell, int side, double tolerance,
+bool PatchInRayFrame::approachSide(const ParameterRectangle& cell, int side, double tolerance,
                                    double& s, double& t) const {
   const bool along_s = side < 2;
-  const double low = along_s ? cell.s : cell.t, high = low + cell.size;
-  s = cell.s + (side == 3 ? cell.size : 0);
-  t = cell.t + (side == 1 ? cell.size : 0);
+  const double low = along_s ? cell.s : cell.t, size = along_s ? cell.s_size : cell.t_size,
+               high = low + size;
+  s = cell.s + (side == 3 ? cell.s_size : 0);
+  t = cell.t + (side == 1 ? cell.t_size : 0);
   double& w = along_s ? s : t;
-  w = low + cell.size / 2;
+  w = low + size / 2;
   for (int i = 0; i < kSideSteps; ++i) {
     const OffsetFromRay f = offset(s, t);
     const double dx = along_s ? f.xs : f.xt, dy = along_s ? f.ys : f.yt;

@@ -3,7 +3,7 @@
 
 #include "limitsurf/bernstein.h"
 #include "limitsurf/search/oriented_box.h"
-#include "limitsurf/search/parameter_square.h"
+#include "limitsurf/search/parameter_rectangle.h"
 #include "limitsurf/search/rays/ray_kernels.h"
 #include "limitsurf/surface/bezier_patch.h"
 
@@ -43,23 +43,23 @@ class PatchInRayFrame {
     return result;
   }
 
-  /// Newton's iteration, within the square, for the point at which the ray crosses the patch.
+  /// Newton's iteration, within the rectangle, for the point at which the ray crosses the patch.
   /// Returns whether the point at which it ends is within the tolerance of the ray.
-  bool cross(const ParameterSquare& square, double tolerance, double& s, double& t) const;
+  bool cross(const ParameterRectangle& on, double tolerance, double& s, double& t) const;
 
-  /// The Levenberg-Marquardt iteration, within the square, for the least distance from the ray. It
-  /// is slower, but also finds points that the ray only touches. Returns whether that distance is
-  /// within the tolerance.
-  bool approach(const ParameterSquare& square, double tolerance, double& s, double& t) const;
+  /// The Levenberg-Marquardt iteration, within the rectangle, for the least distance from the ray.
+  /// It is slower, but also finds points that the ray only touches. Returns whether that distance
+  /// is within the tolerance.
+  bool approach(const ParameterRectangle& on, double tolerance, double& s, double& t) const;
 
   /// The same iteration for the least distance from the point of the ray at `distance`, not
   /// from the ray.
-  bool approachPoint(const ParameterSquare& square, double distance, double tolerance, double& s,
+  bool approachPoint(const ParameterRectangle& on, double distance, double tolerance, double& s,
                      double& t) const;
 
-  /// approach() on one side of the square: sides 0 and 1 lie along s, at the low and the high end
-  /// of t, sides 2 and 3 along t.
-  bool approachSide(const ParameterSquare& square, int side, double tolerance, double& s,
+  /// approach() on one side of the rectangle: sides 0 and 1 lie along s, at the low and the high
+  /// end of t, sides 2 and 3 along t.
+  bool approachSide(const ParameterRectangle& on, int side, double tolerance, double& s,
                     double& t) const;
 
  private:

@@ -24,7 +24,7 @@ using Cubic = Bernstein<3>;
 
 /// A dyadic square of the patch's parameters, in the frame of the ray.
 struct Cell {
-  ParameterSquare on;
+  ParameterRectangle on;
   int depth;
   Cubic x, y;  ///< across the ray
   Cubic z;     ///< along the ray
@@ -36,7 +36,7 @@ class PatchIntersection {
   PatchIntersection(const BezierPatch& patch, const RayFrame& ray, CollectedHits& out)
       : patch_(patch), ray_(ray), seen_(patch, ray), out_(out) {}
 
-  void run() { visit({{0, 0, 1}, 0, seen_.x, seen_.y, seen_.z}); }
+  void run() { visit({{0, 0, 1, 1}, 0, seen_.x, seen_.y, seen_.z}); }
 
  private:
   /// At this depth the second differences of a patch are below rounding.
@@ -61,7 +61,7 @@ class PatchIntersection {
         touchBeginning(cell.on);
         return;
       case RayMeeting::once_at_most: {
-        double s = cell.on.s + cell.on.size / 2, t = cell.on.t + cell.on.size / 2;
+        double s = cell.on.s + cell.on.s_size / 2, t = cell.on.t + cell.on.t_size / 2;
         if (seen_.cross(cell.on, out_.tolerance, s, t)) {
           report(s, t);
           return;
@@ -83,7 +83,7 @@ class PatchIntersection {
   /// Takes the corners of a cell that lies within the tolerance of the ray.
   void touchCorners(const Cell& cell) {
     for (int corner = 0; corner < 4; ++corner) {
-      touch(cell.on.s + (corner & 1) * cell.on.size, cell.on.t + (corner >> 1) * cell.on.size);
+      touch(cell.on.s + (corner & 1) * cell.on.s_size, cell.on.t + (corner >> 1) * cell.on.t_size);
     }
   }
 
@@ -104,14 +104,14 @@ class PatchIntersection {
     }
   }
 
-  /// Takes the beginning of the ray if it lies on a square of the patch. Where the ray runs within
-  /// the patch or along a tangent, the points at which it touches or crosses it may be behind its
-  /// beginning.
-  void touchBeginning(const ParameterSquare& on) {
-    touchBeginning(on, on.s + on.size / 2, on.t + on.size / 2);
+  /// Takes the beginning of the ray if it lies on a rectangle of the patch. Where the ray runs
+  /// within the patch or along a tangent, the points at which it touches or crosses it may be
+  /// behind its beginning.
+  void touchBeginning(const ParameterRectangle& on) {
+    touchBeginning(on, on.s + on.s_size / 2, on.t + on.t_size / 2);
   }
   /// The same, from (s, t) on. Returns whether the ray begins there.
-  bool touchBeginning(const ParameterSquare& on, double s, double t) {
+  bool touchBeginning(const ParameterRectangle& on, double s, double t) {
     const bool begins = seen_.approachPoint(on, out_.from, out_.tolerance, s, t);
     if (begins) {
       touch(s, t);
@@ -129,9 +129,10 @@ class PatchIntersection {
     for (int q = 0; q < 4; ++q) {
       near[q] = z[q].least();
     }
-    const double half = cell.on.size / 2;
+    const double s_half = cell.on.s_size / 2, t_half = cell.on.t_size / 2;
     for (const int q : ascending(near)) {
-      const ParameterSquare on{cell.on.s + (q & 1) * half, cell.on.t + (q >> 1) * half, half};
+      const ParameterRectangle on{cell.on.s + (q & 1) * s_half, cell.on.t + (q >> 1) * t_half,
+                                  s_half, t_half};
       visit({on, cell.depth + 1, x[q], y[q], z[q]});
     }
   }
@@ -139,7 +140,7 @@ class PatchIntersection {
   /// Whether the ray touches the surface in the cell without crossing it, or runs within it, so
   /// that control hulls cannot separate the cells around that point from the ray. Takes the point.
   bool touchesIn(const Cell& cell) {
-    double s = cell.on.s + cell.on.size / 2, t = cell.on.t + cell.on.size / 2;
+    double s = cell.on.s + cell.on.s_size / 2, t = cell.on.t + cell.on.t_size / 2;
     if (!isThin(cell, seen_.offset(s, t))) {
       return false;
     }
@@ -206,7 +207,7 @@ class PatchIntersection {
   /// ray as the patch may stay near the ray, the ray may begin on the patch: then that is taken.
   void report(double s, double t) {
     const double z = seen_.place(s, t).z;
-    if (mayBeginAt(s, t, z) && touchBeginning({0, 0, 1}, s, t)) {
+    if (mayBeginAt(s, t, z) && touchBeginning({0, 0, 1, 1}, s, t)) {
       return;
     }
     if (counts(z)) {
