@@ -85,8 +85,9 @@ class OBJECT_OT_limit_curvature(WatchedOperator, LargeCountProperty, bpy.types.O
     )
     radius: FloatProperty(
         name="Radius",
-        description="Distance from an irregular vertex, as a share of an edge, at which curvature "
-        "is averaged over the faces around it. At the vertex itself curvature has no limit",
+        description="At irregular vertices, such as poles, curvature has no value in general. "
+        "There it is averaged over the faces around the vertex, at this distance, as a share of an "
+        "edge",
         default=1 / 64,
         min=2**-20,
         max=0.5,
@@ -104,7 +105,7 @@ class OBJECT_OT_limit_curvature(WatchedOperator, LargeCountProperty, bpy.types.O
                 "",
                 0,
             ),
-            ("GAUSSIAN", "Gaussian", "Gaussian curvature k1 k2, negative on saddles", "", 1),
+            ("GAUSSIAN", "Gaussian", "Gaussian curvature k1 * k2, negative on saddles", "", 1),
             ("K1", "Largest", "Larger principal curvature k1", "", 2),
             ("K2", "Smallest", "Smaller principal curvature k2", "", 3),
         ),
@@ -112,7 +113,7 @@ class OBJECT_OT_limit_curvature(WatchedOperator, LargeCountProperty, bpy.types.O
     )
     full_color: FloatProperty(
         name="Full Color",
-        description="Absolute curvature at which the color reaches its full strength. 0 chooses a "
+        description="Curvature, positive or negative, that gets the strongest color. 0 chooses a "
         "value such that 95% of the places are paler",
         default=0.0,
         min=0.0,

@@ -59,7 +59,7 @@ class StoredRoots:
             raise RefusalError(
                 "; ".join(failures)
                 or f"No selected object, and none on the active object, has the attributes "
-                f"{ids.FACE} and {ids.UV}"
+                f"{ids.FACE} and {ids.UV}: select hair or points that stand on a limit surface"
             )
         self.notes = tuple(f"{n:,} left out: {reason}" for reason, n in failures.items())
 

@@ -30,26 +30,34 @@ class Stroke:
 class LIMIT_PG_draw_point(bpy.types.PropertyGroup):
     """A point of a stroke, as scripts and the redo panel pass it to the operator."""
 
-    face: IntProperty(name="Face", description="Ptex face of the point's location", min=0)
+    face: IntProperty(
+        name="Face", description="Number of the Ptex face on which the point lies", min=0
+    )
     uv: FloatVectorProperty(
-        name="UV", description="Place on the face", size=2, min=0.0, max=1.0, precision=6
+        name="UV",
+        description="u and v of the location, 0 to 1",
+        size=2,
+        min=0.0,
+        max=1.0,
+        precision=6,
     )
     radius: FloatProperty(
         name="Radius",
-        description="Radius at the point, as a share of the operator's radius: the pressure",
+        description="Radius at the point, as a share of the operator's radius. For a pen, this is "
+        "its pressure",
         default=1.0,
         min=0.0,
     )
     is_first: BoolProperty(name="First", description="Whether a new stroke begins here")
     is_closed: BoolProperty(
-        name="Closed", description="At a first point: whether the stroke returns to it at its end"
+        name="Closed", description="At the first point of a stroke: whether the stroke is closed"
     )
 
 
 class LIMIT_PG_draw_spline(bpy.types.PropertyGroup):
     """A spline that the operator removes from the Curve object."""
 
-    index: IntProperty(name="Index", description="Number of the spline", min=0)
+    index: IntProperty(name="Index", description="Number of the spline, counted from 0", min=0)
 
 
 def write(strokes: Sequence[Stroke], points: bpy.types.bpy_prop_collection) -> None:

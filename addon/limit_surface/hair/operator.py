@@ -48,9 +48,10 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, SteeringProperties, bpy.types.Op
     )
     tilt: FloatVectorProperty(
         name="Tilt",
-        description="Angles by which strands lean away from the surface normal, in the direction "
-        "of growing u and of growing v of their face. Along a border, the first angle turns them "
-        "from the normal to outwards and beyond, and the second one along the border",
+        description="Angles by which strands lean away from the surface normal, towards u and "
+        "towards v of their face. On a quad, u runs from its first corner to its second one, and v "
+        "from its first to its last. Along a border, the first angle turns strands outwards, and "
+        "the second one along the border",
         size=2,
         default=(0.0, 0.0),
         min=-np.pi,
@@ -59,7 +60,7 @@ class OBJECT_OT_limit_hair_add(ScatterOperator, SteeringProperties, bpy.types.Op
     )
     random: FloatProperty(
         name="Random",
-        description="Largest random angle that is added to each strand's tilt, in a random "
+        description="Largest random angle by which each strand leans in addition, in a random "
         "direction",
         default=0.0,
         min=0.0,

@@ -34,7 +34,8 @@ class SteeringProperties(flow_properties.FlowProperties):
         **RANDOM.properties("the random part", "Factor of Random and Random Length"),
         "random_length": FloatProperty(
             name="Random Length",
-            description="Largest random part of its length by which a strand is shorter",
+            description="Largest part of its length by which a strand is shorter, at random: at "
+            "0.4, strands have 60% to 100% of the length",
             default=0.0,
             min=0.0,
             max=1.0,

@@ -14,7 +14,7 @@ class BorderProperties:
 
     border: EnumProperty(
         name="Border",
-        description="Edges along which things are placed, for Border",
+        description="Edges along which strands or points stand, for the distribution Border",
         items=(
             (
                 "BOUNDARY",
@@ -32,8 +32,8 @@ class BorderProperties:
     border_jitter: FloatProperty(
         name="Jitter",
         description="Random movement along the border, as a part of the distance between "
-        "neighbors. At 1 each one moves by at most half of this distance to "
-        "either side",
+        "neighbors. At 1 each strand or point moves by at most half of this distance to either "
+        "side",
         default=0.0,
         min=0.0,
         max=1.0,
@@ -60,19 +60,19 @@ class BorderProperties:
     )
     other_side: BoolProperty(
         name="Other Side",
-        description="Use the faces on the other side of edges that lie between two faces",
+        description="Put strands or points on the faces on the other side of the border, where it "
+        "has faces on both sides",
         default=False,
     )
     direction: EnumProperty(
         name="Direction",
-        description="Direction in which things along a border point",
+        description="Direction of strands, and of the instances on points, along a border",
         items=(
             ("NORMAL", "Normal", "Point along the surface's normal", "", 0),
             (
                 "OUTWARDS",
                 "Outwards",
-                "Point away from the faces on which things stand, in the tangent plane of "
-                "the surface",
+                "Point away from the faces beside the border, in the tangent plane of the surface",
                 "",
                 1,
             ),
@@ -81,8 +81,8 @@ class BorderProperties:
     )
     lift: FloatProperty(
         name="Lift",
-        description="Angle by which things that point outwards are lifted towards the surface's "
-        "normal: at 90 degrees they point along the normal",
+        description="Angle by which strands or instances that point outwards are raised towards "
+        "the surface's normal: at 90 degrees they point along the normal",
         default=0.0,
         min=-math.pi / 2,
         max=math.pi / 2,
@@ -90,8 +90,8 @@ class BorderProperties:
     )
     flow: FloatProperty(
         name="Flow",
-        description="Angle by which things lean in the direction of the border. Negative angles "
-        "lean the opposite way",
+        description="Angle by which strands or instances lean along the border. Negative angles "
+        "make them lean the opposite way",
         default=0.0,
         min=-math.pi / 2,
         max=math.pi / 2,

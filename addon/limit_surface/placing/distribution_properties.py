@@ -60,34 +60,36 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
 
     distribution: EnumProperty(
         name="Distribution",
-        description="How things are distributed over the surface",
+        description="How strands or points are distributed over the surface",
         items=(
             (
                 "JITTERED",
                 "Jittered",
-                "Divide each face into equal squares and make one at a random place in each",
+                "Divide each face into equal squares, and put one strand or point at a random "
+                "place in each",
                 "",
                 0,
             ),
             (
                 "UNIFORM",
                 "Uniform",
-                "Place each independently of the others, so that parts of equal area get equal "
-                "numbers on average",
+                "Place each strand or point independently of the others, so that parts of equal "
+                "area get equal numbers on average",
                 "",
                 1,
             ),
             (
                 "BLUE_NOISE",
                 "Blue Noise",
-                "Place them at random, but no two closer to each other than a minimum distance",
+                "Place strands or points at random, but no two closer to each other than a minimum "
+                "distance",
                 "",
                 2,
             ),
             (
                 "BORDER",
                 "Border",
-                "Place them evenly along boundaries, creases or other edges",
+                "Place strands or points evenly along boundaries, creases or other edges",
                 "",
                 3,
             ),
@@ -105,22 +107,23 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
     )
     amount: EnumProperty(
         name="Amount",
-        description="Which setting determines the number. Jittered ignores it. Scripts can "
-        "leave it out and set one of count, density and distance",
+        description="Which setting determines the number of strands or points. Jittered uses Per "
+        "Side instead. Scripts can leave Amount out and set one of count, density and distance",
         items=(
-            ("COUNT", "Count", "Make the given number", "", 0),
+            ("COUNT", "Count", "Make exactly the number that Count gives", "", 0),
             (
                 "DENSITY",
                 "Density",
-                "Make the given number for each square unit of area, for Uniform and Blue Noise",
+                "Make the number that Density gives on each square unit of area, for Uniform and "
+                "Blue Noise",
                 "",
                 1,
             ),
             (
                 "DISTANCE",
                 "Distance",
-                "Make as many as fit at the given distance from each other, for Blue Noise and "
-                "Border",
+                "Make as many as fit if neighbors are as far apart as Distance says, for Blue "
+                "Noise and Border",
                 "",
                 2,
             ),
@@ -129,15 +132,15 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
     )
     count: IntProperty(
         name="Count",
-        description="Total number to make",
+        description="Total number of strands or points",
         default=1000,
         min=1,
         soft_max=1_000_000,
     )
     density: FloatProperty(
         name="Density",
-        description="Number to make on each square unit of area in world space. A density source "
-        "multiplies it by values from 0 to 1",
+        description="Number of strands or points on each square unit of area in world space. A "
+        "density source multiplies it by values from 0 to 1",
         default=1000.0,
         min=1e-6,
         max=1e12,
@@ -146,9 +149,9 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
     )
     distance: FloatProperty(
         name="Distance",
-        description="Minimum distance between any two in world space. Where the density is "
-        "lower, the distance is larger, so that the number is proportional to "
-        "the density. For Border, the length of the border between neighbors",
+        description="For Blue Noise, the minimum distance between any two strands or points in "
+        "world space. Where a density source is lower, the distance is larger. For Border, the "
+        "length of the border between neighbors",
         default=0.05,
         min=1e-6,
         soft_min=1e-3,
@@ -173,49 +176,50 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
     )
     material_slots: EnumProperty(
         name="Material Slots",
-        description="Material slots whose faces are covered. If none is chosen, the faces of all "
-        "slots are covered",
+        description="Material slots on whose faces strands or points stand. If none is chosen, "
+        "they stand on the faces of all slots",
         items=_material_slots,
         options={"ENUM_FLAG", "SKIP_SAVE"},
     )
     faces: EnumProperty(
         name="Faces",
-        description="Faces that are covered",
+        description="Faces on which strands or points stand",
         items=(
-            ("ALL", "All", "Cover all faces", "", 0),
-            ("SELECTED", "Selected", "Cover the faces that were selected in Edit Mode", "", 1),
-            ("ATTRIBUTE", "Attribute", "Cover the faces where an attribute is true", "", 2),
+            ("ALL", "All", "Use all faces", "", 0),
+            ("SELECTED", "Selected", "Use the faces that were selected in Edit Mode", "", 1),
+            ("ATTRIBUTE", "Attribute", "Use the faces where an attribute is true", "", 2),
         ),
         default="ALL",
     )
     face_attribute: StringProperty(
         name="Face Attribute",
-        description="Name of a Boolean face attribute. Faces are covered where it is true",
+        description="Name of a Boolean face attribute. Strands or points stand where it is true",
     )
     target: EnumProperty(
         name="Target",
-        description="Which surface the roots lie on",
+        description="Surface on which roots and points lie",
         items=(
             (
                 "LIMIT",
                 "Limit Surface",
-                "Put roots exactly on the limit surface, the smooth surface to which "
-                "subdivision converges",
+                "Put roots and points exactly on the limit surface, the smooth surface that "
+                "infinitely many subdivisions approach",
                 "",
                 0,
             ),
             (
                 "VIEWPORT",
                 "Viewport Mesh",
-                "Put roots on the polygons that the viewport shows, at the same places of "
-                "the faces",
+                "Put roots and points on the polygons that the viewport shows, at the same places "
+                "of the faces",
                 "",
                 1,
             ),
             (
                 "RENDER",
                 "Render Mesh",
-                "Put roots on the polygons that a render shows, at the same places of the faces",
+                "Put roots and points on the polygons that a render shows, at the same places of "
+                "the faces",
                 "",
                 2,
             ),

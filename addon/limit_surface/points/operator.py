@@ -65,9 +65,10 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
     )
     instance: StringProperty(
         name="Instance",
-        description="Name of an object to put on each point, with its Z axis along the surface "
-        "normal and its X axis along growing u. Along a border, its Z axis has the chosen "
-        "direction and its Y axis runs along the border",
+        description="Name of an object to put on each point. Its Z axis points along the surface "
+        "normal, and its X axis along u of the face, on a quad from its first corner to its second "
+        "one. Along a border, its Z axis has the chosen direction and its Y axis runs along the "
+        "border",
     )
     collection: StringProperty(
         name="Collection",
@@ -76,8 +77,8 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
     )
     scale_length: FloatProperty(
         name="Scale Length",
-        description="Length of the scales in world units. Their width, lift and turn are inputs of "
-        "the modifier Limit Scales",
+        description="Length of the scales in world units. Their width, lift, turn and material "
+        "are inputs of the modifier Limit Scales",
         default=0.15,
         min=0.0,
         soft_max=10.0,

@@ -41,7 +41,8 @@ class SteeringProperties(flow_properties.FlowProperties):
         ),
         "random_scale": FloatProperty(
             name="Random Scale",
-            description="Largest random part of its size by which an instance is smaller",
+            description="Largest part of its size by which an instance is smaller, at random: at "
+            "0.4, instances have 60% to 100% of the size",
             default=0.0,
             min=0.0,
             max=1.0,
@@ -76,8 +77,8 @@ class SteeringProperties(flow_properties.FlowProperties):
         ),
         "random": FloatProperty(
             name="Random",
-            description="Largest random angle that is added to each instance's tilt, in a random "
-            "direction",
+            description="Largest random angle by which the Z axis of each instance leans in "
+            "addition, in a random direction",
             default=0.0,
             min=0.0,
             max=math.pi,
@@ -85,10 +86,15 @@ class SteeringProperties(flow_properties.FlowProperties):
         ),
         "flow_axis": EnumProperty(
             name="Flow Axis",
-            description="Which axis of the instances follows the flow",
+            description="Which axis of the instances follows the directions along the surface",
             items=(
-                ("X", "X", "The X axis points along the flow, and the Z axis stays as it is", 0),
-                ("Z", "Z", "The Z axis leans into the flow, as strands do", 1),
+                (
+                    "X",
+                    "X",
+                    "The X axis points along the direction, and the Z axis stays as it is",
+                    0,
+                ),
+                ("Z", "Z", "The Z axis leans into the direction, as strands do", 1),
             ),
             default="X",
         ),

@@ -131,9 +131,9 @@ class ProjectionProperties(TextureProperties, FollowProperties):
     )
     facing: FloatVectorProperty(
         name="Facing",
-        description="Two angles between the surface normal and the direction to the viewer. Below "
-        "the first angle the image is projected fully, beyond the second not at all, and between "
-        "them it fades",
+        description="Two angles between the surface normal and the direction to the camera or "
+        "other projector. Up to the first angle the image is projected fully, from the second one "
+        "on not at all, and between them it fades",
         size=2,
         default=(np.radians(75), np.radians(88)),
         min=0.0,

@@ -9,8 +9,9 @@ ALIGNMENTS = (
     (
         "NORMAL_DU",
         "Normal and U",
-        "Turn to the surface normal, with X along growing u of the face. Strands that are bound "
-        "to a surface turn as its frame does",
+        "Turn to the surface normal, with X along u of the face, on a quad from its first corner "
+        "to its second one. Strands that are bound to a surface turn as the surface turns between "
+        "their old and new places",
         2,
     ),
 )

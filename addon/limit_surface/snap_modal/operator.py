@@ -42,14 +42,14 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
     )
     face: IntProperty(
         name="Face",
-        description="Ptex face of the location where the element is put. Scripts and the redo "
+        description="Number of the Ptex face on which the element is put. Scripts and the redo "
         "panel use it together with `uv`",
         default=-1,
         options={"HIDDEN", "SKIP_SAVE"},
     )
     uv: FloatVectorProperty(
         name="UV",
-        description="Place on the face",
+        description="u and v of the place on that face, 0 to 1",
         size=2,
         min=0.0,
         max=1.0,

@@ -22,21 +22,21 @@ class FlowProperties:
 
     flow_source: EnumProperty(
         name="Flow From",
-        description="Source of directions along the surface in which things lean or point",
+        description="Source of directions along the surface into which strands or instances lean",
         items=(
-            ("NONE", "None", "Use no such directions", "", 0),
+            ("NONE", "None", "Use no directions along the surface", "", 0),
             (
                 "IMAGE",
                 "Image",
-                "Use a comb map: red is the direction of the UV map's U, green that of its V, and "
-                "0.5 in both is none",
+                "Use a comb map, an image of directions: red is the part along the UV map's U, "
+                "green the part along its V, and 0.5 in both means no direction",
                 "IMAGE_DATA",
                 1,
             ),
             (
                 "ATTRIBUTE",
                 "Attribute",
-                "Use vectors of vertices, face corners or faces, in the object's space",
+                "Use a vector attribute of vertices, face corners or faces, in the object's space",
                 "SPREADSHEET",
                 2,
             ),
@@ -80,8 +80,9 @@ class FlowProperties:
     )
     flow_angle: FloatProperty(
         name="Flow Angle",
-        description="Angle by which things lean away from the normal where the flow has the "
-        "length 1. Where it is shorter they lean less. A negative angle reverses the flow",
+        description="Angle from the surface normal where the vector of the direction has the "
+        "length 1. Where it is shorter, strands or instances lean less. With a negative angle they "
+        "lean the opposite way",
         default=math.radians(60),
         min=-math.pi,
         max=math.pi,

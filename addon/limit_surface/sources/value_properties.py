@@ -15,7 +15,13 @@ from bpy.props import EnumProperty, FloatVectorProperty, StringProperty
 from .values import ValueChoice
 
 _CHANNELS = (
-    ("LUMINANCE", "Luminance", "0.2126 red + 0.7152 green + 0.0722 blue", "", 0),
+    (
+        "LUMINANCE",
+        "Luminance",
+        "Use the brightness: 0.2126 red + 0.7152 green + 0.0722 blue",
+        "",
+        0,
+    ),
     ("RED", "Red", "", "", 1),
     ("GREEN", "Green", "", "", 2),
     ("BLUE", "Blue", "", "", 3),
@@ -71,7 +77,7 @@ class SourceNames:
         return {
             self.source: EnumProperty(
                 name=f"{self.label} From",
-                description=f"Source of numbers that make {what} different from place to place",
+                description=f"Source of numbers by which {what} differs from place to place",
                 items=(
                     ("NONE", "None", unsteered, "", 0),
                     *_SOURCES,
@@ -100,7 +106,7 @@ class SourceNames:
             self.range: FloatVectorProperty(
                 name="Range",
                 description=f"{low} where the source is 0, and where it is 1. Other values "
-                "continue the straight line through both",
+                "of the source give numbers on the straight line through both",
                 size=2,
                 default=(0.0, 1.0),
                 soft_min=0.0,
