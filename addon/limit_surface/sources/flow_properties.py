@@ -22,7 +22,8 @@ class FlowProperties:
 
     flow_source: EnumProperty(
         name="Flow From",
-        description="Source of directions along the surface into which strands or instances lean",
+        description="Source of directions along the surface in which strands or instances lean or "
+        "point",
         items=(
             ("NONE", "None", "Use no directions along the surface", "", 0),
             (
