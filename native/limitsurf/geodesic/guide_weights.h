@@ -56,13 +56,14 @@ struct GuideOptions {
 /// of Polylines, and naming the first point of them that is not finite; MeshError for cuts that are
 /// no edges, and as evaluate() does for locations. Cost: about 1 microsecond for each vertex of
 /// the triangles and each guide that it keeps (three more than `count`), on one core; a microsecond
-/// a place, on all of them. Memory: 24 bytes for each of the former and 16 for each guide of a
-/// place.
+/// a place, on all cores. Memory: 24 bytes for each vertex and each guide that it keeps, and 16 for
+/// each guide of a place.
 GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guides,
                           const LocationBatch& at, const GuideOptions& options = {});
 
-/// The weights of guides at these distances, which are sorted. The first `count` of them get one,
-/// the next, if there is one, is where weights end.
+/// Writes the weights of `count` guides at these distances, the nearest first. `end` is the
+/// distance at which weights end: that of the first guide without a weight, or infinity if there is
+/// none.
 void weightsByDistance(const double* distances, int count, double end, double* weights);
 
 }  // namespace limitsurf

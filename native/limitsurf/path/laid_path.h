@@ -44,11 +44,11 @@ constexpr double kLongestWay = 4;
 ///
 /// Where closest points jump (beyond a concave fold, the curve is equally close to both sides) the
 /// path is joined along the surface: the point closest to the middle of the gap halves it again and
-/// again. Where that does not narrow the gap, a short way along the surface joins it
-/// (ShortestWays). Where there is none that is at most kLongestWay times as long as the gap in
-/// space, as between the two sides of a thin sheet, the path ends, and another one begins beyond.
-/// Where a path leaves a part of the surface and comes back without a control point in between, as
-/// past an eye in a head, such a way joins both ends, too, and what lies between is left out.
+/// again. Where that does not narrow the gap, a short way along the surface joins it. Where there
+/// is none that is at most kLongestWay times as long as the gap in space, as between the two sides
+/// of a thin sheet, the path ends, and another one begins beyond. Where a path leaves a part of the
+/// surface and comes back without a control point in between, as past an eye in a head, such a way
+/// joins both ends, too, and what lies between is left out.
 ///
 /// The control points themselves are rows of the path, with whole numbers as their places. Depends
 /// neither on the number of threads nor on the other curves, to the last bit. Cost: some 40

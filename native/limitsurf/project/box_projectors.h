@@ -11,9 +11,10 @@ namespace limitsurf {
 /// A weight for each side of a box, in the order +x, -x, +y, -y, +z, -z.
 using BoxWeights = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
-/// The six parallel projectors (projector.h) of a box, one for each side. `matrix` takes the
-/// surface's coordinates to those of the box, which reaches from -1 to 1. Seen from outside, the
-/// image is not mirrored on any side; z is up on four sides, and y is up on the sides +z and -z.
+/// The six parallel projectors of a box, one for each side, as matrices for project(). `matrix`
+/// takes the surface's coordinates to those of the box, which reaches from -1 to 1. Seen from
+/// outside, the image is not mirrored on any side; z is up on four sides, and y is up on the sides
+/// +z and -z.
 ///
 /// Throws std::invalid_argument for a matrix that is not finite, not affine or singular.
 std::array<Eigen::Matrix4d, 6> boxSides(const Eigen::Matrix4d& matrix);

@@ -53,10 +53,12 @@ constexpr double kRayBias = 1e-9;
 
 /// Projects an image onto the texels of a surface's map.
 ///
-/// `matrix` takes the surface's coordinates to clip space (projector.h). `at` holds the locations
-/// of the centres of texels, and `texel` is the size of a texel in units of the map. `occluder`
-/// searches the surface that may hide texels, usually the same one; if it is null nothing is
-/// hidden. What lies in front of the near plane hides nothing.
+/// `matrix` takes the surface's coordinates to clip space, in OpenGL's convention: projection *
+/// view * object. The image of (x, y, z, w) is (x/w, y/w), from -1 to 1; w is positive in front of
+/// the eye, and z/w grows with the distance from it. `at` holds the locations of the centres of
+/// texels, and `texel` is the size of a texel in units of the map. `occluder` searches the surface
+/// that may hide texels, usually the same one; if it is null nothing is hidden. What lies in front
+/// of the near plane hides nothing.
 ///
 /// st and footprint are exact but for rounding: they come from the first derivatives of projector,
 /// surface and map. Where these have no limit, or surface or map is singular, they are taken

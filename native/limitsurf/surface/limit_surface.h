@@ -15,9 +15,9 @@
 
 namespace limitsurf {
 
-// Bounds on the error of every evaluation. Each is held by tests against independent subdivision in
-// high precision, for valences to 100 and (u, v) down to 2^-40 from an extraordinary vertex and at
-// it. docs/accuracy.md says how the errors arise.
+// Bounds on the error of every evaluation. Tests compare each with independent subdivision in high
+// precision, for valences to 100, for (u, v) down to 2^-40 from an extraordinary vertex, and at it.
+// docs/accuracy.md says how the errors arise.
 
 /// Positions: relative to the diagonal of the control mesh's bounding box.
 constexpr double kPositionError = 1e-13;

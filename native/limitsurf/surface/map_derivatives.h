@@ -41,7 +41,7 @@ MapDerivatives evaluateWithMap(const LimitSurface& surface, const SurfaceData& m
 constexpr double kSeenFrom = 0x1p-20;
 
 /// First derivatives whose directions and ratios are defined at every location (kSeenFrom says what
-/// they are at irregular vertices), with unit normals at the location itself (complete_normals.h).
+/// they are at irregular vertices), with unit normals at the location itself.
 /// Throws what checkMap() and LimitSurface::evaluate() throw.
 MapDerivatives directionalDerivatives(const LimitSurface& surface, const SurfaceData& uv_map,
                                       const LocationBatch& at, int threads);

@@ -54,9 +54,9 @@ Tessellation tessellate(const LimitSurface& surface, int levels,
 
 /// The same with a level for each face of the mesh; the levels of refused faces are ignored. An
 /// edge has 2^level segments for the largest level of its faces. On a coarser face the quads become
-/// smaller towards such an edge, and some of them become triangles around their centre (see
-/// GradedFace). No vertex lies on the side of another polygon, and the polygons of a face cover it
-/// once, with its orientation.
+/// smaller towards such an edge, and some of them become triangles around their centre. No vertex
+/// lies on the side of another polygon, and the polygons of a face cover it once, with its
+/// orientation.
 ///
 /// Throws std::invalid_argument for another number of levels, and naming the first face whose level
 /// is not allowed.

@@ -162,8 +162,9 @@ class SurfacePatches {
   /// Makes coreNormal() known for the kinds of cores that the surface has many of.
   void prepareCoreNormals();
   /// The integral of ds x dt over a whole core (steps = 0). Returns false if it is not known, or if
-  /// it is not what many steps leave turned by a small angle only: where the surface turns over
-  /// close to the vertex, this integral tells nothing of the area.
+  /// its direction differs by a large angle from that of the same integral over what many steps
+  /// leave of the core: where the surface turns over close to the vertex, this integral tells
+  /// nothing of the area.
   bool coreNormal(const SurfacePiece& core, CoreNormal::Value& out) const;
 
   /// The limit position of the core's vertex.
