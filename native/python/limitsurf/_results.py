@@ -71,7 +71,9 @@ class MapDistortion:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stencils:
-    """Sparse rows (CSR) of weights of the control mesh's vertices."""
+    """Sparse rows (CSR) of weights of the control mesh's vertices: row i has the vertices
+    indices[offsets[i]:offsets[i + 1]] and the weights at the same places. The weights of du and dv
+    are None unless they were wanted."""
 
     offsets: NDArray[np.int64]
     indices: NDArray[np.int32]
@@ -82,7 +84,8 @@ class Stencils:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tiles:
-    """The bicubic tiles of locations, and their control points (LimitSurface.tiles())."""
+    """The bicubic tiles of locations, and their control points. LimitSurface.tiles() says what each
+    array holds."""
 
     points_offsets: NDArray[np.int64]
     points_indices: NDArray[np.int32]
@@ -101,7 +104,8 @@ class Tiles:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TileQuadtree:
-    """All tiles of a surface, and the quadtrees that lead there (LimitSurface.tile_quadtree())."""
+    """All tiles of a surface, and for each Ptex face a quadtree that leads from (u, v) to a tile.
+    LimitSurface.tile_quadtree() says what each array holds."""
 
     child: NDArray[np.int32]
     tiles: Tiles
@@ -131,9 +135,10 @@ class BlueNoise(Locations):
 
 @dataclass(frozen=True, eq=False)
 class AlongCurves(Locations):
-    """Locations along curves: the curve's number (n,), the arc length from its start (n,), and unit
-    vectors (n, 3) in the surface's tangent plane, along the curve and away from the location's
-    face; the row (n,), and for each row the number of locations that it lacks."""
+    """Locations along curves. curve (n,) is the curve's number, arc (n,) the arc length from its
+    start, and row (n,) the number of the row. tangent and outward (n, 3) are unit vectors in the
+    surface's tangent plane: along the curve, and away from the location's face. ended (rows,) is
+    the number of locations that each row lacks."""
 
     __slots__ = ("arc", "curve", "ended", "outward", "row", "tangent")
 
@@ -147,7 +152,9 @@ class AlongCurves(Locations):
 
 @dataclass(frozen=True, eq=False)
 class MapLocations(Locations):
-    """Locations of points of a UV map; where it does not cover a point, face is -1 and uv NaN."""
+    """Locations of points of a UV map. Where the map does not cover a point, face is -1 and uv NaN.
+    overlap tells where several places of the surface lie at the point, and flipped where the map
+    is mirrored."""
 
     __slots__ = ("overlap", "flipped")
 
@@ -157,7 +164,9 @@ class MapLocations(Locations):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Texels:
-    """Texels of an image, sorted by row and then by column, and the locations of their centres."""
+    """Texels (x, y) of an image, sorted by row and then by column, and the locations of their
+    centres. inside is False for texels of the margin; overlap tells where several places of the
+    surface lie, and flipped where the map is mirrored."""
 
     x: NDArray[np.int32]
     y: NDArray[np.int32]
@@ -197,8 +206,10 @@ class RayHits(Hits):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LaidPaths:
-    """Polylines on the surface: path p is rows offsets[p] to offsets[p + 1] - 1, and comes from the
-    curve curve[p] (LimitSurface.lay_path())."""
+    """Polylines on the surface, as LimitSurface.lay_path() makes them. Path p is rows offsets[p] to
+    offsets[p + 1] - 1, comes from the curve curve[p], and is at most deviation[p] away from the
+    surface, as far as was measured. place is where a point is on its curve: the number of the
+    control point before it, plus a parameter up to 1."""
 
     face: NDArray[np.int32]
     uv: NDArray[np.float64]
@@ -215,8 +226,10 @@ class LaidPaths:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PathFit:
-    """A curve whose control points are some rows of a path; the handles are None for polylines
-    (LimitSurface.fit_path())."""
+    """A curve whose control points are some rows of a path, as LimitSurface.fit_path() makes it.
+    The handles are None for polylines. deviation is the largest measured distance of the curve from
+    the surface, error that of the path's points from the curve, and resolution the number of
+    straight lines by which each segment is to be drawn."""
 
     rows: NDArray[np.int32]
     handle_left: NDArray[np.float64] | None
@@ -274,7 +287,8 @@ class FaceLevels:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tessellation:
-    """Polygons on the limit surface, with the locations of their points and corners."""
+    """Polygons on the limit surface, with the locations of their points and corners.
+    LimitSurface.tessellate() says what each array holds."""
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float64]
