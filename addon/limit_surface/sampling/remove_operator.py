@@ -9,8 +9,8 @@ from ..tasks import polling
 
 
 class OBJECT_OT_limit_sample_remove(bpy.types.Operator):
-    """Remove the tables of the active mesh that the node group Sample Limit Surface reads, and the
-    mesh Limit Faces"""
+    """Remove what Tables for Sample Limit Surface has added for the active mesh: the hidden tables
+    and the mesh Limit Faces"""
 
     bl_idname = ids.SAMPLE_REMOVE
     bl_label = "Remove Tables for Sample Limit Surface"

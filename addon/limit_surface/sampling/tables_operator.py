@@ -13,9 +13,9 @@ from ..tasks.watched_operator import WatchedOperator
 
 
 class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
-    """Make the tables by which the node group Sample Limit Surface samples the active mesh, or make
-    them again after a change of its topology, creases or rules. Depth and Levels stay as they were
-    unless they are set"""
+    """Make the hidden tables that the node group Sample Limit Surface needs to sample the active
+    mesh's limit surface. Make them again after faces, creases or settings of the Subdivision
+    Surface modifier have changed. Depth and Levels then stay as they were unless you set them"""
 
     bl_idname = ids.SAMPLE_TABLES
     bl_label = "Tables for Sample Limit Surface"
