@@ -56,7 +56,7 @@ class VIEW3D_OT_limit_draw(
     )
     use_mirror: BoolProperty(
         name="X Mirror",
-        description="Draw, erase and smooth on the other side of the surface's X axis as well",
+        description="Also draw, erase and smooth at the place that is mirrored along the surface's X axis",
         default=False,
     )
     use_pressure: BoolProperty(
