@@ -56,7 +56,8 @@ class VIEW3D_OT_limit_draw(
     )
     use_mirror: BoolProperty(
         name="X Mirror",
-        description="Also draw, erase and smooth at the place that is mirrored along the surface's X axis",
+        description="Also draw, erase and smooth at the place that is mirrored along the "
+        "surface's X axis",
         default=False,
     )
     use_pressure: BoolProperty(
