@@ -256,7 +256,7 @@ def test_rows_keep_their_distance_along_the_surface(capfd):
     assert (np.diff(numbers) < 0).all()
     assert numbers[3] > 0
     said = capfd.readouterr().out
-    assert "rows end where they would meet: of 200 each" in said
+    assert "where they would meet: of 200 in each row" in said
     for lacking, name in zip(200 - numbers[1:], ("row 2", "row 3", "row 4"), strict=True):
         assert f"{name} lacks {lacking}" in said
 

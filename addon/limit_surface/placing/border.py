@@ -50,7 +50,7 @@ class BorderChoice:
         of_faces = np.zeros(len(mesh.edges), bool)
         of_faces[attributes.read(mesh, ids.CORNER_EDGE)] = True
         if not (chosen & of_faces).any():
-            raise RefusalError(f"{whose}: the edges that are chosen belong to no face")
+            raise RefusalError(f"{whose}: the chosen edges belong to no face")
         return attributes.read(mesh, ids.EDGE_VERTICES)[chosen & of_faces]
 
     def missing(self, whose: str) -> str:
@@ -73,7 +73,10 @@ def where_rows_end(ended: np.ndarray, asked_for: int) -> str:
     others = short[MOST_ROWS_NAMED:]
     if len(others):
         lacking.append(f"the other rows {ended[others].sum():,}")
-    return f"rows end where they would meet: of {asked_for:,} each, {', '.join(lacking)}"
+    return (
+        "rows end where the surface ends and where they would meet: of "
+        f"{asked_for:,} in each row, {', '.join(lacking)}"
+    )
 
 
 def _selected(mesh: bpy.types.Mesh) -> np.ndarray:

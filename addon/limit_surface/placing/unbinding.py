@@ -101,17 +101,19 @@ class Unbinding:
 def _check_own_data(ob: bpy.types.Object) -> None:
     if ob.type == "CURVE":
         raise RefusalError(
-            f"{ob.name} is a Curve object, whose shape in this frame nodes alone know: let it go "
-            "back to rest, or convert it to Curves first"
+            f"{ob.name} is a Curve object, whose shape in this frame nodes alone know: choose the "
+            "shape At Rest, or convert it to Curves first"
         )
     others = [other.name for other in _users(ob.data) if other != ob]
     if others:
         raise RefusalError(
-            f"{ob.name} shares its data with {others[0]}: make it a single user, or let it go back "
-            "to rest"
+            f"{ob.name} shares its data with {others[0]}: make it a single user, or choose the "
+            "shape At Rest"
         )
     if getattr(ob.data, "shape_keys", None):
-        raise RefusalError(f"{ob.name} has shape keys: apply them first, or let it go back to rest")
+        raise RefusalError(
+            f"{ob.name} has shape keys: apply them first, or choose the shape At Rest"
+        )
 
 
 def _posed(surface: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> PosedSurface | None:
@@ -142,8 +144,8 @@ def _freeze(
     yield 0.0
     if any(len(attributes.read(data, name)) != len(v) for name, v in frozen.values.items()):
         raise RefusalError(
-            f"The modifier by which {ob.name} follows makes another number of points of it: let it "
-            "go back to rest"
+            f"The modifier by which {ob.name} follows makes another number of points of it: unbind "
+            "it with the shape At Rest"
         )
     if all(np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()):
         return frozen  # it is at rest, because its tables do not fit
