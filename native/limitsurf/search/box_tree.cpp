@@ -6,17 +6,19 @@
 #include <limits>
 #include <numeric>
 
-#include "limitsurf/interruption_point.h"
+#include "limitsurf/parallel.h"
 
 namespace limitsurf {
 
-BoxF::BoxF() {
+BoxF BoxF::empty() {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  low << kInfinity, kInfinity, kInfinity, 0;
-  high << -kInfinity, -kInfinity, -kInfinity, 0;
+  BoxF box;
+  box.low << kInfinity, kInfinity, kInfinity, 0;
+  box.high << -kInfinity, -kInfinity, -kInfinity, 0;
+  return box;
 }
 
-BoxF::BoxF(const Box& box) : BoxF() {
+BoxF::BoxF(const Box& box) : BoxF(empty()) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (int i = 0; i < 3; ++i) {
     low[i] = std::nextafter(static_cast<float>(box.low[i]), -kInfinity);
@@ -37,23 +39,46 @@ float BoxF::halfArea() const {
 class BoxTree::Builder {
  public:
   Builder(const std::vector<BoxF>& leaves, std::vector<std::int32_t>& order,
-          std::vector<Node>& nodes)
+          UnsetVector<Node>& nodes)
       : leaves_(leaves), order_(order), nodes_(nodes) {
     order_.resize(leaves.size());
     std::iota(order_.begin(), order_.end(), 0);
   }
 
-  void build() {
+  void build(int threads) {
     if (leaves_.empty()) {
       return;
     }
-    nodes_.reserve(leaves_.size());
-    const Part all{0, static_cast<std::int32_t>(leaves_.size())};
+    const Part all{0, static_cast<std::int32_t>(leaves_.size()), 0, 1};
     if (all.size() == 1) {
-      nodes_.push_back({{leaves_[0], BoxF()}, {~0, ~0}});
-    } else {
-      addNode(all, 1);
+      nodes_.push_back({{leaves_[0], BoxF::empty()}, {~0, ~0}});
+      return;
     }
+    nodes_.resize(leaves_.size() - 1);
+    // Large parts are divided one level of the tree after the other, and each of the others is left
+    // to one thread.
+    std::vector<Part> large{all}, halves, whole;
+    while (!large.empty()) {
+      halves.resize(2 * large.size());
+      parallelFor(large.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          setNode(large[i], &halves[2 * i]);
+        }
+      });
+      large.clear();
+      for (const Part& half : halves) {
+        if (half.size() > kLeavesPerTask) {
+          large.push_back(half);
+        } else if (half.size() > 1) {
+          whole.push_back(half);
+        }
+      }
+    }
+    parallelFor(whole.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        setNodes(whole[i]);
+      }
+    });
   }
 
  private:
@@ -62,37 +87,42 @@ class BoxTree::Builder {
   /// Parts at this depth and below are cut into halves of equal number, which reach single leaves
   /// within 32 more levels.
   static constexpr int kHeuristicDepth = kMostDepth - 32;
+  /// The leaves of a part that one thread divides to the end: a millisecond.
+  static constexpr std::int32_t kLeavesPerTask = 1 << 12;
 
-  /// Leaves of parts that are divided between two interruption points: some milliseconds.
-  static constexpr std::int32_t kLeavesPerPass = 1 << 16;
-
+  /// Some of the leaves and, if they are more than one, the node over them and its depth.
   struct Part {
-    std::int32_t begin, end;
+    std::int32_t begin, end, node;
+    int depth;
     std::int32_t size() const { return end - begin; }
   };
 
-  /// Adds the node over a part and all nodes below it. Returns its number.
-  std::int32_t addNode(const Part& part, int depth) {
-    const std::int32_t index = static_cast<std::int32_t>(nodes_.size());
-    nodes_.emplace_back();
-    looked_at_ += part.size();
-    if (looked_at_ >= kLeavesPerPass) {
-      InterruptionPoint::pass();
-      looked_at_ = 0;
+  /// Sets the node over a part, and all nodes below it.
+  void setNodes(const Part& part) {
+    Part halves[2];
+    setNode(part, halves);
+    for (const Part& half : halves) {
+      if (half.size() > 1) {
+        setNodes(half);
+      }
     }
-    const std::int32_t middle = divide(part, depth);
-    const Part halves[2] = {{part.begin, middle}, {middle, part.end}};
+  }
+
+  /// Divides a part of two or more leaves, and sets the node over it.
+  void setNode(const Part& part, Part halves[2]) {
+    const std::int32_t middle = divide(part);
+    halves[0] = {part.begin, middle, part.node + 1, part.depth + 1};
+    halves[1] = {middle, part.end, part.node + halves[0].size(), part.depth + 1};
+    Node& node = nodes_[static_cast<std::size_t>(part.node)];
     for (int side = 0; side < 2; ++side) {
-      BoxF box;
-      for (std::int32_t i = halves[side].begin; i < halves[side].end; ++i) {
+      const Part& half = halves[side];
+      BoxF box = BoxF::empty();
+      for (std::int32_t i = half.begin; i < half.end; ++i) {
         box.include(leaves_[order_[i]]);
       }
-      const std::int32_t child =
-          halves[side].size() == 1 ? ~halves[side].begin : addNode(halves[side], depth + 1);
-      nodes_[index].boxes[side] = box;
-      nodes_[index].children[side] = child;
+      node.boxes[side] = box;
+      node.children[side] = half.size() == 1 ? ~half.begin : half.node;
     }
-    return index;
   }
 
   /// Twice the centre of a leaf's box.
@@ -102,7 +132,7 @@ class BoxTree::Builder {
 
   /// Sorts a part of two or more leaves into two halves, neither of them empty, and returns where
   /// the second begins.
-  std::int32_t divide(const Part& part, int depth) {
+  std::int32_t divide(const Part& part) {
     float low[3], high[3];
     for (int axis = 0; axis < 3; ++axis) {
       low[axis] = std::numeric_limits<float>::infinity();
@@ -117,7 +147,7 @@ class BoxTree::Builder {
       axis = high[i] - low[i] > high[axis] - low[axis] ? i : axis;
     }
     const float extent = high[axis] - low[axis];
-    if (part.size() > 2 && depth < kHeuristicDepth && extent > 0 && std::isfinite(extent)) {
+    if (part.size() > 2 && part.depth < kHeuristicDepth && extent > 0 && std::isfinite(extent)) {
       const std::int32_t middle = divideByArea(part, axis, low[axis], kBins / extent);
       if (middle > part.begin && middle < part.end) {
         return middle;
@@ -138,6 +168,7 @@ class BoxTree::Builder {
       return std::clamp(static_cast<int>((centre(leaf, axis) - low) * scale), 0, kBins - 1);
     };
     BoxF boxes[kBins];
+    std::fill(boxes, boxes + kBins, BoxF::empty());
     std::int32_t counts[kBins] = {};
     for (std::int32_t i = part.begin; i < part.end; ++i) {
       const int b = bin(order_[i]);
@@ -145,14 +176,14 @@ class BoxTree::Builder {
       ++counts[b];
     }
     float right_costs[kBins];
-    BoxF right;
+    BoxF right = BoxF::empty();
     std::int32_t right_count = 0;
     for (int b = kBins - 1; b > 0; --b) {
       right.include(boxes[b]);
       right_count += counts[b];
       right_costs[b] = right.halfArea() * static_cast<float>(right_count);
     }
-    BoxF left;
+    BoxF left = BoxF::empty();
     std::int32_t left_count = 0;
     float best = std::numeric_limits<float>::infinity();
     int cut = 0;
@@ -172,12 +203,12 @@ class BoxTree::Builder {
 
   const std::vector<BoxF>& leaves_;
   std::vector<std::int32_t>& order_;
-  std::vector<Node>& nodes_;
-  std::int32_t looked_at_ = 0;  // leaves of parts since the last interruption point
+  UnsetVector<Node>& nodes_;
 };
 
-BoxTree::BoxTree(const std::vector<BoxF>& leaves, std::vector<std::int32_t>& order) {
-  Builder(leaves, order, nodes_).build();
+BoxTree::BoxTree(const std::vector<BoxF>& leaves, std::vector<std::int32_t>& order, int threads)
+    : leaf_count_(static_cast<std::int32_t>(leaves.size())) {
+  Builder(leaves, order, nodes_).build(threads);
 }
 
 }  // namespace limitsurf

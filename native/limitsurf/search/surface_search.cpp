@@ -80,7 +80,7 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
     }
   }
   std::vector<std::int32_t> order;
-  tree = std::make_unique<WideTree>(BoxTree(boxes, order));
+  tree = std::make_unique<WideTree>(BoxTree(boxes, order, threads), threads);
   leaves.reserve(unordered.size());
   InterruptionStride stride;
   for (const std::int32_t leaf : order) {

@@ -3,19 +3,64 @@
 
 #include <limits>
 
+#include "limitsurf/parallel.h"
+
 namespace limitsurf {
 
 class WideTree::Builder {
  public:
-  Builder(const BoxTree& tree, std::vector<Node>& nodes) : tree_(tree), nodes_(nodes) {}
+  explicit Builder(const BoxTree& tree) : tree_(tree) {}
 
-  /// Adds the node for one of the binary tree and all nodes below it. Returns its number.
-  std::int32_t add(std::int32_t binary) {
+  /// The nodes at the top are gathered first, then those below each of them by one thread each.
+  void build(UnsetVector<Node>& nodes, int threads) {
+    std::vector<Node> top;
+    add(0, tree_.leafCount(), &parts_, top);
+    std::vector<std::vector<Node>> below(parts_.size());
+    parallelFor(parts_.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        add(parts_[i].place, parts_[i].leaves, nullptr, below[i]);
+      }
+    });
+    std::vector<std::int32_t> first{static_cast<std::int32_t>(top.size())};
+    for (const std::vector<Node>& part : below) {
+      first.push_back(first.back() + static_cast<std::int32_t>(part.size()));
+    }
+    nodes.resize(static_cast<std::size_t>(first.back()));
+    copy(top, nodes.data(), [&](std::int32_t child) {
+      return child < kPart ? child : first[static_cast<std::size_t>(child - kPart)];
+    });
+    parallelFor(parts_.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        copy(below[i], nodes.data() + first[i],
+             [&](std::int32_t child) { return first[i] + child; });
+        below[i] = {};
+      }
+    });
+  }
+
+ private:
+  /// The leaves under a node that is left to one thread: a millisecond.
+  static constexpr std::int32_t kLeavesPerTask = 1 << 13;
+  /// The number of a child at the top that is the first node of a part: this and the part's number.
+  static constexpr std::int32_t kPart = std::int32_t{1} << 30;
+
+  /// A node of the binary tree, or one of its leaves.
+  struct Child {
+    BoxF box;
+    std::int32_t place;   ///< as BoxTree::Node::children
+    std::int32_t leaves;  ///< the number of leaves under it
+  };
+
+  /// Adds the node for one of the binary tree, which is over so many leaves, and all nodes below
+  /// it. With `parts`, nodes over kLeavesPerTask leaves or fewer are put there in place of being
+  /// added. Returns the node's number.
+  std::int32_t add(std::int32_t binary, std::int32_t leaves, std::vector<Child>* parts,
+                   std::vector<Node>& nodes) const {
     Child children[kWidth];
-    const int count = gather(binary, children);
-    const auto index = static_cast<std::int32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Node& node = nodes_.back();
+    const int count = gather(binary, leaves, children);
+    const auto index = static_cast<std::int32_t>(nodes.size());
+    nodes.emplace_back();
+    Node& node = nodes.back();
     node.count = count;
     for (int axis = 0; axis < 3; ++axis) {
       Row &low = node.bounds[axis][0], &high = node.bounds[axis][1];
@@ -27,30 +72,35 @@ class WideTree::Builder {
       }
     }
     for (int i = 0; i < kWidth; ++i) {
-      const std::int32_t child = i < count ? children[i].place : ~0;
-      const std::int32_t own = BoxTree::isLeaf(child) ? child : add(child);
-      nodes_[static_cast<std::size_t>(index)].children[i] = own;
+      std::int32_t child = i < count ? children[i].place : ~0;
+      if (!BoxTree::isLeaf(child)) {
+        if (parts && children[i].leaves <= kLeavesPerTask) {
+          child = kPart + static_cast<std::int32_t>(parts->size());
+          parts->push_back(children[i]);
+        } else {
+          child = add(child, children[i].leaves, parts, nodes);
+        }
+      }
+      nodes[static_cast<std::size_t>(index)].children[i] = child;
     }
     return index;
   }
 
- private:
-  struct Child {
-    BoxF box;
-    std::int32_t place;  ///< in the binary tree
-  };
-
-  static Child childOf(const BoxTree::Node& node, int side) {
-    return {node.boxes[side], node.children[side]};
+  /// Sets the two children of a node that is over so many leaves.
+  void open(std::int32_t binary, std::int32_t leaves, Child& low, Child& high) const {
+    const BoxTree::Node& node = tree_.node(binary);
+    const std::int32_t first = BoxTree::isLeaf(node.children[0])   ? 1
+                               : BoxTree::isLeaf(node.children[1]) ? leaves - 1
+                                                                   : node.children[1] - binary;
+    low = {node.boxes[0], node.children[0], first};
+    high = {node.boxes[1], node.children[1], leaves - first};
   }
 
   /// The descendants of a node that become the children of a wide one, in the order of their
   /// leaves: the node in the largest box gives way to its children, until there are enough.
-  int gather(std::int32_t binary, Child out[kWidth]) const {
-    const BoxTree::Node& node = tree_.node(binary);
-    out[0] = childOf(node, 0);
-    out[1] = childOf(node, 1);
-    int count = node.boxes[1].low[0] > node.boxes[1].high[0] ? 1 : 2;  // one of them may be empty
+  int gather(std::int32_t binary, std::int32_t leaves, Child out[kWidth]) const {
+    open(binary, leaves, out[0], out[1]);
+    int count = leaves == 1 ? 1 : 2;  // over a single leaf the second box is empty
     while (count < kWidth) {
       int largest = -1;
       for (int i = 0; i < count; ++i) {
@@ -62,26 +112,35 @@ class WideTree::Builder {
       if (largest < 0) {
         break;
       }
-      const BoxTree::Node& opened = tree_.node(out[largest].place);
+      const Child opened = out[largest];
       for (int i = count; i > largest + 1; --i) {
         out[i] = out[i - 1];
       }
-      out[largest] = childOf(opened, 0);
-      out[largest + 1] = childOf(opened, 1);
+      open(opened.place, opened.leaves, out[largest], out[largest + 1]);
       ++count;
     }
     return count;
   }
 
+  /// Copies nodes, with their children's numbers as `moved(number)`; leaves stay as they are.
+  template <typename Moved>
+  static void copy(const std::vector<Node>& from, Node* to, const Moved& moved) {
+    for (const Node& node : from) {
+      *to = node;
+      for (std::int32_t& child : to->children) {
+        child = isLeaf(child) ? child : moved(child);
+      }
+      ++to;
+    }
+  }
+
   const BoxTree& tree_;
-  std::vector<Node>& nodes_;
+  std::vector<Child> parts_;
 };
 
-WideTree::WideTree(const BoxTree& tree) {
+WideTree::WideTree(const BoxTree& tree, int threads) {
   if (!tree.empty()) {
-    nodes_.reserve(static_cast<std::size_t>(tree.nodeCount()) / 2 + 1);
-    Builder(tree, nodes_).add(0);
-    nodes_.shrink_to_fit();
+    Builder(tree).build(nodes_, threads);
   }
 }
 

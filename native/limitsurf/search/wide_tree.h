@@ -25,8 +25,9 @@ class WideTree {
     std::int32_t count;    ///< the number of children, which come first
   };
 
-  /// The same leaves in the same order, in the same boxes.
-  explicit WideTree(const BoxTree& tree);
+  /// The same leaves in the same order, in the same boxes. The tree does not depend on the number
+  /// of threads. Must not be called from within a parallel loop.
+  explicit WideTree(const BoxTree& tree, int threads = 0);
 
   bool empty() const { return nodes_.empty(); }
   const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
@@ -50,7 +51,7 @@ class WideTree {
 
  private:
   class Builder;
-  std::vector<Node> nodes_;  ///< the root first
+  UnsetVector<Node> nodes_;  ///< the root first
 };
 
 /// What a walk down a tree has still to visit. The last one added of those that are nearest among

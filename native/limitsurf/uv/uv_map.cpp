@@ -9,7 +9,7 @@
 namespace limitsurf {
 
 struct UvMap::Data {
-  Data(const SurfaceData& map, int threads) : patches(map, threads), search(patches) {}
+  Data(const SurfaceData& map, int threads) : patches(map, threads), search(patches, threads) {}
 
   const UvBorders& borders(int threads) const {
     return borders_.get([&] { return std::make_unique<const UvBorders>(patches, threads); });

@@ -41,7 +41,7 @@ void checkPoints(const PlanePoints& points) {
   }
 }
 
-UvSearch::UvSearch(const UvPatches& map)
+UvSearch::UvSearch(const UvPatches& map, int threads)
     : map_(map),
       middle_(map.patches().middle().head<2>().array()),
       scale_(scaleToOwnUnit(map.patches().diagonal())) {
@@ -52,7 +52,7 @@ UvSearch::UvSearch(const UvPatches& map)
     const Point2 low = (in_map.low - middle_) * scale_, high = (in_map.high - middle_) * scale_;
     boxes.emplace_back(Box{{low[0], low[1], 0}, {high[0], high[1], 0}});
   }
-  tree_ = std::make_unique<BoxTree>(boxes, order_);
+  tree_ = std::make_unique<BoxTree>(boxes, order_, threads);
 }
 
 MapLocations UvSearch::locate(const PlanePoints& points, int threads) const {

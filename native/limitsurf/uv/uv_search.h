@@ -15,7 +15,7 @@ namespace limitsurf {
 class UvSearch {
  public:
   /// Refers to `map`.
-  explicit UvSearch(const UvPatches& map);
+  UvSearch(const UvPatches& map, int threads);
 
   MapLocations locate(const PlanePoints& points, int threads) const;
 

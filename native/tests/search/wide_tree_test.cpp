@@ -27,7 +27,7 @@ void visit(const WideTree& tree, std::int32_t index, const BoxF& around, const B
   EXPECT_GE(node.count, boxes.size() > 1 ? 2 : 1);
   EXPECT_LE(node.count, WideTree::kWidth);
   for (int i = 0; i < node.count; ++i) {
-    BoxF own;
+    BoxF own = BoxF::empty();
     for (int axis = 0; axis < 3; ++axis) {
       own.low[axis] = node.bounds[axis][0][i];
       own.high[axis] = node.bounds[axis][1][i];
@@ -49,9 +49,9 @@ void visit(const WideTree& tree, std::int32_t index, const BoxF& around, const B
 
 TEST(WideTree, HasEveryLeafOnceInItsBoxes) {
   Random random(1);
-  for (const int count : {0, 1, 2, 3, 4, 5, 17, 1000, 20000}) {
+  for (const int count : {0, 1, 2, 3, 4, 5, 17, 1000, 20000, 40000}) {
     Boxes boxes;
-    BoxF around;
+    BoxF around = BoxF::empty();
     for (int i = 0; i < count; ++i) {
       const Vector3 low = random.vector(1);
       boxes.emplace_back(Box{low, low + 0.01 * (random.vector(1) + Vector3::Ones())});
@@ -68,6 +68,30 @@ TEST(WideTree, HasEveryLeafOnceInItsBoxes) {
     EXPECT_EQ(walk.nodes, tree.nodeCount());
     if (count >= 1000) {  // nodes are nearly full
       EXPECT_LE(tree.nodeCount(), count / 2);
+    }
+  }
+}
+
+/// Enough leaves that threads share them.
+TEST(WideTree, DoesNotDependOnTheNumberOfThreads) {
+  Random random(3);
+  Boxes boxes;
+  for (int i = 0; i < 50000; ++i) {
+    const Vector3 low = random.vector(1);
+    boxes.emplace_back(Box{low, low + 0.01 * (random.vector(1) + Vector3::Ones())});
+  }
+  std::vector<std::int32_t> order, other_order;
+  const WideTree tree(BoxTree(boxes, order, 1), 1), other(BoxTree(boxes, other_order, 0), 0);
+  EXPECT_EQ(order, other_order);
+  ASSERT_EQ(tree.nodeCount(), other.nodeCount());
+  for (std::int32_t i = 0; i < tree.nodeCount(); ++i) {
+    const WideTree::Node &a = tree.node(i), &b = other.node(i);
+    EXPECT_EQ(a.count, b.count);
+    EXPECT_TRUE(std::equal(a.children, a.children + WideTree::kWidth, b.children));
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int end = 0; end < 2; ++end) {
+        EXPECT_TRUE((a.bounds[axis][end] == b.bounds[axis][end]).all());
+      }
     }
   }
 }
