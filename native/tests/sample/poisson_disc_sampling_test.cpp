@@ -27,8 +27,8 @@ double trialsPerPoint(Cage cage) {
   for (const auto& position : cage.positions.rowwise()) box.include(position.transpose());
   const double expected = 2. * static_cast<double>(cage.faces.size());
   const double radius = std::sqrt(0.7 * surfaceArea(surface) / expected);
-  PoissonDiscSampling sampling(patches, box, DensityField(), radius, AreaSampler::kGap, expected, 1,
-                               0);
+  const DensityField everywhere;
+  PoissonDiscSampling sampling(patches, box, everywhere, radius, AreaSampler::kGap, expected, 1, 0);
   const std::size_t points = sampling.run([](std::size_t) {}).at.size();
   return static_cast<double>(sampling.trials()) / static_cast<double>(points);
 }
