@@ -17,7 +17,7 @@ import scenes
 from figures.parity import zoo as parity_zoo
 from limit_surface import ids
 from limit_surface.errors import CancelledError
-from limit_surface.reading import attributes, cage, subdivided_mesh
+from limit_surface.reading import attributes, cage, displayed_mesh, subdivided_mesh
 from limit_surface.report import distances
 from limit_surface.tasks import watched_operator as watched_module
 from limit_surface.tasks.watched_operator import WatchedOperator
@@ -370,19 +370,19 @@ def test_page_has_an_example_that_runs(capsys):
     assert largest > mean > 0
 
 
-def watched(**chosen):
+def watched(levels="VIEWPORT"):
     """Returns a stand-in for the operator in plain Python, because Blender makes no operators
     without a window, and a context whose window only records calls.
     """
     kind = bpy.types.OBJECT_OT_limit_report
-    own = ("start", "finish", "_kinds", "_report", "too_large", "cancelled")
+    own = ("start", "finish", "_pieces", "_kinds", "_report", "too_large", "cancelled")
     cls = type("StandIn", (WatchedOperator,), {name: getattr(kind, name) for name in own})
     operator = cls()
     operator.properties, operator.bl_rna = operator, bpy.ops.object.limit_report.get_rna_type()
-    operator.levels, operator.level, operator.full_color = "VIEWPORT", 3, 0.0
+    operator.levels, operator.level, operator.full_color = levels, 3, 0.0
     operator.report = MagicMock()
     context = MagicMock(wraps=bpy.context)
-    context.active_object = bpy.context.active_object
+    context.active_object, context.scene = bpy.context.active_object, bpy.context.scene
     context.window_manager, context.workspace = MagicMock(), MagicMock()
     return operator, context
 
@@ -441,6 +441,34 @@ def test_escape_leaves_nothing(slowly):
         job.result()
     assert (scenes.file_contents(), sorted(ob.data.attributes.keys())) == before
     assert ids.REPORT not in ob
+
+
+def test_escape_is_heard_between_the_meshes(monkeypatch):
+    """Blender may take seconds to make each of them."""
+    ob = parity_zoo.add("sheet")
+    scenes.activate(ob)
+    monkeypatch.setattr(watched_module, "PATIENCE", 0.0)
+    read = []
+    monkeypatch.setattr(displayed_mesh, "read", lambda *arguments: read.append(arguments[-1]))
+    operator, context = watched("BOTH")
+    assert operator.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
+    operator._job._step()
+    assert read == ["VIEWPORT"]
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert read == ["VIEWPORT"]
+    assert ids.REPORT not in ob
+
+
+def test_meshes_of_different_frames_are_not_compared(monkeypatch):
+    scenes.activate(parity_zoo.add("sheet"))
+    monkeypatch.setattr(watched_module, "PATIENCE", 0.0)
+    operator, context = watched("BOTH")
+    assert operator.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
+    operator._job._step()
+    bpy.context.scene.frame_set(5)
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    (_kind, reason), _ = operator.report.call_args
+    assert reason == "The frame has changed meanwhile: stop the playback first"
 
 
 def test_what_has_gone_meanwhile(slowly):

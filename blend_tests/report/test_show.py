@@ -9,9 +9,9 @@ import pages
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.reading import attributes
+from limit_surface.reading import attributes, cage
 from limit_surface.report import show_operator
-from limit_surface.subsurf import shown
+from limit_surface.subsurf import setup, shown
 
 
 def cube():
@@ -74,6 +74,29 @@ def test_more_levels_come_closer(capfd):
         text = show(capfd, levels=levels)
         distances.append(float(text.split("at most ")[1].split(" from")[0]))
     assert distances[0] > 2 * distances[1] > 4 * distances[2] > 0
+
+
+@pytest.mark.parametrize("faces", ["fan", "polygon"])
+def test_very_many_sides_get_a_low_quality(faces, capfd):
+    """Blender's time grows with the cube of the sides: at the full quality 300 take a minute."""
+    around = np.linspace(0, 2 * np.pi, 300, endpoint=False)
+    positions = [(np.cos(a), np.sin(a), 0.1 * np.cos(3 * a)) for a in around]
+    if faces == "fan":
+        positions.append((0, 0, 0.5))
+        found = [(i, (i + 1) % 300, 300) for i in range(300)]
+    else:
+        found = [range(300)]
+    ob = scenes.add_mesh("Disc", positions, found)
+    text = show(capfd)
+    assert (ob.modifiers[0].quality, ob.modifiers[0].levels) == (1, 3)
+    assert "Warning: Quality is 1, because at more Blender would take seconds" in text
+    assert farthest_vertex(ob) < 0.01
+
+
+def test_many_sides_get_the_full_quality():
+    ob = scenes.add_mesh("Disc", [(np.cos(a), np.sin(a), 0) for a in range(100)], [range(100)])
+    found = cage.read(ob, bpy.context.evaluated_depsgraph_get())
+    assert setup.fitting_quality(found) == 10
 
 
 def test_later_modifiers_are_named(capfd):

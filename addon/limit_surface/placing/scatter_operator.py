@@ -179,7 +179,9 @@ class ScatterOperator(
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
         if self._adds_subsurf(surface):
-            setup.add(surface, made.ground.cage.face_sizes)
+            quality = setup.add(surface, made.ground.cage).quality
+            if quality < setup.QUALITY:
+                self.report({"WARNING"}, f"Quality is {quality}, {setup.LOW_QUALITY_REASON}")
         ob = self.add(context, surface, made.things)
         how = ""
         if made.bindings:
@@ -291,7 +293,7 @@ class ScatterOperator(
         if not self._adds_subsurf(ob):
             return self._read(ob, depsgraph)
         setup.check_editable(ob)
-        with setup.added(ob, cage.read(ob, depsgraph).face_sizes):
+        with setup.added(ob, cage.read(ob, depsgraph)):
             return self._read(ob, depsgraph)
 
     def _read(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Order:

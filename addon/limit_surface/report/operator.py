@@ -7,9 +7,11 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .. import ids
+from ..errors import RefusalError
 from ..reading import cage, displayed_mesh
-from ..tasks.job import Job, Progress
+from ..tasks.job import Progress
 from ..tasks.object_keys import ObjectKey
+from ..tasks.piecewise_job import Pieces, PiecewiseJob, aside
 from ..tasks.properties import draw_summary
 from ..tasks.refused_faces import left_out
 from ..tasks.watched_operator import WatchedOperator
@@ -82,20 +84,8 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
 
     def start(self, context: bpy.types.Context) -> set[str]:
         self.summary = ""
-        ob, depsgraph = context.active_object, context.evaluated_depsgraph_get()
-        found = cage.read(ob, depsgraph)
-        if not cage.why_not_on_mesh(ob, found):
-            check_attributes(ob)
-        meshes = {
-            name: displayed_mesh.read(ob, depsgraph, found, kind)
-            for name, kind in self._kinds().items()
-        }
-        key = ObjectKey.of(ob)
-
-        def work(progress: Progress) -> Measured:
-            return Measured(key, found, *measure_all(found, meshes, progress))
-
-        return self.watch(context, Job(work), f"Measuring {ob.name}")
+        name = context.active_object.name
+        return self.watch(context, PiecewiseJob(self._pieces(context)), f"Measuring {name}")
 
     def finish(self, context: bpy.types.Context, made: Measured) -> set[str]:
         ob = made.surface.find()
@@ -111,6 +101,28 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
             store_numbers(ob, kept)
         self._report(ob, made.cage, kept, made.refused)
         return {"FINISHED"}
+
+    def _pieces(self, context: bpy.types.Context) -> Pieces:
+        """Reads one displayed mesh in each piece: Blender may take seconds to make it. Then all are
+        measured aside.
+        """
+        key, frame = ObjectKey.of(context.active_object), context.scene.frame_float
+        meshes: dict[str, displayed_mesh.DisplayedMesh] = {}
+        ob, depsgraph = key.find(), context.evaluated_depsgraph_get()
+        found = cage.read(ob, depsgraph)
+        if not cage.why_not_on_mesh(ob, found):
+            check_attributes(ob)
+        for name, kind in self._kinds().items():
+            ob, depsgraph = key.find(), context.evaluated_depsgraph_get()
+            if context.scene.frame_float != frame:
+                raise RefusalError("The frame has changed meanwhile: stop the playback first")
+            meshes[name] = displayed_mesh.read(ob, depsgraph, found, kind)
+            yield 0.0
+
+        def work(progress: Progress) -> Measured:
+            return Measured(key, found, *measure_all(found, meshes, progress))
+
+        return (yield from aside(work))
 
     def _kinds(self) -> dict[str, displayed_mesh.Kind]:
         if self.levels == "LEVEL":

@@ -47,7 +47,7 @@ class OBJECT_OT_limit_show(WatchedOperator, LargeCountProperty, bpy.types.Operat
 
     levels: IntProperty(
         name="Levels",
-        description="Number of subdivisions in the viewport. All vertices lie on the limit "
+        description="Number of subdivisions in the viewport. The vertices lie on the limit "
         "surface. With more subdivisions the polygons between the vertices "
         "follow it more closely",
         default=setup.LEVELS,
@@ -80,7 +80,7 @@ class OBJECT_OT_limit_show(WatchedOperator, LargeCountProperty, bpy.types.Operat
         found = cage.read(ob, depsgraph)
         polygons = int(subdivided_mesh.polygon_counts(found.face_sizes, self.levels).sum())
         RequestSize("polygons", polygons, 1).check(self.allow_large)
-        display = LimitDisplay(self.levels)
+        display = LimitDisplay.of(found, self.levels)
         mesh = displayed_mesh.read_as_set_up(ob, depsgraph, found, display)
         key, count = ObjectKey.of(ob), len(mesh.quads.corners)
 
@@ -111,6 +111,8 @@ class OBJECT_OT_limit_show(WatchedOperator, LargeCountProperty, bpy.types.Operat
             notes.append(f"not measured: {', '.join(found.ignored)} after {subsurf.name}")
         if shown.shown_level(subsurf, context.scene) < self.levels:
             self.report({"WARNING"}, f"Simplify shows level {level} instead of {self.levels}")
+        if subsurf.quality < setup.QUALITY:
+            self.report({"WARNING"}, f"Quality is {subsurf.quality}, {setup.LOW_QUALITY_REASON}")
         self.report({"INFO"}, "; ".join(notes))
         return {"FINISHED"}
 

@@ -15,19 +15,38 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..reading import rules, subdivided_mesh
+from ..reading import cage, rules, subdivided_mesh
 
 NAME = "Subdivision"
-QUALITY = 10  # with less, vertices near irregular places are beside the limit surface
+QUALITY = 10  # the full one; with less, vertices near irregular places are beside the limit surface
 LEVELS = 3  # enough for polygons that look smooth
 MOST_POLYGONS = 1_000_000  # more of them make the viewport slow
+
+# From quality 2 on, the time that Blender's modifier needs for a vertex of many edges, or for a
+# face of many sides, grows with the cube of their number, at each evaluation: 1 to 2 s at 100.
+LOW_QUALITY = 1  # takes less than a twentieth of that
+FEW_SIDES = 32  # up to here that time is short, however many such vertices and faces there are
+MOST_CUBES = 100**3  # the sum of these cubes up to which the modifier gets the full quality
+
+
+LOW_QUALITY_REASON = (
+    "because at more Blender would take seconds for vertices and faces of so many sides: near them "
+    "the displayed mesh is a little beside the limit surface"
+)
 
 
 @dataclass(frozen=True)
 class LimitDisplay:
-    """The settings that put the vertices of the displayed mesh on the limit surface."""
+    """The settings that put the vertices of the displayed mesh on the limit surface, or near it
+    where the quality is low.
+    """
 
     levels: int
+    quality: int
+
+    @classmethod
+    def of(cls, found: cage.Cage, levels: int) -> LimitDisplay:
+        return cls(levels, fitting_quality(found))
 
     def apply(self, ob: bpy.types.Object) -> bpy.types.SubsurfModifier:
         """Sets up the modifier whose rules the surface follows, or adds one."""
@@ -38,7 +57,7 @@ class LimitDisplay:
         subsurf.show_viewport = True
         subsurf.levels = self.levels
         subsurf.use_limit_surface = True
-        subsurf.quality = QUALITY
+        subsurf.quality = self.quality
         return subsurf
 
     def holds(self, subsurf: bpy.types.SubsurfModifier) -> bool:
@@ -47,7 +66,7 @@ class LimitDisplay:
             subsurf.show_viewport
             and subsurf.levels == self.levels
             and subsurf.use_limit_surface
-            and subsurf.quality == QUALITY
+            and subsurf.quality == self.quality
         )
 
 
@@ -72,20 +91,27 @@ def fitting_levels(face_sizes: np.ndarray) -> int:
     return 1
 
 
-def add(ob: bpy.types.Object, face_sizes: np.ndarray) -> bpy.types.SubsurfModifier:
-    """Adds a modifier that shows the limit surface of a control mesh whose faces have so many
-    corners.
+def fitting_quality(found: cage.Cage) -> int:
+    """Returns the full quality, or the low one for cages with such vertices and faces that Blender
+    would be busy for seconds at each evaluation.
     """
+    sides = np.concatenate([found.face_sizes, np.bincount(found.mesh.face_vertices)])
+    many = sides[sides > FEW_SIDES].astype(np.float64)
+    return QUALITY if (many**3).sum() <= MOST_CUBES else LOW_QUALITY
+
+
+def add(ob: bpy.types.Object, found: cage.Cage) -> bpy.types.SubsurfModifier:
+    """Adds a modifier that shows the limit surface of the object's cage."""
     check_editable(ob)
-    return LimitDisplay(fitting_levels(face_sizes)).apply(ob)
+    return LimitDisplay.of(found, fitting_levels(found.face_sizes)).apply(ob)
 
 
 @contextmanager
-def added(ob: bpy.types.Object, face_sizes: np.ndarray) -> Iterator[None]:
+def added(ob: bpy.types.Object, found: cage.Cage) -> Iterator[None]:
     """Gives the object such a modifier for as long as the context lasts, so that everything is read
     as it will be.
     """
-    subsurf = add(ob, face_sizes)
+    subsurf = add(ob, found)
     try:
         yield
     finally:
