@@ -8,6 +8,7 @@ import pytest
 import scenes
 from follow_scenes import deforming
 from limit_surface import ids
+from limit_surface.placing import live
 from limit_surface.reading import attributes
 from live_scenes import follow
 
@@ -100,3 +101,43 @@ def test_what_was_joined_goes_to_its_place_when_something_else_is_bound():
     join(thing, into)
     scenes.add_points(ob, follow="NODES")
     check(ob, into)
+
+
+def without_frames(hair: bpy.types.Object) -> np.ndarray:
+    """Deletes frames at rest as earlier versions did when strands were joined, and returns which
+    strands have none.
+    """
+    rotation = attributes.read(hair.data, ids.REST_ROTATION)
+    has_none = np.arange(len(rotation)) % 3 == 0
+    rotation[has_none] = 0
+    attributes.write(hair.data, ids.REST_ROTATION, "QUATERNION", "CURVE", rotation)
+    hair.data.update_tag()
+    return has_none
+
+
+def test_a_file_of_an_earlier_version_says_what_stays_still(tmp_path, capfd):
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow="LIVE")
+    expected = f"Limit Hair: {without_frames(hair).sum()} strands stay still, because an earlier"
+    path = str(tmp_path / "earlier.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert f"Limit Surface: {expected}" in capfd.readouterr().out
+    bpy.context.scene.frame_set(5)
+    assert live.trouble(bpy.data.objects["Limit Hair"]).startswith(expected)
+
+
+@pytest.mark.parametrize("how", ["LIVE", "NODES", "rebind"])
+def test_strands_of_an_earlier_version_are_bound_where_they_are(how):
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow="LIVE")
+    without_frames(hair)
+    if how == "rebind":
+        scenes.activate(hair)
+        assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    else:
+        follow(hair, mode=how)
+    assert attributes.read(hair.data, ids.REST_ROTATION).any(axis=1).all()
+    if how != "NODES":
+        assert not live.trouble(hair)
+    check(ob, hair)

@@ -11,8 +11,9 @@ from __future__ import annotations
 import bpy
 
 from .. import native
-from ..placing import following
+from ..placing import following, live
 from ..placing.follow_state import State, Trouble, surfaces
+from ..placing.followers import live_modifier_of
 from ..reading import cage
 from ..tasks.object_keys import ObjectKey
 
@@ -84,6 +85,9 @@ def _report() -> None:
         if state:
             for trouble in state.troubles(_signatures.get(ObjectKey.of(surface))):
                 print(f"Limit Surface: {trouble.text}")
+    for ob in bpy.context.scene.objects:
+        if live_modifier_of(ob) and (text := live.trouble_in_file(ob)):
+            print(f"Limit Surface: {text}")
 
 
 _HANDLERS = (

@@ -15,6 +15,7 @@ from .. import ids
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
+from ..tasks.counting import counted
 from ..tasks.object_keys import ObjectKey
 from . import live_surface, live_thing
 from .followers import sharers
@@ -35,8 +36,23 @@ def forget() -> None:
 
 
 def trouble(ob: bpy.types.Object) -> str:
-    """Returns the reason why the object does not follow at present, or None."""
-    return _troubles.get(ObjectKey.of(ob), "")
+    """Returns the reason why the object, or a part of it, does not follow at present."""
+    return _troubles.get(ObjectKey.of(ob), "") or _lost_frames(ob, _thing(ob).lost_frames)
+
+
+def trouble_in_file(ob: bpy.types.Object) -> str:
+    """Returns what an earlier version of the extension has left behind that does not follow."""
+    return _lost_frames(ob, live_thing.lost_frames(ob.data))
+
+
+def _lost_frames(ob: bpy.types.Object, count: int) -> str:
+    if not count:
+        return ""
+    things = counted(count, "strands" if ob.type == "CURVES" else "points")
+    return (
+        f"{ob.name}: {things} stay still, because an earlier version of the extension has deleted "
+        "their frames at rest. Follow Limit Surface binds them where they are"
+    )
 
 
 def is_enabled(scene: bpy.types.Scene) -> bool:

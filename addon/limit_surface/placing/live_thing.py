@@ -22,7 +22,7 @@ from mathutils import Matrix
 
 from .. import ids
 from ..reading import attributes, linked_attributes
-from .places import NOWHERE, ROOT_KINDS, domain_of, lacking, root_attributes
+from .places import NOWHERE, ROOT_KINDS, domain_of, lacking, root_attributes, without_frame
 
 if TYPE_CHECKING:
     import limitsurf
@@ -95,6 +95,17 @@ def added(data: bpy.types.ID) -> np.ndarray:
     return is_new
 
 
+def lost_frames(data: bpy.types.ID) -> int:
+    """Returns the number of strands that stay still because an earlier version of the extension has
+    deleted their frames at rest.
+    """
+    if missing(data):
+        return 0
+    has_none = without_frame(attributes.read(data, ids.REST_ROTATION))
+    has_face = attributes.read(data, ids.FACE) != NOWHERE
+    return int((has_none & has_face & ~added(data)).sum())
+
+
 def begin_anew(data: bpy.types.ID, strands: np.ndarray) -> None:
     """Makes strands new ones that have got another place: they are at rest where they are now."""
     if not missing(data):
@@ -154,6 +165,7 @@ class LiveThing:
         self._rests: set[str] = set()  # attributes at rest that the buffers hold
         self._prints = np.empty(0, np.int32)  # the fingerprints that were written last
         self._known = np.empty(0, np.int32)  # the same, but not 0 for new strands
+        self.lost_frames = 0  # the number of strands that stay still because they have none
 
     def read_anew(self) -> None:
         """Is called when somebody may have changed the data-block."""
@@ -281,6 +293,7 @@ class LiveThing:
             return self._poser
         self._rests.clear()
         binding = {name: attributes.read(data, name) for name in ROOT_KINDS}
+        self.lost_frames = lost_frames(data)
         binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
         if ids.LIVE_FINGERPRINT in data.attributes:
             binding[ids.REST_ROTATION][added(data)] = 0

@@ -30,6 +30,11 @@ def domain_of(data: bpy.types.ID) -> str:
     return "CURVE" if isinstance(data, bpy.types.Curves) else "POINT"
 
 
+def without_frame(rotation: np.ndarray) -> np.ndarray:
+    """Tells which rotations at rest (n, 4) are none."""
+    return ~rotation.any(axis=1)
+
+
 def root_attributes(data: bpy.types.ID) -> dict[str, tuple[str, str]]:
     """Returns the type and the domain of each attribute of locations in data of this type."""
     return {name: (kind, domain_of(data)) for name, kind in ROOT_KINDS.items()}
@@ -50,6 +55,8 @@ def lacking(data: bpy.types.ID, needed: Mapping[str, tuple[str, str]]) -> str:
 class Places:
     """The locations of the elements that have one. All attributes of curves that were added later
     have Blender's default values, and snapped hair that is bound nowhere has the face NOWHERE.
+    Earlier versions deleted the frames at rest of strands that were joined to hair that followed
+    live: without a frame a strand has no place.
     """
 
     count: int
@@ -71,15 +78,15 @@ class Places:
     def among(cls, stored: Mapping[str, np.ndarray]) -> Places:
         """Returns those of elements for which these attributes are stored."""
         face, uv = stored[ids.FACE], stored[ids.UV]
+        has_place = (face >= 0) & ~without_frame(stored[ids.REST_ROTATION])
         # the default values mean face 0, where few elements are: only these are looked at
         first = np.flatnonzero(face == 0)
         rotation = stored[ids.REST_ROTATION][first]
         is_default = (
             ~uv[first].any(axis=1)
             & ~stored[ids.REST_ROOT][first].any(axis=1)
-            & (~rotation.any(axis=1) | (rotation == _UNTURNED).all(axis=1))
+            & (rotation == _UNTURNED).all(axis=1)
         )
-        has_place = face >= 0
         has_place[first[is_default]] = False
         rows = np.flatnonzero(has_place)
         return cls(len(face), rows, face[rows], uv[rows].astype(np.float64))
