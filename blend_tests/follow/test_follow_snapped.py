@@ -10,7 +10,7 @@ import scenes
 from follow_scenes import deforming
 from limit_surface import ids
 from limit_surface.placing.followers import live_modifier_of, modifier_of
-from limit_surface.reading import attributes
+from limit_surface.reading import attributes, cage, displayed_mesh
 from live_scenes import FRAMES
 
 
@@ -77,6 +77,34 @@ def test_hair_that_follows_goes_on_in_its_way(follow):
     bpy.context.scene.frame_set(20)
     snap(hair, ob, offset=0.05, follow="NONE")
     assert [modifier.name for modifier in hair.modifiers] == modifiers
+    check(ob, hair)
+
+
+@pytest.mark.parametrize("is_dragged", [False, True])
+@pytest.mark.parametrize("target", ["VIEWPORT", "RENDER"])
+@pytest.mark.parametrize("follow", ["NODES", "LIVE"])
+def test_hair_that_is_snapped_to_displayed_polygons_keeps_its_distance(follow, target, is_dragged):
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, per_side=1, follow=follow) if is_dragged else loose_hair()
+    bpy.context.scene.frame_set(7)
+    if is_dragged:
+        bpy.context.scene.limit_surface.target = ob
+        scenes.activate(hair)
+        assert bpy.ops.view3d.limit_snap_modal(face=5, uv=(0.2, 0.3), element=3, target=target) == {
+            "FINISHED"
+        }
+    else:
+        snap(hair, ob, follow=follow, target=target)
+    chosen = slice(3, 4) if is_dragged else slice(None)
+    face, uv = scenes.locations(hair.data)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    found = cage.read(ob, depsgraph)
+    local = displayed_mesh.read(ob, depsgraph, found, target).positions(face[chosen], uv[chosen])
+    polygons = scenes.transformed(live_scenes.relation(ob, hair), local)
+    shown = live_scenes.follow_truth.shown_strands(hair)[chosen, 0]
+    np.testing.assert_allclose(shown, polygons, atol=2e-5)
+    limit = found.surface().evaluate(face[chosen], uv[chosen]).position
+    assert np.linalg.norm(local - limit, axis=1).max() > 1e-3
     check(ob, hair)
 
 

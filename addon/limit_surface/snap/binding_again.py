@@ -52,6 +52,12 @@ def bind_again(
     return []
 
 
+def will_follow(ob: bpy.types.Object, target: bpy.types.Object, follow: str) -> bool:
+    """Tells whether hair follows the target once it is bound again."""
+    follows_already = live_modifier_of(ob) or modifier_of(ob)
+    return bool(follows_already) or follow == "LIVE" or follows(follow, target)
+
+
 def _change_surface(ob: bpy.types.Object, target: bpy.types.Object) -> None:
     """Makes hair that follows another surface follow the target. Its strands are at rest there as
     they are now.

@@ -13,6 +13,7 @@ class Choices:
     keep_children: bool
     hair: str  # ROOT, STRAND, BLEND
     keep_length: bool
+    follow: str  # how hair follows from then on that follows nothing yet
 
 
 @dataclass

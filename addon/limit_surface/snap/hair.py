@@ -10,6 +10,7 @@ from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace, unit
 from ..reading import attributes, ragged_rows
 from .aim import Elements, Placement
+from .binding_again import will_follow
 from .choices import Choices, Outcome
 from .hair_binding import HairBinding
 from .strands import Strands
@@ -58,7 +59,10 @@ class SnappedHair:
         strands, rows = self._strands(curves)
         turn = self._turns(curves, strands, placement, choices.align, outcome)
         self._move(strands, rows, placement, turn, choices)
-        outcome.notes += self._binding.write(curves, placement.face, placement.uv, self._matrix)
+        follows = will_follow(self._ob, self._binding.target, choices.follow)
+        outcome.notes += self._binding.write(
+            curves, placement.face, placement.uv, self._matrix, follows
+        )
         self._ob.data.update_tag()
         return outcome
 

@@ -44,6 +44,10 @@ class HairBinding:
                 f"{surface.ob.name}"
             )
 
+    @property
+    def target(self) -> bpy.types.Object:
+        return self._surface.ob
+
     def places(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> Places:
         return self._surface.places(face, uv, space)
 
@@ -58,10 +62,18 @@ class HairBinding:
         return bound, native.limitsurf.rotation_matrices(rotation)
 
     def write(
-        self, curves: np.ndarray, face: np.ndarray, uv: np.ndarray, space: np.ndarray
+        self,
+        curves: np.ndarray,
+        face: np.ndarray,
+        uv: np.ndarray,
+        space: np.ndarray,
+        follows: bool,
     ) -> list[str]:
-        """Writes the binding, and returns remarks for the report."""
-        places = self.places(face, uv, space)
+        """Writes the binding, and returns remarks for the report. What follows the surface follows
+        the limit surface, so that its distance from it is kept where it stands on displayed
+        polygons.
+        """
+        places = self._surface.places(face, uv, space, on_limit=follows)
         self._store(ids.FACE, NOWHERE, curves, face)
         self._store(ids.UV, 0, curves, uv)
         self._store(ids.REST_ROOT, 0, curves, places.position)

@@ -174,7 +174,8 @@ class OBJECT_OT_limit_snap(
         returns.
         """
         aim = self._aim(context)
-        choices = Choices(self.align, self.children == "KEEP", self.hair, self.keep_length)
+        keeps_children = self.children == "KEEP"
+        choices = Choices(self.align, keeps_children, self.hair, self.keep_length, self.follow)
         target = find_target(context)
         check_target(context, target)
         surface = TargetSurface(target, context.evaluated_depsgraph_get(), self.target)

@@ -50,12 +50,15 @@ class TargetSurface:
         """The largest coordinate that occurs in the calculation of positions in the world."""
         return float(np.abs(self.in_world.positions).max())
 
-    def places(self, face: np.ndarray, uv: np.ndarray, space: np.ndarray) -> Places:
+    def places(
+        self, face: np.ndarray, uv: np.ndarray, space: np.ndarray, on_limit: bool = False
+    ) -> Places:
         """Returns where things are put, in the space that the matrix `space` maps to the world.
+        With `on_limit` these are places on the limit surface even where things are put on polygons.
 
         Frames are those of the limit surface even on polygons, which would have kinks between them.
         """
-        if self._shown is None:
+        if self._shown is None or on_limit:
             placed = self._in_object.placed_frames(face, uv)
             places = Places(placed.position, placed.frame)
         else:

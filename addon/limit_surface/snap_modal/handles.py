@@ -15,6 +15,7 @@ from ..errors import RefusalError
 from ..placing.posed_surface import Places, transformed
 from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace
+from ..snap.binding_again import will_follow
 from ..snap.hair_binding import HairBinding
 from ..snap.object_move import ObjectMove
 from ..snap.strands import Strands
@@ -104,7 +105,7 @@ class DraggedStrand:
 
     def __init__(self, ob: bpy.types.Object, curve: int, surface: TargetSurface) -> None:
         self.name = f"strand {curve} of {ob.name}"
-        self._data, self._curve = ob.data, np.array([curve])
+        self._ob, self._data, self._curve = ob, ob.data, np.array([curve])
         self._matrix = np.array(ob.matrix_world, np.float64)
         self._space = WorldSpace(self._matrix)
         shape = PresentShape(ob, bpy.context.evaluated_depsgraph_get())
@@ -138,7 +139,9 @@ class DraggedStrand:
             self._write(name, kept)
 
     def confirm(self, place: Place) -> None:
-        self._binding.write(self._curve, np.array([place.face]), place.uv[None], self._matrix)
+        follows = will_follow(self._ob, self._binding.target, "NONE")
+        face, uv = np.array([place.face]), place.uv[None]
+        self._binding.write(self._curve, face, uv, self._matrix, follows)
         self._data.update_tag()
 
     def _follow(self, tile: int | None) -> None:
