@@ -4,6 +4,7 @@ map has a formula. The UV map is the projection to the x-y plane.
 """
 
 import threading
+from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
@@ -254,6 +255,39 @@ def test_files(tmp_path):
     # Bake into the same image and file again.
     bake(maps={"NORMAL_OBJECT"}, format="EXR_32", name="EXR_32", folder=str(tmp_path))
     assert not bpy.data.images["EXR_32 Normal"].is_dirty
+
+
+def test_images_of_long_names_are_found_again():
+    """Blender cuts off names that are longer than 63 bytes."""
+    how = {"width": 8, "height": 8, "maps": {"POSITION", "NORMAL_TANGENT"}}
+    for name in ("Bowl" * 15, "Schüssel" * 6 + "ü", "Bowl" * 15 + "B"):
+        ob = paraboloid()
+        ob.name = name
+        before = set(bpy.data.images)
+        assert bpy.ops.object.limit_bake_maps(**how) == {"FINISHED"}
+        made = set(bpy.data.images) - before
+        assert len(made) == 2
+        assert all(image.name.startswith(name[:30]) for image in made)
+        assert {image.name.split(" ", 1)[1] for image in made} == {"Position", "Tangent Normal"}
+        bpy.data.objects.remove(ob)
+        ob = paraboloid()
+        ob.name = name
+        assert bpy.ops.object.limit_bake_maps(**how) == {"FINISHED"}
+        assert set(bpy.data.images) - before == made
+        bpy.data.objects.remove(ob)
+
+
+def test_files_of_different_names_are_different(tmp_path):
+    names = ("a/b", "a\\b", "a_b", "../a", "頭", "手", "c.001", "c_001")
+    paraboloid()
+    for name in names:
+        bake(maps={"POSITION"}, name=name, folder=str(tmp_path))
+        path = Path(bpy.path.abspath(bpy.data.images[f"{name} Position"].filepath))
+        assert path.parent == tmp_path
+    found = sorted(path.name for path in tmp_path.iterdir())
+    assert len(found) == len(names)
+    assert {"a_b_Position.exr", "c.001_Position.exr", "頭_Position.exr"} <= set(found)
+    assert [path.name for path in tmp_path.parent.glob("*.exr")] == []
 
 
 def test_tiles(tmp_path):

@@ -11,7 +11,7 @@ import bpy
 
 from .. import ids
 from ..errors import RefusalError
-from ..images import image_files, image_pixels, material_slots, overlap
+from ..images import image_files, image_names, image_pixels, material_slots, overlap
 from ..images.image_files import EXR_32
 from ..images.image_pixels import FIRST_TILE
 from ..images.texture_operator import TextureOperator
@@ -74,7 +74,8 @@ class OBJECT_OT_limit_bake_displacement(
 
     def finish(self, _context: bpy.types.Context, made: Made) -> set[str]:
         ob, request, measured = made.surface.find(), made.request, made.measured
-        image = self._image(self.image_name or f"{ob.name} Displacement", measured)
+        name = self.image_name or image_names.with_ending(ob.name, " Displacement")
+        image = self._image(name, measured)
         image[ids.DISPLACEMENT] = json.dumps(self._described(request))
         if self.create_material:
             map_name = request.surfaces.found.chosen_uv_map.name

@@ -14,10 +14,11 @@ import bpy
 
 from .. import ids, native
 from ..errors import RefusalError
+from ..tasks import file_names
 from . import bindings
 from .arguments import Arguments
 from .exporters import Subject
-from .frame_files import FrameFiles, file_name
+from .frame_files import FrameFiles
 
 # what has become of a file
 WRITTEN, EXISTED, FAILED = "written", "existed", "failed"
@@ -74,7 +75,7 @@ class Bake:
         remarks = []
         is_shown = False
         for subject in subjects:
-            path = self._files.path(file_name(subject.ob.name), frame)
+            path = self._files.path(file_names.allowed(subject.ob.name), frame)
             if path.is_file() and not self._arguments.overwrite:
                 done[EXISTED] += 1
                 continue
@@ -116,7 +117,8 @@ def _find(arguments: Arguments, scene: bpy.types.Scene) -> list[bpy.types.Object
         if arguments.format.as_rendered and ob.hide_render and not _is_animated(ob):
             raise RefusalError(f"{name} is disabled in renders: its files would be empty")
         found.append(ob)
-    names = Counter(file_name(ob.name).lower() for ob in found)  # some systems ignore the case
+    # some systems ignore the case
+    names = Counter(file_names.allowed(ob.name).lower() for ob in found)
     if name := next((name for name, count in names.items() if count > 1), ""):
         raise RefusalError(f"several objects would be written to the same file {name}")
     return found

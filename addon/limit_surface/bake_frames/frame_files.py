@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -21,8 +20,6 @@ from ..errors import RefusalError
 # unfinished files begin so; one that a killed job has left can be deleted
 PARTIAL = ".partial"
 RECORD = "bake.json"
-
-_FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f]|^\.|[. ]$')
 
 
 class FrameFiles:
@@ -89,11 +86,6 @@ class FrameFiles:
             return json.loads(self._record.read_text())
         except ValueError:
             return None
-
-
-def file_name(name: str) -> str:
-    """Returns the name of an object as it can be part of a file's name everywhere."""
-    return _FORBIDDEN.sub("_", name)
 
 
 @contextmanager

@@ -15,7 +15,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..images import image_files, image_pixels
+from ..images import image_files, image_names, image_pixels
 from ..images.image_files import FileKind
 from .maps import KINDS
 
@@ -30,7 +30,7 @@ class Output:
     size: tuple[int, int]
 
     def image_name(self, map_name: str) -> str:
-        return f"{self.name} {KINDS[map_name].name}"
+        return image_names.with_ending(self.name, f" {KINDS[map_name].name}")
 
     def check(self, maps: tuple[str, ...]) -> None:
         """Raises RefusalError for what could not be written after the bake."""
@@ -105,7 +105,7 @@ class Output:
         assert self.folder is not None
         try:
             for name, tiles in baked.items():
-                stem = bpy.path.clean_name(self.image_name(name))
+                stem = image_names.file_stem(self.image_name(name))
                 for number, pixels in tiles.items():
                     middle = f".{number}" if len(self.tiles) > 1 else ""
                     path = self.folder / f"{stem}{middle}{self.kind.suffix}"

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..images import image_pixels, material_slots, overlap, texel_places
+from ..images import image_names, image_pixels, material_slots, overlap, texel_places
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from . import colours, inputs, material
@@ -131,7 +131,7 @@ def order(
 
 def _target(properties: bpy.types.OperatorProperties) -> str | NewImage:
     if properties.output == "NEW":
-        name = properties.target or f"{properties.image} Projected"
+        name = properties.target or image_names.with_ending(properties.image, " Projected")
         return NewImage(name, properties.width, properties.height, properties.use_float)
     if not properties.target:
         raise RefusalError("Choose an image to paint into")
