@@ -40,6 +40,16 @@ errors: tuple[type[Exception], ...] = (
 refusals: tuple[type[Exception], ...] = (RefusalError, *errors)
 
 
+def sentence(reason: object) -> str:
+    """Returns the text of an error as a sentence for users: errors of the library begin with the
+    name of what is wrong, in lower case. Texts of the add-on may begin with the name of an object.
+    """
+    text = str(reason)
+    if isinstance(reason, ValueError):
+        text = text[:1].upper() + text[1:]
+    return text
+
+
 def available() -> bool:
     return limitsurf is not None
 

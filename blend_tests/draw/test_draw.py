@@ -172,6 +172,11 @@ def test_refusals_change_nothing(target, properties, reason):
     assert scenes.file_contents() == before
 
 
+def test_what_the_library_refuses_is_a_sentence(target):
+    with pytest.raises(RuntimeError, match=r"^Error: Row \d+: face 999 "):
+        draw([drawn.Given([0, 999], [(0.5, 0.5), (0.5, 0.5)])])
+
+
 def test_strokes_at_one_place_are_left_out(target):
     draw([WITHIN, ONE_PLACE, ACROSS])
     assert len(bpy.context.active_object.data.splines) == 2

@@ -132,7 +132,7 @@ def test_refusals(target):
     refused("Select one object to drag")
     ob = pin(target)
     refused("Dragging needs a window and a mouse", face=-1)
-    refused("face", face=1000)
+    refused("Error: Row 0: face 1000", face=1000)
     ob.lock_location = (True, True, True)
     refused("Pin cannot be put there: the location or rotation is locked")
     ob.lock_location = (False, False, False)

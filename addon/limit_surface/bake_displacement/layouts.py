@@ -87,7 +87,7 @@ def of(
                 surfaces.base.face_count, int(properties.face_resolution)
             )
         except ValueError as error:
-            raise TooLargeError(str(error)) from error
+            raise TooLargeError(native.sentence(error)) from error
         texel_places.check_size(layout.width, layout.height, 1, 1, properties.allow_large)
         return PtexLayout(layout)
     tiles = texel_places.tiles_of(surfaces.found) if properties.use_tiles else [FIRST_TILE]

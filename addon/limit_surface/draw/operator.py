@@ -184,5 +184,5 @@ class VIEW3D_OT_limit_draw(
         return {"FINISHED"}
 
     def _refuse(self, reason: object) -> set[str]:
-        self.report({"ERROR"}, str(reason))
+        self.report({"ERROR"}, native.sentence(reason))
         return {"CANCELLED"}

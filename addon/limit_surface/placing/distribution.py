@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .. import native
 from ..errors import RefusalError
 from ..tasks.job import Progress
 from .border import Amount, BorderDirections, BorderLayout, Turn, where_rows_end
@@ -97,8 +98,8 @@ class Distribution:
                 apart = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
                 return Scattered(_rounded(apart), float(apart.radius))
         except ValueError as error:  # there is no place for them, or no space for so many
-            reason = str(error) if region.sums.largest else NOWHERE
-            raise RefusalError(f"{reason[0].upper()}{reason[1:]}") from error
+            reason = native.sentence(error) if region.sums.largest else NOWHERE
+            raise RefusalError(reason) from error
 
     def _check_distance(self) -> None:
         if self.kind == "UNIFORM" and self.amount == "DISTANCE":
@@ -139,7 +140,7 @@ class Distribution:
                 curves = region.edge_curves()
                 found = self.border.scatter(region.surface, curves, amount, self.seed, progress)
         except ValueError as error:
-            raise RefusalError(f"{str(error)[0].upper()}{str(error)[1:]}") from error
+            raise RefusalError(native.sentence(error)) from error
         at = _rounded(found)
         stays = self._staying(region, at)
         directions = BorderDirections(found.outward, found.tangent, self.turn)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 import bpy
 import numpy as np
 
-from .. import ids
+from .. import ids, native
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
@@ -234,14 +234,14 @@ def _pose(
     try:
         on = _surface(surface, depsgraph)
     except live_surface.errors as error:
-        _refuse(things, str(error))
+        _refuse(things, native.sentence(error))
         return
     good = list(_each(things, lambda ob: _take_up(ob, surface, on, depsgraph)))
     try:
         on.read(surface, depsgraph)
     except live_surface.errors as error:
         _surfaces.pop(ObjectKey.of(surface), None)
-        _refuse(things, str(error))
+        _refuse(things, native.sentence(error))
         return
     frame = depsgraph.scene.frame_float
 
@@ -294,7 +294,7 @@ def _each(
         try:
             work(ob)
         except (RefusalError, ValueError, MemoryError) as error:
-            _refuse([ob], str(error) or "There is not enough memory")
+            _refuse([ob], native.sentence(error) or "There is not enough memory")
         else:
             _troubles.pop(ObjectKey.of(ob), None)
             yield ob

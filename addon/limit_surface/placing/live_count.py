@@ -97,7 +97,7 @@ class LiveCount:
                 return PAUSE
             self._region, self._trouble = self._job.result(), ""
         except native.refusals as error:
-            self._trouble = str(error)
+            self._trouble = native.sentence(error)
         self._job = None
         _redraw()
         return None

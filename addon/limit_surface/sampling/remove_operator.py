@@ -25,7 +25,7 @@ class OBJECT_OT_limit_sample_remove(bpy.types.Operator):
         try:
             readers = all_tiles.remove(surface)
         except native.refusals as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, native.sentence(error))
             return {"CANCELLED"}
         self.report({"INFO"}, f"The tables for {ids.SAMPLE_GROUP} of {surface.name} were removed")
         if readers:

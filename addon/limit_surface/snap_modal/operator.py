@@ -293,7 +293,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             raise RefusalError(f"{subject.ob.name} has no element {self.element}")
 
     def _refuse(self, reason: object) -> set[str]:
-        self.report({"ERROR"}, str(reason))
+        self.report({"ERROR"}, native.sentence(reason))
         return {"CANCELLED"}
 
     def _show_state(self, context: bpy.types.Context) -> None:

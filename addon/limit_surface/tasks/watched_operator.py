@@ -141,9 +141,7 @@ class WatchedOperator(SummaryProperty):
         try:
             return step(*arguments)
         except native.refusals as error:
-            reason = str(error)
-            if isinstance(error, native.errors):  # which name what a sentence begins with
-                reason = reason[:1].upper() + reason[1:]
+            reason = native.sentence(error)
         except MemoryError:
             reason = self.too_large
         self.report({"ERROR"}, reason)
