@@ -205,7 +205,7 @@ def test_vertices_without_a_surface_have_none(capfd):
     assert np.isnan(attributes.read(data, ids.CURVATURE_MEAN)).tolist() == 4 * [False] + [True]
     color = attributes.read(data, ids.CURVATURE_COLOR)[4]
     np.testing.assert_allclose(color, [0.1, 0.1, 0.1, 1], rtol=1e-6)
-    assert "1 of 5 vertices have no curvature" in capfd.readouterr().out
+    assert "1 of 5 vertices has no curvature" in capfd.readouterr().out
 
 
 def test_a_sphere_from_outside_is_negative_and_blue():

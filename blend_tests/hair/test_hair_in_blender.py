@@ -159,7 +159,7 @@ def test_faces_without_a_limit_surface_are_left_out_and_reported(capfd):
     faces = [polygon.vertices[:] for polygon in ob.data.polygons] + [(14, 15, n, 15)]
     hair = add_hair(add_mesh("Fin", positions, faces), per_side=2)
     reported = capfd.readouterr().out
-    assert f"of {len(faces)} faces have no limit surface and were left out" in reported
+    assert f"1 of {len(faces)} faces has no limit surface and was left out" in reported
     assert f"it uses vertex 15 twice (face {len(faces) - 1}; 1 in all)" in reported
     assert 0 < len(hair.data.curves) < 4 * len(faces)
 

@@ -184,7 +184,7 @@ def test_faces_without_a_surface_are_left_out(capfd):
     attributes.write(ob.data, ids.CORNER_VERTEX, "INT", "CORNER", vertex)
     made = make(ob, levels=2)
     assert len(made.data.polygons) == 16
-    assert "1 of 2 faces have no limit surface and were left out" in capfd.readouterr().out
+    assert "1 of 2 faces has no limit surface and was left out" in capfd.readouterr().out
 
 
 def test_a_mesh_of_no_surface_is_refused():

@@ -269,7 +269,7 @@ def test_faces_without_a_limit_surface(capfd):
         found.append(report(ob, levels="VIEWPORT")["VIEWPORT"])
     assert found[0] == pytest.approx(found[1])
     reported = capfd.readouterr().out
-    assert "1 of 2 faces have no limit surface and were left out" in reported
+    assert "1 of 2 faces has no limit surface and was left out" in reported
     ob = scenes.add_mesh("Fold", positions, [fold])
     scenes.add_subsurf(ob).levels = 0
     refusal(ob, "No face has a limit surface: .*uses vertex 5 twice", levels="VIEWPORT")

@@ -145,7 +145,7 @@ def test_locked_and_hidden_bones_stay(armature, capfd):
     np.testing.assert_array_equal(new_heads["tip"], heads["tip"])
     said = capfd.readouterr().out
     assert "1 of 2 bones snapped" in said
-    assert "1 bones could not be snapped: the bone is locked (1)" in said
+    assert "1 bone could not be snapped: the bone is locked (1)" in said
 
 
 def test_tails_alone_are_nothing_to_snap(armature):

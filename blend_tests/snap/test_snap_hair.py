@@ -299,7 +299,7 @@ def test_hair_and_objects_together(capfd):
     places = [*roots(world_strands(hair)), thing.location]
     np.testing.assert_allclose(truth.distances(np.array(places)), 0, atol=EXACT)
     said = capfd.readouterr().out
-    assert "1 of 1 objects snapped" in said
+    assert "1 of 1 object snapped" in said
     assert "6 of 6 strands snapped" in said
 
 
@@ -331,7 +331,7 @@ def test_two_objects_with_the_same_curves(capfd):
     twin.select_set(True)
     snap(target)
     said = capfd.readouterr().out
-    assert "1 objects could not be snapped: another selected object has the same curves (1)" in said
+    assert "1 object could not be snapped: another selected object has the same curves (1)" in said
 
 
 @pytest.mark.parametrize("kind", ["VIEWPORT", "RENDER"])

@@ -177,7 +177,7 @@ def test_maximum_distance_and_report(capfd):
     np.testing.assert_allclose([t.location.z for t in things], [0, 0, 3], atol=1e-6)
     said = capfd.readouterr().out
     assert "2 of 3 objects snapped, moved by 0.75 on average, 1 at most (to Flat)" in said
-    assert "1 objects could not be snapped: no surface was found within 2 (1)" in said
+    assert "1 object could not be snapped: no surface was found within 2 (1)" in said
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -345,7 +345,7 @@ def test_those_that_can_be_moved_are(capfd):
     snap(target)
     assert [round(ob.location.z, 6) for ob in (free, held)] == [0, 1]
     said = capfd.readouterr().out
-    assert "1 objects could not be snapped: the location or rotation is locked (1)" in said
+    assert "1 object could not be snapped: the location or rotation is locked (1)" in said
 
 
 def test_what_carries_the_target():

@@ -13,5 +13,5 @@ def test_the_commonest_reasons_come_first_each_with_its_first_face():
     refused = {2: "rare", 5: "common", 7: "common", 8: "third", 9: "fourth"}
     assert reasons(refused) == (
         "common (face 5; 2 in all); rare (face 2; 1 in all); third (face 8; 1 in all); "
-        "1 more reasons"
+        "1 more reason"
     )

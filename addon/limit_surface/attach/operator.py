@@ -15,6 +15,7 @@ from ..placing.followers import live_modifier_of, modifier_of
 from ..placing.posed_surface import Places, PosedSurface, at_closest
 from ..reading import cage, transform
 from ..tasks import polling
+from ..tasks.counting import counted
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary
@@ -87,14 +88,14 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
     def _report(
         self, surface: bpy.types.Object, count: int, again: int, distances: np.ndarray
     ) -> None:
-        are = "object is" if count == 1 else "objects are"
         sentences = [
-            f"{count:,} {are} attached to {surface.name}",
+            f"{counted(count, 'objects', 'is', 'are')} attached to {surface.name}",
             f"The largest distance from the limit surface is {distances.max():.4g}",
         ]
         if again:
-            were = "object was" if again == 1 else "objects were"
-            sentences.append(f"{again:,} {were} attached already and got new places")
+            sentences.append(
+                f"{counted(again, 'objects', 'was', 'were')} attached already and got new places"
+            )
         self.summary = ". ".join(sentences)
         self.report({"INFO"}, self.summary)
 

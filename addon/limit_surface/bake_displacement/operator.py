@@ -15,6 +15,7 @@ from ..images import image_files, image_names, image_pixels, material_slots, ove
 from ..images.image_files import EXR_32
 from ..images.image_pixels import FIRST_TILE
 from ..images.texture_operator import TextureOperator
+from ..tasks.counting import by_count, counted
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
 from ..tasks.refused_faces import left_out
@@ -156,13 +157,14 @@ class OBJECT_OT_limit_bake_displacement(
             self.report(
                 {"WARNING"},
                 f"{request.surfaces.target_name} was not found along the normals of "
-                f"{measured.missing:,} of {measured.count:,} texels: these texels hold 0",
+                f"{measured.missing:,} of {counted(measured.count, 'texels')}: "
+                f"{by_count(measured.missing, 'this texel holds', 'these texels hold')} 0",
             )
         if measured.overlapping:
             self.report({"WARNING"}, f"{ob.name}: {overlap.told(measured.overlapping)}")
         what = "lengths" if request.is_vector else "distances"
         lines = [
-            f"{image.name}: {measured.count:,} texels",
+            f"{image.name}: {counted(measured.count, 'texels')}",
             f"{what} {measured.lowest:.4g} to {measured.highest:.4g}",
         ]
         self.summary = "\n".join(lines)

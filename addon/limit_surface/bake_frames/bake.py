@@ -15,6 +15,7 @@ import bpy
 from .. import ids, native
 from ..errors import RefusalError
 from ..tasks import file_names
+from ..tasks.counting import counted
 from . import bindings
 from .arguments import Arguments
 from .exporters import Subject
@@ -66,7 +67,7 @@ class Bake:
                 seconds = time.perf_counter() - start
                 text = "; ".join([_count(done), *remarks])
                 say(f"frame {frame} ({i + 1} of {len(frames)}, {seconds:.2f} s): {text}")
-        say(f"{len(frames)} frames in {self._arguments.folder}: {_count(total)}")
+        say(f"{counted(len(frames), 'frames')} in {self._arguments.folder}: {_count(total)}")
         return total[FAILED]
 
     def _write(self, frame: int, subjects: list[Subject]) -> tuple[Counter[str], list[str]]:

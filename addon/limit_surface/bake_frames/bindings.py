@@ -12,6 +12,7 @@ from ..nodes.follow import TILES
 from ..placing import followers, following, live
 from ..placing.follow_state import State
 from ..reading import attributes, cage
+from ..tasks.counting import by_count, counted
 
 
 def check(objects: Sequence[bpy.types.Object]) -> None:
@@ -88,6 +89,7 @@ def _check_faces(ob: bpy.types.Object, surface: bpy.types.Object, count: int) ->
     strays = int((face >= count).sum())
     if strays:
         raise RefusalError(
-            f"{strays:,} of the {len(face):,} roots of {ob.name} are bound to faces that "
+            f"{strays:,} of the {counted(len(face), 'roots')} of {ob.name} "
+            f"{by_count(strays, 'is', 'are')} bound to faces that "
             f"{surface.name} does not have: its topology has changed since they were placed"
         )

@@ -11,6 +11,7 @@ from .. import ids
 from ..errors import RefusalError
 from ..images import image_files, image_pixels, texel_places
 from ..images.texture_operator import TextureOperator
+from ..tasks.counting import counted
 from ..tasks.job import Job, Progress
 from . import properties, shading, text
 from .inputs import Inputs
@@ -89,7 +90,9 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         if warnings:
             self.report({"WARNING"}, "; ".join(warnings))
         names = ", ".join(image.name for image in named)
-        self.report({"INFO"}, "; ".join([f"{names}: {made.baked.texels:,} texels", *lines]))
+        self.report(
+            {"INFO"}, "; ".join([f"{names}: {counted(made.baked.texels, 'texels')}", *lines])
+        )
         return {"FINISHED"}
 
     def _output(self, ob: bpy.types.Object, tiles: tuple[int, ...]) -> Output:

@@ -4,6 +4,7 @@
 import numpy as np
 
 from ..images import overlap
+from ..tasks.counting import by_count, counted
 from .map_images import Baked
 from .maps import KINDS, NORMAL_TANGENT, Range
 
@@ -16,16 +17,18 @@ def ranges(baked: Baked) -> list[str]:
 def warnings(baked: Baked, flat_faces: int) -> list[str]:
     found = []
     if flat_faces:
-        found.append(f"{flat_faces:,} faces have no area on the UV map and are not in the images")
+        have = counted(flat_faces, "faces", "has", "have")
+        are = by_count(flat_faces, "is", "are")
+        found.append(f"{have} no area on the UV map and {are} not in the images")
     if baked.overlapping:
         found.append(overlap.told(baked.overlapping))
     if baked.without_values:
-        found.append(f"{baked.without_values:,} values have no limit and were set to 0")
+        have = counted(baked.without_values, "values", "has", "have")
+        were = by_count(baked.without_values, "was", "were")
+        found.append(f"{have} no limit and {were} set to 0")
     if baked.without_polygons:
-        found.append(
-            f"{KINDS[NORMAL_TANGENT].name}: {baked.without_polygons:,} texels have no polygon on "
-            "the UV map"
-        )
+        have = counted(baked.without_polygons, "texels", "has", "have")
+        found.append(f"{KINDS[NORMAL_TANGENT].name}: {have} no polygon on the UV map")
     return found
 
 

@@ -26,6 +26,7 @@ from ..reading import cage
 from ..reading.named import find_object
 from ..sources.source_mesh import Choice
 from ..tasks import polling
+from ..tasks.counting import by_count, counted
 from ..tasks.job import Progress, part_of
 from . import guides as guide_hair
 from . import parting
@@ -180,7 +181,9 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             how = f"by Geometry Nodes, as {followed.guides.key.name} shapes them"
         super()._report(made, how)
         if followed.unreached:
-            text = f"{followed.unreached:,} places were left out: no guide can be reached from them"
+            were = counted(followed.unreached, "places", "was", "were")
+            them = by_count(followed.unreached, "it", "them")
+            text = f"{were} left out: no guide can be reached from {them}"
             self.report({"WARNING"}, text)
             self.summary += f"\n{text}"
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from ..tasks.counting import by_count, counted
 from .values import Values
 
 QUANTITIES = {"MEAN": "mean", "GAUSSIAN": "Gaussian", "K1": "k1", "K2": "k2"}
@@ -21,7 +22,7 @@ def lines(parts: list[Values], noun: str, radius: float, full: float, color: str
             said.append(f"{name} {values.min():.4g} to {values.max():.4g}")
     averaged = np.count_nonzero(together(parts, "irregular") & found)
     return [
-        f"Curvature at {np.count_nonzero(found):,} {noun}: {', '.join(said)}",
+        f"Curvature at {counted(np.count_nonzero(found), noun)}: {', '.join(said)}",
         f"{averaged:,} at irregular vertices, averaged at a distance of {radius:.4g} edges",
         f"Full color: {QUANTITIES[color]} {full:.4g}",
     ]
@@ -33,7 +34,9 @@ def without(parts: list[Values], noun: str) -> str:
     missing = np.count_nonzero(~found)
     if not missing:
         return ""
+    have = by_count(missing, "has", "have")
+    belong = by_count(missing, "it belongs", "they belong")
     return (
-        f"{missing:,} of {len(found):,} {noun} have no curvature: they belong to no face with "
+        f"{missing:,} of {counted(len(found), noun)} {have} no curvature: {belong} to no face with "
         "a limit surface, or the surface has no area there"
     )

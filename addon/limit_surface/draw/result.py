@@ -105,8 +105,9 @@ def warn_of_deviation(
 def warn_of_pieces(operator: bpy.types.Operator, laid: int, given: int) -> None:
     """Says it where curves were divided, because no short way along the surface was found."""
     if laid > given:
+        were = counted(laid, "pieces", "was", "were")
         operator.report(
             {"WARNING"},
-            f"{laid:,} pieces were made of {counted(given, 'curves')}, because no short way "
-            "along the surface joins the pieces",
+            f"{were} made of {counted(given, 'curves')}, because no short way along the surface "
+            "joins the pieces",
         )

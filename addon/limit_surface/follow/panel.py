@@ -8,6 +8,7 @@ from ..placing import live
 from ..placing.follow_state import State, Trouble
 from ..placing.followers import anything_follows, live_followers_of
 from ..tasks import wrapped_text
+from ..tasks.counting import by_count, counted
 from . import stale
 
 
@@ -31,7 +32,7 @@ class VIEW3D_PT_limit_follow(bpy.types.Panel):
         if wrong:
             row = self.layout.row()
             row.alert = True
-            row.label(text="1 problem" if wrong == 1 else f"{wrong} problems", icon="ERROR")
+            row.label(text=counted(wrong, "problems"), icon="ERROR")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -62,8 +63,8 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
     if surface is not None:
         column.label(text=f"It follows {surface.name} live", icon="OBJECT_DATA")
     else:
-        noun = "object follows" if len(things) == 1 else "objects follow"
-        column.label(text=f"{len(things):,} {noun} it live", icon="OBJECT_DATA")
+        follow = counted(len(things), "objects", "follows", "follow")
+        column.label(text=f"{follow} it live", icon="OBJECT_DATA")
     column.prop(context.scene, ids.LIVE)
     for thing in things:
         if live.trouble(thing):
@@ -83,14 +84,14 @@ def _draw_state(layout: bpy.types.UILayout, state: State) -> None:
     column.label(text=state.surface.name, icon="OBJECT_DATA")
     if state.followers or state.strays:
         objects = len(state.followers)
-        noun = "object follows" if objects == 1 else "objects follow"
-        column.label(text=f"{objects:,} {noun} it by nodes")
-        column.label(text=f"{state.places:,} strands and points")
+        column.label(text=f"{counted(objects, 'objects', 'follows', 'follow')} it by nodes")
+        places = by_count(state.places, "strand or point", "strands and points")
+        column.label(text=f"{state.places:,} {places}")
         column.label(text=f"Tables: {_size(state.table_bytes)}")
     if state.children:
         objects = len(state.children)
-        noun = "object grows" if objects == 1 else "objects grow"
-        column.label(text=f"{objects:,} {noun} live children: {state.child_count:,}")
+        grow = counted(objects, "objects", "grows", "grow")
+        column.label(text=f"{grow} live children: {state.child_count:,}")
     if state.samples is not None:
         column.label(text=f"Tables for sampling: {_size(state.sample_bytes)}")
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import RefusalError
+from ..tasks.counting import by_count, counted
 
 if TYPE_CHECKING:
     import limitsurf
@@ -25,8 +26,8 @@ def check(texels: limitsurf.Texels, where: str) -> None:
     count, covered = overlapping(texels), int(np.count_nonzero(texels.inside))
     if count > MOST_FOLDED * covered:
         raise RefusalError(
-            f"The UV map overlaps itself at {count:,} of {covered:,} texels{where}: set Overlap to "
-            "Allow to use the face with the lowest number there"
+            f"The UV map overlaps itself at {count:,} of {counted(covered, 'texels')}{where}: set "
+            "Overlap to Allow to use the face with the lowest number there"
         )
 
 
@@ -36,7 +37,8 @@ def overlapping(texels: limitsurf.Texels) -> int:
 
 def told(count: int) -> str:
     """Returns a warning about the folds."""
+    show = by_count(count, "it shows", "they show")
     return (
-        f"the UV map overlaps itself at {count:,} texels: they show the face with the lowest "
-        "number there"
+        f"the UV map overlaps itself at {counted(count, 'texels')}: {show} the face with the "
+        "lowest number there"
     )

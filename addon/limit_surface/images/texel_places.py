@@ -20,6 +20,7 @@ import numpy as np
 
 from ..errors import RefusalError, TooLargeError
 from ..reading import cage, ragged_rows, uv_map
+from ..tasks.counting import counted
 from ..tasks.job import Progress, slices
 from ..tasks.request_size import LARGE_MEMORY, memory_text
 from . import overlap
@@ -127,7 +128,7 @@ def check_size(width: int, height: int, tiles: int, images: int, allow_large: bo
     if needed > LARGE_MEMORY and not allow_large:
         tiled = f", {tiles} tiles" if tiles > 1 else ""
         raise TooLargeError(
-            f"{images} image{'s' if images > 1 else ''} of {width:,} x {height:,} pixels{tiled} "
+            f"{counted(images, 'images')} of {width:,} x {height:,} pixels{tiled} "
             f"take {memory_text(needed)}: set Allow Large Images (allow_large) to make them"
         )
 

@@ -12,12 +12,17 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..reading import attributes, cage, camera, element_numbers, ragged_rows
+from ..tasks.counting import counted
 from ..tasks.job import Progress
 
 if TYPE_CHECKING:
     import limitsurf
 
 MOST = 8
+
+# what one face, and several, do that fall short
+_TOO_FAR = "deviates by more than the tolerance", "deviate by more than the tolerance"
+_TOO_LONG = "has edges that are too long", "have edges that are too long"
 
 #: A function from the surface as it lies in the world to levels (f,) and warnings about them
 Choice = Callable[["limitsurf.LimitSurface", Progress], tuple[np.ndarray, str]]
@@ -34,9 +39,7 @@ def of_faces(values: np.ndarray) -> Choice:
 def within(tolerance: float, most: int) -> Choice:
     def choose(surface: limitsurf.LimitSurface, progress: Progress) -> tuple[np.ndarray, str]:
         found = surface.levels_within(tolerance, most, progress=progress)
-        return found.levels, _falling_short(
-            found, tolerance, most, "deviate by more than the tolerance"
-        )
+        return found.levels, _falling_short(found, tolerance, most, _TOO_FAR)
 
     return choose
 
@@ -44,7 +47,7 @@ def within(tolerance: float, most: int) -> Choice:
 def of_pixels(view: PixelView, pixels: float, most: int) -> Choice:
     def choose(surface: limitsurf.LimitSurface, progress: Progress) -> tuple[np.ndarray, str]:
         found = surface.levels_of_length(pixels, view.matrix, view.nearest, most, progress=progress)
-        return found.levels, _falling_short(found, pixels, most, "have edges that are too long")
+        return found.levels, _falling_short(found, pixels, most, _TOO_LONG)
 
     return choose
 
@@ -122,6 +125,10 @@ def _count(surface: limitsurf.LimitSurface) -> int:
     return len(surface.mesh.face_sizes)
 
 
-def _falling_short(found: limitsurf.FaceLevels, asked: float, most: int, what: str) -> str:
+def _falling_short(
+    found: limitsurf.FaceLevels, asked: float, most: int, what: tuple[str, str]
+) -> str:
     count = np.count_nonzero(found.measure > asked)
-    return f"{count:,} faces {what} at level {most}: raise Most Levels" if count else ""
+    if not count:
+        return ""
+    return f"{counted(count, 'faces', *what)} at level {most}: raise Most Levels"

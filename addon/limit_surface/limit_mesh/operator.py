@@ -14,6 +14,7 @@ from ..placing.binding import Binding
 from ..placing.follow_properties import FollowProperties
 from ..placing.roots import Locations, off_vertices
 from ..reading import cage
+from ..tasks.counting import counted
 from ..tasks.job import Job, Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from ..tasks.properties import LargeCountProperty, draw_summary
@@ -213,8 +214,8 @@ class OBJECT_OT_limit_mesh(
         made = result.made
         low, high = made.levels
         self.summary = (
-            f"{len(made.tessellation.face_sizes):,} polygons on "
-            f"{len(made.cage.face_sizes) - len(made.refused):,} faces, "
+            f"{counted(len(made.tessellation.face_sizes), 'polygons')} on "
+            f"{counted(len(made.cage.face_sizes) - len(made.refused), 'faces')}, "
             + (f"level {low}" if low == high else f"levels {low} to {high}")
         )
         for warning in made.warnings:

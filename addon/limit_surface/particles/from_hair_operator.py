@@ -14,6 +14,7 @@ from ..errors import RefusalError
 from ..placing import followers
 from ..reading import rules
 from ..tasks import polling
+from ..tasks.counting import counted
 from ..tasks.object_keys import ObjectKey
 from ..tasks.piecewise_job import Pieces, PiecewiseJob
 from ..tasks.properties import draw_summary
@@ -107,10 +108,11 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         context.view_layer.update()
         self.summary = (
-            f"{made.count:,} particles of {made.keys} keys: {made.system} of {made.surface}"
+            f"{counted(made.count, 'particles')} of {counted(made.keys, 'keys')}: {made.system} of "
+            f"{made.surface}"
         )
         if made.resampled:
-            self.summary += f"\n{made.resampled:,} strands were resampled"
+            self.summary += f"\n{counted(made.resampled, 'strands', 'was', 'were')} resampled"
         self.report({"INFO"}, self.summary.replace("\n", "; "))
         warning = _levels_warning(bpy.data.objects[made.surface], self.levels)
         if warning:

@@ -19,6 +19,7 @@ from ..placing.posed_surface import PosedSurface, at_closest
 from ..placing.rotations import WorldSpace
 from ..reading import cage
 from ..tasks import polling
+from ..tasks.counting import counted
 from ..tasks.job import Job
 from ..tasks.object_keys import ObjectKey
 from ..tasks.piecewise_job import Pieces, PiecewiseJob
@@ -178,7 +179,7 @@ class OBJECT_OT_limit_hair_from_particles(
 
     def _report(self, made: Made, how: str, why_not: str) -> None:
         count = len(made.strands.sizes)
-        self.summary = f"{count:,} strands from {made.system} of {made.surface.name}"
+        self.summary = f"{counted(count, 'strands')} from {made.system} of {made.surface.name}"
         were = "were" if self.snap_roots else "are"
         notes = [f"roots {were} at most {made.farthest:.4g} from the limit surface"]
         if how:

@@ -13,6 +13,7 @@ from mathutils import Matrix
 from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes
+from ..tasks.counting import counted
 from ..tasks.job import Progress
 from .rotations import WorldSpace, unit
 
@@ -59,7 +60,7 @@ class BorderChoice:
 
 def borders(count: int) -> str:
     """Returns the number of borders for reports."""
-    return "1 border" if count == 1 else f"{count:,} borders"
+    return counted(count, "borders")
 
 
 def where_rows_end(ended: np.ndarray, asked_for: int) -> str:

@@ -21,6 +21,7 @@ from ..nodes import groups
 from ..nodes.capture import CAPTURE, crease_sum, topology_sum
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, rules
+from ..tasks.counting import by_count
 from ..tasks.object_keys import ObjectKey
 from . import live_thing, proxy, tables
 from .follow_properties import follows
@@ -61,9 +62,8 @@ class Outcome:
 
 def counted(followers: int) -> str:
     """Returns the beginning of a sentence about so many strands and points."""
-    if followers == 1:
-        return "1 strand or point follows"
-    return f"{followers:,} strands and points follow"
+    follow = by_count(followers, "strand or point follows", "strands and points follow")
+    return f"{followers:,} {follow}"
 
 
 class Request:

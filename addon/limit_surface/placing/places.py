@@ -12,6 +12,7 @@ import numpy as np
 from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes
+from ..tasks.counting import counted
 from .roots import Locations
 
 NOWHERE = -1  # the face of elements that have no place on the surface
@@ -105,8 +106,9 @@ class Places:
         wrong = self.face[self.face >= faces]
         if len(wrong):
             raise RefusalError(
-                f"A location is on face {wrong[0]}, but {surface} has {faces} faces: its topology "
-                "has changed since things were placed on it"
+                f"A location is on face {wrong[0]}, but {surface} has "
+                f"{counted(faces, 'faces')}: its topology has changed since things were placed on "
+                "it"
             )
         if not (self.uv.min(initial=0) >= 0 and self.uv.max(initial=0) <= 1):
             u, v = self.uv[(~((self.uv >= 0) & (self.uv <= 1))).any(axis=1).argmax()]
@@ -119,8 +121,8 @@ class Places:
         stored = len(data.attributes[ids.FACE].data)
         if stored != self.count:
             raise RefusalError(
-                f"{data.name} has changed meanwhile (it has {stored} elements instead of "
-                f"{self.count}): run the operator again"
+                f"{data.name} has changed meanwhile (it has {counted(stored, 'elements')} "
+                f"instead of {self.count}): run the operator again"
             )
 
     def write(self, data: bpy.types.ID, tile: np.ndarray, tile_uv: np.ndarray) -> None:

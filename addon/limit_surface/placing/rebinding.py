@@ -14,6 +14,7 @@ import numpy as np
 from .. import ids, native
 from ..errors import RefusalError
 from ..reading import attributes, cage
+from ..tasks.counting import by_count, counted
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
@@ -49,10 +50,13 @@ class Rebound:
     reason: str  # why the lost ones could not be kept
 
     def __str__(self) -> str:
-        text = f"{len(self.distances):,} roots on {self.surface} are bound again"
-        if len(self.distances):
+        count = len(self.distances)
+        are = by_count(count, "is", "are")
+        text = f"{counted(count, 'roots')} on {self.surface} {are} bound again"
+        if count:
             median, largest = np.median(self.distances), self.distances.max()
-            text += f", they moved by {median:.4g} (median), {largest:.4g} at most"
+            they = by_count(count, "it", "they")
+            text += f", {they} moved by {median:.4g} (median), {largest:.4g} at most"
         return text
 
     @property
@@ -60,9 +64,14 @@ class Rebound:
         """Names what could not be kept; empty if all was."""
         if not self.lost:
             return ""
+        stay = by_count(
+            self.lost,
+            "it stays where it is, and is selected",
+            "they stay where they are, and are selected",
+        )
         return (
-            f"{self.lost:,} roots on {self.surface} could not be kept, because {self.reason}: they "
-            "stay where they are, and are selected"
+            f"{counted(self.lost, 'roots')} on {self.surface} could not be kept, because "
+            f"{self.reason}: {stay}"
         )
 
 

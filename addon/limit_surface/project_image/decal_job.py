@@ -12,6 +12,7 @@ from .. import ids
 from ..errors import RefusalError
 from ..placing import following
 from ..reading.projector import Projector, fitted
+from ..tasks.counting import counted
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from ..tasks.request_size import RequestSize
@@ -75,7 +76,7 @@ class Made:
             material.for_decal(made, image, ids.DECAL_UV)
         if self.bindings:
             self.bindings.write(made)
-        text = f"{len(self.placed.sizes):,} polygons on {surface.name}"
+        text = f"{counted(len(self.placed.sizes), 'polygons')} on {surface.name}"
         if self.bindings:
             text += "; they follow the surface by Geometry Nodes"
         return text, [self.warning]

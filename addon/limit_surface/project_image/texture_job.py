@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..images import image_names, image_pixels, material_slots, overlap, texel_places
+from ..tasks.counting import counted
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from . import colours, inputs, material
@@ -99,7 +100,7 @@ class Made:
         if self.order.create_material:
             shown_by = material.show(surface, image, self.order.world.cage.chosen_uv_map.name)
             warnings.append(material_slots.unseen(surface, shown_by))
-        return f"{self.count:,} texels of {image.name}", warnings
+        return f"{counted(self.count, 'texels')} of {image.name}", warnings
 
 
 def order(

@@ -21,6 +21,7 @@ import numpy as np
 
 from .. import ids
 from ..errors import DisplayedError
+from ..tasks.counting import counted
 from . import attributes, cage, rules, subdivided_mesh
 from .triangulation import TriangulatedQuads
 
@@ -236,8 +237,8 @@ def _read_mesh(whose: str, mesh: bpy.types.Mesh, found: cage.Cage, level: int) -
         expected = found.face_sizes
     if not np.array_equal(sizes, expected):
         raise DisplayedError(
-            f"{whose} has {len(sizes):,} polygons, which are not those of the control mesh's "
-            f"{len(found.face_sizes):,} faces at level {level}"
+            f"{whose} has {counted(len(sizes), 'polygons')}, which are not those of the control "
+            f"mesh's {counted(len(found.face_sizes), 'faces')} at level {level}"
         )
     if level:
         quads = TriangulatedQuads.from_triangles(vertices, corner_vertex.reshape(-1, 4), triangles)

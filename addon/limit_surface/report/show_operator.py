@@ -15,6 +15,7 @@ from ..reading import attributes, cage, displayed_mesh, rules, subdivided_mesh
 from ..subsurf import setup, shown
 from ..subsurf.setup import LimitDisplay
 from ..tasks import polling
+from ..tasks.counting import counted
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
 from ..tasks.properties import LargeCountProperty, draw_summary
@@ -100,7 +101,7 @@ class OBJECT_OT_limit_show(WatchedOperator, LargeCountProperty, bpy.types.Operat
         part = f"{100 * distance.largest / float(np.linalg.norm(corners)):.2g} % of the diagonal"
         level = made.distances.level
         self.summary = (
-            f"{made.polygons:,} polygons at level {level}\n"
+            f"{counted(made.polygons, 'polygons')} at level {level}\n"
             f"at most {distance.largest:.3g} from the surface\n({part})"
         )
         notes = [

@@ -7,6 +7,7 @@ from bpy.props import IntProperty
 from .. import ids
 from ..placing.all_tiles import AllTiles, settings_of
 from ..placing.mending import mended
+from ..tasks.counting import counted
 from ..tasks.job import Job, Progress
 from ..tasks.properties import draw_summary
 from ..tasks.watched_operator import WatchedOperator
@@ -69,7 +70,9 @@ class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
     def finish(self, _context: bpy.types.Context, made: AllTiles) -> set[str]:
         with mended():
             made.write()
-        self.summary = f"{len(made.tree.tiles.tile_points):,} tiles of {made.surface_name}"
+        self.summary = (
+            f"{counted(len(made.tree.tiles.tile_points), 'tiles')} of {made.surface_name}"
+        )
         self.report({"INFO"}, self.summary)
         return {"FINISHED"}
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..tasks.counting import counted
+
 
 @dataclass(frozen=True)
 class Choices:
@@ -39,7 +41,7 @@ class Outcome:
         """Returns lines for the report, where some elements were snapped."""
         moved = np.concatenate(self.distances)
         return (
-            f"{len(moved):,} of {len(moved) + self.failed:,} {self.noun} snapped",
+            f"{len(moved):,} of {counted(len(moved) + self.failed, self.noun)} snapped",
             f"moved by {moved.mean():.4g} on average, {moved.max():.4g} at most",
         )
 

@@ -9,6 +9,7 @@ from ..placing.posed_surface import transformed
 from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace, unit
 from ..reading import attributes, ragged_rows
+from ..tasks.counting import by_count, counted
 from .aim import Elements, Placement
 from .binding_again import will_follow
 from .choices import Choices, Outcome
@@ -96,9 +97,10 @@ class SnappedHair:
             old, new = (self._space.frames(frame[bound]) for frame in (rest, place.frame))
             turn[bound] = new @ np.swapaxes(old, 1, 2)
             if not bound.all():
+                loose = np.count_nonzero(~bound)
                 outcome.notes.append(
-                    f"{np.count_nonzero(~bound):,} strands were not bound to a surface and "
-                    "were only turned to the normal"
+                    f"{counted(loose, 'strands', 'was', 'were')} not bound to a surface and "
+                    f"{by_count(loose, 'was', 'were')} only turned to the normal"
                 )
         return turn
 

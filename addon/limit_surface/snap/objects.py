@@ -6,6 +6,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..placing.rotations import unit
+from ..tasks.counting import by_count, counted
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .object_move import ELSEWHERE, ObjectMove
@@ -58,7 +59,8 @@ class SnappedObjects:
             unkept += sum(not child.is_in_place() for kept in moves.values() for child in kept)
         if unkept:
             outcome.notes.append(
-                f"{unkept:,} children of snapped objects could not be kept where they were"
+                f"{counted(unkept, 'children')} of snapped objects could not be kept where "
+                f"{by_count(unkept, 'it was', 'they were')}"
             )
         return outcome
 

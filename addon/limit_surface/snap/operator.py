@@ -8,6 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from .. import ids, native
 from ..errors import RefusalError
 from ..placing.follow_properties import FollowSnappedProperties
+from ..tasks.counting import counted
 from ..tasks.job import Progress, part_of
 from ..tasks.piecewise_job import Pieces, PiecewiseJob, aside
 from ..tasks.properties import draw_summary
@@ -237,7 +238,7 @@ class OBJECT_OT_limit_snap(
         outcomes: list[Outcome],
     ) -> set[str]:
         failed = [
-            f"{outcome.failed:,} {outcome.noun} could not be snapped: {outcome.reasons()}"
+            f"{counted(outcome.failed, outcome.noun)} could not be snapped: {outcome.reasons()}"
             for outcome in outcomes
             if outcome.failed
         ]

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ..errors import RefusalError
+from .counting import by_count, counted
 
 if TYPE_CHECKING:
     import limitsurf
@@ -21,15 +22,16 @@ def check_some_left(surface: limitsurf.LimitSurface, whose: str) -> None:
 
 def left_out(count: int, faces: int, reasons: str = "") -> str:
     """Returns the warning that so many of a mesh's faces were left out."""
-    warning = f"{count:,} of {faces:,} faces have no limit surface and were left out"
+    have, were = by_count(count, "has", "have"), by_count(count, "was", "were")
+    warning = f"{count:,} of {counted(faces, 'faces')} {have} no limit surface and {were} left out"
     return f"{warning}: {reasons}" if reasons else warning
 
 
 def reasons(refused: Mapping[int, str]) -> str:
     """Returns the most frequent reasons, each with the number of a face as an example."""
     example = {reason: face for face, reason in reversed(tuple(refused.items()))}
-    counted = Counter(refused.values()).most_common()
-    parts = [f"{reason} (face {example[reason]}; {n} in all)" for reason, n in counted[:3]]
-    if len(counted) > 3:
-        parts.append(f"{len(counted) - 3} more reasons")
+    found = Counter(refused.values()).most_common()
+    parts = [f"{reason} (face {example[reason]}; {n} in all)" for reason, n in found[:3]]
+    if len(found) > 3:
+        parts.append(counted(len(found) - 3, "more reasons"))
     return "; ".join(parts)

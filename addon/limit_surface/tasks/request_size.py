@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 
 from ..errors import TooLargeError
+from .counting import counted
 
 LARGE_COUNT = 3_000_000  # more elements than this are made only if the user confirms
 LARGE_MEMORY = 4 << 30  # in bytes
@@ -48,7 +49,7 @@ class RequestSize:
 
     @property
     def how_many(self) -> str:
-        return f"{'' if self.is_exact else 'about '}{self.count:,} {self.noun}"
+        return f"{'' if self.is_exact else 'about '}{counted(self.count, self.noun)}"
 
     def __str__(self) -> str:
         many = f" of {self.elements_per_location} points" if self.elements_per_location > 1 else ""
