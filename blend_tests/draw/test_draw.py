@@ -153,6 +153,11 @@ REFUSED = [
     ({"strokes": drawn.points(ONE_PLACE), "output": "GUIDES"}, "at least two different points"),
     ({"strokes": drawn.points(ACROSS), "offset": np.nan}, "Offset is not a number"),
     ({"strokes": drawn.points(ACROSS), "radius": np.nan}, "Radius is not a number"),
+    ({"strokes": drawn.points(ACROSS), "offset": np.inf}, "Offset is infinite"),
+    (
+        {"strokes": drawn.points(ACROSS), "offset": -np.inf, "output": "GUIDES"},
+        "Offset is infinite",
+    ),
     (
         {"strokes": drawn.points(replace(WITHIN, radius=(1.0, np.nan, 1.0)))},
         "The radius of a point is not a number",

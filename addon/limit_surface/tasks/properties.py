@@ -8,6 +8,12 @@ from bpy.props import BoolProperty, StringProperty
 from ..errors import RefusalError
 from . import wrapped_text
 
+#: The properties that only limit something: where they are infinite there is no limit
+_LIMITS = {
+    "depth", "distance", "full_color", "max_distance", "pixels", "row_distance", "tolerance",
+}  # fmt: skip
+_LARGEST = float(np.finfo(np.float32).max)
+
 
 class SummaryProperty:
     """Mixin with the summary that redo panels and dialogs show."""
@@ -32,12 +38,18 @@ class LargeCountProperty:
 
 
 def check_numbers(properties: bpy.types.OperatorProperties) -> None:
-    """Raises RefusalError for the first property that is not a number: whatever its limits, Blender
-    accepts NaN from scripts.
+    """Raises RefusalError for the first property that is not a number, or that is infinite and no
+    limit: whatever its limits, Blender accepts NaN from scripts, and takes infinity for the largest
+    number.
     """
     for each in properties.bl_rna.properties:
-        if each.type == "FLOAT" and np.isnan(getattr(properties, each.identifier)).any():
+        if each.type != "FLOAT":
+            continue
+        values = np.asarray(getattr(properties, each.identifier), np.float64)
+        if np.isnan(values).any():
             raise RefusalError(f"{each.name} is not a number")
+        if each.identifier not in _LIMITS and (np.abs(values) >= _LARGEST).any():
+            raise RefusalError(f"{each.name} is infinite")
 
 
 def draw_summary(layout: bpy.types.UILayout, summary: str) -> None:
