@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import projection_truth as truth
 import pytest
+import scenes
 from bpy_extras.object_utils import world_to_camera_view
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from limit_surface.errors import RefusalError
@@ -27,6 +28,10 @@ CAMERAS = {
 }
 
 
+def depsgraph():
+    return bpy.context.evaluated_depsgraph_get()
+
+
 @pytest.mark.parametrize("size", [(300, 200), (128, 512)])
 @pytest.mark.parametrize("name", CAMERAS)
 def test_cameras_project_as_they_render(name, size):
@@ -36,7 +41,7 @@ def test_cameras_project_as_they_render(name, size):
     scene.render.pixel_aspect_x = 1.25
     scene.render.resolution_x, scene.render.resolution_y = size
     bpy.context.view_layer.update()
-    found = camera.projector(ob, bpy.context.evaluated_depsgraph_get(), size)
+    found = camera.projector(ob, depsgraph(), size)
     expected = [world_to_camera_view(scene, ob, Vector(point))[:2] for point in POINTS]
     np.testing.assert_allclose(found.places(POINTS), expected, atol=SINGLE)
     assert found.has_eye == (ob.data.type == "PERSP")
@@ -47,7 +52,7 @@ def test_rays_of_cameras_leave_the_frame_that_is_drawn(name):
     ob, size = truth.add_camera((3, -5, 4), **CAMERAS[name]), (300, 200)
     ob.data.clip_start, ob.data.clip_end = 0.5, 30
     st = np.random.default_rng(7).random((20, 2))
-    found = camera.projector(ob, bpy.context.evaluated_depsgraph_get(), size)
+    found = camera.projector(ob, depsgraph(), size)
     near, far = found.rays(st)
     origins, directions = truth.camera_rays(ob, st, size)
     unit = directions / np.linalg.norm(directions, axis=1)[:, None]
@@ -62,6 +67,46 @@ def test_rays_of_cameras_leave_the_frame_that_is_drawn(name):
         off = ends - origins
         off -= unit * np.einsum("ij,ij->i", off, unit)[:, None]
         assert np.abs(off).max() < 1e-3
+
+
+@pytest.mark.parametrize("where", ["other scene", "excluded", "nowhere"])
+def test_what_the_scene_does_not_show_projects_from_where_it_is_now(where):
+    """Blender leaves its matrix as it was when it was evaluated last."""
+    rig = empty("Rig")
+    seen = truth.add_camera((3, -5, 4))
+    square = empty()
+    bpy.context.scene.camera = None
+    for ob in (seen, square):
+        ob.parent = rig
+    if where == "other scene":
+        place = bpy.data.scenes.new("Other").collection
+    else:
+        place = bpy.data.collections.new("Place")
+    if where == "excluded":
+        bpy.context.scene.collection.children.link(place)
+        bpy.context.view_layer.layer_collection.children["Place"].exclude = True
+    for ob in (seen, square):
+        bpy.context.scene.collection.objects.unlink(ob)
+        place.objects.link(ob)
+    rig.location = (10, 20, 30)
+    for frame, x in ((1, 10), (2, 12)):
+        rig.location.x = x
+        rig.keyframe_insert("location", frame=frame)
+    bpy.context.scene.frame_set(2)
+    names = scenes.file_contents()
+    moved = camera.projector(seen, depsgraph(), (300, 200)).matrix
+    flat = empties.planar(square, depsgraph(), (1, 1), BOUNDS).matrix
+    box = empties.to_box(square, depsgraph())
+    assert scenes.file_contents() == names
+    for ob in (seen, square):
+        bpy.context.scene.collection.objects.link(ob)
+    if where == "excluded":
+        bpy.context.view_layer.layer_collection.children["Place"].exclude = False
+    bpy.context.view_layer.update()
+    expected = camera.projector(seen, depsgraph(), (300, 200)).matrix
+    np.testing.assert_array_equal(moved, expected)
+    np.testing.assert_array_equal(flat, empties.planar(square, depsgraph(), (1, 1), BOUNDS).matrix)
+    np.testing.assert_array_equal(box, empties.to_box(square, depsgraph()))
 
 
 def test_cameras_are_found_by_name_or_are_the_scenes():
@@ -79,7 +124,7 @@ def test_cameras_are_found_by_name_or_are_the_scenes():
 def test_panoramic_cameras_are_refused():
     ob = truth.add_camera((0, 0, 3), type="PANO")
     with pytest.raises(RefusalError, match="Camera is panoramic: only perspective and ortho"):
-        camera.projector(ob, bpy.context.evaluated_depsgraph_get(), (10, 10))
+        camera.projector(ob, depsgraph(), (10, 10))
 
 
 def test_cameras_without_extent_are_refused():
@@ -87,7 +132,7 @@ def test_cameras_without_extent_are_refused():
     ob.scale = (1, 0, 1)
     bpy.context.view_layer.update()
     with pytest.raises(RefusalError, match="Camera has a scale of 0"):
-        camera.projector(ob, bpy.context.evaluated_depsgraph_get(), (10, 10))
+        camera.projector(ob, depsgraph(), (10, 10))
 
 
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
@@ -149,7 +194,7 @@ def test_empties_project_from_their_square():
         rotation_euler=(0.3, 0.4, 0.5),
         scale=(2, 3, 1.5),
     )
-    found = empties.planar(ob, (200, 100), BOUNDS)
+    found = empties.planar(ob, depsgraph(), (200, 100), BOUNDS)
     corners = [(-1.5, -0.75, 4), (1.5, -0.75, -2), (0, 0.75, 0)]
     places, _ = places_of(found, corners, ob)
     np.testing.assert_allclose(places, [(0, 0), (1, 0), (0.5, 1)], atol=SINGLE)
@@ -164,7 +209,7 @@ def test_image_empties_project_from_what_they_show():
     ob.data = image
     for offset in ((-0.5, -0.5), (0.0, 0.25)):
         ob.empty_image_offset = offset
-        found = empties.planar(ob, (10, 10), BOUNDS)
+        found = empties.planar(ob, depsgraph(), (10, 10), BOUNDS)
         low = np.array(offset) * (2, 4)
         local = [(*low, 0), (*(low + (2, 4)), 0)]
         np.testing.assert_allclose(places_of(found, local, ob)[0], [(0, 0), (1, 1)], atol=SINGLE)
@@ -172,21 +217,21 @@ def test_image_empties_project_from_what_they_show():
 
 def test_depths_of_empties():
     ob = empty(location=(0, 0, 5), scale=(1, 1, 2))
-    whole = empties.planar(ob, (1, 1), BOUNDS)
+    whole = empties.planar(ob, depsgraph(), (1, 1), BOUNDS)
     near, far = whole.rays([[0.5, 0.5]])
     assert near[0, 2] > 1
     assert far[0, 2] < -1
-    limited = empties.planar(ob, (1, 1), BOUNDS, depth=(0.5, 7))
+    limited = empties.planar(ob, depsgraph(), (1, 1), BOUNDS, depth=(0.5, 7))
     near, far = limited.rays([[0.5, 0.5], [1, 1]])
     np.testing.assert_allclose(near[:, 2], 4.5)
     np.testing.assert_allclose(far[:, 2], -2)
     with pytest.raises(RefusalError, match="There is no space between the depths 1 and 1"):
-        empties.planar(ob, (1, 1), BOUNDS, depth=(1, 1))
+        empties.planar(ob, depsgraph(), (1, 1), BOUNDS, depth=(1, 1))
 
 
 def test_boxes_are_the_empties_cubes():
     ob = empty(empty_display_size=0.5, location=(1, 0, 0), scale=(1, 2, 3))
-    to_box = empties.to_box(ob)
+    to_box = empties.to_box(ob, depsgraph())
     points = np.array([(1.5, 0, 0, 1), (1, 1, 0, 1), (1, 0, 1.5, 1)]).T
     np.testing.assert_allclose((to_box @ points)[:3], np.eye(3), atol=1e-12)
 
@@ -194,9 +239,9 @@ def test_boxes_are_the_empties_cubes():
 def test_empties_without_extent_are_refused():
     ob = empty(scale=(1, 1, 0))
     with pytest.raises(RefusalError, match="Empty has a scale of 0"):
-        empties.planar(ob, (1, 1), BOUNDS)
+        empties.planar(ob, depsgraph(), (1, 1), BOUNDS)
     with pytest.raises(RefusalError, match="Empty has a scale of 0"):
-        empties.to_box(ob)
+        empties.to_box(ob, depsgraph())
 
 
 def test_empties_are_found_by_name():

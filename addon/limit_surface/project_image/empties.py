@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
+from ..reading import present_object
 from ..reading.projector import Projector, fitted, inverse
 
 # the share of the surface's extent that is added before and behind it, where no depths are given
@@ -20,6 +21,7 @@ def find(name: str) -> bpy.types.Object:
 
 def planar(
     ob: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
     size: tuple[float, float],
     bounds: np.ndarray,
     depth: tuple[float, float] | None = None,
@@ -29,22 +31,23 @@ def planar(
     proportions. `depth` gives two distances behind the empty in the world; without it the projector
     reaches all of the surface, whose bounds (2, 3) are given in the world.
     """
-    called, matrix = f"The empty {ob.name}", world_matrix(ob)
+    called, matrix = f"The empty {ob.name}", _world_matrix(ob, depsgraph)
     middle, half = _rectangle(ob, size)
     placed = matrix @ _frame(np.diag([*half, 1]), np.array([*middle, 0]))
     return Projector(called, _flat(placed, called, bounds, depth), has_eye=False)
 
 
-def to_box(ob: bpy.types.Object) -> np.ndarray:
+def to_box(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
     """Returns the matrix from the world to the coordinates in which the empty's cube reaches from
     -1 to 1.
     """
-    placed = world_matrix(ob) @ _frame(np.diag([ob.empty_display_size] * 3), np.zeros(3))
-    return inverse(placed, f"The empty {ob.name}")
+    cube = _frame(np.diag([ob.empty_display_size] * 3), np.zeros(3))
+    return inverse(_world_matrix(ob, depsgraph) @ cube, f"The empty {ob.name}")
 
 
-def world_matrix(ob: bpy.types.Object) -> np.ndarray:
-    return np.array(ob.matrix_world, np.float64)
+def _world_matrix(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
+    with present_object.evaluated(ob, depsgraph) as evaluated:
+        return np.array(evaluated.matrix_world, np.float64)
 
 
 def _rectangle(ob: bpy.types.Object, size: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:

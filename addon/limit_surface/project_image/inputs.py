@@ -46,13 +46,14 @@ def projector(
     """Returns the projector for the sources that project an image of that size from one place or
     direction.
     """
+    depsgraph = context.evaluated_depsgraph_get()
     if properties.source == "CAMERA":
         ob = camera.find(context, properties.camera)
-        return camera.projector(ob, context.evaluated_depsgraph_get(), size)
+        return camera.projector(ob, depsgraph, size)
     if properties.source == "VIEW":
         return view.from_context(context, size)
     depth = tuple(properties.depth) if properties.use_depth else None
-    return empties.planar(empties.find(properties.empty), size, world.bounds(), depth)
+    return empties.planar(empties.find(properties.empty), depsgraph, size, world.bounds(), depth)
 
 
 def source(
@@ -63,7 +64,8 @@ def source(
 ) -> Source:
     size, is_framed = tuple(shown.size), properties.extension == "CLIP"
     if properties.source == "BOX":
-        to_box = empties.to_box(empties.find(properties.empty))
+        ob = empties.find(properties.empty)
+        to_box = empties.to_box(ob, context.evaluated_depsgraph_get())
         pixels = _filtered(shown, properties.extension)
         return FromBox(world, to_box, fitted(size), pixels, properties.blend, is_framed)
     if properties.source == "NORMALS":

@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
+from . import present_object
 from .projector import Projector, inverse
 
 PROJECTIONS = {"PERSP", "ORTHO"}
@@ -30,14 +31,23 @@ def projector(
     """
     if ob.type != "CAMERA":
         raise RefusalError(f"{ob.name} is not a camera")
-    called, evaluated = f"The camera {ob.name}", ob.evaluated_get(depsgraph)
+    with present_object.evaluated(ob, depsgraph) as evaluated:
+        return _projector(f"The camera {ob.name}", evaluated, depsgraph, size)
+
+
+def _projector(
+    called: str,
+    evaluated: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    size: tuple[int, int],
+) -> Projector:
     if evaluated.data.type not in PROJECTIONS:
         kind = evaluated.data.bl_rna.properties["type"].enum_items[evaluated.data.type].name
         raise RefusalError(
             f"{called} is {kind.lower()}: only perspective and orthographic cameras can project"
         )
     render = depsgraph.scene.render
-    window = ob.calc_matrix_camera(
+    window = evaluated.calc_matrix_camera(
         depsgraph,
         x=size[0],
         y=size[1],
