@@ -305,3 +305,19 @@ def test_refusals():
 def test_table_lists_the_properties_and_their_defaults():
     section = pages.text("sampling").split("## `object.limit_sample_")[1]
     pages.check_properties(section, "limit_sample_tables")
+
+
+def test_tooltips_of_sockets_need_no_knowledge_of_the_extension():
+    """They are whole phrases, and say in which objects, groups or attributes the values are."""
+    sockets = {
+        item.name: item.description
+        for kind in build_assets.DESCRIPTIONS
+        for item in kind.group().interface.items_tree
+    }
+    for name, words in sockets.items():
+        assert len(words.split()) > 4, name
+        assert not words.endswith("."), name
+        assert not set(words.lower().split()) & {"ptex", "cage", "u", "v"}, name
+    assert "the attribute limit_face" in sockets["Face"]
+    assert "the attribute limit_uv" in sockets["UV"]
+    assert "operator Tables for Sample Limit Surface" in sockets["Tiles"]

@@ -50,8 +50,8 @@ def _sum(first: np.ndarray, second: np.ndarray) -> int:
 def _build() -> bpy.types.NodeTree:
     tree = Tree(
         ids.CAPTURE_GROUP,
-        [Socket("Geometry", "Geometry", "Control mesh")],
-        [Socket("Geometry", "Geometry", "Control mesh, with its positions as an attribute")],
+        [Socket("Geometry", "Geometry", "Mesh before it is subdivided (control mesh)")],
+        [Socket("Geometry", "Geometry", "The same mesh, with its positions as an attribute")],
         is_modifier=True,
     )
     mesh = tree.inputs["Geometry"]

@@ -19,7 +19,7 @@ def _build() -> bpy.types.NodeTree:
     tree = new_tree(
         ids.FOLLOW_CURVE_GROUP,
         "Curve",
-        Socket(POINTS, "Object", "Table of the control points"),
+        Socket(POINTS, "Object", "Hidden object that stores where the control points are"),
     )
     geometry = tree.inputs["Geometry"]
     table = tree.object_info(tree.inputs[POINTS])["Geometry"]

@@ -17,18 +17,47 @@ ORIGIN = "tile_origin"  # of each tile's first vertex: where it begins on its fa
 LEVELS, FACES = "levels", "faces"  # the same on all vertices
 
 
+ALL_TILES = Socket(
+    "Tiles",
+    "Object",
+    "Hidden object that holds all patches of the mesh's limit surface: Limit All Tiles, and the "
+    "mesh's name. The operator Tables for Sample Limit Surface makes it",
+)
+FACE = Socket(
+    "Face",
+    "Int",
+    "Number of a quad of the mesh, or of one corner's part of another face, counted from 0 in the "
+    "order of the mesh's faces: a triangle counts as 3, for example. What the extension makes has "
+    "it as the attribute limit_face",
+)
+UV = Socket(
+    "UV",
+    "Vector",
+    "Place on that quad or part: X and Y from 0 to 1. (0, 0) is the quad's first corner, (1, 0) "
+    "its second and (0, 1) its last; on a part, (0, 0) is the corner and (1, 1) the middle of the "
+    "face. What the extension makes has it as the attribute limit_uv",
+)
+
+
 def _build() -> bpy.types.NodeTree:
     tree = Tree(
         ids.LOCATE_GROUP,
         [
-            Socket("Tiles", "Object", "Table of all tiles of the surface"),
-            Socket("Face", "Int", "Face, counted from 0; other faces than quads have one a corner"),
-            Socket("UV", "Vector", "Place on the face, each coordinate from 0 to 1"),
+            ALL_TILES,
+            FACE,
+            UV,
         ],
         [
-            Socket("Tile", "Int", "Tile, counted from 0"),
-            Socket("Tile UV", "Vector", "Place in the tile, each coordinate from 0 to 1"),
-            Socket("Found", "Bool", "Whether there is such a face, and a limit surface on it"),
+            Socket(
+                "Tile",
+                "Int",
+                "Number of the patch of the limit surface that holds the place, counted from 0. "
+                "It is for the input Tile of Sample Limit Surface",
+            ),
+            Socket("Tile UV", "Vector", "Place in that patch: X and Y from 0 to 1"),
+            Socket(
+                "Found", "Bool", "False if the mesh has no such face, or no limit surface on it"
+            ),
         ],
     )
     table = tree.object_info(tree.inputs["Tiles"])["Geometry"]

@@ -14,14 +14,39 @@ _MAGNIFIED = 4096.0
 
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
+TILE = Socket(
+    "Tile",
+    "Int",
+    "Number of one of the patches of which the limit surface consists here, counted from 0: the "
+    "output Tile of Locate Limit Tile",
+)
+TILE_UV = Socket(
+    "Tile UV",
+    "Vector",
+    "Place in that patch: X and Y from 0 to 1, as the output Tile UV of Locate Limit Tile gives it",
+)
+
 OUTPUTS = (
-    Socket("Position", "Vector", "Point on the limit surface"),
-    Socket("Normal", "Vector", "Unit vector that points outward"),
-    Socket("Tangent", "Vector", "Unit vector along growing u"),
-    Socket("Rotation", "Rotation", "Turns X to the tangent and Z to the normal"),
-    Socket("du", "Vector", "Derivative by u of the face"),
-    Socket("dv", "Vector", "Derivative by v of the face"),
-    Socket("Fits", "Bool", "Whether the table of tiles fits the control mesh"),
+    Socket("Position", "Vector", "The place's point on the limit surface in this frame"),
+    Socket("Normal", "Vector", "Direction straight out of the surface; its length is 1"),
+    Socket(
+        "Tangent",
+        "Vector",
+        "Direction along the surface in which the X of UV grows; its length is 1",
+    ),
+    Socket("Rotation", "Rotation", "Rotation that turns X to the tangent and Z to the normal"),
+    Socket(
+        "du", "Vector", "How fast Position changes while the X of UV grows: its derivative by X"
+    ),
+    Socket(
+        "dv", "Vector", "How fast Position changes while the Y of UV grows: its derivative by Y"
+    ),
+    Socket(
+        "Fits",
+        "Bool",
+        "False if the mesh has other faces or creases than when the table Tiles was made, so that "
+        "the other outputs are of no use: make the table again",
+    ),
 )
 
 
@@ -29,10 +54,15 @@ def _build() -> bpy.types.NodeTree:
     tree = Tree(
         ids.SAMPLE_TILE_GROUP,
         [
-            Socket("Surface", "Object", "Mesh with the modifier Limit Capture"),
-            Socket("Tiles", "Object", "Table of tiles of that surface"),
-            Socket("Tile", "Int", "Tile, counted from 0"),
-            Socket("Tile UV", "Vector", "Place in the tile, each coordinate from 0 to 1"),
+            Socket("Surface", "Object", "Mesh object, which has the modifier Limit Capture"),
+            Socket(
+                "Tiles",
+                "Object",
+                "Hidden object that holds the patches of that mesh's limit surface: Limit Tiles or "
+                "Limit All Tiles, and the mesh's name",
+            ),
+            TILE,
+            TILE_UV,
         ],
         list(OUTPUTS),
     )

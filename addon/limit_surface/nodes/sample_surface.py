@@ -7,8 +7,8 @@ import bpy
 
 from .. import ids
 from .groups import Kind
-from .locate import LOCATE
-from .sample import OUTPUTS, SAMPLE
+from .locate import ALL_TILES, FACE, LOCATE, UV
+from .sample import OUTPUTS, SAMPLE, TILE, TILE_UV
 from .tree import Socket, Tree
 
 USE_TILE = "Use Tile"
@@ -18,13 +18,18 @@ def _build() -> bpy.types.NodeTree:
     tree = Tree(
         ids.SAMPLE_GROUP,
         [
-            Socket("Surface", "Object", "Mesh whose limit surface is sampled"),
-            Socket("Tiles", "Object", "Its table of all tiles, Limit All Tiles"),
-            Socket("Face", "Int", "Face, counted from 0; other faces than quads have one a corner"),
-            Socket("UV", "Vector", "Place on the face, each coordinate from 0 to 1"),
-            Socket(USE_TILE, "Bool", "Take Tile and Tile UV instead of Face and UV"),
-            Socket("Tile", "Int", "Tile, counted from 0"),
-            Socket("Tile UV", "Vector", "Place in the tile, each coordinate from 0 to 1"),
+            Socket(
+                "Surface",
+                "Object",
+                "Mesh object whose limit surface is wanted: the smooth surface to which its "
+                "subdivision comes closer with each level",
+            ),
+            ALL_TILES,
+            FACE,
+            UV,
+            Socket(USE_TILE, "Bool", "Take the place from Tile and Tile UV, not from Face and UV"),
+            TILE,
+            TILE_UV,
         ],
         list(OUTPUTS),
     )

@@ -35,19 +35,23 @@ def _build() -> bpy.types.NodeTree:
     tree = Tree(
         ids.TILES_GROUP,
         [
-            Socket("Geometry", "Geometry", "Table of tiles"),
-            Socket("Surface", "Object", "Mesh with the modifier Limit Capture"),
-            Socket("Points", "Object", "Table of the points that tiles consist of"),
-            Socket("Cage Count", "Int", "Number of vertices of the control mesh"),
-            Socket("Cage Topology", "Int", "Checksum of the edges of the control mesh"),
-            Socket("Refined Points", "Int", "Number of points that are sums over vertices"),
+            Socket("Geometry", "Geometry", "Patches of a limit surface, as rows of a table"),
+            Socket("Surface", "Object", "Mesh object, which has the modifier Limit Capture"),
+            Socket("Points", "Object", "Hidden object that holds the points of the patches"),
+            Socket("Cage Count", "Int", "Number of the mesh's vertices when the table was made"),
+            Socket("Cage Topology", "Int", "Checksum of its edges, to notice changes"),
+            Socket("Refined Points", "Int", "Number of points that are weighted sums of vertices"),
             Socket("Use Proxy", "Bool", "Read the proxy instead of the surface in the viewport"),
             Socket("Proxy", "Object", "Copy of the surface that ends at Limit Capture"),
-            Socket(GUARDS_CREASES, "Bool", "Whether the surface depends on creases"),
-            Socket("Cage Edge Creases", "Int", "Checksum of the creases of edges"),
-            Socket("Cage Vertex Creases", "Int", "Checksum of the creases of vertices"),
+            Socket(GUARDS_CREASES, "Bool", "Whether creases of the mesh count"),
+            Socket("Cage Edge Creases", "Int", "Checksum of creases of edges, to notice changes"),
+            Socket(
+                "Cage Vertex Creases",
+                "Int",
+                "Checksum of the creases of vertices, to notice changes",
+            ),
         ],
-        [Socket("Geometry", "Geometry", "Table of tiles, with this frame's matrices")],
+        [Socket("Geometry", "Geometry", "The table, with the shapes of the patches in this frame")],
         is_modifier=True,
     )
     by_proxy = tree.both(tree.get("GeometryNodeIsViewport"), tree.inputs["Use Proxy"])
