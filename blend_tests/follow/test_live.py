@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live, live_thing
+from limit_surface.placing import live, live_attributes
 from limit_surface.reading import attributes
 from live_scenes import FRAMES, check_hair, deforming, follow
 from mathutils import Matrix
@@ -189,7 +189,7 @@ def test_bezier_handles_follow():
     bpy.context.scene.frame_set(30)
     now = follow_truth.on_surface(ob, hair.data, live_scenes.relation(ob, hair))
     for name in ("position", "handle_left", "handle_right"):
-        at_rest = attributes.read(hair.data, live_thing.rest_name(name)).reshape(points.shape)
+        at_rest = attributes.read(hair.data, live_attributes.rest_name(name)).reshape(points.shape)
         expected = follow_truth.moved(at_rest, hair.data, now)
         got = attributes.read(hair.data, name).reshape(points.shape)
         assert np.abs(got - expected).max() < 2e-6 * follow_truth.diagonal(ob)

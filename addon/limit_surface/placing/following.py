@@ -23,7 +23,7 @@ from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, rules
 from ..tasks.counting import by_count
 from ..tasks.object_keys import ObjectKey
-from . import live_thing, proxy, tables
+from . import live_attributes, proxy, tables
 from .follow_properties import follows
 from .followers import (
     ensure_modifier,
@@ -248,8 +248,8 @@ def settle(ob: bpy.types.Object) -> None:
     followed live before they were joined to it.
     """
     is_live = any(live_modifier_of(user) for user in (ob, *sharers(ob)))
-    if ob.type in TYPES and not is_live and not live_thing.missing(ob.data):
-        live_thing.stop(ob.data)
+    if ob.type in TYPES and not is_live and not live_attributes.missing(ob.data):
+        live_attributes.stop(ob.data)
 
 
 def ensure_capture(surface: bpy.types.Object) -> None:

@@ -17,7 +17,7 @@ from ..nodes import groups
 from ..nodes.follow import SURFACE
 from ..tasks.counting import counted
 from ..tasks.object_keys import ObjectKey
-from . import live_surface, live_thing
+from . import live_attributes, live_surface, live_thing
 from .followers import sharers
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
@@ -42,7 +42,7 @@ def trouble(ob: bpy.types.Object) -> str:
 
 def trouble_in_file(ob: bpy.types.Object) -> str:
     """Returns what an earlier version of the extension has left behind that does not follow."""
-    return _lost_frames(ob, live_thing.lost_frames(ob.data))
+    return _lost_frames(ob, live_attributes.lost_frames(ob.data))
 
 
 def _lost_frames(ob: bpy.types.Object, count: int) -> str:
@@ -87,7 +87,7 @@ def followers_in(
         surface = surface_of(ob)
         if surface is None:
             continue
-        missing = live_thing.missing(ob.data)
+        missing = live_attributes.missing(ob.data)
         if missing:
             _refuse(
                 [ob], f"{ob.data.name} has no attribute {missing} any more: let it follow again"
@@ -271,7 +271,7 @@ def _take_up(
     on: LiveSurface,
     depsgraph: bpy.types.Depsgraph,
 ) -> None:
-    thing, written = _thing(ob), live_thing.written(ob.data)
+    thing, written = _thing(ob), live_attributes.written(ob.data)
     edited = thing.edits(ob.data, on.limit)
     if edited is None:
         return
@@ -323,14 +323,14 @@ def _matrix(
 
 
 def _is_posed(ob: bpy.types.Object, on: LiveSurface, frame: float) -> bool:
-    written = live_thing.written(ob.data)
+    written = live_attributes.written(ob.data)
     return written is not None and written.frame == frame and _thing(ob).version == on.version
 
 
 def _same_place(
     ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph
 ) -> bool:
-    written = live_thing.written(ob.data)
+    written = live_attributes.written(ob.data)
     try:
         check_sharers(ob, surface, depsgraph)
         return written is not None and np.array_equal(

@@ -15,7 +15,7 @@ from ..nodes.follow import SURFACE
 from ..nodes.live import FOLLOW_LIVE
 from ..reading import cage
 from ..tasks.piecewise_job import Pieces, at_once
-from . import followers, following, live, live_surface, live_thing, newcomers
+from . import followers, following, live, live_attributes, live_surface, live_thing, newcomers
 from .places import Places
 from .relocation import Relocation
 from .unbinding import Unbinding
@@ -75,9 +75,9 @@ class LiveRequest:
             if (modifier := followers.modifier_of(ob))
         }
         for ob in self._things:
-            if followers.live_modifier_of(ob) and not live_thing.missing(ob.data):
+            if followers.live_modifier_of(ob) and not live_attributes.missing(ob.data):
                 live.take_up_edits(ob, context.evaluated_depsgraph_get())
-            elif live_thing.written(ob.data) is None:
+            elif live_attributes.written(ob.data) is None:
                 following.settle(ob)
         for relocation in self._relocations or ():
             relocation.write()
@@ -93,7 +93,7 @@ class LiveRequest:
             ob.data[ids.SIGNATURE] = self._signature
         depsgraph = context.evaluated_depsgraph_get()
         for ob in self._things:
-            if live_thing.missing(ob.data):
+            if live_attributes.missing(ob.data):
                 live.start(ob, self._surface, depsgraph)
             else:
                 live.take_up_edits(ob, depsgraph)
@@ -128,7 +128,7 @@ def prepare_rebinding(things: Sequence[bpy.types.Object], depsgraph: bpy.types.D
     has lost its shape at rest.
     """
     for ob in things:
-        lacking = live_thing.missing(ob.data)
+        lacking = live_attributes.missing(ob.data)
         if lacking:
             raise RefusalError(f"{ob.data.name} has no attribute {lacking}: let it follow again")
     for ob in things:
@@ -178,9 +178,9 @@ def end(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """
     if followers.live_modifier_of(ob) is None:
         return
-    if not live_thing.missing(ob.data):
+    if not live_attributes.missing(ob.data):
         live.take_up_edits(ob, depsgraph)
-        live_thing.stop(ob.data)
+        live_attributes.stop(ob.data)
     for user in with_sharers([ob]):
         modifier = followers.live_modifier_of(user)
         if modifier is not None:

@@ -14,51 +14,30 @@ place. They stay where they are, whatever their other attributes say, until they
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
-from mathutils import Matrix
 
 from .. import ids
-from ..reading import attributes, linked_attributes
-from .places import NOWHERE, ROOT_KINDS, domain_of, lacking, root_attributes, without_frame
+from ..reading import attributes
+from .live_attributes import (
+    POINTS,
+    VECTORS,
+    added,
+    lost_frames_of,
+    moved_names,
+    place_domain,
+    points_of,
+    rest_name,
+    rows_of,
+    tag,
+    write,
+)
+from .places import NOWHERE, ROOT_KINDS
 
 if TYPE_CHECKING:
     import limitsurf
-
-#: Attributes that hold points, of which the position is the first; vectors; and rotations
-_POINTS = (ids.POSITION, ids.HANDLE_LEFT, ids.HANDLE_RIGHT)
-_VECTORS = (ids.NORMAL, ids.TANGENT)
-_CURVE_TYPES = ("CATMULL_ROM", "POLY", "BEZIER", "NURBS")  # by Blender's number
-
-
-class Written(NamedTuple):
-    """When and where the points were written."""
-
-    frame: float
-    matrix: np.ndarray  # (4, 4) from the surface's space to that of the thing
-
-
-def rest_name(name: str) -> str:
-    """Returns the name of the attribute that holds another one at rest."""
-    return ids.LIVE_REST if name == ids.POSITION else f"{ids.LIVE_REST}_{name}"
-
-
-def moved_names(data: bpy.types.ID) -> list[str]:
-    """Returns the names of the attributes that follow the surface."""
-    kinds = dict.fromkeys(_POINTS, ("FLOAT_VECTOR", "POINT"))
-    if not isinstance(data, bpy.types.Curves):
-        kinds |= dict.fromkeys(_VECTORS, ("FLOAT_VECTOR", "POINT"))
-        kinds |= {ids.ROTATION: ("QUATERNION", "POINT")}
-    if isinstance(data, bpy.types.Mesh):
-        kinds |= {ids.CUSTOM_NORMAL: ("FLOAT_VECTOR", "CORNER")}
-    stored = data.attributes
-    return [
-        name
-        for name, kind in kinds.items()
-        if name in stored and (stored[name].data_type, stored[name].domain) == kind
-    ]
 
 
 def start(data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
@@ -75,73 +54,6 @@ def start(data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
 def check(data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
     """Raises LocationError, MeshError or ValueError where the data is not bound to the surface."""
     LiveThing().check(data, limit)
-
-
-def stop(data: bpy.types.ID) -> None:
-    """Puts the data's points where they are at rest. Edits must have been taken up before."""
-    is_new = added(data)
-    for name in moved_names(data):
-        if rest_name(name) in data.attributes:
-            values = attributes.read(data, rest_name(name))
-            resting = _rows(data, name, is_new)
-            values[resting] = attributes.read(data, name)[resting]
-            _write(data, name, values)
-    leave(data)
-
-
-def added(data: bpy.types.ID) -> np.ndarray:
-    """Tells which strands are new."""
-    is_new: np.ndarray = attributes.read(data, ids.LIVE_FINGERPRINT) == 0
-    return is_new
-
-
-def lost_frames(data: bpy.types.ID) -> int:
-    """Returns the number of strands that stay still because an earlier version of the extension has
-    deleted their frames at rest.
-    """
-    if missing(data):
-        return 0
-    has_none = without_frame(attributes.read(data, ids.REST_ROTATION))
-    has_face = attributes.read(data, ids.FACE) != NOWHERE
-    return int((has_none & has_face & ~added(data)).sum())
-
-
-def begin_anew(data: bpy.types.ID, strands: np.ndarray) -> None:
-    """Makes strands new ones that have got another place: they are at rest where they are now."""
-    if not missing(data):
-        prints = attributes.read(data, ids.LIVE_FINGERPRINT)
-        prints[strands] = 0
-        _write(data, ids.LIVE_FINGERPRINT, prints)
-
-
-def leave(data: bpy.types.ID) -> None:
-    """Leaves the data's points where they are, and forgets those at rest."""
-    followed = (*_POINTS, *_VECTORS, ids.ROTATION, ids.CUSTOM_NORMAL)
-    for name in (ids.LIVE_FINGERPRINT, *(rest_name(name) for name in followed)):
-        if name in data.attributes:
-            data.attributes.remove(data.attributes[name])
-    if ids.LIVE_WRITTEN in data:
-        del data[ids.LIVE_WRITTEN]
-    _tag(data)
-
-
-def missing(data: bpy.types.ID) -> str:
-    """Returns the name of an attribute without which the data cannot follow: it does not exist, or
-    is of another type or domain. Returns nothing where all are there.
-    """
-    needed = {
-        ids.LIVE_REST: ("FLOAT_VECTOR", "POINT"),
-        ids.LIVE_FINGERPRINT: ("INT", domain_of(data)),
-    }
-    return lacking(data, needed | root_attributes(data))
-
-
-def written(data: bpy.types.ID) -> Written | None:
-    stored = data.get(ids.LIVE_WRITTEN)
-    if stored is None or len(stored) != 17:
-        return None
-    numbers = np.array(stored, np.float64)
-    return Written(float(numbers[0]), numbers[1:].reshape(4, 4))
 
 
 class LiveThing:
@@ -195,10 +107,10 @@ class LiveThing:
         now, on the surface in the pose for which they were written. New ones are at rest there.
         """
         poser = self._poser_on(data, limit)
-        for name in _points_of(data):
+        for name in points_of(data):
             rest = self._at_rest(data, name)
             poser.unpose(self._read(data, name), matrix, rest, only=edited)
-            _write(data, rest_name(name), rest)
+            write(data, rest_name(name), rest)
         is_new = edited & (self._prints == 0)
         if is_new.any():
             self._take_up_vectors(data, is_new)
@@ -206,29 +118,29 @@ class LiveThing:
 
     def _take_up_vectors(self, data: bpy.types.ID, is_new: np.ndarray) -> None:
         for name in moved_names(data):
-            if name not in _POINTS and rest_name(name) in data.attributes:
-                rest, rows = self._at_rest(data, name), _rows(data, name, is_new)
+            if name not in POINTS and rest_name(name) in data.attributes:
+                rest, rows = self._at_rest(data, name), rows_of(data, name, is_new)
                 rest[rows] = attributes.read(data, name)[rows]
-                _write(data, rest_name(name), rest)
+                write(data, rest_name(name), rest)
 
     def mark(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
         """Takes the points for those that were written. All strands follow from now on."""
         prints = self._fingerprints(data, self._poser_on(data, limit))
         if ids.LIVE_FINGERPRINT not in data.attributes:
-            data.attributes.new(ids.LIVE_FINGERPRINT, "INT", _domain(data))
-        _write(data, ids.LIVE_FINGERPRINT, prints)
+            data.attributes.new(ids.LIVE_FINGERPRINT, "INT", place_domain(data))
+        write(data, ids.LIVE_FINGERPRINT, prints)
 
     def admit(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
         """Has new strands follow from now on. Their edits must have been taken up before."""
         prints = self._read(data, ids.LIVE_FINGERPRINT)
         own = self._fingerprints(data, self._poser_on(data, limit))
-        _write(data, ids.LIVE_FINGERPRINT, np.where(prints == 0, own, prints))
+        write(data, ids.LIVE_FINGERPRINT, np.where(prints == 0, own, prints))
 
     def _write_prints(self, data: bpy.types.ID, prints: np.ndarray) -> None:
         """Writes the fingerprints of all but new strands."""
         self._known = prints
         self._prints = np.where(self._prints == 0, np.int32(0), prints)
-        _write(data, ids.LIVE_FINGERPRINT, self._prints)
+        write(data, ids.LIVE_FINGERPRINT, self._prints)
 
     def pose(
         self, data: bpy.types.ID, limit: limitsurf.LimitSurface, matrix: np.ndarray, frame: float
@@ -244,16 +156,16 @@ class LiveThing:
         assert poser is not None
         has_moved = self._pose_vectors(data, poser, matrix)
         prints = np.zeros(len(poser), np.int32)
-        for name in _points_of(data):
+        for name in points_of(data):
             points = self._buffers[name] if is_current else self._read(data, name)
             rest = self._at_rest(data, name)
             has_changed, own = poser.repose(rest, points, matrix)
             prints ^= own
             if has_changed:
-                _write(data, name, points)
+                write(data, name, points)
                 has_moved = True
         if has_moved:
-            _tag(data)
+            tag(data)
             self._write_prints(data, _without_zero(prints))
         now = np.array([frame, *matrix.ravel()])
         if not np.array_equal(data.get(ids.LIVE_WRITTEN, ()), now):
@@ -265,7 +177,7 @@ class LiveThing:
     ) -> bool:
         """Turns normals, tangents and rotations, and returns whether anything changed."""
         how: dict[str, Callable[..., np.ndarray]] = {ids.ROTATION: poser.pose_rotations}
-        how |= dict.fromkeys(_VECTORS, poser.pose_vectors)
+        how |= dict.fromkeys(VECTORS, poser.pose_vectors)
         if ids.CUSTOM_NORMAL in data.attributes and isinstance(data, bpy.types.Mesh):
             how[ids.CUSTOM_NORMAL] = self._corners_of(data).pose_vectors
         has_moved = False
@@ -276,14 +188,14 @@ class LiveThing:
             rest = self._at_rest(data, name)
             posed = how[name](rest, matrix, self._buffer(f"new {name}", rest.shape))
             if not _same_bits(posed, self._read(data, name)):
-                _write(data, name, posed)
+                write(data, name, posed)
                 has_moved = True
         return has_moved
 
     def _fingerprints(self, data: bpy.types.ID, poser: limitsurf.StrandPoser) -> np.ndarray:
         """Returns numbers that change with every bit of a strand's points and handles."""
         total: np.ndarray = np.zeros(len(poser), np.int32)
-        for name in _points_of(data):
+        for name in points_of(data):
             total = total ^ poser.fingerprints(self._read(data, name))
         return _without_zero(total)
 
@@ -293,10 +205,11 @@ class LiveThing:
             return self._poser
         self._rests.clear()
         binding = {name: attributes.read(data, name) for name in ROOT_KINDS}
-        self.lost_frames = lost_frames(data)
-        binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
         if ids.LIVE_FINGERPRINT in data.attributes:
-            binding[ids.REST_ROTATION][added(data)] = 0
+            is_new = added(data)
+            self.lost_frames = lost_frames_of(binding, is_new)
+            binding[ids.REST_ROTATION][is_new] = 0
+        binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
         if isinstance(data, bpy.types.Curves):
             binding["offsets"] = attributes.curve_offsets(data)
         if (
@@ -378,11 +291,6 @@ def _without_zero(prints: np.ndarray) -> np.ndarray:
     return np.where(prints == 0, np.int32(1), prints)
 
 
-def _points_of(data: bpy.types.ID) -> list[str]:
-    there = data.attributes.keys()
-    return [name for name in _POINTS if name in there and rest_name(name) in there]
-
-
 def _source(data: bpy.types.ID) -> tuple[object, ...]:
     """Returns what tells a data-block from another one that takes its place."""
     kinds = {bpy.types.Curves: "curves", bpy.types.Mesh: "vertices"}
@@ -390,45 +298,5 @@ def _source(data: bpy.types.ID) -> tuple[object, ...]:
     return data.as_pointer(), len(elements), *data.attributes.keys()
 
 
-def _rows(data: bpy.types.ID, name: str, strands: np.ndarray) -> np.ndarray:
-    """Tells which elements of an attribute belong to these strands (a mask)."""
-    if isinstance(data, bpy.types.Curves):
-        return np.repeat(strands, np.diff(attributes.curve_offsets(data)))
-    if data.attributes[name].domain == "CORNER":
-        return strands[attributes.read(data, ids.CORNER_VERTEX)]
-    return strands
-
-
-def _domain(data: bpy.types.ID) -> str:
-    return data.attributes[ids.FACE].domain
-
-
 def _same_bits(a: np.ndarray, b: np.ndarray) -> bool:
     return a.shape == b.shape and np.array_equal(a.view(np.int32), b.view(np.int32))
-
-
-def _write(data: bpy.types.ID, name: str, values: np.ndarray) -> None:
-    if data.library or data.override_library:
-        linked_attributes.write(data, name, values)
-    elif isinstance(data, bpy.types.Mesh) and name == ids.POSITION:
-        # unlike the attribute, it has Blender calculate the bounding box anew
-        data.vertices.foreach_set("co", values.reshape(-1))
-    else:
-        attribute = data.attributes[name]
-        attributes.write(data, name, attribute.data_type, attribute.domain, values)
-
-
-def _tag(data: bpy.types.ID) -> None:
-    """Has Blender evaluate the data again, with its bounding box."""
-    if isinstance(data, bpy.types.Mesh):
-        if data.library or data.override_library:
-            data.transform(Matrix())
-        data.update()
-    elif not isinstance(data, bpy.types.Curves) or not len(data.curves):
-        pass
-    elif not hasattr(data, "set_types"):  # before Blender 4.3
-        data.add_curves([])
-    else:
-        stored = data.attributes.get(ids.CURVE_TYPE)
-        data.set_types(type=_CURVE_TYPES[stored.data[0].value if stored else 0], indices=[0])
-    data.update_tag()

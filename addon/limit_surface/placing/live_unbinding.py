@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import ids, native
 from ..reading import attributes, cage, transform
-from . import followers, following, live, live_binding, live_thing
+from . import followers, following, live, live_attributes, live_binding
 from .places import Places
 from .posed_surface import Places as PosedPlaces
 from .posed_surface import PosedSurface
@@ -40,7 +40,7 @@ class LiveUnbinding:
         self._now = {
             ob: places_now(ob, surface, self._posed[surface])
             for ob, surface in self._surfaces.items()
-            if shape == "SHOWN" and surface is not None and not live_thing.missing(ob.data)
+            if shape == "SHOWN" and surface is not None and not live_attributes.missing(ob.data)
         }
 
     def write(self, depsgraph: bpy.types.Depsgraph) -> str:
@@ -50,7 +50,7 @@ class LiveUnbinding:
                 live_binding.end(ob, depsgraph)
                 continue
             _bind_here(ob, *self._now[ob])
-            live_thing.leave(ob.data)
+            live_attributes.leave(ob.data)
             modifier = followers.live_modifier_of(ob)
             if modifier is not None:
                 ob.modifiers.remove(modifier)
@@ -67,7 +67,7 @@ def places_now(
     """Returns the rows of the elements that follow, and their places in this frame."""
     stored = Places.read(ob.data)
     stored.check(posed.in_object.face_count, surface.name)
-    follows = ~live_thing.added(ob.data)[stored.rows]
+    follows = ~live_attributes.added(ob.data)[stored.rows]
     places = posed.places(stored.face[follows], stored.uv[follows], transform.world_matrix(ob))
     return stored.rows[follows], places
 

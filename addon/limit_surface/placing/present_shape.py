@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import ids, native
 from ..reading import attributes, cage
-from . import live_thing
+from . import live_attributes
 from .followers import live_modifier_of, modifier_of, surface_of
 from .live_unbinding import places_now
 from .posed_surface import PosedSurface
@@ -28,7 +28,7 @@ class PresentShape:
         surface = surface_of(ob)
         if modifier_of(ob):
             self._values = shown_now(ob, depsgraph)
-        elif live_modifier_of(ob) and surface is not None and not live_thing.missing(ob.data):
+        elif live_modifier_of(ob) and surface is not None and not live_attributes.missing(ob.data):
             posed = PosedSurface(cage.read(surface, depsgraph))
             rows, places = places_now(ob, surface, posed)
             rotation = attributes.read(ob.data, ids.REST_ROTATION)

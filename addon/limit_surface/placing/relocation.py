@@ -11,7 +11,7 @@ import numpy as np
 from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes, ragged_rows, splines, transform
-from . import live_thing
+from . import live_attributes
 from .followers import domain_of, holder_of, is_placed, live_modifier_of
 from .places import NOWHERE, ROOT_KINDS, Places
 from .posed_surface import transformed
@@ -61,7 +61,7 @@ class Elements:
         """Returns the name of the attribute that holds another one in the shape of these
         elements.
         """
-        return live_thing.rest_name(name) if self._stores_rest else name
+        return live_attributes.rest_name(name) if self._stores_rest else name
 
     def read_shape(self, name: str) -> np.ndarray:
         return attributes.read(self.data, self.rest_name(name))

@@ -12,7 +12,7 @@ import bpy
 from .. import ids, native
 from ..nodes import groups
 from ..nodes.follow import SURFACE
-from ..placing import curve_points, following, live_binding, live_thing
+from ..placing import curve_points, following, live_attributes, live_binding
 from ..placing.follow_properties import follows
 from ..placing.followers import live_modifier_of, modifier_of
 
@@ -66,4 +66,4 @@ def _change_surface(ob: bpy.types.Object, target: bpy.types.Object) -> None:
     if modifier and groups.get_input(modifier, SURFACE) != target:
         groups.set_input(modifier, SURFACE, target)
         ob.data.pop(ids.SIGNATURE, None)
-        live_thing.leave(ob.data)
+        live_attributes.leave(ob.data)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import ids, native
 from ..errors import RefusalError
-from ..placing import live_thing
+from ..placing import live_attributes
 from ..placing.posed_surface import Places
 from ..placing.present_shape import PresentShape
 from ..reading import attributes
@@ -80,7 +80,7 @@ class HairBinding:
         self._store(
             ids.REST_ROTATION, (1, 0, 0, 0), curves, native.limitsurf.quaternions(places.frame)
         )
-        live_thing.begin_anew(self._data, curves)
+        live_attributes.begin_anew(self._data, curves)
         self._data.surface = self._surface.ob
         without = self._why_no_uvs()
         if without:
