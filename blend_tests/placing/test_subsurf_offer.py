@@ -121,6 +121,15 @@ def test_very_many_faces_get_fewer_levels():
     assert len(displayed_vertices(ob)) < 1_000_000
 
 
+def test_very_many_sides_get_a_low_quality(capfd):
+    around = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+    positions = [(np.cos(a), np.sin(a), 0.1 * np.cos(3 * a)) for a in around]
+    ob = scenes.add_mesh("Disc", positions, [range(200)])
+    scenes.add_points(ob, distribution="UNIFORM", count=10, add_subsurf=True)
+    assert ob.modifiers[0].quality == 1
+    assert "Warning: Quality is 1, because" in capfd.readouterr().out
+
+
 def test_roots_on_the_displayed_mesh_lie_on_that_of_the_new_modifier():
     ob = cube()
     hair = scenes.add_hair(ob, add_subsurf=True, target="VIEWPORT")
