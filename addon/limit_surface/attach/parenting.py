@@ -30,8 +30,7 @@ def parent_matrices(
         context.view_layer.update()
         return [np.array(probe.matrix_world, np.float64) for probe in probes]
     finally:
-        for probe in probes:
-            bpy.data.objects.remove(probe)
+        bpy.data.batch_remove(probes)  # one after the other they would take seconds
 
 
 def attach(
