@@ -168,10 +168,12 @@ def test_settings_are_those_that_they_were_made_with(scene):
         np.testing.assert_array_equal(old, new)
 
 
-def test_a_deleted_table_is_made_again(scene):
+@pytest.mark.parametrize("table", [nodes.TABLE, nodes.TILES])
+def test_a_deleted_table_is_made_again(scene, table):
     ob, guides, live = scene
-    bpy.data.objects.remove(children_truth.table_of(live))
-    assert troubles(live) == [f"The hidden table that {live.name} reads was deleted"]
+    (modifier,) = groups.modifiers(live, ids.CHILDREN_GROUP)
+    bpy.data.objects.remove(groups.get_input(modifier, table))
+    assert troubles(live) == [f"A hidden table that {live.name} reads was deleted"]
     select(live)
     assert bpy.ops.object.limit_rebind() == {"FINISHED"}
     check(live, guides, ob)

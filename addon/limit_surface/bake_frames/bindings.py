@@ -7,10 +7,10 @@ import bpy
 
 from .. import ids
 from ..errors import RefusalError
-from ..nodes import groups
+from ..nodes import children, groups
 from ..nodes.follow import TILES
-from ..placing import followers, following, live
-from ..placing.follow_state import State
+from ..placing import all_tiles, followers, following, live, live_children
+from ..placing.follow_state import State, Trouble
 from ..reading import attributes, cage
 from ..tasks.counting import by_count, counted
 
@@ -20,22 +20,27 @@ def check(objects: Sequence[bpy.types.Object]) -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     cages: dict[bpy.types.Object, cage.Cage] = {}
     for ob in objects:
-        for thing in (ob, *_parents(ob)):
+        for thing in _needed(ob):
             check_live(thing, depsgraph.scene)
-            surface = followers.surface_of(thing) if followers.is_placed(thing) else None
+            ground = live_children.surface_of(thing)
+            surface = followers.surface_of(thing) if followers.is_placed(thing) else ground
             if surface is None:
                 continue
             if surface not in cages:
                 cages[surface] = cage.read(surface, depsgraph)
-            _check_following(thing, surface, following.signature(cages[surface]))
-            _check_faces(thing, surface, cages[surface].ptex_face_count)
+            signature = following.signature(cages[surface])
+            if ground is not None:
+                _check_children(thing, surface, signature)
+            else:
+                _check_following(thing, surface, signature)
+                _check_faces(thing, surface, cages[surface].ptex_face_count)
             _check_nodes(thing, depsgraph.scene)
 
 
 def check_frame(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
     """Raises RefusalError if the object cannot follow its surface in the current frame."""
-    check_live(ob, scene)
-    for thing in (ob, *_parents(ob)):
+    for thing in _needed(ob):
+        check_live(thing, scene)
         _check_nodes(thing, scene)
 
 
@@ -50,29 +55,63 @@ def check_live(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
         raise RefusalError(reason)
 
 
-def _parents(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
-    """Yields what the object is parented to: attached objects follow by a parent."""
+def _needed(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """Yields the object and those by which it follows: attached objects follow by a parent, and
+    live children have the shapes of their guides.
+    """
+    yield ob
+    guides = live_children.guides_of(ob) if live_children.modifier_of(ob) else None
+    if guides is not None:
+        yield guides
     while ob.parent:
         ob = ob.parent
         yield ob
 
 
 def _check_nodes(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    modifier = followers.modifier_of(ob)
+    grows = live_children.modifier_of(ob)
+    modifier = grows or followers.modifier_of(ob)
     if modifier is None:
         return
     if not (modifier.show_viewport and modifier.show_render):
-        raise RefusalError(f"{ob.name} does not follow: its modifier {modifier.name} is disabled")
-    table = groups.get_input(modifier, TILES)
+        does = "grow" if grows else "follow"
+        raise RefusalError(f"{ob.name} does not {does}: its modifier {modifier.name} is disabled")
+    frame = scene.frame_current
+    if grows:
+        _check_guide_count(ob, grows, frame)
+    table = groups.get_input(modifier, children.TILES if grows else TILES)
     if table is None:
         return  # a trouble that the state names
     shown = table.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.attributes
     if ids.CAGE_FITS in shown and not shown[ids.CAGE_FITS].data[0].value:
+        does, made = ("does not grow", "made") if grows else ("is at rest", "bound")
         raise RefusalError(
-            f"{ob.name} is at rest in frame {scene.frame_current}: the control mesh of its surface "
-            "has other faces, other creases or another order of vertices there than when it was "
-            "bound"
+            f"{ob.name} {does} in frame {frame}: the control mesh of its surface has other faces, "
+            f"other creases or another order of vertices there than when it was {made}"
         )
+
+
+def _check_guide_count(ob: bpy.types.Object, modifier: bpy.types.NodesModifier, frame: int) -> None:
+    """Raises RefusalError where modifiers of the guides make more or fewer of them in this
+    frame.
+    """
+    guides = groups.get_input(modifier, children.GUIDES)
+    if guides is None or guides.type != "CURVES":
+        return  # a trouble that the state names
+    shown = guides.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    before, now = groups.get_input(modifier, children.GUIDE_COUNT), len(shown.curves)
+    if before != now:
+        raise RefusalError(
+            f"{ob.name} does not grow in frame {frame}: it has {now:,} guides there, and had "
+            f"{before:,} when it was made"
+        )
+
+
+def _check_children(ob: bpy.types.Object, surface: bpy.types.Object, signature: str) -> None:
+    for text in live_children.obstacles(ob, signature):
+        _refuse(ob, [Trouble(text, ids.REBIND)])
+    state = State(surface, [], [], all_tiles.of_surface(surface))
+    _refuse(ob, [*state.troubles(None), *state.stale_samples(signature)])
 
 
 def _check_following(ob: bpy.types.Object, surface: bpy.types.Object, signature: str) -> None:
@@ -80,7 +119,12 @@ def _check_following(ob: bpy.types.Object, surface: bpy.types.Object, signature:
     if not follows and not followers.was_bound(ob):
         return
     state = State(surface, [ob] if follows else [], [] if follows else [ob])
-    for trouble in state.troubles(signature):
+    _refuse(ob, state.troubles(signature))
+
+
+def _refuse(ob: bpy.types.Object, troubles: Sequence[Trouble]) -> None:
+    """Raises RefusalError for the first trouble."""
+    for trouble in troubles:
         raise RefusalError(f"{ob.name}: {trouble.text}; {trouble.remedy} puts it right")
 
 

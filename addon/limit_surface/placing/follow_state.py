@@ -130,11 +130,14 @@ class State:
                     "animated need the mode Live"
                 )
             yield Trouble(text, ids.REBIND)
-        samples = self.samples
-        if samples is not None and samples.get(ids.SIGNATURE) != signature:
+        yield from self.stale_samples(signature)
+
+    def stale_samples(self, signature: str) -> Iterator[Trouble]:
+        """Yields what is wrong if the table of all tiles was made for another surface."""
+        if self.samples is not None and self.samples.get(ids.SIGNATURE) != signature:
             text = (
-                f"The faces, creases or rules of {name} have changed since its tables for "
-                f"{ids.SAMPLE_GROUP} were made"
+                f"The faces, creases or rules of {self.surface.name} have changed since its tables "
+                f"for {ids.SAMPLE_GROUP} were made"
             )
             yield Trouble(text, ids.SAMPLE_TABLES)
 

@@ -186,8 +186,8 @@ def obstacles(ob: bpy.types.Object, signature: str | None) -> Iterator[str]:
     """Yields why the children do not grow as they were made. The signature is that of the surface
     as it is now; without it, only what can be seen without an evaluation is named.
     """
-    if table_of(ob) is None:
-        yield f"The hidden table that {ob.name} reads was deleted"
+    if table_of(ob) is None or groups.get_input(modifier_of(ob), nodes.TILES) is None:
+        yield f"A hidden table that {ob.name} reads was deleted"
     guides = guides_of(ob)
     if guides is None or guides.type != "CURVES":
         yield (
