@@ -12,6 +12,7 @@ from pathlib import Path
 from . import exporters
 
 _FRAMES = re.compile(r"(-?\d+)(?:-(-?\d+))?")
+_LARGEST_FRAME = 1_048_574  # Blender shows this frame instead of later ones
 
 DESCRIPTION = """\
 Writes a cache of each object as it is in each frame: DIR/OBJECT.FRAME.abc. Files
@@ -91,6 +92,10 @@ def _frames(text: str) -> tuple[int, int]:
     last = first if match[2] is None else int(match[2])
     if last < first:
         raise argparse.ArgumentTypeError(f"{text!r} ends before it begins")
+    if max(-first, last) > _LARGEST_FRAME:
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: Blender has no frames before {-_LARGEST_FRAME} or after {_LARGEST_FRAME}"
+        )
     return first, last
 
 
