@@ -162,6 +162,27 @@ def test_names_of_files(waves, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["new"]
 
 
+def test_what_its_animation_hides_in_the_viewport_is_baked(waves, tmp_path):
+    hair = bpy.data.objects["Limit Hair"]
+    expected = shown(hair, 3)
+    hair.hide_viewport = True
+    hair.keyframe_insert("hide_viewport", frame=1)
+    bpy.context.scene.frame_set(1)
+    assert bake(tmp_path, "Limit Hair", frames="3", options=("--format", "npz")) == 0
+    found = read_back(tmp_path / "Limit Hair.0003.npz", "CURVES")
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-6)
+    assert hair.hide_viewport
+
+
+def test_arrays_without_points_are_named(waves, tmp_path, capfd):
+    waves.vertex_groups.new(name="None")
+    waves.modifiers.new("Mask", "MASK").vertex_group = "None"
+    assert bake(tmp_path, "Flat", frames="1", options=("--format", "npz")) == 0
+    out = capfd.readouterr().out
+    assert "1 written; Flat shows no points: its file is empty" in out
+    assert f"1 frame in {tmp_path}" in out
+
+
 def test_an_object_that_is_not_rendered_in_a_frame(waves, tmp_path, capfd):
     for frame, hidden in ((1, False), (2, True), (3, False)):
         waves.hide_render = hidden
@@ -189,6 +210,8 @@ def contents_of_files(folder):
     [
         (["bake", "--frames", "5-1", "--objects", "Flat"], "ends before it begins"),
         (["bake", "--frames", "x", "--objects", "Flat"], "neither a frame nor a range"),
+        (["bake", "--frames", "1-1048575", "--objects", "Flat"], "no frames before -1048574"),
+        (["bake", "--frames=-1048575-1", "--objects", "Flat"], "or after 1048574"),
         (["bake", "--frames", "1", "--step", "0", "--objects", "Flat"], "1 or more"),
         (["bake", "--frames", "1"], "--objects"),
         (["bake", "--frames", "1", "--objects", "Flat", "--format", "obj"], "'obj'"),

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..errors import RefusalError
 from ..reading import attributes
 
 TYPES = frozenset({"MESH", "CURVES", "POINTCLOUD"})
@@ -31,7 +32,20 @@ def write(path: Path, ob: bpy.types.Object) -> None:
 
     The same arrays give the same bytes: numpy writes no date.
     """
-    np.savez(path, **_arrays(ob.evaluated_get(bpy.context.evaluated_depsgraph_get())))
+    evaluated = _evaluated(ob)
+    if not evaluated.is_evaluated:  # so this would be the object without its modifiers
+        raise RefusalError(f"Blender does not evaluate {ob.name} in this frame")
+    np.savez(path, **_arrays(evaluated))
+
+
+def is_empty(ob: bpy.types.Object) -> bool:
+    """Tells whether the viewport shows no points of the object, of which arrays could be made."""
+    position = _evaluated(ob).data.attributes.get(ids.POSITION)
+    return position is None or not len(position.data)
+
+
+def _evaluated(ob: bpy.types.Object) -> bpy.types.Object:
+    return ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
 
 
 def _arrays(evaluated: bpy.types.Object) -> dict[str, np.ndarray]:

@@ -16,7 +16,7 @@ from .. import ids, native
 from ..errors import RefusalError
 from ..tasks import file_names
 from ..tasks.counting import counted
-from . import bindings
+from . import arrays, bindings
 from .arguments import Arguments
 from .exporters import Subject
 from .frame_files import FrameFiles
@@ -83,6 +83,7 @@ class Bake:
             if not is_shown:
                 # Handlers are called, as in playback: what follows by handlers is posed by them.
                 self._scene.frame_set(frame)
+                _show(subjects)
                 is_shown = True
             try:
                 bindings.check_frame(subject.ob, self._scene)
@@ -93,6 +94,8 @@ class Bake:
                 remarks.append(f"{path.name}: {_one_line(error)}")
                 continue
             done[WRITTEN] += 1
+            if not self._arguments.format.as_rendered and arrays.is_empty(subject.ob):
+                remarks.append(f"{subject.ob.name} shows no points: its file is empty")
             if self._arguments.format.as_rendered and subject.ob.hide_render:
                 remarks.append(f"{subject.ob.name} is disabled in renders: its file is empty")
         return done, remarks
@@ -165,6 +168,15 @@ def _subjects(
             ob.hide_set(True)
         for subject in subjects:
             bpy.data.collections.remove(subject.collection)
+
+
+def _show(subjects: Sequence[Subject]) -> None:
+    """Shows objects that their animation has hidden in this frame."""
+    hidden = [subject.ob for subject in subjects if subject.ob.hide_viewport]
+    for ob in hidden:
+        ob.hide_viewport = False
+    if hidden:
+        bpy.context.view_layer.update()
 
 
 def _count(done: Counter[str]) -> str:
