@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scenes
 from children_scenes import add_children, add_guides, check_parted, lengths, sheet, two_sided
+from follow_scenes import deforming
 from limit_surface import ids
 from limit_surface.children.operator import OBJECT_OT_limit_children_add
 from limit_surface.children.spread import Spread
@@ -75,6 +76,47 @@ def test_guides_count_as_they_are_shown_now():
     after = scenes.strands(add_children(guides))
     np.testing.assert_array_equal(after[:, 0], before[:, 0])
     assert (after[:, -1, 2] > before[:, -1, 2]).all()
+
+
+def disable(hair):
+    hair.hide_viewport = True
+
+
+def exclude(hair):
+    collection = bpy.data.collections.new("Hidden")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(hair)
+    bpy.context.collection.objects.unlink(hair)
+    bpy.context.view_layer.layer_collection.children["Hidden"].exclude = True
+
+
+@pytest.mark.parametrize("hide", [disable, exclude])
+def test_hidden_guides_count_as_they_are_in_this_frame(hide):
+    """Blender does not evaluate such hair, so it would be at rest."""
+    ob = deforming("cross")
+    guides = add_guides(ob, follow="NODES")
+    bpy.context.scene.frame_set(17)
+    expected = scenes.strands(add_children(guides, follow="NONE"))
+    hide(guides)
+    bpy.context.view_layer.update()
+    before = scenes.file_contents()
+    scenes.activate(ob)
+    settings = {"guides": guides.name, "distribution": "UNIFORM", "count": 300}
+    assert bpy.ops.object.limit_children_add(**settings, follow="NONE") == {"FINISHED"}
+    found = scenes.strands(bpy.context.active_object)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6)
+    bpy.data.hair_curves.remove(bpy.context.active_object.data)
+    assert scenes.file_contents() == before
+
+
+def test_hidden_guides_that_follow_live_are_refused():
+    ob = deforming("cross")
+    guides = add_guides(ob, follow="LIVE")
+    disable(guides)
+    bpy.context.scene.frame_set(17)
+    scenes.activate(ob)
+    with pytest.raises(RuntimeError, match="Limit Hair follows live, but is disabled"):
+        bpy.ops.object.limit_children_add(guides=guides.name)
 
 
 def test_children_follow_by_nodes():

@@ -169,7 +169,8 @@ def test_strands_with_different_numbers_of_points():
     check_drawn(ob, np.stack([resampled, whole], axis=1).reshape(-1, KEYS, 3), number=1)
 
 
-def test_hair_that_follows_is_taken_as_it_is_shown():
+@pytest.mark.parametrize("is_hidden", [False, True])
+def test_hair_that_follows_is_taken_as_it_is_shown(is_hidden):
     ob = scenes.cross()
     scenes.add_subsurf(ob).levels = 2
     key = particle_scenes.add_shape_key(ob)
@@ -179,6 +180,8 @@ def test_hair_that_follows_is_taken_as_it_is_shown():
     bpy.context.view_layer.update()
     shown = hair.evaluated_get(bpy.context.evaluated_depsgraph_get())
     bent = attributes.read(shown.data, ids.POSITION).reshape(rest.shape)
+    hair.hide_viewport = is_hidden
+    bpy.context.view_layer.update()
     convert()
     assert np.abs(bent - rest).max() > 0.1
     check_drawn(ob, bent)

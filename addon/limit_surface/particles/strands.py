@@ -93,10 +93,10 @@ def _radius(
     hair: bpy.types.Object, offsets: np.ndarray, depsgraph: bpy.types.Depsgraph
 ) -> tuple[float, float]:
     """Returns the mean radii of roots and tips in the world."""
-    shown = hair.evaluated_get(depsgraph)
-    if "radius" not in shown.data.attributes:
-        return _RADIUS, _RADIUS
-    radius = attributes.read(shown.data, "radius")
-    scale = WorldSpace(np.array(shown.matrix_world, np.float64), shown.name).mean_scale
+    with shown_strands.shown_as(hair, depsgraph) as shown:
+        if "radius" not in shown.data.attributes:
+            return _RADIUS, _RADIUS
+        radius = attributes.read(shown.data, "radius")
+        scale = WorldSpace(np.array(shown.matrix_world, np.float64), hair.name).mean_scale
     at_root, at_tip = radius[offsets[:-1]].mean(), radius[offsets[1:] - 1].mean()
     return float(scale * at_root), float(scale * at_tip)

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from ..reading import attributes, transform
+from ..reading import attributes, cage, transform
+from .followers import live_modifier_of
 from .posed_surface import transformed
 
 
@@ -19,7 +23,38 @@ def read(
     the end. Raises RefusalError where modifiers change the number of strands, and where coordinates
     are not finite numbers.
     """
-    shown, count = ob.evaluated_get(depsgraph), len(ob.data.curves)
+    with shown_as(ob, depsgraph) as shown:
+        points, offsets, matrix = _read(ob, shown)
+    if np.array_equal(matrix, space):
+        return points, offsets
+    return transformed(np.linalg.solve(space, matrix), points), offsets
+
+
+@contextmanager
+def shown_as(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Object]:
+    """Yields the evaluated object. Blender does not evaluate hair that is disabled in viewports or
+    not in the view layer, so a copy of it is evaluated. Raises RefusalError where that is no use.
+    """
+    shown = ob.evaluated_get(depsgraph)
+    if shown.is_evaluated:
+        yield shown
+        return
+    if live_modifier_of(ob):
+        raise RefusalError(
+            f"{ob.name} follows live, but is disabled in viewports or is not in this view layer, "
+            "so it does not move: enable it first"
+        )
+    with cage.evaluated_copy(ob, len(ob.modifiers), depsgraph) as copy:
+        yield copy
+
+
+def _read(
+    ob: bpy.types.Object, shown: bpy.types.Object
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Returns points, the first point of each strand, and the matrix that maps them to the
+    world.
+    """
+    count = len(ob.data.curves)
     if len(shown.data.curves) != count:
         raise RefusalError(
             f"The modifiers of {ob.name} change its number of strands, from {count:,} to "
@@ -33,7 +68,6 @@ def read(
         raise RefusalError(
             f"Strand {strand} of {ob.name} has coordinates that are not finite numbers: delete it"
         )
-    matrix = transform.world_matrix(shown)
-    if np.array_equal(matrix, space):
-        return points, offsets
-    return transformed(np.linalg.solve(space, matrix), points), offsets
+    matrix = np.array(shown.matrix_world, np.float64)
+    transform.check_invertible(matrix, ob.name)
+    return points, offsets, matrix
