@@ -353,6 +353,18 @@ def test_roots_of_nothing():
     check_refused("Limit Hair has no surface", on="ROOTS")
 
 
+def test_tables_are_not_taken_for_roots(capfd):
+    """The mesh Limit Faces has the attributes of places too, on its faces and corners."""
+    ob = paraboloid()
+    assert bpy.ops.object.limit_sample_tables() == {"FINISHED"}
+    check_refused("has the attributes limit_face and limit_uv", on="ROOTS")
+    hair = scenes.add_hair(ob, per_side=1)
+    capfd.readouterr()
+    run(ob, on="ROOTS")
+    assert ids.CURVATURE_MEAN in hair.data.attributes
+    assert "left out" not in capfd.readouterr().out
+
+
 def test_roots_of_another_mesh():
     ob, other = paraboloid(), scenes.cross()
     hair, more = scenes.add_hair(ob, per_side=1), scenes.add_hair(ob, per_side=1)

@@ -103,7 +103,9 @@ def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 def _carries(ob: bpy.types.Object) -> bool:
-    return ob.type in _DOMAINS and {ids.FACE, ids.UV} <= set(ob.data.attributes.keys())
+    if ob.type not in _DOMAINS or ids.FACES_MARK in ob:  # Limit Faces has them on faces and corners
+        return False
+    return {ids.FACE, ids.UV} <= set(ob.data.attributes.keys())
 
 
 def _surface(ob: bpy.types.Object) -> bpy.types.Object | None:
