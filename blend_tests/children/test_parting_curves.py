@@ -171,6 +171,8 @@ def test_refusals_change_nothing():
     refused("Parting: Flat is neither a curve object nor hair", guides, parting_curves=ob.name)
     empty = linked(bpy.data.curves.new("Empty", "CURVE"))
     refused("Parting: .* has no curves", guides, parting_curves=empty.name)
+    lost = add_curve([*ACROSS, (float("nan"), 0, 0)])
+    refused("coordinates that are not finite numbers", guides, parting_curves=lost.name)
 
 
 def test_the_redo_panel_asks_for_the_curves():

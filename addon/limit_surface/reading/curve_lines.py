@@ -22,7 +22,7 @@ TYPES = {"CURVE", "CURVES"}
 
 def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
     """Returns the ends (n, 2, 3) of all lines in the world, each from the side of the curve's first
-    point. Raises RefusalError where there are none.
+    point. Raises RefusalError where there are none, and where coordinates are not finite numbers.
     """
     if ob.type not in TYPES:
         raise RefusalError(f"{ob.name} is neither a curve object nor hair")
@@ -38,6 +38,8 @@ def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
         bpy.data.node_groups.remove(tree)
     if not len(lines):
         raise RefusalError(f"{ob.name} has no curves")
+    if not np.isfinite(lines).all():
+        raise RefusalError(f"{ob.name} has coordinates that are not finite numbers")
     matrix = np.array(ob.evaluated_get(depsgraph).matrix_world, np.float64)
     transform.check_finite(matrix, ob.name)
     return lines @ matrix[:3, :3].T + matrix[:3, 3]
