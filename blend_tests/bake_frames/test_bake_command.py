@@ -174,6 +174,13 @@ def test_what_its_animation_hides_in_the_viewport_is_baked(waves, tmp_path):
     assert hair.hide_viewport
 
 
+def test_attributes_that_no_array_can_hold_are_left_out(waves, tmp_path):
+    waves.data.attributes.new(ids.SCALE, "FLOAT4X4", "POINT")
+    assert bake(tmp_path, "Flat", frames="1", options=("--format", "npz")) == 0
+    with np.load(tmp_path / "Flat.0001.npz") as arrays:
+        assert ids.SCALE not in arrays
+
+
 def test_arrays_without_points_are_named(waves, tmp_path, capfd):
     waves.vertex_groups.new(name="None")
     waves.modifiers.new("Mask", "MASK").vertex_group = "None"

@@ -62,6 +62,7 @@ def _arrays(evaluated: bpy.types.Object) -> dict[str, np.ndarray]:
     if evaluated.type == "CURVES":
         found["curve_offsets"] = attributes.curve_offsets(data)
     for name in _CARRIED:
-        if name in data.attributes:
+        there = data.attributes.get(name)
+        if there and there.data_type in attributes.LAYOUTS:  # a user's own may have other types
             found[name] = attributes.read(data, name)
     return found
