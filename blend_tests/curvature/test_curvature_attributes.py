@@ -320,6 +320,23 @@ def test_linked_meshes(tmp_path):
     check_refused("is linked from another file")
 
 
+def test_overridden_hair(tmp_path):
+    """Blender does not save attributes that are written to it."""
+    hair = scenes.add_hair(paraboloid(), per_side=1)
+    collection = bpy.data.collections.new("Groom")
+    for ob in (hair, hair.parent):
+        collection.objects.link(ob)
+    path = str(tmp_path / "a.blend")
+    bpy.data.libraries.write(path, {collection})
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(path, link=True) as (_there, here):
+        here.collections = ["Groom"]
+    here.collections[0].override_hierarchy_create(bpy.context.scene, bpy.context.view_layer)
+    hair = next(ob for ob in bpy.context.scene.objects if ob.type == "CURVES")
+    scenes.activate(hair)
+    check_refused("Limit Hair is a library override", on="ROOTS")
+
+
 def test_edit_mode_and_other_objects():
     ob = paraboloid()
     bpy.ops.object.mode_set(mode="EDIT")

@@ -116,6 +116,11 @@ def _check(ob: bpy.types.Object) -> None:
     domain = _DOMAINS[ob.type]
     if not ob.data.is_editable:
         raise RefusalError(f"{ob.data.name} is linked from another file")
+    if ob.data.override_library:
+        raise RefusalError(
+            f"{ob.data.name} is a library override, whose attributes Blender does not save: make "
+            "it local first"
+        )
     for name, kind in ((ids.FACE, "INT"), (ids.UV, "FLOAT2")):
         there = ob.data.attributes[name]
         if (there.data_type, there.domain) != (kind, domain):
