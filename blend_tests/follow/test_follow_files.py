@@ -7,6 +7,7 @@ import bpy
 import follow_truth
 import limitsurf
 import numpy as np
+import pytest
 import scenes
 from follow_scenes import check_hair, deforming
 from limit_surface import ids
@@ -15,9 +16,9 @@ from limit_surface.nodes.follow import TILES
 from limit_surface.placing.followers import modifier_of
 
 
-def followed() -> tuple[bpy.types.Object, bpy.types.Object]:
+def followed(**properties: object) -> tuple[bpy.types.Object, bpy.types.Object]:
     ob = deforming("grid with holes")
-    return ob, scenes.add_hair(ob, tilt=(0.4, 0.2), follow="NODES")
+    return ob, scenes.add_hair(ob, tilt=(0.4, 0.2), follow="NODES", **properties)
 
 
 def found() -> tuple[bpy.types.Object, bpy.types.Object]:
@@ -93,13 +94,13 @@ def append_collection(path: str, link: bool) -> bpy.types.Collection:
     return here.collections[0]
 
 
-def save_collection(folder: Path) -> str:
+def save_collection(folder: Path, **properties: object) -> str:
     """Saves surface, hair and tables in a collection, with nothing else."""
     groom = bpy.data.collections.new("Groom")
     bpy.context.scene.collection.children.link(groom)
     layer = bpy.context.view_layer.layer_collection.children["Groom"]
     bpy.context.view_layer.active_layer_collection = layer
-    ob, _hair = followed()
+    ob, _hair = followed(**properties)
     for each in list(bpy.context.scene.objects):
         if each.name not in groom.objects:
             groom.objects.link(each)
@@ -153,9 +154,9 @@ def test_a_library_override_follows_in_its_own_pose(tmp_path):
     check_frames(ob, hair)
 
 
-def overridden(tmp_path: Path) -> tuple[bpy.types.Object, bpy.types.Object]:
+def overridden(tmp_path: Path, **properties: object) -> tuple[bpy.types.Object, bpy.types.Object]:
     """Returns library overrides of a surface and of hair, whose tables are overrides, too."""
-    linked = append_collection(save_collection(tmp_path), link=True)
+    linked = append_collection(save_collection(tmp_path, **properties), link=True)
     bpy.context.scene.collection.children.link(linked)
     linked.override_hierarchy_create(
         bpy.context.scene, bpy.context.view_layer, do_fully_editable=True
@@ -180,4 +181,34 @@ def test_new_hair_on_an_overridden_surface_leaves_overridden_tables_alone(tmp_pa
     assert own != table
     assert own.data.library is None
     assert len(table.data.vertices) == rows
+    check_frames(ob, hair)
+
+
+def test_overridden_hair_stays_bound_as_its_own_file_says(tmp_path):
+    """Nothing that is written to its points takes effect, so it must keep the tables to which their
+    tiles belong. Few strands use other numbers of tiles than the new points do.
+    """
+    ob, hair = overridden(tmp_path, distribution="UNIFORM", count=12)
+    new = scenes.add_points(ob, distribution="UNIFORM", count=20, follow="NODES")
+    check_frames(ob, hair)
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(empty)
+    bpy.ops.object.select_all(action="DESELECT")
+    empty.select_set(True)
+    scenes.activate(ob)
+    assert bpy.ops.object.limit_attach() == {"FINISHED"}
+    check_frames(ob, hair)
+    for operator in (bpy.ops.object.limit_unbind, bpy.ops.object.limit_rebind):
+        bpy.ops.object.select_all(action="DESELECT")
+        scenes.activate(hair)
+        with pytest.raises(RuntimeError, match="Limit Hair is a library override"):
+            operator()
+    bpy.ops.object.select_all(action="DESELECT")
+    for thing in (new, bpy.data.objects["Limit Carrier of Holes"]):
+        scenes.activate(thing)
+        assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    check_frames(ob, hair)
+    bpy.ops.wm.open_mainfile(filepath=save(tmp_path / ".."))
+    ob = next(o for o in bpy.data.objects if o.name.startswith("Holes") and not o.library)
+    hair = next(o for o in bpy.data.objects if o.type == "CURVES" and not o.library)
     check_frames(ob, hair)

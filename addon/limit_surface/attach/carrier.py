@@ -14,7 +14,7 @@ import numpy as np
 from .. import ids
 from ..placing import following, tables
 from ..placing.binding import Binding
-from ..placing.followers import followers_of, modifier_of
+from ..placing.followers import followers_of, is_own, modifier_of
 from ..placing.posed_surface import Places
 from ..reading import attributes
 
@@ -28,7 +28,7 @@ def is_carrier(ob: bpy.types.Object | None) -> bool:
 
 
 def carrier_of(surface: bpy.types.Object) -> bpy.types.Object | None:
-    return next((ob for ob in followers_of(surface) if is_carrier(ob)), None)
+    return next((ob for ob in followers_of(surface) if is_carrier(ob) and is_own(ob)), None)
 
 
 def remove_unused() -> None:
@@ -36,8 +36,8 @@ def remove_unused() -> None:
     unbound, and what they carried has been attached again.
     """
     for ob in list(bpy.data.objects):
-        is_own = ob.library is None and not ob.override_library
-        if is_own and is_carrier(ob) and modifier_of(ob) is None and not ob.children:
+        is_local = ob.library is None and not ob.override_library
+        if is_local and is_carrier(ob) and modifier_of(ob) is None and not ob.children:
             tables.remove_object(ob)
 
 

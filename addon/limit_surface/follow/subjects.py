@@ -9,6 +9,7 @@ from ..errors import RefusalError
 from ..placing import live_children
 from ..placing.followers import (
     followers_of,
+    is_own,
     is_placed,
     live_followers_of,
     live_modifier_of,
@@ -37,8 +38,12 @@ def chosen_followers(context: bpy.types.Context) -> list[bpy.types.Object]:
     if any(live_children.modifier_of(ob) for ob in chosen):
         return found
     if not found and active is not None and active.type == "MESH":
-        found = [*followers_of(active), *live_followers_of(active)]
+        found = [*_own_followers_of(active), *live_followers_of(active)]
     return found
+
+
+def _own_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    return [ob for ob in followers_of(surface) if is_own(ob)]
 
 
 def to_bind(
@@ -52,7 +57,11 @@ def to_bind(
     things = [ob for ob in selected(context) if ob.type in BINDABLE]
     if active is not None and active.type == "MESH" and not is_placed(active):
         things.remove(active)
-        things = things or [*followers_of(active), *live_followers_of(active), *strays_of(active)]
+        things = things or [
+            *_own_followers_of(active),
+            *live_followers_of(active),
+            *strays_of(active),
+        ]
         return {active: things} if things else {}
     surfaces = {surface_of(ob) for ob in things}
     found: dict[bpy.types.Object, list[bpy.types.Object]] = {}

@@ -42,6 +42,14 @@ def holders(objects: Iterable[bpy.types.Object]) -> list[bpy.types.ID]:
     return list(dict.fromkeys(holder for ob in objects if (holder := holder_of(ob)) is not None))
 
 
+def is_own(ob: bpy.types.Object) -> bool:
+    """Tells whether this file stores the locations of an object. Those of linked data and of
+    library overrides belong to the file that they come from: Blender saves no change of them.
+    """
+    holder = holder_of(ob)
+    return holder is None or (holder.library is None and holder.override_library is None)
+
+
 def curve_table(ob: bpy.types.Object) -> bpy.types.Object | None:
     """Returns the table of a Curve object that follows a surface."""
     modifier = next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None)

@@ -30,6 +30,7 @@ from .followers import (
     followers_of,
     holder_of,
     holders,
+    is_own,
     is_placed,
     live_followers_of,
     live_modifier_of,
@@ -69,7 +70,8 @@ def counted(followers: int) -> str:
 class Request:
     """The binding of things to one surface, in three steps: it is read from Blender, computed
     where Blender's data need not be touched, and written. All that follows the surface already is
-    bound again with it, because the tables are made for all of it together.
+    bound again with it, because the tables are made for all of it together. Linked data and library
+    overrides keep the tables that they come with.
 
     `without` are things that are about to get other locations.
 
@@ -90,9 +92,10 @@ class Request:
         check_surface(surface, depsgraph.scene)
         for ob in things:
             check_thing(ob, surface)
+            check_own(ob)
             if modifier_of(ob) is None:
                 check_first(ob)
-        followers = [ob for ob in followers_of(surface) if ob not in without]
+        followers = [ob for ob in followers_of(surface) if ob not in without and is_own(ob)]
         for ob in followers:
             check_thing(ob, surface)
         self._surface, self._use_proxy = ObjectKey.of(surface), use_proxy
@@ -271,6 +274,7 @@ def remove_unused_capture(surface: bpy.types.Object) -> None:
     if (
         surface.is_editable
         and not tables.all_of_surface(surface)
+        and not followers_of(surface)  # library overrides have tables of their own
         and not live_followers_of(surface)
     ):
         for modifier in list(groups.modifiers(surface, ids.CAPTURE_GROUP)):
@@ -322,6 +326,15 @@ def check_first(ob: bpy.types.Object) -> None:
         raise RefusalError(
             f"{ob.name}: Multiresolution ({ob.modifiers[0].name}) must be the first modifier, "
             "which following needs to be: apply it first"
+        )
+
+
+def check_own(ob: bpy.types.Object) -> None:
+    """Raises RefusalError for an object whose locations this file does not store."""
+    if not is_own(ob):
+        raise RefusalError(
+            f"{ob.name} is a library override, and Blender does not save what it is bound to: make "
+            "it local first, or do this in the file from which it comes"
         )
 
 

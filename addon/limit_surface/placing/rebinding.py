@@ -23,6 +23,7 @@ from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
 from .followers import (
     followers_of,
     holder_of,
+    is_own,
     live_followers_of,
     live_modifier_of,
     strays_of,
@@ -90,7 +91,8 @@ class Rebinding:
         max_distance: float = math.inf,
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
-        following_now = [*followers_of(surface), *live_followers_of(surface), *strays_of(surface)]
+        by_nodes = [ob for ob in followers_of(surface) if is_own(ob)]
+        following_now = [*by_nodes, *live_followers_of(surface), *strays_of(surface)]
         bound = list(dict.fromkeys([*following_now, *things]))
         # For control points that were added there are no places that could be kept.
         self._curves = [ob for ob in bound if ob.type == "CURVE" and curve_points.has_others(ob)]
@@ -99,6 +101,8 @@ class Rebinding:
             curve_points.check(ob, surface)
         for ob in kept:
             following.check_thing(ob, surface)
+            if not live_modifier_of(ob):
+                following.check_own(ob)
         self._live = [ob for ob in kept if live_modifier_of(ob)]
         live_binding.prepare_rebinding(self._live, depsgraph)
         for ob in kept:

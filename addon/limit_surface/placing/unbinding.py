@@ -55,6 +55,7 @@ class Unbinding:
     def __init__(self, things: Sequence[bpy.types.Object], shape: Shape) -> None:
         for ob in things:
             following.check_editable(ob)
+            following.check_own(ob)
         self._things, self._shape = list(things), shape
         self._frozen: list[_Frozen] = []
         if shape == "SHOWN":
