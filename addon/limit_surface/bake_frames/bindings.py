@@ -102,8 +102,8 @@ def _check_guide_count(ob: bpy.types.Object, modifier: bpy.types.NodesModifier, 
     before, now = groups.get_input(modifier, children.GUIDE_COUNT), len(shown.curves)
     if before != now:
         raise RefusalError(
-            f"{ob.name} does not grow in frame {frame}: it has {now:,} guides there, and had "
-            f"{before:,} when it was made"
+            f"{ob.name} does not grow in frame {frame}: it has {counted(now, 'guides')} there, and "
+            f"had {before:,} when it was made"
         )
 
 
