@@ -323,16 +323,7 @@ def test_linked_meshes(tmp_path):
 def test_overridden_hair(tmp_path):
     """Blender does not save attributes that are written to it."""
     hair = scenes.add_hair(paraboloid(), per_side=1)
-    collection = bpy.data.collections.new("Groom")
-    for ob in (hair, hair.parent):
-        collection.objects.link(ob)
-    path = str(tmp_path / "a.blend")
-    bpy.data.libraries.write(path, {collection})
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    with bpy.data.libraries.load(path, link=True) as (_there, here):
-        here.collections = ["Groom"]
-    here.collections[0].override_hierarchy_create(bpy.context.scene, bpy.context.view_layer)
-    hair = next(ob for ob in bpy.context.scene.objects if ob.type == "CURVES")
+    hair, _surface = scenes.overridden(tmp_path, hair, hair.parent)
     scenes.activate(hair)
     check_refused("Limit Hair is a library override", on="ROOTS")
 

@@ -191,3 +191,13 @@ def test_curves_without_a_place_in_the_world_are_refused(target):
     ob.data.splines[0].bezier_points[1].co.x = float("nan")
     with pytest.raises(RuntimeError, match="Spline 0 of Cable has coordinates"):
         lay(ob, target)
+
+
+def test_library_overrides_are_refused(tmp_path):
+    """Blender does not save points that are written to them."""
+    target = scenes.cross()
+    ob, target = scenes.overridden(tmp_path, curve("POLY", over(target, PLACES)), target)
+    before = drawn.control_points(ob.data.splines[0])
+    with pytest.raises(RuntimeError, match="is a library override: Blender does not save"):
+        lay(ob, target)
+    np.testing.assert_array_equal(drawn.control_points(ob.data.splines[0]), before)

@@ -353,3 +353,15 @@ def test_on_the_polygons_that_are_shown(kind):
     stored = attributes.read(hair.data, ids.REST_ROOT)
     first = ragged_rows.starts(SIZES)
     np.testing.assert_allclose(stored, attributes.read(hair.data, "position")[first], atol=1e-6)
+
+
+def test_library_overrides_are_refused(tmp_path):
+    """Blender does not save points that are written to them."""
+    target = scenes.cross()
+    hair = add_hair(target)
+    hair, target = scenes.overridden(tmp_path, hair, target)
+    before = attributes.read(hair.data, "position")
+    hair.select_set(True)
+    with pytest.raises(RuntimeError, match="is a library override: Blender does not save"):
+        snap(target)
+    np.testing.assert_array_equal(attributes.read(hair.data, "position"), before)

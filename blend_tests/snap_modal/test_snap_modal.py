@@ -149,6 +149,13 @@ def test_refusals_of_hair(target):
     refused("Choose a target in the sidebar tab Limit", element=0)
 
 
+def test_overridden_hair(target, tmp_path):
+    """Blender does not save points that are written to it."""
+    hair, _target = scenes.overridden(tmp_path, scenes.add_hair(target, per_side=1), target)
+    scenes.activate(hair)
+    refused("is a library override: Blender does not save", element=0)
+
+
 def test_edited_mesh_is_no_target_of_itself(target):
     bpy.ops.object.mode_set(mode="EDIT")
     refused("cannot be dragged over itself", element=0)

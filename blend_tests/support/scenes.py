@@ -2,6 +2,7 @@
 """Objects for tests, and functions that look at them."""
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 import bpy
 import limitsurf
@@ -37,6 +38,27 @@ def add_mesh(
     bpy.context.view_layer.objects.active = ob
     ob.select_set(True)
     return ob
+
+
+def overridden(folder: Path, *objects: bpy.types.Object) -> list[bpy.types.Object]:
+    """Begins another file, with library overrides of these objects and their data."""
+    collection = bpy.data.collections.new("Asset")
+    names = [ob.name for ob in objects]
+    for ob in objects:
+        collection.objects.link(ob)
+    path = str(folder / "asset.blend")
+    bpy.data.libraries.write(path, {collection})
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(path, link=True) as (_there, here):
+        here.collections = ["Asset"]
+    here.collections[0].override_hierarchy_create(
+        bpy.context.scene, bpy.context.view_layer, do_fully_editable=True
+    )
+    overrides = [bpy.context.scene.objects[name] for name in names]
+    for ob in overrides:
+        if ob.data.library:
+            ob.data.override_create(remap_local_usages=True)
+    return overrides
 
 
 def cross() -> bpy.types.Object:

@@ -12,6 +12,7 @@ import numpy as np
 from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes, cage, transform
+from ..tasks.editable import check_data_editable
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from . import storage
@@ -114,13 +115,7 @@ def _surface(ob: bpy.types.Object) -> bpy.types.Object | None:
 
 def _check(ob: bpy.types.Object) -> None:
     domain = _DOMAINS[ob.type]
-    if not ob.data.is_editable:
-        raise RefusalError(f"{ob.data.name} is linked from another file")
-    if ob.data.override_library:
-        raise RefusalError(
-            f"{ob.data.name} is a library override, whose attributes Blender does not save: make "
-            "it local first"
-        )
+    check_data_editable(ob.data)
     for name, kind in ((ids.FACE, "INT"), (ids.UV, "FLOAT2")):
         there = ob.data.attributes[name]
         if (there.data_type, there.domain) != (kind, domain):

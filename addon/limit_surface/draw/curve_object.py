@@ -20,6 +20,7 @@ from ..placing.roots import Locations
 from ..placing.rotations import WorldSpace
 from ..reading import splines as blender_splines
 from ..reading import transform
+from ..tasks.editable import check_data_editable
 from . import splines
 from .fitting import Spline
 from .ground import Ground
@@ -118,11 +119,12 @@ def check_places(ob: bpy.types.Object, ground: Ground) -> None:
     curve_points.check_pose(ob, ground.ob, ground.posed)
 
 
-def check_editable(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
+def check_drawable(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     """Raises RefusalError for a Curve object on which nobody can draw."""
     data = ob.data
-    if not ob.is_editable or not data.is_editable:
+    if not ob.is_editable:
         raise RefusalError(f"{ob.name} is linked from another file")
+    check_data_editable(data)
     if data.shape_keys:
         raise RefusalError(f"{ob.name} has shape keys, which keep the number of its points")
     if data.dimensions == "2D":

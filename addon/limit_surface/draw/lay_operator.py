@@ -57,7 +57,7 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.t
         """Changes the curves in the last piece, and returns what the operator returns."""
         surface, curves = context.active_object, _curves(context)
         for ob in curves:
-            curve_object.check_editable(ob, surface)
+            curve_object.check_drawable(ob, surface)
         if len({ob.data for ob in curves}) < len(curves):
             raise RefusalError("Two of the selected objects share their curves: make them single")
         ground = Ground(surface, context.evaluated_depsgraph_get())

@@ -9,7 +9,7 @@ import bpy
 
 from ..errors import RefusalError
 from ..placing.followers import surface_of
-from .curve_object import check_editable
+from .curve_object import check_drawable
 
 
 @dataclass(frozen=True)
@@ -37,5 +37,5 @@ def find(context: bpy.types.Context) -> Subject:
     if not surface.visible_get(view_layer=context.view_layer):
         raise RefusalError(f"{surface.name} is hidden: show it to draw on it")
     if edited is not None:
-        check_editable(edited, surface)
+        check_drawable(edited, surface)
     return Subject(surface, edited)

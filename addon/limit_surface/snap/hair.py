@@ -10,6 +10,7 @@ from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace, unit
 from ..reading import attributes, ragged_rows
 from ..tasks.counting import by_count, counted
+from ..tasks.editable import check_data_editable
 from .aim import Elements, Placement
 from .binding_again import will_follow
 from .choices import Choices, Outcome
@@ -29,6 +30,7 @@ class SnappedHair:
     stores_location = True
 
     def __init__(self, ob: bpy.types.Object, surface: TargetSurface, selected_only: bool) -> None:
+        check_data_editable(ob.data)
         self._ob = ob
         self._shape = PresentShape(ob, bpy.context.evaluated_depsgraph_get())
         self._read_transform()

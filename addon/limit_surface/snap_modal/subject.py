@@ -13,6 +13,7 @@ from ..placing.present_shape import PresentShape
 from ..snap.mesh_vertices import as_edited
 from ..snap.selection import ancestors
 from ..snap.surface import TargetSurface
+from ..tasks.editable import check_data_editable
 from .handles import DraggedObject, DraggedStrand, DraggedVertex, Handle
 
 HAIR_MODES = ("OBJECT", "EDIT_CURVES", "SCULPT_CURVES")
@@ -71,8 +72,7 @@ def find_subject(context: bpy.types.Context) -> Subject:
         raise RefusalError(f"The target {target.name} is not a mesh")
     if target.data == active.data:
         raise RefusalError(f"{active.name} cannot be dragged over itself: choose another target")
-    if not active.data.is_editable:
-        raise RefusalError(f"{active.name} is linked from another file")
+    check_data_editable(active.data)
     return Subject(kind, active, target)
 
 
