@@ -8,7 +8,7 @@ import limit_surface
 import pytest
 from limit_surface.bake_maps import text
 from limit_surface.bake_maps.map_images import Baked
-from limit_surface.tasks.counting import counted
+from limit_surface.counting import counted
 from limit_surface.tasks.refused_faces import left_out, reasons
 
 

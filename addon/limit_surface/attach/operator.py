@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
 from ..placing import dependencies, following
 from ..placing.binding import Binding
@@ -15,7 +16,6 @@ from ..placing.followers import live_modifier_of, modifier_of
 from ..placing.posed_surface import Places, PosedSurface, at_closest
 from ..reading import cage, transform
 from ..tasks import polling
-from ..tasks.counting import counted
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary

@@ -10,12 +10,12 @@ from pathlib import Path
 import bpy
 
 from .. import ids
+from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..images import image_files, image_names, image_pixels, material_slots, overlap
 from ..images.image_files import EXR_32
 from ..images.image_pixels import FIRST_TILE
 from ..images.texture_operator import TextureOperator
-from ..tasks.counting import by_count, counted
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
 from ..tasks.refused_faces import left_out

@@ -13,9 +13,9 @@ from pathlib import Path
 import bpy
 
 from .. import ids, native
+from ..counting import counted
 from ..errors import RefusalError
 from ..tasks import file_names
-from ..tasks.counting import counted
 from . import arrays, bindings
 from .arguments import Arguments
 from .exporters import Subject

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 import bpy
 
 from .. import ids
+from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..nodes import children, groups
 from ..nodes.follow import TILES
 from ..placing import all_tiles, followers, following, live, live_children
 from ..placing.follow_state import State, Trouble
 from ..reading import attributes, cage
-from ..tasks.counting import by_count, counted
 
 
 def check(objects: Sequence[bpy.types.Object]) -> None:

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import bpy
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
 from ..images import image_files, image_pixels, texel_places
 from ..images.texture_operator import TextureOperator
-from ..tasks.counting import counted
 from ..tasks.job import Job, Progress
 from . import properties, shading, text
 from .inputs import Inputs

@@ -3,8 +3,8 @@
 
 import numpy as np
 
+from ..counting import by_count, counted
 from ..images import overlap
-from ..tasks.counting import by_count, counted
 from .map_images import Baked
 from .maps import KINDS, NORMAL_TANGENT, Range
 

@@ -12,6 +12,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import ids, native
+from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..nodes import children as nodes
 from ..placing import all_tiles, followers, following, live_children, new_hair, roots
@@ -26,7 +27,6 @@ from ..reading import cage
 from ..reading.named import find_object
 from ..sources.source_mesh import Choice
 from ..tasks import polling
-from ..tasks.counting import by_count, counted
 from ..tasks.job import Progress, part_of
 from . import guides as guide_hair
 from . import parting

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ..tasks.counting import by_count, counted
+from ..counting import by_count, counted
 from .values import Values
 
 QUANTITIES = {"MEAN": "mean", "GAUSSIAN": "Gaussian", "K1": "k1", "K2": "k2"}

@@ -9,8 +9,8 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..counting import counted
 from ..errors import RefusalError
-from ..tasks.counting import counted
 from . import curve_object, guides, stroke
 from .fitting import Fit, Spline
 from .ground import Ground

@@ -4,11 +4,11 @@
 import bpy
 
 from .. import ids, native
+from ..counting import by_count, counted
 from ..placing import live
 from ..placing.follow_state import State, Trouble
 from ..placing.followers import anything_follows, live_followers_of
 from ..tasks import wrapped_text
-from ..tasks.counting import by_count, counted
 from . import stale
 
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..counting import by_count, counted
 from ..errors import RefusalError
-from ..tasks.counting import by_count, counted
 
 if TYPE_CHECKING:
     import limitsurf

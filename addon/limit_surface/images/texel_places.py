@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
+from ..counting import counted
 from ..errors import RefusalError, TooLargeError
 from ..reading import cage, ragged_rows, uv_map
-from ..tasks.counting import counted
 from ..tasks.job import Progress, slices
 from ..tasks.request_size import LARGE_MEMORY, memory_text
 from . import overlap

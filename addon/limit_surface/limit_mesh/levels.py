@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
+from ..counting import counted
 from ..errors import RefusalError
 from ..reading import attributes, cage, camera, element_numbers, ragged_rows
-from ..tasks.counting import counted
 from ..tasks.job import Progress
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
 from ..placing import following, new_objects
 from ..placing.binding import Binding
 from ..placing.follow_properties import FollowProperties
 from ..placing.roots import Locations, off_vertices
 from ..reading import cage
-from ..tasks.counting import counted
 from ..tasks.job import Job, Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from ..tasks.properties import LargeCountProperty, draw_summary

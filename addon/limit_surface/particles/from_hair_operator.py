@@ -10,11 +10,11 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
 from ..placing import followers
 from ..reading import rules
 from ..tasks import polling
-from ..tasks.counting import counted
 from ..tasks.object_keys import ObjectKey
 from ..tasks.piecewise_job import Pieces, PiecewiseJob
 from ..tasks.properties import draw_summary

@@ -10,6 +10,7 @@ import numpy as np
 from bpy.props import BoolProperty, StringProperty
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
 from ..placing import followers, following, live_binding, new_hair
 from ..placing.binding import Binding
@@ -19,7 +20,6 @@ from ..placing.posed_surface import PosedSurface, at_closest
 from ..placing.rotations import WorldSpace
 from ..reading import cage
 from ..tasks import polling
-from ..tasks.counting import counted
 from ..tasks.job import Job
 from ..tasks.object_keys import ObjectKey
 from ..tasks.piecewise_job import Pieces, PiecewiseJob

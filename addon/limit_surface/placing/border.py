@@ -11,9 +11,9 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
 from ..reading import attributes
-from ..tasks.counting import counted
 from ..tasks.job import Progress
 from .rotations import WorldSpace, unit
 

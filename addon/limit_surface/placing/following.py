@@ -16,12 +16,12 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..counting import by_count
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.capture import CAPTURE, crease_sum, topology_sum
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, rules
-from ..tasks.counting import by_count
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes, proxy, tables
 from .follow_properties import follows

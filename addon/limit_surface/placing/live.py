@@ -12,10 +12,10 @@ import bpy
 import numpy as np
 
 from .. import ids, native
+from ..counting import counted
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
-from ..tasks.counting import counted
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes, live_surface, live_thing
 from .followers import sharers

@@ -10,9 +10,9 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
 from ..reading import attributes
-from ..tasks.counting import counted
 from .roots import Locations
 
 NOWHERE = -1  # the face of elements that have no place on the surface

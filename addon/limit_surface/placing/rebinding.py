@@ -12,9 +12,9 @@ import bpy
 import numpy as np
 
 from .. import ids, native
+from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..reading import attributes, cage
-from ..tasks.counting import by_count, counted
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left

@@ -8,12 +8,12 @@ from typing import Any, Protocol
 import bpy
 import numpy as np
 
+from ..counting import counted
 from ..errors import RefusalError
 from ..reading import cage, displayed_mesh
 from ..sources.source_mesh import Choice
 from ..subsurf import setup
 from ..tasks import polling, wrapped_text
-from ..tasks.counting import counted
 from ..tasks.job import Job, Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from ..tasks.properties import LargeCountProperty, draw_summary

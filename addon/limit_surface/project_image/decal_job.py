@@ -9,10 +9,10 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..counting import counted
 from ..errors import RefusalError
 from ..placing import following
 from ..reading.projector import Projector, fitted
-from ..tasks.counting import counted
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from ..tasks.request_size import RequestSize

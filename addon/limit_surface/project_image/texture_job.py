@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
+from ..counting import counted
 from ..errors import RefusalError
 from ..images import image_names, image_pixels, material_slots, overlap, texel_places
-from ..tasks.counting import counted
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from . import colours, inputs, material

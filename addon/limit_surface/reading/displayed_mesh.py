@@ -20,8 +20,8 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..counting import counted
 from ..errors import DisplayedError
-from ..tasks.counting import counted
 from . import attributes, cage, rules, subdivided_mesh
 from .triangulation import TriangulatedQuads
 

@@ -10,12 +10,12 @@ import numpy as np
 from bpy.props import IntProperty
 
 from .. import ids
+from ..counting import counted
 from ..placing.followers import ground_of
 from ..reading import attributes, cage, displayed_mesh, rules, subdivided_mesh
 from ..subsurf import setup, shown
 from ..subsurf.setup import LimitDisplay
 from ..tasks import polling
-from ..tasks.counting import counted
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
 from ..tasks.properties import LargeCountProperty, draw_summary

@@ -5,9 +5,9 @@ import bpy
 from bpy.props import IntProperty
 
 from .. import ids
+from ..counting import counted
 from ..placing.all_tiles import AllTiles, settings_of
 from ..placing.mending import mended
-from ..tasks.counting import counted
 from ..tasks.job import Job, Progress
 from ..tasks.properties import draw_summary
 from ..tasks.watched_operator import WatchedOperator

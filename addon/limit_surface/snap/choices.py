@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..tasks.counting import counted
+from ..counting import counted
 
 
 @dataclass(frozen=True)

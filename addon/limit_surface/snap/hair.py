@@ -5,11 +5,11 @@ import bpy
 import numpy as np
 
 from .. import ids, native
+from ..counting import by_count, counted
 from ..placing.posed_surface import transformed
 from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace, unit
 from ..reading import attributes, ragged_rows
-from ..tasks.counting import by_count, counted
 from ..tasks.editable import check_data_editable
 from .aim import Elements, Placement
 from .binding_again import will_follow

@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from ..counting import by_count, counted
 from ..placing.rotations import unit
-from ..tasks.counting import by_count, counted
 from .aim import Elements, Placement
 from .choices import Choices, Outcome
 from .object_move import ELSEWHERE, ObjectMove

@@ -6,9 +6,9 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty
 
 from .. import ids, native
+from ..counting import counted
 from ..errors import RefusalError
 from ..placing.follow_properties import FollowSnappedProperties
-from ..tasks.counting import counted
 from ..tasks.job import Progress, part_of
 from ..tasks.piecewise_job import Pieces, PiecewiseJob, aside
 from ..tasks.properties import draw_summary

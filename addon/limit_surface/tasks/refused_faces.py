@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from ..counting import by_count, counted
 from ..errors import RefusalError
-from .counting import by_count, counted
 
 if TYPE_CHECKING:
     import limitsurf

@@ -3,8 +3,8 @@
 
 from dataclasses import dataclass
 
+from ..counting import counted
 from ..errors import TooLargeError
-from .counting import counted
 
 LARGE_COUNT = 3_000_000  # more elements than this are made only if the user confirms
 LARGE_MEMORY = 4 << 30  # in bytes
