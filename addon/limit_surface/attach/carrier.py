@@ -14,7 +14,7 @@ import numpy as np
 from .. import ids
 from ..placing import following, tables
 from ..placing.binding import Binding
-from ..placing.followers import followers_of, is_own, modifier_of
+from ..placing.followers import modifier_of, own_followers_of
 from ..placing.posed_surface import Places
 from ..reading import attributes
 
@@ -28,7 +28,7 @@ def is_carrier(ob: bpy.types.Object | None) -> bool:
 
 
 def carrier_of(surface: bpy.types.Object) -> bpy.types.Object | None:
-    return next((ob for ob in followers_of(surface) if is_carrier(ob) and is_own(ob)), None)
+    return next((ob for ob in own_followers_of(surface) if is_carrier(ob)), None)
 
 
 def remove_unused() -> None:

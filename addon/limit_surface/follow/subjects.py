@@ -9,11 +9,11 @@ from ..errors import RefusalError
 from ..placing import live_children
 from ..placing.followers import (
     followers_of,
-    is_own,
     is_placed,
     live_followers_of,
     live_modifier_of,
     modifier_of,
+    own_followers_of,
     strays_of,
     surface_of,
 )
@@ -38,12 +38,8 @@ def chosen_followers(context: bpy.types.Context) -> list[bpy.types.Object]:
     if any(live_children.modifier_of(ob) for ob in chosen):
         return found
     if not found and active is not None and active.type == "MESH":
-        found = [*_own_followers_of(active), *live_followers_of(active)]
+        found = [*own_followers_of(active), *live_followers_of(active)]
     return found
-
-
-def _own_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
-    return [ob for ob in followers_of(surface) if is_own(ob)]
 
 
 def to_bind(
@@ -58,7 +54,7 @@ def to_bind(
     if active is not None and active.type == "MESH" and not is_placed(active):
         things.remove(active)
         things = things or [
-            *_own_followers_of(active),
+            *own_followers_of(active),
             *live_followers_of(active),
             *strays_of(active),
         ]

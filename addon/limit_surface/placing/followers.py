@@ -122,6 +122,11 @@ def followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     return found
 
 
+def own_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns those of them whose locations this file stores, so that they can be bound again."""
+    return [ob for ob in followers_of(surface) if is_own(ob)]
+
+
 def live_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that follow a surface live."""
     found = []

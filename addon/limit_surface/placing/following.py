@@ -35,6 +35,7 @@ from .followers import (
     live_followers_of,
     live_modifier_of,
     modifier_of,
+    own_followers_of,
     sharers,
     surface_of,
 )
@@ -95,7 +96,7 @@ class Request:
             check_own(ob)
             if modifier_of(ob) is None:
                 check_first(ob)
-        followers = [ob for ob in followers_of(surface) if ob not in without and is_own(ob)]
+        followers = [ob for ob in own_followers_of(surface) if ob not in without]
         for ob in followers:
             check_thing(ob, surface)
         self._surface, self._use_proxy = ObjectKey.of(surface), use_proxy

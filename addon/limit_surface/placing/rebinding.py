@@ -21,11 +21,10 @@ from ..tasks.refused_faces import check_some_left
 from . import curve_points, following, live_binding
 from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
 from .followers import (
-    followers_of,
     holder_of,
-    is_own,
     live_followers_of,
     live_modifier_of,
+    own_followers_of,
     strays_of,
 )
 from .newcomers import bound_at_closest, put_places
@@ -91,8 +90,11 @@ class Rebinding:
         max_distance: float = math.inf,
     ) -> None:
         following.check_surface(surface, depsgraph.scene)
-        by_nodes = [ob for ob in followers_of(surface) if is_own(ob)]
-        following_now = [*by_nodes, *live_followers_of(surface), *strays_of(surface)]
+        following_now = [
+            *own_followers_of(surface),
+            *live_followers_of(surface),
+            *strays_of(surface),
+        ]
         bound = list(dict.fromkeys([*following_now, *things]))
         # For control points that were added there are no places that could be kept.
         self._curves = [ob for ob in bound if ob.type == "CURVE" and curve_points.has_others(ob)]
