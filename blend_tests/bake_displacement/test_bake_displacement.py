@@ -40,7 +40,7 @@ def sculpt(base):
 def bake(ob, target, **properties):
     scenes.activate(ob)
     before = set(bpy.data.images)
-    small = {"width": 96, "height": 80, "target": target.name}
+    small = {"width": 96, "height": 80, "target": target.name, "reuse": False}
     assert bpy.ops.object.limit_bake_displacement(**small | properties) == {"FINISHED"}
     (made,) = set(bpy.data.images) - before
     return made
@@ -294,7 +294,9 @@ def refused(ob, match, **properties):
     scenes.activate(ob)
     before = scenes.file_contents()
     with pytest.raises(RuntimeError, match=match):
-        bpy.ops.object.limit_bake_displacement(**{"width": 32, "height": 32} | properties)
+        bpy.ops.object.limit_bake_displacement(
+            **{"width": 32, "height": 32, "reuse": False} | properties
+        )
     assert scenes.file_contents() == before
     assert bpy.context.active_object == ob
 

@@ -115,6 +115,31 @@ def test_the_material_is_the_active_one_where_there_is_one(both):
     assert image == bpy.data.images["Holes Displacement"]
 
 
+@pytest.mark.parametrize("mode", ["VECTOR", "SCALAR"])
+def test_the_same_nodes_show_the_next_bake(both, mode):
+    """Artists bake again after each change of the sculpt."""
+    ob, sculpt = both
+    scenes.activate(ob)
+    ob.data.materials.clear()
+    order = {"target": sculpt.name, "width": 32, "height": 32, "create_material": True}
+    bpy.ops.object.limit_bake_displacement(**order)
+    nodes = ob.active_material.node_tree.nodes
+    count = len(nodes)
+    (node,) = (n for n in nodes if n.type == "VECTOR_DISPLACEMENT")
+    node.inputs["Scale"].default_value = 0.5  # which the user may change
+    scenes.add_uv_map(ob, lambda p: 0.9 * p[:, :2] / 5)  # it becomes Flat.001
+    bpy.ops.object.limit_bake_displacement(mode=mode, space="OBJECT", uv_map="Flat.001", **order)
+    assert len(nodes) == count
+    assert len(ob.material_slots) == 1
+    kind = "VECTOR_DISPLACEMENT" if mode == "VECTOR" else "DISPLACEMENT"
+    (node,) = (n for n in nodes if n.type in ("VECTOR_DISPLACEMENT", "DISPLACEMENT"))
+    assert (node.type, node.space) == (kind, "OBJECT")
+    assert node.inputs["Scale"].default_value == (0.5 if mode == "VECTOR" else 1)
+    texture = node.inputs[0].links[0].from_node
+    assert texture.image == bpy.data.images["Holes Displacement"]
+    assert texture.inputs["Vector"].links[0].from_node.uv_map == "Flat.001"
+
+
 def test_tangents_of_another_map_are_warned_of(both, capfd):
     ob, sculpt = both
     scenes.activate(ob)

@@ -46,21 +46,58 @@ def _output(material: bpy.types.Material) -> Any:
 def _link(
     material: bpy.types.Material, image: bpy.types.Image, uv_map: str, is_vector: bool, space: str
 ) -> None:
-    nodes, links, output = material.node_tree.nodes, material.node_tree.links, _output(material)
+    """Links the image to the displacement. Nodes that an earlier bake of the same image has linked
+    are used again, with the scale that the user has set.
+    """
+    tree, output = material.node_tree, _output(material)
+    node, texture = _linked(output, image)
     kind = "ShaderNodeVectorDisplacement" if is_vector else "ShaderNodeDisplacement"
-    displacement = nodes.new(kind)
-    displacement.space = space
-    displacement.inputs["Midlevel"].default_value = 0.0
-    displacement.inputs["Scale"].default_value = 1.0
-    texture = nodes.new("ShaderNodeTexImage")
+    if node is not None and node.bl_idname != kind:
+        tree.nodes.remove(node)
+        node = None
+    if texture is None:
+        texture = _texture(tree, image, output)
+    _show_by(tree, texture, uv_map)
+    if node is None:
+        node = tree.nodes.new(kind)
+        node.inputs["Midlevel"].default_value = 0.0
+        node.inputs["Scale"].default_value = 1.0
+        node.location = _left_of(output, 220)
+        tree.links.new(texture.outputs["Color"], node.inputs["Vector" if is_vector else "Height"])
+        tree.links.new(node.outputs["Displacement"], output.inputs["Displacement"])
+    node.space = space
+
+
+def _linked(output: Any, image: bpy.types.Image) -> tuple[Any, Any]:
+    """Returns the output's displacement node and its texture if they show the image."""
+    for link in output.inputs["Displacement"].links:
+        node = link.from_node
+        if node.type in ("DISPLACEMENT", "VECTOR_DISPLACEMENT"):
+            for color in node.inputs[0].links:
+                if getattr(color.from_node, "image", None) == image:
+                    return node, color.from_node
+    return None, None
+
+
+def _texture(tree: bpy.types.NodeTree, image: bpy.types.Image, output: Any) -> Any:
+    texture = tree.nodes.new("ShaderNodeTexImage")
     texture.image = image
     texture.interpolation = "Linear"
     texture.extension = "EXTEND"
-    places = nodes.new("ShaderNodeUVMap")
-    places.uv_map = uv_map
-    links.new(places.outputs["UV"], texture.inputs["Vector"])
-    links.new(texture.outputs["Color"], displacement.inputs["Vector" if is_vector else "Height"])
-    links.new(displacement.outputs["Displacement"], output.inputs["Displacement"])
-    x, y = output.location
-    for node, left in ((displacement, 220), (texture, 520), (places, 720)):
-        node.location = (x - left, y - 260)
+    texture.location = _left_of(output, 520)
+    return texture
+
+
+def _show_by(tree: bpy.types.NodeTree, texture: Any, uv_map: str) -> None:
+    """Has the texture take its places from the UV map, unless other nodes give them."""
+    vector = texture.inputs["Vector"]
+    if not vector.links:
+        places = tree.nodes.new("ShaderNodeUVMap")
+        places.location = (texture.location.x - 200, texture.location.y)
+        tree.links.new(places.outputs["UV"], vector)
+    if vector.links[0].from_node.type == "UVMAP":
+        vector.links[0].from_node.uv_map = uv_map
+
+
+def _left_of(output: Any, distance: float) -> tuple[float, float]:
+    return output.location.x - distance, output.location.y - 260

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from pathlib import Path
 
 import bpy
 
@@ -13,8 +12,6 @@ from .. import ids
 from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..images import image_files, image_names, image_pixels, material_slots, overlap
-from ..images.image_files import EXR_32
-from ..images.image_pixels import FIRST_TILE
 from ..images.texture_operator import TextureOperator
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
@@ -22,6 +19,7 @@ from ..tasks.refused_faces import left_out
 from . import layouts, material, properties, surfaces
 from .displacement import Measured, Request, measure
 from .layouts import PtexLayout
+from .output import Output
 
 
 @dataclass(frozen=True)
@@ -29,6 +27,7 @@ class Made:
     surface: ObjectKey
     request: Request
     measured: Measured
+    output: Output
 
 
 class OBJECT_OT_limit_bake_displacement(
@@ -40,7 +39,7 @@ class OBJECT_OT_limit_bake_displacement(
     bl_idname = ids.BAKE_DISPLACEMENT
     bl_label = "Bake Displacement on Limit Surface"
     too_large = "There is not enough memory for so many texels"
-    cancelled = "Cancelled: no image was made"
+    cancelled = "Cancelled: no image was made or changed"
 
     def draw_properties(self) -> None:
         properties.draw(self.layout, self.properties)
@@ -64,19 +63,24 @@ class OBJECT_OT_limit_bake_displacement(
             max_distance=self.max_distance,
             direction=self.direction,
         )
-        if self.filepath:
-            self._check_path(len(request.layout.tiles))
+        output = Output(
+            name=self.image_name or image_names.with_ending(ob.name, " Displacement"),
+            path=image_files.given_path(self.filepath) if self.filepath else None,
+            reuse=self.reuse,
+            tiles=tuple(request.layout.tiles),
+            size=(request.layout.width, request.layout.height),
+        )
+        output.check()
         key = ObjectKey.of(ob)
 
         def work(progress: Progress) -> Made:
-            return Made(key, request, measure(request, progress))
+            return Made(key, request, measure(request, progress), output)
 
         return self.watch(context, Job(work), f"Displacing {ob.name}")
 
     def finish(self, _context: bpy.types.Context, made: Made) -> set[str]:
         ob, request, measured = made.surface.find(), made.request, made.measured
-        name = self.image_name or image_names.with_ending(ob.name, " Displacement")
-        image = self._image(name, measured)
+        image = made.output.put(measured.tiles)
         image[ids.DISPLACEMENT] = json.dumps(self._described(request))
         if self.create_material:
             map_name = request.surfaces.found.chosen_uv_map.name
@@ -87,45 +91,15 @@ class OBJECT_OT_limit_bake_displacement(
             if unseen:
                 self.report({"WARNING"}, unseen)
             self._warn_of_tangents(ob, map_name, request)
+        unsaved = image_pixels.unsaved(image)
+        if unsaved:
+            self.report({"WARNING"}, unsaved)
         self._tell(ob, image, request, measured)
         return {"FINISHED"}
-
-    def _check_path(self, tiles: int) -> None:
-        image_files.check_folder(self._path.parent)
-        if self._path.suffix.lower() != EXR_32.suffix:
-            raise RefusalError(
-                f"{self._path.name} does not end in {EXR_32.suffix}: the image is saved as OpenEXR"
-            )
-        if tiles > 1 and "<UDIM>" not in self._path.name:
-            raise RefusalError(
-                f"Each of the {tiles} tiles is saved in its own file: {self._path.name} must "
-                "contain <UDIM>, which is replaced by the number of the tile"
-            )
-
-    @property
-    def _path(self) -> Path:
-        return image_files.given_path(self.filepath)
 
     @property
     def _space(self) -> str:
         return self.space if self.mode == "VECTOR" else "OBJECT"
-
-    def _image(self, name: str, measured: Measured) -> bpy.types.Image:
-        """Makes the image, and removes it again where it cannot be saved."""
-        if measured.tiles.keys() == {FIRST_TILE}:
-            pixels = measured.tiles[FIRST_TILE]
-            height, width, _ = pixels.shape
-            image = image_pixels.new(name, width, height, is_float=True, is_data=True, alpha=False)
-            image_pixels.write(image, pixels, is_new=True)
-        else:
-            image = image_pixels.new_tiled(name, measured.tiles, is_float=True, is_data=True)
-        if self.filepath:
-            try:
-                image_pixels.save(image, self._path, EXR_32)
-            except RefusalError:
-                bpy.data.images.remove(image)
-                raise
-        return image
 
     def _described(self, request: Request) -> dict[str, object]:
         """Stores with the image what its numbers mean, for programs that read it."""

@@ -157,7 +157,12 @@ class DisplacementProperties(TextureProperties):
     )
     image_name: StringProperty(
         name="Image",
-        description="Name of the new image. If empty, the image is named after the object",
+        description="Name of the image. If empty, the image is named after the object",
+    )
+    reuse: BoolProperty(
+        name="Reuse Image",
+        description="Write into an existing image with the same name, instead of making a new one",
+        default=True,
     )
     filepath: StringProperty(
         name="File",
@@ -191,5 +196,5 @@ def draw(layout: bpy.types.UILayout, properties: bpy.types.OperatorProperties) -
     else:
         column.prop(properties, "face_resolution")
     column = layout.column()
-    for name in ("image_name", "filepath", "create_material", "allow_large"):
+    for name in ("image_name", "reuse", "filepath", "create_material", "allow_large"):
         column.prop(properties, name)

@@ -14,8 +14,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..errors import RefusalError
-from ..images import image_files, image_names, image_pixels
+from ..images import image_files, image_names, image_pixels, reused_images
 from ..images.image_files import FileKind
 from .maps import KINDS
 
@@ -39,7 +38,13 @@ class Output:
         for name in maps:
             image = self._existing(name)
             if image:
-                self._check_fits(image)
+                reused_images.check_fits(
+                    image,
+                    tiles=self.tiles,
+                    size=self.size,
+                    is_float=self._is_float,
+                    option="Reuse Images",
+                )
 
     def put(self, baked: dict[str, dict[int, np.ndarray]]) -> list[bpy.types.Image]:
         """Moves the pixels out of `baked`, so that they are not stored twice."""
@@ -61,31 +66,7 @@ class Output:
         return made
 
     def _existing(self, map_name: str) -> bpy.types.Image | None:
-        return bpy.data.images.get((self.image_name(map_name), None)) if self.reuse else None
-
-    def _check_fits(self, image: bpy.types.Image) -> None:
-        whose = f"The existing image {image.name}"
-        described = image_pixels.checked(image, to_write=True)
-        missing = set(self.tiles) - described.tiles.keys()
-        if missing:
-            raise RefusalError(
-                f"{whose} has no tile {min(missing)}: add the tile, set "
-                "another name, or turn Reuse Images off"
-            )
-        for tile in self.tiles:
-            if described.tiles[tile] != self.size:
-                width, height = described.tiles[tile]
-                raise RefusalError(
-                    f"{whose} has {width} x {height} pixels: set this size or another name, or "
-                    "turn Reuse Images off"
-                )
-        if described.is_float != self._is_float:
-            depth = "float" if described.is_float else "8-bit"
-            raise RefusalError(f"{whose} has {depth} pixels, which do not fit the chosen format")
-        if not described.is_data:
-            raise RefusalError(
-                f"{whose} has the color space {described.colorspace}, but data need Non-Color"
-            )
+        return reused_images.find(self.image_name(map_name)) if self.reuse else None
 
     @property
     def _is_float(self) -> bool:

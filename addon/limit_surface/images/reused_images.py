@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images that an earlier bake has made, and that the next one writes into."""
+
+from collections.abc import Collection
+
+import bpy
+
+from ..errors import RefusalError
+from . import image_pixels
+
+
+def find(name: str) -> bpy.types.Image | None:
+    """Returns the image of this name that the file itself holds, or None."""
+    return bpy.data.images.get((name, None))
+
+
+def check_fits(
+    image: bpy.types.Image,
+    *,
+    tiles: Collection[int],
+    size: tuple[int, int],
+    is_float: bool,
+    option: str,
+) -> None:
+    """Raises RefusalError where these tiles cannot be written into the image. `option` names the
+    property that, turned off, has a new image made.
+    """
+    whose = f"The existing image {image.name}"
+    described = image_pixels.checked(image, to_write=True)
+    missing = set(tiles) - described.tiles.keys()
+    if missing:
+        raise RefusalError(
+            f"{whose} has no tile {min(missing)}: add the tile, set another name, or turn {option} "
+            "off"
+        )
+    for tile in tiles:
+        if described.tiles[tile] != size:
+            width, height = described.tiles[tile]
+            raise RefusalError(
+                f"{whose} has {width} x {height} pixels: set this size or another name, or turn "
+                f"{option} off"
+            )
+    if described.is_float != is_float:
+        depth = "float" if described.is_float else "8-bit"
+        raise RefusalError(f"{whose} has {depth} pixels, which do not fit the chosen format")
+    if not described.is_data:
+        raise RefusalError(
+            f"{whose} has the color space {described.colorspace}, but data need Non-Color"
+        )
