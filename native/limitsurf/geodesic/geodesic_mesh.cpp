@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/geodesic/geodesic_mesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -50,6 +53,52 @@ GeodesicMesh::GeodesicMesh(const LimitSurface& surface, const std::vector<int>& 
   hangTogether();
   listAround();
   listNeighbors();
+}
+
+int GeodesicMesh::triangleUnder(const Vector3& position, int triangle) const {
+  double depth = -std::numeric_limits<double>::infinity();
+  int best = triangle;
+  while (triangle >= 0) {
+    const std::array<double, 3> weights = weightsUnder(position, triangle);
+    const auto least = std::min_element(weights.begin(), weights.end());
+    if (!(*least > depth)) {  // false as well for a triangle without area
+      break;
+    }
+    depth = *least;
+    best = triangle;
+    if (depth >= 0) {
+      break;
+    }
+    const auto k = static_cast<std::size_t>(least - weights.begin());
+    const std::array<int, 3>& vertices = this->triangle(triangle);
+    triangle = beyond(triangle, vertices[(k + 1) % 3], vertices[(k + 2) % 3]);
+  }
+  return best;
+}
+
+std::array<double, 3> GeodesicMesh::weightsUnder(const Vector3& at, int triangle) const {
+  const auto& [a, b, c] = this->triangle(triangle);
+  const double unit = 1 / std::max(distance(a, b), distance(a, c));  // products stay in range
+  const Vector3 to_b = (position(b) - position(a)) * unit,
+                to_c = (position(c) - position(a)) * unit;
+  const Vector3 to_place = (at - position(a)) * unit, normal = to_b.cross(to_c);
+  const double scale = 1 / normal.squaredNorm();
+  const double of_b = to_place.cross(to_c).dot(normal) * scale;
+  const double of_c = to_b.cross(to_place).dot(normal) * scale;
+  return {1 - of_b - of_c, of_b, of_c};
+}
+
+int GeodesicMesh::beyond(int triangle, int a, int b) const {
+  if (trianglesAt(b).size() < trianglesAt(a).size()) {  // one of them may be a pole
+    std::swap(a, b);
+  }
+  for (const int other : trianglesAt(a)) {
+    const std::array<int, 3>& vertices = this->triangle(other);
+    if (other != triangle && std::find(vertices.begin(), vertices.end(), b) != vertices.end()) {
+      return other;
+    }
+  }
+  return -1;
 }
 
 /// Replaces points by vertices: the corners that sides link around a point.

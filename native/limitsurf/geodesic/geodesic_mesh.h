@@ -71,8 +71,16 @@ class GeodesicMesh {
   double distance(int a, int b) const { return (position(a) - position(b)).norm(); }
   /// The triangle in which a location lies, on a face that has a limit surface.
   int triangleAt(const Location& at) const { return cells_.find(triangles_, at); }
+  /// The triangle over which a position lies, looked for from another one on, across no cuts. A
+  /// location may lie beside the triangle in which its (u, v) are, because equal steps of them are
+  /// not equally long on the surface.
+  int triangleUnder(const Vector3& position, int triangle) const;
 
  private:
+  /// The barycentric coordinates of the point of a triangle's plane that is closest to a position.
+  std::array<double, 3> weightsUnder(const Vector3& position, int triangle) const;
+  /// Another triangle with both vertices, or -1.
+  int beyond(int triangle, int a, int b) const;
   void hangTogether();
   void listAround();
   void listNeighbors();

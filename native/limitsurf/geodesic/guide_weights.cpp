@@ -8,6 +8,7 @@
 #include <string>
 
 #include "limitsurf/geodesic/geodesic_mesh.h"
+#include "limitsurf/geodesic/guide_levels.h"
 #include "limitsurf/geodesic/nearest_sources.h"
 #include "limitsurf/parallel.h"
 
@@ -16,13 +17,6 @@ namespace {
 
 /// Vertices know more guides than a place gets, because its own nearest are not all among theirs.
 constexpr int kSpare = 3;
-/// The levels of the triangles. Faces are divided until there are kQuads of them.
-constexpr int kLeastLevel = 2, kMostLevel = 6;
-constexpr double kQuads = 1 << 16;
-/// Faces with many guides are divided further, until a quad has at most this share of a guide.
-constexpr double kGuidesPerQuad = 1. / 4;
-constexpr int kMostLevelWithGuides = 9;
-
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
 /// Parts of the progress: triangles, distances, places.
 constexpr double kTriangles = 0.1, kDistances = 0.6;
@@ -34,34 +28,14 @@ Progress partOf(const Progress& progress, double begin, double end) {
   return [&progress, begin, end](double part) { progress(begin + part * (end - begin)); };
 }
 
-std::vector<int> levelsFor(const LimitSurface& surface, const LocationBatch& guides) {
-  const ControlMesh& mesh = surface.mesh();
-  int level = kLeastLevel;
-  while (level < kMostLevel &&
-         std::ldexp(static_cast<double>(mesh.faceCount()), 2 * level) < kQuads) {
-    ++level;
-  }
-  std::vector<int> guides_of_face(static_cast<std::size_t>(mesh.faceCount()));
-  for (std::size_t guide = 0; guide < guides.size(); ++guide) {
-    ++guides_of_face[surface.baseFace()[guides[guide].face]];
-  }
-  std::vector<int> levels(guides_of_face.size(), level);
-  for (std::size_t face = 0; face < levels.size(); ++face) {
-    const double quads = guides_of_face[face] / kGuidesPerQuad;
-    while (levels[face] < kMostLevelWithGuides && std::ldexp(1., 2 * levels[face]) < quads) {
-      ++levels[face];
-    }
-  }
-  return levels;
-}
-
 std::vector<MeshPlace> placesOn(const LimitSurface& surface, const GeodesicMesh& mesh,
                                 const LocationBatch& at, int threads) {
   const Points positions = surface.evaluate(at, Derivatives::none, false, threads).position;
   std::vector<MeshPlace> places(at.size());
   parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
-      places[row] = {positions.row(static_cast<Eigen::Index>(row)), mesh.triangleAt(at[row])};
+      const Vector3 position = positions.row(static_cast<Eigen::Index>(row));
+      places[row] = {position, mesh.triangleUnder(position, mesh.triangleAt(at[row]))};
     }
   });
   return places;
@@ -121,9 +95,9 @@ GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guid
   result.weight.assign(size, 0);
   result.distance.assign(size, std::numeric_limits<double>::infinity());
 
-  const GeodesicMesh mesh(surface, levelsFor(surface, checked_guides),
-                          {options.cuts, options.cut_curves}, options.threads,
-                          partOf(options.progress, 0, kTriangles));
+  const GeodesicCuts cuts{options.cuts, options.cut_curves};
+  const GeodesicMesh mesh(surface, guideLevels(surface, checked_guides, cuts), cuts,
+                          options.threads, partOf(options.progress, 0, kTriangles));
   const std::vector<MeshPlace> sources = placesOn(surface, mesh, checked_guides, options.threads);
   const NearestSources nearest(mesh, sources, options.count + kSpare,
                                partOf(options.progress, kTriangles, kDistances));

@@ -36,7 +36,6 @@ inline UnfoldedWay unfoldedWay(double to_a, double to_b, const TriangleSides& si
   if (!(ab > 0)) {
     return {};
   }
-  // a lies at the origin and b at (ab, 0); the source is below them, c above
   // a lies at the origin and b at (ab, 0); c is above them, and the source as far below as its y
   const Apex source(ab, to_a, to_b), c(ab, sides.ac, sides.bc);
   const double height = source.y + c.y;

@@ -77,6 +77,45 @@ TEST(GuideWeights, AreEuclideanOnAFlatSheet) {
   std::printf("worst error on a flat sheet: %.2g sides\n", worst);
 }
 
+/// A flat sheet of triangles, each square divided by either diagonal: vertices have 4 to 8 edges.
+Cage flatTriangles(int side, std::uint64_t seed) {
+  Cage cage = perturbed(fullGrid(side, side), 0.2, seed);
+  cage.positions.col(2).setZero();
+  Random random(seed);
+  std::vector<std::vector<int>> triangles;
+  for (const std::vector<int>& f : cage.faces) {
+    const std::size_t k = random.uniform() < 0.5 ? 0 : 1;
+    triangles.push_back({f[k], f[k + 1], f[k + 2]});
+    triangles.push_back({f[k], f[k + 2], f[(k + 3) % 4]});
+  }
+  cage.faces = triangles;
+  return cage;
+}
+
+TEST(GuideWeights, AreEuclideanOnTriangles) {
+  // Next to irregular vertices u and v are uneven, so that locations do not lie where triangles
+  // have them.
+  for (const int side : {6, 48}) {
+    const LimitSurface surface = limitSurface(flatTriangles(side, 3));
+    Random random(7);
+    const Locations guides = searchedLocations(surface, 24, random);
+    const Locations at = searchedLocations(surface, 4000, random);
+    const GuideWeights found = guideWeights(surface, guides, at);
+    const Points p = positionsOf(surface, at), g = positionsOf(surface, guides);
+    double worst = 0;
+    for (Eigen::Index row = 0; row < p.rows(); ++row) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t entry = 4 * static_cast<std::size_t>(row) + k;
+        const double truth = (p.row(row) - g.row(found.guide[entry])).norm();
+        const double error = std::abs(found.distance[entry] - truth) / std::max(truth, 1. / 8);
+        EXPECT_LT(error, kGuideDistanceError) << side << " x " << side << ", row " << row;
+        worst = std::max(worst, error);
+      }
+    }
+    std::printf("worst error on %d x %d squares of two triangles: %.2g\n", side, side, worst);
+  }
+}
+
 TEST(GuideWeights, GoAroundATorus) {
   const LimitSurface surface = limitSurface(torus(24, 12));
   const Locations all = scatterJittered(surface, 1, 1);
@@ -101,7 +140,7 @@ TEST(GuideWeights, GoAroundATorus) {
 }
 
 TEST(GuideWeights, AreGeodesicOnACylinder) {
-  for (const int sides : {12, 24}) {
+  for (const int sides : {12, 24, 72}) {  // the last have larger triangles far from the guides
     Cage cage = fullGrid(sides, sides);
     for (auto& face : cage.faces) {  // the last column of vertices is the first
       for (int& vertex : face) {
