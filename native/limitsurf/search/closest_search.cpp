@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/prefetch.h"
@@ -289,7 +290,7 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
     *options.leaves = rows.leaves();
   }
   Hits hits = hitsAt(data_->surface, rows.takeLocations(), threads);
-  hits.distance.resize(points.rows());
+  resizeRows(hits.distance, static_cast<std::size_t>(points.rows()));
   for (Eigen::Index row = 0; row < points.rows(); ++row) {
     hits.distance[row] = (scale * (hits.position.row(row) - points.row(row))).norm() / scale;
   }

@@ -1,38 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/hit_evaluation.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
-namespace limitsurf {
+#include "limitsurf/large_pages.h"
+#include "limitsurf/surface/batch/part_evaluator.h"
 
-Hits hitsAt(const LimitSurface& surface, std::vector<Location> at, int threads) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  Hits hits;
-  hits.at = std::move(at);
-  std::vector<Location> found;
-  found.reserve(hits.at.size());
-  for (Location& location : hits.at) {
-    if (location.face >= 0) {
-      found.push_back(location);
-    } else {
-      location.u = location.v = kNaN;
+namespace limitsurf {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Evaluates those of some locations whose face is not -1.
+class HitEvaluator {
+ public:
+  HitEvaluator(const LimitSurface& surface, std::size_t count, int threads)
+      : evaluate_(surface, count, threads) {}
+
+  void operator()(Span<Location> part, double* position, double* normal) {
+    found_.clear();
+    for (const Location& location : part) {
+      if (location.face >= 0) {
+        found_.push_back(location);
+      }
+    }
+    if (found_.size() == part.size()) {
+      evaluate_(part, position, normal);
+      return;
+    }
+    const auto found = static_cast<Eigen::Index>(found_.size());
+    if (position_.rows() < found) {
+      position_.resize(found, 3);
+      normal_.resize(found, 3);
+    }
+    evaluate_(found_, position_.data(), normal_.data());
+    std::size_t next = 0;
+    for (std::size_t row = 0; row < part.size(); ++row) {
+      const bool is_found = part[row].face >= 0;
+      for (std::size_t k = 3 * row; k < 3 * row + 3; ++k) {
+        position[k] = is_found ? position_.data()[next] : kNaN;
+        normal[k] = is_found ? normal_.data()[next] : kNaN;
+        next += is_found ? 1 : 0;
+      }
     }
   }
-  Evaluation e = surface.evaluate(found, Derivatives::first, true, threads);
-  if (found.size() == hits.at.size()) {
-    hits.position = std::move(e.position);
-    hits.normal = std::move(e.normal);
-    return hits;
+
+ private:
+  PartEvaluator evaluate_;
+  std::vector<Location> found_;
+  Points position_, normal_;
+};
+
+}  // namespace
+
+Hits hitsAt(const LimitSurface& surface, std::vector<Location> at, int threads) {
+  Hits hits;
+  hits.at = std::move(at);
+  const std::size_t count = hits.at.size();
+  resizeRows(hits.position, count);
+  resizeRows(hits.normal, count);
+  HitEvaluator evaluate(surface, count, threads);
+  for (std::size_t begin = 0; begin < count; begin += PartEvaluator::kMostRows) {
+    const std::size_t rows = std::min(PartEvaluator::kMostRows, count - begin);
+    evaluate({hits.at.data() + begin, rows}, hits.position.data() + 3 * begin,
+             hits.normal.data() + 3 * begin);
   }
-  hits.position.setConstant(static_cast<Eigen::Index>(hits.at.size()), 3, kNaN);
-  hits.normal = hits.position;
-  Eigen::Index next = 0;
-  for (std::size_t row = 0; row < hits.at.size(); ++row) {
-    if (hits.at[row].face >= 0) {
-      hits.position.row(static_cast<Eigen::Index>(row)) = e.position.row(next);
-      hits.normal.row(static_cast<Eigen::Index>(row)) = e.normal.row(next);
-      ++next;
+  for (Location& location : hits.at) {
+    if (location.face < 0) {
+      location.u = location.v = kNaN;
     }
   }
   return hits;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limitsurf/first_made.h"
+#include "limitsurf/large_pages.h"
 #include "limitsurf/prefetch.h"
 #include "limitsurf/search/foot_bound.h"
 #include "limitsurf/search/oriented_box.h"
@@ -42,11 +43,11 @@ struct SearchTree {
   Vector3 inBoxes(const Vector3& point) const { return point - middle; }
 
   SearchRings rings;
-  std::vector<SearchLeaf> leaves;  ///< in the order of the tree
+  LargePageVector<SearchLeaf> leaves;  ///< in the order of the tree
   std::unique_ptr<WideTree> tree;
   /// The patches of the leaves, or none if they would need more than kPatchBytes together; those of
   /// cores are not set.
-  std::vector<BezierPatch> kept;
+  LargePageVector<BezierPatch> kept;
   /// Cones around normals, made when they are first asked for. Must not be called from within a
   /// parallel loop.
   const NormalCones& normalCones(int threads) const;

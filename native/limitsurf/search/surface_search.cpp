@@ -81,12 +81,12 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
   }
   std::vector<std::int32_t> order;
   tree = std::make_unique<WideTree>(BoxTree(boxes, order, threads), threads);
-  leaves.reserve(unordered.size());
-  InterruptionStride stride;
-  for (const std::int32_t leaf : order) {
-    stride.step();
-    leaves.push_back(unordered[leaf]);
-  }
+  leaves.resize(unordered.size());
+  parallelFor(leaves.size(), kLeavesPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      leaves[leaf] = unordered[order[leaf]];
+    }
+  });
   if (leaves.size() * sizeof(BezierPatch) <= kPatchBytes) {
     kept.resize(leaves.size());
     parallelFor(leaves.size(), kLeavesPerTask, threads, [&](std::size_t begin, std::size_t end) {

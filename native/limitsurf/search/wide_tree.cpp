@@ -12,7 +12,7 @@ class WideTree::Builder {
   explicit Builder(const BoxTree& tree) : tree_(tree) {}
 
   /// The nodes at the top are gathered first, then those below each of them by one thread each.
-  void build(UnsetVector<Node>& nodes, int threads) {
+  void build(LargePageVector<Node>& nodes, int threads) {
     std::vector<Node> top;
     add(0, tree_.leafCount(), &parts_, top);
     std::vector<std::vector<Node>> below(parts_.size());

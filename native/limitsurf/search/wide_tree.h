@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "limitsurf/large_pages.h"
 #include "limitsurf/search/box_tree.h"
 
 namespace limitsurf {
@@ -51,7 +52,7 @@ class WideTree {
 
  private:
   class Builder;
-  UnsetVector<Node> nodes_;  ///< the root first
+  LargePageVector<Node> nodes_;  ///< the root first
 };
 
 /// What a walk down a tree has still to visit. The last one added of those that are nearest among

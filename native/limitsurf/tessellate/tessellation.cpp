@@ -6,17 +6,16 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/large_pages.h"
 #include "limitsurf/mesh/ptex_faces.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/batch/part_evaluator.h"
 #include "limitsurf/surface/complete_normals.h"
 #include "limitsurf/tessellate/tessellation_numbers.h"
 
 namespace limitsurf {
 namespace {
 
-/// The number of points evaluated at a time: their derivatives need little memory, and the progress
-/// is reported between two parts.
-constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
 /// The part of the progress that all but the normals of corners has.
 constexpr double kPointsPart = 0.8;
 
@@ -45,49 +44,31 @@ std::size_t leastPoints(const ControlMesh& mesh, const std::vector<int>& levels)
   return points;
 }
 
-/// Evaluates positions and normals of up to kRowsPerPart locations at a time. The memory for du and
-/// dv serves all parts: fresh memory costs as much as filling it.
-class PartEvaluator {
- public:
-  PartEvaluator(const LimitSurface& surface, std::size_t count, int threads)
-      : surface_(surface), threads_(threads) {
-    const auto most = static_cast<Eigen::Index>(std::min(kRowsPerPart, count));
-    du_.resize(most, 3);
-    dv_.resize(most, 3);
-  }
-
-  /// Writes a row for each location.
-  void operator()(Span<Location> part, double* position, double* normal) {
-    const std::size_t count = part.size();
-    const EvaluationArrays<double> results{
-        {position, count}, {du_.data(), count}, {dv_.data(), count}, {}, {}, {}, {normal, count}};
-    surface_.evaluate(part, Derivatives::first, results, threads_);
-    completeNormals(surface_, part, Eigen::Map<Points>(normal, static_cast<Eigen::Index>(count), 3),
-                    threads_);
-  }
-
- private:
-  const LimitSurface& surface_;
-  int threads_;
-  Points du_, dv_;
-};
+/// Evaluates positions and normals, which are completed, of some locations.
+void evaluatePart(const LimitSurface& surface, PartEvaluator& evaluate, Span<Location> part,
+                  double* position, double* normal, int threads) {
+  evaluate(part, position, normal);
+  completeNormals(surface, part,
+                  Eigen::Map<Points>(normal, static_cast<Eigen::Index>(part.size()), 3), threads);
+}
 
 /// Calls body(begin, part) for the parts of the locations.
 template <typename Body>
 void forEachPart(Span<Location> at, const Body& body) {
-  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {
-    body(begin, at.subspan(begin, std::min(kRowsPerPart, at.size() - begin)));
+  for (std::size_t begin = 0; begin < at.size(); begin += PartEvaluator::kMostRows) {
+    body(begin, at.subspan(begin, std::min(PartEvaluator::kMostRows, at.size() - begin)));
   }
 }
 
 void evaluatePoints(const LimitSurface& surface, Tessellation& result, int threads,
                     const Progress& progress) {
   const std::size_t count = result.locations.size();
-  result.positions.resize(static_cast<Eigen::Index>(count), 3);
-  result.normals.resize(static_cast<Eigen::Index>(count), 3);
+  resizeRows(result.positions, count);
+  resizeRows(result.normals, count);
   PartEvaluator evaluate(surface, count, threads);
   forEachPart(result.locations, [&](std::size_t begin, Span<Location> part) {
-    evaluate(part, result.positions.data() + 3 * begin, result.normals.data() + 3 * begin);
+    evaluatePart(surface, evaluate, part, result.positions.data() + 3 * begin,
+                 result.normals.data() + 3 * begin, threads);
     progress(static_cast<double>(begin + part.size()) / static_cast<double>(count));
   });
 }
@@ -96,7 +77,7 @@ void evaluatePoints(const LimitSurface& surface, Tessellation& result, int threa
 /// Ptex face.
 void evaluateCornerNormals(const LimitSurface& surface, Tessellation& result, int threads,
                            const Progress& progress) {
-  result.corner_normals.resize(static_cast<Eigen::Index>(result.face_vertices.size()), 3);
+  resizeRows(result.corner_normals, result.face_vertices.size());
   std::vector<Location> others;
   std::vector<Eigen::Index> rows;
   std::size_t corner = 0;
@@ -116,10 +97,10 @@ void evaluateCornerNormals(const LimitSurface& surface, Tessellation& result, in
     }
   }
   PartEvaluator evaluate(surface, others.size(), threads);
-  const auto most = static_cast<Eigen::Index>(std::min(kRowsPerPart, others.size()));
+  const auto most = static_cast<Eigen::Index>(std::min(PartEvaluator::kMostRows, others.size()));
   Points position(most, 3), normal(most, 3);
   forEachPart(others, [&](std::size_t begin, Span<Location> part) {
-    evaluate(part, position.data(), normal.data());
+    evaluatePart(surface, evaluate, part, position.data(), normal.data(), threads);
     for (std::size_t i = 0; i < part.size(); ++i) {
       result.corner_normals.row(rows[begin + i]) = normal.row(static_cast<Eigen::Index>(i));
     }

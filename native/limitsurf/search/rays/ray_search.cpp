@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limitsurf/float_rounding.h"
+#include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/prefetch.h"
 #include "limitsurf/search/box_queries.h"
@@ -310,9 +311,11 @@ Hits SurfaceSearch::rayCast(const Points& origins, const Points& directions, dou
                             int threads) const {
   const double scale = data_->scale;
   checkRays(origins, directions, max_distance, scale, threads);
-  std::vector<Location> at(static_cast<std::size_t>(origins.rows()));
-  Eigen::VectorXd distance =
-      Eigen::VectorXd::Constant(origins.rows(), std::numeric_limits<double>::quiet_NaN());
+  const auto rows = static_cast<std::size_t>(origins.rows());
+  std::vector<Location> at(rows);
+  Eigen::VectorXd distance;
+  resizeRows(distance, rows);
+  distance.setConstant(std::numeric_limits<double>::quiet_NaN());
   searchRays(*data_, origins, directions, max_distance, true, threads,
              [&](std::size_t row, const std::vector<RayHit>& hits) {
                if (!hits.empty()) {

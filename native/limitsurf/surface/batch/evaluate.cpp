@@ -2,6 +2,7 @@
 //
 // LimitSurface::evaluate().
 #include "limitsurf/error.h"
+#include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/row_check.h"
 #include "limitsurf/surface/batch/batch_evaluator.h"
@@ -63,20 +64,19 @@ void evaluateInto(const TiledSurface& tiles, const Pose& pose, const LocationBat
 Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives, bool normals,
                                   int threads) const {
   checkThreads(threads);
-  const auto rows = static_cast<Eigen::Index>(at.size());
   Evaluation out;
-  out.position.resize(rows, 3);
+  resizeRows(out.position, at.size());
   if (derivatives >= Derivatives::first) {
-    out.du.resize(rows, 3);
-    out.dv.resize(rows, 3);
+    resizeRows(out.du, at.size());
+    resizeRows(out.dv, at.size());
     if (normals) {
-      out.normal.resize(rows, 3);
+      resizeRows(out.normal, at.size());
     }
   }
   if (derivatives == Derivatives::second) {
-    out.duu.resize(rows, 3);
-    out.duv.resize(rows, 3);
-    out.dvv.resize(rows, 3);
+    resizeRows(out.duu, at.size());
+    resizeRows(out.duv, at.size());
+    resizeRows(out.dvv, at.size());
   }
   const PatchResults<double> results{out.position.data(), out.du.data(),  out.dv.data(),
                                      out.duu.data(),      out.duv.data(), out.dvv.data(),
