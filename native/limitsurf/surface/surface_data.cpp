@@ -5,15 +5,20 @@
 #include <cmath>
 #include <sstream>
 
+#include "limitsurf/large_pages.h"
 #include "limitsurf/mesh/face_varying_mesh.h"
 #include "limitsurf/mesh/limits.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/batch/batch_evaluation.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/surface_data_poses.h"
 
 namespace limitsurf {
 namespace {
+
+/// The number of rows of which three columns are evaluated at a time.
+constexpr std::size_t kRowsPerPart = std::size_t{1} << 15;
 
 void checkValues(const DataRows& values) {
   if (values.cols() < 1) {
@@ -132,47 +137,52 @@ LocationBatch SurfaceData::checkLocations(const LocationBatch& at) const {
 
 DataEvaluation SurfaceData::evaluate(const LocationBatch& at, Derivatives derivatives,
                                      int threads) const {
-  data_->tiles->check(at, threads);
-  const auto rows = static_cast<Eigen::Index>(at.size());
-  const Eigen::Index columns = data_->columns;
+  checkThreads(threads);
+  const std::size_t rows = at.size();
   DataEvaluation out;
-  out.value.resize(rows, columns);
+  std::vector<DataRows*> wanted{&out.value};
   if (derivatives >= Derivatives::first) {
-    out.du.resize(rows, columns);
-    out.dv.resize(rows, columns);
+    wanted.insert(wanted.end(), {&out.du, &out.dv});
   }
   if (derivatives == Derivatives::second) {
-    out.duu.resize(rows, columns);
-    out.duv.resize(rows, columns);
-    out.dvv.resize(rows, columns);
+    wanted.insert(wanted.end(), {&out.duu, &out.duv, &out.dvv});
   }
-
-  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    Eigen::Index first = 0, row = 0;
-    const auto put = [&](DataRows& to, const Padded& values) {
-      const Eigen::Index count = std::min(Data::kColumnsPerPose, columns - first);
-      to.row(row).segment(first, count) = values.head(count).matrix().transpose();
-    };
-    for (const Pose& pose : data_->poses) {
-      TileEvaluator evaluator(data_->tiles->table, pose);
-      for (std::size_t i = begin; i < end; ++i) {
-        row = static_cast<Eigen::Index>(i);
-        Jet jet;
-        evaluator.evaluateUpTo(static_cast<int>(derivatives), evaluator.locate(at[i]), jet);
-        put(out.value, jet.anchor + jet.patch.value);
-        if (derivatives >= Derivatives::first) {
-          put(out.du, jet.patch.du);
-          put(out.dv, jet.patch.dv);
-        }
-        if (derivatives == Derivatives::second) {
-          put(out.duu, jet.second(jet.patch.duu));
-          put(out.duv, jet.second(jet.patch.duv));
-          put(out.dvv, jet.second(jet.patch.dvv));
-        }
-      }
-      first += Data::kColumnsPerPose;
+  for (DataRows* const values : wanted) {
+    values->resize(0, data_->columns);
+    resizeRows(*values, rows);
+  }
+  if (data_->columns == Data::kColumnsPerPose) {
+    const PatchResults<double> results{out.value.data(), out.du.data(),  out.dv.data(),
+                                       out.duu.data(),   out.duv.data(), out.dvv.data(),
+                                       nullptr};
+    evaluateBatch(*data_->tiles, data_->poses[0], at, derivatives, results, threads);
+    return out;
+  }
+  data_->tiles->check(at, threads);  // parts of a batch would not say which of its rows is wrong
+  Points part[6];
+  for (std::size_t begin = 0; begin < rows; begin += kRowsPerPart) {
+    const std::size_t count = std::min(kRowsPerPart, rows - begin);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      part[i].resize(static_cast<Eigen::Index>(count), 3);
     }
-  });
+    const PatchResults<double> results{part[0].data(), part[1].data(), part[2].data(),
+                                       part[3].data(), part[4].data(), part[5].data(),
+                                       nullptr};
+    Eigen::Index first = 0;
+    for (const Pose& pose : data_->poses) {
+      evaluateBatch(*data_->tiles, pose, at.rows(begin, count), derivatives, results, threads);
+      const Eigen::Index columns = std::min(Data::kColumnsPerPose, data_->columns - first);
+      parallelFor(count, kRowsPerTask, threads, [&](std::size_t low, std::size_t high) {
+        const auto row = static_cast<Eigen::Index>(low),
+                   some = static_cast<Eigen::Index>(high - low);
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+          wanted[i]->block(static_cast<Eigen::Index>(begin) + row, first, some, columns) =
+              part[i].block(row, 0, some, columns);
+        }
+      });
+      first += columns;
+    }
+  }
   return out;
 }
 

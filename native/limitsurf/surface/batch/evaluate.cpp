@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// LimitSurface::evaluate().
+// Evaluation of batches, and LimitSurface::evaluate().
 #include "limitsurf/error.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/row_check.h"
+#include "limitsurf/surface/batch/batch_evaluation.h"
 #include "limitsurf/surface/batch/batch_evaluator.h"
 #include "limitsurf/surface/limit_surface_data.h"
 
@@ -30,10 +31,12 @@ void takeMemory(Real* numbers, std::size_t count, int threads) {
   }
 }
 
-/// The results have room for the batch. It is checked while it is evaluated.
+}  // namespace
+
+/// The batch is checked while it is evaluated.
 template <typename Real>
-void evaluateInto(const TiledSurface& tiles, const Pose& pose, const LocationBatch& at,
-                  Derivatives derivatives, const PatchResults<Real>& results, int threads) {
+void evaluateBatch(const TiledSurface& tiles, const Pose& pose, const LocationBatch& at,
+                   Derivatives derivatives, const PatchResults<Real>& results, int threads) {
   const TileTable& table = tiles.table;
   constexpr std::size_t kRowBytes = 3 * sizeof(Real);
   std::size_t row_bytes = 0;
@@ -59,7 +62,10 @@ void evaluateInto(const TiledSurface& tiles, const Pose& pose, const LocationBat
   }
 }
 
-}  // namespace
+template void evaluateBatch(const TiledSurface&, const Pose&, const LocationBatch&, Derivatives,
+                            const PatchResults<double>&, int);
+template void evaluateBatch(const TiledSurface&, const Pose&, const LocationBatch&, Derivatives,
+                            const PatchResults<float>&, int);
 
 Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives, bool normals,
                                   int threads) const {
@@ -81,7 +87,7 @@ Evaluation LimitSurface::evaluate(const LocationBatch& at, Derivatives derivativ
   const PatchResults<double> results{out.position.data(), out.du.data(),  out.dv.data(),
                                      out.duu.data(),      out.duv.data(), out.dvv.data(),
                                      out.normal.data()};
-  evaluateInto(*data_->tiles, data_->pose, at, derivatives, results, threads);
+  evaluateBatch(*data_->tiles, data_->pose, at, derivatives, results, threads);
   return out;
 }
 
@@ -105,7 +111,7 @@ void LimitSurface::evaluate(const LocationBatch& at, Derivatives derivatives,
                                 of("duv", results.duv, second),
                                 of("dvv", results.dvv, second),
                                 of("normal", results.normal, first && results.normal.count > 0)};
-  evaluateInto(*data_->tiles, data_->pose, at, derivatives, into, threads);
+  evaluateBatch(*data_->tiles, data_->pose, at, derivatives, into, threads);
 }
 
 template void LimitSurface::evaluate(const LocationBatch&, Derivatives,
