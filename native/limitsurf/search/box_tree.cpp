@@ -146,9 +146,10 @@ class BoxTree::Builder {
     for (int i = 1; i < 3; ++i) {
       axis = high[i] - low[i] > high[axis] - low[axis] ? i : axis;
     }
-    const float extent = high[axis] - low[axis];
-    if (part.size() > 2 && part.depth < kHeuristicDepth && extent > 0 && std::isfinite(extent)) {
-      const std::int32_t middle = divideByArea(part, axis, low[axis], kBins / extent);
+    // It is infinite where the centres hardly differ, and NaN where their distance overflows.
+    const float scale = kBins / (high[axis] - low[axis]);
+    if (part.size() > 2 && part.depth < kHeuristicDepth && scale > 0 && std::isfinite(scale)) {
+      const std::int32_t middle = divideByArea(part, axis, low[axis], scale);
       if (middle > part.begin && middle < part.end) {
         return middle;
       }
