@@ -2,8 +2,10 @@
 #include "limitsurf/surface/tangent_frames.h"
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
+#include "limitsurf/parallel.h"
 #include "limitsurf/surface/map_derivatives.h"
 
 namespace limitsurf {
@@ -37,21 +39,29 @@ Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> tangentFrames(const Li
                                                                         int threads) {
   const MapDerivatives d = directionalDerivatives(surface, uv_map, at, threads);
   Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> out(at.size(), 9);
+  std::vector<std::uint8_t> is_singular(at.size());
+  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const double determinant = d.determinant(row), sign = determinant < 0 ? -1 : 1;
+      const Vector3 tangent = alongU(d, row, sign);
+      const Vector3 normal = d.on_surface.normal.row(row).transpose();
+      is_singular[i] = !(determinant != 0) || !tangent.allFinite() || tangent.isZero(0);
+      if (!is_singular[i]) {
+        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> frame(out.row(row).data());
+        frame.col(0) = tangent.normalized();
+        frame.col(1) = sign * normal.cross(frame.col(0));
+        frame.col(2) = normal;
+      }
+    }
+  });
   std::vector<std::size_t> singular;
   std::vector<Location> places;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const double determinant = d.determinant(row), sign = determinant < 0 ? -1 : 1;
-    const Vector3 tangent = alongU(d, row, sign), normal = d.on_surface.normal.row(row).transpose();
-    if (!(determinant != 0) || !tangent.allFinite() || tangent.isZero(0)) {
+    if (is_singular[i]) {
       singular.push_back(i);
       places.push_back(at[i]);
-      continue;
     }
-    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> frame(out.row(row).data());
-    frame.col(0) = tangent.normalized();
-    frame.col(1) = sign * normal.cross(frame.col(0));
-    frame.col(2) = normal;
   }
   const auto frames = surface.frames(places, threads);
   for (std::size_t i = 0; i < singular.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "limitsurf/parallel.h"
 #include "limitsurf/surface/map_derivatives.h"
 
 namespace limitsurf {
@@ -29,21 +30,23 @@ MapDistortion mapDistortion(const LimitSurface& surface, const SurfaceData& uv_m
   const MapDerivatives d = directionalDerivatives(surface, uv_map, at, threads);
   const auto rows = static_cast<Eigen::Index>(at.size());
   MapDistortion out{Eigen::VectorXd(rows), Eigen::VectorXd(rows), Eigen::VectorXd(rows)};
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    const double determinant = d.determinant(row);
-    const Vector3 du = d.on_surface.du.row(row).transpose(),
-                  dv = d.on_surface.dv.row(row).transpose();
-    out.area(row) = du.cross(dv).stableNorm() / std::abs(determinant);
-    if (determinant == 0) {
-      out.stretch_high(row) = std::numeric_limits<double>::infinity();
-      out.stretch_low(row) = std::numeric_limits<double>::quiet_NaN();
-      continue;
+  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (auto row = static_cast<Eigen::Index>(begin); row < static_cast<Eigen::Index>(end); ++row) {
+      const double determinant = d.determinant(row);
+      const Vector3 du = d.on_surface.du.row(row).transpose(),
+                    dv = d.on_surface.dv.row(row).transpose();
+      out.area(row) = du.cross(dv).stableNorm() / std::abs(determinant);
+      if (determinant == 0) {
+        out.stretch_high(row) = std::numeric_limits<double>::infinity();
+        out.stretch_low(row) = std::numeric_limits<double>::quiet_NaN();
+        continue;
+      }
+      out.stretch_high(row) =
+          largestStretch((du * d.on_map.dv(row, 1) - dv * d.on_map.du(row, 1)) / determinant,
+                         (dv * d.on_map.du(row, 0) - du * d.on_map.dv(row, 0)) / determinant);
+      out.stretch_low(row) = out.stretch_high(row) > 0 ? out.area(row) / out.stretch_high(row) : 0;
     }
-    out.stretch_high(row) =
-        largestStretch((du * d.on_map.dv(row, 1) - dv * d.on_map.du(row, 1)) / determinant,
-                       (dv * d.on_map.du(row, 0) - du * d.on_map.dv(row, 0)) / determinant);
-    out.stretch_low(row) = out.stretch_high(row) > 0 ? out.area(row) / out.stretch_high(row) : 0;
-  }
+  });
   return out;
 }
 
