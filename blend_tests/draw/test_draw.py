@@ -6,6 +6,7 @@ Mouse and keys are tested in blend_tests/gui.
 
 from dataclasses import replace
 
+import bmesh
 import bpy
 import draw_scenes as drawn
 import numpy as np
@@ -210,6 +211,54 @@ def test_undo_and_redo(target):
     bpy.ops.ed.undo()
     assert not bpy.data.curves
     assert bpy.context.active_object.type == "MESH"
+
+
+@pytest.mark.parametrize("output", ["CURVE", "GUIDES"])
+def test_nothing_is_left_of_a_drawing_that_cannot_follow(target, output):
+    shown, rendered = scenes.add_subsurf(target), scenes.add_subsurf(target)
+    shown.show_render = rendered.show_viewport = False
+    before = scenes.file_contents()
+    with pytest.raises(RuntimeError, match="subdivided first by"):
+        draw([ACROSS], output=output, follow="NODES")
+    assert scenes.file_contents() == before
+    assert bpy.context.active_object == target
+
+
+def test_a_drawing_stays_as_it_is_if_something_else_cannot_be_bound_again():
+    target = scenes.flat_grid(4)
+    scenes.add_hair(target, follow="NODES")
+    scenes.activate(target)
+    draw([WITHIN], follow="NODES", radius=0.0)
+    drawing = bpy.context.active_object
+    edited = bmesh.new()
+    edited.from_mesh(target.data)
+    edited.faces.ensure_lookup_table()
+    bmesh.ops.delete(edited, geom=[edited.faces[-1]], context="FACES")
+    edited.to_mesh(target.data)
+    edited.free()
+    bpy.context.view_layer.update()
+    before = [drawn.control_points(spline) for spline in drawing.data.splines]
+    with pytest.raises(RuntimeError, match="was bound before the faces"):
+        draw([ACROSS])
+    assert len(drawing.data.splines) == len(before)
+    np.testing.assert_array_equal(drawn.control_points(drawing.data.splines[0]), before[0])
+
+
+def test_a_drawing_without_strokes_is_continued(target):
+    draw([ACROSS], follow="NODES", radius=0.0)
+    drawing = bpy.context.active_object
+    draw([], removed=[{"name": "", "index": 0}])
+    assert not drawing.data.splines
+    scenes.activate(target)
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    scenes.activate(drawing)
+    assert draw([WITHIN]) == {"FINISHED"}
+    assert bpy.context.active_object == drawing
+    np.testing.assert_allclose(
+        drawn.evaluated_points(drawing)[0],
+        drawn.control_points(drawing.data.splines[0])[0],
+        atol=ROUNDING,
+    )
 
 
 @pytest.fixture

@@ -39,13 +39,15 @@ def add_new(
     thickness: Thickness,
     follow: str,
 ) -> bpy.types.Object:
+    is_bound = follows(follow, ground.ob)
+    if is_bound:
+        curve_points.check_others(ground.ob, context.evaluated_depsgraph_get())
     data = bpy.data.curves.new(ids.DRAWING_OBJECT, "CURVE")
     try:
         data.dimensions = "3D"
         splines.add(data, made)
         splines.store_locations(data, splines.joined([spline.locations for spline in made]))
         scale = WorldSpace(ground.matrix).mean_scale
-        is_bound = follows(follow, ground.ob)
         if thickness.radius and not is_bound:
             data.bevel_depth = thickness.radius / scale
             data.bevel_resolution = thickness.bevel_resolution
@@ -71,14 +73,18 @@ def change(
     removed: Sequence[int],
     made: Sequence[Spline],
 ) -> None:
-    """Replaces splines of a Curve object by others."""
-    data = ob.data
+    """Replaces splines of a Curve object by others. Raises RefusalError for a curve that follows
+    the surface and cannot be bound again; nothing has changed then.
+    """
+    data, is_bound = ob.data, bool(next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None))
+    if is_bound:
+        curve_points.check_others(ground.ob, context.evaluated_depsgraph_get(), [ob])
     kept = _kept_locations(ob, ground, removed)
     splines.remove(data, removed)
     splines.add(data, made)
     found = splines.joined([kept, *(spline.locations for spline in made)])
     splines.store_locations(data, found)
-    if next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None) and len(data.splines):
+    if is_bound:
         curve_points.bind([ob], ground.ob, context, {ob: found})
 
 

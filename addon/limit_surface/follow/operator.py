@@ -118,6 +118,8 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
             )
             for ob in things:
                 following.check_thing(ob, on)
+            for ob in curves:
+                curve_points.check_any(ob)
             bound_curves = curve_points.CurveRequest(curves, on, depsgraph, self._proxy)
             relocated = yield from newcomers.relocations(things, on, depsgraph)
             depsgraph = context.evaluated_depsgraph_get()

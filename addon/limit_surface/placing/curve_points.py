@@ -49,8 +49,7 @@ class CurveRequest:
             check(ob, surface)
         if not curves:
             return
-        # what else follows the surface may refuse, before the curves have changed
-        following.Request(surface, depsgraph, without=curves)
+        check_others(surface, depsgraph, curves)
         posed = PosedSurface(cage.read(surface, depsgraph))
         check_some_left(posed.in_world, surface.name)
         self._points = [splines.positions(ob.data) for ob in curves]
@@ -79,6 +78,25 @@ def bind(
     """Makes Curve objects follow at once. Raises what CurveRequest raises."""
     depsgraph = context.evaluated_depsgraph_get()
     return CurveRequest(curves, surface, depsgraph, known=known).write(context)
+
+
+def check_others(
+    surface: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    without: Sequence[bpy.types.Object] = (),
+) -> None:
+    """Raises RefusalError if the surface, or something else that follows it, does not allow that a
+    curve is bound. It is asked before anything has changed.
+    """
+    following.Request(surface, depsgraph, without=without)
+
+
+def check_any(ob: bpy.types.Object) -> None:
+    """Raises RefusalError for a curve that has nothing to bind. One that follows already may lose
+    all of its points, and gets new ones later.
+    """
+    if not len(splines.positions(ob.data)):
+        raise RefusalError(f"{ob.name} has no control points")
 
 
 def check_pose(ob: bpy.types.Object, surface: bpy.types.Object, posed: PosedSurface) -> None:
@@ -137,14 +155,12 @@ def check(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
             "set Bevel Depth and Extrude to 0, and give it its thickness by the node Curve to Mesh "
             "in a Geometry Nodes modifier"
         )
-    if not any(len(splines.points(spline)) for spline in data.splines):
-        raise RefusalError(f"{ob.name} has no control points")
 
 
 def has_others(ob: bpy.types.Object) -> bool:
-    """Tells whether the number of control points is not that of before."""
-    table = curve_table(ob)
-    return table is None or len(table.data.vertices) != len(splines.positions(ob.data))
+    """Tells whether the number of control points is not that of before, or there are none."""
+    table, count = curve_table(ob), len(splines.positions(ob.data))
+    return table is None or not count or len(table.data.vertices) != count
 
 
 def _places(
