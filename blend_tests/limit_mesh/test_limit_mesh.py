@@ -119,6 +119,23 @@ def test_materials_of_the_object(dressed):
     assert dressed.data.materials[1].name == "Blue"
 
 
+def test_materials_that_modifiers_set(dressed):
+    """Their faces have slots that the object itself does not have."""
+    gold = bpy.data.materials.new("Gold")
+    group = bpy.data.node_groups.new("Gilded", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    kinds = ("NodeGroupInput", "GeometryNodeSetMaterial", "NodeGroupOutput")
+    begin, gilded, end = (group.nodes.new(kind) for kind in kinds)
+    gilded.inputs["Material"].default_value = gold
+    group.links.new(begin.outputs[0], gilded.inputs[0])
+    group.links.new(gilded.outputs[0], end.inputs[0])
+    dressed.modifiers.new("Gilded", "NODES").node_group = group
+    dressed.modifiers.move(1, 0)
+    mesh = make(dressed, levels=1, follow="NONE").data
+    assert {mesh.materials[polygon.material_index] for polygon in mesh.polygons} == {gold}
+
+
 @pytest.mark.parametrize("matrix", [Matrix.Identity(4), MIRRORED], ids=["as it is", "mirrored"])
 def test_vertices_and_normals_are_the_surfaces(dressed, matrix):
     dressed.matrix_world = matrix
@@ -219,6 +236,23 @@ def test_undo(dressed):
     bpy.ops.ed.undo_push()
     bpy.ops.ed.undo()
     assert scenes.file_contents() == before
+
+
+@pytest.mark.parametrize("follow", ["NODES", "LIVE"])
+def test_locations_on_another_surface_are_not_carried_over(follow):
+    """Or else a mesh of a mesh would follow it by the locations of that one's own surface."""
+    ob = scenes.grid_with_holes()
+    first = make(ob, levels=1, store_locations=True, follow="NONE")
+    bpy.ops.object.limit_follow(mode=follow)
+    second = make(first, levels=1, follow="NONE")
+    names = second.data.attributes.keys()
+    assert not [name for name in names if name.startswith(("limit_", "rest_", "tile_"))]
+    before = attributes.read(second.data, "position")
+    first.select_set(True)
+    scenes.activate(first)
+    bpy.ops.object.limit_follow(mode="NODES")
+    shown = second.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    np.testing.assert_allclose(attributes.read(shown, "position"), before, atol=2e-6)
 
 
 def test_what_followers_need_is_not_carried_over():

@@ -5,7 +5,7 @@ import bpy
 import pytest
 import scenes
 from limit_surface.errors import RefusalError
-from limit_surface.tasks.object_keys import ObjectKey
+from limit_surface.tasks.object_keys import MaterialKey, ObjectKey
 
 
 def test_an_object_is_found_again():
@@ -35,3 +35,11 @@ def test_a_linked_object_is_told_from_one_of_the_same_name(tmp_path):
     assert ObjectKey.of(linked).library == path
     assert ObjectKey.of(linked).find() == linked
     assert ObjectKey.of(own).find() == own
+
+
+def test_a_material_is_found_again_until_it_is_removed():
+    material = bpy.data.materials.new("Skin")
+    key = MaterialKey.of(material)
+    assert key.find() == material
+    bpy.data.materials.remove(material)
+    assert key.find() is None

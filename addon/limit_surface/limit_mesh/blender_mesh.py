@@ -33,8 +33,8 @@ def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) 
             mesh = grouped
             mesh.name = ids.LIMIT_MESH_OBJECT
         _activate_as(source.data, mesh)
-        for slot in source.material_slots:
-            mesh.materials.append(slot.material if slot.link == "DATA" else None)
+        for key in made.materials:
+            mesh.materials.append(key.find() if key else None)
         on = made.tessellation
         if on.corner_normals is not None:
             _set_normals(mesh, on.corner_normals, on.face_sizes)
@@ -45,8 +45,10 @@ def build(made: Made, source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) 
 
 
 def copy_object_materials(source: bpy.types.Object, target: bpy.types.Object) -> None:
-    """Copies the materials that belong to the object rather than to its mesh."""
-    for own, slot in zip(source.material_slots, target.material_slots, strict=True):
+    """Copies the materials that belong to the object rather than to its mesh. Modifiers may have
+    made other slots than the object has.
+    """
+    for own, slot in zip(source.material_slots, target.material_slots, strict=False):
         if own.link == "OBJECT":
             slot.link, slot.material = "OBJECT", own.material
 

@@ -17,6 +17,7 @@ import bpy
 import numpy as np
 
 from .. import ids
+from ..placing.places import ROOT_KINDS
 from ..reading import attributes, ragged_rows, rules, uv_map
 from ..tasks.job import Progress
 from .places import CageElements
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
 
 LINEAR = ("FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR")
 SEAM_BEFORE_5 = ".uv_seam"
-#: Attributes that are made with the new mesh, or by its normals, or for what follows the surface
+#: Attributes that are made with the new mesh, or by its normals, or for what follows the surface,
+#: and those of locations on another surface, which mean nothing on this one
 _OWN = (
     "position",
     "custom_normal",
@@ -36,6 +38,10 @@ _OWN = (
     ids.CAGE_TOPOLOGY,
     ids.CAGE_EDGE_CREASES,
     ids.CAGE_VERTEX_CREASES,
+    *ROOT_KINDS,
+    ids.TILE,
+    ids.TILE_UV,
+    ids.LIVE_FINGERPRINT,
 )
 # Rows are evaluated in parts of this size, so that progress is shown and memory stays small.
 _PART = 1 << 18
@@ -65,6 +71,8 @@ def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
     for attribute in mesh.attributes:
         name, kind = attribute.name, attribute.data_type
         if name.startswith(".") and name != SEAM_BEFORE_5:
+            continue
+        if name.startswith(ids.LIVE_REST):
             continue
         if name in _OWN and not (name == "sharp_face" and with_sharp_faces):
             continue

@@ -14,6 +14,7 @@ from ..errors import RefusalError
 from ..reading import cage, vertex_weights
 from ..reading.subdivided_mesh import polygon_counts
 from ..tasks.job import Progress, part_of
+from ..tasks.object_keys import MaterialKey
 from ..tasks.refused_faces import reasons
 from ..tasks.request_size import RequestSize
 from . import cage_attributes, levels
@@ -60,6 +61,7 @@ class Source:
     cage: cage.Cage
     attributes: CageAttributes
     groups: Groups
+    materials: list[MaterialKey | None]
     choice: levels.Choice
 
     def make(self, exact_normals: bool, allow_large: bool, progress: Progress) -> Made:
@@ -86,6 +88,7 @@ class Source:
             on_it,
             carrier,
             Groups(self.groups.names, weights),
+            self.materials,
             (int(kept.min()), int(kept.max())),
             refused,
             [warning] if warning else [],
@@ -99,6 +102,7 @@ class Made:
     attributes: list[Attribute]
     carrier: Carrier  # makes the edges' attributes, once the mesh has numbered its edges
     groups: Groups
+    materials: list[MaterialKey | None]  # those that modifiers add among them
     levels: tuple[int, int]  # the lowest and the highest level
     refused: Mapping[int, str]
     warnings: list[str]
@@ -117,7 +121,8 @@ def read(
     ):
         groups = Groups.read(mesh, names)
         source = cage_attributes.read(mesh, with_sharp_faces)
-        return Source(found, source, groups, choose(mesh, found, groups))
+        materials = [each and MaterialKey.of(each) for each in mesh.materials]
+        return Source(found, source, groups, materials, choose(mesh, found, groups))
 
 
 def _expected(found: cage.Cage, chosen: np.ndarray, refused: Mapping[int, str]) -> int:

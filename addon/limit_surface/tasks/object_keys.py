@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keys by which a task finds its objects again when it is done.
+"""Keys by which a task finds its objects and materials again when it is done.
 
-While a task runs, Blender may remove an object or move it in memory, so no reference to it is kept.
+While a task runs, Blender may remove them or move them in memory, so no reference is kept.
 """
 
 from __future__ import annotations
@@ -31,3 +31,18 @@ class ObjectKey(NamedTuple):
         if ob is None:
             raise RefusalError(f"{self.name} does not exist any more")
         return ob
+
+
+class MaterialKey(NamedTuple):
+    """The name and the library of a material."""
+
+    name: str
+    library: str | None
+
+    @classmethod
+    def of(cls, material: bpy.types.Material) -> MaterialKey:
+        return cls(material.name, material.library.filepath if material.library else None)
+
+    def find(self) -> bpy.types.Material | None:
+        """Returns None if the material has been removed."""
+        return bpy.data.materials.get((self.name, self.library))
