@@ -7,6 +7,8 @@ still be registered, and shows the reason in the sidebar and in the Preferences.
 
 from __future__ import annotations
 
+import tomllib
+from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -14,6 +16,9 @@ from .errors import RefusalError
 
 if TYPE_CHECKING:
     import limitsurf
+
+
+_MANIFEST = Path(__file__).parent / "blender_manifest.toml"
 
 
 def _load() -> tuple[ModuleType | None, str]:
@@ -24,7 +29,21 @@ def _load() -> tuple[ModuleType | None, str]:
     # A folder of that name on sys.path would be imported as an empty package.
     if not hasattr(limitsurf, "LimitSurface"):
         return None, f"{list(limitsurf.__path__)[0]} is not the native module"
+    # Blender does not load a binary part again that an update has replaced, and sys.path may have
+    # another one. Their functions differ.
+    found, needed = getattr(limitsurf, "__version__", "?"), _version()
+    if found != needed:
+        return None, (
+            f"version {found} is in use, but {needed} is needed. Restart Blender, or remove "
+            f"{limitsurf.__file__}"
+        )
     return limitsurf, ""
+
+
+def _version() -> str:
+    """Returns the version of the extension, with which that of its binary part agrees."""
+    with _MANIFEST.open("rb") as file:
+        return str(tomllib.load(file)["version"])
 
 
 if TYPE_CHECKING:

@@ -285,6 +285,13 @@ def test_broken_native_module(tmp_path):
     check_reason_is_shown(f"sys.path.insert(0, {str(tmp_path)!r})", "OSError: wrong ELF class")
 
 
+def test_native_module_of_another_version(tmp_path):
+    """It is still in use after an update, until Blender is started again."""
+    (tmp_path / "limitsurf.py").write_text("__version__ = '0.0.1'\nclass LimitSurface: pass")
+    reason = f"version 0.0.1 is in use, but {limitsurf.__version__} is needed. Restart Blender"
+    check_reason_is_shown(f"sys.path.insert(0, {str(tmp_path)!r})", reason)
+
+
 def test_a_folder_of_that_name_is_not_the_module(tmp_path):
     (tmp_path / "limitsurf").mkdir()
     without = "not (os.path.exists(p + '/limitsurf') or 'site-packages' in p)"
