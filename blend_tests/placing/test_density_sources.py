@@ -394,3 +394,28 @@ def test_sources_that_modifiers_drop(source, properties):
     colour(ob, "FLOAT_COLOR", "CORNER")
     replace_by_cube(ob)
     check_refused(f"the modifiers remove the {source}", **properties)
+
+
+@pytest.mark.parametrize("distribution", ["JITTERED", "BORDER"])
+def test_candidates_that_a_density_drops_need_consent_too(monkeypatch, distribution):
+    """They take memory before most of them are dropped."""
+    ob = scenes.flat_grid(2)
+    ob.vertex_groups.new(name="Few").add([0], 1e-3, "REPLACE")
+    monkeypatch.setattr("limit_surface.tasks.request_size.LARGE_MEMORY", 1 << 20)
+    many = {"density_source": "VERTEX_GROUP", "vertex_group": "Few", "distribution": distribution}
+    check_refused("allow_large", per_side=60, count=20_000, **many)
+
+
+def test_a_small_dense_part_gets_its_number():
+    """A part of one face, such as an eyebrow in a map of the whole body."""
+    ob = scenes.flat_grid(4)
+    add_uv_map(ob, lambda p: p[:, :2] / 4)
+    image = bpy.data.images.new("Small", 512, 512, float_buffer=True)
+    pixels = np.zeros((512, 512, 4), np.float32)
+    pixels[200:210, 200:210] = 1
+    image.pixels.foreach_set(pixels.ravel())
+    area = (10 * 4 / 512) ** 2
+    points = add_points(
+        ob, distribution="UNIFORM", density=300 / area, density_source="IMAGE", image="Small"
+    )
+    assert len(points.data.vertices) == pytest.approx(300, rel=0.08)

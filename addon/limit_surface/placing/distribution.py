@@ -30,6 +30,7 @@ TOO_LOW = "The density is so low that no location was found: check its source an
 class Expected:
     count: int
     is_exact: bool
+    candidates: int = 0  # locations that are made first, of which a density keeps some
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ class Distribution:
             cells = region.ptex_face_count * self.per_side**2
             if region.density is None:
                 return Expected(cells, True)
-            return Expected(round(cells * region.sums.weight), False)
+            return Expected(round(cells * region.sums.weight), False, cells)
         if self.kind == "BORDER":
             return self._expected_along(region)
         if self.amount == "COUNT":
@@ -127,10 +128,11 @@ class Distribution:
             raise RefusalError("A border has no area: give a count or a distance")
         sums = region.border_sums
         if self.amount == "COUNT":
-            count = round(self.count * self.border.rows * sums.weight)
-            return Expected(count, region.density is None and self.border.rows == 1)
-        count = round(sums.length / self.distance * self.border.rows * sums.weight)
-        return Expected(max(count, 1), False)
+            candidates = self.count * self.border.rows
+            is_exact = region.density is None and self.border.rows == 1
+            return Expected(round(candidates * sums.weight), is_exact, candidates)
+        candidates = round(sums.length / self.distance * self.border.rows)
+        return Expected(max(round(candidates * sums.weight), 1), False, candidates)
 
     def _along_border(self, region: Region, progress: Progress) -> Scattered:
         by_count = self.amount == "COUNT"

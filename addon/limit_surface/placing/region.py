@@ -26,8 +26,8 @@ from .mask import MaskChoice
 if TYPE_CHECKING:
     import limitsurf
 
-SAMPLES = 1 << 20  # the largest number of samples, roughly, for sums over the surface
-MOST_PER_SIDE = 16  # samples on each face
+SAMPLES = 1 << 19  # the largest number of samples, roughly, for sums over the surface
+MOST_PER_SIDE = 64  # samples along each side of a face
 BORDER_SAMPLES = 4096
 
 

@@ -308,7 +308,11 @@ class ScatterOperator(
         )
         expected = distribution.expected(covered)
         size = RequestSize(
-            self.noun, expected.count, self.elements_per_location(), expected.is_exact
+            self.noun,
+            expected.count,
+            self.elements_per_location(),
+            expected.is_exact,
+            expected.candidates,
         )
         shown = None
         if self.target != "LIMIT":

@@ -10,10 +10,12 @@ LARGE_COUNT = 3_000_000  # more elements than this are made only if the user con
 LARGE_MEMORY = 4 << 30  # in bytes
 MOST_ELEMENTS = 2**31 - 1  # the largest number that Blender's element counts can hold
 
-# Both are measured at the peak. The first counts attributes and the arrays from which they are
-# filled, the second positions and the finer curve that Blender evaluates between them.
+# All are measured at the peak. The first counts attributes and the arrays from which they are
+# filled, the second positions and the finer curve that Blender evaluates between them, and the
+# third a location that is made although a density may not keep it.
 BYTES_PER_LOCATION = 130
 BYTES_PER_ELEMENT = 200
+BYTES_PER_CANDIDATE = 180
 
 
 def memory_text(size: int) -> str:
@@ -27,6 +29,7 @@ class RequestSize:
     count: int
     elements_per_location: int
     is_exact: bool = True
+    candidates: int = 0
 
     @property
     def elements(self) -> int:
@@ -35,7 +38,8 @@ class RequestSize:
     @property
     def memory(self) -> int:
         """The expected memory in bytes."""
-        return self.count * BYTES_PER_LOCATION + self.elements * BYTES_PER_ELEMENT
+        made = self.count * BYTES_PER_LOCATION + self.elements * BYTES_PER_ELEMENT
+        return max(made, self.candidates * BYTES_PER_CANDIDATE)
 
     @property
     def is_large(self) -> bool:
