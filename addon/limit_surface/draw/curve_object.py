@@ -39,9 +39,7 @@ def add_new(
     thickness: Thickness,
     follow: str,
 ) -> bpy.types.Object:
-    is_bound = follows(follow, ground.ob)
-    if is_bound:
-        curve_points.check_others(ground.ob, context.evaluated_depsgraph_get())
+    is_bound = check_follows(follow, ground, context.evaluated_depsgraph_get())
     data = bpy.data.curves.new(ids.DRAWING_OBJECT, "CURVE")
     try:
         data.dimensions = "3D"
@@ -73,19 +71,19 @@ def change(
     removed: Sequence[int],
     made: Sequence[Spline],
 ) -> None:
-    """Replaces splines of a Curve object by others. Raises RefusalError for a curve that follows
-    the surface and cannot be bound again; nothing has changed then.
-    """
-    data, is_bound = ob.data, bool(next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None))
-    if is_bound:
-        curve_points.check_others(ground.ob, context.evaluated_depsgraph_get(), [ob])
+    """Replaces splines of a Curve object by others, once its places have been checked."""
+    data = ob.data
     kept = _kept_locations(ob, ground, removed)
     splines.remove(data, removed)
     splines.add(data, made)
     found = splines.joined([kept, *(spline.locations for spline in made)])
     splines.store_locations(data, found)
-    if is_bound:
+    if _is_bound(ob):
         curve_points.bind([ob], ground.ob, context, {ob: found})
+
+
+def _is_bound(ob: bpy.types.Object) -> bool:
+    return next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None) is not None
 
 
 def store_offset(data: bpy.types.Curve, offset: float) -> None:
@@ -112,8 +110,18 @@ def _kept_locations(ob: bpy.types.Object, ground: Ground, removed: Sequence[int]
     return Locations(found.face[rows], found.uv[rows])
 
 
-def check_places(ob: bpy.types.Object, ground: Ground) -> None:
-    """Raises RefusalError for a Curve object whose points cannot be compared with the surface."""
+def check_follows(follow: str, ground: Ground, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Tells whether a new object is to follow the surface. Raises RefusalError if it cannot."""
+    is_bound = follows(follow, ground.ob)
+    if is_bound:
+        curve_points.check_others(ground.ob, depsgraph)
+    return is_bound
+
+
+def check_places(ob: bpy.types.Object, ground: Ground, depsgraph: bpy.types.Depsgraph) -> None:
+    """Raises RefusalError for a Curve object whose points cannot be compared with the surface, or
+    that follows it and could not be bound again.
+    """
     transform.world_matrix(ob)  # refuses a scale of 0
     for number, spline in enumerate(ob.data.splines):
         points = blender_splines.points(spline)
@@ -123,6 +131,8 @@ def check_places(ob: bpy.types.Object, ground: Ground) -> None:
                 f"Spline {number} of {ob.name} has coordinates that are not finite numbers"
             )
     curve_points.check_pose(ob, ground.ob, ground.posed)
+    if _is_bound(ob):
+        curve_points.check_others(ground.ob, depsgraph, [ob])
 
 
 def check_drawable(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
@@ -135,5 +145,5 @@ def check_drawable(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
         raise RefusalError(f"{ob.name} has shape keys, which keep the number of its points")
     if data.dimensions == "2D":
         raise RefusalError(f"{ob.name} is a 2D curve, which stays in its plane: make it 3D")
-    if next(groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP), None):
+    if _is_bound(ob):
         curve_points.check(ob, surface)

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
+from ..placing import following
 from ..placing.posed_surface import PosedSurface, transformed
 from ..reading import cage
 from ..tasks.refused_faces import check_some_left
@@ -41,6 +42,21 @@ class Ground:
         self.size = float(np.linalg.norm(high - low))
         if not self.size > 0:
             raise RefusalError(f"All points of {ob.name} lie at one place")
+
+    def now(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Ground:
+        """Returns the ground of the same object as it is by now. Raises RefusalError if its faces
+        have changed, so that locations on them mean other places.
+        """
+        before, found = self.posed.cage, cage.read(ob, depsgraph)
+        signatures = following.signature(before), following.signature(found)
+        if not following.have_same_faces(*signatures):
+            raise RefusalError(f"The faces of {ob.name} have changed meanwhile: nothing was made")
+        is_same = (
+            np.array_equal(before.matrix, found.matrix)
+            and np.array_equal(before.mesh.positions, found.mesh.positions)
+            and signatures[0] == signatures[1]
+        )
+        return self if is_same else Ground(ob, depsgraph)
 
     def tolerance(self, chosen: float) -> float:
         """Returns the tolerance in world units; 0 chooses one by the surface's size."""

@@ -60,9 +60,10 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.t
             curve_object.check_drawable(ob, surface)
         if len({ob.data for ob in curves}) < len(curves):
             raise RefusalError("Two of the selected objects share their curves: make them single")
-        ground = Ground(surface, context.evaluated_depsgraph_get())
+        depsgraph = context.evaluated_depsgraph_get()
+        ground = Ground(surface, depsgraph)
         for ob in curves:
-            curve_object.check_places(ob, ground)
+            curve_object.check_places(ob, ground, depsgraph)
         tolerance = ground.tolerance(self.tolerance)
         fit = Fit(self.spline, tolerance, self.offset)
         laid: list[tuple[list[Spline], list[int]]] = []

@@ -112,17 +112,20 @@ class VIEW3D_OT_limit_draw(
         if context.area is None or context.area.type != "VIEW_3D":
             return self._refuse("Only available in a 3D viewport")
         try:
-            self._found = subject.find(context)
-            ground = Ground(self._found.surface, context.evaluated_depsgraph_get())
+            found, depsgraph = subject.find(context), context.evaluated_depsgraph_get()
+            ground = Ground(found.surface, depsgraph)
             tolerance = ground.tolerance(self.tolerance)
             begun = []
-            if self._found.edited:
-                curve_object.check_places(self._found.edited, ground)
+            if found.edited:
+                curve_object.check_places(found.edited, ground, depsgraph)
                 self.output = "CURVE"
-                self.offset = float(self._found.edited.data.get(ids.OFFSET, 0.0))
-                begun = splines.strokes(self._found.edited, ground, tolerance)
+                self.offset = float(found.edited.data.get(ids.OFFSET, 0.0))
+                begun = splines.strokes(found.edited, ground, tolerance)
+            else:  # what is drawn would be lost if it turned out later
+                curve_object.check_follows(self.follow, ground, depsgraph)
         except native.refusals as error:
             return self._refuse(error)
+        self._keys = subject.Keys.of(found)
         settings = Settings(tolerance, self.steadying, self.use_mirror, self.use_join)
         self._pen = Pen(
             context.area, Session(ground, settings, begun), self.brush, self.use_pressure
@@ -160,7 +163,8 @@ class VIEW3D_OT_limit_draw(
         self.removed.clear()
         for number in session.removed:
             self.removed.add().index = number
-        return self._make(context, self._found, session.ground)
+        found, depsgraph = self._keys.find(), context.evaluated_depsgraph_get()
+        return self._make(context, found, session.ground.now(found.surface, depsgraph))
 
     def _make(self, context: bpy.types.Context, found: subject.Subject, ground: Ground) -> set[str]:
         """Puts the strokes into the file. The stored strokes are read back, so that the redo panel
@@ -170,7 +174,7 @@ class VIEW3D_OT_limit_draw(
         self.changes_active = found.edited is not None
         tolerance = ground.tolerance(self.tolerance)
         if found.edited is not None:
-            curve_object.check_places(found.edited, ground)
+            curve_object.check_places(found.edited, ground, context.evaluated_depsgraph_get())
         strokes = result.read_strokes(self.strokes, ground, tolerance)
         result.warn_of_pieces(self, len(strokes), stroke.count(self.strokes))
         removed = [each.index for each in self.removed]

@@ -9,6 +9,7 @@ import bpy
 
 from ..errors import RefusalError
 from ..placing.followers import surface_of
+from ..tasks.object_keys import ObjectKey
 from .curve_object import check_drawable
 
 
@@ -16,6 +17,22 @@ from .curve_object import check_drawable
 class Subject:
     surface: bpy.types.Object
     edited: bpy.types.Object | None  # None: a new object is made
+
+
+@dataclass(frozen=True)
+class Keys:
+    """Finds the subject again after a while."""
+
+    surface: ObjectKey
+    edited: ObjectKey | None
+
+    @classmethod
+    def of(cls, found: Subject) -> Keys:
+        return cls(ObjectKey.of(found.surface), found.edited and ObjectKey.of(found.edited))
+
+    def find(self) -> Subject:
+        """Raises RefusalError if an object has been removed."""
+        return Subject(self.surface.find(), self.edited and self.edited.find())
 
 
 def find(context: bpy.types.Context) -> Subject:

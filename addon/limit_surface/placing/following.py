@@ -235,7 +235,12 @@ def holds(data: bpy.types.ID, now: str) -> bool:
     surface's signature. What was never bound has none, and is taken at its word.
     """
     bound = data.get(ids.SIGNATURE)
-    return bound is None or str(bound).partition(" ")[0] == now.partition(" ")[0]
+    return bound is None or have_same_faces(str(bound), now)
+
+
+def have_same_faces(one: str, other: str) -> bool:
+    """Tells whether two surfaces with these signatures have the same faces."""
+    return one.partition(" ")[0] == other.partition(" ")[0]
 
 
 def check_holds(ob: bpy.types.Object, surface: bpy.types.Object, now: str) -> None:
