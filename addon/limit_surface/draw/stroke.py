@@ -76,12 +76,13 @@ def write(strokes: Sequence[Stroke], points: bpy.types.bpy_prop_collection) -> N
         return np.concatenate(rows)
 
     first = np.cumsum([0, *counts[:-1]])
+    is_first, is_closed = np.zeros((2, len(points)), bool)
+    is_first[first], is_closed[first] = True, [stroke.is_closed for stroke in strokes]
     points.foreach_set("face", joined("face"))
     points.foreach_set("uv", joined("uv").astype(np.float32).ravel())
     points.foreach_set("radius", joined("radius").astype(np.float32))
-    for row, stroke in zip(first, strokes, strict=True):
-        points[int(row)].is_first = True
-        points[int(row)].is_closed = stroke.is_closed
+    points.foreach_set("is_first", is_first)
+    points.foreach_set("is_closed", is_closed)
 
 
 def count(points: bpy.types.bpy_prop_collection) -> int:
@@ -100,10 +101,15 @@ def read(
     points.foreach_get("face", face)
     points.foreach_get("uv", uv.ravel())
     points.foreach_get("radius", radius)
-    first = [row for row in range(count) if row == 0 or points[row].is_first]
+    # Blender finds a point by its number only by counting from the first one.
+    is_first, is_closed = np.zeros((2, count), bool)
+    points.foreach_get("is_first", is_first)
+    points.foreach_get("is_closed", is_closed)
+    is_first[0] = True
+    first = np.flatnonzero(is_first).tolist()
     ends = [*first[1:], count]
     return [
-        (face[begin:end], uv[begin:end], radius[begin:end], points[begin].is_closed)
+        (face[begin:end], uv[begin:end], radius[begin:end], bool(is_closed[begin]))
         for begin, end in zip(first, ends, strict=True)
         if end > begin + 1
     ]
