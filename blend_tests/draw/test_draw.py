@@ -146,6 +146,15 @@ def test_what_is_drawn_follows_the_mesh(output):
     np.testing.assert_allclose(drawn.evaluated_points(ob), before + [0, 0, 1], atol=10 * ROUNDING)
 
 
+def test_why_a_drawing_does_not_follow_by_itself_is_told(target, capfd):
+    target.shape_key_add(name="Basis")
+    shown, rendered = scenes.add_subsurf(target), scenes.add_subsurf(target)
+    shown.show_render = rendered.show_viewport = False
+    draw([ACROSS])
+    said = capfd.readouterr().out
+    assert "it does not follow the surface: Cross is subdivided first by" in said
+
+
 REFUSED = [
     ({}, "scripts set `strokes`"),
     ({"strokes": drawn.points(drawn.Given([99, 99], [(0, 0), (1, 1)]))}, "face 99 is not"),

@@ -184,6 +184,8 @@ def test_tilt_is_added_to_the_flow_and_a_negative_angle_reverses_it():
 
 
 REFUSED = {
+    "Choose an image": {"flow_source": "IMAGE"},
+    "Choose an attribute of Flat": {"flow_source": "ATTRIBUTE"},
     "no image 'Nix'": {"flow_source": "IMAGE", "flow_image": "Nix"},
     "The image Comb cannot be placed: Flat has no UV map": {
         "flow_source": "IMAGE",

@@ -255,6 +255,21 @@ def test_locations_on_another_surface_are_not_carried_over(follow):
     np.testing.assert_allclose(attributes.read(shown, "position"), before, atol=2e-6)
 
 
+def test_what_is_not_as_asked_for_a_linked_mesh_is_told(tmp_path, capfd):
+    ob = scenes.flat_grid(2)
+    ob.shape_key_add(name="Basis")
+    path = str(tmp_path / "asset.blend")
+    bpy.data.libraries.write(path, {ob})
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(path, link=True) as (_there, here):
+        here.objects = ["Flat"]
+    bpy.context.collection.objects.link(here.objects[0])
+    make(here.objects[0], levels=1, hide_original=True)
+    said = capfd.readouterr().out
+    assert "that renders hide it is not saved" in said
+    assert "it does not follow the surface: Flat is linked from another file" in said
+
+
 def test_what_followers_need_is_not_carried_over():
     ob = scenes.cross()
     scenes.add_subsurf(ob)

@@ -131,7 +131,11 @@ def test_flatness_is_kept_in_the_world(name, tolerance):
 
 def test_levels_that_are_too_few_are_told(sheet, capfd):
     make(sheet, level_source="FLATNESS", tolerance=1e-6, most_levels=2)
-    assert "faces deviate by more than the tolerance at level 2" in capfd.readouterr().out
+    said = capfd.readouterr().out
+    assert "faces deviate by more than the tolerance at level 2: raise Most Levels" in said
+    one = scenes.flat_grid(1)  # its outline is round
+    make(one, level_source="FLATNESS", tolerance=1e-7, most_levels=8)
+    assert "at level 8, the highest one" in capfd.readouterr().out
 
 
 def camera_at(location, kind="PERSP", towards=(2, 2, 0)):

@@ -219,6 +219,9 @@ def test_what_cannot_be_done_is_refused():
     check_refused("A border has no area", distribution="BORDER", density=4.0)
     bpy.context.active_object.data.edges.foreach_set("select", [False] * 16)
     check_refused("no selected edges", distribution="BORDER", border="SELECTED")
+    middle = scenes.flat_grid(3)
+    middle.data.polygons.foreach_set("select", np.arange(9) == 4)
+    check_refused("faces that are chosen have no edges", distribution="BORDER", faces="SELECTED")
 
 
 @pytest.mark.parametrize("add", [add_hair, add_points])

@@ -153,6 +153,12 @@ def test_an_object_without_area_is_refused(distribution):
     check_refused("no area|has a scale of 0", distribution=distribution, count=10)
 
 
+@pytest.mark.parametrize("amount", [{"count": 10}, {"density": 10.0}])
+def test_a_collapsed_mesh_is_refused(amount):
+    scenes.add_mesh("Collapsed", [(0, 0, 0)] * 4, [(0, 1, 2, 3)])
+    check_refused("has no area", distribution="UNIFORM", **amount)
+
+
 @pytest.mark.parametrize("given", [{"count": 4_000_000}, {"density": 1e6}, {"distance": 5e-4}])
 def test_millions_need_consent(given):
     scenes.cross()

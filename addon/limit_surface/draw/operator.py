@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, CollectionProperty, IntProperty
 
 from .. import ids, native
 from ..errors import RefusalError
-from ..placing.follow_properties import FollowProperties
+from ..placing.follow_properties import FollowProperties, why_it_stays
 from ..tasks.properties import SummaryProperty, check_numbers, draw_summary
 from . import curve_object, properties, result, splines, stroke, subject
 from .ground import Ground
@@ -184,7 +184,11 @@ class VIEW3D_OT_limit_draw(
                 "active: make the drawn curve active"
             )
         self.summary = result.make(context, ground, found.edited, strokes, removed, self)
-        self.report({"INFO"}, "; ".join([self.summary, *ground.posed.cage.notes]))
+        notes = [self.summary, *ground.posed.cage.notes]
+        why = "" if found.edited else why_it_stays(self.follow, ground.ob)
+        if why:
+            notes.append(f"it does not follow the surface: {why}")
+        self.report({"INFO"}, "; ".join(notes))
         return {"FINISHED"}
 
     def _refuse(self, reason: object) -> set[str]:

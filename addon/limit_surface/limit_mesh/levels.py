@@ -131,4 +131,5 @@ def _falling_short(
     count = np.count_nonzero(found.measure > asked)
     if not count:
         return ""
-    return f"{counted(count, 'faces', *what)} at level {most}: raise Most Levels"
+    short = f"{counted(count, 'faces', *what)} at level {most}"
+    return f"{short}, the highest one" if most == MOST else f"{short}: raise Most Levels"

@@ -12,7 +12,7 @@ from ..counting import counted
 from ..errors import RefusalError
 from ..placing import following, new_objects
 from ..placing.binding import Binding
-from ..placing.follow_properties import FollowProperties
+from ..placing.follow_properties import FollowProperties, why_it_stays
 from ..placing.roots import Locations, off_vertices
 from ..reading import cage
 from ..tasks.job import Job, Progress, part_of
@@ -187,6 +187,12 @@ class OBJECT_OT_limit_mesh(
         if self.hide_original:
             surface.hide_set(True)
             surface.hide_render = True
+            if surface.library:
+                self.report(
+                    {"WARNING"},
+                    f"{surface.name} is linked from another file: that renders hide it is not "
+                    "saved in this one",
+                )
         self._report(surface, result)
         return {"FINISHED"}
 
@@ -226,6 +232,8 @@ class OBJECT_OT_limit_mesh(
         notes = [f"{self.summary} of {surface.name}", *made.cage.notes, *result.notes]
         if result.bindings:
             notes.append("its vertices follow the surface by Geometry Nodes")
+        elif why := why_it_stays(self.follow, surface):
+            notes.append(f"it does not follow the surface: {why}")
         self.report({"INFO"}, "; ".join(notes))
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 #: further location fits anywhere
 PACKING = 0.7
 
+NO_AREA = "The surface has no area"
 NOWHERE = "The density is 0 everywhere: check its source and its range"
 TOO_LOW = "The density is so low that no location was found: check its source and its range"
 
@@ -82,6 +83,8 @@ class Distribution:
             return self._along_border(region, progress)
         count = None if self.amount == "DISTANCE" else self.expected(region).count
         if count == 0:
+            if not region.area > 0:
+                raise RefusalError(NO_AREA)
             raise RefusalError(TOO_LOW if region.sums.largest else NOWHERE)
         self._check_distance()
         common: dict[str, Any] = {

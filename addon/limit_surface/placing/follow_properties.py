@@ -71,6 +71,12 @@ def follows(follow: str, surface: bpy.types.Object) -> bool:
     return follow == "NODES"
 
 
+def why_it_stays(follow: str, surface: bpy.types.Object) -> str:
+    """Returns why things that were to follow by themselves where that is needed do not, or None."""
+    is_needed = follow == "AUTO" and can_deform(surface)
+    return why_not_automatic(surface) if is_needed else ""
+
+
 def why_not_automatic(surface: bpy.types.Object) -> str:
     """Returns why things do not follow by themselves although the surface can deform, or None."""
     if not surface.is_editable:

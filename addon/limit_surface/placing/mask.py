@@ -35,6 +35,8 @@ class MaskChoice:
         return np.flatnonzero(bare)
 
     def _attribute(self, mesh: bpy.types.Mesh, whose: str) -> np.ndarray:
+        if not self.attribute:
+            raise RefusalError(f"Choose an attribute that says which faces of {whose} are used")
         found = mesh.attributes.get(self.attribute)
         if found is None:
             raise RefusalError(f"{whose} has no attribute {self.attribute!r} to choose faces by")

@@ -30,6 +30,8 @@ SAMPLES = 1 << 19  # the largest number of samples, roughly, for sums over the s
 MOST_PER_SIDE = 64  # samples along each side of a face
 BORDER_SAMPLES = 4096
 
+NOT_COVERED = "The faces that are chosen have no edges of this border"
+
 
 @dataclass(frozen=True)
 class Sums:
@@ -131,7 +133,7 @@ class Region:
         assert self._border is not None
         curves = self.surface.edge_curves(self._border.edges)
         if not len(curves):
-            raise RefusalError(self._border.missing)
+            raise RefusalError(NOT_COVERED if self.bare else self._border.missing)
         return curves
 
     @cached_property

@@ -31,7 +31,7 @@ from . import (
 )
 from .border import borders
 from .distribution import TOO_LOW, Expected, Scattered
-from .follow_properties import FollowOrLiveProperties, can_deform, why_not_automatic
+from .follow_properties import FollowOrLiveProperties, why_it_stays
 from .followers import ground_of
 from .rotations import WorldSpace
 
@@ -321,8 +321,7 @@ class ScatterOperator(
         if is_live:
             following.check_surface(ob, depsgraph.scene)
         binding = following.request_for(self.follow, ob, depsgraph)
-        stays = self.follow == "AUTO" and can_deform(ob)
-        self._why_not_following = why_not_automatic(ob) if stays else ""
+        self._why_not_following = why_it_stays(self.follow, ob)
         return Order(ObjectKey.of(ob), covered, distribution, shown, size, binding, is_live)
 
     def _report(self, made: Made, how: str) -> None:

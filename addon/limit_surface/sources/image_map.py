@@ -41,6 +41,8 @@ class ImageMap:
 
 def find(name: str) -> bpy.types.Image:
     """Returns the image of that name. Raises RefusalError where there is none."""
+    if not name:
+        raise RefusalError("Choose an image")
     image = bpy.data.images.get(name)
     if image is None:
         raise RefusalError(f"There is no image {name!r}")

@@ -51,6 +51,8 @@ class SourceMesh:
         return uv_map.read(self.mesh, name)
 
     def find_attribute(self, name: str) -> bpy.types.Attribute:
+        if not name:
+            raise RefusalError(f"Choose an attribute of {self.ob.name}")
         found = self.mesh.attributes.get(name)
         if found is None:
             if name in self.ob.data.attributes:

@@ -134,6 +134,8 @@ class ValueChoice:
 
     def _check_is_color(self, mesh: SourceMesh) -> None:
         name, ob = self.attribute, mesh.ob
+        if not name:
+            raise RefusalError(f"Choose a color attribute of {ob.name}")
         if name not in mesh.mesh.color_attributes:
             if name in ob.data.color_attributes:
                 raise RefusalError(f"{ob.name}: the modifiers remove the color attribute {name}")
