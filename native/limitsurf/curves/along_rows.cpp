@@ -4,54 +4,23 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 
 #include "limitsurf/curves/scatter_along.h"
-#include "limitsurf/mesh/messages.h"
-#include "limitsurf/parallel.h"
 
 namespace limitsurf {
 namespace {
 
 /// The curves are sampled so many times in the distance between rows.
-constexpr double kSamplesPerStep = 4;
-constexpr std::int64_t kMostSamples = std::int64_t{1} << 23;
-constexpr std::size_t kSamplesPerTask = 256;
+constexpr double kSamplesPerStep = 16;
 /// A row ends where the curves are nearer than this part of its distance: half of what is allowed.
 /// The other half is for the shots, whose directions are 0.15 radians apart: one of them is at most
 /// 1 / cos(0.075) = 1.003 as long as the shortest way.
 constexpr double kNearer = 1 - kRowError / 2;
 constexpr double kTurns[] = {0, 0.15, -0.15, 0.3, -0.3};
-
-/// The arc lengths of samples, evenly on each curve.
-struct Samples {
-  std::vector<int> curve, next, before;
-  std::vector<double> arc;
-
-  Samples(const EdgeCurves& curves, double spacing) {
-    double total = 0;
-    for (int i = 0; i < curves.count(); ++i) {
-      total += curves.length(i);
-    }
-    if (total / spacing > static_cast<double>(kMostSamples)) {
-      throw std::invalid_argument(text("row_distance is too small for curves with a length of ",
-                                       total, ": they would be divided into more than ",
-                                       kMostSamples, " parts to compare the rows"));
-    }
-    for (int i = 0; i < curves.count(); ++i) {
-      const int first = static_cast<int>(curve.size());
-      const auto parts = static_cast<int>(std::ceil(curves.length(i) / spacing)) + 1;
-      const int count = curves.closed(i) ? parts : parts + 1;
-      for (int k = 0; k < count; ++k) {
-        curve.push_back(i);
-        arc.push_back(std::min(curves.length(i) * k / parts, curves.length(i)));
-        next.push_back(k + 1 < count ? first + k + 1 : curves.closed(i) ? first : -1);
-        before.push_back(k > 0 ? first + k - 1 : curves.closed(i) ? first + count - 1 : -1);
-      }
-    }
-  }
-};
+/// A vertex of the curves is aimed at so many times; each shot corrects the one before. It counts
+/// as reached within this part of the row's distance.
+constexpr int kAims = 6;
+constexpr double kReached = 1e-3;
 
 std::vector<std::pair<int, int>> verticesOfEdges(const EdgeCurves& curves) {
   std::vector<std::pair<int, int>> edges;
@@ -62,32 +31,16 @@ std::vector<std::pair<int, int>> verticesOfEdges(const EdgeCurves& curves) {
   return edges;
 }
 
-Points positionsOf(const EdgeCurves& curves, const Samples& samples, int threads) {
-  Points positions(static_cast<Eigen::Index>(samples.arc.size()), 3);
-  parallelFor(samples.arc.size(), kSamplesPerTask, threads,
-              [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) {
-                  positions.row(static_cast<Eigen::Index>(i)) =
-                      curves.at(samples.curve[i], samples.arc[i]).position;
-                }
-              });
-  return positions;
-}
-
 }  // namespace
 
 AlongRows::AlongRows(const LimitSurface& surface, const EdgeCurves& curves, double step,
                      double most, int threads)
-    : tracer_(surface, threads),
+    : surface_(surface),
+      tracer_(surface, threads),
       targets_(tracer_.targets(verticesOfEdges(curves))),
       spacing_(step / kSamplesPerStep),
-      grid_(Points(0, 3), 1) {
-  Samples samples(curves, spacing_);
-  samples_ = positionsOf(curves, samples, threads);
-  next_ = std::move(samples.next);
-  before_ = std::move(samples.before);
-  grid_ = PointGrid(samples_, most);
-}
+      samples_(curves, spacing_, threads),
+      grid_(samples_.positions, most) {}
 
 bool AlongRows::place(const Location& foot, const Vector3& inward, double distance,
                       GeodesicTracer::Stop& out) const {
@@ -107,12 +60,12 @@ bool AlongRows::isNearer(const GeodesicTracer::Stop& at, double distance) const 
   std::vector<int> near;
   grid_.near(at.position, enough + spacing_, near);
   const auto segmentDistance = [&](int i, Vector3& closest) {
-    const Vector3 a = samples_.row(i);
-    const int j = next_[static_cast<std::size_t>(i)];
+    const Vector3 a = samples_.positions.row(i);
+    const int j = samples_.next[static_cast<std::size_t>(i)];
     if (j < 0) {
       closest = a;
     } else {
-      const Vector3 along = samples_.row(j).transpose() - a;
+      const Vector3 along = samples_.positions.row(j).transpose() - a;
       const double squared = along.squaredNorm();
       const double x = squared > 0 ? std::clamp((at.position - a).dot(along) / squared, 0., 1.) : 0;
       closest = a + x * along;
@@ -122,13 +75,16 @@ bool AlongRows::isNearer(const GeodesicTracer::Stop& at, double distance) const 
   for (const int i : near) {
     Vector3 closest, other;
     const double here = segmentDistance(i, closest);
-    const int before = before_[static_cast<std::size_t>(i)];
-    const int next = next_[static_cast<std::size_t>(i)];
+    const int before = samples_.before[static_cast<std::size_t>(i)];
+    const int next = samples_.next[static_cast<std::size_t>(i)];
     if (!(here < enough) || (before >= 0 && segmentDistance(before, other) < here) ||
         (next >= 0 && segmentDistance(next, other) < here)) {
       continue;
     }
     const Vector3 towards = closest - at.position;
+    if (closest == samples_.positions.row(i).transpose() && reachesVertex(at, i, enough)) {
+      return true;
+    }
     for (const double turn : kTurns) {
       const GeodesicTracer::Path shot =
           tracer_.trace(at.at, Eigen::AngleAxisd(turn, at.normal) * towards, {enough}, &targets_);
@@ -138,6 +94,40 @@ bool AlongRows::isNearer(const GeodesicTracer::Stop& at, double distance) const 
     }
   }
   return false;
+}
+
+/// Whether a geodesic of at most this length leads to the vertex at a sample of the curves. Shots
+/// beside an end of a curve pass it, and those beside a corner are much longer, so that the vertex
+/// itself has to be met. Errors of the direction are measured at the shot's end.
+bool AlongRows::reachesVertex(const GeodesicTracer::Stop& at, int sample, double most) const {
+  const int vertex = samples_.vertex[static_cast<std::size_t>(sample)];
+  const Vector3 goal = samples_.positions.row(sample);
+  Vector3 direction = goal - at.position;
+  double length = direction.norm();
+  for (int aim = 0; aim < kAims && vertex >= 0 && length <= most; ++aim) {
+    const GeodesicTracer::Path shot = tracer_.trace(at.at, direction, {length}, &targets_);
+    if (shot.hit) {
+      return true;
+    }
+    if (shot.stops.empty()) {
+      return false;
+    }
+    const GeodesicTracer::Stop& end = shot.stops.front();
+    const Vector3 missing = goal - end.position;
+    if (missing.norm() <= kReached * most && hasVertex(end.at, vertex)) {
+      return length + missing.norm() <= most;
+    }
+    const double aside = end.normal.cross(end.direction).dot(missing);
+    direction = Eigen::AngleAxisd(aside / length, at.normal) * direction;
+    length += end.direction.dot(missing);
+  }
+  return false;
+}
+
+bool AlongRows::hasVertex(const Location& at, int vertex) const {
+  const int face = surface_.baseFace()[static_cast<std::size_t>(at.face)];
+  const Span<int> vertices = surface_.mesh().faceVertices(face);
+  return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
 }
 
 }  // namespace limitsurf

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "limitsurf/curves/curve_samples.h"
 #include "limitsurf/curves/edge_curves.h"
 #include "limitsurf/curves/geodesic_tracer.h"
 #include "limitsurf/curves/point_grid.h"
@@ -26,13 +27,14 @@ class AlongRows {
 
  private:
   bool isNearer(const GeodesicTracer::Stop& at, double distance) const;
+  bool reachesVertex(const GeodesicTracer::Stop& at, int sample, double most) const;
+  bool hasVertex(const Location& at, int vertex) const;
 
+  const LimitSurface& surface_;
   GeodesicTracer tracer_;
   std::vector<bool> targets_;
-  Points samples_;         // along the curves, one curve after the other
-  std::vector<int> next_;  // the sample after each one on its curve, or -1
-  std::vector<int> before_;
   double spacing_;
+  CurveSamples samples_;
   PointGrid grid_;
 };
 

@@ -46,8 +46,9 @@ class GeodesicTracer {
   };
   /// Follows the geodesic from a location in a direction (whose part along the normal does not
   /// count) until the last one of the lengths, which grow. It ends where the surface ends, at
-  /// non-manifold edges and, if `targets` is given, at the first edge for which it holds true: the
-  /// edges are numbered in the order in which the faces use them first.
+  /// non-manifold edges and, if `targets` is given, at the first edge for which it holds true, or
+  /// at an extraordinary vertex of such an edge: the edges are numbered in the order in which the
+  /// faces use them first.
   Path trace(const Location& from, const Vector3& direction, const std::vector<double>& lengths,
              const std::vector<bool>* targets = nullptr) const;
 

@@ -260,6 +260,12 @@ bool GeodesicWalk::enter(const Location& at, const Location& beside, const Vecto
   return true;
 }
 
+/// Whether a walk ends at this side of a Ptex face.
+bool GeodesicWalk::isTarget(int face, int side) const {
+  const int edge = ground_.neighbors.beyond(face, side, 0.5).edge;
+  return edge >= 0 && targets_ && (*targets_)[static_cast<std::size_t>(edge)];
+}
+
 /// Goes on beyond an extraordinary vertex, straight on as seen in space. `on_` is what is left of
 /// a core, `from` the place from which the walk comes.
 bool GeodesicWalk::pass(const Vector3& from) {
@@ -268,7 +274,9 @@ bool GeodesicWalk::pass(const Vector3& from) {
     return false;
   }
   std::vector<Location> around = {vertex};
+  bool is_target = false;
   for (const auto& [face, corner] : facesAround(ground_.neighbors, vertex.face, cornerOf(vertex))) {
+    is_target = is_target || isTarget(face, corner) || isTarget(face, (corner + 3) % 4);
     const FaceSide side = FaceSide::of(face, corner);
     for (const auto& [a, b] :
          {std::pair<double, double>{1, 0}, {1, 0.5}, {1, 1}, {0.5, 1}, {0, 1}}) {
@@ -278,6 +286,12 @@ bool GeodesicWalk::pass(const Vector3& from) {
   }
   const Points positions = ground_.positions(around);
   const Vector3 center = positions.row(0);
+  // A walk that begins beside the vertex may leave it; one that comes from afar ends there.
+  if (is_target && length_ > 2 * (center - from).norm()) {
+    length_ += (center - from).norm();
+    hit_ = true;
+    return false;
+  }
   Eigen::Index best = -1;
   double straightest = kStraightOn;
   for (Eigen::Index i = 1; i < positions.rows(); ++i) {

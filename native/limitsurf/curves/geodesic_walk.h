@@ -58,6 +58,7 @@ class GeodesicWalk {
   bool cross(int side);
   bool enter(const Location& at, const Location& beside, const Vector3& along);
   bool pass(const Vector3& from);
+  bool isTarget(int face, int side) const;
 
   const GeodesicGround& ground_;
   const std::vector<bool>* targets_;

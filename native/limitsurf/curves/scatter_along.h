@@ -32,8 +32,9 @@ struct AlongOptions {
 /// Bound on how much nearer than its row's distance any part of the curves may be to a location,
 /// relative to that distance, where the shortest way leads roughly towards the part that is nearest
 /// in space. The length of the geodesic from the location's own foot has the error kGeodesicError.
-/// Geodesics to the curves are sought in five directions for each part that is nearer in space;
-/// this may miss one that leads another way, around a fold.
+/// Geodesics to the curves are sought in five directions for each part that is nearer in space, and
+/// led to the vertex itself where that part is an end or a corner of a curve; this may miss one
+/// that leads another way, around a fold.
 constexpr double kRowError = 1e-2;
 
 /// Locations along curves: row by row, curve by curve, and along each curve.

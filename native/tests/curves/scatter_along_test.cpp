@@ -125,7 +125,7 @@ std::vector<double> distancesInPlane(const LimitSurface& surface, const EdgeCurv
   for (int i = 0; i < curves.count(); ++i) {
     for (int k = 0; k <= 3000; ++k) {
       curve.push_back(i);
-      arc.push_back(curves.length(i) * k / 3000);
+      arc.push_back(curves.length(i) * (k / 3000.));
     }
   }
   const Points dense = surface.evaluate(pointsAlong(surface, curves, curve, arc).at).position;
@@ -167,6 +167,64 @@ TEST(ScatterAlong, RowsInAPlaneKeepTheirDistanceAndEndWhereTheyMeet) {
     EXPECT_GT(along.ended[1], 0);
     EXPECT_GT(count[3], 0);
   }
+}
+
+TEST(ScatterAlong, RowsEndBesideEndsAndCornersOfOtherCurves) {
+  // A line and, above it, a curve with an end and one with a corner that point to it. On triangles
+  // a geodesic towards a vertex does not run along edges, so that it passes the vertex.
+  const auto vertex = [](int x, int y) { return std::int64_t{9} * y + x; };
+  std::vector<std::pair<std::int64_t, std::int64_t>> edges;
+  for (int x = 0; x < 8; ++x) {
+    edges.emplace_back(vertex(x, 2), vertex(x + 1, 2));
+  }
+  edges.emplace_back(vertex(2, 4), vertex(2, 5));
+  edges.emplace_back(vertex(6, 4), vertex(7, 4));
+  edges.emplace_back(vertex(6, 4), vertex(6, 5));
+  const Cage bent = inTriangles(fullGrid(8, 8));
+  for (const bool moved : {false, true}) {
+    Cage cage = bent;
+    if (moved) {
+      for (int v = 0; v < cage.vertexCount(); ++v) {
+        cage.positions(v, 0) += 0.2 * std::sin(3. * v);
+        cage.positions(v, 1) += 0.2 * std::cos(5. * v);
+      }
+    }
+    const LimitSurface surface = limitSurface(cage);
+    const EdgeCurves curves(surface, edges);
+    for (const CurveSide side : {CurveSide::left, CurveSide::right}) {
+      AlongOptions options = byCount(300);
+      options.rows = 5;
+      options.row_distance = 0.5;
+      options.side = side;
+      const AlongCurves along = scatterAlong(surface, curves, options);
+      const std::vector<double> distance = distancesInPlane(surface, curves, along);
+      for (std::size_t i = 0; i < along.at.size(); ++i) {
+        // The points of the curves are at most 0.003 apart.
+        EXPECT_NEAR(distance[i], 0.5 * along.row[i], kRowError * 0.5 * along.row[i] + 2e-3);
+      }
+      EXPECT_GT(along.at.size(), 800U);
+    }
+  }
+}
+
+TEST(ScatterAlong, RowsEndBesideSmallHoles) {
+  // Seen from afar, the nearest place of a small hole is often one of its extraordinary vertices.
+  std::vector<int> holes;
+  for (const int row : {4, 12}) {
+    holes.push_back(20 * row + 4);
+    holes.push_back(20 * row + 12);
+  }
+  const LimitSurface surface = limitSurface(gridWithHoles(20, 20, holes));
+  const EdgeCurves curves(surface, EdgeChoice::boundary);
+  AlongOptions options = byCount(800);
+  options.rows = 6;
+  options.row_distance = 1;
+  const AlongCurves along = scatterAlong(surface, curves, options);
+  const std::vector<double> distance = distancesInPlane(surface, curves, along);
+  for (std::size_t i = 0; i < along.at.size(); ++i) {
+    EXPECT_NEAR(distance[i], along.row[i], along.row[i] == 0 ? 0.015 : kRowError * along.row[i]);
+  }
+  EXPECT_GT(along.at.size(), 2000U);
 }
 
 TEST(ScatterAlong, RowsOfASquareAreAsLongAsItsOffsets) {
