@@ -9,6 +9,7 @@
 
 #include "limitsurf/geodesic/geodesic_mesh.h"
 #include "limitsurf/geodesic/guide_levels.h"
+#include "limitsurf/geodesic/kept_sources.h"
 #include "limitsurf/geodesic/nearest_sources.h"
 #include "limitsurf/parallel.h"
 
@@ -99,7 +100,7 @@ GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guid
   const GeodesicMesh mesh(surface, guideLevels(surface, checked_guides, cuts), cuts,
                           options.threads, partOf(options.progress, 0, kTriangles));
   const std::vector<MeshPlace> sources = placesOn(surface, mesh, checked_guides, options.threads);
-  const NearestSources nearest(mesh, sources, options.count + kSpare,
+  const NearestSources nearest(mesh, sources, keptSources(mesh, sources, options.count, kSpare),
                                partOf(options.progress, kTriangles, kDistances));
   const Progress tell = partOf(options.progress, kDistances, 1);
   for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerPart) {

@@ -14,7 +14,9 @@ namespace limitsurf {
 
 /// Bound on the error of the distances of guide_weights, on smooth surfaces: relative to the
 /// distance, where that is at least an eighth of a face's side. On flat surfaces the error is below
-/// 5e-3 of such a side, as far as no cut or border stands in the way.
+/// 5e-3 of such a side, as far as no cut or border stands in the way. Around the tips of poles,
+/// where guides are much closer to each other than the triangles are long, one distance in a
+/// thousand may be off by up to 4 %.
 constexpr double kGuideDistanceError = 0.01;
 
 /// The nearest guides of places on a surface, `count` in each row, the nearest first. Where there
@@ -56,7 +58,8 @@ struct GuideOptions {
 /// Throws std::invalid_argument for a count out of range, for offsets of curves that are not those
 /// of Polylines, and naming the first point of them that is not finite; MeshError for cuts that are
 /// no edges, and as evaluate() does for locations. Cost: about 1 microsecond for each vertex of
-/// the triangles and each guide that it keeps (three more than `count`), on one core; a microsecond
+/// the triangles and each guide that it keeps (three more than `count`, and more where triangles
+/// are long, see kept_sources.h), on one core; a microsecond
 /// a place, on all cores. The triangles have 16,000 to 64,000 vertices, or on meshes of more than
 /// 4,000 faces four for each face and sixteen for each face near a guide. Memory: 24 bytes for each
 /// vertex and each guide that it keeps, and 16 for each guide of a place.

@@ -37,15 +37,17 @@ bool NearestSources::Waiting::operator>(const Waiting& other) const {
 }
 
 NearestSources::NearestSources(const GeodesicMesh& mesh, const std::vector<MeshPlace>& sources,
-                               int most, const Progress& progress, double reach)
+                               const std::vector<int>& most, const Progress& progress, double reach)
     : mesh_(mesh),
       sources_(sources),
-      most_(static_cast<std::size_t>(most)),
-      capacity_(2 * most_),
       reach_(reach),
-      entries_(static_cast<std::size_t>(mesh.vertexCount()) * capacity_),
-      counts_(static_cast<std::size_t>(mesh.vertexCount())),
-      finals_(static_cast<std::size_t>(mesh.vertexCount())) {
+      first_(most.size() + 1, 0),
+      counts_(most.size()),
+      finals_(most.size()) {
+  for (std::size_t vertex = 0; vertex < most.size(); ++vertex) {
+    first_[vertex + 1] = first_[vertex] + 2 * static_cast<std::size_t>(most[vertex]);
+  }
+  entries_.resize(first_.back());
   for (std::size_t source = 0; source < sources.size(); ++source) {
     for (const int vertex : mesh.triangle(sources[source].triangle)) {
       offer(vertex, static_cast<int>(source),
@@ -62,7 +64,7 @@ NearestSources::Entry* NearestSources::findEntry(int vertex, int source) {
 }
 
 const NearestSources::Entry* NearestSources::findEntry(int vertex, int source) const {
-  const Entry* entry = entries_.data() + static_cast<std::size_t>(vertex) * capacity_;
+  const Entry* entry = entries_.data() + first_[vertex];
   for (const Entry* end = entry + counts_[vertex]; entry != end; ++entry) {
     if (entry->source == source) {
       return entry;
@@ -79,15 +81,15 @@ void NearestSources::offer(int vertex, int source, double distance, Entry* entry
     return;
   }
   if (!entry) {
-    if (finals_[vertex] == most_) {
+    if (finals_[vertex] == most(vertex)) {
       return;
     }
-    Entry* const first = entries_.data() + static_cast<std::size_t>(vertex) * capacity_;
-    if (counts_[vertex] < capacity_) {
+    Entry* const first = entries_.data() + first_[vertex];
+    if (counts_[vertex] < room(vertex)) {
       entry = first + counts_[vertex]++;
     } else {
       entry =
-          std::max_element(first + finals_[vertex], first + capacity_,
+          std::max_element(first + finals_[vertex], first + room(vertex),
                            [](const Entry& a, const Entry& b) { return a.distance < b.distance; });
       if (entry->distance <= distance) {
         return;
@@ -132,8 +134,10 @@ void NearestSources::passOn(int vertex, int source, double distance) {
 }
 
 void NearestSources::spread(const Progress& progress) {
-  const double all = static_cast<double>(mesh_.vertexCount()) *
-                     static_cast<double>(std::min(most_, sources_.size()));
+  double all = 0;
+  for (int vertex = 0; vertex < mesh_.vertexCount(); ++vertex) {
+    all += static_cast<double>(std::min(most(vertex), sources_.size()));
+  }
   std::size_t steps = 0, accepted = 0;
   while (!heap_.empty()) {
     if (++steps % kStepsPerReport == 0) {
@@ -149,10 +153,9 @@ void NearestSources::spread(const Progress& progress) {
     if (!entry || entry->distance != next.distance) {
       continue;  // a shorter one was found meanwhile
     }
-    Entry* const end =
-        entries_.data() + static_cast<std::size_t>(next.vertex) * capacity_ + finals_[next.vertex];
+    Entry* const end = entries_.data() + first_[next.vertex] + finals_[next.vertex];
     if (entry >= end) {
-      if (finals_[next.vertex] == most_) {
+      if (finals_[next.vertex] == most(next.vertex)) {
         continue;
       }
       std::swap(*entry, *end);

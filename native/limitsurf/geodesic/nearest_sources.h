@@ -30,14 +30,15 @@ class NearestSources {
     double distance;
   };
 
-  /// Each vertex keeps its `most` nearest sources, of those that are not farther away than `reach`.
-  NearestSources(const GeodesicMesh& mesh, const std::vector<MeshPlace>& sources, int most,
-                 const Progress& progress, double reach = std::numeric_limits<double>::infinity());
+  /// Each vertex keeps so many of its nearest sources, of those that are not farther away than
+  /// `reach`.
+  NearestSources(const GeodesicMesh& mesh, const std::vector<MeshPlace>& sources,
+                 const std::vector<int>& most, const Progress& progress,
+                 double reach = std::numeric_limits<double>::infinity());
 
   /// In no particular order.
   Span<Entry> at(int vertex) const {
-    return Span<Entry>(entries_.data() + static_cast<std::size_t>(vertex) * capacity_,
-                       counts_[vertex]);
+    return Span<Entry>(entries_.data() + first_[vertex], counts_[vertex]);
   }
 
   /// How often vertices have passed on a distance: what the cost is proportional to. Mostly little
@@ -58,16 +59,19 @@ class NearestSources {
 
   Entry* findEntry(int vertex, int source);
   const Entry* findEntry(int vertex, int source) const;
+  /// How many sources a vertex keeps, and has room for.
+  std::size_t most(int vertex) const { return room(vertex) / 2; }
+  std::size_t room(int vertex) const { return first_[vertex + 1] - first_[vertex]; }
   void offer(int vertex, int source, double distance, Entry* entry);
   void passOn(int vertex, int source, double distance);
   void spread(const Progress& progress);
 
   const GeodesicMesh& mesh_;
   const std::vector<MeshPlace>& sources_;
-  std::size_t most_, capacity_;
   double reach_;
   std::size_t times_passed_on_ = 0;
   // The first entries of a vertex are final, up to finals_; those that follow may still shrink.
+  std::vector<std::size_t> first_;  // of a vertex's entries
   std::vector<Entry> entries_;
   std::vector<unsigned short> counts_, finals_;
   std::vector<Waiting> heap_;

@@ -214,7 +214,8 @@ std::vector<WayPart> ShortestWays::find(const Location& from, const Location& to
   if (begin.triangle == end[0].triangle) {
     return {{from, to}};
   }
-  const NearestSources distances(mesh_, end, 1, {}, longest);
+  const std::vector<int> one(static_cast<std::size_t>(mesh_.vertexCount()), 1);
+  const NearestSources distances(mesh_, end, one, {}, longest);
   std::vector<NearestSources::Entry> found;
   distances.find(begin, found);
   if (found.empty() || !(found[0].distance <= longest)) {

@@ -11,6 +11,7 @@
 #include "limitsurf/geodesic/geodesic_mesh.h"
 #include "limitsurf/geodesic/guide_weights.h"
 #include "limitsurf/geodesic/nearest_sources.h"
+#include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/sample/jittered_sampling.h"
 #include "support/cages/meshes.h"
 #include "support/cages/query_cages.h"
@@ -134,7 +135,8 @@ TEST(NearestSources, PassOnLittleMoreThanOnceAmongThinTriangles) {
       sources.push_back(
           {surface.evaluate(Locations{place}).position.row(0).transpose(), mesh.triangleAt(place)});
     }
-    const NearestSources nearest(mesh, sources, kMost, {});
+    const std::vector<int> most(static_cast<std::size_t>(mesh.vertexCount()), kMost);
+    const NearestSources nearest(mesh, sources, most, {});
     EXPECT_LE(static_cast<double>(nearest.timesPassedOn()), kTimes * kMost * mesh.vertexCount())
         << cage.vertexCount() << " vertices";
   }
@@ -162,6 +164,33 @@ TEST(GuideWeights, AreEuclideanOnFlatThinTriangles) {
           (from.row(static_cast<Eigen::Index>(i / found.count)) - to.row(found.guide[i])).norm();
       EXPECT_NEAR(found.distance[i], truth, kGuideDistanceError * std::max(truth, least))
           << cage.vertexCount() << " vertices, row " << i / found.count;
+    }
+  }
+}
+
+/// The innermost triangles of a pole are longer than the distance between so many guides.
+TEST(GuideWeights, FindTheNearestOfManyGuidesAroundFlatPoles) {
+  for (const int faces : {64, 128, 512}) {
+    for (const int count : {14, 300}) {
+      const Cage cage = flatPole(faces);
+      const LimitSurface surface = limitSurface(cage);
+      const AreaSampler sampler(surface);
+      const Locations guides = sampler.uniform(count, 3);
+      const Locations at = sampler.uniform(2000, 8);
+      const GuideWeights found = guideWeights(surface, guides, at);
+      const Points to = surface.evaluate(guides).position, from = surface.evaluate(at).position;
+      for (Eigen::Index row = 0; row < from.rows(); ++row) {
+        Eigen::VectorXd truth = (to.rowwise() - from.row(row)).rowwise().norm();
+        const auto first = static_cast<std::size_t>(row * found.count);
+        for (std::size_t i = first; i < first + static_cast<std::size_t>(found.count); ++i) {
+          const double distance = truth[found.guide[i]];
+          EXPECT_NEAR(found.distance[i], distance, 0.02 * std::max(distance, 1. / 8));
+        }
+        std::sort(truth.begin(), truth.end());
+        const double last = truth[found.count - 1];
+        EXPECT_NEAR(found.distance[first + static_cast<std::size_t>(found.count) - 1], last,
+                    0.02 * std::max(last, 1. / 8));
+      }
     }
   }
 }
