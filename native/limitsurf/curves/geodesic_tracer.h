@@ -13,7 +13,7 @@ namespace limitsurf {
 /// of the geodesic, where it stays on bicubic patches. The steps of the integration keep a local
 /// error that is a hundred times smaller; how errors grow depends on the surface, so that the bound
 /// is measured. A geodesic that runs within 2^-16 of a face from an extraordinary vertex is led
-/// past it, which displaces it by as much.
+/// past it, to a place 2^-14 of a face beyond, which displaces it by less than that.
 constexpr double kGeodesicError = 1e-6;
 
 /// Follows geodesics, the straightest curves, over a limit surface, across the borders of faces. At
