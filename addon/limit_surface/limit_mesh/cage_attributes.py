@@ -17,7 +17,7 @@ import bpy
 import numpy as np
 
 from .. import ids
-from ..placing.places import ROOT_KINDS
+from ..placing.places import root_attributes
 from ..reading import attributes, ragged_rows, rules, uv_map
 from ..tasks.job import Progress
 from .places import CageElements
@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
 LINEAR = ("FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR")
 SEAM_BEFORE_5 = ".uv_seam"
-#: Attributes that are made with the new mesh, or by its normals, or for what follows the surface,
-#: and those of locations on another surface, which mean nothing on this one
+#: Attributes that are made with the new mesh, or by its normals, or for what follows the surface
 _OWN = (
     "position",
     "custom_normal",
@@ -38,11 +37,9 @@ _OWN = (
     ids.CAGE_TOPOLOGY,
     ids.CAGE_EDGE_CREASES,
     ids.CAGE_VERTEX_CREASES,
-    *ROOT_KINDS,
-    ids.TILE,
-    ids.TILE_UV,
-    ids.LIVE_FINGERPRINT,
 )
+#: What follows another surface stores these at its points. They mean nothing on the new mesh.
+_OF_FOLLOWERS = (ids.TILE, ids.TILE_UV, ids.LIVE_FINGERPRINT)
 # Rows are evaluated in parts of this size, so that progress is shown and memory stays small.
 _PART = 1 << 18
 
@@ -64,6 +61,14 @@ class CageAttributes:
     corner_edge: np.ndarray | None = None  # the edges of the cage
 
 
+def _is_of_follower(attribute: bpy.types.Attribute) -> bool:
+    """Tells whether the attribute stores places on another surface, and is not the user's own."""
+    name, of_roots = attribute.name, root_attributes(attribute.id_data)
+    if name in of_roots:
+        return (attribute.data_type, attribute.domain) == of_roots[name]
+    return name in _OF_FOLLOWERS or name.startswith(ids.LIVE_REST)
+
+
 def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
     """Reads the attributes from the mesh that the cage is read from."""
     found = CageAttributes(corner_edge=attributes.read(mesh, ids.CORNER_EDGE))
@@ -72,7 +77,7 @@ def read(mesh: bpy.types.Mesh, with_sharp_faces: bool) -> CageAttributes:
         name, kind = attribute.name, attribute.data_type
         if name.startswith(".") and name != SEAM_BEFORE_5:
             continue
-        if name.startswith(ids.LIVE_REST):
+        if _is_of_follower(attribute):
             continue
         if name in _OWN and not (name == "sharp_face" and with_sharp_faces):
             continue
