@@ -12,16 +12,15 @@
 namespace limitsurf {
 namespace {
 
-constexpr std::size_t kLargePage = std::size_t{1} << 21;
 /// Less memory stays in small pages: a processor remembers that many of them.
-constexpr std::size_t kLeast = std::size_t{1} << 19;
+constexpr std::size_t kLargePage = std::size_t{1} << 21;
 
 std::size_t rounded(std::size_t bytes) {
-  return bytes < kLeast ? bytes : (bytes + kLargePage - 1) / kLargePage * kLargePage;
+  return bytes < kLargePage ? bytes : (bytes + kLargePage - 1) / kLargePage * kLargePage;
 }
 
 std::align_val_t alignmentOf(std::size_t bytes, std::size_t alignment) {
-  return std::align_val_t(bytes < kLeast ? alignment : std::max(alignment, kLargePage));
+  return std::align_val_t(bytes < kLargePage ? alignment : std::max(alignment, kLargePage));
 }
 
 }  // namespace
