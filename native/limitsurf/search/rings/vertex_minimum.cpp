@@ -36,7 +36,8 @@ struct Fall {
 bool falls(const BezierPatch& patch, const Vector3& way, const Fall& least) {
   for (int i = 0; i < kPlaces * kPlaces; ++i) {
     BezierPatch::Values at;
-    patch.evaluate<0>((i % kPlaces) / (kPlaces - 1.), (i / kPlaces) / (kPlaces - 1.), at);
+    const int column = i % kPlaces, row = i / kPlaces;
+    patch.evaluate<0>(column / (kPlaces - 1.), row / (kPlaces - 1.), at);
     const Vector3 offset = at.value.head<3>();
     // The difference of the squared distances.
     if (offset.dot(offset - 2 * way) <
