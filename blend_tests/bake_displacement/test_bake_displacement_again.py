@@ -80,6 +80,15 @@ def test_the_file_is_replaced(base, sculpt, tmp_path):
     assert not image.is_dirty
 
 
+def test_the_number_of_the_tile_in_the_path(base, sculpt, tmp_path):
+    for _ in range(2):
+        bake(base, sculpt, filepath=str(tmp_path / "holes.<UDIM>.exr"))
+        image = bpy.data.images[NAME]
+        assert bpy.path.abspath(image.filepath) == str(tmp_path / "holes.1001.exr")
+        assert np.abs(heights()).max() > 0.01
+        lift(sculpt)
+
+
 def test_an_image_with_unsaved_numbers_is_told(base, sculpt, tmp_path, capfd):
     bake(base, sculpt, filepath=str(tmp_path / "holes.exr"))
     lift(sculpt)
@@ -112,3 +121,15 @@ def test_tiles_are_written_again(base, sculpt):
     assert covered.mean() > 0.1
     after = image_pixels.read(image, 1002)[..., 2]
     np.testing.assert_allclose(after[covered] - before[covered], 1, atol=1e-5)
+
+
+def test_tiles_that_the_file_would_not_hold(base, sculpt, tmp_path):
+    layer = base.data.uv_layers[0]
+    uv = np.empty(2 * len(layer.data), np.float32)
+    layer.data.foreach_get("uv", uv)
+    layer.data.foreach_set("uv", uv + np.tile(np.float32([0.6, 0]), len(layer.data)))
+    bake(base, sculpt, use_tiles=True)
+    with pytest.raises(RuntimeError, match="has tiles that the file would not hold"):
+        bake(base, sculpt, filepath=str(tmp_path / "holes.exr"))
+    assert len(bpy.data.images[NAME].tiles) == 2
+    assert not list(tmp_path.iterdir())

@@ -33,6 +33,8 @@ class Output:
             reused_images.check_fits(
                 image, tiles=self.tiles, size=self.size, is_float=True, option="Reuse Image"
             )
+            if self.path and image.source == "TILED":
+                self._check_saves_all(image, self.path)
 
     def put(self, pixels: Mapping[int, np.ndarray]) -> bpy.types.Image:
         """Returns the image with these pixels. Where it cannot be saved, it is not made or changed,
@@ -42,9 +44,7 @@ class Output:
         if image is None:
             return self._new(pixels)
         if self.path:
-            for tile, of_tile in pixels.items():
-                file = str(self.path).replace("<UDIM>", str(tile))
-                image_files.save_pixels(of_tile, file, EXR_32)
+            image_pixels.save_tiles(pixels, self.path, EXR_32)
         image_pixels.write(image, pixels)
         if self.path:
             image_pixels.attach(image, self.path)
@@ -63,6 +63,15 @@ class Output:
             raise RefusalError(
                 f"Each of the {len(self.tiles)} tiles is saved in its own file: {path.name} must "
                 "contain <UDIM>, which is replaced by the number of the tile"
+            )
+
+    def _check_saves_all(self, image: bpy.types.Image, path: Path) -> None:
+        """Raises RefusalError where the files would not hold all tiles of an existing image."""
+        others = image_pixels.checked(image).tiles.keys() - set(self.tiles)
+        if others or "<UDIM>" not in path.name:
+            raise RefusalError(
+                f"The existing image {image.name} has tiles that the file would not hold: save the "
+                "image yourself, set another name, or turn Reuse Image off"
             )
 
     def _new(self, pixels: Mapping[int, np.ndarray]) -> bpy.types.Image:

@@ -192,24 +192,35 @@ def save(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
     it cannot be written.
     """
     if image.source == "TILED":
-        for number, pixels in image_tiles.read_all(image).items():
-            image_files.save_pixels(pixels, str(path).replace("<UDIM>", str(number)), kind)
+        save_tiles(image_tiles.read_all(image), path, kind)
     else:
-        path = str(path).replace("<UDIM>", str(FIRST_TILE))
-        image_files.save_copy(image, path, kind)
+        image_files.save_copy(image, _of_tile(path, FIRST_TILE), kind)
     attach(image, path)
 
 
+def save_tiles(tiles: Mapping[int, np.ndarray], path: str | Path, kind: FileKind) -> None:
+    """Saves the pixels of each tile to its own file."""
+    for number, pixels in tiles.items():
+        image_files.save_pixels(pixels, _of_tile(path, number), kind)
+
+
 def attach(image: bpy.types.Image, path: str | Path) -> None:
-    """Makes a file the image's own, with the image's color space."""
+    """Makes a file the image's own, with the image's color space. <UDIM> in the path stands for the
+    tile of an image without tiles, too.
+    """
     colorspace = image.colorspace_settings.name
     if image.packed_files:
         image.unpack(method="REMOVE")
     if image.source != "TILED":
         image.source = "FILE"
+        path = _of_tile(path, FIRST_TILE)
     image.filepath = str(path)
     image.reload()
     image.colorspace_settings.name = colorspace
+
+
+def _of_tile(path: str | Path, tile: int) -> str:
+    return str(path).replace("<UDIM>", str(tile))
 
 
 def load(path: str | Path, tiles: list[int]) -> bpy.types.Image:
