@@ -59,10 +59,10 @@ struct GuideOptions {
 /// of Polylines, and naming the first point of them that is not finite; MeshError for cuts that are
 /// no edges, and as evaluate() does for locations. Cost: about 1 microsecond for each vertex of
 /// the triangles and each guide that it keeps (three more than `count`, and more where triangles
-/// are long, see kept_sources.h), on one core; a microsecond
-/// a place, on all cores. The triangles have 16,000 to 64,000 vertices, or on meshes of more than
-/// 4,000 faces four for each face and sixteen for each face near a guide. Memory: 24 bytes for each
-/// vertex and each guide that it keeps, and 16 for each guide of a place.
+/// are long), on one core; a microsecond a place, on all cores. The triangles have 16,000 to 64,000
+/// vertices, or on meshes of more than 4,000 faces four for each face and sixteen for each face
+/// near a guide. Memory: 24 bytes for each vertex and each guide that it keeps, and 16 for each
+/// guide of a place.
 GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guides,
                           const LocationBatch& at, const GuideOptions& options = {});
 

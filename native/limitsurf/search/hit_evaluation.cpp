@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/hit_evaluation.h"
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -62,11 +61,9 @@ Hits hitsAt(const LimitSurface& surface, std::vector<Location> at, int threads) 
   resizeRows(hits.position, count);
   resizeRows(hits.normal, count);
   HitEvaluator evaluate(surface, count, threads);
-  for (std::size_t begin = 0; begin < count; begin += PartEvaluator::kMostRows) {
-    const std::size_t rows = std::min(PartEvaluator::kMostRows, count - begin);
-    evaluate({hits.at.data() + begin, rows}, hits.position.data() + 3 * begin,
-             hits.normal.data() + 3 * begin);
-  }
+  forEachPart(hits.at, [&](std::size_t begin, Span<Location> part) {
+    evaluate(part, hits.position.data() + 3 * begin, hits.normal.data() + 3 * begin);
+  });
   for (Location& location : hits.at) {
     if (location.face < 0) {
       location.u = location.v = kNaN;

@@ -52,14 +52,6 @@ void evaluatePart(const LimitSurface& surface, PartEvaluator& evaluate, Span<Loc
                   Eigen::Map<Points>(normal, static_cast<Eigen::Index>(part.size()), 3), threads);
 }
 
-/// Calls body(begin, part) for the parts of the locations.
-template <typename Body>
-void forEachPart(Span<Location> at, const Body& body) {
-  for (std::size_t begin = 0; begin < at.size(); begin += PartEvaluator::kMostRows) {
-    body(begin, at.subspan(begin, std::min(PartEvaluator::kMostRows, at.size() - begin)));
-  }
-}
-
 void evaluatePoints(const LimitSurface& surface, Tessellation& result, int threads,
                     const Progress& progress) {
   const std::size_t count = result.locations.size();

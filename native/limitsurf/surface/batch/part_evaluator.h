@@ -36,4 +36,12 @@ class PartEvaluator {
   Points du_, dv_;
 };
 
+/// Calls body(begin, part) for parts of the locations that a PartEvaluator takes.
+template <typename Body>
+void forEachPart(Span<Location> at, const Body& body) {
+  for (std::size_t begin = 0; begin < at.size(); begin += PartEvaluator::kMostRows) {
+    body(begin, at.subspan(begin, std::min(PartEvaluator::kMostRows, at.size() - begin)));
+  }
+}
+
 }  // namespace limitsurf
