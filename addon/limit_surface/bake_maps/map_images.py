@@ -49,7 +49,10 @@ class _Canvas:
     """Opaque pixels where values are painted, and transparent black ones elsewhere."""
 
     def __init__(self, width: int, height: int) -> None:
-        self.pixels = np.zeros((height, width, 4), np.float32)
+        # numpy asks for large pages for an array without values, not for one of zeros. To have the
+        # system make a large image's memory page by page takes longer than to fill it.
+        self.pixels = np.empty((height, width, 4), np.float32)
+        self.pixels.fill(0)
         self._some = np.ones((PAINTED, 4), np.float32)
         # numpy moves a pixel at once where it takes it for one number of 16 bytes
         self._whole_pixels, self._whole_some = (

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
+#include "limitsurf/large_pages.h"
 #include "limitsurf/progress.h"
 #include "limitsurf/surface/surface_data.h"
 #include "limitsurf/types.h"
-#include "limitsurf/unset_vector.h"
 
 namespace limitsurf {
 
@@ -35,12 +35,12 @@ struct MapLocations {
 
 /// Texels of an image, sorted by row and then by column.
 struct Texels {
-  UnsetVector<std::int32_t> x, y;
-  UnsetVector<std::int32_t> face;
-  UnsetVector<std::array<double, 2>> uv;
-  UnsetVector<std::uint8_t>
+  LargePageVector<std::int32_t> x, y;
+  LargePageVector<std::int32_t> face;
+  LargePageVector<std::array<double, 2>> uv;
+  LargePageVector<std::uint8_t>
       inside;  ///< the map covers the texel's centre; else the texel belongs to the margin
-  UnsetVector<std::uint8_t> overlap, flipped;
+  LargePageVector<std::uint8_t> overlap, flipped;
 
   std::size_t size() const { return x.size(); }
 };
