@@ -16,7 +16,7 @@ run_sanitized() {
   esac
   local tree=$ROOT/build/$preset
   export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1
-  export UBSAN_OPTIONS=print_stacktrace=1
+  export UBSAN_OPTIONS=print_stacktrace=1:suppressions=$ROOT/tools/sanitize/undefined.supp
   # The suppressions name functions of TBB: ThreadSanitizer needs a long history to know the stack of
   # the earlier one of two accesses.
   TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:history_size=7

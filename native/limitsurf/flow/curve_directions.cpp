@@ -2,15 +2,15 @@
 #include "limitsurf/flow/curve_directions.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "limitsurf/flow/block_equations.h"
 #include "limitsurf/flow/flow_mesh.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/search/surface_search.h"
@@ -65,11 +65,13 @@ Vector3 normalOf(const double* frame) { return {frame[2], frame[5], frame[8]}; }
 class Equations {
  public:
   explicit Equations(const FlowMesh& mesh)
-      : mesh_(mesh), right_(Eigen::VectorXd::Zero(2 * mesh.vertexCount())) {}
+      : mesh_(mesh),
+        blocks_(mesh.vertexCount()),
+        right_(Eigen::VectorXd::Zero(2 * mesh.vertexCount())) {}
 
   /// Adds the integral of |grad X|^2. Each quad is the mean of its two divisions into triangles.
   void addChange() {
-    entries_.reserve(mesh_.quadCount() * 4 * 9 * 4);
+    blocks_.reserve(mesh_.quadCount() * 4 * 12);
     InterruptionStride stride;
     for (std::size_t i = 0; i < mesh_.quadCount(); ++i) {
       stride.step();
@@ -79,8 +81,8 @@ class Equations {
       }
     }
     const double rest = kRest / mesh_.area() * mesh_.meanSide() * mesh_.meanSide();
-    for (int i = 0; i < 2 * mesh_.vertexCount(); ++i) {
-      entries_.emplace_back(i, i, rest);
+    for (int i = 0; i < mesh_.vertexCount(); ++i) {
+      blocks_.add(i, i, rest * Matrix2::Identity());
     }
   }
 
@@ -97,7 +99,7 @@ class Equations {
     for (int i = 0; i < 4; ++i) {
       right_.segment<2>(2 * place.vertices[i]) += weight * into[i].transpose() * wanted;
       for (int j = 0; j < 4; ++j) {
-        add(place.vertices[i], place.vertices[j], weight * into[i].transpose() * into[j]);
+        blocks_.add(place.vertices[i], place.vertices[j], weight * into[i].transpose() * into[j]);
       }
     }
   }
@@ -105,28 +107,17 @@ class Equations {
   /// Solves the equations, which are gone then. Eigen's factorization, which takes seconds, passes
   /// no interruption points.
   Eigen::VectorXd solve() && {
-    return workAside([entries = std::move(entries_), right = std::move(right_)] {
-      Eigen::SparseMatrix<double> matrix(right.size(), right.size());
-      matrix.setFromTriplets(entries.begin(), entries.end());
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-      if (solver.info() != Eigen::Success) {
-        throw std::runtime_error("the directions of the curves cannot be continued");
-      }
-      return Eigen::VectorXd(solver.solve(right));
-    });
+    std::optional<Eigen::VectorXd> field = workAside(
+        [blocks = std::move(blocks_), right = std::move(right_)] { return blocks.solve(right); });
+    if (!field) {
+      throw std::runtime_error("the directions of the curves cannot be continued");
+    }
+    return std::move(*field);
   }
 
  private:
   Matrix2 intoPlane(int vertex, const Vector3& normal, const PlaneBasis& plane) const {
     return plane.transpose() * turned(mesh_.basis(vertex), mesh_.normal(vertex), normal);
-  }
-
-  void add(int row, int column, const Matrix2& block) {
-    for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 2; ++j) {
-        entries_.emplace_back(2 * row + i, 2 * column + j, block(i, j));
-      }
-    }
   }
 
   void addTriangle(const std::array<int, 3>& v, double share) {
@@ -149,15 +140,15 @@ class Equations {
     for (int k = 0; k < 3; ++k) {  // the edge opposite of corner k has half the angle's cotangent
       const int i = (k + 1) % 3, j = (k + 2) % 3;
       const double weight = share * (p[i] - p[k]).dot(p[j] - p[k]) / twice_area / 2;
-      add(v[i], v[i], weight * into[i].transpose() * into[i]);
-      add(v[j], v[j], weight * into[j].transpose() * into[j]);
-      add(v[i], v[j], -weight * into[i].transpose() * into[j]);
-      add(v[j], v[i], -weight * into[j].transpose() * into[i]);
+      blocks_.add(v[i], v[i], weight * into[i].transpose() * into[i]);
+      blocks_.add(v[j], v[j], weight * into[j].transpose() * into[j]);
+      blocks_.add(v[i], v[j], -weight * into[i].transpose() * into[j]);
+      blocks_.add(v[j], v[i], -weight * into[j].transpose() * into[i]);
     }
   }
 
   const FlowMesh& mesh_;
-  std::vector<Eigen::Triplet<double>> entries_;
+  BlockEquations blocks_;
   Eigen::VectorXd right_;
 };
 
