@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -241,24 +242,48 @@ double lengthOf(const PictureView* view, const Vector3& from, const Vector3& to)
   return view ? seenLength(*view, from, to) : (to - from).norm();
 }
 
-/// The largest distance between neighbouring samples of a face.
-double longestStep(const LimitSurface& surface, const Squares& squares, int face,
-                   const PictureView* view) {
-  double longest = 0;
-  const auto look = [&](const Vector3& from, const Vector3& to) {
-    longest = std::max(longest, lengthOf(view, from, to));
-  };
-  for (int square = 0; square < squares.count(face); ++square) {
-    const Samples at(surface, squares.first(face) + square, kLengthSamples, false);
-    for (int j = 0; j <= at.side(); ++j) {
-      for (int i = 0; i < at.side(); ++i) {
-        look(at.position(i, j), at.position(i + 1, j));
-        look(at.position(j, i), at.position(j, i + 1));
+/// The lengths of the sides of polygons on a face, for all numbers of quads along a side of its
+/// squares.
+class SideLengths {
+ public:
+  SideLengths(const LimitSurface& surface, const Squares& squares, int face,
+              const PictureView* view) {
+    for (int square = 0; square < squares.count(face); ++square) {
+      const Samples at(surface, squares.first(face) + square, kLengthSamples, false);
+      for (int j = 0; j <= at.side(); ++j) {
+        std::array<double, kLengthSamples> along_u, along_v;
+        for (int i = 0; i < at.side(); ++i) {
+          along_u[i] = lengthOf(view, at.position(i, j), at.position(i + 1, j));
+          along_v[i] = lengthOf(view, at.position(j, i), at.position(j, i + 1));
+        }
+        addLine(j, along_u);
+        addLine(j, along_v);
       }
     }
   }
-  return longest;
-}
+
+  /// The longest side of this many quads. Sides longer than the distance between samples are
+  /// measured along the surface, from sample to sample; those that are shorter are taken for equal
+  /// parts of it.
+  double longest(int quads) const {
+    const int step = std::max(1, kLengthSamples / quads);
+    return longest_[step] * std::min(1., static_cast<double>(kLengthSamples) / quads);
+  }
+
+ private:
+  /// Measures the sides on line number `j`, which lies on a line of 1, 2, 4, ... quads if it is a
+  /// multiple of 8, 4, 2, ...
+  void addLine(int j, const std::array<double, kLengthSamples>& lengths) {
+    for (int step = 1; step <= kLengthSamples && j % step == 0; step *= 2) {
+      for (int i = 0; i < kLengthSamples; i += step) {
+        const double side = std::accumulate(&lengths[i], &lengths[i] + step, 0.);
+        longest_[step] = std::max(longest_[step], side);
+      }
+    }
+  }
+
+  std::array<double, kLengthSamples + 1> longest_{};  // by the samples on a side: 1, 2, 4 or 8
+};
 
 /// The longest side of the four quads at each corner of a face's squares, of which each side has so
 /// many quads. Beside an irregular vertex sides become smaller from level to level, but not by half
@@ -376,13 +401,13 @@ FaceLevels levelsOfLength(const LimitSurface& surface, double length, const Pict
   const std::vector<int>& faces = squares.faces();
   forEachFace(faces.size(), options, 0, 1, [&](std::size_t i) {
     const int face = faces[i];
-    const double whole = kLengthSamples * longestStep(surface, squares, face, view);
+    const SideLengths lengths(surface, squares, face, view);
     int& level = result.levels[face];
     double& measure = result.measure[face];
     const auto is_done = [&] { return measure <= length || level == options.most; };
     for (;; ++level) {
       const int quads = squares.quads(face, level);
-      measure = whole / quads;
+      measure = lengths.longest(quads);
       if (is_done() && quads > kLengthSamples) {
         measure = std::max(measure, longestAtCorners(surface, squares, face, quads, view));
       }

@@ -49,8 +49,9 @@ struct PictureView {
 };
 
 /// The lowest levels at which the sides of polygons are no longer than `length`, in space or in the
-/// picture of `view`. Lengths are measured between places at 1/8, 2/8, ... of each side of a Ptex
-/// face; where a side of it has more quads than that, those at its corners are measured as well.
+/// picture of `view`. Lengths are measured along the surface, from place to place at 1/8, 2/8, ...
+/// of each side of a Ptex face: the sides of up to 8 quads are sums of these, further ones equal
+/// parts. Where a side has more quads than that, those at its corners are measured as well.
 /// `measure` is the longest. Between these places sides may be longer: they are not bounded. A face
 /// that is not visible has no length, and the lowest level.
 ///

@@ -411,10 +411,11 @@ constexpr const char* kLevelsOfLengthDoc =
     R"(The lowest levels for tessellate() at which the sides of polygons are no longer than `length`.
 
 With a matrix (4, 4) lengths are measured in a picture: matrix @ (x, y, z, 1) are its homogeneous
-coordinates, and points with w < nearest are not visible and have no length. Lengths are measured between
-places at eighths of each side of a Ptex face and, where a side has more quads than that, along the quads
-at its corners; between these places sides may be longer. Levels of neighbours are raised until they
-differ by at most 2 across an edge.
+coordinates, and points with w < nearest are not visible and have no length. Lengths are measured along
+the surface, between places at eighths of each side of a Ptex face; where a side has more quads than that,
+their sides are equal parts of such lengths, and the quads at its corners are measured as well. Between
+these places sides may be longer. Levels of neighbours are raised until they differ by at most 2 across an
+edge.
 
 Returns FaceLevels: .levels (F,) int32, and .measure (F,), the longest side at that level or, if a
 neighbour raised it, at a lower one; it exceeds `length` where the level `most` is too low. Refused faces

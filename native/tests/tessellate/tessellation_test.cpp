@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -244,6 +245,73 @@ TEST(LevelsOfLength, RefusesWhatMeansNothing) {
   }
   EXPECT_THROW(tessellate(surface, std::vector<int>{1, 2}), std::invalid_argument);
   EXPECT_THROW(tessellate(surface, std::vector<int>{1, 2, 3, 4, 5, 13}), std::invalid_argument);
+}
+
+/// The longest side of the quads of a face whose squares have `quads` quads a side, in space or in
+/// a picture, measured along the surface in steps of 1/64.
+double longestSide(const LimitSurface& surface, const std::vector<int>& squares, int quads,
+                   const PictureView* view) {
+  constexpr int kSteps = 64;
+  const auto seen = [&](const Location& at) -> Vector3 {
+    const Vector3 there = surface.evaluate(std::vector<Location>{at}).position.row(0);
+    if (!view) return there;
+    const Eigen::Vector4d h = view->matrix * there.homogeneous();
+    return {h.x() / h.w(), h.y() / h.w(), 0};
+  };
+  double longest = 0;
+  for (const int square : squares) {
+    for (int line = 0; line <= quads; ++line) {
+      for (const bool across : {false, true}) {
+        const auto at = [&](int step) {
+          const double x = double(step) / kSteps, y = double(line) / quads;
+          return seen(across ? Location{square, y, x} : Location{square, x, y});
+        };
+        for (int quad = 0; quad < quads; ++quad) {
+          double side = 0;
+          for (int k = 0; k < kSteps / quads; ++k) {
+            const int step = quad * kSteps / quads + k;
+            side += (at(step + 1) - at(step)).norm();
+          }
+          longest = std::max(longest, side);
+        }
+      }
+    }
+  }
+  return longest;
+}
+
+TEST(LevelsOfLength, AreTheLowest) {
+  PictureView camera;  // close to the mesh, along z
+  camera.matrix = Eigen::Matrix4d::Identity();
+  camera.matrix.row(3) << 0, 0, -1, 1.5;
+  double largest = 0;
+  for (const Cage& cage : {perturbed(inTriangles(grid(3, 3)), 0.35, 1), perturbed(cube(), 0.3, 2),
+                           perturbed(grid(4, 4), 0.4, 3), mixture(2)}) {
+    const LimitSurface surface = limitSurface(cage);
+    std::vector<std::vector<int>> squares(cage.faces.size());
+    for (int i = 0; i < surface.faceCount(); ++i) squares[surface.baseFace()[i]].push_back(i);
+    for (const bool in_picture : {false, true}) {
+      const PictureView* view = in_picture ? &camera : nullptr;
+      for (const double length : {0.6, 0.25}) {
+        const FaceLevels found = levelsOfLength(surface, length, view);
+        for (std::size_t face = 0; face < cage.faces.size(); ++face) {
+          const bool is_quad = cage.faces[face].size() == 4;
+          // the first level at which the sides fit; eighths leave some percent in doubt
+          int level = is_quad ? 0 : 1;
+          double longest;
+          const auto quads = [&] { return 1 << (is_quad ? level : level - 1); };
+          while ((longest = longestSide(surface, squares[face], quads(), view)) > 1.05 * length &&
+                 quads() < 8) {
+            ++level;
+          }
+          if (longest > length / 1.05) continue;
+          EXPECT_NEAR(found.measure[face] / longest, 1, 0.05) << "face " << face;
+          largest = std::max(largest, std::abs(found.measure[face] / longest - 1));
+        }
+      }
+    }
+  }
+  EXPECT_GT(largest, 1e-6);  // places between the eighths were compared
 }
 
 /// Beside an irregular vertex of high valence the sides of quads shrink less from level to level
