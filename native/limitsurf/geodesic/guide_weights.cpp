@@ -17,7 +17,7 @@ namespace limitsurf {
 namespace {
 
 /// Vertices know more guides than a place gets, because its own nearest are not all among theirs.
-constexpr int kSpare = 3;
+constexpr int kSpare = 5;
 constexpr std::size_t kRowsPerPart = std::size_t{1} << 16;
 /// Parts of the progress: triangles, distances, places.
 constexpr double kTriangles = 0.1, kDistances = 0.6;

@@ -16,7 +16,8 @@ namespace limitsurf {
 /// distance, where that is at least an eighth of a face's side. On flat surfaces the error is below
 /// 5e-3 of such a side, as far as no cut or border stands in the way. Around the tips of poles,
 /// where guides are much closer to each other than the triangles are long, one distance in a
-/// thousand may be off by up to 4 %.
+/// thousand may be off by up to 4 %; so may one in 2,500 where there are more than five guides on
+/// each face, and as many are missed though they are among the nearest.
 constexpr double kGuideDistanceError = 0.01;
 
 /// The nearest guides of places on a surface, `count` in each row, the nearest first. Where there
@@ -58,7 +59,7 @@ struct GuideOptions {
 /// Throws std::invalid_argument for a count out of range, for offsets of curves that are not those
 /// of Polylines, and naming the first point of them that is not finite; MeshError for cuts that are
 /// no edges, and as evaluate() does for locations. Cost: about 1 microsecond for each vertex of
-/// the triangles and each guide that it keeps (three more than `count`, and more where triangles
+/// the triangles and each guide that it keeps (five more than `count`, and more where triangles
 /// are long), on one core; a microsecond a place, on all cores. The triangles have 16,000 to 64,000
 /// vertices, or on meshes of more than 4,000 faces four for each face and sixteen for each face
 /// near a guide. Memory: 24 bytes for each vertex and each guide that it keeps, and 16 for each

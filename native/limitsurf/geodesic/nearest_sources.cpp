@@ -170,6 +170,25 @@ void NearestSources::spread(const Progress& progress) {
   heap_ = {};
 }
 
+/// The distance of a vertex from a source. Where the vertex does not keep the source, because
+/// others are nearer, it is what the vertex would learn from its neighbors that do.
+double NearestSources::distanceTo(int vertex, int source) const {
+  if (const Entry* known = findEntry(vertex, source)) {
+    return known->distance;
+  }
+  const Span<GeodesicMesh::Neighbor> neighbors = mesh_.neighborsAt(vertex);
+  double distance = std::numeric_limits<double>::infinity();
+  for (const GeodesicMesh::Wedge& wedge : mesh_.wedgesAt(vertex)) {
+    const auto &b = neighbors[wedge.b], &c = neighbors[wedge.c];
+    const Entry *at_b = findEntry(b.vertex, source), *at_c = findEntry(c.vertex, source);
+    if (at_b && at_c) {
+      const TriangleSides sides{wedge.distance, b.distance, c.distance};
+      distance = std::min(distance, unfoldedDistance(at_b->distance, at_c->distance, sides));
+    }
+  }
+  return distance;
+}
+
 void NearestSources::find(const MeshPlace& place, std::vector<Entry>& found) const {
   found.clear();
   const std::array<int, 3>& triangle = mesh_.triangle(place.triangle);
@@ -193,8 +212,7 @@ void NearestSources::find(const MeshPlace& place, std::vector<Entry>& found) con
       } else {
         std::array<double, 3> to;
         for (int i = 0; i < 3; ++i) {
-          const Entry* known = findEntry(triangle[i], entry.source);
-          to[i] = known ? known->distance : std::numeric_limits<double>::infinity();
+          to[i] = distanceTo(triangle[i], entry.source);
           distance = std::min(distance, to[i] + radius[i]);
         }
         for (int i = 0; i < 3; ++i) {

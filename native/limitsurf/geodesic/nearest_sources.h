@@ -59,6 +59,7 @@ class NearestSources {
 
   Entry* findEntry(int vertex, int source);
   const Entry* findEntry(int vertex, int source) const;
+  double distanceTo(int vertex, int source) const;
   /// How many sources a vertex keeps, and has room for.
   std::size_t most(int vertex) const { return room(vertex) / 2; }
   std::size_t room(int vertex) const { return first_[vertex + 1] - first_[vertex]; }

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include "limitsurf/geodesic/unfolding.h"
 #include "limitsurf/pi.h"
@@ -114,6 +115,44 @@ TEST(GuideWeights, AreEuclideanOnTriangles) {
     }
     std::printf("worst error on %d x %d squares of two triangles: %.2g\n", side, side, worst);
   }
+}
+
+TEST(GuideWeights, AreEuclideanAmongManyGuides) {
+  // Guides are as near to each other as the triangles' vertices are, which do not all keep the
+  // guides that are nearest to a place between them.
+  std::size_t far = 0, wrong = 0, missed = 0;
+  double worst = 0;
+  for (int seed = 1; seed <= 6; ++seed) {
+    const LimitSurface surface = limitSurface(flatTriangles(6, seed));
+    Random random(seed);
+    const Locations guides = searchedLocations(surface, 1500, random);
+    const Locations at = searchedLocations(surface, 3000, random);
+    const GuideWeights found = guideWeights(surface, guides, at);
+    const Points p = positionsOf(surface, at), g = positionsOf(surface, guides);
+    for (Eigen::Index row = 0; row < p.rows(); ++row) {
+      std::vector<double> truth;
+      for (Eigen::Index guide = 0; guide < g.rows(); ++guide) {
+        truth.push_back((p.row(row) - g.row(guide)).norm());
+      }
+      std::vector<double> nearest = truth;
+      std::partial_sort(nearest.begin(), nearest.begin() + 4, nearest.end());
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t entry = 4 * static_cast<std::size_t>(row) + k;
+        const double distance = truth[found.guide[entry]];
+        missed += distance > nearest[k] + 1e-4;
+        if (distance < 1. / 8) continue;
+        const double error = std::abs(found.distance[entry] / distance - 1);
+        ++far;
+        wrong += error > kGuideDistanceError;
+        worst = std::max(worst, error);
+      }
+    }
+  }
+  std::printf("of %zu distances %zu are off by more than 1 %%, %.1f %% at most; %zu missed\n", far,
+              wrong, 100 * worst, missed);
+  EXPECT_LE(wrong, far / 2500);
+  EXPECT_LE(missed, 15);
+  EXPECT_LT(worst, 0.04);
 }
 
 TEST(GuideWeights, GoAroundATorus) {
