@@ -15,8 +15,8 @@ class BlockEquations {
   explicit BlockEquations(int vertex_count) : vertex_count_(vertex_count) {}
 
   void reserve(std::size_t blocks) { blocks_.reserve(blocks); }
-  /// Adds a block in the rows and the columns of two vertices. Who adds one to the rows of i and
-  /// the columns of j adds its transpose to the rows of j and the columns of i.
+  /// Adds a block in the rows of one vertex and the columns of another one. The caller also adds
+  /// its transpose, with row and column exchanged.
   void add(int row, int column, const Eigen::Matrix2d& values);
 
   /// The unknowns, two numbers for each vertex, as `right` has them. Sparse factorization: that of

@@ -171,7 +171,7 @@ void NearestSources::spread(const Progress& progress) {
 }
 
 /// The distance of a vertex from a source. Where the vertex does not keep the source, because
-/// others are nearer, it is what the vertex would learn from its neighbors that do.
+/// others are nearer, it is what the vertex would learn from its neighbours that do.
 double NearestSources::distanceTo(int vertex, int source) const {
   if (const Entry* known = findEntry(vertex, source)) {
     return known->distance;
