@@ -51,6 +51,31 @@ TEST(ClosestCost, TrianglesCostFewTimesWhatQuadsCost) {
   }
 }
 
+/// On a noisy sheet some points have no place that faces the right way. The borders, where the way
+/// to a place need not be along the normal, must not be looked at by each of them.
+TEST(ClosestCost, FewLeavesWhereNothingFacesTheRightWay) {
+  constexpr int kSide = 40, kCount = 400;
+  Cage cage = inTriangles(perturbed(bumpyGrid(kSide), 0.1, 1));
+  const LimitSurface surface = limitSurface(cage);
+  Random random(1);
+  Points points(kCount, 3);
+  for (int i = 0; i < kCount; ++i) {
+    points.row(i) << random.uniform(0, kSide), random.uniform(0, kSide), 0;
+  }
+  std::int64_t leaves = 0;
+  ClosestOptions options;
+  options.leaves = &leaves;
+  options.max_angle = 0.3;
+  options.facing = Eigen::RowVector3d(0, 0, 1).replicate(kCount, 1);
+  const Hits hits = SurfaceSearch(surface).closest(points, options);
+  int in_vain = 0;
+  for (const Location& at : hits.at) {
+    in_vain += at.face < 0;
+  }
+  EXPECT_GT(in_vain, kCount / 10);
+  EXPECT_LE(leaves, 100 * kCount);
+}
+
 /// Around an extraordinary vertex, the boxes of what is left of cores are as flat as the surface,
 /// so that above it, where all faces are almost equally close, a search ends after some splits of
 /// each.

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Cones of normals contain what they were made of.
+// Cones of normals contain what they were made of, and no local minimum of a distance is left out.
 #include "limitsurf/search/normals/normal_cones.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "limitsurf/pi.h"
+#include "limitsurf/surface/limit_surface.h"
+#include "support/cages/meshes.h"
+#include "support/cages/query_cages.h"
 #include "support/random.h"
 
 namespace limitsurf::test {
@@ -29,14 +34,14 @@ Vector3 turned(const Vector3& axis, double angle, Random& random) {
 TEST(NormalCones, TheConeAroundTwoContainsBoth) {
   Random random(1);
   for (int round = 0; round < 4000; ++round) {
-    NormalCone a, b;
+    DirectionCone a, b;
     a.axis = random.vector(1).normalized();
     a.angle = random.uniform(0, 1.5) * random.below(2);
     const double off = random.below(4) == 0 ? 0 : std::pow(10., random.uniform(-17, 0));
     b.axis = turned(random.below(2) == 0 ? a.axis : Vector3(-a.axis), off, random).normalized();
     b.angle = random.uniform(0, 1.5) * random.below(2);
-    const NormalCone both = NormalCone::around(a, b);
-    for (const NormalCone& cone : {a, b}) {
+    const DirectionCone both = DirectionCone::around(a, b);
+    for (const DirectionCone& cone : {a, b}) {
       for (const double part : {0., 0.5, 1.}) {
         const Vector3 inside = turned(cone.axis, part * cone.angle, random);
         EXPECT_LE(angleBetween(both.axis, inside), both.angle + 1e-7) << off;
@@ -60,7 +65,7 @@ TEST(NormalCones, OfAPatchContainsItsNormals) {
       const Vector3 bump = random.vector(noise * (1 - skew));
       patch.points[i] = {s - skew * t + bump[0], (1 - skew) * t + bump[1], bump[2], 0};
     }
-    const NormalCone cone = normalCone(patch);
+    const DirectionCone cone = normalCone(patch);
     narrow += cone.angle < 1;
     for (int place = 0; place < 20; ++place) {
       BezierPatch::Values at;
@@ -70,6 +75,118 @@ TEST(NormalCones, OfAPatchContainsItsNormals) {
     }
   }
   EXPECT_GT(narrow, 1000);
+}
+
+TEST(NormalCones, OfASideContainsItsDirectionsBeyondThePatch) {
+  Random random(3);
+  for (int round = 0; round < 500; ++round) {
+    BezierPatch patch;
+    patch.anchor.setZero();
+    for (int i = 0; i < 16; ++i) {
+      const Vector3 bump = random.vector(0.01);
+      patch.points[i] = {i % 4 / 3. + bump[0], i / 4 / 3. + bump[1], bump[2], 0};
+    }
+    const double begin = random.below(2) == 0 ? 0 : -1;
+    for (const unsigned side : {kSideS0, kSideS1, kSideT0, kSideT1}) {
+      const DirectionCone cone = sideCone(patch, side, begin);
+      EXPECT_LT(cone.angle, 1);
+      for (int place = 0; place < 10; ++place) {
+        const double x = random.uniform(begin, 1);
+        BezierPatch::Values at;
+        const bool along_s = side == kSideT0 || side == kSideT1;
+        const double other = side == kSideS1 || side == kSideT1 ? 1 : 0;
+        patch.evaluate<1>(along_s ? x : other, along_s ? other : x, at);
+        const Vector3 along = (along_s ? at.ds : at.dt).head<3>();
+        const bool backwards = side == kSideS0 || side == kSideT1;
+        EXPECT_FALSE(cone.isBeyond(along.normalized() * (backwards ? -1 : 1), 0));
+      }
+    }
+  }
+}
+
+/// The ways through a tree to its leaves: from the root to each leaf, nodes and the number of the
+/// child.
+using Way = std::vector<std::pair<std::int32_t, int>>;
+void addWays(const WideTree& tree, std::int32_t node, Way way, std::vector<Way>& ways) {
+  for (int i = 0; i < tree.node(node).count; ++i) {
+    way.emplace_back(node, i);
+    const std::int32_t child = tree.node(node).children[i];
+    if (WideTree::isLeaf(child)) {
+      ways[static_cast<std::size_t>(WideTree::leaf(child))] = way;
+    } else {
+      addWays(tree, child, way, ways);
+    }
+    way.pop_back();
+  }
+}
+
+/// A patch of a leaf: the leaf itself, or one some steps closer to the vertex of a core.
+BezierPatch somePatch(const SearchTree& tree, const SurfacePiece& leaf, Random& random) {
+  if (!leaf.isCore()) {
+    return tree.patches.patch(leaf);
+  }
+  SurfacePatches::SplitCore split;
+  SurfacePiece core = leaf;
+  for (int steps = random.below(12); steps >= 0; --steps) {
+    tree.patches.splitPatches(core, split);
+    core = split.core;
+  }
+  return split.patches[random.below(3)];
+}
+
+/// Points whose way to a place of the surface is along its normal there, or leads from outside
+/// perpendicularly to the border.
+TEST(NormalCones, NoLocalMinimumIsLeftOut) {
+  Random random(4);
+  int inside = 0, on_border = 0, left_out = 0;
+  for (const auto& [name, cage] : queryCages()) {
+    const LimitSurface surface = limitSurface(cage);
+    const SearchTree tree(surface, 1);
+    if (tree.tree->empty()) {
+      continue;
+    }
+    const NormalCones cones(tree, 1);
+    std::vector<Way> ways(tree.leaves.size());
+    addWays(*tree.tree, 0, {}, ways);
+    for (int round = 0; round < 400; ++round) {
+      const auto leaf = static_cast<std::size_t>(random.below(static_cast<int>(ways.size())));
+      const BezierPatch patch = somePatch(tree, tree.leaves[leaf].piece, random);
+      double s = random.uniform(), t = random.uniform();
+      const unsigned sides[] = {kSideS0, kSideS1, kSideT0, kSideT1};
+      const unsigned side = sides[random.below(4)];
+      const bool ends = (patch.borders & side) != 0;
+      if (ends) {
+        (side == kSideS0 || side == kSideS1 ? s : t) = side == kSideS1 || side == kSideT1;
+      }
+      BezierPatch::Values at;
+      patch.evaluate<1>(s, t, at);
+      const Vector3 ds = at.ds.head<3>(), dt = at.dt.head<3>(), normal = ds.cross(dt);
+      if (!(normal.norm() > 1e-3 * ds.norm() * dt.norm())) {
+        continue;
+      }
+      const Vector3 facing = normal.normalized();
+      const Vector3 place = tree.inBoxes((patch.anchor + at.value).head<3>());
+      Vector3 way = random.uniform(-0.3, 0.3) * facing;
+      if (ends) {
+        const Vector3 out = side == kSideS0 || side == kSideS1
+                                ? Vector3((side == kSideS0 ? -1 : 1) * dt.cross(facing))
+                                : Vector3((side == kSideT0 ? 1 : -1) * ds.cross(facing));
+        way += random.uniform(0, 0.3) * out.normalized();
+      }
+      ++(ends ? on_border : inside);
+      bool is_left_out = false;
+      for (const auto& [node, child] : ways[leaf]) {
+        EXPECT_FALSE(cones.cannotFace(node, child, place + way, facing, 1e-3))
+            << name << ", leaf " << leaf;
+        // The wrong side, for comparison: a search that leaves out nothing would pass.
+        is_left_out = is_left_out || cones.cannotFace(node, child, place + way, -facing, 1e-3);
+      }
+      left_out += is_left_out;
+    }
+  }
+  EXPECT_GT(inside, 5000);
+  EXPECT_GT(on_border, 1000);
+  EXPECT_GT(left_out, 5000);
 }
 
 }  // namespace

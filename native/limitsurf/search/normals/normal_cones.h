@@ -3,27 +3,13 @@
 
 #include <vector>
 
+#include "limitsurf/search/normals/piece_normals.h"
 #include "limitsurf/search/search_tree.h"
 
 namespace limitsurf {
 
-/// A cone of directions around an axis of unit length.
-struct NormalCone {
-  Vector3 axis = Vector3::UnitZ();
-  double angle = 0;  ///< between the axis and the farthest direction; pi if nothing is known
-
-  static NormalCone everything();
-  /// A cone around both.
-  static NormalCone around(const NormalCone& a, const NormalCone& b);
-  /// Whether no direction of the cone is within `angle` of `direction`, which has unit length.
-  bool isBeyond(const Vector3& direction, double angle) const;
-};
-
-/// The cone of all normals of a patch, or everything where ds and dt are nearly parallel somewhere.
-NormalCone normalCone(const BezierPatch& patch);
-
 /// What is known of the normals of each subtree of a search tree. It costs far more than the tree,
-/// because cores are split down to the tolerance, and is made when a search first needs it.
+/// because cores are split, and is made when a search first needs it.
 class NormalCones {
  public:
   NormalCones(const SearchTree& tree, int threads);
@@ -35,22 +21,22 @@ class NormalCones {
                   double angle) const;
 
  private:
+  /// A PieceNormals whose cone along the border, which few have, is elsewhere.
   struct Normals {
-    NormalCone cone;
-    /// Whether the surface has a normal everywhere and ends nowhere, so that the way from a point
-    /// to a place with the smallest distance in its neighbourhood is along the normal there.
-    bool is_smooth = false;
+    DirectionCone cone;
+    std::int32_t border;  ///< its place in along_borders_, or one of these
   };
+  static constexpr std::int32_t kNoBorder = -1, kUnknownBorder = -2;
 
   static std::size_t place(std::int32_t node, int child) {
     return WideTree::kWidth * static_cast<std::size_t>(node) + static_cast<std::size_t>(child);
   }
-  static Normals ofLeaf(const SearchTree& tree, const SurfacePiece& leaf);
-  /// Those of a node's children together.
-  Normals together(std::int32_t node, int count) const;
+  PieceNormals of(std::int32_t node, int child) const;
+  void set(std::int32_t node, int child, const PieceNormals& piece);
 
   const WideTree& tree_;
   std::vector<Normals> children_;
+  std::vector<DirectionCone> along_borders_;
 };
 
 }  // namespace limitsurf

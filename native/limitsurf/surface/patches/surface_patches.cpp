@@ -151,6 +151,10 @@ int SurfacePatches::coreValence(const SurfacePiece& core) const {
   return data_->table.rings[data_->ringTile(core).ring].basis->ring().faces;
 }
 
+bool SurfacePatches::isOnBoundaryCurve(const SurfacePiece& core) const {
+  return data_->table.rings[data_->ringTile(core).ring].basis->ring().kind == RingKind::boundary;
+}
+
 Vector3 SurfacePatches::ringPitch(const SurfacePiece& core, const Eigen::Matrix3d& frame) const {
   const RingTile& tile = data_->ringTile(core);
   const int steps = core.steps + tile.ring_steps;

@@ -133,6 +133,8 @@ class SurfacePatches {
   double coreRadius(const SurfacePiece& core) const;
   /// The number of faces around the core's vertex.
   int coreValence(const SurfacePiece& core) const;
+  /// Whether the core's vertex lies on a boundary or a crease that is a smooth curve there.
+  bool isOnBoundaryCurve(const SurfacePiece& core) const;
   /// The largest difference, coordinate by coordinate, of two neighbours among those of the ring's
   /// points that belong to the core after its steps, in a frame (a rotation, whose rows are axes).
   /// Beyond the steps for which points are kept it is a bound, larger by some factor.
