@@ -2,6 +2,7 @@
 #include "limitsurf/search/normals/normal_cones.h"
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/search/normals/leaf_normals.h"
 
 namespace limitsurf {
 namespace {
@@ -14,10 +15,11 @@ constexpr std::size_t kLeavesPerTask = 64;
 }  // namespace
 
 NormalCones::NormalCones(const SearchTree& tree, int threads) : tree_(*tree.tree) {
+  const LeafNormals normals(tree);
   std::vector<PieceNormals> leaves(tree.leaves.size());
   parallelFor(leaves.size(), kLeavesPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
-      leaves[leaf] = normalsOfLeaf(tree, tree.leaves[leaf].piece);
+      leaves[leaf] = normals.of(tree.leaves[leaf].piece);
     }
   });
   const std::int32_t count = tree_.nodeCount();

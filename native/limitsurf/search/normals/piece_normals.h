@@ -2,7 +2,6 @@
 #pragma once
 
 #include "limitsurf/search/normals/direction_cone.h"
-#include "limitsurf/search/search_tree.h"
 
 namespace limitsurf {
 
@@ -27,9 +26,5 @@ struct PieceNormals {
   /// `way` leads from the point to the middle.
   bool cannotFace(const Vector3& direction, double angle, const Vector3& way, double radius) const;
 };
-
-/// That of a leaf of the tree: of a patch, of a core down to its vertex, or of all cores around a
-/// vertex with many faces.
-PieceNormals normalsOfLeaf(const SearchTree& tree, const SurfacePiece& leaf);
 
 }  // namespace limitsurf

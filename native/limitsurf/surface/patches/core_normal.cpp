@@ -3,49 +3,18 @@
 
 #include <cmath>
 
-#include "limitsurf/eigen/ring_slots.h"
 #include "limitsurf/surface/bezier_conversion.h"
+#include "limitsurf/surface/patches/core_step.h"
 
 namespace limitsurf {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-/// The weights of a core's control points in one point.
-using Weights = Eigen::RowVectorXd;
 
 /// After 2^6 steps the rest of a core has less than 1e-20 of its area.
 constexpr int kDoublings = 6;
 /// Rounding errors, as parts of the products that are added up.
 constexpr double kRounding = 1e-15;
-
-/// A subdivision step of a core's control points, which are those of the ring and the outer ones.
-struct CoreStep {
-  CoreStep(const Eigenbasis& basis, int face) {
-    const OuterModes<double>& outer = basis.outerModes(face);
-    const std::vector<int>& slots = outer.slots();
-    const Eigen::Index ring = basis.ring().size(),
-                       size = ring + static_cast<Eigen::Index>(slots.size());
-    const Matrix unit = Matrix::Identity(size, size);
-    matrix = Matrix::Zero(size, size);
-    basis.step().apply([&](int i) { return unit.row(i); }, [&](int i) { return matrix.row(i); });
-    std::vector<Weights> before(tile_grid::kSlots, Weights::Zero(size));
-    grid = before;
-    forEachRingSlot(basis.ring(), face, [&](int slot, int point) {
-      before[slot] = unit.row(point);
-      grid[slot] = matrix.row(point);
-    });
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      before[slots[i]] = unit.row(ring + static_cast<Eigen::Index>(i));
-    }
-    outer.step().apply(before, grid);
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      matrix.row(ring + static_cast<Eigen::Index>(i)) = grid[slots[i]];
-    }
-  }
-
-  Matrix matrix;
-  std::vector<Weights> grid;  ///< the control grid after the step
-};
 
 /// The integrals over [0, 1] of the derivative of cubic B-spline i times B-spline j.
 Eigen::Matrix4d splineProducts() {
@@ -72,11 +41,8 @@ Matrix ringOfPatches(const CoreStep& step, Sides sides) {
   Matrix sum = Matrix::Zero(step.matrix.rows(), step.matrix.rows());
   for (int quarter = 1; quarter < 4; ++quarter) {
     const int a = quarter % 2, b = quarter / 2;
-    Weights window[16];
-    for (int i = 0; i < 16; ++i) {
-      window[i] = step.grid[(b + i / 4) * tile_grid::kSize + a + i % 4];
-    }
-    continueSides(window, onRight(sides) && a == 0, false, onLeft(sides) && b == 0, false);
+    CoreStep::Weights window[16];
+    step.window(a, b, sides, window);
     Matrix weights(16, step.matrix.rows());
     for (int i = 0; i < 16; ++i) {
       weights.row(i) = window[i];

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "limitsurf/surface/bezier_patch.h"
@@ -160,6 +162,18 @@ class SurfacePatches {
   /// points that ought to coincide. Infinity if the faces do not go all around the vertex, if
   /// `cores` are not all of the ring's, or if it is not less than `enough`.
   double ringAsymmetry(const std::vector<SurfacePiece>& cores, double enough) const;
+
+  /// What the points of a core are a function of: its ring, and which of the ring's faces it is on.
+  /// All faces are face 0 if a turn by one face maps the ring onto itself.
+  using CoreKind = std::pair<const Eigenbasis*, int>;
+  CoreKind coreKind(const SurfacePiece& core) const;
+  /// The number of cores of each kind around vertices with at most kFewFaces.
+  std::map<CoreKind, int> coreKinds() const;
+  static constexpr int kMostCorePoints = 2 * kFewFaces + 2 + tile_grid::kOuter;
+  /// The points of a whole core (steps = 0), at most kFewFaces of whose kind: those of its ring,
+  /// turned to the face of its kind, and then the outer points, relative to the core's vertex.
+  /// Returns false if they are not kept.
+  bool corePoints(const SurfacePiece& core, Padded points[kMostCorePoints]) const;
 
   /// Makes coreNormal() known for the kinds of cores that the surface has many of.
   void prepareCoreNormals();

@@ -66,8 +66,8 @@ struct SurfacePatches::Data {
   std::vector<Eigen::Matrix3d> frames;    // for each ring, an axis in each row
   std::vector<std::size_t> first_extent;  // for each ring
   std::vector<Extent> extents;            // after each step to flatSteps()
-  /// Known for some kinds of cores: of a basis and the face that normalFace() tells.
-  std::map<std::pair<const Eigenbasis*, int>, CoreNormal> core_normals;
+  /// Known for some kinds of cores.
+  std::map<CoreKind, CoreNormal> core_normals;
   Box cage_box;
   double diagonal = 0;  ///< of the cage_box; 0 without faces
   double unit = 1;      ///< the patches' own, as in PatchUnit

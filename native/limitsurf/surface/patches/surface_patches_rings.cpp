@@ -34,34 +34,31 @@ int turnedPoint(const Ring& ring, int faces, int point) {
 
 }  // namespace
 
-void SurfacePatches::prepareCoreNormals() {
-  const TileTable& table = data_->table;
-  std::map<std::pair<const Eigenbasis*, int>, int> counts;
-  for (const RingTile& tile : table.ring_tiles) {
-    const Eigenbasis& basis = *table.rings[tile.ring].basis;
+SurfacePatches::CoreKind SurfacePatches::coreKind(const SurfacePiece& core) const {
+  const RingTile& tile = data_->ringTile(core);
+  const Eigenbasis* basis = data_->table.rings[tile.ring].basis.get();
+  return {basis, turns(basis->ring()) ? 0 : tile.face};
+}
+
+std::map<SurfacePatches::CoreKind, int> SurfacePatches::coreKinds() const {
+  std::map<CoreKind, int> counts;
+  for (const RingTile& tile : data_->table.ring_tiles) {
+    const Eigenbasis& basis = *data_->table.rings[tile.ring].basis;
     if (basis.ring().faces <= kFewFaces) {
       ++counts[{&basis, turns(basis.ring()) ? 0 : tile.face}];
     }
   }
-  for (const auto& [key, count] : counts) {
-    const int size = key.first->ring().size() + tile_grid::kOuter;
-    if (count >= size * size * size / kWorth) {
-      data_->core_normals.emplace(key, CoreNormal(*key.first, key.second));
-    }
-  }
+  return counts;
 }
 
-bool SurfacePatches::coreNormal(const SurfacePiece& core, CoreNormal::Value& out) const {
+bool SurfacePatches::corePoints(const SurfacePiece& core, Padded points[kMostCorePoints]) const {
   const RingTile& tile = data_->ringTile(core);
   const Eigenbasis& basis = *data_->table.rings[tile.ring].basis;
   const Ring& ring = basis.ring();
-  const bool turned = turns(ring);
-  const auto found = data_->core_normals.find({&basis, turned ? 0 : tile.face});
-  if (found == data_->core_normals.end() || tile.ring_steps > data_->keptSteps(tile.ring)) {
+  if (ring.faces > kFewFaces || tile.ring_steps > data_->keptSteps(tile.ring)) {
     return false;
   }
-  constexpr int kMostPoints = 2 * kFewFaces + 2 + tile_grid::kOuter;
-  Padded points[kMostPoints];
+  const bool turned = turns(ring);
   const Padded* of_ring = data_->ringPoints(tile.ring, tile.ring_steps);
   for (int i = 0; i < ring.size(); ++i) {
     points[i] = data_->scale * of_ring[turned ? turnedPoint(ring, tile.face, i) : i];
@@ -72,6 +69,26 @@ bool SurfacePatches::coreNormal(const SurfacePiece& core, CoreNormal::Value& out
   for (std::size_t i = 0; i < outer_count; ++i) {
     points[static_cast<std::size_t>(ring.size()) + i] = data_->scale * outer.points[i];
   }
+  return true;
+}
+
+void SurfacePatches::prepareCoreNormals() {
+  for (const auto& [kind, count] : coreKinds()) {
+    const int size = kind.first->ring().size() + tile_grid::kOuter;
+    if (count >= size * size * size / kWorth) {
+      data_->core_normals.emplace(kind, CoreNormal(*kind.first, kind.second));
+    }
+  }
+}
+
+bool SurfacePatches::coreNormal(const SurfacePiece& core, CoreNormal::Value& out) const {
+  const auto found = data_->core_normals.find(coreKind(core));
+  Padded points[kMostCorePoints];
+  if (found == data_->core_normals.end() || !corePoints(core, points)) {
+    return false;
+  }
+  const RingTile& tile = data_->ringTile(core);
+  const Ring& ring = data_->table.rings[tile.ring].basis->ring();
   out = found->second.value(points);
   const Padded* deep = data_->ringPoints(tile.ring, data_->keptSteps(tile.ring));
   const auto along = [&](int edge) -> Vector3 {
