@@ -160,6 +160,19 @@ def test_pixels_that_lie_on_texels_come_through_unchanged():
         np.testing.assert_allclose(truth.pixels(made), expected, atol=1.01 / 255, err_msg=name)
 
 
+def test_a_flat_surface_may_lie_in_the_plane_of_the_empty():
+    """New objects are all added at the same place."""
+    ob = flat_square()
+    frame = empty(location=(0.5, 0.5, 0), empty_display_size=0.5)
+    shown = filled("Shown", noise((64, 64), alpha=False))
+    common = {"source": "PLANAR", "image": "Shown", "empty": frame.name}
+    made = project(ob, width=64, height=64, **common)
+    np.testing.assert_allclose(truth.pixels(made), truth.pixels(shown), atol=1.01 / 255)
+    result = bpy.ops.object.limit_project_image(mode="DECAL", decal_resolution=4, **common)
+    assert result == {"FINISHED"}
+    assert len(bpy.context.active_object.data.polygons) == 16
+
+
 def test_one_side_only():
     ob = flat_square()
     frame = empty(location=(0.5, 0.5, -1), empty_display_size=0.5, rotation_euler=(np.pi, 0, 0))

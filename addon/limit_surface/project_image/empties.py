@@ -8,7 +8,8 @@ from ..errors import RefusalError
 from ..reading import present_object
 from ..reading.projector import Projector, fitted, inverse
 
-# the share of the surface's extent that is added before and behind it, where no depths are given
+# the share of the surface's extent, or of its distance, that is added before and behind it, where
+# no depths are given
 ROOM = 0.01
 
 
@@ -79,7 +80,10 @@ def _flat(
     if depth is None:
         corners = np.stack(np.meshgrid(*bounds.T, indexing="ij"), axis=-1).reshape(-1, 3)
         behind = -(corners @ matrix[2, :3] + matrix[2, 3])
-        room = ROOM * max(np.ptp(behind), np.abs(behind).max())
+        # A flat surface may lie in the empty's own plane, so its extent along the rays and its
+        # distance may both be 0.
+        extent = np.linalg.norm(np.ptp(bounds, axis=0)) * np.linalg.norm(matrix[2, :3])
+        room = ROOM * max(extent, np.abs(behind).max())
         near, far = behind.min() - room, behind.max() + room
     else:
         near, far = np.array(depth) / np.linalg.norm(placed[:3, 2])
