@@ -35,13 +35,19 @@ def test_roots_are_exact(name):
     assert made.data.surface == ob
 
 
-def test_straight_guides_make_straight_children_along_the_normal():
+@pytest.mark.parametrize("transform", [{}, scenes.STRETCHED, scenes.MIRRORED])
+def test_straight_guides_make_straight_children_along_the_normal(transform):
+    """Guides are straight in the world, and have the same length there."""
     ob = subdivided("cross")
+    scenes.place(ob, transform)
     guides = add_guides(ob, length=0.25)
     made = add_children(guides)
-    strands = scenes.strands(made).astype(float)
+    strands, matrix = scenes.strands(made).astype(float), np.array(ob.matrix_world)[:3, :3]
     normal = scenes.surface_without_addon(ob).frames(*scenes.locations(made.data))[:, :, 2]
-    np.testing.assert_allclose(strands[:, -1] - strands[:, 0], 0.25 * normal, atol=1e-6)
+    normal = normal @ np.linalg.inv(matrix)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    along = (strands[:, -1] - strands[:, 0]) @ matrix.T
+    np.testing.assert_allclose(along, 0.25 * normal, atol=1e-6)
 
 
 def test_lengths_are_those_of_guides():

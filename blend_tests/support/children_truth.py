@@ -42,15 +42,17 @@ def shown_strands(ob: bpy.types.Object) -> np.ndarray:
 
 
 def expected(live: bpy.types.Object, guides: bpy.types.Object, ob: bpy.types.Object) -> np.ndarray:
-    """Returns the strands of live children. The guides have equally spaced points, as many as the
-    children, and share the surface's transform.
+    """Returns the strands of live children, which are shaped in the world. The guides have points
+    at equal distances there, as many as the children, and share the surface's transform.
     """
     face, uv, guide, weight = stored(live)
     surface = scenes.surface_without_addon(ob)
     root, normal = surface.evaluate(face, uv).position, surface.frames(face, uv)[:, :, 2]
     of_guides = surface.frames(*scenes.locations(guides.data))[:, :, 2]
+    matrix = np.array(live.matrix_world, np.float64)[:3, :3]
+    normal, of_guides = (_unit(np.linalg.solve(matrix.T, n.T).T) for n in (normal, of_guides))
     strands = follow_truth.shown_strands(guides).astype(np.float64)
-    offsets = strands - strands[:, :1]
+    offsets = (strands - strands[:, :1]) @ matrix.T
     lengths = _lengths(offsets)
     shape, length = np.zeros((len(face), *strands.shape[1:])), np.zeros(len(face))
     for k in range(guide.shape[1]):
@@ -58,7 +60,12 @@ def expected(live: bpy.types.Object, guides: bpy.types.Object, ob: bpy.types.Obj
         turned = np.einsum("nij,npj->npi", turn, offsets[guide[:, k]])
         shape += weight[:, k, None, None] * turned
         length += weight[:, k] * lengths[guide[:, k]]
-    return root[:, None] + shape * (length / _lengths(shape))[:, None, None]
+    shape *= (length / _lengths(shape))[:, None, None]
+    return root[:, None] + shape @ np.linalg.inv(matrix).T
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 def _lengths(strands: np.ndarray) -> np.ndarray:

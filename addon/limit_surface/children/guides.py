@@ -23,7 +23,8 @@ class Guides:
     count: int  # of the strands of the object
     strand: np.ndarray  # (g,) the strands that have a place on the surface
     at: Locations  # their places
-    points: np.ndarray  # (g, points, 3) as they are in this frame, in the surface's space
+    # (g, points, 3) as they are in this frame: in the world, but for the place of its origin
+    points: np.ndarray
 
 
 def read(
@@ -47,6 +48,7 @@ def read(
         raise RefusalError(f"{ob.name} has no strand with a place on {surface.name}")
     places.check(found.ptex_face_count, surface.name)
     positions, offsets = shown_strands.read(ob, found.matrix, depsgraph)
-    shapes = native.limitsurf.resample_strands(positions, offsets, points)
+    in_world = positions @ found.matrix[:3, :3].T
+    shapes = native.limitsurf.resample_strands(in_world, offsets, points)
     at = Locations(places.face.astype(np.int32), places.uv.astype(np.float32))
     return Guides(ObjectKey.of(ob), places.count, places.rows, at, shapes[places.rows])

@@ -27,7 +27,7 @@ from ..reading import cage
 from ..reading.named import find_object
 from ..sources.source_mesh import Choice
 from ..tasks import polling
-from ..tasks.job import Progress, part_of
+from ..tasks.job import Progress
 from . import guides as guide_hair
 from . import parting
 from .spread import Followed, Spread
@@ -35,7 +35,6 @@ from .spread import Followed, Spread
 DEPTH = 16  # of the tables of tiles that are made for live children
 # properties that live children do not store: what a run is about, and what it says
 _OF_ONE_RUN = {"rna_type", "surface", "guides", "summary", "replaces", "allow_large", "add_subsurf"}
-_ROOTS = 0.5  # the part of the progress at which the roots are evaluated
 
 
 class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, bpy.types.Operator):
@@ -279,24 +278,25 @@ def _live_table_of(
 
 
 def _curves(ground: Ground, radius: float, uv_map: str, progress: Progress) -> Strands:
+    """Shapes the children in the world, where an uneven scale of the surface does not bend them."""
     followed = _followed(ground)
-    count = len(followed.locations)
+    guides, found = followed.guides, ground.region.cage
+    space, count = WorldSpace(found.matrix, found.name), len(followed.locations)
+    normals = space.frames(found.surface().frames(guides.at.face, guides.at.uv))[:, :, 2]
     binding = Binding(followed.locations)
-    root, normal = np.empty((count, 3)), np.empty((count, 3))
-    for part in roots.evaluate(ground.evaluate, followed.locations, part_of(progress, 0, _ROOTS)):
+    position = np.empty((count, *guides.points.shape[1:]), np.float32)
+    for part in roots.evaluate(ground.evaluate, followed.locations, progress):
         binding.fill(part)
-        root[part.rows], normal[part.rows] = part.position, part.frame[:, :, 2]
-    guides = followed.guides
-    frames = ground.region.cage.surface().frames(guides.at.face, guides.at.uv)
-    position = native.limitsurf.child_strands(
-        guides.points,
-        frames[:, :, 2],
-        followed.guide,
-        followed.weight,
-        root,
-        normal,
-        progress=part_of(progress, _ROOTS, 1),
-    )
+        shapes = native.limitsurf.child_strands(
+            guides.points,
+            normals,
+            followed.guide[part.rows],
+            followed.weight[part.rows],
+            np.zeros_like(part.position),
+            space.frames(part.frame)[:, :, 2],
+        )
+        local = space.to_local(shapes.reshape(-1, 3)).reshape(shapes.shape)
+        np.add(part.position[:, None], local, out=position[part.rows], casting="same_kind")
     return Strands.equal(binding, position, np.full(count, radius), ground.surface_uv(), uv_map)
 
 

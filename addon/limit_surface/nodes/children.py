@@ -5,7 +5,8 @@ A child is a vertex of a table. Its position holds its place: u, v and the face.
 guides, by the numbers of their strands, and their weights; that of the last guide is what the other
 three leave of 1. The strand of a child is the weighted mean of its guides' shapes, each relative to
 its first point and turned by the smallest rotation from the surface's normal at the guide's root to
-that at the child's, and scaled to the weighted mean of their lengths.
+that at the child's, and scaled to the weighted mean of their lengths. Shapes, normals and lengths
+are those in the world, because an object with an uneven scale would bend them.
 
 Points are counted by numbers in single precision here: guides may have 2^24 points in all.
 """
@@ -47,7 +48,10 @@ def _build() -> bpy.types.NodeTree:
         [Socket("Geometry", "Geometry", "The children as the guides are in this frame")],
         is_modifier=True,
     )
-    guides, on_guides = _guides(tree)
+    to_world = tree.object_info(tree.get("GeometryNodeSelfObject"))["Transform"]
+    from_world = tree.get("FunctionNodeInvertMatrix", to_world)
+    of_normals = tree.get("FunctionNodeTransposeMatrix", from_world)
+    guides, on_guides = _guides(tree, to_world)
     children = _shown_children(tree)
     strands = _straight_strands(tree, children)
 
@@ -58,14 +62,16 @@ def _build() -> bpy.types.NodeTree:
     summed = tree.math("ADD", tree.math("ADD", weights[0], weights[1]), weights[2])
     weights.append(tree.math("SUBTRACT", 1.0, summed))
     of_curves: dict[str, tuple[str, Value]] = {"Root": ("VECTOR", root["Position"])}
+    root_normal = _in_world(tree, root["Normal"], of_normals)
     length: Value = 0.0
     for k, weight in enumerate(weights):
         guide = _child(tree, children, tree.attribute(GUIDE[k], "INT"), "INT")
         normal = tree.sample(guides, on_guides["Normal"], guide, "FLOAT_VECTOR", "CURVE")
+        normal = _in_world(tree, normal, of_normals)
         guide_length = tree.sample(guides, on_guides["Length"], guide, "FLOAT", "CURVE")
         length = tree.math("MULTIPLY_ADD", weight, guide_length, length)
         of_curves[f"First {k}"] = ("INT", tree.math("MULTIPLY", guide, tree.inputs[POINTS]))
-        of_curves[f"Turn {k}"] = ("ROTATION", _smallest_turn(tree, normal, root["Normal"]))
+        of_curves[f"Turn {k}"] = ("ROTATION", _smallest_turn(tree, normal, root_normal))
         of_curves[f"Weight {k}"] = ("FLOAT", weight)
     of_curves["Length"] = ("FLOAT", length)
     on = _captured(tree, strands, "CURVE", of_curves)
@@ -83,9 +89,8 @@ def _build() -> bpy.types.NodeTree:
         "CURVE",
         Scale=("FLOAT", tree.math("DIVIDE", on["Length"], _length(tree))),
     )
-    grown = tree.set_position(
-        scaled[0], True, tree.scaled_plus(tree.position(), scaled["Scale"], on["Root"])
-    )
+    shape = tree.mapped_direction(tree.scaled(tree.position(), scaled["Scale"]), from_world)
+    grown = tree.set_position(scaled[0], True, tree.vector("ADD", shape, on["Root"]))
     grown = tree.get("GeometryNodeSetCurveRadius", grown, True, tree.inputs[RADIUS])
     grown = tree.get("GeometryNodeSetMaterial", grown, True, tree.inputs[MATERIAL])
 
@@ -99,13 +104,14 @@ def _build() -> bpy.types.NodeTree:
     return tree.finish(Geometry=tree.switch(fits, tree.inputs["Geometry"], grown, "GEOMETRY"))
 
 
-def _guides(tree: Tree) -> tuple[Value, Outputs]:
-    """Returns the guides as polylines of equal numbers of points, relative to their first points,
-    with what is known of each.
+def _guides(tree: Tree, to_world: Value) -> tuple[Value, Outputs]:
+    """Returns the guides as polylines of equal numbers of points, relative to their first points as
+    the world's axes measure them, with what is known of each.
     """
     guides = tree.object_info(tree.inputs[GUIDES], "RELATIVE")["Geometry"]
     at = _on_surface(tree, tree.attribute(ids.FACE, "INT"), tree.attribute(ids.UV, "FLOAT_VECTOR"))
     guides = tree.get("GeometryNodeCurveSplineType", guides, True, spline_type="POLY")
+    guides = tree.set_position(guides, True, tree.mapped_direction(tree.position(), to_world))
     resample = tree.node("GeometryNodeResampleCurve")
     if "Mode" in resample.inputs:  # from Blender 5.0 on
         resample.inputs["Mode"].default_value = "Count"
@@ -163,6 +169,11 @@ def _on_surface(tree: Tree, face: Value, uv: Value) -> Outputs:
     )
 
 
+def _in_world(tree: Tree, normal: Value, of_normals: Value) -> Value:
+    """Returns the unit normal that the matrix makes of a normal in the object's space."""
+    return tree.vector("NORMALIZE", tree.mapped_direction(normal, of_normals))
+
+
 def _smallest_turn(tree: Tree, source: Value, target: Value) -> Value:
     """Returns the smallest rotation that turns a unit vector into another."""
     axis = tree.vector("CROSS_PRODUCT", source, target)
@@ -198,4 +209,4 @@ def _same_topology(tree: Tree) -> Value:
     return tree.compare("EQUAL", topology, tree.inputs[TOPOLOGY])
 
 
-CHILDREN = Kind(ids.CHILDREN_GROUP, 1, _build)
+CHILDREN = Kind(ids.CHILDREN_GROUP, 2, _build)
