@@ -233,6 +233,27 @@ def test_unbound_they_are_curves_that_can_follow(scene):
     assert away < 1e-5 * follow_truth.diagonal(ob)
 
 
+def test_unbound_they_are_hair_as_the_other_mode_makes_it():
+    ob = deforming("grid with holes")
+    scenes.add_uv_map(ob, lambda p: p[:, :2] / 5)
+    guides = scenes.add_hair(ob, distribution="UNIFORM", count=12, follow="NODES")
+    guides.data.materials.append(bpy.data.materials.new("Of the guides"))
+    live = add_live(guides)
+    chosen = bpy.data.materials.new("Chosen since")
+    children_truth.set_input(live, nodes.MATERIAL, chosen)
+    select(live)
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    scenes.activate(guides)
+    bpy.ops.object.limit_children_add(distribution="UNIFORM", count=300, seed=4, follow="NONE")
+    made = bpy.context.active_object.data
+    assert set(live.data.attributes.keys()) == set(made.attributes.keys())
+    for name, bound in ((ids.SURFACE_UV, 0), ("radius", 1e-6), (ids.POSITION, 1e-5)):
+        found, expected = (attributes.read(data, name) for data in (live.data, made))
+        np.testing.assert_allclose(found, expected, atol=bound)
+    assert live.data.surface_uv_map == made.surface_uv_map == "Flat"
+    assert list(live.data.materials) == [chosen]
+
+
 def test_the_surface_unbinds_them_with_their_guides(scene):
     ob, guides, live = scene
     select(ob)

@@ -15,6 +15,7 @@ from ..nodes import children as nodes
 from ..nodes import groups
 from ..placing import following, live_children, tables
 from ..placing.binding import Binding
+from ..placing.new_hair import Strands
 from ..placing.places import ROOT_KINDS
 from ..placing.posed_surface import PosedSurface
 from ..placing.roots import Locations
@@ -27,10 +28,8 @@ class _Curves:
     """What live children are in this frame, all of them."""
 
     ob: bpy.types.Object
-    points: int  # on each strand
-    position: np.ndarray
-    radius: np.ndarray
-    binding: Binding
+    strands: Strands
+    materials: list[bpy.types.Material | None]
 
 
 class ChildrenUnbinding:
@@ -49,10 +48,10 @@ class ChildrenUnbinding:
         """Changes the file, and returns a report."""
         for made in self._curves:
             data, table = made.ob.data, live_children.table_of(made.ob)
-            data.add_curves([made.points] * len(made.binding.locations))
-            attributes.write(data, ids.POSITION, "FLOAT_VECTOR", "POINT", made.position)
-            attributes.write(data, "radius", "FLOAT", "POINT", made.radius)
-            made.binding.write(data, "CURVE")
+            made.strands.fill(data)
+            data.materials.clear()
+            for material in made.materials:
+                data.materials.append(material)
             made.ob.modifiers.remove(live_children.modifier_of(made.ob))
             for name in (ids.SIGNATURE, ids.CHILDREN_SETTINGS, ids.CHILDREN_GUIDES):
                 if name in made.ob:
@@ -67,7 +66,7 @@ def _read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Curves:
     following.check_editable(ob)
     if ob.data.users > 1:
         raise RefusalError(f"{ob.name} shares its data: make it a single user first")
-    attributes.check_names(ob, ROOT_KINDS, "CURVE")
+    attributes.check_names(ob, ROOT_KINDS | {ids.SURFACE_UV: "FLOAT2"}, "CURVE")
     surface, table = live_children.surface_of(ob), live_children.table_of(ob)
     count = live_children.count_of(ob)
     modifier = live_children.modifier_of(ob)
@@ -88,8 +87,16 @@ def _read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Curves:
                 "it"
             )
         position, radius = (attributes.read(shown, kind) for kind in (ids.POSITION, "radius"))
+        materials = [material and material.original for material in shown.materials]
     u, v, face = attributes.read(table.data, ids.POSITION).T
     at = Locations(face.astype(np.int32), np.stack([u, v], axis=1))
     posed = PosedSurface(cage.read(surface, depsgraph))
-    binding = Binding.at(posed, at, transform.world_matrix(ob))
-    return _Curves(ob, len(position) // count, position, radius, binding)
+    strands = Strands(
+        Binding.at(posed, at, transform.world_matrix(ob)),
+        np.full(count, len(position) // count, np.int32),
+        position,
+        radius,
+        posed.cage.surface_uv(posed.in_object, at.face, at.uv.astype(np.float64)),
+        posed.cage.uv_map.name if posed.cage.uv_map else "",
+    )
+    return _Curves(ob, strands, materials)

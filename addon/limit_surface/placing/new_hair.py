@@ -41,6 +41,16 @@ class Strands:
         radii = radius.repeat(points)
         return cls(binding, sizes, position.reshape(-1, 3), radii, surface_uv, uv_map)
 
+    def fill(self, curves: bpy.types.Curves) -> None:
+        """Adds the strands to curves that have none."""
+        curves.add_curves(self.sizes.tolist())
+        attributes.write(curves, ids.POSITION, "FLOAT_VECTOR", "POINT", self.position)
+        attributes.write(curves, "radius", "FLOAT", "POINT", self.radius)
+        self.binding.write(curves, "CURVE")
+        if self.surface_uv is not None:
+            curves.surface_uv_map = self.uv_map
+            attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", self.surface_uv)
+
 
 def add(
     context: bpy.types.Context,
@@ -52,16 +62,10 @@ def add(
     """Adds a Curves object that shares the surface's transform, as Blender's Empty Hair does."""
     curves = bpy.data.hair_curves.new(name)
     try:
-        curves.add_curves(strands.sizes.tolist())
-        attributes.write(curves, ids.POSITION, "FLOAT_VECTOR", "POINT", strands.position)
-        attributes.write(curves, "radius", "FLOAT", "POINT", strands.radius)
-        strands.binding.write(curves, "CURVE")
+        strands.fill(curves)
         curves.surface = surface
         for material in materials:
             curves.materials.append(material)
-        if strands.surface_uv is not None:
-            curves.surface_uv_map = strands.uv_map
-            attributes.write(curves, ids.SURFACE_UV, "FLOAT2", "CURVE", strands.surface_uv)
         return add_on_surface(context, name, curves, surface)
     except BaseException:
         bpy.data.hair_curves.remove(curves)
