@@ -100,6 +100,20 @@ def test_settings():
     assert not settings.use_close_tip
 
 
+def test_the_material_of_the_hair(capfd):
+    ob = scenes.cross()
+    hair = add_hair(ob)
+    skin, brown = (bpy.data.materials.new(name) for name in ("Skin", "Brown"))
+    hair.data.materials.append(brown)
+    ob.data.materials.append(skin)
+    convert()
+    assert "Cross has no material slot with Brown" in capfd.readouterr().out
+    ob.data.materials.append(brown)
+    convert()
+    assert "Brown" not in capfd.readouterr().out
+    assert [system.settings.material for system in ob.particle_systems] == [1, 2]
+
+
 def test_particles_stand_on_the_right_polygon():
     """Many roots of the upper sheet are nearer to the lower one's polygons than to their own."""
     x, y = np.mgrid[:4, :4].reshape(2, -1)

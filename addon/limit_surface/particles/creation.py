@@ -30,6 +30,7 @@ class Particles:
     place: np.ndarray  # (n, 3) on the control mesh
     strands: np.ndarray  # (n, keys, 3)
     radius: tuple[float, float]  # at the root and at the tip, in the world
+    slot: int  # the surface's material slot, counted from 1
 
 
 def add(context: bpy.types.Context, surface: bpy.types.Object, made: Particles) -> str:
@@ -87,7 +88,7 @@ def _set_up(
     settings.hair_length = float(lengths.mean())
     steps = math.ceil(math.log2(keys - 1))
     settings.display_step = settings.render_step = min(max(steps, _LEAST_STEPS), _MOST_STEPS)
-    settings.render_type = "PATH"
+    settings.render_type, settings.material = "PATH", made.slot
     thickness.set_profile(settings, *made.radius)
     context.view_layer.update()
     system.Shown.of(context, surface, found.name)  # refuses one that is not evaluated

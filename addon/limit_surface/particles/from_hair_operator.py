@@ -31,6 +31,7 @@ class Made:
     count: int
     keys: int
     resampled: int  # the number of strands that had another number of points
+    unseen: str  # the material of the hair, if the surface has it in no slot
 
 
 class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
@@ -89,6 +90,8 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
         depsgraph = context.evaluated_depsgraph_get()
         made, resampled = strands.read(hair, surface, self.keys, depsgraph)
         key = ObjectKey.of(surface)
+        material = strands.material_of(hair)
+        unseen = material.name if material and not strands.slot_of(material, surface) else ""
 
         at_levels = system.at_render_levels(key) if self.levels == "RENDER" else nullcontext()
 
@@ -101,7 +104,7 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
                 system.remove(key.find(), name)
                 raise
             count, keys = made.strands.shape[:2]
-            return Made(key.name, name, count, keys, resampled)
+            return Made(key.name, name, count, keys, resampled, unseen)
 
         return self.watch(context, PiecewiseJob(pieces()), "Making particles")
 
@@ -114,8 +117,13 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
         if made.resampled:
             self.summary += f"\n{counted(made.resampled, 'strands', 'was', 'were')} resampled"
         self.report({"INFO"}, self.summary.replace("\n", "; "))
-        warning = _levels_warning(bpy.data.objects[made.surface], self.levels)
-        if warning:
+        warnings = [_levels_warning(bpy.data.objects[made.surface], self.levels)]
+        if made.unseen:
+            warnings.append(
+                f"{made.surface} has no material slot with {made.unseen}, the material of the "
+                "hair: add one, and choose it in the particle settings"
+            )
+        for warning in filter(None, warnings):
             self.summary += f"\n{warning}"
             self.report({"WARNING"}, warning)
         return {"FINISHED"}

@@ -48,7 +48,19 @@ def read(
     place = _places(found, places, strands[:, 0], standing)
     radius = _radius(hair, offsets, depsgraph)
     resampled = int(np.count_nonzero(sizes != keys))
-    return Particles(hair.name, place, strands, radius), resampled
+    slot = slot_of(material_of(hair), surface) or 1
+    return Particles(hair.name, place, strands, radius, slot), resampled
+
+
+def material_of(hair: bpy.types.Object) -> bpy.types.Material | None:
+    """Returns the first material of hair: all particles of a system have the same one."""
+    return hair.material_slots[0].material if hair.material_slots else None
+
+
+def slot_of(material: bpy.types.Material | None, surface: bpy.types.Object) -> int:
+    """Returns the number of the surface's slot with this material, counted from 1; 0 for none."""
+    found = [slot.material for slot in surface.material_slots]
+    return found.index(material) + 1 if material and material in found else 0
 
 
 def _with_keys(points: np.ndarray, offsets: np.ndarray, keys: int) -> np.ndarray:
