@@ -256,7 +256,7 @@ def family():
 
 
 @pytest.mark.parametrize("align", ["NONE", "NORMAL", "NORMAL_DU"])
-def test_parent_and_child_both_snapped(align):
+def test_parent_and_child_both_snapped(align, capfd):
     target = stretched(scenes.cross())
     truth = Truth(target)
     parent, child = family()
@@ -267,6 +267,8 @@ def test_parent_and_child_both_snapped(align):
     np.testing.assert_allclose(truth.distances(after), 0, atol=1e-5)
     moved = np.linalg.norm(after - before, axis=1)
     np.testing.assert_allclose(moved, truth.distances(before), atol=1e-5)
+    reported = f"moved by {moved.mean():.4g} on average, {moved.max():.4g} at most"
+    assert reported in capfd.readouterr().out
     if align != "NONE":
         z = np.array([ob.matrix_world.to_3x3().col[2].normalized() for ob in (parent, child)])
         np.testing.assert_allclose(z, truth.normals_at(after), atol=1e-4)

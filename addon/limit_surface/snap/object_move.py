@@ -31,10 +31,6 @@ class ObjectMove:
         self._rotation = _ROTATIONS.get(ob.rotation_mode, "rotation_euler")
         self._kept = {name: tuple(getattr(ob, name)) for name in ("location", self._rotation)}
 
-    @property
-    def distance(self) -> float:
-        return float(np.linalg.norm(self._position - self._before[:3, 3]))
-
     def begin(self) -> None:
         ob = self._ob
         basis = _array(ob.matrix_basis)[:3, :3]

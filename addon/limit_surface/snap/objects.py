@@ -35,28 +35,31 @@ class SnappedObjects:
         objects = [self._objects[row] for row in placement.rows]
         children = _children() if choices.keep_children else {}
         depths = np.array([_depth(ob) for ob in objects], int)
+        origins = np.array([ob.matrix_world.translation for ob in objects], np.float64)
+        distances = np.linalg.norm(placement.position - origins.reshape(-1, 3), axis=1)
         outcome = Outcome(self.noun)
         unkept = 0
         for depth in np.unique(depths):
-            moves = {}
+            moves: dict[int, ObjectMove] = {}
+            kept_by: dict[int, list[_KeptChild]] = {}
             for i in np.flatnonzero(depths == depth):
-                move = ObjectMove(
+                moves[i] = ObjectMove(
                     objects[i], placement.position[i], placement.frame[i], choices.align
                 )
-                moves[move] = [_KeptChild(child) for child in children.get(objects[i], ())]
-            for move in moves:
+                kept_by[i] = [_KeptChild(child) for child in children.get(objects[i], ())]
+            for move in moves.values():
                 move.begin()
             bpy.context.view_layer.update()
-            for move, kept in moves.items():
+            for i, move in moves.items():
                 reason = move.finish()
                 if reason:
                     outcome.failures[reason] += 1
                     continue
-                outcome.distances.append(np.array([move.distance]))
-                for child in kept:
+                outcome.distances.append(distances[i : i + 1])
+                for child in kept_by[i]:
                     child.hold()
             bpy.context.view_layer.update()
-            unkept += sum(not child.is_in_place() for kept in moves.values() for child in kept)
+            unkept += sum(not child.is_in_place() for kept in kept_by.values() for child in kept)
         if unkept:
             outcome.notes.append(
                 f"{counted(unkept, 'children')} of snapped objects could not be kept where "
