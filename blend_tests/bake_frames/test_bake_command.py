@@ -253,6 +253,18 @@ def test_objects_that_cannot_be_baked(waves, tmp_path, capfd):
     assert bake(tmp_path, "Camera") == 0
 
 
+def test_names_that_files_cannot_have(waves, tmp_path, capfd):
+    """One job after the other must not take the files of the first for its own."""
+    hair = bpy.data.objects["Limit Hair"]
+    waves.name, hair.name = "a/b", "a:b"
+    for name in ("a/b", "a:b"):
+        assert bake(tmp_path, name, options=("--format", "npz")) == 0
+        assert "3 written" in capfd.readouterr().out
+    names = contents_of_files(tmp_path)
+    assert len(names) == 2 * 3 + 1
+    assert all(re.fullmatch(r"a_b_[0-9a-f]{8}\.000[123]\.npz|bake\.json", name) for name in names)
+
+
 def test_a_folder_that_cannot_be_written(waves, tmp_path, capfd):
     (tmp_path / "file").touch()
     assert bake(tmp_path / "file", "Flat") == command.BAD_ARGUMENTS

@@ -36,6 +36,7 @@ class Bake:
         self._arguments = arguments
         self._scene = bpy.context.scene
         self.objects = _find(arguments, self._scene)
+        self._names = _file_names(self._scene, self.objects)
         self._files = FrameFiles(arguments.folder, arguments.format.suffix)
 
     @contextmanager
@@ -76,7 +77,7 @@ class Bake:
         remarks = []
         is_shown = False
         for subject in subjects:
-            path = self._files.path(file_names.allowed(subject.ob.name), frame)
+            path = self._files.path(self._names[subject.ob], frame)
             if path.is_file() and not self._arguments.overwrite:
                 done[EXISTED] += 1
                 continue
@@ -121,11 +122,25 @@ def _find(arguments: Arguments, scene: bpy.types.Scene) -> list[bpy.types.Object
         if arguments.format.as_rendered and ob.hide_render and not _is_animated(ob):
             raise RefusalError(f"{name} is disabled in renders: its files would be empty")
         found.append(ob)
-    # some systems ignore the case
-    names = Counter(file_names.allowed(ob.name).lower() for ob in found)
-    if name := next((name for name, count in names.items() if count > 1), ""):
-        raise RefusalError(f"several objects would be written to the same file {name}")
     return found
+
+
+def _file_names(
+    scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]
+) -> dict[bpy.types.Object, str]:
+    """Returns how the objects' files are called. They depend on the scene alone, because jobs that
+    bake one object each must not take each other's files for their own.
+    """
+    same = Counter(file_names.allowed(ob.name) for ob in scene.objects)
+    names = {}
+    for ob in objects:
+        name = file_names.allowed(ob.name)
+        names[ob] = file_names.different(ob.name) if same[name] > 1 else name
+    # some systems ignore the case
+    counts = Counter(name.lower() for name in names.values())
+    if name := next((name for name, count in counts.items() if count > 1), ""):
+        raise RefusalError(f"several objects would be written to the same file {name}")
+    return names
 
 
 def _is_animated(ob: bpy.types.Object) -> bool:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names of images and of their files, which are found again and stay different from each other."""
 
-import hashlib
-
 from ..tasks import file_names
 
 #: Blender's limit before version 5.0, in bytes. It counts in all versions, so that an image that
@@ -18,18 +16,13 @@ def with_ending(name: str, ending: str) -> str:
     whole = name + ending
     if len(whole.encode()) <= MOST_BYTES:
         return whole
-    ending = f"~{_number(name)}{ending}"
+    ending = f"~{file_names.number(name)}{ending}"
     kept = name.encode()[: MOST_BYTES - len(ending.encode())]
     return kept.decode(errors="ignore") + ending
 
 
 def file_stem(name: str) -> str:
     """Returns the name of an image as it can be part of a file's name everywhere: spaces become _,
-    and where other characters had to be replaced, a number keeps different names different.
+    too.
     """
-    stem = file_names.allowed(name)
-    return (stem if stem == name else f"{stem}_{_number(name)}").replace(" ", "_")
-
-
-def _number(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:8]
+    return file_names.different(name).replace(" ", "_")
