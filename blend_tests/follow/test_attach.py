@@ -369,6 +369,22 @@ def test_a_carrier_that_carries_nothing_any_more_is_removed():
     check(ob, objects, before)
 
 
+@pytest.mark.parametrize("leave", ["delete", "detach"])
+def test_a_carrier_that_carries_nothing_is_removed_when_it_is_unbound(leave):
+    ob = deforming("cross")
+    objects = props(ob, 2)
+    attach(ob, objects)
+    select(objects[0], objects)
+    if leave == "delete":
+        bpy.ops.object.delete()
+    else:
+        bpy.ops.object.parent_clear(type="CLEAR_KEEP_TRANSFORM")
+    select(ob, [])
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    assert not carriers()
+    assert not [mesh for mesh in bpy.data.meshes if mesh.name.startswith("Limit")]
+
+
 def test_rebinding_the_surface_keeps_the_objects():
     ob = deforming("cross")
     objects = props(ob, 4)

@@ -14,7 +14,7 @@ import numpy as np
 from .. import ids
 from ..placing import following, tables
 from ..placing.binding import Binding
-from ..placing.followers import modifier_of, own_followers_of
+from ..placing.followers import own_followers_of
 from ..placing.posed_surface import Places
 from ..reading import attributes
 
@@ -29,16 +29,6 @@ def is_carrier(ob: bpy.types.Object | None) -> bool:
 
 def carrier_of(surface: bpy.types.Object) -> bpy.types.Object | None:
     return next((ob for ob in own_followers_of(surface) if is_carrier(ob)), None)
-
-
-def remove_unused() -> None:
-    """Removes carriers that neither follow a surface nor carry anything any more: they have been
-    unbound, and what they carried has been attached again.
-    """
-    for ob in list(bpy.data.objects):
-        is_local = ob.library is None and not ob.override_library
-        if is_local and is_carrier(ob) and modifier_of(ob) is None and not ob.children:
-            tables.remove_object(ob)
 
 
 class Extension:

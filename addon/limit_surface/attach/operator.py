@@ -14,13 +14,14 @@ from ..placing.binding import Binding
 from ..placing.binding_operator import BindingOperator
 from ..placing.followers import live_modifier_of, modifier_of
 from ..placing.posed_surface import Places, PosedSurface, at_closest
+from ..placing.unbinding import remove_unused_carriers
 from ..reading import cage, transform
 from ..tasks import polling
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary
 from ..tasks.refused_faces import check_some_left
-from .carrier import Extension, is_carrier, remove_unused
+from .carrier import Extension, is_carrier
 from .parenting import attach, parent_matrices
 
 _WORLD = np.eye(4)
@@ -78,7 +79,7 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
         now = parent_matrices(context, [(new.carrier, vertices) for vertices in new.vertices])
         for ob, vertices, before, after in zip(objects, new.vertices, was, now, strict=True):
             attach(ob, new.carrier, vertices, before, after)
-        remove_unused()
+        remove_unused_carriers()
         context.view_layer.update()
         self._report(
             surface, len(objects), len(attached), np.linalg.norm(origins - places.position, axis=1)

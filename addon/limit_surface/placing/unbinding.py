@@ -95,6 +95,7 @@ class Unbinding:
                 _remove_attributes(data)
         _remove_unused(used - {None}, surfaces - {None})
         names = ", ".join(ob.name for ob in self._things)
+        remove_unused_carriers()
         where = "where they are shown now" if self._frozen else "where they are at rest"
         return f"Unbound {where}: {names}"
 
@@ -202,6 +203,16 @@ def _remove_attributes(data: bpy.types.ID) -> None:
     if ids.SIGNATURE in data:
         del data[ids.SIGNATURE]
     data.update_tag()
+
+
+def remove_unused_carriers() -> None:
+    """Removes carriers of attached objects that neither follow a surface nor carry anything any
+    more: they have been unbound, and what they carried was deleted, detached or attached again.
+    """
+    for ob in list(bpy.data.objects):
+        is_carrier = ob.library is None and not ob.override_library and ids.CARRIER_MARK in ob
+        if is_carrier and followers.modifier_of(ob) is None and not ob.children:
+            tables.remove_object(ob)
 
 
 def leftovers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
