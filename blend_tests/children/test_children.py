@@ -210,6 +210,7 @@ def test_children_do_not_reach_through_a_lip():
     below = scenes.locations(guides.data)[0] % (n - 1) < 6
     strands[:, :, 2] = strands[:, :1, 2] + np.where(below, -1, 1)[:, None] * np.linspace(0, 1, 8)
     guides.data.points.foreach_set("position", strands.ravel())
+    guides.data.update_tag()
     made = add_children(guides)
     face = scenes.locations(made.data)[0] % (n - 1)
     strands = scenes.strands(made)

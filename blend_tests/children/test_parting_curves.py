@@ -104,6 +104,7 @@ def test_the_side_of_the_curve_counts_and_not_that_of_edges():
     lean = np.where(is_left(strands[:, 0]), -1, 1)[:, None] * np.linspace(0, 1, 8)
     strands[:, :, 0] = strands[:, :1, 0] + lean
     guides.data.points.foreach_set("position", strands.ravel())
+    guides.data.update_tag()
     curve = add_curve([(1.3 + 0.37 * y, y, 0) for y in (-1, 5)])
     made = add_children(guides, parting="CURVES", parting_curves=curve.name, count=2000)
     strands = scenes.strands(made)
@@ -133,6 +134,7 @@ def test_a_ring_around_a_cylinder_parts():
     above = strands[:, 0, 2] > 1.7
     strands[:, :, 2] += np.where(above, 1, -1)[:, None] * np.linspace(0, 1, 8)
     guides.data.points.foreach_set("position", strands.ravel())
+    guides.data.update_tag()
     turn = 2 * np.pi * np.arange(64) / 64
     ring = add_curve([(1.1 * np.cos(a), 1.1 * np.sin(a), 1.7) for a in turn], cyclic=True)
     made = add_children(guides, parting="CURVES", parting_curves=ring.name, count=2000)

@@ -30,6 +30,7 @@ def two_sided(ob: bpy.types.Object) -> bpy.types.Object:
     lean = np.where(left, -1, 1)[:, None] * np.linspace(0, 1, 8)
     strands[:, :, 0] = strands[:, :1, 0] + lean
     guides.data.points.foreach_set("position", strands.ravel())
+    guides.data.update_tag()
     return guides
 
 

@@ -127,10 +127,11 @@ def _guides(tree: Tree, to_world: Value) -> tuple[Value, Outputs]:
     )
     curve = tree.node("GeometryNodeCurveOfPoint").outputs["Curve Index"]
     first = tree.math("MULTIPLY", curve, tree.inputs[POINTS])
-    start = tree.get(
-        "GeometryNodeFieldAtIndex", tree.position(), first, data_type="FLOAT_VECTOR", domain="POINT"
-    )
-    return tree.set_position(known[0], True, tree.vector("SUBTRACT", tree.position(), start)), known
+    start = tree.node("GeometryNodeFieldAtIndex", data_type="FLOAT_VECTOR", domain="POINT")
+    tree.set(start.inputs["Value"], tree.position())  # the second input in Blender 4.2
+    tree.set(start.inputs["Index"], first)
+    offset = tree.vector("SUBTRACT", tree.position(), start.outputs["Value"])
+    return tree.set_position(known[0], True, offset), known
 
 
 def _shown_children(tree: Tree) -> Value:
