@@ -188,6 +188,7 @@ def test_particles_on_the_mesh_before_its_subdivision():
     strands = drawn(ob)
     hair = made(ob, snap_roots=False)
     np.testing.assert_allclose(in_world(hair), strands, atol=particle_scenes.bound(strands))
+    assert not hair.modifiers  # particles do not deform the mesh
 
 
 def test_strands_of_different_numbers_of_keys():

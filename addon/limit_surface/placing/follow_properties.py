@@ -10,6 +10,8 @@ from ..reading import rules
 
 # Objects whose children they deform without a modifier
 _DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}
+# Modifiers that leave the mesh as it is
+_WITHOUT_EFFECT = {"PARTICLE_SYSTEM"}
 
 
 _AUTO = (
@@ -94,7 +96,9 @@ def can_deform(surface: bpy.types.Object) -> bool:
         or mesh.animation_data
         or (surface.parent and surface.parent_type in _DEFORMING_PARENTS)
         or any(
-            (modifier.show_viewport or modifier.show_render) and modifier not in captures
+            (modifier.show_viewport or modifier.show_render)
+            and modifier.type not in _WITHOUT_EFFECT
+            and modifier not in captures
             for modifier in surface.modifiers[:before]
         )
     )
