@@ -8,6 +8,7 @@ import pytest
 import scenes
 from follow_scenes import deforming
 from limit_surface import ids
+from limit_surface.attach import parenting
 from limit_surface.nodes import groups
 from limit_surface.placing.followers import live_modifier_of, modifier_of
 from limit_surface.reading import attributes
@@ -167,7 +168,9 @@ def test_animated_and_constrained_objects_keep_their_own_motion():
 
 
 @pytest.mark.parametrize("to_another", [False, True])
-def test_attached_objects_can_be_attached_anew(to_another, capfd):
+@pytest.mark.parametrize("probes", [1, 2, 256])
+def test_attached_objects_can_be_attached_anew(to_another, probes, monkeypatch, capfd):
+    monkeypatch.setattr(parenting, "MOST_PROBES", probes)
     ob = deforming("cross")
     objects = props(ob, 3)
     attach(ob, objects)
@@ -178,6 +181,8 @@ def test_attached_objects_can_be_attached_anew(to_another, capfd):
         target = scenes.flat_grid(3)
         follow_truth.animate(target)
     attach(target, objects)
+    assert not [each for each in bpy.data.objects if each.name.startswith(ids.CARRIED_BY)]
+    assert len(bpy.data.scenes) == 1
     told = capfd.readouterr().out
     assert f"3 objects are attached to {target.name}. The largest distance from the" in told
     assert told.endswith("3 objects were attached already and got new places\n")

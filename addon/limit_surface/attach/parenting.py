@@ -7,30 +7,58 @@ an attached object's own matrix would tell is hidden by its animation, drivers a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 
 from .. import ids
+from ..reading import private_scene
+
+# The time that Blender takes to remove objects grows with the square of their number.
+MOST_PROBES = 256
 
 
 def parent_matrices(
     context: bpy.types.Context, parents: Sequence[tuple[bpy.types.Object, Sequence[int]]]
 ) -> list[np.ndarray]:
     """Returns the matrices (4, 4) of parents, given with three of their vertices."""
-    probes = []
-    try:
-        for parent, vertices in parents:
-            probe = bpy.data.objects.new(parent.name, None)
-            probes.append(probe)
-            context.scene.collection.objects.link(probe)
-            _set_parent(probe, parent, vertices)
-        context.view_layer.update()
-        return [np.array(probe.matrix_world, np.float64) for probe in probes]
-    finally:
-        bpy.data.batch_remove(probes)  # one after the other they would take seconds
+    probes: list[bpy.types.Object] = []
+    matrices: list[np.ndarray] = []
+    with _scene_for(context, len(parents)) as (scene, layer):
+        try:
+            for _ in parents[:MOST_PROBES]:
+                probe = bpy.data.objects.new(ids.CARRIED_BY, None)
+                probes.append(probe)
+                scene.collection.objects.link(probe)
+            while len(matrices) < len(parents):
+                # There may be fewer parents left than probes.
+                part = list(zip(probes, parents[len(matrices) :], strict=False))
+                for probe, (parent, vertices) in part:
+                    _set_parent(probe, parent, vertices)
+                layer.update()
+                for probe, _ in part:
+                    posed = probe.evaluated_get(layer.depsgraph)
+                    matrices.append(np.array(posed.matrix_world, np.float64))
+        finally:
+            bpy.data.batch_remove(probes)  # one after the other they would take seconds
+    return matrices
+
+
+@contextmanager
+def _scene_for(
+    context: bpy.types.Context, count: int
+) -> Iterator[tuple[bpy.types.Scene, bpy.types.ViewLayer]]:
+    """Yields the user's scene and view layer for a few probes. Many would cause all of its objects
+    to be evaluated many times, so they are in a private scene.
+    """
+    if count <= MOST_PROBES:
+        yield context.scene, context.view_layer
+        return
+    with private_scene.like(context.scene) as scene:
+        yield scene, private_scene.layer(scene, context.view_layer)
 
 
 def attach(
