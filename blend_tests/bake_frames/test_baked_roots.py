@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Roots in caches are where `limitsurf` says, on the control mesh of each frame."""
 
+import re
+
 import bpy
 import follow_truth
 import live_scenes
@@ -124,6 +126,46 @@ def test_hair_with_a_transform_of_its_own(tmp_path):
     assert bake(tmp_path, hair.name, frames="9") == 0
     error = read_back(tmp_path / "Limit Hair.0009.abc", "CURVES")[::5] - roots_in_world(ob, hair, 9)
     assert np.abs(error).max() < 2 * follow_truth.POSITION_BOUND * follow_truth.diagonal(ob)
+
+
+@pytest.fixture
+def sheared():
+    """A surface that was parented where it stood to a turned and stretched empty, and turned
+    then: relative to its parent it is sheared.
+    """
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.collection.objects.link(empty)
+    empty.rotation_euler, empty.scale = (0.5, 0.3, 0.7), (1, 2, 0.5)
+    ob = deforming("cross")
+    ob.parent = empty
+    bpy.context.view_layer.update()
+    ob.matrix_parent_inverse = empty.matrix_world.inverted()
+    scenes.add_hair(ob, per_side=2, points=3, follow="NODES")
+    return ob
+
+
+def test_shear_is_in_usd_files(sheared, tmp_path):
+    assert bake(tmp_path, "Limit Hair", frames="9", options=("--format", "usda")) == 0
+    text = (tmp_path / "Limit Hair.0009.usda").read_text()
+    points = usd_numbers(r"point3f\[\] points", text)[0].reshape(-1, 3)
+    for matrix in reversed(usd_numbers(r"matrix4d xformOp:transform", text)):
+        points = scenes.transformed(matrix.reshape(4, 4).T, points)
+    expected = roots_in_world(sheared, bpy.data.objects["Limit Hair"], 9)
+    bound = 2 * follow_truth.POSITION_BOUND * follow_truth.diagonal(sheared)
+    assert np.abs(points[::3] - expected).max() < bound
+
+
+def usd_numbers(name, text):
+    """Returns the numbers of each attribute of this name in a text file of USD. Blender's own
+    import would leave out shear.
+    """
+    found = re.findall(rf"{name} = (.*)", text)
+    return [np.array(re.findall(r"[-+.\de]+", values), float) for values in found]
+
+
+def test_shear_is_refused_as_alembic(sheared, tmp_path, capfd):
+    assert bake(tmp_path, "Limit Hair", frames="9") == command.FRAMES_FAILED
+    assert "1 failed; Limit Hair.0009.abc: Cross is sheared by its own" in capfd.readouterr().out
 
 
 @pytest.fixture

@@ -51,6 +51,7 @@ def build_options() -> Any:
 
 
 def _write_alembic(path: Path, subject: Subject) -> None:
+    _check_shear(subject.ob)
     _export(
         bpy.ops.wm.alembic_export,
         filepath=str(path),
@@ -78,8 +79,26 @@ def _write_usd(path: Path, subject: Subject) -> None:
         export_textures=False,
         export_volumes=False,
         convert_world_material=False,
+        xform_op_mode="MAT",  # location, rotation and scale cannot hold shear
         evaluation_mode="RENDER",
     )
+
+
+def _check_shear(ob: bpy.types.Object) -> None:
+    """Raises RefusalError where the transform of the object or of one of its parents, relative to
+    its own parent, is sheared: the exporter writes location, rotation and scale.
+    """
+    found: bpy.types.Object | None = ob
+    while found:
+        own = found.matrix_world
+        if found.parent:
+            own = found.parent.matrix_world.inverted_safe() @ own
+        if not own.to_3x3().normalized().is_orthogonal_axis_vectors:
+            raise RefusalError(
+                f"{found.name} is sheared by its own transform, which Blender's Alembic exporter "
+                "does not write: use --format usd or npz"
+            )
+        found = found.parent
 
 
 def _export(operator: Callable[..., set[str]], **properties: object) -> None:
