@@ -12,7 +12,9 @@ namespace limitsurf {
 /// A tile has (resolution + 1) x (resolution + 1) pixels; pixel (i, j) holds the value at
 /// (u, v) = (i, j) / resolution. The values along the sides of a face therefore stand in the tiles
 /// of all faces that meet there. Bilinear interpolation within a tile needs no neighbouring tile,
-/// and it is continuous across faces wherever the values are.
+/// and it is continuous across faces wherever the values are, with one exception. Where two
+/// sub-faces of an n-gon meet the side of a quad, they have twice as many pixels along it: there
+/// the interpolated values agree at the pixels of the quad, and differ between them.
 ///
 /// Tiles stand in rows of columns() tiles from the lower left corner of the image, face after face:
 /// the tile of face f begins at the pixel (f mod columns, f div columns) * (resolution + 1). The

@@ -20,7 +20,8 @@ constexpr const char* kPtexLayoutDoc =
 A tile has resolution + 1 pixels a side, where resolution is a power of two; pixel (i, j) holds the value
 at (u, v) = (i, j) / resolution. The values along the sides of a face stand in the tiles of all faces that
 meet there, so that bilinear interpolation within a tile needs no neighbouring tile and is continuous from
-face to face. Tiles stand in rows of `columns` from the lower left corner of the image: the tile of face f
+face to face, with one exception: two sub-faces of an n-gon that meet the side of a quad have twice as many
+pixels along it, so there the values agree at the pixels of the quad, and differ between them. Tiles stand in rows of `columns` from the lower left corner of the image: the tile of face f
 begins at the pixel (f % columns, f // columns) * (resolution + 1).
 
     layout = limitsurf.PtexLayout(surface.face_count, 64)

@@ -387,22 +387,27 @@ def inner_rows(base, face, uv):
     return (np.abs(i - columns / 2) < columns / 2 - 0.5) & (np.abs(j - rows / 2) < rows / 2 - 0.5)
 
 
-def shared_sides(base, count=37):
-    """The sides at which two Ptex faces meet, each as places in the same order."""
+def shared_sides(base, count=37, halves=False):
+    """The sides at which two Ptex faces meet, each as places in the same order. With `halves`, those
+    of which one is half of a side.
+    """
     t = np.linspace(0, 1, count)
-    zero, one = np.zeros(count), np.ones(count)
+    parts = [(t, False), (t / 2, True), (t / 2 + 0.5, True)]
     ends = {}
     for face in range(base.face_count):
-        for u, v in ((t, zero), (one, t), (t[::-1], one), (zero, t[::-1])):
-            side = np.stack([u, v], axis=1)
-            points = base.evaluate(face, side).position
-            middle = tuple(np.round(points[count // 2], 8))
-            ends.setdefault(middle, []).append((face, side, points))
+        for part, is_half in parts if halves else parts[:1]:
+            zero, one = np.zeros(count), np.ones(count)
+            for u, v in ((part, zero), (one, part), (part[::-1], one), (zero, part[::-1])):
+                side = np.stack([u, v], axis=1)
+                points = base.evaluate(face, side).position
+                middle = tuple(np.round(points[count // 2], 8))
+                ends.setdefault(middle, []).append((face, side, points, is_half))
     for meeting in ends.values():
         if len(meeting) == 2:
-            (f, side, points), (g, other, others) = meeting
+            (f, side, points, is_half), (g, other, others, other_is_half) = meeting
             turned = np.abs(points - others).max() > 1e-9
-            yield (f, side), (g, other[::-1] if turned else other)
+            if (is_half != other_is_half) == halves:
+                yield (f, side), (g, other[::-1] if turned else other)
 
 
 def test_tiles_give_the_target_back_without_seams(anywhere):
@@ -427,6 +432,11 @@ def test_tiles_give_the_target_back_without_seams(anywhere):
         there = base.displaced(face, uv, read(face, uv))
         worst.append(np.linalg.norm(there - truth, axis=1).max() / diagonal(base))
         for (f, side), (g, other) in shared_sides(base):
+            one, two = read(np.full(len(side), f), side), read(np.full(len(side), g), other)
+            assert np.abs(one - two).max() < 1e-6
+        beside = list(shared_sides(base, resolution // 2 + 1, halves=True))
+        assert len(beside) == 16  # halves of sides of quads beside triangles and pentagons
+        for (f, side), (g, other) in beside:  # at the texels of the quad
             one, two = read(np.full(len(side), f), side), read(np.full(len(side), g), other)
             assert np.abs(one - two).max() < 1e-6
     assert worst[0] / worst[1] > 3
