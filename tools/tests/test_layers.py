@@ -7,12 +7,17 @@ one exception: `eigen` works on rings of numbers and knows no mesh. The headers 
 """
 
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 NATIVE = Path(__file__).resolve().parents[2] / "native"
+sys.path.insert(0, str(NATIVE.parent / "tools"))
+
+import api_pages  # noqa: E402
+
 LAYERS = (
     "precision",
     "rules",
@@ -77,6 +82,17 @@ def test_includes_between_rooms_go_one_way():
 def test_rooms_are_included_at_all():
     found = {(room, included) for _path, room, included in includes(NATIVE / "limitsurf")}
     assert {("eigen", "rules"), ("patch", "eigen"), ("displace", "surface")} <= found
+
+
+def test_installed_headers_include_only_installed_ones():
+    installed = set(api_pages.public_headers())
+    assert "limitsurf/surface/limit_surface.h" in installed
+    included = {
+        (header, name)
+        for header in installed
+        for name in re.findall(r'^#include "(.+)"', (NATIVE / header).read_text(), re.MULTILINE)
+    }
+    assert sorted(pair for pair in included if pair[1] not in installed) == []
 
 
 def test_the_library_knows_neither_python_nor_blender():
