@@ -34,6 +34,14 @@ Vector3 direction(const Vector3& v) {
   return (v / largest).normalized();
 }
 
+/// The normal of du and dv in units in which they are about 1 long. The units are powers of two, so
+/// the product keeps its digits to the bit.
+UnitNormal<double> scaledNormal(const Vector3& du, const Vector3& dv) {
+  const Vector3 a = scaleToOwnUnit(du.cwiseAbs().maxCoeff()) * du,
+                b = scaleToOwnUnit(dv.cwiseAbs().maxCoeff()) * dv;
+  return UnitNormal<double>(a.data(), b.data());
+}
+
 Vector3 leastAlignedAxis(const Vector3& unit) {
   int axis;
   unit.cwiseAbs().minCoeff(&axis);
@@ -52,10 +60,7 @@ Vector3 unitNormal(const Vector3& du, const Vector3& dv) {
   if (normalKeepsDigits(normal.square, normal.lengths, normal.squares, 0, 0)) {
     return {normal.unit[0], normal.unit[1], normal.unit[2]};
   }
-  // Scaled by powers of two, the product keeps its digits to the bit.
-  const Vector3 a = scaleToOwnUnit(du.cwiseAbs().maxCoeff()) * du,
-                b = scaleToOwnUnit(dv.cwiseAbs().maxCoeff()) * dv;
-  const UnitNormal<double> scaled(a.data(), b.data());
+  const UnitNormal<double> scaled = scaledNormal(du, dv);
   return normalKeepsDigits(scaled.square, scaled.lengths, scaled.squares, 0, 0)
              ? Vector3(scaled.unit[0], scaled.unit[1], scaled.unit[2])
              : unitDirection(direction(du).cross(direction(dv)));
@@ -65,6 +70,11 @@ bool meetsLimits(const Vector3& du, const Vector3& dv, const NormalLimits& limit
   const UnitNormal<double> normal(du.data(), dv.data());
   return normalKeepsDigits(normal.square, normal.lengths, normal.squares, limits.sine_square,
                            limits.square);
+}
+
+bool areApart(const Vector3& du, const Vector3& dv, double lowest_sine_square) {
+  const UnitNormal<double> scaled = scaledNormal(du, dv);
+  return normalKeepsDigits(scaled.square, scaled.lengths, scaled.squares, lowest_sine_square, 0);
 }
 
 bool isWellConditioned(const Vector3& du, const Vector3& dv, double size) {

@@ -21,6 +21,9 @@ Vector3 unitNormal(const Vector3& du, const Vector3& dv);
 /// Whether du x dv meets the limits, and no product of lengths overflows or underflows.
 bool meetsLimits(const Vector3& du, const Vector3& dv, const NormalLimits& limits);
 
+/// Whether the squared sine of the angle between du and dv is at least this, in any unit of length.
+bool areApart(const Vector3& du, const Vector3& dv, double lowest_sine_square);
+
 /// Whether the condition number of the normal is at most kMostNormalCondition. `size` is what the
 /// rounding of du and dv is relative to.
 bool isWellConditioned(const Vector3& du, const Vector3& dv, double size);

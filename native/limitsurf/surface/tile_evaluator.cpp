@@ -182,7 +182,7 @@ Vector3 TileEvaluator::normalDirection(const TileLocation& at, const Jet& jet) {
   if (!(products.condition(cross) <= kMostNormalCondition)) {
     return Vector3::Constant(kNaN);
   }
-  return meetsLimits(du, dv, {kLowestSineSquare, 0}) ? unitNormal(du, dv) : unitDirection(cross);
+  return areApart(du, dv, kLowestSineSquare) ? unitNormal(du, dv) : unitDirection(cross);
 }
 
 NormalLimits TileEvaluator::normalLimits(int steps, int depth) const {

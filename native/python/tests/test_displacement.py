@@ -388,8 +388,8 @@ def inner_rows(base, face, uv):
 
 
 def shared_sides(base, count=37, halves=False):
-    """The sides at which two Ptex faces meet, each as places in the same order. With `halves`, those
-    of which one is half of a side.
+    """The sides at which two Ptex faces meet, each as places in the same order. With `halves`, the
+    halves of sides that are whole sides of other faces.
     """
     t = np.linspace(0, 1, count)
     parts = [(t, False), (t / 2, True), (t / 2 + 0.5, True)]

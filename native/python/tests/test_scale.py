@@ -32,11 +32,12 @@ def uv_map(shape: str) -> ls.SurfaceData:
 
 
 def places(whole: ls.LimitSurface, count: int = PLACES):
-    """On all faces, corners among them."""
+    """On all faces; corners and places beside corners are among them."""
     rng = np.random.default_rng(SEED)
     face = np.resize(np.arange(len(whole.base_face)), count)
     uv = rng.random((count, 2))
     uv[::7] = np.round(uv[::7])
+    uv[1::7] *= 2.0 ** -rng.integers(8, 40, (len(uv[1::7]), 1))
     return face, uv
 
 
