@@ -209,8 +209,9 @@ class LimitSurface {
 
   /// Row-major 3 x 3 rotations, nine numbers in a row, with the columns tangent (along du), normal
   /// x tangent, normal. They are always finite: at an irregular vertex they are the limit over u =
-  /// v = 2^-n as seen from the vertex; where du or the normal vanishes, they are completed from dv,
-  /// then from the least aligned world axis.
+  /// v = 2^-n as seen from the vertex (where even and odd n approach different directions, as at
+  /// interior vertices of two faces, their mean or one of them); where du or the normal vanishes,
+  /// they are completed from dv, then from the least aligned world axis.
   Rotations frames(const LocationBatch& at, int threads = 0) const;
 
   /// The same, written to arrays, with the positions of evaluate() where there is an array for

@@ -14,8 +14,11 @@ struct VertexApproach {
 
 /// The approach to the vertex of a ring tile, in the tile's frame turned back by `turns` corners.
 ///
-/// Conjugate and negative eigenvalues lead on degenerate meshes alone. Their terms are taken at
-/// those n at which n steps have turned them by whole circles.
+/// Conjugate and negative eigenvalues lead at interior vertices and darts of two faces, and
+/// elsewhere on degenerate meshes alone. There even and odd n approach different directions. Where
+/// positive eigenvalues of the same size lead as well, as at interior vertices of two faces, theirs
+/// is taken: the mean. Otherwise the terms are taken at those n at which n steps have turned them
+/// by whole circles.
 VertexApproach vertexApproach(const TileTable& table, const Pose& pose, int ring_tile, int turns);
 
 }  // namespace limitsurf

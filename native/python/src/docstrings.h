@@ -118,8 +118,9 @@ constexpr const char* kFramesDoc =
     R"((n, 3, 3) rotations whose columns are the tangent (along du), normal x tangent, and the normal.
 
 Frames are always finite. At an irregular vertex the frame is the limit for u = v = 2^-n, measured from
-the vertex. Where du or the normal vanishes, the frame is completed from dv, then from the world axis
-that is least aligned with it. Parameters and errors are those of evaluate().
+the vertex. (At interior vertices and darts of two faces even and odd n approach different directions;
+docs/accuracy.md says which frame is taken.) Where du or the normal vanishes, the frame is completed
+from dv, then from the world axis that is least aligned with it. Parameters and errors are those of evaluate().
 )";
 
 constexpr const char* kPlacedFramesDoc =

@@ -59,6 +59,24 @@ def test_at_an_interior_vertex_are_the_limit_of_the_diagonal(count):
     assert errors[2] < 0.9 * errors[1] or errors[2] < 1e-12
 
 
+def test_at_a_vertex_of_two_faces_are_the_mean_of_even_and_odd_levels():
+    """There the derivatives at u = v = 2^-n shrink by a half with each n, and a part of them has
+    another sign at every n: the frame is that of the rest.
+    """
+    positions = np.random.default_rng(2).normal(size=(5, 3))
+    surface = ls.LimitSurface(ls.ControlMesh.from_faces(positions, [[0, 1, 3, 2], [0, 2, 4, 1]]))
+    n = np.array([30, 31])
+    near = surface.evaluate([0, 0], 2.0 ** -n[:, None] * [1, 1], 1)
+    du, dv = (2.0 ** n[:, None] * derivative for derivative in (near.du, near.dv))
+    at = surface.frames(0, [[0.0, 0.0]])[0]
+    tangent, normal = du.sum(axis=0), np.cross(du, dv).sum(axis=0)
+    np.testing.assert_allclose(at[:, 2], normal / np.linalg.norm(normal), atol=1e-6)
+    tangent = tangent - (tangent @ at[:, 2]) * at[:, 2]
+    np.testing.assert_allclose(at[:, 0], tangent / np.linalg.norm(tangent), atol=1e-6)
+    turned = np.cross(du[0], dv[0])
+    assert np.abs(at[:, 2] - turned / np.linalg.norm(turned)).max() > 0.1, "no limit"
+
+
 def test_at_a_regular_boundary_are_those_of_the_patch():
     surface = ls.LimitSurface(ls.ControlMesh.from_faces(*shapes.fan(2, False)))
     here = surface.evaluate([0, 1], np.zeros((2, 2)), 1)
