@@ -138,7 +138,28 @@ TEST(FilteredImage, IsTheIntegralUnderAGaussian) {
   EXPECT_GT(worst, 0.0375);  // small errors are no accident
 }
 
-TEST(FilteredImage, SinglePixelsInACornerAreTheWorst) {
+// The error is a sum over the pixels. So the worst image for a footprint is 1 exactly where a
+// single pixel counts too much, and the footprints for which it is worst are those that are just
+// wide enough for the next smaller copy of the image.
+TEST(FilteredImage, TheWorstImageForAFootprintIsWithinTheBound) {
+  PlainImage image(24, 24), single(24, 24);
+  const Footprint f{6.03 / image.width, 0, 0, 6.03 / image.height};
+  constexpr double kMiddle = 0.5005;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    single.pixels[i] = 1;
+    const double expected = mean(single, Extension::clip, kMiddle, kMiddle, f, 2.5, 120, gaussian);
+    const double found = sampled(single.filtered(Extension::clip, 1), kMiddle, kMiddle, f);
+    image.pixels[i] = found > expected ? 1 : 0;
+    single.pixels[i] = 0;
+  }
+  const double expected = mean(image, Extension::clip, kMiddle, kMiddle, f, 2.5, 400, gaussian);
+  const double error =
+      std::abs(sampled(image.filtered(Extension::clip), kMiddle, kMiddle, f) - expected);
+  EXPECT_LE(error, kFilterError);
+  EXPECT_GT(error, 0.205);
+}
+
+TEST(FilteredImage, SinglePixelsInACornerAreBad) {
   constexpr const char* kRows[4] = {"00101010101010", "10111010101010", "00101010101010",
                                     "10101010101110"};
   PlainImage image(14, 4);
