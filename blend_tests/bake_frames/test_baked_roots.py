@@ -168,6 +168,18 @@ def test_shear_is_refused_as_alembic(sheared, tmp_path, capfd):
     assert "1 failed; Limit Hair.0009.abc: Cross is sheared by its own" in capfd.readouterr().out
 
 
+def test_flat_surfaces_are_not_taken_for_sheared(tmp_path):
+    """Rounding looks like shear where an axis is a thousand times shorter than the others."""
+    ob = deforming("cross")
+    ob.animation_data_clear()
+    ob.rotation_euler, ob.scale = (0.5, 0.3, 0.7), (1, 0.8, 1e-3)
+    bpy.context.view_layer.update()
+    hair = scenes.add_hair(ob, per_side=2, points=3, follow="NODES")
+    assert bake(tmp_path, hair.name, frames="5") == 0
+    error = read_back(tmp_path / "Limit Hair.0005.abc", "CURVES")[::3] - roots_in_world(ob, hair, 5)
+    assert np.abs(error).max() < 1e-4 * follow_truth.diagonal(ob)
+
+
 @pytest.fixture
 def bound():
     ob = deforming("cross")
