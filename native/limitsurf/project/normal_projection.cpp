@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/project/projection.h"
 #include "limitsurf/project/projector.h"
@@ -104,15 +105,18 @@ struct SourcePlaces {
   /// `steps`. They are not finite where the ray is tangent to the source or the source is singular.
   Eigen::Matrix2d mapSteps(Eigen::Index row, const Vector3& direction,
                            const Eigen::Matrix<double, 3, 2>& steps) const {
-    const Vector3 du = on_source.du.row(row), dv = on_source.dv.row(row);
+    // Lengths are in units of their own, powers of two, so that their products do not overflow.
+    const double u_scale = scaleToOwnUnit(on_source.du.row(row).cwiseAbs().maxCoeff()),
+                 v_scale = scaleToOwnUnit(on_source.dv.row(row).cwiseAbs().maxCoeff());
+    const Vector3 du = u_scale * on_source.du.row(row), dv = v_scale * on_source.dv.row(row);
     const Vector3 across = du.cross(dv);
     const Eigen::Matrix<double, 3, 2> in_plane =
         steps - direction * (across.transpose() * steps) / across.dot(direction);
     // Solves du a + dv b = step for a step in the tangent plane.
     const double square = across.squaredNorm();
     Eigen::Matrix2d parameters, map;
-    parameters.row(0) = dv.cross(across).transpose() * in_plane / square;
-    parameters.row(1) = across.cross(du).transpose() * in_plane / square;
+    parameters.row(0) = u_scale * (dv.cross(across).transpose() * in_plane / square);
+    parameters.row(1) = v_scale * (across.cross(du).transpose() * in_plane / square);
     map << on_map.du.row(row).transpose(), on_map.dv.row(row).transpose();
     return map * parameters;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limitsurf/number_text.h"
+#include "limitsurf/own_unit.h"
 #include "limitsurf/surface/complete_normals.h"
 #include "limitsurf/surface/map_derivatives.h"
 
@@ -18,24 +19,38 @@ namespace {
 /// Columns are linearly dependent if the sine of their angle is at most this.
 constexpr double kSingular = 1e-12;
 
+/// du and dv in units of their own, powers of two, so that products of several lengths neither
+/// overflow nor underflow.
+struct ScaledTangents {
+  ScaledTangents(const Evaluation& e, Eigen::Index row)
+      : u_scale(scaleToOwnUnit(e.du.row(row).cwiseAbs().maxCoeff())),
+        v_scale(scaleToOwnUnit(e.dv.row(row).cwiseAbs().maxCoeff())),
+        du(u_scale * e.du.row(row)),
+        dv(v_scale * e.dv.row(row)) {}
+
+  double u_scale, v_scale;
+  Vector3 du, dv;
+};
+
 /// The derivatives of surface and map at locations, and the steps from texel to texel.
 struct TexelDerivatives : MapDerivatives {
   /// Whether surface and map are regular there, and all derivatives that are needed exist.
   bool isRegularAt(Eigen::Index row) const {
     const Evaluation& e = on_surface;
-    const Vector3 du = e.du.row(row), dv = e.dv.row(row);
-    return isRegular(jacobian(row)) && du.cross(dv).norm() > kSingular * du.norm() * dv.norm() &&
+    const ScaledTangents t(e, row);
+    return isRegular(jacobian(row)) &&
+           t.du.cross(t.dv).norm() > kSingular * t.du.norm() * t.dv.norm() &&
            (e.duu.rows() == 0 ||
             (normalBy(e.duu, e.duv, row).allFinite() && normalBy(e.duv, e.dvv, row).allFinite()));
   }
 
   /// The derivative of the unit normal, given the derivatives of du and dv.
   Vector3 normalBy(const Points& du_by, const Points& dv_by, Eigen::Index row) const {
-    const Vector3 du = on_surface.du.row(row), dv = on_surface.dv.row(row);
-    const Vector3 across = du.cross(dv);
+    const ScaledTangents t(on_surface, row);
+    const Vector3 across = t.du.cross(t.dv);
     const Vector3 normal = across.normalized();
-    const Vector3 change =
-        du_by.row(row).transpose().cross(dv) + du.cross(dv_by.row(row).transpose());
+    const Vector3 change = (t.u_scale * du_by.row(row)).transpose().cross(t.dv) +
+                           t.du.cross((t.v_scale * dv_by.row(row)).transpose());
     return (change - normal * normal.dot(change)) / across.norm();
   }
 

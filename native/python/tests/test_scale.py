@@ -188,6 +188,26 @@ def displacement(whole, unit, shape):
     ]
 
 
+def projections(whole, unit, shape):
+    face, uv = places(whole)
+    texel, uvs = (1 / 64, 1 / 32), uv_map(shape)
+    to_unit = np.diag([1 / unit, 1 / unit, 1 / unit, 1.0])
+    eye = np.array([[1.2, 0.1, 0.3, 0], [-0.2, 1.1, 0.4, 0], [0.1, 0.3, -0.9, 3], [0, 0.1, -1, 6]])
+    from_eye = whole.project(uvs, face, uv, eye @ to_unit, texel, samples=4)
+    parallel = np.diag([0.2, 0.3, 0.1, 1.0]) @ to_unit
+    from_far = whole.project(uvs, face, uv, parallel, texel, two_sided=True)
+    source = ls.LimitSurface(whole.mesh)
+    source.set_positions(whole.mesh.positions + [0.02 * unit, 0.01 * unit, -0.03 * unit])
+    from_other = whole.project_along_normals(
+        uvs, face, uv, source, uvs, texel, max_distance=0.5 * unit
+    )
+    return [
+        (0, values)
+        for found in (from_eye, from_far, from_other)
+        for values in (found.st, found.footprint, found.weight)
+    ]
+
+
 def weights(whole, unit, shape):
     face, uv = places(whole)
     inside = np.clip(uv, 0.01, 0.99)
@@ -214,7 +234,7 @@ def strands(whole, unit, shape):
 CALLS = (
     evaluation, frames, map_distortion, curvature, closest, closest_facing, rays, edges,
     curve_directions, paths, random_places, blue_noise, guides, polygons, whole_surface,
-    displacement, weights, strands,
+    displacement, projections, weights, strands,
 )  # fmt: skip
 
 
