@@ -4,12 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "limitsurf/own_unit.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/project/projection.h"
 #include "limitsurf/project/projector.h"
 #include "limitsurf/search/checks.h"
 #include "limitsurf/surface/map_derivatives.h"
+#include "limitsurf/surface/scaled_tangents.h"
 #include "limitsurf/uv/texel_places.h"
 
 namespace limitsurf {
@@ -105,18 +105,15 @@ struct SourcePlaces {
   /// `steps`. They are not finite where the ray is tangent to the source or the source is singular.
   Eigen::Matrix2d mapSteps(Eigen::Index row, const Vector3& direction,
                            const Eigen::Matrix<double, 3, 2>& steps) const {
-    // Lengths are in units of their own, powers of two, so that their products do not overflow.
-    const double u_scale = scaleToOwnUnit(on_source.du.row(row).cwiseAbs().maxCoeff()),
-                 v_scale = scaleToOwnUnit(on_source.dv.row(row).cwiseAbs().maxCoeff());
-    const Vector3 du = u_scale * on_source.du.row(row), dv = v_scale * on_source.dv.row(row);
-    const Vector3 across = du.cross(dv);
+    const ScaledTangents t(on_source.du.row(row), on_source.dv.row(row));
+    const Vector3 across = t.du.cross(t.dv);
     const Eigen::Matrix<double, 3, 2> in_plane =
         steps - direction * (across.transpose() * steps) / across.dot(direction);
     // Solves du a + dv b = step for a step in the tangent plane.
     const double square = across.squaredNorm();
     Eigen::Matrix2d parameters, map;
-    parameters.row(0) = u_scale * (dv.cross(across).transpose() * in_plane / square);
-    parameters.row(1) = v_scale * (across.cross(du).transpose() * in_plane / square);
+    parameters.row(0) = t.u_scale * (t.dv.cross(across).transpose() * in_plane / square);
+    parameters.row(1) = t.v_scale * (across.cross(t.du).transpose() * in_plane / square);
     map << on_map.du.row(row).transpose(), on_map.dv.row(row).transpose();
     return map * parameters;
   }

@@ -7,12 +7,13 @@ namespace limitsurf {
 
 /// Replaces the uniform B-spline control points p0..p3, which are `stride` apart, by the Bezier
 /// points of the middle span.
-inline void toBezier(Padded* p, int stride) {
+template <typename Point>
+void toBezier(Point* p, int stride) {
   // Products with rounded numbers take a fifth of the time of divisions, and are as exact beside p1
   // and p2, which lie close together.
   constexpr double kThird = 1. / 3, kSixth = 1. / 6;
-  const Padded p0 = p[0], p1 = p[stride], p2 = p[2 * stride], p3 = p[3 * stride];
-  const Padded side = p2 - p1;
+  const Point p0 = p[0], p1 = p[stride], p2 = p[2 * stride], p3 = p[3 * stride];
+  const Point side = p2 - p1;
   p[0] = p1 + kSixth * ((p0 - p1) + side);
   p[stride] = p1 + kThird * side;
   p[2 * stride] = p2 - kThird * side;
@@ -27,8 +28,8 @@ inline void interpolateBezier(Padded* p, int stride) {
 }
 
 /// Applies `convert` to the rows and then to the columns of 4 x 4 points.
-template <typename Convert>
-void convertBothWays(Padded points[16], const Convert& convert) {
+template <typename Point, typename Convert>
+void convertBothWays(Point points[16], const Convert& convert) {
   for (int i = 0; i < 4; ++i) {
     convert(points + 4 * i, 1);
   }

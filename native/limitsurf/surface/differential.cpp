@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "limitsurf/own_unit.h"
+#include "limitsurf/surface/scaled_tangents.h"
 
 namespace limitsurf {
 namespace {
@@ -34,12 +34,9 @@ Vector3 direction(const Vector3& v) {
   return (v / largest).normalized();
 }
 
-/// The normal of du and dv in units in which they are about 1 long. The units are powers of two, so
-/// the product keeps its digits to the bit.
 UnitNormal<double> scaledNormal(const Vector3& du, const Vector3& dv) {
-  const Vector3 a = scaleToOwnUnit(du.cwiseAbs().maxCoeff()) * du,
-                b = scaleToOwnUnit(dv.cwiseAbs().maxCoeff()) * dv;
-  return UnitNormal<double>(a.data(), b.data());
+  const ScaledTangents t(du, dv);
+  return UnitNormal<double>(t.du.data(), t.dv.data());
 }
 
 Vector3 leastAlignedAxis(const Vector3& unit) {

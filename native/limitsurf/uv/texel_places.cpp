@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "limitsurf/number_text.h"
-#include "limitsurf/own_unit.h"
 #include "limitsurf/surface/complete_normals.h"
 #include "limitsurf/surface/map_derivatives.h"
+#include "limitsurf/surface/scaled_tangents.h"
 
 namespace limitsurf {
 namespace {
@@ -19,25 +19,16 @@ namespace {
 /// Columns are linearly dependent if the sine of their angle is at most this.
 constexpr double kSingular = 1e-12;
 
-/// du and dv in units of their own, powers of two, so that products of several lengths neither
-/// overflow nor underflow.
-struct ScaledTangents {
-  ScaledTangents(const Evaluation& e, Eigen::Index row)
-      : u_scale(scaleToOwnUnit(e.du.row(row).cwiseAbs().maxCoeff())),
-        v_scale(scaleToOwnUnit(e.dv.row(row).cwiseAbs().maxCoeff())),
-        du(u_scale * e.du.row(row)),
-        dv(v_scale * e.dv.row(row)) {}
-
-  double u_scale, v_scale;
-  Vector3 du, dv;
-};
-
 /// The derivatives of surface and map at locations, and the steps from texel to texel.
 struct TexelDerivatives : MapDerivatives {
+  ScaledTangents tangents(Eigen::Index row) const {
+    return {on_surface.du.row(row), on_surface.dv.row(row)};
+  }
+
   /// Whether surface and map are regular there, and all derivatives that are needed exist.
   bool isRegularAt(Eigen::Index row) const {
     const Evaluation& e = on_surface;
-    const ScaledTangents t(e, row);
+    const ScaledTangents t = tangents(row);
     return isRegular(jacobian(row)) &&
            t.du.cross(t.dv).norm() > kSingular * t.du.norm() * t.dv.norm() &&
            (e.duu.rows() == 0 ||
@@ -46,7 +37,7 @@ struct TexelDerivatives : MapDerivatives {
 
   /// The derivative of the unit normal, given the derivatives of du and dv.
   Vector3 normalBy(const Points& du_by, const Points& dv_by, Eigen::Index row) const {
-    const ScaledTangents t(on_surface, row);
+    const ScaledTangents t = tangents(row);
     const Vector3 across = t.du.cross(t.dv);
     const Vector3 normal = across.normalized();
     const Vector3 change = (t.u_scale * du_by.row(row)).transpose().cross(t.dv) +

@@ -37,7 +37,7 @@ Vector3 patchesOfStep(const Padded* grid, Sides sides) {
       patch.points[i] = grid[(b + i / 4) * tile_grid::kSize + a + i % 4];
     }
     continueSides(patch.points, onRight(sides) && a == 0, false, onLeft(sides) && b == 0, false);
-    convertBothWays(patch.points, toBezier);
+    convertBothWays(patch.points, toBezier<Padded>);
     sum += integratedNormal(patch);
   }
   return sum;

@@ -51,24 +51,6 @@ bool findLargest(const Eigenbasis& basis, int modes[2]) {
   return count == 2;
 }
 
-/// Replaces B-spline control points by Bezier points.
-template <typename Point>
-void toBezierPoints(Point p[16]) {
-  const auto convert = [](Point* q, int stride) {
-    const Point q0 = q[0], q1 = q[stride], q2 = q[2 * stride], q3 = q[3 * stride];
-    q[0] = (q0 + 4 * q1 + q2) / 6;
-    q[stride] = (2 * q1 + q2) / 3;
-    q[2 * stride] = (q1 + 2 * q2) / 3;
-    q[3 * stride] = (q1 + 4 * q2 + q3) / 6;
-  };
-  for (int i = 0; i < 4; ++i) {
-    convert(p + 4 * i, 1);
-  }
-  for (int i = 0; i < 4; ++i) {
-    convert(p + i, 4);
-  }
-}
-
 /// Calls visit(i, low, high) for the differences of neighbours among Bezier points: first those
 /// along s, then those along t.
 template <typename Visit>
@@ -90,7 +72,7 @@ struct Differences {
       const int a = quarter % 2, b = quarter / 2, first = (quarter - 1) * 2 * kDifferences;
       CoreStep::Weights window[16];
       step.window(a, b, sides, window);
-      toBezierPoints(window);
+      convertBothWays(window, toBezier<CoreStep::Weights>);
       forEachDifference(
           [&](int i, int low, int high) { weights.row(first + i) = window[high] - window[low]; });
       for (int k = 0; k < 2; ++k) {
@@ -100,7 +82,7 @@ struct Differences {
           values[i] = table.grid[(b + i / 4) * tile_grid::kSize + a + i % 4];
         }
         continueSides(values, onRight(sides) && a == 0, false, onLeft(sides) && b == 0, false);
-        toBezierPoints(values);
+        convertBothWays(values, toBezier<double>);
         forEachDifference(
             [&](int i, int low, int high) { factors(first + i, k) = values[high] - values[low]; });
       }
@@ -157,19 +139,18 @@ CoreTangents::CoreTangents(const Eigenbasis& basis, int face) {
   }
   // What the two modes and the constant one, which is there by rounding alone, leave over.
   Matrix rest = differences.weights;
-  const auto leaveOut = [&](const Matrix& factors) {
-    rest.leftCols(ring) -= factors * dual.leftCols<2>().transpose();
+  const auto leaveOutConstant = [&] {
     rest.leftCols(ring) -= rest.rowwise().sum() * dual.col(2).transpose();
   };
-  leaveOut(differences.factors);
+  rest.leftCols(ring) -= differences.factors * dual.leftCols<2>().transpose();
+  leaveOutConstant();
   const double largest = basis.eigenvalue(modes[0]);
   const Matrix shrinking = step.matrix / largest;
-  const Matrix none = Matrix::Zero(rest.rows(), 2);
   std::vector<Eigen::ArrayXd> bounds;
   for (int n = 1; n <= SurfacePatches::kMostSteps; ++n) {
     bounds.push_back(kMargin * rest.cwiseAbs().colwise().maxCoeff().transpose().array());
     rest = rest * shrinking;
-    leaveOut(none);
+    leaveOutConstant();
   }
   for (std::size_t n = bounds.size() - 1; n > 0; --n) {
     bounds[n - 1] = bounds[n - 1].max(bounds[n]);

@@ -309,7 +309,7 @@ void SurfacePatches::Data::regularPatch(const SurfacePiece& piece, BezierPatch& 
     out.points[i] = pose.difference(tile.points[i], tile.points[5]);
   }
   continueSides(out.points, tile.x_low, tile.x_high, tile.y_low, tile.y_high);
-  convertBothWays(out.points, toBezier);
+  convertBothWays(out.points, toBezier<Padded>);
   out.borders = (tile.x_low ? kSideS0 : 0u) | (tile.x_high ? kSideS1 : 0u) |
                 (tile.y_low ? kSideT0 : 0u) | (tile.y_high ? kSideT1 : 0u);
 }
@@ -392,7 +392,7 @@ void SurfacePatches::Data::quarterPatch(const RingTile& tile, const Padded* grid
   }
   const bool x_low = onRight(tile.sides) && a == 0, y_low = onLeft(tile.sides) && b == 0;
   continueSides(out.points, x_low, false, y_low, false);
-  convertBothWays(out.points, toBezier);
+  convertBothWays(out.points, toBezier<Padded>);
   out.borders = (x_low ? kSideS0 : 0u) | (y_low ? kSideT0 : 0u) |
                 (tile.u_high && steps == 1 && a == 1 ? kSideS1 : 0u) |
                 (tile.v_high && steps == 1 && b == 1 ? kSideT1 : 0u);
