@@ -116,13 +116,13 @@ DirectionCone normalCone(const BezierPatch& patch) {
   // Normals are means of u x v, for differences u and v of unit length. Such a product rises along
   // the axis by sine - off at least, and aside by no more than u and v lie off the plane.
   const Vector3 axis = normal / sine;
-  double rise = 0, rise_t = 0;
+  double off_plane_s = 0, off_plane_t = 0;
   for (int i = 0; i < 12; ++i) {
-    rise = std::max(rise, std::abs(axis.dot(along_s[i])));
-    rise_t = std::max(rise_t, std::abs(axis.dot(along_t[i])));
+    off_plane_s = std::max(off_plane_s, std::abs(axis.dot(along_s[i])));
+    off_plane_t = std::max(off_plane_t, std::abs(axis.dot(along_t[i])));
   }
-  const double tangent = (rise + rise_t) / (sine - off);
-  const DirectionCone cone{axis, std::atan(tangent) + kMargin};
+  const double tangent = (off_plane_s + off_plane_t) / (sine - off);
+  DirectionCone cone{axis, std::atan(tangent) + kMargin};
   if (cone.angle < kNarrow) {
     return cone;
   }

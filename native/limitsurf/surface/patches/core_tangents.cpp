@@ -37,6 +37,9 @@ bool findLargest(const Eigenbasis& basis, int modes[2]) {
       modes[count++] = mode;
     }
   }
+  if (count != 2) {
+    return false;
+  }
   const auto isLargest = [&](int mode) { return mode == modes[0] || mode == modes[1]; };
   for (const Eigenbasis::Chain& chain : basis.chains()) {
     if (isLargest(chain.from) || isLargest(chain.to)) {
@@ -48,7 +51,7 @@ bool findLargest(const Eigenbasis& basis, int modes[2]) {
       return false;
     }
   }
-  return count == 2;
+  return true;
 }
 
 /// Calls visit(i, low, high) for the differences of neighbours among Bezier points: first those
