@@ -7,7 +7,11 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
+from limit_surface.placing import region
+from limit_surface.placing.density import Density, DensityChoice
+from limit_surface.placing.mask import MaskChoice
 from limit_surface.reading import attributes
+from limit_surface.sources.values import ValueChoice
 from refusals import check_refused
 from scenes import add_points, add_subsurf, add_uv_map, locations
 
@@ -215,6 +219,65 @@ def test_images_are_placed_by_smoothed_uvs():
     assert smoothed[:, 0].min() > 0.5 - 1 / 64
     linear = scenes.on_base_mesh(ob, *locations(points.data))[:, 0] * 0.2 + 0.5
     assert np.abs(smoothed[:, 0] - linear).max() > 0.02
+
+
+def placed_density(ob, choice):
+    everything = MaskChoice(frozenset(), "ALL", "")
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return region.read(ob, depsgraph, DensityChoice(choice), everything).density
+
+
+def asked_and_limits(monkeypatch, ob, **properties):
+    """Adds points UNIFORM, and returns the densities that were asked for and their limits."""
+    asked, limits = [], []
+    calls, bounds = Density.__call__, Density.limits
+
+    def spy_on_calls(density, face, uv):
+        found = calls(density, face, uv)
+        asked.append((face.copy(), uv.copy(), found))
+        return found
+
+    def spy_on_limits(density):
+        limits.append(bounds(density))
+        return limits[-1]
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Density, "__call__", spy_on_calls)
+        patch.setattr(Density, "limits", spy_on_limits)
+        add_points(ob, distribution="UNIFORM", **properties)
+    return [np.concatenate(part) for part in zip(*asked, strict=True)], limits[0]
+
+
+@pytest.mark.parametrize("extension", ["REPEAT", "EXTEND", "CLIP"])
+@pytest.mark.parametrize(("low", "high"), [(0, 1), (1, 0), (0.2, -3), (-1, 2)])
+def test_densities_of_images_stay_below_their_limits(extension, low, high):
+    ob = scenes.grid_with_holes()
+    add_uv_map(ob, large)
+    add_subsurf(ob)
+    values = np.random.default_rng(4).random((9, 6)).astype(np.float32) ** 6
+    image(values)
+    choice = ValueChoice("", "IMAGE", image="Spots", extension=extension, low=low, high=high)
+    density = placed_density(ob, choice)
+    surface, limits = density.values.surface, density.limits()
+    at = surface.scatter_jittered(40, 1)
+    square = (at.uv * limits.shape[1]).astype(int)
+    assert (density(at.face, at.uv) <= limits[at.face, square[:, 1], square[:, 0]]).all()
+    assert limits.shape[1] == limits.shape[2] > 8
+    assert np.nanmax(limits) <= max(low, high) + 1e-5
+
+
+def test_a_small_spot_needs_few_candidates(monkeypatch):
+    ob = scenes.grid_with_holes()
+    add_uv_map(ob, flat)
+    add_subsurf(ob)
+    y, x = np.indices((512, 512))
+    image((np.hypot(x - 200, y - 220) < 3).astype(np.float32))
+    (face, _uv, found), limits = asked_and_limits(
+        monkeypatch, ob, count=500, density_source="IMAGE", image="Spots"
+    )
+    assert (limits > 0).mean() < 0.01
+    assert (found > 0).sum() >= 500
+    assert len(face) < 10_000
 
 
 @pytest.mark.parametrize("weight", [0.25, 1.0])

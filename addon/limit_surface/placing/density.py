@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,13 +11,25 @@ import numpy as np
 
 from ..errors import RefusalError
 from ..sources.source_mesh import SourceMesh
-from ..sources.values import ValueChoice, ValueMap
+from ..sources.values import ValueChoice, ValueMap, Values
 
 if TYPE_CHECKING:
     import limitsurf
 
-#: A function from Ptex faces (n,) and uv (n, 2) to densities (n,), all at least 0
-Density = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+@dataclass(frozen=True)
+class Density:
+    values: Values
+
+    def __call__(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
+        """Returns the densities (n,), all at least 0, at Ptex faces (n,) and uv (n, 2)."""
+        return np.maximum(self.values(face, uv), 0)
+
+    def limits(self) -> np.ndarray:
+        """Returns numbers that the density does not exceed on n x n equal squares of each Ptex
+        face, (f, n, n); NaN where there is no surface.
+        """
+        return np.maximum(self.values.upper_bounds(), 0)
 
 
 @dataclass(frozen=True)
@@ -28,8 +39,7 @@ class DensityMap:
     values: ValueMap
 
     def on(self, surface: limitsurf.LimitSurface) -> Density:
-        values = self.values.on(surface)
-        return lambda face, uv: np.maximum(values(face, uv), 0)
+        return Density(self.values.on(surface))
 
 
 @dataclass(frozen=True)

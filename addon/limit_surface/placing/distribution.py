@@ -96,7 +96,8 @@ class Distribution:
             with region.in_world():
                 if self.kind == "UNIFORM":
                     assert count is not None
-                    found = region.surface.scatter_uniform(count, **common)
+                    limits = region.density.limits() if region.density else None
+                    found = region.surface.scatter_uniform(count, density_limits=limits, **common)
                     return Scattered(_rounded(found))
                 radius = self.distance if count is None else None
                 apart = region.surface.scatter_blue_noise(count=count, radius=radius, **common)

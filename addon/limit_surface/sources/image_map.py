@@ -38,6 +38,17 @@ class ImageMap:
             found[((uv < 0) | (uv > 1)).any(axis=1)] = 0
         return found[:, 0] if self.values.ndim == 2 else found
 
+    def bounds(self, boxes: np.ndarray) -> np.ndarray:
+        """Returns numbers below and above what at() returns in boxes (n, 2, 2), each a lower and an
+        upper corner: (n, 2), for an image of one channel.
+        """
+        found = self._image.bounds(boxes).astype(np.float64)[:, :, 0]
+        if self.extension == "CLIP":
+            beyond = (boxes[:, 0] < 0).any(axis=1) | (boxes[:, 1] > 1).any(axis=1)
+            found[beyond, 0] = found[beyond, 0].clip(max=0)
+            found[beyond, 1] = found[beyond, 1].clip(min=0)
+        return found
+
 
 def find(name: str) -> bpy.types.Image:
     """Returns the image of that name. Raises RefusalError where there is none."""

@@ -6,7 +6,7 @@ They are read from the cage's mesh after its modifiers, and stored as arrays.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -24,11 +24,45 @@ if TYPE_CHECKING:
     import bpy
     import limitsurf
 
-#: A function from Ptex faces (n,) and uv (n, 2) to numbers (n,)
-Values = Callable[[np.ndarray, np.ndarray], np.ndarray]
+#: The number of squares of which bounds are known, roughly, and the most along a face
+SQUARES = 1 << 15
+MOST_PER_SIDE = 64
 
 _COLORS = {"FLOAT_COLOR", "BYTE_COLOR"}
 _NUMBERS = {"FLOAT", "INT", "INT8", "BOOLEAN", *_COLORS}
+
+
+@dataclass(frozen=True)
+class Values:
+    """The numbers of a source on a surface: `low` where the source is 0, `high` where it is 1, and
+    on the straight line through both elsewhere.
+    """
+
+    source: ValueMap
+    surface: limitsurf.LimitSurface
+    data: limitsurf.SurfaceData | None  # None: a value a face
+
+    def __call__(self, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
+        """Returns the numbers (n,) at Ptex faces (n,) and uv (n, 2)."""
+        if self.data is None:
+            return self.source.in_range(self.source.values[:, 0])[self.surface.base_face[face]]
+        value = self.data.evaluate(face, uv).value
+        image = self.source.image
+        return self.source.in_range(image.at(value) if image else value[:, 0])
+
+    def upper_bounds(self) -> np.ndarray:
+        """Returns numbers that are not exceeded on n x n equal squares of each Ptex face,
+        (f, n, n), where n is a power of two; NaN where there is no surface.
+        """
+        if self.data is None:
+            return self(np.arange(self.surface.face_count), np.empty(0))[:, None, None]
+        per_side = 1
+        while per_side < MOST_PER_SIDE and self.surface.face_count * 4 * per_side**2 <= SQUARES:
+            per_side *= 2
+        boxes = self.data.bounds(per_side)  # (f, n, n, 2, columns)
+        image = self.source.image
+        both = image.bounds(boxes.reshape(-1, 2, 2)) if image else boxes
+        return self.source.in_range(both.reshape(*boxes.shape[:4])).max(axis=-1)
 
 
 @dataclass(frozen=True)
@@ -43,26 +77,17 @@ class ValueMap:
     high: float
 
     def on(self, surface: limitsurf.LimitSurface) -> Values:
-        """Returns the function of places: `low` where the source is 0, `high` where it is 1, and on
-        the straight line through both elsewhere.
-        """
         if self.indices is None:
-            base_face, of_faces = surface.base_face, self._in_range(self.values[:, 0])
-            return lambda face, _uv: of_faces[base_face[face]]
+            return Values(self, surface, None)
         data = surface.face_varying(self.values, self.indices, self.interpolation)
-
-        def at(face: np.ndarray, uv: np.ndarray) -> np.ndarray:
-            value = data.evaluate(face, uv).value
-            return self._in_range(self.image.at(value) if self.image else value[:, 0])
-
-        return at
+        return Values(self, surface, data)
 
     @property
     def largest(self) -> float:
         """The largest number anywhere, beside what a clipped image gives outside."""
-        return self._in_range(self.image.values if self.image else self.values).max(initial=-np.inf)
+        return self.in_range(self.image.values if self.image else self.values).max(initial=-np.inf)
 
-    def _in_range(self, values: np.ndarray) -> np.ndarray:
+    def in_range(self, values: np.ndarray) -> np.ndarray:
         return self.low + (self.high - self.low) * values
 
 

@@ -21,12 +21,6 @@ constexpr std::size_t kPlacesPerTask = 256;
 constexpr std::size_t kGeodesicsPerReport = std::size_t{1} << 12;
 constexpr std::size_t kGeodesicsPerTask = 16;
 
-void report(const Progress& progress, std::size_t done, std::size_t all) {
-  if (progress) {
-    progress(all ? static_cast<double>(done) / static_cast<double>(all) : 1);
-  }
-}
-
 /// The unit vector in the plane perpendicular to `normal`, or `vector` itself where there is none.
 Vector3 inPlane(const Vector3& vector, const Vector3& normal) {
   const Vector3 flat = vector - normal.dot(vector) * normal;

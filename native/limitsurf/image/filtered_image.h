@@ -27,6 +27,14 @@ constexpr double kMostEccentric = 32;
 /// A row for each colour, a column for each channel.
 using Colours = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Boxes in an image, in each row the lower left corner (s, t) and the upper right one.
+using ImageBoxes = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
+/// The least and the largest colours, a row for each box.
+struct ColourBounds {
+  Colours low, high;
+};
+
 /// Throws what FilteredImage::sample() throws for these arguments.
 void checkSamples(Eigen::Ref<const ImagePoints> st, Eigen::Ref<const Footprints> footprint);
 
@@ -70,6 +78,19 @@ class FilteredImage {
   /// Throws std::invalid_argument for different numbers of rows, and naming the first row that is
   /// infinite or has a footprint that is not finite. Cost: O(length / width) a row.
   Colours sample(const ImagePoints& st, const Footprints& footprint, int threads = 0) const;
+
+  /// Bounds of what sample() returns in each box, channel by channel, for footprints of 0: those of
+  /// the pixels that it interpolates there, and kRounding wider. In boxes of many pixels some
+  /// pixels close to the box count as well: boxes are taken to be up to an eighth longer. Where a
+  /// row has a NaN both bounds are NaN.
+  ///
+  /// Throws std::invalid_argument for images with alpha, and naming the first box that is infinite
+  /// or has a lower corner above the upper one. Cost: O(pixels) once, then O(1) a box.
+  ColourBounds bounds(const ImageBoxes& boxes, int threads = 0) const;
+  /// Bound on the rounding errors of bilinear interpolation in single precision, as a part of the
+  /// largest pixel: four products and three sums, of weights that are products of rounded numbers
+  /// themselves, and one division.
+  static constexpr float kRounding = 16 * 0x1p-24f;
 
  private:
   ImagePyramid pyramid_;

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
-#include "limitsurf/parallel.h"
 #include "limitsurf/sample/area_sampler_data.h"
+#include "limitsurf/sample/limited_cells.h"
+#include "limitsurf/sample/thinning.h"
 #include "limitsurf/sample/uniform_candidates.h"
 
 namespace limitsurf {
@@ -14,15 +16,8 @@ namespace {
 
 /// More locations than this fit into no machine's memory.
 constexpr std::int64_t kMostLocations = std::int64_t{1} << 40;
-/// The number of samples between two calls of Progress, and the number that one task takes.
+/// The number of samples between two calls of Progress.
 constexpr std::size_t kSamplesPerReport = std::size_t{1} << 18;
-constexpr std::size_t kSamplesPerTask = 2048;
-
-void report(const Progress& progress, std::size_t done, std::size_t all) {
-  if (progress) {
-    progress(static_cast<double>(done) / static_cast<double>(all));
-  }
-}
 
 /// The first accepted candidate of each sample.
 std::vector<Location> allAccepted(const UniformCandidates& candidates, std::size_t count,
@@ -36,117 +31,6 @@ std::vector<Location> allAccepted(const UniformCandidates& candidates, std::size
   report(progress, 1, 1);
   return result;
 }
-
-/// Accepts candidates by a density function whose largest value is unknown: the largest value seen
-/// so far stands for it, and whenever a larger one appears, the samples accepted before are tested
-/// anew.
-class Thinning {
- public:
-  Thinning(const UniformCandidates& candidates, const Density& density, std::size_t count,
-           int threads, const Progress& progress)
-      : candidates_(candidates),
-        density_(density),
-        threads_(threads),
-        progress_(progress),
-        samples_(count) {}
-
-  /// Reads the function at these locations before any candidate's, to find a large value early.
-  void pilot(Span<Location> at) {
-    for (std::size_t first = 0; first < at.size(); first += kSamplesPerReport) {
-      const auto part = at.subspan(first, std::min(kSamplesPerReport, at.size() - first));
-      for (const double weight : density_.weights(part)) {
-        largest_ = std::max(largest_, weight);
-      }
-      InterruptionPoint::pass();
-    }
-    asked_ = at.size();
-  }
-
-  std::vector<Location> run() {
-    std::vector<std::size_t> open(samples_.size());
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      open[i] = i;
-    }
-    while (!open.empty()) {
-      const double before = largest_;
-      std::vector<std::size_t> still_open;
-      for (std::size_t first = 0; first < open.size(); first += kSamplesPerReport) {
-        report(progress_, samples_.size() - (open.size() - first) - still_open.size(),
-               samples_.size());
-        tryNext(Span<std::size_t>(open).subspan(first,
-                                                std::min(kSamplesPerReport, open.size() - first)),
-                still_open);
-      }
-      open.swap(still_open);
-      if (largest_ > before) {
-        reopen(open);
-      }
-    }
-    report(progress_, 1, 1);
-    std::vector<Location> result(samples_.size());
-    std::transform(samples_.begin(), samples_.end(), result.begin(),
-                   [](const Sample& sample) { return sample.at; });
-    return result;
-  }
-
- private:
-  struct Sample {
-    Location at;
-    double weight = 0;
-    double test = 0;  ///< accepted if below weight / largest weight
-    std::uint32_t attempt = 0;
-
-    bool accepted(double largest) const { return test * largest < weight; }
-  };
-
-  /// Replaces these samples by their next candidates, and lists those that are rejected again.
-  void tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_open) {
-    std::vector<Location> at(open.size());
-    parallelFor(open.size(), kSamplesPerTask, threads_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Sample& sample = samples_[open[i]];
-        at[i] = sample.at = candidates_.next(open[i], sample.attempt);
-        sample.test = candidates_.number(open[i], sample.attempt);
-      }
-    });
-    const std::vector<double> weights = density_.weights(at);
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      samples_[open[i]].weight = weights[i];
-      largest_ = std::max(largest_, weights[i]);
-    }
-    asked_ += open.size();
-    if (largest_ == 0 && asked_ >= kMostZeros) {
-      throw std::invalid_argument("density is 0 at all of " + std::to_string(asked_) +
-                                  " locations");
-    }
-    for (const std::size_t i : open) {
-      if (!samples_[i].accepted(largest_)) {
-        still_open.push_back(i);
-      }
-    }
-  }
-
-  /// Lists all samples that are rejected under the present maximum, which has become larger.
-  void reopen(std::vector<std::size_t>& open) const {
-    open.clear();
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      if (!samples_[i].accepted(largest_)) {
-        open.push_back(i);
-      }
-    }
-  }
-
-  /// A density that is 0 at this many locations is taken to be 0 everywhere.
-  static constexpr std::size_t kMostZeros = std::size_t{1} << 20;
-
-  const UniformCandidates& candidates_;
-  const Density& density_;
-  int threads_;
-  const Progress& progress_;
-  std::vector<Sample> samples_;
-  double largest_ = 0;
-  std::size_t asked_ = 0;
-};
 
 /// At most this many faces are read in advance.
 constexpr std::size_t kPilotFaces = 200000;
@@ -181,6 +65,31 @@ std::vector<bool> AreaSampler::Data::hasSurface() const {
   return result;
 }
 
+std::vector<Location> AreaSampler::Data::ofFunction(std::size_t count, std::uint64_t seed,
+                                                    const Density& density, int threads,
+                                                    const Progress& progress) const {
+  const DensityField constant;
+  const DensityLimits& limits = density.limits();
+  if (!limits.areKnown()) {
+    const UniformCandidates candidates(patches, cells, uniform, constant, seed);
+    Thinning thinning(candidates, density, count, threads, progress);
+    thinning.pilot(pilotLocations(hasSurface()));
+    return thinning.run();
+  }
+  if (limits.faceCount() != surface.faceCount()) {
+    throw std::invalid_argument("there are density limits for " +
+                                std::to_string(limits.faceCount()) + " faces; the surface has " +
+                                std::to_string(surface.faceCount()));
+  }
+  LimitedCells limited = limitedCells(patches, cells, limits, threads);
+  const CellTable table(limited.cells, std::move(limited.largest));
+  if (!(table.total() > 0)) {
+    throw std::invalid_argument("density is 0 everywhere on the surface, as its limits say");
+  }
+  const UniformCandidates candidates(patches, limited.cells, table, constant, seed);
+  return Thinning(candidates, density, count, threads, progress).run();
+}
+
 AreaSampler::AreaSampler(const LimitSurface& surface, int threads)
     : data_(std::make_unique<Data>(surface, threads)) {}
 AreaSampler::~AreaSampler() = default;
@@ -202,19 +111,15 @@ std::vector<Location> AreaSampler::uniform(std::int64_t count, std::uint64_t see
   }
   const std::size_t samples = static_cast<std::size_t>(count);
   if (density.function()) {
-    const DensityField constant;
-    const UniformCandidates candidates(data_->patches, data_->cells, data_->uniform, constant,
-                                       seed);
-    Thinning thinning(candidates, density, samples, threads, progress);
-    thinning.pilot(pilotLocations(data_->hasSurface()));
-    return thinning.run();
+    return data_->ofFunction(samples, seed, density, threads, progress);
   }
   const DensityField field(density);
   if (field.isConstant()) {
     return allAccepted(UniformCandidates(data_->patches, data_->cells, data_->uniform, field, seed),
                        samples, threads, progress);
   }
-  const CellTable table(data_->patches, data_->cells, field, threads);
+  const CellTable table(data_->cells,
+                        largestDensities(data_->patches, data_->cells, field, threads));
   if (!(table.total() > 0)) {
     throw std::invalid_argument("density is 0 everywhere on the surface");
   }

@@ -51,12 +51,15 @@ class AreaSampler {
   /// are the locations for a count of n (for a density function only if no larger value appears
   /// later).
   ///
-  /// A density function is read at the corners and middles of faces first, to find a large value,
-  /// then at each candidate. The more its largest value exceeds its mean, the longer that takes.
+  /// A density function without limits is read at the corners and middles of faces first, to find a
+  /// large value, then at each candidate. The more its largest value exceeds its mean, the longer
+  /// that takes. With limits candidates come where these are high, and the first n of a longer
+  /// sequence are always the locations for a count of n.
   ///
   /// Throws std::invalid_argument for a negative count, for a density that is 0 everywhere,
-  /// negative or not finite, and for a count above 0 on a surface without area. Cost: about 0.2
-  /// microseconds a location on all threads together.
+  /// negative, not finite or above its limit, for limits of another number of faces, and for a
+  /// count above 0 on a surface without area. Cost: about 0.2 microseconds a location on all
+  /// threads together.
   std::vector<Location> uniform(std::int64_t count, std::uint64_t seed, const Density& density = {},
                                 int threads = 0, const Progress& progress = {}) const;
 

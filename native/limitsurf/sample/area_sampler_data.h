@@ -16,7 +16,7 @@ struct AreaSampler::Data {
       : surface(limit_surface),
         patches(limit_surface, threads, PatchUnit::own),
         cells(areaCells(patches, threads)),
-        uniform(patches, cells, DensityField(), threads) {}
+        uniform(cells) {}
 
   /// An area of this part of the diagonal's square and less is nothing but rounding errors.
   static constexpr double kNoArea = 1e-14;
@@ -25,6 +25,10 @@ struct AreaSampler::Data {
   }
   /// For each Ptex face whether it has a surface, with area or without.
   std::vector<bool> hasSurface() const;
+
+  /// AreaSampler::uniform() for a density function.
+  std::vector<Location> ofFunction(std::size_t count, std::uint64_t seed, const Density& density,
+                                   int threads, const Progress& progress) const;
 
   const LimitSurface& surface;
   SurfacePatches patches;

@@ -2,6 +2,7 @@
 #include "limitsurf/sample/cell_table.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "limitsurf/float_rounding.h"
 #include "limitsurf/parallel.h"
@@ -14,23 +15,13 @@ constexpr std::size_t kCellsPerTask = 1024;
 
 }  // namespace
 
-CellTable::CellTable(const SurfacePatches& patches, const std::vector<AreaCell>& cells,
-                     const DensityField& density, int threads)
-    : sums_(cells.size()) {
-  if (!density.isConstant()) {
-    largest_.resize(cells.size());
-    parallelFor(cells.size(), kCellsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const double largest = density.largestOn(rectangleOf(patches, cells[i]));
-        largest_[i] = largest > 0 ? roundedUp(largest) : 0.f;
-      }
-    });
-  }
+CellTable::CellTable(const std::vector<AreaCell>& cells, std::vector<float> largest)
+    : largest_(std::move(largest)), sums_(cells.size()) {
   double sum = 0;
   InterruptionStride stride;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     stride.step();
-    sum += cells[i].bound * largest(i);
+    sum += cells[i].bound * this->largest(i);
     sums_[i] = sum;
   }
   first_.resize(cells.size() + 1);
@@ -57,6 +48,23 @@ CellTable::Choice CellTable::pick(double random) const {
   const double before = cell == 0 ? 0 : sums_[cell - 1];
   const double rest = (at - before) / (sums_[cell] - before);
   return {cell, std::min(std::max(rest, 0.), 1 - 0x1p-53)};
+}
+
+std::vector<float> largestDensities(const SurfacePatches& patches,
+                                    const std::vector<AreaCell>& cells, const DensityField& density,
+                                    int threads) {
+  std::vector<float> result;
+  if (density.isConstant()) {
+    return result;
+  }
+  result.resize(cells.size());
+  parallelFor(cells.size(), kCellsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double largest = density.largestOn(rectangleOf(patches, cells[i]));
+      result[i] = largest > 0 ? roundedUp(largest) : 0.f;
+    }
+  });
+  return result;
 }
 
 }  // namespace limitsurf

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <utility>
 #include <vector>
 
+#include "limitsurf/sample/density_limits.h"
 #include "limitsurf/surface/limit_surface.h"
 #include "limitsurf/types.h"
 
@@ -20,8 +22,10 @@ class Density {
   /// The same weight everywhere.
   Density() = default;
 
-  /// Any function of the location.
-  explicit Density(Function function) : function_(std::move(function)) {}
+  /// Any function of the location. Where it is small on most of the surface, limits that it never
+  /// exceeds save most of the candidates of AreaSampler::uniform().
+  explicit Density(Function function, DensityLimits limits = {})
+      : function_(std::move(function)), limits_(std::move(limits)) {}
 
   /// A weight for each vertex of the control mesh, interpolated linearly along edges and bilinearly
   /// on each Ptex face, as by LimitSurface::varying(). Throws std::invalid_argument if there are
@@ -31,6 +35,8 @@ class Density {
   bool isConstant() const { return !function_ && corners_.empty(); }
   /// The function; empty if the weights are given at vertices.
   const Function& function() const { return function_; }
+  /// What the function does not exceed.
+  const DensityLimits& limits() const { return limits_; }
   /// Where weights are given at vertices: those of each Ptex face at (0, 0), (1, 0), (0, 1), (1,
   /// 1).
   const std::vector<double>& corners() const { return corners_; }
@@ -41,6 +47,7 @@ class Density {
 
  private:
   Function function_;
+  DensityLimits limits_;
   std::vector<double> corners_;
 };
 

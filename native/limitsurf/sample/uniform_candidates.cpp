@@ -21,13 +21,14 @@ constexpr std::size_t kSamplesPerPart = 4;
 
 }  // namespace
 
-Location UniformCandidates::next(std::size_t sample, std::uint32_t& attempt) const {
+UniformCandidates::Candidate UniformCandidates::next(std::size_t sample,
+                                                     std::uint32_t& attempt) const {
   const std::uint64_t stream = streamOf(sample);
   KeptPatch kept;
-  Location at;
-  while (!accept(stream + kNumbers * attempt++, kept, at)) {
+  Candidate candidate;
+  while (!accept(stream + kNumbers * attempt++, kept, candidate)) {
   }
-  return at;
+  return candidate;
 }
 
 void UniformCandidates::findFirst(std::size_t first, std::size_t count, Location* out,
@@ -38,21 +39,23 @@ void UniformCandidates::findFirst(std::size_t first, std::size_t count, Location
   }
   while (open.size() > kFewSamples) {
     const std::vector<Open> order = sorted(open, first, threads);
-    open = concatenated<Open>(
-        order.size(), kSamplesPerTask, threads,
-        [&](std::size_t begin, std::size_t end, std::vector<Open>& rejected) {
-          KeptPatch kept;
-          for (; begin < end; ++begin) {
-            const Open& sample = order[begin];
-            const std::uint64_t stream = streamOf(first + sample.sample);
-            if (!accept(stream + kNumbers * sample.attempt, kept, out[sample.sample])) {
-              rejected.push_back({sample.sample, sample.attempt + 1});
-            }
-          }
-        });
+    open = concatenated<Open>(order.size(), kSamplesPerTask, threads,
+                              [&](std::size_t begin, std::size_t end, std::vector<Open>& rejected) {
+                                KeptPatch kept;
+                                Candidate candidate;
+                                for (; begin < end; ++begin) {
+                                  const Open& sample = order[begin];
+                                  const std::uint64_t stream = streamOf(first + sample.sample);
+                                  if (accept(stream + kNumbers * sample.attempt, kept, candidate)) {
+                                    out[sample.sample] = candidate.at;
+                                  } else {
+                                    rejected.push_back({sample.sample, sample.attempt + 1});
+                                  }
+                                }
+                              });
   }
   for (Open& sample : open) {
-    out[sample.sample] = next(first + sample.sample, sample.attempt);
+    out[sample.sample] = next(first + sample.sample, sample.attempt).at;
   }
 }
 
@@ -80,9 +83,10 @@ std::vector<UniformCandidates::Open> UniformCandidates::sorted(const std::vector
   return result;
 }
 
-bool UniformCandidates::accept(std::uint64_t stream, KeptPatch& kept, Location& at) const {
+bool UniformCandidates::accept(std::uint64_t stream, KeptPatch& kept, Candidate& out) const {
   const CellTable::Choice choice = table_.pick(uniformIn01(mixed(stream)));
   const AreaCell& cell = cells_[choice.cell];
+  out.largest = table_.largest(choice.cell);
   double s = uniformIn01(mixed(stream + 1)), t = uniformIn01(mixed(stream + 2));
   const double test = uniformIn01(mixed(stream + 3));
   SurfacePiece piece = cell.piece;
@@ -98,8 +102,8 @@ bool UniformCandidates::accept(std::uint64_t stream, KeptPatch& kept, Location& 
     size = side * side;
   }
   // Where the area is nowhere small enough for a rejection it need not be calculated.
-  if (density_.isConstant() && test * bound * table_.largest(choice.cell) < cell.least) {
-    at = patches_.rectangle(piece).at(s, t);
+  if (density_.isConstant() && test * bound < cell.least) {
+    out.at = patches_.rectangle(piece).at(s, t);
     return true;
   }
   if (!(kept.piece == piece)) {
@@ -108,8 +112,9 @@ bool UniformCandidates::accept(std::uint64_t stream, KeptPatch& kept, Location& 
   BezierPatch::Values values;
   kept.patch.evaluate<1>(s, t, values);
   const double area = length(cross(values.ds, values.dt)) * size;
-  at = kept.patch.on.at(s, t);
-  return test * bound * table_.largest(choice.cell) < area * density_.at(at);
+  out.at = kept.patch.on.at(s, t);
+  return density_.isConstant() ? test * bound < area
+                               : test * bound * out.largest < area * density_.at(out.at);
 }
 
 bool UniformCandidates::pickFromCore(const AreaCell& cell, double number, SurfacePiece& piece,

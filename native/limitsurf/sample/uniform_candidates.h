@@ -12,17 +12,22 @@
 
 namespace limitsurf {
 
-/// Independent random locations, by rejection: their density is proportional to area times the
-/// densities of the table. Each sample has an endless sequence of candidates of its own, most of
-/// which are accepted.
+/// Independent random locations, by rejection. Their density is proportional to area times a
+/// density field. If the field is constant it is proportional to area times the largest density on
+/// each cell, as the table has it. Each sample has an endless sequence of candidates of its own,
+/// most of which are accepted.
 class UniformCandidates {
  public:
   UniformCandidates(const SurfacePatches& patches, const std::vector<AreaCell>& cells,
                     const CellTable& table, const DensityField& density, std::uint64_t seed)
       : patches_(patches), cells_(cells), table_(table), density_(density), key_(keyOf(seed)) {}
 
+  struct Candidate {
+    Location at;
+    double largest = 1;  ///< density on its cell, as the table has it
+  };
   /// The next candidate of a sample that is accepted. `attempt` counts the candidates tried.
-  Location next(std::size_t sample, std::uint32_t& attempt) const;
+  Candidate next(std::size_t sample, std::uint32_t& attempt) const;
   /// The first accepted candidates of `count` samples, beginning with number `first`. They are
   /// looked for in the order of the surface's cells, since most of the time it takes to find one
   /// alone is spent waiting for memory.
@@ -48,7 +53,7 @@ class UniformCandidates {
   };
 
   std::uint64_t streamOf(std::size_t sample) const { return mixed(key_ ^ mixed(sample)); }
-  bool accept(std::uint64_t stream, KeptPatch& kept, Location& at) const;
+  bool accept(std::uint64_t stream, KeptPatch& kept, Candidate& out) const;
   /// Picks a patch of a core, and the bound of |ds x dt| on it. Returns false where rounding leads
   /// beyond the last patch: the candidate is rejected then.
   bool pickFromCore(const AreaCell& cell, double number, SurfacePiece& piece, double& bound) const;

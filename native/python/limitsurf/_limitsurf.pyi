@@ -97,6 +97,7 @@ class SurfaceData(metaclass=_BoundType):
         threads: int = 0,
         dtype: DTypeLike = ...,
     ) -> DataEvaluation: ...
+    def bounds(self, side: int = 1, *, threads: int = 0) -> NDArray[np.float64]: ...
     def rasterize(
         self,
         width: int,
@@ -134,6 +135,7 @@ class FilteredImage(metaclass=_BoundType):
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> NDArray[np.float32]: ...
+    def bounds(self, boxes: ArrayLike, *, threads: int = 0) -> NDArray[np.float32]: ...
 
 def blend_over(
     below: ArrayLike,
@@ -542,6 +544,7 @@ class LimitSurface(metaclass=_BoundType):
         | Callable[[NDArray[np.int32], NDArray[np.float64]], ArrayLike]
         | None = None,
         *,
+        density_limits: ArrayLike | None = None,
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> Locations: ...

@@ -252,6 +252,19 @@ Error bounds are those of LimitSurface.evaluate(), relative to the bounding box 
 that of LimitSurface.evaluate() for every three columns.
 )";
 
+constexpr const char* kDataBoundsDoc =
+    R"(Boxes around the data on side x side equal squares of each Ptex face: (f, side, side, 2, d).
+
+[face, row, column] holds the lower and the upper bounds of all values that evaluate() returns on one
+square, borders included; rows count along v, columns along u. For varying data and for linear
+interpolation they are exact but for a padding of 1.25e-13 of the diagonal of the values' bounding box.
+For smooth data they are the bounds of Bezier control points: wider than the values by an amount that
+shrinks with the square of side. NaN on faces that have no surface.
+
+side is 1 to 1024. Raises ValueError for another one. Cost: O(f side^2 d), about 0.3 microseconds for
+three columns of a square.
+)";
+
 constexpr const char* kSetValuesDoc =
     R"(Replaces the values by others of the same shape, (m, d) or (m,) float.
 
@@ -303,6 +316,13 @@ ends the call.
 Raises ValueError for a negative count, for a density that is negative, not finite, of another shape or
 0 everywhere, and for a surface without area. Cost: about 0.2 microseconds a location. The first call
 builds a table that is kept until set_positions().
+
+density_limits, for a function alone, are numbers that it does not exceed: (f,) one for each Ptex face,
+or (f, side, side) one for each of the equal squares [face, row along v, column along u], where side is
+a power of two up to 1024. They save the candidates that would be rejected: with a function that is
+0 outside of a thousandth of the surface a call takes a hundredth of the time. SurfaceData.bounds()
+and FilteredImage.bounds() give such numbers. Limits must be finite and at least 0 on faces that have
+a surface. A location where the function exceeds its limit raises ValueError, if it is met.
 )";
 
 constexpr const char* kScatterBlueNoiseDoc =

@@ -83,6 +83,29 @@ py::object sample(const FilteredImage& image, const py::object& st, const py::ob
   return std::move(out);
 }
 
+py::object imageBounds(const FilteredImage& image, const py::object& boxes, int threads) {
+  checkThreads(threads);
+  Doubles array = doubles(boxes, "boxes");
+  shapeEmpty(array, {0, 2, 2});
+  if (array.ndim() != 3 || array.shape(1) != 2 || array.shape(2) != 2) {
+    refuseShape(array, "boxes", "(n, 2, 2)");
+  }
+  ColourBounds bounds;
+  {
+    const GilRelease release;
+    const InterruptionPoint point = interruptible();
+    bounds = image.bounds(Eigen::Map<const ImageBoxes>(array.data(), array.shape(0), 4), threads);
+  }
+  const auto channels = static_cast<std::size_t>(image.channels());
+  Floats out({array.shape(0), py::ssize_t{2}, static_cast<py::ssize_t>(channels)});
+  float* const to = out.mutable_data();
+  forEachRow(static_cast<std::size_t>(array.shape(0)), [&](std::size_t row) {
+    std::copy_n(bounds.low.data() + channels * row, channels, to + 2 * channels * row);
+    std::copy_n(bounds.high.data() + channels * row, channels, to + (2 * row + 1) * channels);
+  });
+  return std::move(out);
+}
+
 Colours pixelRows(const py::object& object, const char* name) {
   Floats array = floats(object, name);
   requireRows<std::invalid_argument>(array, name, 4);
@@ -141,6 +164,7 @@ void bindImages(py::module_& module) {
           "(h, w, c): the shape of the pixels.")
       .def("sample", &sample, "st"_a, "footprint"_a, py::kw_only(), "threads"_a = 0,
            "progress"_a = py::none(), kSampleDoc)
+      .def("bounds", &imageBounds, "boxes"_a, py::kw_only(), "threads"_a = 0, kImageBoundsDoc)
       .def("__repr__", [](const FilteredImage& b) {
         return "FilteredImage(" + std::to_string(b.width()) + " x " + std::to_string(b.height()) +
                " pixels of " + std::to_string(b.channels()) + " channels)";

@@ -28,6 +28,22 @@ ValueError
     For an array of another shape or without pixels, and naming the first pixel that is not finite.
 )";
 
+constexpr const char* kImageBoundsDoc =
+    R"(Bounds of the image in each of n boxes: (n, 2, c) float32, the least and the largest values.
+
+boxes : (n, 2, 2) array of float
+    [[s, t], [s, t]]: the lower left corner of each box, and the upper right one. Where a box has a NaN
+    the bounds are NaN.
+
+They hold for what sample() returns in a box for footprints of 0: they are those of the pixels that it
+interpolates there, and wider by a rounding error of 1e-6 of the largest of these pixels. In boxes of
+many pixels some pixels close to the box count as well: boxes are taken to be up to an eighth longer.
+
+Raises ValueError for images with alpha (4 channels), for arrays of other shapes, and naming the first
+row that is infinite or has a lower corner above the upper one. Cost: O(pixels) for a call, and then
+0.1 microseconds a box.
+)";
+
 constexpr const char* kSampleDoc =
     R"(The image under the footprint at each of n places: (n, c) float32, with straight alpha.
 

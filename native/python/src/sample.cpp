@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -43,11 +44,33 @@ Density::Function densityFunction(const py::object& function) {
   };
 }
 
+/// The argument `density_limits`: an array (f,) or (f, side, side), or None.
+DensityLimits densityLimits(const py::object& limits) {
+  if (limits.is_none()) {
+    return {};
+  }
+  const Doubles array = doubles(limits, "density_limits");
+  if (array.ndim() != 1 && (array.ndim() != 3 || array.shape(1) != array.shape(2))) {
+    throw std::invalid_argument("density_limits has shape " + shapeText(array) +
+                                "; expected (f,) or (f, side, side)");
+  }
+  const py::ssize_t side = array.ndim() == 1 ? 1 : array.shape(1);
+  return DensityLimits(static_cast<int>(std::min<py::ssize_t>(side, 1 << 20)),
+                       {array.data(), array.data() + array.size()});
+}
+
 /// The argument `density`: None, a function, or weights of the mesh's vertices.
 class DensityArgument {
  public:
-  explicit DensityArgument(const py::object& density) : object_(density) {
-    if (density.is_none() || PyCallable_Check(density.ptr())) {
+  explicit DensityArgument(const py::object& density, const py::object& limits = py::none())
+      : object_(density), limits_(densityLimits(limits)) {
+    if (PyCallable_Check(density.ptr())) {
+      return;
+    }
+    if (limits_.areKnown()) {
+      throw std::invalid_argument("density_limits are given, but density is not a function");
+    }
+    if (density.is_none()) {
       return;
     }
     const Doubles array = doubles(density, "density");
@@ -60,25 +83,25 @@ class DensityArgument {
     if (weights_) {
       return Density(surface, *weights_, threads);
     }
-    return object_.is_none() ? Density() : Density(densityFunction(object_));
+    return object_.is_none() ? Density() : Density(densityFunction(object_), limits_);
   }
 
  private:
   const py::object& object_;
+  DensityLimits limits_;
   std::optional<Eigen::VectorXd> weights_;
 };
 
 /// The result of sample(sampler, density, progress), called without the GIL.
 template <typename Sample>
-auto sampled(const SharedSurface& shared, const py::object& density, int threads,
+auto sampled(const SharedSurface& shared, const DensityArgument& density, int threads,
              const py::object& progress, const Sample& sample) {
   checkThreads(threads);
-  const DensityArgument argument(density);
   const ProgressReport report(progress);
   const Progress tell = progress.is_none() ? Progress() : Progress(report);
   const LongCall call(shared.lock);
   const AreaSampler& sampler = shared.sampler.get(shared.surface(), threads);
-  return sample(sampler, argument.on(shared.surface(), threads), tell);
+  return sample(sampler, density.on(shared.surface(), threads), tell);
 }
 
 py::object area(const SharedSurface& shared, bool error, int threads) {
@@ -107,9 +130,10 @@ py::object scatterJittered(const SharedSurface& shared, int per_side, std::uint6
 }
 
 py::object scatterUniform(const SharedSurface& shared, std::int64_t count, std::uint64_t seed,
-                          const py::object& density, int threads, const py::object& progress) {
+                          const py::object& density, const py::object& limits, int threads,
+                          const py::object& progress) {
   return locations(
-      sampled(shared, density, threads, progress,
+      sampled(shared, DensityArgument(density, limits), threads, progress,
               [&](const AreaSampler& sampler, const Density& weights, const Progress& tell) {
                 return sampler.uniform(count, seed, weights, threads, tell);
               }));
@@ -119,7 +143,7 @@ py::object scatterBlueNoise(const SharedSurface& shared, std::optional<std::int6
                             std::optional<double> radius, std::uint64_t seed,
                             const py::object& density, int threads, const py::object& progress) {
   const BlueNoise noise =
-      sampled(shared, density, threads, progress,
+      sampled(shared, DensityArgument(density), threads, progress,
               [&](const AreaSampler& sampler, const Density& weights, const Progress& tell) {
                 return sampler.blueNoise({count, radius, seed, weights}, threads, tell);
               });
@@ -135,7 +159,8 @@ void bindSampling(SurfaceClass& type) {
       .def("scatter_jittered", &scatterJittered, "per_side"_a, "seed"_a = 0, py::kw_only(),
            "threads"_a = 0, kScatterJitteredDoc)
       .def("scatter_uniform", &scatterUniform, "count"_a, "seed"_a = 0, "density"_a = py::none(),
-           py::kw_only(), "threads"_a = 0, "progress"_a = py::none(), kScatterUniformDoc)
+           py::kw_only(), "density_limits"_a = py::none(), "threads"_a = 0,
+           "progress"_a = py::none(), kScatterUniformDoc)
       .def("scatter_blue_noise", &scatterBlueNoise, py::kw_only(), "count"_a = py::none(),
            "radius"_a = py::none(), "seed"_a = 0, "density"_a = py::none(), "threads"_a = 0,
            "progress"_a = py::none(), kScatterBlueNoiseDoc);

@@ -48,6 +48,25 @@ py::object evaluate(const SharedData& shared, const py::object& face, const py::
                                   outputs[3].object(), outputs[4].object(), outputs[5].object());
 }
 
+py::object bounds(const SharedData& shared, int side, int threads) {
+  checkThreads(threads);
+  DataBounds boxes;
+  {
+    const LongCall call(shared.lock);
+    boxes = shared.data().bounds(side, threads);
+  }
+  const auto rows = static_cast<std::size_t>(boxes.low.rows());
+  const auto columns = static_cast<std::size_t>(boxes.low.cols());
+  py::array_t<double> out({py::ssize_t{shared.data().faceCount()}, py::ssize_t{side},
+                           py::ssize_t{side}, py::ssize_t{2}, static_cast<py::ssize_t>(columns)});
+  double* const to = out.mutable_data();
+  forEachRow(rows, [&](std::size_t row) {
+    std::copy_n(boxes.low.data() + columns * row, columns, to + 2 * columns * row);
+    std::copy_n(boxes.high.data() + columns * row, columns, to + (2 * row + 1) * columns);
+  });
+  return std::move(out);
+}
+
 void setValues(SharedData& shared, const py::object& values, int threads) {
   checkThreads(threads);
   DataRows rows = rowsOf(values);
@@ -124,6 +143,7 @@ void bindSurfaceData(py::module_& module) {
       .def("set_values", &setValues, "values"_a, "threads"_a = 0, kSetValuesDoc)
       .def("evaluate", &evaluate, "face"_a, "uv"_a, "derivatives"_a = 0, py::kw_only(),
            "threads"_a = 0, "dtype"_a = py::dtype("float64"), kEvaluateDataDoc)
+      .def("bounds", &bounds, "side"_a = 1, py::kw_only(), "threads"_a = 0, kDataBoundsDoc)
       .def("__repr__", [](const SharedData& s) {
         return "SurfaceData(" + std::to_string(s.data().rows()) + " values of " +
                std::to_string(s.data().columns()) + " columns)";

@@ -37,8 +37,19 @@ MATRIX = np.eye(4).tolist()
 VIEW = np.diag([0.3, 0.3, -0.1, 1.0]).tolist()
 POSER = SURFACE.strand_poser(FACE, UV, [[0.0, 0, 0]] * 3, TURNS)
 IMAGE = ls.FilteredImage(np.ones((4, 4, 4)))
+GREY = ls.FilteredImage(np.ones((4, 4, 1)))
 ON = {"face": FACE, "uv": UV}
 SHADING = {"vectors": UP, "normals": UP, "tangents": [[1.0, 0, 0]] * 3, "signs": [1.0] * 3}
+
+
+def scatter_twice(density, density_limits, **common):
+    """Weights of vertices have no limits, and so there are two calls."""
+    by_weights = SURFACE.scatter_uniform(3, 0, density, **common)
+    even = SURFACE.scatter_uniform(
+        3, 0, lambda face, _uv: np.ones(len(face)), density_limits=density_limits, **common
+    )
+    return by_weights, even
+
 
 #: For each function: itself, and arguments that are right. Each array is a nested list.
 CASES = {
@@ -71,6 +82,7 @@ CASES = {
         IMAGE.sample,
         {"st": UV, "footprint": [[[0.1, 0.0], [0.0, 0.1]]] * 3},
     ),
+    "FilteredImage.bounds": (GREY.bounds, {"boxes": [[[0.1, 0.2], [0.3, 0.4]]] * 3}),
     "blend_over": (ls.blend_over, {"below": COLOURS, "above": COLOURS, "weight": [1.0] * 3}),
     "box_sides": (ls.box_sides, {"matrix": MATRIX}),
     "box_weights": (ls.box_weights, {"normals": UP, "matrix": MATRIX}),
@@ -181,8 +193,8 @@ CASES = {
     ),
     "LimitSurface.displaced": (SURFACE.displaced, {**ON, "values": POINTS, "frames": TURNS}),
     "LimitSurface.scatter_uniform": (
-        lambda **given: SURFACE.scatter_uniform(count=3, **given),
-        {"density": [1.0] * 16},
+        scatter_twice,
+        {"density": [1.0] * 16, "density_limits": [2.0] * 9},
     ),
     "LimitSurface.scatter_blue_noise": (
         lambda **given: SURFACE.scatter_blue_noise(count=3, **given),
@@ -415,6 +427,7 @@ MAY_BE_NAN = {
     *(("move_strands", a) for a in ("points", "roots", "new_roots", "turns")),
     ("resample_strands", "points"),
     ("FilteredImage.sample", "st"),
+    ("FilteredImage.bounds", "boxes"),
     ("blend_over", "below"),
     ("blend_over", "above"),
     ("bilinear", "pixels"),

@@ -193,3 +193,31 @@ def test_weights_of_a_boxs_sides(rng):
             ls.box_weights(normals, **options)
     with pytest.raises(ValueError, match="row 1"):
         ls.box_weights([[1, 0, 0], [0, 0, 0]])
+
+
+@pytest.mark.parametrize("extension", ["clip", "extend", "repeat", "mirror"])
+def test_bounds_hold_in_their_boxes(rng, extension):
+    pixels = rng.random((6, 9, 2), dtype=np.float32) - 0.5
+    image = ls.FilteredImage(pixels, extension)
+    low = rng.uniform(-2, 2, (50, 2))
+    boxes = np.stack([low, low + rng.uniform(0, 0.6, (50, 2))], axis=1)
+    bounds = image.bounds(boxes)
+    assert bounds.shape == (50, 2, 2)
+    assert bounds.dtype == np.float32
+    part = rng.random((30, 50, 2))
+    inside = boxes[:, 0] + part * (boxes[:, 1] - boxes[:, 0])
+    found = image.sample(inside.reshape(-1, 2), np.zeros((1500, 2, 2))).reshape(30, 50, 2)
+    assert (found >= bounds[:, 0]).all()
+    assert (found <= bounds[:, 1]).all()
+    assert np.isnan(image.bounds([[[np.nan, 0], [1, 1]]])).all()
+    assert image.bounds([]).shape == (0, 2, 2)
+
+
+def test_boxes_that_have_no_bounds():
+    image = ls.FilteredImage(np.ones((2, 2, 1)), "clip")
+    with pytest.raises(ValueError, match=r"boxes has shape \(1, 4\); expected \(n, 2, 2\)"):
+        image.bounds([[0, 0, 1, 1]])
+    with pytest.raises(ValueError, match=r"row 1: the box from \(0, 1\) to \(1, 0\)"):
+        image.bounds([[[0, 0], [1, 1]], [[0, 1], [1, 0]]])
+    with pytest.raises(ValueError, match="4 channels"):
+        ls.FilteredImage(np.ones((2, 2, 4)), "clip").bounds([[[0, 0], [1, 1]]])

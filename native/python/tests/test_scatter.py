@@ -173,6 +173,47 @@ def test_density_by_function(cube):
     assert 0.68 < mean[1] < 0.75
 
 
+def test_limits_save_candidates_of_a_function(cube):
+    asked = []
+
+    def density(face, uv):
+        asked.append(len(face))
+        return ((face == 2) & (np.abs(uv - 0.5).max(axis=1) < 0.125)).astype(float)
+
+    limits = np.zeros((cube.face_count, 4, 4))
+    limits[2, 1:3, 1:3] = 1
+    at = cube.scatter_uniform(3000, 4, density, density_limits=limits)
+    assert sum(asked) < 20_000
+    assert (density(at.face, at.uv) == 1).all()
+    # The face is symmetric, and so are the counts in the quarters of the spot.
+    quarter = (at.uv > 0.5) @ [1, 2]
+    assert np.abs(np.bincount(quarter) - 750).max() < 5 * np.sqrt(750)
+    few = cube.scatter_uniform(10, 4, density, density_limits=limits)
+    assert (few.uv == at.uv[:10]).all()
+
+
+@pytest.mark.parametrize(
+    ("density", "limits", "message"),
+    [
+        (None, np.ones(6), "density is not a function"),
+        (np.ones(8), np.ones(6), "density is not a function"),
+        (lambda f, _uv: np.ones(len(f)), np.ones((6, 2)), r"has shape \(6, 2\)"),
+        (lambda f, _uv: np.ones(len(f)), np.ones((6, 3, 3)), "3 squares .* power of two"),
+        (lambda f, _uv: np.ones(len(f)), np.ones(5), "5 faces; the surface has 6"),
+        (
+            lambda f, _uv: np.ones(len(f)),
+            [1, 1, -1, 1, 1, 1],
+            "density_limits is -1 at face 2, row 0, column 0",
+        ),
+        (lambda f, _uv: np.ones(len(f)), np.zeros(6), "0 everywhere"),
+        (lambda f, _uv: f * 1.0, np.full(6, 4.5), r"density is 5 at face 5, .* limit .* is 4\.5"),
+    ],
+)
+def test_limits_are_checked(cube, density, limits, message):
+    with pytest.raises(ValueError, match=message):
+        cube.scatter_uniform(100, 1, density, density_limits=limits)
+
+
 def test_a_density_may_evaluate_the_surface(cube):
     def upwards(face, uv):
         return np.maximum(cube.evaluate(face, uv, derivatives=1).normal[:, 2], 0)

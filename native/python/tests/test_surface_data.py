@@ -362,6 +362,23 @@ def test_varying_data_on_faces_that_touch_a_crease_of_others():
     assert np.array_equal(flat.evaluate(face, [[0.0, 0.0]]).position, positions[:1])
 
 
+@pytest.mark.parametrize("columns", [1, 2, 4])
+@pytest.mark.parametrize("side", [1, 3])
+def test_bounds_hold_on_their_squares(surface, anywhere, columns, side):
+    values = np.random.default_rng(side).random((len(surface.positions), columns))
+    data = surface.vertex_data(values)
+    boxes = data.bounds(side)
+    assert boxes.shape == (surface.face_count, side, side, 2, columns)
+    face, uv = anywhere(surface, 300)
+    row, column = np.minimum((uv * side).astype(int), side - 1).T[::-1]
+    found, box = data.evaluate(face, uv).value, boxes[face, row, column]
+    assert (box[:, 0] <= found).all()
+    assert (found <= box[:, 1]).all()
+    for wrong in (0, 1025):
+        with pytest.raises(ValueError, match=rf"side is {wrong}; it must be 1 to 1024"):
+            data.bounds(wrong)
+
+
 def test_threads_do_not_matter(house, anywhere):
     fv = house.face_varying(np.random.default_rng(1).random((22, 5)), seamed(house.mesh), "none")
     face, uv = anywhere(house, 20_000)

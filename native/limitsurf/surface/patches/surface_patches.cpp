@@ -32,10 +32,14 @@ SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads, PatchUn
     : data_(std::make_unique<Data>(surface.data_->table, surface.data_->pose, unit)) {
   data_->setLevels(threads, hulls);
 }
-SurfacePatches::SurfacePatches(const SurfaceData& data, int threads)
-    : data_(std::make_unique<Data>(data.data_->tiles->table, data.data_->poses.front(),
-                                   PatchUnit::coordinates)) {
-  data_->setLevels(threads, RingHulls::kept);
+SurfacePatches::SurfacePatches(const SurfaceData& data, int threads, Eigen::Index first_column,
+                               RingHulls hulls)
+    : data_(std::make_unique<Data>(
+          data.data_->tiles->table,
+          data.data_
+              ->poses[static_cast<std::size_t>(first_column / SurfaceData::Data::kColumnsPerPose)],
+          PatchUnit::coordinates)) {
+  data_->setLevels(threads, hulls);
 }
 SurfacePatches::~SurfacePatches() = default;
 SurfacePatches::SurfacePatches(SurfacePatches&&) noexcept = default;
