@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "fuzz/random_mesh.h"
@@ -40,6 +41,24 @@ std::unique_ptr<SurfaceData> readMap(ByteReader& bytes, const LimitSurface& surf
   return map;
 }
 
+/// Boxes of squares hold what is evaluated on them.
+void checkDataBounds(const SurfaceData& data, const std::vector<Location>& at, int side) {
+  accepts([&] {
+    const DataRows value = data.evaluate(at, Derivatives::none, 1).value;
+    const DataBounds boxes = data.bounds(side, 1);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto square = [side](double x) {
+        return std::min(static_cast<Eigen::Index>(x * side), static_cast<Eigen::Index>(side - 1));
+      };
+      const Eigen::Index box = (at[i].face * side + square(at[i].v)) * side + square(at[i].u);
+      const auto row = value.row(static_cast<Eigen::Index>(i)).array();
+      require(
+          (row >= boxes.low.row(box).array()).all() && (row <= boxes.high.row(box).array()).all(),
+          "a value lies in its square's box");
+    }
+  });
+}
+
 void checkMap(ByteReader& bytes, const LimitSurface& surface) {
   const std::unique_ptr<SurfaceData> data = readMap(bytes, surface);
   if (!data) {
@@ -72,6 +91,24 @@ void checkMap(ByteReader& bytes, const LimitSurface& surface) {
               "a texel is in the image");
     }
   });
+  checkDataBounds(*data, at, 1 + bytes.below(5));
+}
+
+/// Bounds of an image hold what is sampled at the corners of a box and in its middle.
+void checkImageBounds(const FilteredImage& image, const ImagePoints& corners) {
+  accepts([&] {
+    ImageBoxes box(1, 4);
+    box << corners.topRows(2).colwise().minCoeff(), corners.topRows(2).colwise().maxCoeff();
+    const ColourBounds bounds = image.bounds(box, 1);
+    ImagePoints st(3, 2);
+    st << box.leftCols(2), box.rightCols(2), 0.5 * box.leftCols(2) + 0.5 * box.rightCols(2);
+    const Colours colours = image.sample(st, Footprints::Zero(3, 4), 1);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      require((colours.row(i).array() >= bounds.low.row(0).array()).all() &&
+                  (colours.row(i).array() <= bounds.high.row(0).array()).all(),
+              "a colour lies within the bounds of its box");
+    }
+  });
 }
 
 void checkImage(ByteReader& bytes) {
@@ -95,6 +132,9 @@ void checkImage(ByteReader& bytes) {
   accepts([&] {
     const FilteredImage image(pixels.data(), width, height, channels, extension, premultiplied, 1);
     require(image.sample(st, footprint, 1).allFinite(), "colours are finite");
+    if (!st.hasNaN()) {
+      checkImageBounds(image, st);
+    }
   });
 }
 

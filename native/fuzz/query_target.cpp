@@ -114,6 +114,19 @@ void checkScattering(ByteReader& bytes, const LimitSurface& surface) {
     const std::vector<Location> uniform = sampler.uniform(count, 1, {}, 1);
     require(static_cast<std::int64_t>(uniform.size()) == count, "there are as many as asked for");
     checkLocations(surface, uniform);
+    // A density that is u, with limits on the two halves of each face.
+    std::vector<double> limits;
+    for (int face = 0; face < surface.faceCount(); ++face) {
+      limits.insert(limits.end(), {0.5, 1, 0.5, 1});
+    }
+    const Density along_u(
+        [](Span<Location> at, double* weights) {
+          for (const Location& l : at) {
+            *weights++ = l.u;
+          }
+        },
+        DensityLimits(2, std::move(limits)));
+    checkLocations(surface, sampler.uniform(count, 1, along_u, 1));
   });
 }
 
