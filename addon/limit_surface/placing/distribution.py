@@ -90,14 +90,14 @@ class Distribution:
         common: dict[str, Any] = {
             "seed": self.seed,
             "density": region.density,
+            "density_limits": region.density.limits() if region.density else None,
             "progress": progress,
         }
         try:
             with region.in_world():
                 if self.kind == "UNIFORM":
                     assert count is not None
-                    limits = region.density.limits() if region.density else None
-                    found = region.surface.scatter_uniform(count, density_limits=limits, **common)
+                    found = region.surface.scatter_uniform(count, **common)
                     return Scattered(_rounded(found))
                 radius = self.distance if count is None else None
                 apart = region.surface.scatter_blue_noise(count=count, radius=radius, **common)

@@ -76,11 +76,7 @@ std::vector<Location> AreaSampler::Data::ofFunction(std::size_t count, std::uint
     thinning.pilot(pilotLocations(hasSurface()));
     return thinning.run();
   }
-  if (limits.faceCount() != surface.faceCount()) {
-    throw std::invalid_argument("there are density limits for " +
-                                std::to_string(limits.faceCount()) + " faces; the surface has " +
-                                std::to_string(surface.faceCount()));
-  }
+  checkLimits(limits);
   LimitedCells limited = limitedCells(patches, cells, limits, threads);
   const CellTable table(limited.cells, std::move(limited.largest));
   if (!(table.total() > 0)) {
@@ -88,6 +84,23 @@ std::vector<Location> AreaSampler::Data::ofFunction(std::size_t count, std::uint
   }
   const UniformCandidates candidates(patches, limited.cells, table, constant, seed);
   return Thinning(candidates, density, count, threads, progress).run();
+}
+
+void AreaSampler::Data::checkLimits(const DensityLimits& limits) const {
+  if (!limits.areKnown()) {
+    return;
+  }
+  if (limits.faceCount() != surface.faceCount()) {
+    throw std::invalid_argument("there are density limits for " +
+                                std::to_string(limits.faceCount()) + " faces; the surface has " +
+                                std::to_string(surface.faceCount()));
+  }
+  const std::vector<bool> has_surface = hasSurface();
+  for (std::size_t face = 0; face < has_surface.size(); ++face) {
+    if (has_surface[face]) {
+      limits.on(static_cast<int>(face), 0, 1, 0, 1);
+    }
+  }
 }
 
 AreaSampler::AreaSampler(const LimitSurface& surface, int threads)

@@ -26,6 +26,10 @@ struct AreaSampler::Data {
   /// For each Ptex face whether it has a surface, with area or without.
   std::vector<bool> hasSurface() const;
 
+  /// Throws std::invalid_argument if there are limits, but not those of this surface's faces, and
+  /// naming a limit that is negative or not finite.
+  void checkLimits(const DensityLimits& limits) const;
+
   /// AreaSampler::uniform() for a density function.
   std::vector<Location> ofFunction(std::size_t count, std::uint64_t seed, const Density& density,
                                    int threads, const Progress& progress) const;

@@ -58,6 +58,13 @@ std::vector<double> Density::weights(Span<Location> at) const {
               << at[i].u << ", " << at[i].v << "); it must be finite and at least 0";
       throw std::invalid_argument(message.str());
     }
+    if (limits_.areKnown() && result[i] > limits_.at(at[i])) {
+      std::ostringstream message;
+      message << "density is " << numberText(result[i]) << " at face " << at[i].face
+              << ", (u, v) = (" << at[i].u << ", " << at[i].v << "); its limit there is "
+              << numberText(limits_.at(at[i]));
+      throw std::invalid_argument(message.str());
+    }
   }
   return result;
 }

@@ -23,7 +23,8 @@ class Density {
   Density() = default;
 
   /// Any function of the location. Where it is small on most of the surface, limits that it never
-  /// exceeds save most of the candidates of AreaSampler::uniform().
+  /// exceeds save most of the candidates of AreaSampler::uniform(). Where they are 0 blue noise
+  /// does not read the function either.
   explicit Density(Function function, DensityLimits limits = {})
       : function_(std::move(function)), limits_(std::move(limits)) {}
 
@@ -42,7 +43,7 @@ class Density {
   const std::vector<double>& corners() const { return corners_; }
 
   /// The function's weights at the locations. Throws std::invalid_argument naming the first
-  /// location at which the function is negative or not finite.
+  /// location at which the function is negative, not finite or above its limit.
   std::vector<double> weights(Span<Location> at) const;
 
  private:

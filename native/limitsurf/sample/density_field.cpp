@@ -53,18 +53,30 @@ DensityField::DensityField(const Density& density, const std::vector<int>& level
   values_.reserve(count);
   std::vector<Location> at;
   at.reserve(kBatch);
+  std::vector<std::size_t> places;  // of the values at these locations
+  places.reserve(kBatch);
   const auto ask = [&] {
     const std::vector<double> weights = density.weights(at);
-    values_.insert(values_.end(), weights.begin(), weights.end());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      values_[places[i]] = weights[i];
+    }
     at.clear();
+    places.clear();
     InterruptionPoint::pass();
   };
+  const DensityLimits& limits = density.limits();
   for (std::size_t face = 0; face < levels.size(); ++face) {
     const int side = levels[face] < 0 ? -1 : 1 << levels[face];
     for (int y = 0; y <= side; ++y) {
       for (int x = 0; x <= side; ++x) {
-        at.push_back(
-            {static_cast<int>(face), static_cast<double>(x) / side, static_cast<double>(y) / side});
+        const Location place = {static_cast<int>(face), static_cast<double>(x) / side,
+                                static_cast<double>(y) / side};
+        values_.push_back(0);
+        if (limits.areKnown() && limits.at(place) == 0) {
+          continue;  // nothing else is possible there
+        }
+        at.push_back(place);
+        places.push_back(values_.size() - 1);
         if (at.size() == kBatch) {
           ask();
         }

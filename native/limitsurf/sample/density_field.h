@@ -19,7 +19,7 @@ class DensityField {
   /// everywhere.
   explicit DensityField(const Density& density);
   /// A density function, read on a grid of 2^levels[face] squares a side; faces with level -1 are
-  /// not read.
+  /// not read, nor are points where the limit is 0.
   DensityField(const Density& density, const std::vector<int>& levels);
 
   bool isConstant() const { return first_.empty(); }

@@ -2,11 +2,9 @@
 #include "limitsurf/sample/thinning.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
-#include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
@@ -91,9 +89,6 @@ void Thinning::tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_o
   asked_ += at.size();
   double largest_weight = 0;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    if (limits_.areKnown()) {
-      checkLimit(at[i], weights[i]);
-    }
     trials[i].weight = weights[i] / trials[i].limit;
     largest_weight = std::max(largest_weight, weights[i]);
   }
@@ -115,16 +110,6 @@ void Thinning::tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_o
     if (!sample.accepted(largest_)) {
       still_open.push_back(open[i]);
     }
-  }
-}
-
-void Thinning::checkLimit(const Location& at, double weight) const {
-  const double limit = limits_.at(at);
-  if (weight > limit) {
-    std::ostringstream message;
-    message << "density is " << numberText(weight) << " at face " << at.face << ", (u, v) = ("
-            << at.u << ", " << at.v << "); its limit there is " << numberText(limit);
-    throw std::invalid_argument(message.str());
   }
 }
 

@@ -47,7 +47,6 @@ class Thinning {
   void tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_open);
   /// Lists all samples that are rejected under the present maximum, which has become larger.
   void reopen(std::vector<std::size_t>& open) const;
-  void checkLimit(const Location& at, double weight) const;
 
   /// A density that is 0 at this many locations is taken to be 0 everywhere.
   static constexpr std::size_t kMostZeros = std::size_t{1} << 20;

@@ -557,6 +557,7 @@ class LimitSurface(metaclass=_BoundType):
         density: ArrayLike
         | Callable[[NDArray[np.int32], NDArray[np.float64]], ArrayLike]
         | None = None,
+        density_limits: ArrayLike | None = None,
         threads: int = 0,
         progress: Callable[[float], object] | None = None,
     ) -> BlueNoise: ...

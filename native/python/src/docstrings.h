@@ -338,7 +338,8 @@ that the points keep.
 seed, density and progress are those of scatter_uniform(). With a density the radius of a point is
 proportional to 1 / sqrt(density / largest density), and two points keep the mean of their radii. A
 density function is read on a grid of each face whose squares are at most a radius wide, and
-interpolated; no point lies where it is 0.
+interpolated; no point lies where it is 0. density_limits are those of scatter_uniform(): where they are
+0 the function is not called, and all else is the same.
 
 The method is that of White, Cline & Egbert ("Poisson Disk Point Sets by Hierarchical Dart Throwing",
 2007) on the limit surface. Raises ValueError as scatter_uniform() does, for a radius that is not finite

@@ -62,7 +62,7 @@ DensityLimits densityLimits(const py::object& limits) {
 /// The argument `density`: None, a function, or weights of the mesh's vertices.
 class DensityArgument {
  public:
-  explicit DensityArgument(const py::object& density, const py::object& limits = py::none())
+  DensityArgument(const py::object& density, const py::object& limits)
       : object_(density), limits_(densityLimits(limits)) {
     if (PyCallable_Check(density.ptr())) {
       return;
@@ -141,9 +141,10 @@ py::object scatterUniform(const SharedSurface& shared, std::int64_t count, std::
 
 py::object scatterBlueNoise(const SharedSurface& shared, std::optional<std::int64_t> count,
                             std::optional<double> radius, std::uint64_t seed,
-                            const py::object& density, int threads, const py::object& progress) {
+                            const py::object& density, const py::object& limits, int threads,
+                            const py::object& progress) {
   const BlueNoise noise =
-      sampled(shared, DensityArgument(density), threads, progress,
+      sampled(shared, DensityArgument(density, limits), threads, progress,
               [&](const AreaSampler& sampler, const Density& weights, const Progress& tell) {
                 return sampler.blueNoise({count, radius, seed, weights}, threads, tell);
               });
@@ -162,8 +163,9 @@ void bindSampling(SurfaceClass& type) {
            py::kw_only(), "density_limits"_a = py::none(), "threads"_a = 0,
            "progress"_a = py::none(), kScatterUniformDoc)
       .def("scatter_blue_noise", &scatterBlueNoise, py::kw_only(), "count"_a = py::none(),
-           "radius"_a = py::none(), "seed"_a = 0, "density"_a = py::none(), "threads"_a = 0,
-           "progress"_a = py::none(), kScatterBlueNoiseDoc);
+           "radius"_a = py::none(), "seed"_a = 0, "density"_a = py::none(),
+           "density_limits"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(),
+           kScatterBlueNoiseDoc);
 }
 
 }  // namespace limitsurf::python

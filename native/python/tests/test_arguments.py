@@ -42,11 +42,14 @@ ON = {"face": FACE, "uv": UV}
 SHADING = {"vectors": UP, "normals": UP, "tangents": [[1.0, 0, 0]] * 3, "signs": [1.0] * 3}
 
 
-def scatter_twice(density, density_limits, **common):
+def scatter_twice(scatter, density, density_limits, **common):
     """Weights of vertices have no limits, and so there are two calls."""
-    by_weights = SURFACE.scatter_uniform(3, 0, density, **common)
-    even = SURFACE.scatter_uniform(
-        3, 0, lambda face, _uv: np.ones(len(face)), density_limits=density_limits, **common
+    by_weights = scatter(count=3, density=density, **common)
+    even = scatter(
+        count=3,
+        density=lambda face, _uv: np.ones(len(face)),
+        density_limits=density_limits,
+        **common,
     )
     return by_weights, even
 
@@ -193,12 +196,12 @@ CASES = {
     ),
     "LimitSurface.displaced": (SURFACE.displaced, {**ON, "values": POINTS, "frames": TURNS}),
     "LimitSurface.scatter_uniform": (
-        scatter_twice,
+        lambda **given: scatter_twice(SURFACE.scatter_uniform, **given),
         {"density": [1.0] * 16, "density_limits": [2.0] * 9},
     ),
     "LimitSurface.scatter_blue_noise": (
-        lambda **given: SURFACE.scatter_blue_noise(count=3, **given),
-        {"density": [1.0] * 16},
+        lambda **given: scatter_twice(SURFACE.scatter_blue_noise, **given),
+        {"density": [1.0] * 16, "density_limits": [2.0] * 9},
     ),
     "LimitSurface.guide_weights": (
         SURFACE.guide_weights,

@@ -205,13 +205,32 @@ def test_limits_save_candidates_of_a_function(cube):
             [1, 1, -1, 1, 1, 1],
             "density_limits is -1 at face 2, row 0, column 0",
         ),
-        (lambda f, _uv: np.ones(len(f)), np.zeros(6), "0 everywhere"),
+        (lambda f, _uv: np.ones(len(f)), np.zeros(6), "density is 0 (everywhere|at all of)"),
         (lambda f, _uv: f * 1.0, np.full(6, 4.5), r"density is 5 at face 5, .* limit .* is 4\.5"),
     ],
 )
 def test_limits_are_checked(cube, density, limits, message):
     with pytest.raises(ValueError, match=message):
         cube.scatter_uniform(100, 1, density, density_limits=limits)
+    with pytest.raises(ValueError, match=message):
+        cube.scatter_blue_noise(count=100, density=density, density_limits=limits)
+
+
+def test_limits_do_not_change_blue_noise(cube):
+    asked = []
+
+    def density(face, uv):
+        asked.append(len(face))
+        return np.where(face == 2, uv[:, 0], 0.0)
+
+    without = cube.scatter_blue_noise(count=300, density=density)
+    before = sum(asked)
+    limits = np.zeros((cube.face_count, 2, 2))
+    limits[2] = [0.5, 1]
+    found = cube.scatter_blue_noise(count=300, density=density, density_limits=limits)
+    assert (found.uv == without.uv).all()
+    assert found.radius == without.radius
+    assert sum(asked) - before < before / 3
 
 
 def test_a_density_may_evaluate_the_surface(cube):

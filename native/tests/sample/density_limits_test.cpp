@@ -106,6 +106,31 @@ TEST(DensityLimits, DoNotDependOnThreadsOrCount) {
   EXPECT_TRUE(std::equal(few.begin(), few.end(), all.begin(), same));
 }
 
+/// Blue noise does not ask where the limit is 0, and all else stays the same.
+TEST(DensityLimits, DoNotChangeBlueNoise) {
+  const LimitSurface surface = limitSurface(scatteredCage());
+  const Weight weight = [](const Location& l) {
+    return l.face % 5 == 0 && l.u > 0.5 && l.v < 0.25 ? l.u * l.u : 0.;
+  };
+  const AreaSampler sampler(surface);
+  std::size_t asked = 0, asked_less = 0;
+  BlueNoiseOptions options;
+  options.count = 700;
+  options.density = counted(weight, asked);
+  const BlueNoise all = sampler.blueNoise(options);
+  options.density = counted(weight, asked_less, limitsOf(surface, 8, weight));
+  const BlueNoise same = sampler.blueNoise(options);
+  EXPECT_EQ(all.radius, same.radius);
+  ASSERT_EQ(same.at.size(), 700u);
+  for (std::size_t i = 0; i < all.at.size(); ++i) {
+    EXPECT_TRUE(all.at[i].face == same.at[i].face && all.at[i].u == same.at[i].u &&
+                all.at[i].v == same.at[i].v);
+  }
+  EXPECT_LT(asked_less, asked / 10);
+  options.density = counted(weight, asked, DensityLimits(1, {1, 1}));
+  expectThrow<std::invalid_argument>([&] { sampler.blueNoise(options); }, {"for 2 faces"});
+}
+
 TEST(DensityLimits, AreChecked) {
   Cage cage = grid(3, 1);
   cage.options.holes = {1};
