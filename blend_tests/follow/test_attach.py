@@ -185,11 +185,18 @@ def test_attached_objects_can_be_attached_anew(to_another, probes, monkeypatch, 
     assert len(bpy.data.scenes) == 1
     told = capfd.readouterr().out
     assert f"3 objects are attached to {target.name}. The largest distance from the" in told
-    assert told.endswith("3 objects were attached already and got new places\n")
+    assert "3 objects were attached already and got new places; " in told
     assert np.abs(matrices(objects) - before).max() < AXES_BOUND
     assert len(carriers()) == 1 + to_another
     if not to_another:
         check(ob, objects, before)
+
+
+def test_modifiers_that_do_not_count_are_named(capfd):
+    ob = deforming("cross")
+    ob.modifiers.new("Later", "WAVE")
+    attach(ob, props(ob, 2))
+    assert "; ignored after Subdivision: Later\n" in capfd.readouterr().out
 
 
 def test_blenders_own_clear_parent_detaches():

@@ -340,6 +340,23 @@ def test_constraints_and_drivers():
     refused_and_unchanged(target, thing, "constraints or drivers hold the object elsewhere")
 
 
+@pytest.mark.parametrize("scale", [(0, 0, 0), (1, 0, 2)])
+def test_a_child_without_extent(scale):
+    target = scenes.flat_grid(4)
+    parent = add_object((1, 1, 3), name="Parent")
+    parent.rotation_euler, parent.scale = (0.3, 0.2, 0.9), (2, 2, 3)
+    parent.select_set(False)
+    thing = add_object((2, 2.2, 1))
+    thing.parent = parent
+    thing.scale = scale
+    bpy.context.view_layer.update()
+    x, y, _z = world_locations([thing])[0]
+    snap(target)
+    expected = (np.clip(x, 0, 4), np.clip(y, 0, 4), 0)
+    np.testing.assert_allclose(world_locations([thing])[0], expected, atol=1e-5)
+    assert tuple(thing.scale) == scale
+
+
 def test_those_that_can_be_moved_are(capfd):
     target = scenes.flat_grid(4)
     free, held = add_object((2, 2.2, 1)), add_object((2, 2.2, 1))

@@ -81,12 +81,12 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
             attach(ob, new.carrier, vertices, before, after)
         remove_unused_carriers()
         context.view_layer.update()
-        self._report(
-            surface, len(objects), len(attached), np.linalg.norm(origins - places.position, axis=1)
-        )
+        distances = np.linalg.norm(origins - places.position, axis=1)
+        self._summarize(surface, len(objects), len(attached), distances)
+        self.report({"INFO"}, "; ".join([self.summary, *posed.cage.notes]))
         return {"FINISHED"}
 
-    def _report(
+    def _summarize(
         self, surface: bpy.types.Object, count: int, again: int, distances: np.ndarray
     ) -> None:
         sentences = [
@@ -98,7 +98,6 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
                 f"{counted(again, 'objects', 'was', 'were')} attached already and got new places"
             )
         self.summary = ". ".join(sentences)
-        self.report({"INFO"}, self.summary)
 
 
 def _others(context: bpy.types.Context) -> list[bpy.types.Object]:

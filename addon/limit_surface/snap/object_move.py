@@ -34,12 +34,10 @@ class ObjectMove:
     def begin(self) -> None:
         ob = self._ob
         basis = _array(ob.matrix_basis)[:3, :3]
-        into_parent = np.eye(3)
-        if ob.parent:
-            into_parent = np.linalg.pinv(self._before[:3, :3] @ np.linalg.pinv(basis))
+        into_parent = self._into_parent(basis)
         move = into_parent @ (self._position - self._before[:3, 3])
         ob.location = np.add(ob.location, move)
-        scale = np.multiply(ob.scale, ob.delta_scale)
+        scale = self._scale()
         if self._align != "NONE" and scale.all():
             rotation = basis / scale
             wanted = self._turned(rotation, into_parent @ self._frame, np.sign(scale))
@@ -54,6 +52,21 @@ class ObjectMove:
             for name, value in self._kept.items():
                 setattr(self._ob, name, value)
         return reason
+
+    def _scale(self) -> np.ndarray:
+        return np.multiply(self._ob.scale, self._ob.delta_scale)
+
+    def _into_parent(self, basis: np.ndarray) -> np.ndarray:
+        """Returns the matrix from directions in the world to those of the space that the object's
+        own location has.
+        """
+        parent = self._ob.parent
+        if not parent:
+            return np.eye(3)
+        if self._scale().all():  # whatever the parent is to the object: a vertex, a bone
+            return np.linalg.pinv(self._before[:3, :3] @ np.linalg.pinv(basis))
+        of_parent = parent.matrix_world @ self._ob.matrix_parent_inverse
+        return np.linalg.pinv(_array(of_parent)[:3, :3])
 
     def _turned(self, rotation: np.ndarray, frame: np.ndarray, sign: np.ndarray) -> np.ndarray:
         """Returns the rotation that puts the object's Z along the normal, all in its parent's
@@ -92,6 +105,8 @@ class ObjectMove:
         now = _array(self._ob.matrix_world)
         size = max(np.abs(self._position).max(), np.abs(self._before[:3, 3]).max())
         if not np.abs(now[:3, 3] - self._position).max() <= ELSEWHERE * size:
+            if self._ob.parent and not self._scale().all():
+                return "its scale is 0, and its parent is not an object as a whole"
             return "constraints or drivers hold the object elsewhere"
         if self._align != "NONE":
             askew = np.cross(unit(now[:3, 2]), self._frame[:, 2])
