@@ -84,7 +84,7 @@ def switch_the_guides_off(live):
         (remove_the_table, "A hidden table that Limit Children reads was deleted"),
         (remove_the_tiles, "A hidden table that Limit Children reads was deleted"),
         (change_the_faces, "The faces of Cross have changed since Limit Children was made"),
-        (crease_an_edge, "creases or rules of Cross have changed since its tables"),
+        (crease_an_edge, "creases or subdivision settings of Cross have changed since"),
         (switch_off, "Limit Children does not grow: its modifier Limit Children is disabled"),
         (switch_the_guides_off, "Limit Hair does not follow: its modifier"),
     ],

@@ -197,7 +197,7 @@ def check_refused(tmp_path, capfd, reason):
 def test_a_crease_that_came_later(bound, tmp_path, capfd):
     crease = bound.data.edge_creases_ensure()
     crease.data[3].value = 0.5
-    check_refused(tmp_path, capfd, "The creases or rules of Cross have changed since its tables")
+    check_refused(tmp_path, capfd, "The creases or subdivision settings of Cross have changed")
 
 
 def test_tables_that_have_been_deleted(bound, tmp_path, capfd):

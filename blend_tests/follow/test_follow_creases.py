@@ -123,8 +123,9 @@ def test_the_panel_says_that_things_are_at_rest():
     crease(ob, "edges", 1)
     bpy.context.view_layer.update()
     told = (
-        "The creases or rules of Holes have changed since its tables were made. What follows it "
-        "is at rest until you rebind it. Creases that are animated need the mode Live"
+        "The creases or subdivision settings of Holes have changed since its tables were made. "
+        "What follows it is at rest until you rebind it. Creases that are animated need the mode "
+        "Live"
     )
     assert look(ob) == [(told, ids.REBIND)]
 

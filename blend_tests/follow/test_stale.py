@@ -131,7 +131,7 @@ def test_changed_faces_and_rules_are_named():
     ob, _hair = followed()
     ob.modifiers["Subdivision"].boundary_smooth = "PRESERVE_CORNERS"
     bpy.context.view_layer.update()
-    rules = "The creases or rules of Holes have changed since its tables were made"
+    rules = "The creases or subdivision settings of Holes have changed since its tables were made"
     assert look(ob) == [(rules, ids.REBIND)]
     scenes.activate(ob)
     bpy.ops.object.limit_rebind(method="FACE")
@@ -159,7 +159,8 @@ def test_stale_bindings_are_seen_when_a_file_is_loaded(tmp_path, capfd):
     lines = capfd.readouterr().out.splitlines()
     assert [line for line in lines if line.startswith("Limit Surface:")] == [
         "Limit Surface: The hidden tables that Limit Hair reads were deleted",
-        "Limit Surface: The creases or rules of Holes have changed since its tables were made",
+        "Limit Surface: The creases or subdivision settings of Holes have changed since its tables "
+        "were made",
     ]
 
 
@@ -217,5 +218,7 @@ def test_the_panel_names_what_follows_and_what_is_wrong():
     bpy.context.view_layer.update()
     look(ob)
     text, offered = panel(ob)
-    assert text.endswith("The creases or rules of Holes have changed since its tables were made")
+    assert text.endswith(
+        "The creases or subdivision settings of Holes have changed since its tables were made"
+    )
     assert offered == [ids.REBIND, *buttons]

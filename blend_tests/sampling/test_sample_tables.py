@@ -22,8 +22,8 @@ from stand_ins import event, window_context
 from waiting import wait_for
 
 STALE = (
-    "The faces, creases or rules of Holes have changed since its tables for Sample Limit Surface "
-    "were made"
+    "The faces, creases or subdivision settings of Holes have changed since its tables for Sample "
+    "Limit Surface were made"
 )
 
 
@@ -226,7 +226,7 @@ def test_readers_are_named(capfd):
     node = tree.nodes.new("GeometryNodeObjectInfo")
     node.inputs["Object"].default_value = all_tiles.of_surface(ob)
     remove(ob)
-    assert "have none now: Pebbles" in capfd.readouterr().out
+    assert "The removed tables were used by: Pebbles" in capfd.readouterr().out
 
 
 def test_a_mesh_without_tables_is_refused():

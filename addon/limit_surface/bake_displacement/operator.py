@@ -33,8 +33,8 @@ class Made:
 class OBJECT_OT_limit_bake_displacement(
     TextureOperator, properties.DisplacementProperties, bpy.types.Operator
 ):
-    """Make an image of the displacement that turns the active mesh's limit surface into that of
-    the other selected mesh"""
+    """Make a displacement map: an image that turns the limit surface of the active mesh into that
+    of the other selected mesh, such as a sculpted copy"""
 
     bl_idname = ids.BAKE_DISPLACEMENT
     bl_label = "Bake Displacement on Limit Surface"

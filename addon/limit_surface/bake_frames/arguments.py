@@ -24,7 +24,8 @@ exit codes:
   0  all files are there
   1  at least one file could not be written; the others are there
   2  the arguments are wrong, or the folder holds another bake
-  3  an object no longer fits its surface: bind it again
+  3  an object cannot follow its surface; the message names the operator that
+     repairs it
 """
 
 

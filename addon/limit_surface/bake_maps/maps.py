@@ -162,29 +162,32 @@ KINDS = {
     ),
     "DIRECTION_1": MapKind(
         "Direction 1",
-        "Direction of k1 as a unit vector in the chosen space, on the side towards which the "
-        "map's U grows",
+        "Direction along which the surface bends by the larger principal curvature k1, as a unit "
+        "vector in the chosen space. Of the two opposite directions, it is the one towards which "
+        "the map's U grows",
         lambda p, _s: p.directions[0],
         _of_unit_vectors,
     ),
     "DIRECTION_2": MapKind(
         "Direction 2",
-        "Direction of k2 as a unit vector in the chosen space, on the side towards which the "
-        "map's U grows",
+        "Direction along which the surface bends by the smaller principal curvature k2, as a unit "
+        "vector in the chosen space. Of the two opposite directions, it is the one towards which "
+        "the map's U grows",
         lambda p, _s: p.directions[1],
         _of_unit_vectors,
     ),
     "CAVITY": MapKind(
         "Cavity",
-        "1 minus mean curvature times a radius: white where the surface is flat or bulges, darker "
-        "where it is hollow",
+        "White where the surface is flat or bulges, darker where it is hollow: 1 minus mean "
+        "curvature times Cavity Radius",
         _cavity,
         _as_it_is,
     ),
     AREA_DISTORTION: MapKind(
         "Distortion",
-        "How much the UV map stretches the surface, in octaves (log2) relative to the whole map: "
-        "area in red, the largest and the smallest length in green and blue",
+        "How much the UV map stretches the surface, relative to the whole map: area in red, the "
+        "largest and the smallest length in green and blue. Each doubling counts 1, each halving "
+        "-1",
         _distortion,
         _of_octaves,
     ),

@@ -28,8 +28,8 @@ _PLACES: dict[str, type[Places]] = {
 
 
 class OBJECT_OT_limit_curvature(WatchedOperator, LargeCountProperty, bpy.types.Operator):
-    """Store the limit surface's exact curvature, its principal directions and colors as
-    attributes"""
+    """Store the limit surface's exact curvature, its principal directions and colors that show it
+    as attributes: of the mesh, of a new mesh, or of hair and points"""
 
     bl_idname = ids.CURVATURE
     bl_label = "Curvature of Limit Surface"
@@ -85,9 +85,9 @@ class OBJECT_OT_limit_curvature(WatchedOperator, LargeCountProperty, bpy.types.O
     )
     radius: FloatProperty(
         name="Radius",
-        description="At irregular vertices, such as poles, curvature has no value in general. "
-        "There it is averaged over the faces around the vertex, at this distance, as a share of an "
-        "edge",
+        description="Distance from irregular vertices, such as poles, at which curvature is "
+        "averaged over the faces around the vertex, as a share of an edge. At the vertex itself "
+        "curvature has no value in general",
         default=1 / 64,
         min=2**-20,
         max=0.5,

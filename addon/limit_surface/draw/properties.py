@@ -16,9 +16,9 @@ class FitProperties:
     spline: EnumProperty(name="Spline", description="Type of the new curves", items=SPLINES)
     tolerance: FloatProperty(
         name="Tolerance",
-        description="Largest distance of the curves from the surface, or from their offset, in "
-        "world units. 0 chooses a ten-thousandth of the surface's extent. The smallest tolerance "
-        "is a millionth of it",
+        description="How far the curves may be from the surface, or from the places to which "
+        "Offset moves them, in world units. 0 chooses a ten-thousandth of the surface's extent. "
+        "The smallest tolerance is a millionth of this extent",
         default=0.0,
         min=0.0,
         soft_max=0.1,

@@ -61,8 +61,8 @@ def attach_handlers() -> None:
         ids.LIVE,
         BoolProperty(
             name="Live Following",
-            description="Move hair and points that follow a limit surface live. While this is off, "
-            "they stay where they are",
+            description="Let this extension move everything that follows a limit surface live. "
+            "While this is off, these things stay where they are",
             default=True,
             update=_switched,
         ),

@@ -27,8 +27,8 @@ NOTHING = (
 
 class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
     """Make the selected hair, points and meshes follow the limit surface that they stand on,
-    however the mesh deforms. Curves, and hair and points from elsewhere, follow the closest points
-    of the active mesh"""
+    however its mesh deforms. Curves, and hair and points that this extension has not placed,
+    follow the closest points of the active mesh"""
 
     bl_idname = ids.FOLLOW
     bl_label = "Follow Limit Surface"

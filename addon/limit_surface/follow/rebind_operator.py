@@ -20,8 +20,9 @@ _NOTHING = "Select a surface or what follows it"
 
 
 class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
-    """Bind everything that follows the selected surface again, after its topology, creases or rules
-    have changed. Live children are made again with their settings"""
+    """Bind everything that follows the selected surface again. Do this after faces, creases or
+    settings of the Subdivision Surface modifier have changed. Live children are made again with
+    their settings"""
 
     bl_idname = ids.REBIND
     bl_label = "Rebind to Limit Surface"

@@ -24,7 +24,7 @@ from .strands import Shape, StrandMaker
 
 class OBJECT_OT_limit_hair_add(ScatterOperator, SteeringProperties, bpy.types.Operator):
     """Grow hair on the active mesh's limit surface: each root lies exactly on the smooth surface
-    that its subdivisions converge to"""
+    that infinitely many subdivisions of the mesh approach"""
 
     bl_idname = ids.HAIR_ADD
     bl_label = "Add Hair on Limit Surface"

@@ -109,8 +109,8 @@ class OBJECT_OT_limit_mesh(
     )
     most_levels: IntProperty(
         name="Most Levels",
-        description="Highest level of a face, even if it does not reach the tolerance or the "
-        "length",
+        description="Highest level that a face may get. If it is too low for some faces, a "
+        "warning says how many there are",
         default=6,
         min=1,
         max=levels.MOST,

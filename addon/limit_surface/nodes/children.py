@@ -98,8 +98,8 @@ def _build() -> bpy.types.NodeTree:
     fits = tree.both(fits, _same_topology(tree))
     tree.warn(
         tree.negated(fits),
-        "The number of guides, or the faces or creases of the surface have changed: add the "
-        "children again",
+        "The number of guides, or the faces or creases of the surface, have changed: run Rebind "
+        "to Limit Surface",
     )
     return tree.finish(Geometry=tree.switch(fits, tree.inputs["Geometry"], grown, "GEOMETRY"))
 

@@ -35,8 +35,8 @@ class Made:
 
 
 class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
-    """Make a legacy hair particle system on the surface from the active hair: every key lies where
-    the strands are shown now"""
+    """Make a legacy hair particle system on the surface from the active hair. Every key, which is a
+    point of a particle's strand, lies exactly on a strand as it is shown now"""
 
     bl_idname = ids.PARTICLES_FROM_HAIR
     bl_label = "Particle System from Hair"

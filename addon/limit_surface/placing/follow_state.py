@@ -123,7 +123,10 @@ class State:
             yield Trouble(f"The faces of {name} have changed since {ob.name} was bound", ids.REBIND)
         table = tables.of_surface(self.surface)
         if not stale and table is not None and table.get(ids.SIGNATURE) != signature:
-            text = f"The creases or rules of {name} have changed since its tables were made"
+            text = (
+                f"The creases or subdivision settings of {name} have changed since its tables were "
+                "made"
+            )
             if tables.points_of(table) is not None and not tables.fits(table):
                 text += (
                     ". What follows it is at rest until you rebind it. Creases that are "
@@ -136,8 +139,8 @@ class State:
         """Yields what is wrong if the table of all tiles was made for another surface."""
         if self.samples is not None and self.samples.get(ids.SIGNATURE) != signature:
             text = (
-                f"The faces, creases or rules of {self.surface.name} have changed since its tables "
-                f"for {ids.SAMPLE_GROUP} were made"
+                f"The faces, creases or subdivision settings of {self.surface.name} have changed "
+                f"since its tables for {ids.SAMPLE_GROUP} were made"
             )
             yield Trouble(text, ids.SAMPLE_TABLES)
 

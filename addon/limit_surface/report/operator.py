@@ -29,8 +29,9 @@ class Measured:
 
 
 class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
-    """Measure how far the mesh that Blender shows is from the limit surface, and store it as an
-    attribute and as colors"""
+    """Measure how far the polygons that Blender shows are from the limit surface: the smooth
+    surface that infinitely many subdivisions approach. Store this distance as an attribute and as
+    colors"""
 
     bl_idname = ids.REPORT_OPERATOR
     bl_label = "Report Distance to Limit Surface"

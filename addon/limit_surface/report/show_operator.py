@@ -37,8 +37,9 @@ class Measured:
 
 
 class OBJECT_OT_limit_show(WatchedOperator, LargeCountProperty, bpy.types.Operator):
-    """Set the Subdivision Surface modifier up so that the viewport shows the limit surface, or add
-    one, and measure how far the displayed mesh still is from it"""
+    """Set the Subdivision Surface modifier up, or add one, so that the viewport shows the limit
+    surface: the smooth surface that infinitely many subdivisions approach. Measure how far the
+    displayed polygons still are from it"""
 
     bl_idname = ids.SHOW
     bl_label = "Show Limit Surface"

@@ -30,5 +30,5 @@ class OBJECT_OT_limit_sample_remove(bpy.types.Operator):
         self.report({"INFO"}, f"The tables for {ids.SAMPLE_GROUP} of {surface.name} were removed")
         if readers:
             names = ", ".join(readers)
-            self.report({"WARNING"}, f"These have read the tables, and have none now: {names}")
+            self.report({"WARNING"}, f"The removed tables were used by: {names}")
         return {"FINISHED"}

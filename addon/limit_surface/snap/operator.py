@@ -25,7 +25,8 @@ class OBJECT_OT_limit_snap(
     PlacingProperties, FollowSnappedProperties, WatchedOperator, bpy.types.Operator
 ):
     """Move the selected objects and hair onto the exact limit surface of the active mesh. Outside
-    Object Mode, move the selected elements onto that of the target in the sidebar tab Limit"""
+    Object Mode, move the selected vertices, points, bones or strands onto the limit surface of the
+    target in the sidebar tab Limit"""
 
     bl_idname = ids.SNAP
     bl_label = "Snap to Limit Surface"

@@ -27,8 +27,9 @@ FINE = 0.1  # the share of a wheel step that is used with Shift
 
 
 class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
-    """Drag over the exact limit surface with the mouse: the selected object over the active mesh; a
-    vertex in Edit Mode, or a strand of hair by its root, over the target in the tab Limit"""
+    """Drag things over the exact limit surface with the mouse. In Object Mode, drag the selected
+    object over the active mesh. Drag a vertex in Edit Mode, or a strand of hair by its root, over
+    the target in the sidebar tab Limit"""
 
     bl_idname = ids.SNAP_MODAL
     bl_label = "Drag on Limit Surface"
@@ -42,8 +43,8 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
     )
     face: IntProperty(
         name="Face",
-        description="Number of the Ptex face on which the element is put. Scripts and the redo "
-        "panel use it together with `uv`",
+        description="Number of the Ptex face on which the element is put: quads count once, other "
+        "faces once for each corner. Scripts and the redo panel use it together with UV",
         default=-1,
         options={"HIDDEN", "SKIP_SAVE"},
     )

@@ -81,9 +81,9 @@ class FlowProperties:
     )
     flow_angle: FloatProperty(
         name="Flow Angle",
-        description="Angle from the surface normal where the vector of the direction has the "
-        "length 1. Where it is shorter, strands or instances lean less. With a negative angle they "
-        "lean the opposite way",
+        description="Angle by which strands or instances lean away from the surface normal, where "
+        "the vector of the direction has the length 1. Where the vector is shorter, they lean "
+        "less. With a negative angle they lean the opposite way",
         default=math.radians(60),
         min=-math.pi,
         max=math.pi,

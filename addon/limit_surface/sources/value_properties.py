@@ -77,7 +77,8 @@ class SourceNames:
         return {
             self.source: EnumProperty(
                 name=f"{self.label} From",
-                description=f"Source of numbers by which {what} differs from place to place",
+                description=f"Where the numbers come from that make {what} differ from place to "
+                "place",
                 items=(
                     ("NONE", "None", unsteered, "", 0),
                     *_SOURCES,
@@ -105,8 +106,8 @@ class SourceNames:
             ),
             self.range: FloatVectorProperty(
                 name="Range",
-                description=f"{low} where the source is 0, and where it is 1. Other values "
-                "of the source give numbers on the straight line through both",
+                description=f"{low} where the source is 0 (Low), and where it is 1 (High). For "
+                "other values of the source, the number lies on the straight line through both",
                 size=2,
                 default=(0.0, 1.0),
                 soft_min=0.0,
