@@ -227,25 +227,18 @@ def placed_density(ob, choice):
     return region.read(ob, depsgraph, DensityChoice(choice), everything).density
 
 
-def asked_and_limits(monkeypatch, ob, **properties):
-    """Adds points UNIFORM, and returns the densities that were asked for and their limits."""
-    asked, limits = [], []
-    calls, bounds = Density.__call__, Density.limits
+def asked_for(monkeypatch, ob, **properties):
+    """Adds points UNIFORM, and returns the densities that were asked for."""
+    asked, call = [], Density.__call__
 
-    def spy_on_calls(density, face, uv):
-        found = calls(density, face, uv)
-        asked.append((face.copy(), uv.copy(), found))
-        return found
-
-    def spy_on_limits(density):
-        limits.append(bounds(density))
-        return limits[-1]
+    def spy(density, face, uv):
+        asked.append(call(density, face, uv))
+        return asked[-1]
 
     with monkeypatch.context() as patch:
-        patch.setattr(Density, "__call__", spy_on_calls)
-        patch.setattr(Density, "limits", spy_on_limits)
+        patch.setattr(Density, "__call__", spy)
         add_points(ob, distribution="UNIFORM", **properties)
-    return [np.concatenate(part) for part in zip(*asked, strict=True)], limits[0]
+    return np.concatenate(asked)
 
 
 @pytest.mark.parametrize("extension", ["REPEAT", "EXTEND", "CLIP"])
@@ -258,7 +251,7 @@ def test_densities_of_images_stay_below_their_limits(extension, low, high):
     image(values)
     choice = ValueChoice("", "IMAGE", image="Spots", extension=extension, low=low, high=high)
     density = placed_density(ob, choice)
-    surface, limits = density.values.surface, density.limits()
+    surface, limits = density.values.surface, density.limits
     at = surface.scatter_jittered(40, 1)
     square = (at.uv * limits.shape[1]).astype(int)
     assert (density(at.face, at.uv) <= limits[at.face, square[:, 1], square[:, 0]]).all()
@@ -266,18 +259,35 @@ def test_densities_of_images_stay_below_their_limits(extension, low, high):
     assert np.nanmax(limits) <= max(low, high) + 1e-5
 
 
+def spot(radius):
+    """Makes an image that is 1 in a disc and 0 elsewhere."""
+    y, x = np.indices((512, 512)) + 0.5
+    image((np.hypot(x - 200, y - 220) < radius).astype(np.float32))
+
+
 def test_a_small_spot_needs_few_candidates(monkeypatch):
     ob = scenes.grid_with_holes()
     add_uv_map(ob, flat)
     add_subsurf(ob)
-    y, x = np.indices((512, 512))
-    image((np.hypot(x - 200, y - 220) < 3).astype(np.float32))
-    (face, _uv, found), limits = asked_and_limits(
-        monkeypatch, ob, count=500, density_source="IMAGE", image="Spots"
-    )
-    assert (limits > 0).mean() < 0.01
+    spot(3)
+    found = asked_for(monkeypatch, ob, count=500, density_source="IMAGE", image="Spots")
     assert (found > 0).sum() >= 500
-    assert len(face) < 10_000
+    assert len(found) < 10_000
+
+
+def test_density_in_a_small_spot():
+    """The count is that of the spot's area, which is 1.5e-5 of the surface's."""
+    ob = scenes.flat_grid(32)
+    add_uv_map(ob, lambda p: p[:, :2] / 32)
+    add_subsurf(ob).uv_smooth = "NONE"
+    spot(1.5)
+    points = add_points(
+        ob, distribution="UNIFORM", density=1e6, density_source="IMAGE", image="Spots"
+    )
+    values = np.zeros((512 * 512, 4), np.float32)
+    bpy.data.images["Spots"].pixels.foreach_get(values.ravel())
+    area = values[:, 0].sum() * (32 / 512) ** 2  # linear between pixels: the same integral
+    assert len(points.data.vertices) == pytest.approx(1e6 * area, rel=0.01)
 
 
 @pytest.mark.parametrize("weight", [0.25, 1.0])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import bpy
@@ -25,9 +26,10 @@ class Density:
         """Returns the densities (n,), all at least 0, at Ptex faces (n,) and uv (n, 2)."""
         return np.maximum(self.values(face, uv), 0)
 
+    @cached_property
     def limits(self) -> np.ndarray:
-        """Returns numbers that the density does not exceed on n x n equal squares of each Ptex
-        face, (f, n, n); NaN where there is no surface.
+        """Numbers that the density does not exceed on n x n equal squares of each Ptex face,
+        (f, n, n); NaN where there is no surface.
         """
         return np.maximum(self.values.upper_bounds(), 0)
 

@@ -90,7 +90,7 @@ class Distribution:
         common: dict[str, Any] = {
             "seed": self.seed,
             "density": region.density,
-            "density_limits": region.density.limits() if region.density else None,
+            "density_limits": region.density.limits if region.density else None,
             "progress": progress,
         }
         try:

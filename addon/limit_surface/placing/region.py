@@ -110,13 +110,16 @@ class Region:
     @cached_property
     def sums(self) -> Sums:
         """Returns the sums. Where there is a density they come from samples: the same number on
-        each face, at random places.
+        each face where the density may be above 0, at random places.
         """
         if self.density is None:
             return Sums(1.0, self.area, 1.0)
-        per_side = int(np.sqrt(SAMPLES / max(self.ptex_face_count, 1)))
-        per_side = min(max(per_side, 1), MOST_PER_SIDE)
-        at = self.surface.scatter_jittered(per_side, 0)
+        limits = self.density.limits
+        faces = np.flatnonzero((limits > 0).any(axis=(1, 2)))
+        if not len(faces):
+            return Sums(0.0, 0.0, 0.0)
+        per_side = min(max(int(np.sqrt(SAMPLES / len(faces))), 1), MOST_PER_SIDE)
+        at = self.surface.scatter_jittered(per_side, 0, faces=faces)
         weight = self.density(at.face, at.uv)
         with self.in_world():
             tangents = self.surface.evaluate(at.face, at.uv, derivatives=1)
@@ -124,7 +127,8 @@ class Region:
         assert tangents.dv is not None
         across = np.nan_to_num(np.cross(tangents.du, tangents.dv))
         area = np.linalg.norm(across, axis=1) / per_side**2
-        return Sums(weight.clip(max=1).mean(), float(weight @ area), weight.max())
+        mean = weight.clip(max=1).sum() / (self.ptex_face_count * per_side**2)
+        return Sums(float(mean), float(weight @ area), weight.max(initial=0.0))
 
     def edge_curves(self) -> limitsurf.EdgeCurves:
         """Returns the curves of the border as the surface is now posed. Raises RefusalError where

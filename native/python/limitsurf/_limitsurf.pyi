@@ -535,7 +535,9 @@ class LimitSurface(metaclass=_BoundType):
         frames: ArrayLike | None = None,
         threads: int = 0,
     ) -> NDArray[np.float64]: ...
-    def scatter_jittered(self, per_side: int, seed: int = 0, *, threads: int = 0) -> Locations: ...
+    def scatter_jittered(
+        self, per_side: int, seed: int = 0, *, faces: ArrayLike | None = None, threads: int = 0
+    ) -> Locations: ...
     def scatter_uniform(
         self,
         count: int,

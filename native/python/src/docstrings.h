@@ -296,7 +296,11 @@ constexpr const char* kScatterJitteredDoc =
 Figure 1 of Lacewell & Burley 2007 shows such locations. Returns Locations (.face, .uv) in face order;
 refused faces have none. A seed (0 to 2^64 - 1) gives the same locations on every machine.
 
-Raises ValueError for a per_side below 1. Cost: O(locations).
+faces, (k,) integers, are the Ptex faces on which locations are wanted: the same as without faces, in
+the order of this array.
+
+Raises ValueError for a per_side below 1, and LocationError naming the first of faces that is no Ptex
+face. Cost: O(locations).
 )";
 
 constexpr const char* kScatterUniformDoc =

@@ -117,14 +117,38 @@ py::object area(const SharedSurface& shared, bool error, int threads) {
   return py::float_(area.value);
 }
 
+/// The argument `faces`: Ptex faces (k,), or None, for which the result is empty.
+std::vector<int> facesOf(const LimitSurface& surface, const py::object& faces) {
+  if (faces.is_none()) {
+    return {};
+  }
+  const Integers ids = integers<LocationError>(faces, "faces");
+  requireVector<LocationError>(ids, "faces");
+  std::vector<int> chosen;
+  chosen.reserve(static_cast<std::size_t>(ids.size()));
+  for (py::ssize_t i = 0; i < ids.size(); ++i) {
+    const std::int64_t face = ids.data()[i];
+    if (face < 0 || face >= surface.faceCount()) {
+      throw LocationError("faces[" + std::to_string(i) + "] is " + std::to_string(face) +
+                          "; the surface has " + std::to_string(surface.faceCount()) +
+                          " Ptex faces");
+    }
+    chosen.push_back(static_cast<int>(face));
+  }
+  return chosen;
+}
+
 py::object scatterJittered(const SharedSurface& shared, int per_side, std::uint64_t seed,
-                           int threads) {
+                           const py::object& faces, int threads) {
   checkThreads(threads);
+  const std::vector<int> chosen = facesOf(shared.surface(), faces);
   Locations at;
   {
     const GilRelease release;
     const InterruptionPoint point = interruptible();
-    at = limitsurf::scatterJittered(shared.surface(), per_side, seed, threads);
+    at = faces.is_none()
+             ? limitsurf::scatterJittered(shared.surface(), per_side, seed, threads)
+             : limitsurf::scatterJittered(shared.surface(), chosen, per_side, seed, threads);
   }
   return locations(at);
 }
@@ -158,7 +182,7 @@ void bindSampling(SurfaceClass& type) {
   using namespace py::literals;
   type.def("area", &area, py::kw_only(), "error"_a = false, "threads"_a = 0, kAreaDoc)
       .def("scatter_jittered", &scatterJittered, "per_side"_a, "seed"_a = 0, py::kw_only(),
-           "threads"_a = 0, kScatterJitteredDoc)
+           "faces"_a = py::none(), "threads"_a = 0, kScatterJitteredDoc)
       .def("scatter_uniform", &scatterUniform, "count"_a, "seed"_a = 0, "density"_a = py::none(),
            py::kw_only(), "density_limits"_a = py::none(), "threads"_a = 0,
            "progress"_a = py::none(), kScatterUniformDoc)

@@ -195,6 +195,10 @@ CASES = {
         ON,
     ),
     "LimitSurface.displaced": (SURFACE.displaced, {**ON, "values": POINTS, "frames": TURNS}),
+    "LimitSurface.scatter_jittered": (
+        lambda **given: SURFACE.scatter_jittered(2, **given),
+        {"faces": FACE},
+    ),
     "LimitSurface.scatter_uniform": (
         lambda **given: scatter_twice(SURFACE.scatter_uniform, **given),
         {"density": [1.0] * 16, "density_limits": [2.0] * 9},

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -14,6 +15,7 @@
 #include "limitsurf/sample/jittered_sampling.h"
 #include "limitsurf/tessellate/tessellation.h"
 #include "support/cages/meshes.h"
+#include "support/throws.h"
 #include "support/truth/corner_points.h"
 #include "support/truth/witness.h"
 
@@ -63,6 +65,28 @@ TEST(ScatterJittered, DependsOnTheSeedAlone) {
   EXPECT_TRUE(same(one, scatterJittered(surface, 20, 7, 0)));
   EXPECT_TRUE(same(one, scatterJittered(surface, 20, 7, 3)));
   EXPECT_FALSE(same(one, scatterJittered(surface, 20, 8)));
+}
+
+TEST(ScatterJittered, IsTheSameOnSomeFaces) {
+  Cage cage = mixture(3);
+  cage.options.holes = {2};
+  const LimitSurface surface = limitSurface(cage);
+  std::vector<int> faces = {7, 1, 1};
+  int refused = 0;
+  while (surface.baseFace()[refused] != 2) ++refused;
+  faces.push_back(refused);
+  const std::vector<Location> all = scatterJittered(surface, 3, 5),
+                              some = scatterJittered(surface, faces, 3, 5);
+  ASSERT_EQ(some.size(), 27u);
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const int face = faces[i / 9];
+    const auto first =
+        std::find_if(all.begin(), all.end(), [&](auto& l) { return l.face == face; });
+    const Location& same = first[static_cast<std::ptrdiff_t>(i % 9)];
+    EXPECT_TRUE(some[i].face == face && some[i].u == same.u && some[i].v == same.v);
+  }
+  faces.push_back(surface.faceCount());
+  expectThrow<LocationError>([&] { scatterJittered(surface, faces, 3, 5); }, {"faces[4]"});
 }
 
 TEST(ScatterJittered, IsUniformWithinItsCells) {
