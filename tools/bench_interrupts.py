@@ -141,6 +141,7 @@ def evaluating() -> Iterator[tuple[str, Call]]:
     yield "tile_quadtree, triangles", lambda: surface("some triangles").tile_quadtree()
     unwrapped, fewer = uv_map("triangles"), places("triangles", many // 4)
     yield "bounds", lambda: triangles.bounds()
+    yield "bounds of data", lambda: unwrapped.bounds(8)
     yield "tangent_frames", lambda: triangles.tangent_frames(unwrapped, *fewer)
     yield "tessellate", lambda: surface("middle").tessellate(3, corner_normals=True)
     yield "levels_within", lambda: triangles.levels_within(1e-9)
@@ -228,6 +229,9 @@ def texturing() -> Iterator[tuple[str, Call]]:
     image = ls.FilteredImage(pixels)
     steps = rng.uniform(-0.05, 0.05, (3_000_000, 2, 2))
     yield "sample", lambda: image.sample(rng.random((3_000_000, 2)), steps)
+    grey, boxes = ls.FilteredImage(pixels[:, :, :1]), rng.random((6_000_000, 2, 2))
+    boxes.sort(axis=1)
+    yield "bounds of an image", lambda: grey.bounds(boxes)
     colours = rng.random((8_000_000, 4), np.float32)
     yield (
         "blend_over",

@@ -152,6 +152,11 @@ def uniform(s: Subject) -> Iterator[Any]:
     yield s.surface.scatter_uniform(200, 4, **s.threads)
     yield s.surface.scatter_uniform(200, 5, s.weights, **s.threads)
     yield s.surface.scatter_uniform(200, 6, lambda face, uv: uv[:, 0] + 0.1, **s.threads)
+    limits = np.full(s.surface.face_count, 1.1)
+    limits[:2] = 2
+    yield s.surface.scatter_uniform(
+        200, 6, lambda face, uv: uv[:, 0] + 0.1, density_limits=limits, **s.threads
+    )
 
 
 def blue_noise(s: Subject) -> Iterator[Any]:
@@ -188,6 +193,7 @@ def surface_data(s: Subject) -> Iterator[Any]:
 
 def uv_places(s: Subject) -> Iterator[Any]:
     rng = np.random.default_rng(16)
+    yield s.uv_map.bounds(2, **s.threads)
     yield s.uv_map.rasterize(96, 64, margin=2.5, **s.threads)
     yield s.uv_map.rasterize(31, 47, (0, -1), **s.threads)
     yield s.uv_map.locate(rng.uniform(-0.1, 1.1, (500, 2)), **s.threads)
@@ -273,7 +279,9 @@ def images(threads: int) -> Iterator[Any]:
                 pixels, extension, premultiplied=premultiplied, threads=threads
             )
             yield image.sample(st, footprint, threads=threads)
-    yield ls.FilteredImage(pixels[:, :, :1]).sample(st, footprint, threads=threads)
+    grey = ls.FilteredImage(pixels[:, :, :1])
+    yield grey.sample(st, footprint, threads=threads)
+    yield grey.bounds(np.stack([st, st + 0.1], axis=1), threads=threads)
     yield ls.bilinear(pixels, st, threads=threads)
     below, above = rng.random((2, 500, 4), np.float32)
     weight = rng.random(500, np.float32)
