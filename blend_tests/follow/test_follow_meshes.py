@@ -253,3 +253,21 @@ def test_unbound_meshes_keep_positions_and_normals(make):
     assert not made.modifiers
     np.testing.assert_array_equal(follow_truth.shown(made, ids.POSITION), shown)
     np.testing.assert_allclose(shown_normals(made), normals, atol=1e-6)
+
+
+def test_lost_vertices_are_selected_alone_where_blender_stored_the_selection_wrongly():
+    ob = deforming("cross")
+    made = limit_mesh(ob)
+    face = attributes.read(made.data, ids.FACE)
+    edited = bmesh.new()
+    edited.from_mesh(ob.data)
+    bmesh.ops.delete(edited, geom=list(edited.faces)[:1], context="FACES_ONLY")
+    edited.to_mesh(ob.data)
+    edited.free()
+    scenes.spoil_edge_selection(made.data)
+    scenes.activate(made)
+    assert bpy.ops.object.limit_rebind(method="FACE") == {"FINISHED"}
+    lost = [vertex.select for vertex in made.data.vertices]
+    np.testing.assert_array_equal(lost, attributes.read(made.data, ids.FACE) < 0)
+    assert 0 < np.sum(lost) < len(face)
+    assert not any(each.select for each in (*made.data.edges, *made.data.polygons))

@@ -228,6 +228,13 @@ def test_the_mesh_is_sound(dressed):
         assert not mesh.validate(verbose=True)
 
 
+def test_edges_are_selected_and_can_be_deselected(dressed):
+    mesh = make(dressed, levels=LEVELS).data
+    assert attributes.read(mesh, ids.EDGE_SELECTION).all()
+    mesh.edges.foreach_set("select", [False] * len(mesh.edges))
+    assert not attributes.read(mesh, ids.EDGE_SELECTION).any()
+
+
 def test_undo(dressed):
     bpy.ops.ed.undo_push()
     before = scenes.file_contents()

@@ -191,6 +191,12 @@ def test_creases_sharp_edges_and_selected_edges():
     assert not set(locations(other)[0]) & set(made[0][0])
 
 
+def test_a_selection_that_blender_stored_wrongly_is_none():
+    ob = scenes.cross()
+    scenes.spoil_edge_selection(ob.data)
+    check_refused("Cross has no selected edges", distribution="BORDER", border="SELECTED")
+
+
 def test_only_faces_that_are_covered():
     ob = scenes.flat_grid(6)
     ob.data.polygons.foreach_set("select", [polygon.center.x < 3 for polygon in ob.data.polygons])
@@ -215,10 +221,10 @@ def test_what_cannot_be_done_is_refused():
     check_refused("Cube has no open boundary", distribution="BORDER")
     check_refused("Cube has no creased edges", distribution="BORDER", border="CREASES")
     check_refused("Cube has no edges that are marked sharp", distribution="BORDER", border="SHARP")
+    bpy.context.active_object.data.edges.foreach_set("select", [False] * 12)
+    check_refused("Cube has no selected edges", distribution="BORDER", border="SELECTED")
     scenes.activate(scenes.cross())
     check_refused("A border has no area", distribution="BORDER", density=4.0)
-    bpy.context.active_object.data.edges.foreach_set("select", [False] * 16)
-    check_refused("no selected edges", distribution="BORDER", border="SELECTED")
     middle = scenes.flat_grid(3)
     middle.data.polygons.foreach_set("select", np.arange(9) == 4)
     check_refused("faces that are chosen have no edges", distribution="BORDER", faces="SELECTED")

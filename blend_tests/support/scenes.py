@@ -61,6 +61,15 @@ def overridden(folder: Path, *objects: bpy.types.Object) -> list[bpy.types.Objec
     return overrides
 
 
+def spoil_edge_selection(mesh: bpy.types.Mesh) -> None:
+    """Stores which edges are selected as Blender 5.0 does where it has made the edges itself: with
+    the type of another attribute. There it crashes when a script selects edges afterwards.
+    """
+    mesh.attributes.remove(mesh.attributes[ids.EDGE_SELECTION])
+    ends = attributes.read(mesh, ids.EDGE_VERTICES)
+    attributes.write(mesh, ids.EDGE_SELECTION, "INT32_2D", "EDGE", ends)
+
+
 def cross() -> bpy.types.Object:
     return add_mesh("Cross", *obj.read(obj.CROSS))
 

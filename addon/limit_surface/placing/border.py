@@ -81,9 +81,10 @@ def where_rows_end(ended: np.ndarray, asked_for: int) -> str:
 
 
 def _selected(mesh: bpy.types.Mesh) -> np.ndarray:
-    values = np.empty(len(mesh.edges), bool)
-    mesh.edges.foreach_get("select", values)
-    return values
+    stored = mesh.attributes.get(ids.EDGE_SELECTION)
+    if stored is None or stored.data_type != "BOOLEAN":  # Blender 5.0 gives it a wrong type
+        return np.zeros(len(mesh.edges), bool)
+    return attributes.read(mesh, ids.EDGE_SELECTION)
 
 
 def _sharp(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -61,7 +61,19 @@ def add_polygons(
     mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(vertices, np.int32))
     mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(starts, np.int32))
     mesh.update(calc_edges=True)
+    _correct_edge_selection(mesh)
     mesh.shade_smooth()
+
+
+def _correct_edge_selection(mesh: bpy.types.Mesh) -> None:
+    """Has all edges selected, as Blender selects those that it makes. Blender 5.0 stores that with
+    a wrong type, and crashes when something selects other edges.
+    """
+    stored = mesh.attributes.get(ids.EDGE_SELECTION)
+    if stored and stored.data_type != "BOOLEAN":
+        mesh.attributes.remove(stored)
+        selected = np.ones(len(mesh.edges), bool)
+        attributes.write(mesh, ids.EDGE_SELECTION, "BOOLEAN", "EDGE", selected)
 
 
 def set_corner_normals(mesh: bpy.types.Mesh, normals: np.ndarray) -> None:

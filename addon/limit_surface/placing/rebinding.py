@@ -302,8 +302,10 @@ def _select(relocation: Relocation) -> None:
     chosen = np.zeros(elements.count, bool)
     chosen[relocation.lost] = True
     if isinstance(data, bpy.types.Mesh):
-        for collection in (data.edges, data.polygons):
-            collection.foreach_set("select", np.zeros(len(collection), bool))
+        for name in (ids.EDGE_SELECTION, ids.FACE_SELECTION):
+            selection = data.attributes.get(name)
+            if selection:  # setting it instead crashes where Blender 5.0 gave it a wrong type
+                data.attributes.remove(selection)
         data.vertices.foreach_set("select", chosen)
         return
     stored = data.attributes.get(ids.SELECTION)
