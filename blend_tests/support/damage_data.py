@@ -46,6 +46,8 @@ def nothing_in_it(ob: bpy.types.Object, _folder: Path) -> None:
     if ob.type == "MESH":
         ob.data.clear_geometry()
     elif ob.type == "CURVES":
+        if not hasattr(ob.data, "remove_curves"):  # before Blender 4.3
+            raise DoesNotApplyError
         ob.data.remove_curves()
     elif ob.type == "CURVE":
         ob.data.splines.clear()
@@ -61,6 +63,8 @@ def vertices_alone(ob: bpy.types.Object, _folder: Path) -> None:
 
 def one_point(ob: bpy.types.Object, _folder: Path) -> None:
     if ob.type == "CURVES":
+        if not hasattr(ob.data, "resize_curves"):  # before Blender 4.3
+            raise DoesNotApplyError
         ob.data.resize_curves([1] * len(ob.data.curves))
     elif ob.type == "CURVE":
         ob.data.splines.clear()
