@@ -107,3 +107,20 @@ def test_hair_on_a_surface_that_was_linked_for_something_else(tmp_path):
     bpy.ops.wm.open_mainfile(filepath=file)
     assert bpy.data.objects[hair].parent == bpy.data.objects[surface]
     assert bpy.data.objects[hair].data.surface == bpy.data.objects[surface]
+
+
+def test_hair_on_a_linked_surface_that_nothing_else_uses_any_more(tmp_path):
+    surface = scenes.cross().name
+    library, file = str(tmp_path / "library.blend"), str(tmp_path / "file.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=library, copy=True)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    with bpy.data.libraries.load(library, link=True) as (_, linked):
+        linked.objects = [surface]
+    (ob,) = linked.objects
+    bpy.context.collection.objects.link(ob)
+    hair = scenes.add_hair(ob, follow="NONE").name
+    bpy.context.collection.objects.unlink(ob)
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.open_mainfile(filepath=file)
+    assert bpy.data.objects[hair].parent == bpy.data.objects[surface]
+    assert bpy.data.objects[hair].data.surface == bpy.data.objects[surface]

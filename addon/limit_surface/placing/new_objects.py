@@ -40,11 +40,11 @@ def put_on_surface(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     """Has an object share the surface's transform.
 
     Blender saves, and restores by undo, only those linked objects that have users, and a parent is
-    none: a surface that was linked only because something else needs it would be lost. A custom
-    property is a user.
+    none: a linked surface that is in no collection, or that is removed from it later, would be
+    lost. A custom property is a user.
     """
     ob.parent = surface
-    if surface.library is not None and surface.users == 0:
+    if surface.library is not None:
         ob[ids.LINKED_SURFACE] = surface
 
 
