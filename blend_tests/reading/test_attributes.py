@@ -33,3 +33,13 @@ def test_attributes_of_another_kind_or_size_are_not_overwritten():
     attributes.write(mesh, "limit_made", "INT", "POINT", np.arange(5))
     attributes.write(mesh, "limit_made", "FLOAT", "POINT", np.arange(5) / 2)  # the extension's own
     assert np.array_equal(attributes.read(mesh, "limit_made"), np.arange(5) / 2)
+
+
+def test_names_of_vertex_groups_are_refused():
+    bpy.ops.mesh.primitive_cube_add()
+    ob = bpy.context.active_object
+    ob.vertex_groups.new(name="taken")
+    before = ob.data.attributes.keys()
+    with pytest.raises(RefusalError, match="has a vertex group taken: rename or remove it"):
+        attributes.write(ob.data, "taken", "FLOAT", "POINT", np.zeros(8))
+    assert ob.data.attributes.keys() == before

@@ -93,7 +93,7 @@ def _put(
     mesh: bpy.types.Mesh, name: str, kind: str, vertices: np.ndarray, values: np.ndarray
 ) -> None:
     if name not in mesh.attributes:
-        mesh.attributes.new(name, kind, "POINT")
+        attributes.add(mesh, name, kind, "POINT")
     stored = attributes.read(mesh, name)
     stored[vertices] = values
     attributes.write(mesh, name, kind, "POINT", stored)

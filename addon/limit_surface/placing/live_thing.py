@@ -127,7 +127,7 @@ class LiveThing:
         """Takes the points for those that were written. All strands follow from now on."""
         prints = self._fingerprints(data, self._poser_on(data, limit))
         if ids.LIVE_FINGERPRINT not in data.attributes:
-            data.attributes.new(ids.LIVE_FINGERPRINT, "INT", place_domain(data))
+            attributes.add(data, ids.LIVE_FINGERPRINT, "INT", place_domain(data))
         write(data, ids.LIVE_FINGERPRINT, prints)
 
     def admit(self, data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:

@@ -46,14 +46,24 @@ def write(data: bpy.types.ID, name: str, kind: str, domain: str, values: np.ndar
         data.attributes.remove(attribute)
         attribute = None
     if attribute is None:
-        attribute = data.attributes.new(name, kind, domain)
-    if attribute is None:  # attributes and vertex groups must not have the same name
-        raise RefusalError(f"{data.name} has a vertex group {name}: rename or remove it")
+        attribute = add(data, name, kind, domain)
     layout = LAYOUTS[kind]
     values = np.ascontiguousarray(values, layout.dtype)
     if values.size != len(attribute.data) * layout.width:
         raise ValueError(f"{name}: {values.shape} values for {len(attribute.data)} elements")
     attribute.data.foreach_set(layout.key, values.ravel())
+
+
+def add(data: bpy.types.ID, name: str, kind: str, domain: str) -> bpy.types.Attribute:
+    """Creates an attribute that does not exist yet. Raises RefusalError where a vertex group has
+    its name: attributes and vertex groups must not have the same.
+    """
+    made = data.attributes.new(name, kind, domain)
+    if made and made.name == name:
+        return made
+    if made:  # Blender 5.2 gives it another name, earlier ones make none
+        data.attributes.remove(made)
+    raise RefusalError(f"{data.name} has a vertex group {name}: rename or remove it")
 
 
 def read(data: bpy.types.ID, name: str) -> np.ndarray:
