@@ -44,7 +44,7 @@ def test_children_that_grow(live, tmp_path):
 
 def remove_a_guide(live):
     if bpy.app.version < (4, 3):
-        pytest.skip("Python cannot do that before 4.3")
+        pytest.skip("Python cannot do that before Blender 4.3")
     live_children.guides_of(live).data.remove_curves(indices=[0])
 
 

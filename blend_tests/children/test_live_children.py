@@ -123,7 +123,7 @@ def test_tables_are_shared_and_may_be_made_again():
         check(live, guides, ob)
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before 4.3")
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")
 def test_other_numbers_of_guides_stop_them():
     ob = deforming("cross")
     guides = add_guides(ob)

@@ -118,7 +118,7 @@ def test_hair_follows_the_edited_control_mesh():
     check_frames(ob, hair)
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before 4.3")
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")
 def test_removed_strands():
     ob, hair = followed()
     count = len(hair.data.curves)
@@ -127,7 +127,7 @@ def test_removed_strands():
     check_frames(ob, hair)
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before 4.3")
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")
 def test_longer_strands():
     ob, hair = followed()
     hair.data.resize_curves([7] * len(hair.data.curves))

@@ -101,7 +101,7 @@ def test_the_panel_tells_how_many_there_are(scene):
     assert stale.troubles(bpy.context, State.of(ob)) == []
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before 4.3")
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")
 def test_other_guides_are_seen_and_rebound(scene):
     ob, guides, live = scene
     places = children_truth.stored(live)[:2]
@@ -264,7 +264,7 @@ def test_the_surface_unbinds_them_with_their_guides(scene):
     assert not [m for m in guides.modifiers if m.type == "NODES"]
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before 4.3")
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")
 def test_what_does_not_grow_is_not_unbound(scene):
     _ob, guides, live = scene
     guides.data.remove_curves(indices=[3])

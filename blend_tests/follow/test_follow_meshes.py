@@ -146,7 +146,7 @@ def test_decals_follow_live():
     check(ob, made)
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 5), reason="normals are angles there")
+@pytest.mark.skipif(bpy.app.version < (4, 5), reason="normals are angles before Blender 4.5")
 def test_normals_go_back_to_rest_or_stay():
     ob = deforming("cross")
     made = limit_mesh(ob)
@@ -167,7 +167,7 @@ def test_normals_go_back_to_rest_or_stay():
     np.testing.assert_allclose(attributes.read(made.data, ids.CUSTOM_NORMAL), shown, atol=1e-6)
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 5), reason="normals are angles there")
+@pytest.mark.skipif(bpy.app.version < (4, 5), reason="normals are angles before Blender 4.5")
 def test_faces_of_the_mesh_itself_may_change_while_it_follows_live():
     ob = deforming("grid with holes")
     ob.matrix_world.identity()

@@ -175,7 +175,7 @@ def test_attributes_that_are_missing_are_named():
     assert ids.LIVE_REST in live.trouble(hair)
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before 4.3")
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")
 def test_bezier_handles_follow():
     ob = deforming("cross")
     hair = scenes.add_hair(ob, follow="NONE")

@@ -141,7 +141,7 @@ def check_some(hair: bpy.types.Object, rows: slice) -> None:
     np.testing.assert_allclose(scenes.strands(hair)[rows, 0], theirs, atol=BOUND)
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before 4.3")
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")
 def test_deleted_strands_do_not_matter(hair):
     go_to(15)
     hair.data.remove_curves(indices=list(range(0, 60, 3)))
@@ -150,7 +150,7 @@ def test_deleted_strands_do_not_matter(hair):
         check_hair(surface(), hair)
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before 4.3")
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")
 def test_strands_with_more_points_follow(hair):
     go_to(15)
     before = scenes.strands(hair)[0].copy()
