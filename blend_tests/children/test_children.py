@@ -270,6 +270,10 @@ def test_poll():
     made = add_children(add_guides(sheet()))
     assert bpy.context.active_object == made
     assert bpy.ops.object.limit_children_add.poll()
+    points = scenes.add_points(made.parent)
+    assert bpy.ops.object.limit_children_add.poll()
+    points.parent = None
+    assert not bpy.ops.object.limit_children_add.poll()
 
 
 @pytest.mark.parametrize("mode", ["MADE", "LIVE"])

@@ -120,14 +120,10 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        def has_guides() -> bool:
-            ob = context.active_object
-            return ob is not None and (ob.type == "MESH" or followers.ground_of(ob) is not None)
-
         return polling.in_object_mode(
             cls,
             context,
-            has_guides,
+            lambda: followers.ground_of(context.active_object) is not None,
             "Make hair that stands on a mesh active: its strands become the guides",
         )
 
