@@ -130,7 +130,9 @@ def test_the_panel_says_that_things_are_at_rest():
     assert look(ob) == [(told, ids.REBIND)]
 
 
-@pytest.mark.skipif(not hasattr(bpy.types, "GeometryNodeWarning"), reason="Blender 4.2 has no warnings")
+@pytest.mark.skipif(
+    not hasattr(bpy.types, "GeometryNodeWarning"), reason="Blender 4.2 has no warnings"
+)
 def test_the_modifier_warns():
     ob = deforming("grid with holes")
     hair = scenes.add_hair(ob, follow="NODES")

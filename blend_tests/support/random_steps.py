@@ -246,7 +246,13 @@ class Session:
         if len(bpy.data.objects) > MOST_OBJECTS:
             return self.delete(half=True)
         bpy.ops.object.duplicate("EXEC_DEFAULT", True, linked=self.random.random() < 0.5)
-        return ", ".join(ob.name for ob in bpy.context.selected_objects)
+        copies = bpy.context.selected_objects
+        # Blender does not save what was linked only as the parent of a linked object
+        parents = [ob.parent for ob in copies if ob.parent and ob.parent.users == 0]
+        for parent in dict.fromkeys(parents):
+            bpy.context.scene.collection.objects.link(parent)
+        push("duplicate")
+        return ", ".join(ob.name for ob in copies)
 
     def add_something(self) -> str:
         """What operators take besides meshes: images, a camera, curves."""
