@@ -58,8 +58,11 @@ class DiscFinder {
       }
     }
     for (std::size_t i = 0; i < count; ++i) {
-      if (is_new[i] && (blocks[i] = grid_.find(0, low[i]))) {
-        prefetch(blocks[i]->first);
+      if (is_new[i]) {
+        blocks[i] = grid_.find(0, low[i]);
+        if (blocks[i]) {
+          prefetch(blocks[i]->first);
+        }
       }
     }
   }
