@@ -21,13 +21,13 @@ constexpr std::size_t kLocationsPerTask = 8192;
 
 std::vector<Location> scatterJittered(const LimitSurface& surface, int per_side, std::uint64_t seed,
                                       int threads) {
-  std::vector<int> faces(static_cast<std::size_t>(surface.faceCount()));
+  std::vector<std::int64_t> faces(static_cast<std::size_t>(surface.faceCount()));
   std::iota(faces.begin(), faces.end(), 0);
   return scatterJittered(surface, faces, per_side, seed, threads);
 }
 
-std::vector<Location> scatterJittered(const LimitSurface& surface, Span<int> wanted, int per_side,
-                                      std::uint64_t seed, int threads) {
+std::vector<Location> scatterJittered(const LimitSurface& surface, Span<std::int64_t> wanted,
+                                      int per_side, std::uint64_t seed, int threads) {
   checkThreads(threads);
   if (per_side < 1) {
     throw std::invalid_argument("per_side is " + std::to_string(per_side) +
@@ -35,14 +35,14 @@ std::vector<Location> scatterJittered(const LimitSurface& surface, Span<int> wan
   }
   std::vector<int> faces;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const int face = wanted[i];
+    const std::int64_t face = wanted[i];
     if (face < 0 || face >= surface.faceCount()) {
       throw LocationError("faces[" + std::to_string(i) + "] is " + std::to_string(face) +
                           "; the surface has " + std::to_string(surface.faceCount()) +
                           " Ptex faces");
     }
     if (!surface.refused().count(surface.baseFace()[static_cast<std::size_t>(face)])) {
-      faces.push_back(face);
+      faces.push_back(static_cast<int>(face));
     }
   }
   const std::size_t side = static_cast<std::size_t>(per_side), per_face = side * side;

@@ -20,7 +20,7 @@ std::vector<Location> scatterJittered(const LimitSurface& surface, int per_side,
 
 /// The same locations, but on these Ptex faces alone, in their order. Faces without a surface have
 /// none. Throws LocationError naming the first that is no face of the surface.
-std::vector<Location> scatterJittered(const LimitSurface& surface, Span<int> faces, int per_side,
-                                      std::uint64_t seed, int threads = 0);
+std::vector<Location> scatterJittered(const LimitSurface& surface, Span<std::int64_t> faces,
+                                      int per_side, std::uint64_t seed, int threads = 0);
 
 }  // namespace limitsurf

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "batches.h"
-#include "docstrings.h"
 #include "limitsurf/sample/area.h"
 #include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/sample/jittered_sampling.h"
 #include "progress.h"
+#include "sampling_docstrings.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -117,38 +117,22 @@ py::object area(const SharedSurface& shared, bool error, int threads) {
   return py::float_(area.value);
 }
 
-/// The argument `faces`: Ptex faces (k,), or None, for which the result is empty.
-std::vector<int> facesOf(const LimitSurface& surface, const py::object& faces) {
-  if (faces.is_none()) {
-    return {};
-  }
-  const Integers ids = integers<LocationError>(faces, "faces");
-  requireVector<LocationError>(ids, "faces");
-  std::vector<int> chosen;
-  chosen.reserve(static_cast<std::size_t>(ids.size()));
-  for (py::ssize_t i = 0; i < ids.size(); ++i) {
-    const std::int64_t face = ids.data()[i];
-    if (face < 0 || face >= surface.faceCount()) {
-      throw LocationError("faces[" + std::to_string(i) + "] is " + std::to_string(face) +
-                          "; the surface has " + std::to_string(surface.faceCount()) +
-                          " Ptex faces");
-    }
-    chosen.push_back(static_cast<int>(face));
-  }
-  return chosen;
-}
-
 py::object scatterJittered(const SharedSurface& shared, int per_side, std::uint64_t seed,
                            const py::object& faces, int threads) {
   checkThreads(threads);
-  const std::vector<int> chosen = facesOf(shared.surface(), faces);
+  Integers chosen;
+  if (!faces.is_none()) {
+    chosen = integers<LocationError>(faces, "faces");
+    requireVector<LocationError>(chosen, "faces");
+  }
+  const Span<std::int64_t> ids(chosen.data(), static_cast<std::size_t>(chosen.size()));
   Locations at;
   {
     const GilRelease release;
     const InterruptionPoint point = interruptible();
     at = faces.is_none()
              ? limitsurf::scatterJittered(shared.surface(), per_side, seed, threads)
-             : limitsurf::scatterJittered(shared.surface(), chosen, per_side, seed, threads);
+             : limitsurf::scatterJittered(shared.surface(), ids, per_side, seed, threads);
   }
   return locations(at);
 }

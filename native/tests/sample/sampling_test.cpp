@@ -71,7 +71,7 @@ TEST(ScatterJittered, IsTheSameOnSomeFaces) {
   Cage cage = mixture(3);
   cage.options.holes = {2};
   const LimitSurface surface = limitSurface(cage);
-  std::vector<int> faces = {7, 1, 1};
+  std::vector<std::int64_t> faces = {7, 1, 1};
   int refused = 0;
   while (surface.baseFace()[refused] != 2) ++refused;
   faces.push_back(refused);
@@ -79,7 +79,7 @@ TEST(ScatterJittered, IsTheSameOnSomeFaces) {
                               some = scatterJittered(surface, faces, 3, 5);
   ASSERT_EQ(some.size(), 27u);
   for (std::size_t i = 0; i < some.size(); ++i) {
-    const int face = faces[i / 9];
+    const std::int64_t face = faces[i / 9];
     const auto first =
         std::find_if(all.begin(), all.end(), [&](auto& l) { return l.face == face; });
     const Location& same = first[static_cast<std::ptrdiff_t>(i % 9)];
