@@ -275,19 +275,24 @@ def test_a_small_spot_needs_few_candidates(monkeypatch):
     assert len(found) < 10_000
 
 
-def test_density_in_a_small_spot():
+@pytest.mark.parametrize(("side", "precision"), [(32, 0.01), (4, 0.05), (2, 0.1)])
+def test_density_in_a_small_spot(side, precision):
     """The count is that of the spot's area, which is 1.5e-5 of the surface's."""
-    ob = scenes.flat_grid(32)
-    add_uv_map(ob, lambda p: p[:, :2] / 32)
+    ob = scenes.flat_grid(side)
+    add_uv_map(ob, lambda p: p[:, :2] / side)
     add_subsurf(ob).uv_smooth = "NONE"
     spot(1.5)
     points = add_points(
-        ob, distribution="UNIFORM", density=1e6, density_source="IMAGE", image="Spots"
+        ob,
+        distribution="UNIFORM",
+        density=1e9 / side**2,
+        density_source="IMAGE",
+        image="Spots",
     )
     values = np.zeros((512 * 512, 4), np.float32)
     bpy.data.images["Spots"].pixels.foreach_get(values.ravel())
-    area = values[:, 0].sum() * (32 / 512) ** 2  # linear between pixels: the same integral
-    assert len(points.data.vertices) == pytest.approx(1e6 * area, rel=0.01)
+    share = values[:, 0].sum() / 512**2  # linear between pixels: the same integral
+    assert len(points.data.vertices) == pytest.approx(1e9 * share, rel=precision)
 
 
 @pytest.mark.parametrize("weight", [0.25, 1.0])

@@ -69,7 +69,7 @@ class Distribution:
             return Expected(round(self.density * region.sums.weighted_area), True)
         self._check_distance()
         if not region.sums.largest:
-            raise RefusalError(NOWHERE)
+            raise RefusalError(NOWHERE if region.is_empty else TOO_LOW)
         fit = PACKING * region.sums.weighted_area / region.sums.largest / self.distance**2
         return Expected(max(round(fit), 1), False)
 
@@ -85,7 +85,7 @@ class Distribution:
         if count == 0:
             if not region.area > 0:
                 raise RefusalError(NO_AREA)
-            raise RefusalError(TOO_LOW if region.sums.largest else NOWHERE)
+            raise RefusalError(NOWHERE if region.is_empty else TOO_LOW)
         self._check_distance()
         common: dict[str, Any] = {
             "seed": self.seed,
@@ -103,7 +103,7 @@ class Distribution:
                 apart = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
                 return Scattered(_rounded(apart), float(apart.radius))
         except ValueError as error:  # there is no place for them, or no space for so many
-            reason = native.sentence(error) if region.sums.largest else NOWHERE
+            reason = NOWHERE if region.is_empty else native.sentence(error)
             raise RefusalError(reason) from error
 
     def _check_distance(self) -> None:

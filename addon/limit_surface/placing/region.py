@@ -22,12 +22,14 @@ from ..tasks.refused_faces import reasons
 from .border import BorderChoice, Edges
 from .density import Density, DensityChoice, DensityMap
 from .mask import MaskChoice
+from .roots import Locations
 
 if TYPE_CHECKING:
     import limitsurf
 
 SAMPLES = 1 << 19  # the largest number of samples, roughly, for sums over the surface
-MOST_PER_SIDE = 64  # samples along each side of a face
+MOST_PER_FACE = 64**2  # samples, if the density may be above 0 on the whole face
+PLACES = 1 << 22  # the largest number of places among which these samples are
 BORDER_SAMPLES = 4096
 
 NOT_COVERED = "The faces that are chosen have no edges of this border"
@@ -110,16 +112,20 @@ class Region:
     @cached_property
     def sums(self) -> Sums:
         """Returns the sums. Where there is a density they come from samples: the same number on
-        each face where the density may be above 0, at random places.
+        each square of the faces where the density may be above 0, at random places.
         """
         if self.density is None:
             return Sums(1.0, self.area, 1.0)
-        limits = self.density.limits
-        faces = np.flatnonzero((limits > 0).any(axis=(1, 2)))
+        counts = self.density.limits > 0
+        faces = np.flatnonzero(counts.any(axis=(1, 2)))
         if not len(faces):
             return Sums(0.0, 0.0, 0.0)
-        per_side = min(max(int(np.sqrt(SAMPLES / len(faces))), 1), MOST_PER_SIDE)
-        at = self.surface.scatter_jittered(per_side, 0, faces=faces)
+        wanted = min(SAMPLES, len(faces) * MOST_PER_FACE) / counts[faces].mean()
+        per_side = max(int(np.sqrt(min(wanted, PLACES) / len(faces))), 1)
+        places = self.surface.scatter_jittered(per_side, 0, faces=faces)
+        column, row = (places.uv * counts.shape[1]).astype(int).clip(max=counts.shape[1] - 1).T
+        may_count = counts[places.face, row, column]
+        at = Locations(places.face[may_count], places.uv[may_count])
         weight = self.density(at.face, at.uv)
         with self.in_world():
             tangents = self.surface.evaluate(at.face, at.uv, derivatives=1)
@@ -129,6 +135,11 @@ class Region:
         area = np.linalg.norm(across, axis=1) / per_side**2
         mean = weight.clip(max=1).sum() / (self.ptex_face_count * per_side**2)
         return Sums(float(mean), float(weight @ area), weight.max(initial=0.0))
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the density is 0 everywhere."""
+        return self.density is not None and not (self.density.limits > 0).any()
 
     def edge_curves(self) -> limitsurf.EdgeCurves:
         """Returns the curves of the border as the surface is now posed. Raises RefusalError where

@@ -18,6 +18,10 @@ constexpr std::size_t kBoxesPerTask = 1024;
 /// Coordinates of more pixels than this are not told apart: the whole image is taken.
 constexpr double kFar = 64;
 
+constexpr float kLargest = std::numeric_limits<float>::max();
+/// That of denormal numbers, some of their steps.
+constexpr float kLeastRounding = 16 * std::numeric_limits<float>::denorm_min();
+
 /// The pixels along one side of an image between which a range of coordinates is interpolated: one
 /// or two ranges of pixels, and perhaps what lies outside of the image.
 struct PixelRanges {
@@ -139,10 +143,14 @@ ColourBounds FilteredImage::bounds(const ImageBoxes& boxes, int threads) const {
                     low = low.cwiseMin(0.f);
                     high = high.cwiseMax(0.f);
                   }
-                  const auto rounding =
-                      (kRounding * low.cwiseAbs().cwiseMax(high.cwiseAbs())).eval();
-                  low -= rounding;
-                  high += rounding;
+                  for (Eigen::Index c = 0; c < low.size(); ++c) {
+                    const float largest = std::max(std::abs(low[c]), std::abs(high[c]));
+                    if (largest > 0) {
+                      const float rounding = std::max(kRounding * largest, kLeastRounding);
+                      low[c] = std::max(low[c] - rounding, -kLargest);
+                      high[c] = std::min(high[c] + rounding, kLargest);
+                    }
+                  }
                 }
               });
   return result;

@@ -72,7 +72,7 @@ std::vector<Location> AreaSampler::Data::ofFunction(std::size_t count, std::uint
   const DensityLimits& limits = density.limits();
   if (!limits.areKnown()) {
     const UniformCandidates candidates(patches, cells, uniform, constant, seed);
-    Thinning thinning(candidates, density, count, threads, progress);
+    Thinning thinning(candidates, density, 1, count, threads, progress);
     thinning.pilot(pilotLocations(hasSurface()));
     return thinning.run();
   }
@@ -83,7 +83,7 @@ std::vector<Location> AreaSampler::Data::ofFunction(std::size_t count, std::uint
     throw std::invalid_argument("density is 0 everywhere on the surface, as its limits say");
   }
   const UniformCandidates candidates(patches, limited.cells, table, constant, seed);
-  return Thinning(candidates, density, count, threads, progress).run();
+  return Thinning(candidates, density, limited.unit, count, threads, progress).run();
 }
 
 void AreaSampler::Data::checkLimits(const DensityLimits& limits) const {

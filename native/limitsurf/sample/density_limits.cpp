@@ -45,11 +45,6 @@ DensityLimits::DensityLimits(int side, std::vector<double> values)
     throw std::invalid_argument(std::to_string(values_.size()) + " density limits are not " +
                                 std::to_string(squares) + " for each face");
   }
-  for (const double limit : values_) {
-    if (std::isfinite(limit)) {
-      largest_ = std::max(largest_, limit);
-    }
-  }
 }
 
 std::int64_t DensityLimits::faceCount() const {

@@ -26,8 +26,6 @@ class DensityLimits {
   bool areKnown() const { return side_ > 0; }
   int side() const { return side_; }
   std::int64_t faceCount() const;
-  /// The largest limit of all; 0 if there is none above 0.
-  double largest() const { return largest_; }
 
   struct Range {
     double least, largest;
@@ -47,7 +45,6 @@ class DensityLimits {
   }
 
   int side_ = 0;
-  double largest_ = 0;
   std::vector<double> values_;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 struct LimitedCell {
   AreaCell cell;
-  float largest;
+  double largest;
 };
 
 /// The number of cells that one task splits.
@@ -35,7 +35,7 @@ class CellSplitter {
       return;
     }
     if (cell.piece.isCore() || range.least == range.largest || isSmall(rectangle)) {
-      out_.push_back({cell, roundedUp(range.largest / limits_.largest())});
+      out_.push_back({cell, range.largest});
       return;
     }
     AreaCell part = cell;
@@ -84,8 +84,12 @@ LimitedCells limitedCells(const SurfacePatches& patches, const std::vector<AreaC
   InterruptionStride stride;
   for (const LimitedCell& cell : found) {
     stride.step();
+    result.unit = std::max(result.unit, cell.largest);
+  }
+  for (const LimitedCell& cell : found) {
+    stride.step();
     result.cells.push_back(cell.cell);
-    result.largest.push_back(cell.largest);
+    result.largest.push_back(roundedUp(cell.largest / result.unit));
   }
   return result;
 }

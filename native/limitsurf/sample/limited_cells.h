@@ -8,11 +8,12 @@
 
 namespace limitsurf {
 
-/// Cells with the largest limit of a density on each, as a part of the largest limit of all,
+/// Cells with the largest limit of a density on each, as a part of the largest one on all of them,
 /// rounded up to single precision.
 struct LimitedCells {
   std::vector<AreaCell> cells;
   std::vector<float> largest;
+  double unit = 0;  ///< the largest limit on all cells
 };
 
 /// The cells on which the density may be above 0. Cells of patches are split until the limits are

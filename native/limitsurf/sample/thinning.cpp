@@ -19,11 +19,12 @@ constexpr std::size_t kFewest = 1024;
 
 }  // namespace
 
-Thinning::Thinning(const UniformCandidates& candidates, const Density& density, std::size_t count,
-                   int threads, const Progress& progress)
+Thinning::Thinning(const UniformCandidates& candidates, const Density& density, double unit,
+                   std::size_t count, int threads, const Progress& progress)
     : candidates_(candidates),
       density_(density),
       limits_(density.limits()),
+      unit_(unit),
       threads_(threads),
       progress_(progress),
       samples_(count),
@@ -79,7 +80,7 @@ void Thinning::tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_o
           for (std::size_t j = i * ahead; j < (i + 1) * ahead; ++j) {
             const UniformCandidates::Candidate candidate = candidates_.next(open[i], attempt);
             at[j] = candidate.at;
-            trials[j].limit = limits_.areKnown() ? candidate.largest * limits_.largest() : 1;
+            trials[j].limit = limits_.areKnown() ? candidate.largest * unit_ : 1;
             trials[j].test = candidates_.number(open[i], attempt);
             trials[j].attempt = attempt;
           }

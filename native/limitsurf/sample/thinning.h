@@ -17,9 +17,9 @@ namespace limitsurf {
 /// and whenever a larger one appears, the samples accepted before are tested anew.
 class Thinning {
  public:
-  /// `candidates`: with the limits in their table, if there are any.
-  Thinning(const UniformCandidates& candidates, const Density& density, std::size_t count,
-           int threads, const Progress& progress);
+  /// `candidates`: with the limits in their table, as parts of `unit`, if there are any.
+  Thinning(const UniformCandidates& candidates, const Density& density, double unit,
+           std::size_t count, int threads, const Progress& progress);
 
   /// Reads the function at these locations before any candidate's, to find a large value early.
   void pilot(Span<Location> at);
@@ -54,6 +54,7 @@ class Thinning {
   const UniformCandidates& candidates_;
   const Density& density_;
   const DensityLimits& limits_;
+  double unit_;
   int threads_;
   const Progress& progress_;
   std::vector<Sample> samples_;

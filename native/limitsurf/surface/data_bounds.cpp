@@ -17,6 +17,10 @@ namespace {
 constexpr std::size_t kMostBoxes = std::size_t{1} << 36;
 constexpr std::size_t kFacesPerTask = 64;
 
+/// Cores of smaller values are not split, because squares of lengths around their vertices would
+/// underflow: their boxes are then those of the whole face's control points.
+constexpr double kSmallest = 1e-140;
+
 /// The part of one side of a square that a piece of the surface covers, in the piece's parameter.
 struct Part {
   double begin, end;
@@ -36,6 +40,7 @@ class FaceBoxes {
   FaceBoxes(const SurfacePatches& patches, int side)
       : patches_(patches),
         side_(side),
+        splits_(patches.diagonal() / patches.scale() > kSmallest),
         boxes_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {}
 
   const std::vector<Box>& boxes() const { return boxes_; }
@@ -60,7 +65,7 @@ class FaceBoxes {
     Box whole = patches_.coreBox(core);
     SurfacePatches::SplitCore split;
     double size = sizeOf(patches_.rectangle(core));
-    while (size * side_ > 1 && core.steps < SurfacePatches::kMostSteps) {
+    while (splits_ && size * side_ > 1 && core.steps < SurfacePatches::kMostSteps) {
       patches_.split(core, split);
       for (const BezierPatch& patch : split.patches) {
         includePatch(patch);
@@ -126,8 +131,24 @@ class FaceBoxes {
 
   const SurfacePatches& patches_;
   int side_;
+  bool splits_;
   std::vector<Box> boxes_;
 };
+
+/// A corner of a box, moved outwards by the padding, whose sign says which corner it is, and by
+/// some units of the rounding of values far from 0. Where all control values are 0 so is everything
+/// that is evaluated, and the box stays as it is.
+Vector3 padded(const Vector3& corner, const Box& box, double padding) {
+  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+  const Vector3 largest = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs());
+  Vector3 result = corner;
+  for (int i = 0; i < 3; ++i) {
+    if (largest[i] > 0) {
+      result[i] += padding + std::copysign(kRounding * largest[i], padding);
+    }
+  }
+  return result;
+}
 
 /// For each face the first of its tiles; tiles are in the order of their faces.
 std::vector<int> firstTiles(const SurfacePatches& patches, int faces) {
@@ -163,7 +184,7 @@ DataBounds SurfaceData::bounds(int side, int threads) const {
   result.low.resize(rows, columns());
   result.high.resize(rows, columns());
   for (Eigen::Index first = 0; first < columns(); first += 3) {
-    const SurfacePatches patches(*this, threads, first, RingHulls::none);
+    const SurfacePatches patches(*this, threads, first, PatchUnit::own, RingHulls::none);
     const std::vector<int> tiles = firstTiles(patches, faceCount());
     const double padding = kBoundsPadding * patches.diagonal();
     const Eigen::Index count = std::min<Eigen::Index>(3, columns() - first);
@@ -182,10 +203,11 @@ DataBounds SurfaceData::bounds(int side, int threads) const {
         auto row = static_cast<Eigen::Index>(face * squares);
         for (const Box& box : boxes.boxes()) {
           const Vector3 nothing = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
-          const Vector3 low = pieces.empty() ? nothing : box.low.array() - padding;
-          const Vector3 high = pieces.empty() ? nothing : box.high.array() + padding;
-          result.low.row(row).segment(first, count) = low.head(count).transpose();
-          result.high.row(row).segment(first, count) = high.head(count).transpose();
+          const Vector3 low = pieces.empty() ? nothing : padded(box.low, box, -padding);
+          const Vector3 high = pieces.empty() ? nothing : padded(box.high, box, padding);
+          result.low.row(row).segment(first, count) = low.head(count).transpose() / patches.scale();
+          result.high.row(row).segment(first, count) =
+              high.head(count).transpose() / patches.scale();
           ++row;
         }
       }

@@ -24,7 +24,8 @@ struct DataBounds {
 
 /// The boxes of SurfaceData::bounds() are wider by this on each side, as a part of the diagonal of
 /// the box around three columns of the values: kPositionError for what evaluate() returns, and a
-/// quarter of it for the error of the boxes themselves.
+/// quarter of it for the error of the boxes themselves. Four units of rounding of the box's largest
+/// number are added. Where all control values are 0 the box is exactly 0.
 constexpr double kBoundsPadding = 1.25 * kPositionError;
 
 /// Data of any number of columns on a limit surface, evaluated exactly at any location.

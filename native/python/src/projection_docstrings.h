@@ -41,7 +41,7 @@ many pixels some pixels close to the box count as well: boxes are taken to be up
 
 Raises ValueError for images with alpha (4 channels), for arrays of other shapes, and naming the first
 row that is infinite or has a lower corner above the upper one. Cost: O(pixels) for a call, and then
-0.1 microseconds a box.
+0.1 to 1 microsecond a box.
 )";
 
 constexpr const char* kSampleDoc =

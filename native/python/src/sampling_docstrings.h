@@ -49,7 +49,8 @@ density_limits, for a function alone, are numbers that it does not exceed: (f,) 
 or (f, side, side) one for each of the equal squares [face, row along v, column along u], where side is
 a power of two up to 1024. They save the candidates that would be rejected: with a function that is
 0 outside of a thousandth of the surface a call takes a hundredth of the time. SurfaceData.bounds()
-and FilteredImage.bounds() give such numbers. Limits must be finite and at least 0 on faces that have
+and FilteredImage.bounds() give such numbers. The closer they are to the
+function, the faster the call. Limits must be finite and at least 0 on faces that have
 a surface. A location where the function exceeds its limit raises ValueError, if it is met.
 )";
 
@@ -67,7 +68,7 @@ seed, density and progress are those of scatter_uniform(). With a density the ra
 proportional to 1 / sqrt(density / largest density), and two points keep the mean of their radii. A
 density function is read on a grid of each face whose squares are at most a radius wide, and
 interpolated; no point lies where it is 0. density_limits are those of scatter_uniform(): where they are
-0 the function is not called, and all else is the same.
+0 the grid is not read, and all else is the same.
 
 The method is that of White, Cline & Egbert ("Poisson Disk Point Sets by Hierarchical Dart Throwing",
 2007) on the limit surface. Raises ValueError as scatter_uniform() does, for a radius that is not finite

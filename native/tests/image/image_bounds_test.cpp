@@ -102,6 +102,25 @@ TEST(ImageBounds, AreExactlyZeroWhereTheImageIs) {
   EXPECT_EQ(bounds.high.cwiseAbs().maxCoeff(), 0);
 }
 
+/// Denormal pixels, and the largest ones.
+TEST(ImageBounds, HoldAtBothEndsOfSinglePrecision) {
+  Random random(3);
+  for (const float size : {1e-45f, 1e-42f, 1e-38f, 3.4e38f}) {
+    std::vector<float> pixels;
+    for (int i = 0; i < 16; ++i) pixels.push_back(size * static_cast<float>(random.uniform()));
+    const FilteredImage image(pixels.data(), 4, 4, 1, Extension::extend);
+    ImageBoxes box(1, 4);
+    box << 0, 0, 1, 1;
+    const ColourBounds bounds = image.bounds(box);
+    EXPECT_TRUE(bounds.high.allFinite());
+    ImagePoints st(500, 2);
+    for (double& x : st.reshaped()) x = random.uniform();
+    const Colours found = image.sample(st, Footprints::Zero(500, 4));
+    EXPECT_GE(found.minCoeff(), bounds.low(0, 0)) << size;
+    EXPECT_LE(found.maxCoeff(), bounds.high(0, 0)) << size;
+  }
+}
+
 TEST(ImageBounds, RefuseWhatHasNoMeaning) {
   const std::vector<float> pixels(16, 0.5f);
   const FilteredImage grey(pixels.data(), 4, 4, 1, Extension::clip),

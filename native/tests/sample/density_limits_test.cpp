@@ -159,6 +159,10 @@ TEST(DensityLimits, AreChecked) {
   const Density density =
       counted([](const Location&) { return 0.5; }, asked, DensityLimits(1, {1, NAN, 0.5}));
   EXPECT_EQ(sampler.uniform(100, 1, density).size(), 100u);
+  // A huge one there does not count either: it would make all others nearly 0.
+  const Density beside =
+      counted([](const Location&) { return 0.5; }, asked, DensityLimits(1, {1, 1e60, 0.5}));
+  EXPECT_EQ(sampler.uniform(100, 1, beside).size(), 100u);
 }
 
 }  // namespace

@@ -132,6 +132,46 @@ TEST(DataBounds, AreTight) {
   EXPECT_LT(slack(data, 16, random), 0.02);
 }
 
+/// Where the padding in units of the range is less than the rounding of the values themselves, and
+/// where the squares of the values underflow.
+TEST(DataBounds, HoldFarFromZeroAndForTinyValues) {
+  Random random(8);
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Cage cage = mixture(seed);
+    DataRows values = randomRows(cage.vertexCount(), 3, seed);
+    values.col(0) = values.col(0).array() * 1e-3 + 1;
+    values.col(1) = values.col(1).array() * 1e-12 - 7;
+    const LimitSurface surface = limitSurface(cage);
+    EXPECT_LT(slack(surface.varying(values), 2, random), INFINITY) << "seed " << seed;
+    EXPECT_LT(slack(surface.vertexData(values), 2, random), INFINITY) << "seed " << seed;
+    const SurfaceData tiny = surface.vertexData(randomRows(cage.vertexCount(), 3, seed) * 1e-170);
+    EXPECT_LT(slack(tiny, 4, random), INFINITY) << "seed " << seed;
+  }
+}
+
+/// A weight that is 0 around a square is 0 there, and its bounds say so.
+TEST(DataBounds, AreExactlyZeroWhereDataAre) {
+  Random random(9);
+  int zeros = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Cage cage = mixture(seed);
+    DataRows values = randomRows(cage.vertexCount(), 1, seed);
+    for (double& value : values.reshaped()) value = random.below(8) == 0 ? value : 0;
+    const LimitSurface surface = limitSurface(cage);
+    for (const SurfaceData& data : {surface.varying(values), surface.vertexData(values)}) {
+      const DataBounds boxes = data.bounds(2);
+      const DataRows value = data.evaluate(placesOf(data, 2, random)).value;
+      for (Eigen::Index box = 0; box < boxes.low.rows(); ++box) {
+        if (boxes.low(box, 0) == 0 && boxes.high(box, 0) == 0) {
+          ++zeros;
+          EXPECT_EQ(value.middleRows(box * kPlaces, kPlaces).cwiseAbs().maxCoeff(), 0);
+        }
+      }
+    }
+  }
+  EXPECT_GT(zeros, 100);
+}
+
 TEST(DataBounds, AreNaNWithoutASurface) {
   Cage cage = grid(2, 2);
   cage.options.holes = {1};

@@ -33,12 +33,12 @@ SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads, PatchUn
   data_->setLevels(threads, hulls);
 }
 SurfacePatches::SurfacePatches(const SurfaceData& data, int threads, Eigen::Index first_column,
-                               RingHulls hulls)
+                               PatchUnit unit, RingHulls hulls)
     : data_(std::make_unique<Data>(
           data.data_->tiles->table,
           data.data_
               ->poses[static_cast<std::size_t>(first_column / SurfaceData::Data::kColumnsPerPose)],
-          PatchUnit::coordinates)) {
+          unit)) {
   data_->setLevels(threads, hulls);
 }
 SurfacePatches::~SurfacePatches() = default;

@@ -93,6 +93,7 @@ class SurfacePatches {
   /// Three columns of data, as if they were positions: `first_column`, a multiple of three, and the
   /// next two. Missing columns are 0.
   explicit SurfacePatches(const SurfaceData& data, int threads = 0, Eigen::Index first_column = 0,
+                          PatchUnit unit = PatchUnit::coordinates,
                           RingHulls hulls = RingHulls::kept);
   ~SurfacePatches();
   SurfacePatches(SurfacePatches&&) noexcept;
