@@ -76,7 +76,7 @@ std::vector<Location> AreaSampler::Data::ofFunction(std::size_t count, std::uint
     thinning.pilot(pilotLocations(hasSurface()));
     return thinning.run();
   }
-  checkLimits(limits);
+  checkLimits(limits, hasSurface());
   LimitedCells limited = limitedCells(patches, cells, limits, threads);
   const CellTable table(limited.cells, std::move(limited.largest));
   if (!(table.total() > 0)) {
@@ -86,7 +86,8 @@ std::vector<Location> AreaSampler::Data::ofFunction(std::size_t count, std::uint
   return Thinning(candidates, density, limited.unit, count, threads, progress).run();
 }
 
-void AreaSampler::Data::checkLimits(const DensityLimits& limits) const {
+void AreaSampler::Data::checkLimits(const DensityLimits& limits,
+                                    const std::vector<bool>& has_surface) const {
   if (!limits.areKnown()) {
     return;
   }
@@ -95,7 +96,6 @@ void AreaSampler::Data::checkLimits(const DensityLimits& limits) const {
                                 std::to_string(limits.faceCount()) + " faces; the surface has " +
                                 std::to_string(surface.faceCount()));
   }
-  const std::vector<bool> has_surface = hasSurface();
   for (std::size_t face = 0; face < has_surface.size(); ++face) {
     if (has_surface[face]) {
       limits.on(static_cast<int>(face), 0, 1, 0, 1);

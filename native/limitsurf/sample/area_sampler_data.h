@@ -28,7 +28,7 @@ struct AreaSampler::Data {
 
   /// Throws std::invalid_argument if there are limits, but not those of this surface's faces, and
   /// naming a limit that is negative or not finite.
-  void checkLimits(const DensityLimits& limits) const;
+  void checkLimits(const DensityLimits& limits, const std::vector<bool>& has_surface) const;
 
   /// AreaSampler::uniform() for a density function.
   std::vector<Location> ofFunction(std::size_t count, std::uint64_t seed, const Density& density,

@@ -9,23 +9,13 @@
 #include <utility>
 
 #include "limitsurf/number_text.h"
+#include "limitsurf/surface/patches/face_squares.h"
 
 namespace limitsurf {
 namespace {
 
-/// A range of squares along one side of a face.
-struct Squares {
-  int first, last;
-};
-
-/// The squares that contain a part of the open interval between two coordinates.
-Squares between(double low, double high, int side) {
-  const int first = std::min(static_cast<int>(low * side), side - 1);
-  return {first, std::max(static_cast<int>(std::ceil(high * side)) - 1, first)};
-}
-
 /// The squares that a coordinate lies in: two where it is on the border between them.
-Squares around(double x, int side) {
+FaceSquares around(double x, int side) {
   const int first = std::max(static_cast<int>(std::ceil(x * side)) - 1, 0);
   return {first, std::min(static_cast<int>(x * side), side - 1)};
 }
@@ -53,7 +43,7 @@ std::int64_t DensityLimits::faceCount() const {
 }
 
 DensityLimits::Range DensityLimits::on(int face, double u0, double u1, double v0, double v1) const {
-  const Squares columns = between(u0, u1, side_), rows = between(v0, v1, side_);
+  const FaceSquares columns = squaresBetween(u0, u1, side_), rows = squaresBetween(v0, v1, side_);
   Range range{value(face, rows.first, columns.first), 0};
   for (int row = rows.first; row <= rows.last; ++row) {
     for (int column = columns.first; column <= columns.last; ++column) {
@@ -72,7 +62,7 @@ DensityLimits::Range DensityLimits::on(int face, double u0, double u1, double v0
 }
 
 double DensityLimits::at(const Location& location) const {
-  const Squares columns = around(location.u, side_), rows = around(location.v, side_);
+  const FaceSquares columns = around(location.u, side_), rows = around(location.v, side_);
   double limit = 0;
   for (int row = rows.first; row <= rows.last; ++row) {
     for (int column = columns.first; column <= columns.last; ++column) {

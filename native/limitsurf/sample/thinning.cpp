@@ -80,7 +80,7 @@ void Thinning::tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_o
           for (std::size_t j = i * ahead; j < (i + 1) * ahead; ++j) {
             const UniformCandidates::Candidate candidate = candidates_.next(open[i], attempt);
             at[j] = candidate.at;
-            trials[j].limit = limits_.areKnown() ? candidate.largest * unit_ : 1;
+            trials[j].limit = candidate.largest * unit_;
             trials[j].test = candidates_.number(open[i], attempt);
             trials[j].attempt = attempt;
           }

@@ -17,7 +17,7 @@ namespace limitsurf {
 /// and whenever a larger one appears, the samples accepted before are tested anew.
 class Thinning {
  public:
-  /// `candidates`: with the limits in their table, as parts of `unit`, if there are any.
+  /// `candidates`: with the limits in their table, as parts of `unit`; without limits both are 1.
   Thinning(const UniformCandidates& candidates, const Density& density, double unit,
            std::size_t count, int threads, const Progress& progress);
 

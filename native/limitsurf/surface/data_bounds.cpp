@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/surface/patches/face_squares.h"
 #include "limitsurf/surface/patches/surface_patches.h"
 #include "limitsurf/surface/surface_data.h"
 
@@ -24,14 +25,6 @@ constexpr double kSmallest = 1e-140;
 /// The part of one side of a square that a piece of the surface covers, in the piece's parameter.
 struct Part {
   double begin, end;
-};
-
-/// The squares along one side of a face that an interval overlaps.
-struct Squares {
-  Squares(double low, double high, int side)
-      : first(std::clamp(static_cast<int>(low * side), 0, side - 1)),
-        last(std::clamp(static_cast<int>(std::ceil(high * side)) - 1, first, side - 1)) {}
-  int first, last;
 };
 
 /// The boxes of the squares of one face, in three columns.
@@ -86,8 +79,8 @@ class FaceBoxes {
   template <typename Each>
   void forSquares(const FaceRectangle& on, const Each& each) const {
     const Location a = on.at(0, 0), b = on.at(1, 1);
-    const Squares columns(std::min(a.u, b.u), std::max(a.u, b.u), side_);
-    const Squares rows(std::min(a.v, b.v), std::max(a.v, b.v), side_);
+    const FaceSquares columns = squaresBetween(std::min(a.u, b.u), std::max(a.u, b.u), side_);
+    const FaceSquares rows = squaresBetween(std::min(a.v, b.v), std::max(a.v, b.v), side_);
     for (int row = rows.first; row <= rows.last; ++row) {
       for (int column = columns.first; column <= columns.last; ++column) {
         each(column, row);

@@ -282,8 +282,8 @@ BlueNoise AreaSampler::blueNoise(const BlueNoiseOptions& options, int threads,
   if (!data_->hasArea()) {
     throw std::invalid_argument("the surface has no area");
   }
-  data_->checkLimits(options.density.limits());
   const std::vector<bool> has_surface = data_->hasSurface();
+  data_->checkLimits(options.density.limits(), has_surface);
   BlueNoiseMaker maker(data_->surface, data_->patches, data_->cells, has_surface, options, threads,
                        progress);
   return options.radius ? maker.ofRadius(*options.radius * data_->patches.scale())
