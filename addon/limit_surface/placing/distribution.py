@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 PACKING = 0.7
 
 NO_AREA = "The surface has no area"
-NOWHERE = "The density is 0 everywhere: check its source and its range"
-TOO_LOW = "The density is so low that no location was found: check its source and its range"
+_NOWHERE = "The density is 0 everywhere: check its source and its range"
+_TOO_LOW = "The density is so low that no location was found: check its source and its range"
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Distribution:
             return Expected(round(self.density * region.sums.weighted_area), True)
         self._check_distance()
         if not region.sums.largest:
-            raise RefusalError(NOWHERE if region.is_empty else TOO_LOW)
+            raise RefusalError(why_nothing(region))
         fit = PACKING * region.sums.weighted_area / region.sums.largest / self.distance**2
         return Expected(max(round(fit), 1), False)
 
@@ -85,7 +85,7 @@ class Distribution:
         if count == 0:
             if not region.area > 0:
                 raise RefusalError(NO_AREA)
-            raise RefusalError(NOWHERE if region.is_empty else TOO_LOW)
+            raise RefusalError(why_nothing(region))
         self._check_distance()
         common: dict[str, Any] = {
             "seed": self.seed,
@@ -103,7 +103,7 @@ class Distribution:
                 apart = region.surface.scatter_blue_noise(count=count, radius=radius, **common)
                 return Scattered(_rounded(apart), float(apart.radius))
         except ValueError as error:  # there is no place for them, or no space for so many
-            reason = NOWHERE if region.is_empty else native.sentence(error)
+            reason = _NOWHERE if region.is_empty else native.sentence(error)
             raise RefusalError(reason) from error
 
     def _check_distance(self) -> None:
@@ -156,6 +156,11 @@ class Distribution:
             curves=len(curves),
             note=where_rows_end(found.ended, int(np.count_nonzero(found.row == 0))),
         )
+
+
+def why_nothing(region: Region) -> str:
+    """Returns why a density leaves no location."""
+    return _NOWHERE if region.is_empty else _TOO_LOW
 
 
 def _rounded(found: limitsurf.Locations) -> Locations:

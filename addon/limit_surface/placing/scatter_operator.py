@@ -30,7 +30,7 @@ from . import (
     subsurf_offer,
 )
 from .border import borders
-from .distribution import TOO_LOW, Expected, Scattered
+from .distribution import Expected, Scattered, why_nothing
 from .follow_properties import FollowOrLiveProperties, why_it_stays
 from .followers import ground_of
 from .rotations import WorldSpace
@@ -106,7 +106,7 @@ class Order:
     def ground(self, progress: Progress) -> Ground:
         scattered = self.distribution.scatter(self.region, progress)
         if not len(scattered.locations):
-            raise RefusalError(TOO_LOW)
+            raise RefusalError(why_nothing(self.region))
         return Ground(self.region.cage, self.region, scattered, self.shown)
 
     def bound(self, ground: Ground, things: Any) -> following.Bindings | None:

@@ -165,7 +165,7 @@ class CellMaker {
       Core& core = cores_[i];
       core.sum = core.area = 0;
       const SurfacePiece whole = core.rest;
-      patches_.split(whole, core.split);
+      patches_.splitPatches(whole, core.split);
       core.rest = core.split.core;
       for (int quarter = 0; quarter < 3; ++quarter) {
         wait(core.split.pieces[quarter], core.split.patches[quarter], core.place, i);
@@ -190,19 +190,20 @@ class CellMaker {
     core.last = core.area;
     const int steps = core.rest.steps;
     const Vector3 outer = patches_.outerPitch(core.split, core.pitches.frame());
-    const double area = CoreTail(core.pitches, steps, outer).area();
-    if (area > kTail * core.bounds) {
+    AreaCell cell;
+    cell.piece = core.rest;
+    // The bound is summed up from the rounded numbers, as samplers will do it, to the last bit.
+    Vector3 rounded;
+    for (int axis = 0; axis < 3; ++axis) {
+      rounded[axis] = cell.outer[axis] = roundedUp(outer[axis]);
+    }
+    const double most = kTail * core.bounds;
+    const double area = CoreTail(core.pitches, steps, rounded).area(most);
+    if (area > most) {
       return steps >= SurfacePatches::kMostSteps;
     }
     if (area > 0) {
-      AreaCell cell;
-      cell.piece = core.rest;
-      // The bound is summed up from the rounded numbers, as samplers will do it, to the last bit.
-      Vector3 rounded;
-      for (int axis = 0; axis < 3; ++axis) {
-        rounded[axis] = cell.outer[axis] = roundedUp(outer[axis]);
-      }
-      cell.bound = roundedUp(CoreTail(core.pitches, steps, rounded).area());
+      cell.bound = roundedUp(area);
       // The areas of further steps shrink by about the same factor.
       const double factor = before > 0 ? std::min(core.last / before, kSlowest) : kUsual;
       cell.area = std::min(cell.bound, static_cast<float>(core.last * factor / (1 - factor)));

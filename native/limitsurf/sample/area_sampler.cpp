@@ -80,7 +80,7 @@ std::vector<Location> AreaSampler::Data::ofFunction(std::size_t count, std::uint
   LimitedCells limited = limitedCells(patches, cells, limits, threads);
   const CellTable table(limited.cells, std::move(limited.largest));
   if (!(table.total() > 0)) {
-    throw std::invalid_argument("density is 0 everywhere on the surface, as its limits say");
+    throw std::invalid_argument(zeroEverywhereText(0));
   }
   const UniformCandidates candidates(patches, limited.cells, table, constant, seed);
   return Thinning(candidates, density, limited.unit, count, threads, progress).run();

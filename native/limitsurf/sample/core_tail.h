@@ -60,11 +60,12 @@ class CoreTail {
     ++steps_;
   }
 
-  /// The sum of the bounds on the areas of all patches from here on.
-  double area() const {
+  /// The sum of the bounds on the areas of all patches from here on; or a part of it, if that part
+  /// is more than `most`.
+  double area(double most) const {
     CoreTail tail = *this;
     double sum = 0;
-    for (; !tail.ended(); tail.step()) {
+    for (; !tail.ended() && !(sum > most); tail.step()) {
       const double step = 3 * tail.bound();
       if (!(step > kNegligible * sum)) {
         break;

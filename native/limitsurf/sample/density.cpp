@@ -69,4 +69,12 @@ std::vector<double> Density::weights(Span<Location> at) const {
   return result;
 }
 
+std::string zeroEverywhereText(std::size_t count) {
+  if (count == 0) {
+    return "density is 0 everywhere on the surface, as its limits say";
+  }
+  return "density is 0 at all of " + std::to_string(count) +
+         " locations: it is above 0 nowhere, or on too small a part of the surface";
+}
+
 }  // namespace limitsurf

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -51,5 +53,9 @@ class Density {
   DensityLimits limits_;
   std::vector<double> corners_;
 };
+
+/// The message for a density function that is 0 at all of `count` locations, or for one that need
+/// not be called, since all its limits are 0.
+std::string zeroEverywhereText(std::size_t count);
 
 }  // namespace limitsurf

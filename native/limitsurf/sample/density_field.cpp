@@ -27,6 +27,36 @@ struct GridPlace {
 
 double between(double a, double b, double part) { return (1 - part) * a + part * b; }
 
+/// The lines of a grid between two coordinates, without those at the coordinates themselves.
+struct GridLines {
+  GridLines(double low, double high, int side)
+      : first(static_cast<int>(std::floor(low * side)) + 1),
+        last(static_cast<int>(std::ceil(high * side)) - 1) {}
+  int first, last;
+};
+
+/// The mean between two coordinates of a function that is linear between the lines of a grid.
+template <typename Function>
+double meanBetween(double low, double high, int side, const Function& value) {
+  const GridLines lines(low, high, side);
+  const double at_low = value(low), at_high = value(high);
+  if (lines.first > lines.last) {
+    return (at_low + at_high) / 2;
+  }
+  double sum = 0, last = low, at_last = at_low;
+  const auto advance = [&](double next, double at_next) {
+    sum += (next - last) * (at_last + at_next) / 2;
+    last = next;
+    at_last = at_next;
+  };
+  for (int line = lines.first; line <= lines.last; ++line) {
+    const double next = static_cast<double>(line) / side;
+    advance(next, value(next));
+  }
+  advance(high, at_high);
+  return sum / (high - low);
+}
+
 }  // namespace
 
 DensityField::DensityField(const Density& density) {
@@ -40,6 +70,9 @@ DensityField::DensityField(const Density& density) {
     first_[face] = 4 * face;
   }
   normalise();
+  if (isZero()) {
+    throw std::invalid_argument("density is 0 everywhere");
+  }
 }
 
 DensityField::DensityField(const Density& density, const std::vector<int>& levels)
@@ -57,6 +90,7 @@ DensityField::DensityField(const Density& density, const std::vector<int>& level
   places.reserve(kBatch);
   const auto ask = [&] {
     const std::vector<double> weights = density.weights(at);
+    asked_ += at.size();
     for (std::size_t i = 0; i < at.size(); ++i) {
       values_[places[i]] = weights[i];
     }
@@ -84,20 +118,15 @@ DensityField::DensityField(const Density& density, const std::vector<int>& level
     }
   }
   ask();
-  if (std::all_of(values_.begin(), values_.end(), [](double value) { return value == 0; })) {
-    throw std::invalid_argument("density is 0 at all of " + std::to_string(values_.size()) +
-                                " locations");
-  }
   normalise();
 }
 
 void DensityField::normalise() {
   largest_ = values_.empty() ? 0 : *std::max_element(values_.begin(), values_.end());
-  if (!(largest_ > 0)) {
-    throw std::invalid_argument("density is 0 everywhere");
-  }
-  for (double& value : values_) {
-    value /= largest_;
+  if (!isZero()) {
+    for (double& value : values_) {
+      value /= largest_;
+    }
   }
 }
 
@@ -116,9 +145,7 @@ double DensityField::largestOn(const FaceRectangle& rectangle) const {
   if (isConstant()) {
     return 1;
   }
-  const Location a = rectangle.at(0, 0), b = rectangle.at(1, 1);
-  const auto [u0, u1] = std::minmax(a.u, b.u);
-  const auto [v0, v1] = std::minmax(a.v, b.v);
+  const auto [u0, u1, v0, v1] = rectangle.extent();
   double largest = 0;
   for (const double v : {v0, v1}) {
     for (const double u : {u0, u1}) {
@@ -128,21 +155,16 @@ double DensityField::largestOn(const FaceRectangle& rectangle) const {
   // A bilinear function is largest at a corner. The corners here are those of the rectangle, the
   // points at which lines of the grid cross its sides, and the points of the grid inside it.
   const int side = 1 << levels_[rectangle.face];
-  const auto inside = [side](double low, double high) {
-    return std::pair(static_cast<int>(std::floor(low * side)) + 1,
-                     static_cast<int>(std::ceil(high * side)) - 1);
-  };
-  const auto [x0, x1] = inside(u0, u1);
-  const auto [y0, y1] = inside(v0, v1);
-  for (int x = x0; x <= x1; ++x) {
+  const GridLines columns(u0, u1, side), rows(v0, v1, side);
+  for (int x = columns.first; x <= columns.last; ++x) {
     const double u = static_cast<double>(x) / side;
     largest = std::max({largest, at({rectangle.face, u, v0}), at({rectangle.face, u, v1})});
   }
-  for (int y = y0; y <= y1; ++y) {
+  for (int y = rows.first; y <= rows.last; ++y) {
     const double v = static_cast<double>(y) / side;
     largest = std::max({largest, at({rectangle.face, u0, v}), at({rectangle.face, u1, v})});
     const double* row = grid(rectangle.face) + y * (side + 1);
-    for (int x = x0; x <= x1; ++x) {
+    for (int x = columns.first; x <= columns.last; ++x) {
       largest = std::max(largest, row[x]);
     }
   }
@@ -153,11 +175,12 @@ double DensityField::meanOn(const FaceRectangle& rectangle) const {
   if (isConstant()) {
     return 1;
   }
-  double sum = 0;
-  for (int corner = 0; corner < 4; ++corner) {
-    sum += at(rectangle.at(corner & 1, corner >> 1));
-  }
-  return (sum + 2 * at(rectangle.at(0.5, 0.5))) / 6;
+  const FaceRectangle::Extent extent = rectangle.extent();
+  const int side = 1 << levels_[rectangle.face];
+  return meanBetween(extent.v0, extent.v1, side, [&](double v) {
+    return meanBetween(extent.u0, extent.u1, side,
+                       [&](double u) { return at({rectangle.face, u, v}); });
+  });
 }
 
 }  // namespace limitsurf

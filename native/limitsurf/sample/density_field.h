@@ -23,6 +23,10 @@ class DensityField {
   DensityField(const Density& density, const std::vector<int>& levels);
 
   bool isConstant() const { return first_.empty(); }
+  /// Whether a function was 0 wherever it was read.
+  bool isZero() const { return !(largest_ > 0); }
+  /// The number of points of the grids at which the function was read.
+  std::size_t asked() const { return asked_; }
   /// The largest weight, by which all have been divided.
   double largest() const { return largest_; }
 
@@ -30,7 +34,7 @@ class DensityField {
   double at(const Location& location) const;
   /// The largest density on a rectangle.
   double largestOn(const FaceRectangle& rectangle) const;
-  /// An estimate of the mean density on a rectangle, from its corners and its middle.
+  /// The mean density on a rectangle, over its parameters.
   double meanOn(const FaceRectangle& rectangle) const;
 
  private:
@@ -38,6 +42,7 @@ class DensityField {
   void normalise();
 
   double largest_ = 1;
+  std::size_t asked_ = 0;
   std::vector<int> levels_;
   std::vector<std::size_t> first_;
   std::vector<double> values_;  // face by face, row by row: (2^level + 1)^2 for each face

@@ -27,10 +27,8 @@ class CellSplitter {
   void split(const AreaCell& cell) {
     stride_.step();
     const FaceRectangle rectangle = rectangleOf(patches_, cell);
-    const Location a = rectangle.at(0, 0), b = rectangle.at(1, 1);
-    const DensityLimits::Range range =
-        limits_.on(rectangle.face, std::min(a.u, b.u), std::max(a.u, b.u), std::min(a.v, b.v),
-                   std::max(a.v, b.v));
+    const auto [u0, u1, v0, v1] = rectangle.extent();
+    const DensityLimits::Range range = limits_.on(rectangle.face, u0, u1, v0, v1);
     if (!(range.largest > 0)) {
       return;
     }

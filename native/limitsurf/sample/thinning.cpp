@@ -95,7 +95,7 @@ void Thinning::tryNext(Span<std::size_t> open, std::vector<std::size_t>& still_o
   }
   is_zero_ = is_zero_ && largest_weight == 0;
   if (is_zero_ && asked_ >= kMostZeros) {
-    throw std::invalid_argument("density is 0 at all of " + std::to_string(asked_) + " locations");
+    throw std::invalid_argument(zeroEverywhereText(asked_));
   }
   if (!limits_.areKnown()) {
     largest_ = std::max(largest_, largest_weight);

@@ -22,6 +22,15 @@ struct FaceRectangle {
             std::clamp(v0 + vs * s + vt * t, 0., 1.)};
   }
 
+  /// The least and the largest coordinates.
+  struct Extent {
+    double u0, u1, v0, v1;
+  };
+  Extent extent() const {
+    const Location a = at(0, 0), b = at(1, 1);
+    return {std::min(a.u, b.u), std::max(a.u, b.u), std::min(a.v, b.v), std::max(a.v, b.v)};
+  }
+
   /// The part of the rectangle that begins at (s, t).
   FaceRectangle part(double s, double t, double width, double height) const {
     return {face,       u0 + us * s + ut * t, us * width, ut * height, v0 + vs * s + vt * t,

@@ -78,9 +78,8 @@ class FaceBoxes {
   /// Calls each(column, row) for the squares that a rectangle overlaps.
   template <typename Each>
   void forSquares(const FaceRectangle& on, const Each& each) const {
-    const Location a = on.at(0, 0), b = on.at(1, 1);
-    const FaceSquares columns = squaresBetween(std::min(a.u, b.u), std::max(a.u, b.u), side_);
-    const FaceSquares rows = squaresBetween(std::min(a.v, b.v), std::max(a.v, b.v), side_);
+    const auto [u0, u1, v0, v1] = on.extent();
+    const FaceSquares columns = squaresBetween(u0, u1, side_), rows = squaresBetween(v0, v1, side_);
     for (int row = rows.first; row <= rows.last; ++row) {
       for (int column = columns.first; column <= columns.last; ++column) {
         each(column, row);

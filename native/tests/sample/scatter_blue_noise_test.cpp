@@ -303,6 +303,53 @@ TEST(BlueNoise, NothingIsWhereAFunctionIsZero) {
   for (const Location& at : noise.at) EXPECT_GT(weightOf(at), 0);
 }
 
+/// Spots of a hundredth of a face and less, wherever they lie on four large faces.
+TEST(BlueNoise, ACountFindsItsRoomInSmallSpots) {
+  const LimitSurface surface = limitSurface(grid(2, 2));
+  const AreaSampler sampler(surface);
+  for (const auto& [u0, side] :
+       {std::pair{0.03, 0.1}, {0.17, 0.1}, {0.62, 0.1}, {0.84, 0.1}, {0.31, 0.03}, {0.77, 0.01}}) {
+    const auto weightOf = [u0 = u0, side = side](const Location& at) {
+      const bool is_inside =
+          at.face == 2 && at.u > u0 && at.u < u0 + side && at.v > 0.3 && at.v < 0.3 + side;
+      return is_inside ? 1. : 0.;
+    };
+    BlueNoiseOptions options = byCount(200);
+    options.density = Density([&](Span<Location> at, double* weights) {
+      for (const Location& location : at) *weights++ = weightOf(location);
+    });
+    const BlueNoise noise = sampler.blueNoise(options);
+    ASSERT_EQ(noise.at.size(), 200u) << u0;
+    for (const Location& at : noise.at) EXPECT_GT(weightOf(at), 0);
+    EXPECT_GE(smallestDistance(surface, noise.at, [&](const Location&) { return noise.radius; }),
+              1);
+    // The radius fits the spot, as in random packings.
+    const double area = surfaceArea(surface) / 4 * side * side;
+    EXPECT_NEAR(noise.radius, std::sqrt(0.7 * area / 200), 0.25 * noise.radius) << u0;
+  }
+}
+
+/// Where a function is 0, or its limits say so, it is not read for ever.
+TEST(BlueNoise, RefusesDensitiesThatAreZero) {
+  const LimitSurface surface = limitSurface(grid(2, 2));
+  const AreaSampler sampler(surface);
+  std::size_t asked = 0;
+  const Density::Function zero = [&](Span<Location> at, double* weights) {
+    asked += at.size();
+    std::fill(weights, weights + at.size(), 0.);
+  };
+  BlueNoiseOptions options = byCount(10);
+  options.density = Density(zero);
+  expectThrow<std::invalid_argument>([&] { sampler.blueNoise(options); },
+                                     {"density is 0 at all of", "too small a part"});
+  EXPECT_LT(asked, std::size_t{6} << 20);
+  asked = 0;
+  options.density = Density(zero, DensityLimits(1, {0, 0, 0, 0}));
+  expectThrow<std::invalid_argument>([&] { sampler.blueNoise(options); },
+                                     {"density is 0 everywhere", "limits"});
+  EXPECT_EQ(asked, 0u);
+}
+
 /// A radius that is far too small is refused, and the function is not read everywhere before.
 TEST(BlueNoise, AFunctionIsAskedAtAsManyPlacesAsAreOfUse) {
   const LimitSurface surface = limitSurface(grid(20, 20));

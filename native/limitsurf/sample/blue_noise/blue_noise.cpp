@@ -160,6 +160,8 @@ class BlueNoiseMaker {
   /// than kFewestValues: coarser grids might miss everything that the function shows.
   static constexpr int kFewestLevels = 3;
   static constexpr std::size_t kFewestValues = std::size_t{1} << 20;
+  /// A function that is 0 at so many points is taken to be 0 everywhere.
+  static constexpr std::size_t kMostZeros = std::size_t{1} << 20;
 
   double pointsOf(double radius) const { return kPacking * weighed_area_ / (radius * radius); }
   double radiusOf(std::size_t count) const {
@@ -175,7 +177,8 @@ class BlueNoiseMaker {
   }
 
   /// Reads the density function on grids whose squares are at most a radius wide, where the limits
-  /// on the number of values allow it.
+  /// on the number of values allow it. Throws std::invalid_argument if it is 0 at all points, also
+  /// of finer grids.
   void readFunction(double radius) {
     if (sizes_.empty()) {
       sizes_ = faceSizes(surface_, has_surface_, patches_.scale(), threads_);
@@ -184,6 +187,22 @@ class BlueNoiseMaker {
     while (fewest < kFewestLevels && (sizes_.size() << (2 * fewest)) < kFewestValues) {
       ++fewest;
     }
+    density_ = DensityField(options_.density, levelsFor(radius, fewest));
+    const auto faces = static_cast<double>(sizes_.size());
+    while (density_.isZero() && density_.asked() > 0 && density_.asked() < kMostZeros &&
+           fewest < kMostLevels && std::ldexp(faces, 2 * (fewest + 1)) <= kMostValues) {
+      ++fewest;  // what is above 0 may lie between the points
+      density_ = DensityField(options_.density, levelsFor(radius, fewest));
+    }
+    if (density_.isZero()) {
+      throw std::invalid_argument(zeroEverywhereText(density_.asked()));
+    }
+    setWeighedArea();
+  }
+
+  /// The levels of grids whose squares are at most a radius wide, if they have no more than
+  /// kMostValues, but `fewest` at least.
+  std::vector<int> levelsFor(double radius, int fewest) const {
     std::vector<int> levels(sizes_.size(), -1);
     int most = kMostLevels;
     double values;
@@ -199,8 +218,7 @@ class BlueNoiseMaker {
         }
       }
     } while (values > kMostValues && most-- > 0);
-    density_ = DensityField(options_.density, levels);
-    setWeighedArea();
+    return levels;
   }
 
   NoisePoints sampled(double radius) {
