@@ -38,7 +38,7 @@ PointsAndNormals pointsAndNormals(const LimitSurface& base, const LocationBatch&
 
 Points vectorDisplacement(const LimitSurface& base, const LimitSurface& target,
                           const SubdividedFaces& faces, const LocationBatch& at, int threads) {
-  const LocationBatch on_base = base.checkLocations(at);
+  const LocationBatch on_base = base.checkLocations(at, threads);
   return target.evaluate(faces.locate(at, threads), Derivatives::none, false, threads).position -
          base.evaluate(on_base, Derivatives::none, false, threads).position;
 }

@@ -202,7 +202,7 @@ Points curveDirections(const LimitSurface& surface, const Polylines& curves,
                        const LocationBatch& locations, int threads, const Progress& progress) {
   checkThreads(threads);
   checkPolylines(curves);
-  const LocationBatch at = surface.checkLocations(locations);
+  const LocationBatch at = surface.checkLocations(locations, threads);
   const auto report = [&](double part) {
     if (progress) {
       progress(part);

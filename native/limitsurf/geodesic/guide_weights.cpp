@@ -87,8 +87,8 @@ GuideWeights guideWeights(const LimitSurface& surface, const LocationBatch& guid
   if (!options.cut_curves.offsets.empty() || options.cut_curves.points.rows() > 0) {
     checkPolylines(options.cut_curves);
   }
-  const LocationBatch checked_guides = surface.checkLocations(guides);
-  const LocationBatch checked = surface.checkLocations(at);
+  const LocationBatch checked_guides = surface.checkLocations(guides, options.threads);
+  const LocationBatch checked = surface.checkLocations(at, options.threads);
   GuideWeights result;
   result.count = options.count;
   const std::size_t size = at.size() * static_cast<std::size_t>(options.count);

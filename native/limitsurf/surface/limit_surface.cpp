@@ -50,8 +50,9 @@ void LimitSurface::setPositions(Points positions, int threads) {
 
 bool LimitSurface::isPosed() const { return data_->pose.isSet(); }
 
-LocationBatch LimitSurface::checkLocations(const LocationBatch& at) const {
-  return data_->tiles->checked(at);
+LocationBatch LimitSurface::checkLocations(const LocationBatch& at, int threads) const {
+  checkThreads(threads);
+  return data_->tiles->checked(at, threads);
 }
 
 void checkCurvatureRadius(double radius) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "limitsurf/large_pages.h"
 #include "limitsurf/mesh/control_mesh.h"
 #include "limitsurf/mesh/interpolation.h"
 #include "limitsurf/surface/location_batch.h"
@@ -95,9 +96,9 @@ constexpr double kCurvatureError = 1e-9;
 
 /// Sparse linear weights on the control mesh's vertices, one row per location (CSR).
 struct Stencils {
-  std::vector<std::int64_t> offsets;
-  std::vector<int> indices;
-  std::vector<double> weights, du_weights, dv_weights;  ///< the latter two only if asked for
+  LargePageVector<std::int64_t> offsets;
+  LargePageVector<int> indices;
+  LargePageVector<double> weights, du_weights, dv_weights;  ///< the latter two only if asked for
 };
 
 /// Data of any number of columns, one row per vertex or value.
@@ -170,7 +171,7 @@ class LimitSurface {
   /// Checks a batch, and throws as evaluate() does. Pass the result instead of the locations to
   /// members that are called for several parts of one batch, or one after the other: they do not
   /// check it again.
-  LocationBatch checkLocations(const LocationBatch& at) const;
+  LocationBatch checkLocations(const LocationBatch& at, int threads = 0) const;
 
   // Evaluation.
 

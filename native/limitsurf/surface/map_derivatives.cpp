@@ -43,7 +43,7 @@ void checkMap(const LimitSurface& surface, const SurfaceData& map, const char* n
 
 MapDerivatives evaluateWithMap(const LimitSurface& surface, const SurfaceData& map,
                                const LocationBatch& at, Derivatives order, int threads) {
-  const LocationBatch checked = surface.checkLocations(at);
+  const LocationBatch checked = surface.checkLocations(at, threads);
   return {surface.evaluate(checked, order, true, threads),
           map.evaluate(checked, Derivatives::first, threads)};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "limitsurf/patch/point_weights.h"
@@ -12,45 +14,87 @@ namespace limitsurf {
 namespace {
 
 /// A row takes much longer than an evaluation, so that a task has fewer of them than kRowsPerTask.
-constexpr std::size_t kStencilsPerTask = 8;
+constexpr std::size_t kStencilsPerTask = 32;
+/// So many blocks of them are copied by one task.
+constexpr std::size_t kBlocksPerCopy = 16;
 
 /// The weights of position, du and dv on one point.
 using Weights = Eigen::Array3d;
 
-/// The weights of one location on all points that it depends on, refined points first.
+/// The weights of one location on the vertices that it depends on.
 class Row {
  public:
+  struct Entry {
+    int vertex;
+    Weights weights;
+  };
+
   explicit Row(const TileTable& table) : table_(table) {}
 
   void set(const TileLocation& at, int order) {
+    entries_.clear();
+    if (at.tile.kind == TileRef::kBSpline && isOnVertices(table_.bsplines[at.tile.index])) {
+      setOnVertices(at);
+      return;
+    }
     weights_.clear();
     undefined_[0] = undefined_[1] = false;
     if (at.tile.kind == TileRef::kBSpline) {
-      addBSpline(at);
+      forPoints(at, [this](int point, const Weights& w) { addWeight(weights_, point, w); });
     } else {
       addRing(at, order);
     }
     for (auto& [point, w] : weights_) {
-      turn(at.turns, w[1], w[2]);
-      w[1] = std::ldexp(w[1], at.depth);
-      w[2] = std::ldexp(w[2], at.depth);
+      turn(at, w);
     }
     if (at.turns % 2 == 1) {
       std::swap(undefined_[0], undefined_[1]);
     }
     moveToVertices(table_.points, weights_);
-    for (auto& [point, w] : weights_) {
+    for (auto entry = weights_.rbegin(); entry != weights_.rend(); ++entry) {
+      Weights w = entry->second;
       for (int d = 0; d < 2; ++d) {
         if (undefined_[d]) {
           w[1 + d] = std::numeric_limits<double>::quiet_NaN();
         }
       }
+      entries_.push_back({entry->first, w});
     }
   }
 
-  const PointWeights<Weights>& weights() const { return weights_; }
+  /// In the order of the vertices.
+  const std::vector<Entry>& entries() const { return entries_; }
 
  private:
+  bool isOnVertices(const BSplineTile& tile) const {
+    return std::all_of(tile.points.begin(), tile.points.end(),
+                       [&](int point) { return point < table_.points.cagePoints(); });
+  }
+
+  /// The same as for refined points, without a map.
+  void setOnVertices(const TileLocation& at) {
+    forPoints(at, [&](int point, const Weights& w) {
+      entries_.push_back({point, w});
+      turn(at, entries_.back().weights);
+    });
+    std::stable_sort(entries_.begin(), entries_.end(),
+                     [](const Entry& a, const Entry& b) { return a.vertex < b.vertex; });
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < entries_.size(); ++i) {
+      if (entries_[i].vertex == entries_[last].vertex) {
+        entries_[last].weights += entries_[i].weights;
+      } else {
+        entries_[++last] = entries_[i];
+      }
+    }
+    entries_.resize(last + 1);
+  }
+
+  static void turn(const TileLocation& at, Weights& w) {
+    turn(at.turns, w[1], w[2]);
+    w[1] = std::ldexp(w[1], at.depth);
+    w[2] = std::ldexp(w[2], at.depth);
+  }
   static void turn(int c, double& du, double& dv) {
     for (; c > 0; --c) {
       const double before = du;
@@ -59,9 +103,9 @@ class Row {
     }
   }
 
-  void add(int point, const Weights& w) { addWeight(weights_, point, w); }
-
-  void addBSpline(const TileLocation& at) {
+  /// Calls add(point, weights) for the points of a regular tile.
+  template <typename Add>
+  void forPoints(const TileLocation& at, const Add& add) const {
     const BSplineTile& tile = table_.bsplines[at.tile.index];
     const TileWeights w(tile, at.u, at.v);
     const CubicWeights &u = w.u, &v = w.v;
@@ -98,10 +142,11 @@ class Row {
       return w;
     };
     for (std::size_t i = 0; i < ring.points.size(); ++i) {
-      add(ring.points[i], weightsOf(on_ring.row(static_cast<Eigen::Index>(i)).transpose()));
+      addWeight(weights_, ring.points[i],
+                weightsOf(on_ring.row(static_cast<Eigen::Index>(i)).transpose()));
     }
     for (Eigen::Index i = 0; i < outer_weights.cols(); ++i) {
-      add(tile.outer[i], weightsOf(outer_weights.col(i)));
+      addWeight(weights_, tile.outer[i], weightsOf(outer_weights.col(i)));
     }
   }
 
@@ -125,48 +170,68 @@ class Row {
   }
 
   const TileTable& table_;
-  PointWeights<Weights> weights_;
+  std::vector<Entry> entries_;
+  PointWeights<Weights> weights_;  // on all points, refined ones first
   bool undefined_[2] = {false, false};
+};
+
+/// The stencils that one task has made.
+struct Block {
+  std::vector<std::int64_t> sizes;  // of its rows
+  std::vector<int> indices;
+  std::vector<double> weights[3];  // of position, du and dv
 };
 
 }  // namespace
 
 Stencils LimitSurface::stencils(const LocationBatch& at, bool first_derivatives,
                                 int threads) const {
-  data_->check(at, threads);
-  struct Entry {
-    int index;
-    Weights weights;
-  };
-  std::vector<std::vector<Entry>> rows(at.size());
+  const LocationBatch checked = checkLocations(at, threads);
+  const int kinds = first_derivatives ? 3 : 1;
+  std::vector<Block> blocks((at.size() + kStencilsPerTask - 1) / kStencilsPerTask);
   parallelFor(at.size(), kStencilsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     const TileEvaluator evaluator(data_->table, data_->pose);
     Row row(data_->table);
+    Block& block = blocks[begin / kStencilsPerTask];
     for (std::size_t i = begin; i < end; ++i) {
-      row.set(evaluator.locate(at[i]), first_derivatives ? 1 : 0);
-      rows[i].reserve(row.weights().size());
-      for (auto entry = row.weights().rbegin(); entry != row.weights().rend(); ++entry) {
-        rows[i].push_back({entry->first, entry->second});
+      row.set(evaluator.locate(checked[i]), first_derivatives ? 1 : 0);
+      block.sizes.push_back(static_cast<std::int64_t>(row.entries().size()));
+      for (const Row::Entry& entry : row.entries()) {
+        block.indices.push_back(entry.vertex);
+        for (int kind = 0; kind < kinds; ++kind) {
+          block.weights[kind].push_back(entry.weights[kind]);
+        }
       }
     }
   });
 
+  std::vector<std::size_t> first(blocks.size() + 1, 0);  // entry of each block
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    first[i + 1] = first[i] + blocks[i].indices.size();
+  }
   Stencils out;
-  out.offsets.reserve(at.size() + 1);
-  out.offsets.push_back(0);
-  InterruptionStride stride;
-  for (const std::vector<Entry>& row : rows) {
-    stride.step();
-    out.offsets.push_back(out.offsets.back() + static_cast<std::int64_t>(row.size()));
-    for (const Entry& entry : row) {
-      out.indices.push_back(entry.index);
-      out.weights.push_back(entry.weights[0]);
-      if (first_derivatives) {
-        out.du_weights.push_back(entry.weights[1]);
-        out.dv_weights.push_back(entry.weights[2]);
+  out.offsets.resize(at.size() + 1);
+  out.offsets[0] = 0;
+  out.indices.resize(first.back());
+  LargePageVector<double>* const weights[3] = {&out.weights, &out.du_weights, &out.dv_weights};
+  for (int kind = 0; kind < kinds; ++kind) {
+    weights[kind]->resize(first.back());
+  }
+  parallelFor(blocks.size(), kBlocksPerCopy, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Block block = std::move(blocks[i]);  // and frees it
+      auto offset = static_cast<std::int64_t>(first[i]);
+      for (std::size_t row = 0; row < block.sizes.size(); ++row) {
+        offset += block.sizes[row];
+        out.offsets[i * kStencilsPerTask + row + 1] = offset;
+      }
+      std::copy(block.indices.begin(), block.indices.end(), out.indices.data() + first[i]);
+      for (int kind = 0; kind < kinds; ++kind) {
+        std::copy(block.weights[kind].begin(), block.weights[kind].end(),
+                  weights[kind]->data() + first[i]);
       }
     }
-  }
+  });
   return out;
 }
 

@@ -2,23 +2,22 @@
 #include "limitsurf/surface/surface_data.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
+#include "limitsurf/batch_parts.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/mesh/face_varying_mesh.h"
 #include "limitsurf/mesh/limits.h"
 #include "limitsurf/number_text.h"
-#include "limitsurf/parallel.h"
+#include "limitsurf/row_check.h"
 #include "limitsurf/surface/batch/batch_evaluation.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/surface_data_poses.h"
 
 namespace limitsurf {
 namespace {
-
-/// The number of rows of which three columns are evaluated at a time.
-constexpr std::size_t kRowsPerPart = std::size_t{1} << 15;
 
 void checkValues(const DataRows& values) {
   if (values.cols() < 1) {
@@ -71,6 +70,21 @@ std::shared_ptr<const TiledSurface> tilesOf(const ControlMesh& mesh,
   refused.merge(tiles->refused);
   tiles->refused = std::move(refused);
   return tiles;
+}
+
+/// Copies the first `count` numbers of each row of three.
+template <typename Real>
+void putColumns(const Real* from, std::size_t rows, std::size_t count, Real* to,
+                std::size_t columns) {
+  for (std::size_t row = 0; row < rows; ++row, from += 3, to += columns) {
+    to[0] = from[0];
+    if (count > 1) {
+      to[1] = from[1];
+    }
+    if (count > 2) {
+      to[2] = from[2];
+    }
+  }
 }
 
 }  // namespace
@@ -131,60 +145,87 @@ void SurfaceData::setValues(const DataRows& values, int threads) {
 
 bool SurfaceData::isSet() const { return data_->is_set; }
 
-LocationBatch SurfaceData::checkLocations(const LocationBatch& at) const {
-  return data_->tiles->checked(at);
+LocationBatch SurfaceData::checkLocations(const LocationBatch& at, int threads) const {
+  checkThreads(threads);
+  return data_->tiles->checked(at, threads);
 }
 
 DataEvaluation SurfaceData::evaluate(const LocationBatch& at, Derivatives derivatives,
                                      int threads) const {
   checkThreads(threads);
-  const std::size_t rows = at.size();
   DataEvaluation out;
-  std::vector<DataRows*> wanted{&out.value};
-  if (derivatives >= Derivatives::first) {
-    wanted.insert(wanted.end(), {&out.du, &out.dv});
-  }
-  if (derivatives == Derivatives::second) {
-    wanted.insert(wanted.end(), {&out.duu, &out.duv, &out.dvv});
-  }
-  for (DataRows* const values : wanted) {
-    values->resize(0, data_->columns);
-    resizeRows(*values, rows);
-  }
-  if (data_->columns == Data::kColumnsPerPose) {
-    const PatchResults<double> results{out.value.data(), out.du.data(),  out.dv.data(),
-                                       out.duu.data(),   out.duv.data(), out.dvv.data(),
-                                       nullptr};
-    evaluateBatch(*data_->tiles, data_->poses[0], at, derivatives, results, threads);
-    return out;
-  }
-  data_->tiles->check(at, threads);  // parts of a batch would not say which of its rows is wrong
-  Points part[6];
-  for (std::size_t begin = 0; begin < rows; begin += kRowsPerPart) {
-    const std::size_t count = std::min(kRowsPerPart, rows - begin);
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      part[i].resize(static_cast<Eigen::Index>(count), 3);
+  const auto rows = [&](DataRows& values, Derivatives least) -> DataArrays<double>::Rows {
+    if (derivatives < least) {
+      return {};
     }
-    const PatchResults<double> results{part[0].data(), part[1].data(), part[2].data(),
-                                       part[3].data(), part[4].data(), part[5].data(),
-                                       nullptr};
-    Eigen::Index first = 0;
-    for (const Pose& pose : data_->poses) {
-      evaluateBatch(*data_->tiles, pose, at.rows(begin, count), derivatives, results, threads);
-      const Eigen::Index columns = std::min(Data::kColumnsPerPose, data_->columns - first);
-      parallelFor(count, kRowsPerTask, threads, [&](std::size_t low, std::size_t high) {
-        const auto row = static_cast<Eigen::Index>(low),
-                   some = static_cast<Eigen::Index>(high - low);
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-          wanted[i]->block(static_cast<Eigen::Index>(begin) + row, first, some, columns) =
-              part[i].block(row, 0, some, columns);
-        }
-      });
-      first += columns;
-    }
-  }
+    values.resize(0, data_->columns);
+    resizeRows(values, at.size());
+    return {values.data(), at.size()};
+  };
+  evaluate<double>(at, derivatives,
+                   {rows(out.value, Derivatives::none), rows(out.du, Derivatives::first),
+                    rows(out.dv, Derivatives::first), rows(out.duu, Derivatives::second),
+                    rows(out.duv, Derivatives::second), rows(out.dvv, Derivatives::second)},
+                   threads);
   return out;
 }
+
+template <typename Real>
+void SurfaceData::evaluate(const LocationBatch& at, Derivatives derivatives,
+                           const DataArrays<Real>& results, int threads) const {
+  checkThreads(threads);
+  const auto of = [&](const char* name, const typename DataArrays<Real>::Rows& array,
+                      Derivatives least) -> Real* {
+    if (derivatives < least) {
+      return nullptr;
+    }
+    checkRows(name, static_cast<Eigen::Index>(array.count), static_cast<Eigen::Index>(at.size()));
+    return array.numbers;
+  };
+  const std::array<Real*, 6> into = {
+      of("value", results.value, Derivatives::none), of("du", results.du, Derivatives::first),
+      of("dv", results.dv, Derivatives::first),      of("duu", results.duu, Derivatives::second),
+      of("duv", results.duv, Derivatives::second),   of("dvv", results.dvv, Derivatives::second)};
+  if (data_->columns == Data::kColumnsPerPose) {
+    evaluateBatch<Real>(*data_->tiles, data_->poses[0], at, derivatives,
+                        {into[0], into[1], into[2], into[3], into[4], into[5], nullptr}, threads);
+    return;
+  }
+  // Parts of a batch would not say which of its rows is wrong.
+  const LocationBatch checked = data_->tiles->checked(at, threads);
+  using Part = std::array<std::vector<Real>, 6>;  // three columns of all results
+  const auto part = [&](std::size_t rows) {
+    Part numbers;
+    for (std::size_t i = 0; i < into.size(); ++i) {
+      numbers[i].resize(into[i] ? 3 * rows : 0);
+    }
+    return numbers;
+  };
+  const auto columns = static_cast<std::size_t>(data_->columns);
+  forEachPart(at.size(), threads, part, [&](std::size_t begin, std::size_t end, Part& of_pose) {
+    std::array<Real*, 6> to{};
+    for (std::size_t i = 0; i < into.size(); ++i) {
+      to[i] = into[i] ? of_pose[i].data() : nullptr;
+    }
+    std::size_t first = 0;
+    for (const Pose& pose : data_->poses) {
+      evaluateBatch<Real>(*data_->tiles, pose, checked.rows(begin, end - begin), derivatives,
+                          {to[0], to[1], to[2], to[3], to[4], to[5], nullptr}, 1);
+      const std::size_t count = std::min<std::size_t>(Data::kColumnsPerPose, columns - first);
+      for (std::size_t i = 0; i < into.size(); ++i) {
+        if (into[i]) {
+          putColumns(to[i], end - begin, count, into[i] + columns * begin + first, columns);
+        }
+      }
+      first += count;
+    }
+  });
+}
+
+template void SurfaceData::evaluate(const LocationBatch&, Derivatives, const DataArrays<double>&,
+                                    int) const;
+template void SurfaceData::evaluate(const LocationBatch&, Derivatives, const DataArrays<float>&,
+                                    int) const;
 
 SurfaceData LimitSurface::faceVarying(const DataRows& values,
                                       const std::vector<std::int64_t>& indices,

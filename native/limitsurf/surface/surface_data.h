@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,17 @@ namespace limitsurf {
 /// not asked for have no rows.
 struct DataEvaluation {
   DataRows value, du, dv, duu, duv, dvv;
+};
+
+/// The caller's own memory for an evaluation of data: contiguous rows, one for each location, of as
+/// many numbers as the data have columns. Float results are the double ones, rounded.
+template <typename Real>
+struct DataArrays {
+  struct Rows {
+    Real* numbers = nullptr;
+    std::size_t count = 0;
+  };
+  Rows value = {}, du = {}, dv = {}, duu = {}, duv = {}, dvv = {};
 };
 
 /// Boxes around data on side x side equal squares of each Ptex face: the row
@@ -57,7 +69,7 @@ class SurfaceData {
   bool isSet() const;
 
   /// Checks a batch, as LimitSurface::checkLocations() does.
-  LocationBatch checkLocations(const LocationBatch& at) const;
+  LocationBatch checkLocations(const LocationBatch& at, int threads = 0) const;
 
   /// Data and derivatives with respect to the face's own (u, v), with the error bounds of
   /// LimitSurface::evaluate(), relative to the diagonal of the values' bounding box.
@@ -69,6 +81,11 @@ class SurfaceData {
   /// three columns.
   DataEvaluation evaluate(const LocationBatch& at, Derivatives derivatives = Derivatives::none,
                           int threads = 0) const;
+  /// The same into the caller's memory. Throws std::invalid_argument for arrays with another number
+  /// of rows. Real is double or float.
+  template <typename Real>
+  void evaluate(const LocationBatch& at, Derivatives derivatives, const DataArrays<Real>& results,
+                int threads = 0) const;
 
   /// Boxes that hold all values which evaluate() returns on squares of the faces, borders included.
   /// They are the boxes of Bezier control points: exact for bilinear data but for kBoundsPadding,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/surface/tiled_surface.h"
 
-#include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <sstream>
 
@@ -9,13 +9,19 @@
 #include "limitsurf/parallel.h"
 
 namespace limitsurf {
+namespace {
+
+/// Rows that one task checks: some nanoseconds each.
+constexpr std::size_t kRowsPerCheck = std::size_t{1} << 14;
+
+}  // namespace
 
 TiledSurface::TiledSurface(const ControlMesh& mesh, const Topology& topology)
     : ptex(mesh), refused(topology.refused()), table(buildTileTable(mesh, topology, ptex)) {}
 
 void TiledSurface::check(const LocationBatch& at, int threads) const {
   checkThreads(threads);
-  checked(at);
+  checked(at, threads);
 }
 
 void TiledSurface::check(const LocationBatch& at, std::size_t row) const {
@@ -44,26 +50,32 @@ void TiledSurface::check(const LocationBatch& at, std::size_t row) const {
   throw MeshError(message.str());
 }
 
-LocationBatch TiledSurface::checked(const LocationBatch& at) const {
+LocationBatch TiledSurface::checked(const LocationBatch& at, int threads) const {
   if (at.checked_on_ == this) {
     return at;
   }
-  // A quick pass, without branches, and another one only where it found something.
+  // A quick pass, and another one only if that found something.
   const std::uint64_t faces = table.faces.size();
   const bool all_have_surfaces = refused.empty();
-  InterruptionStride stride;
-  for (std::size_t begin = 0; begin < at.size(); begin += kRowsPerTask) {
-    stride.step();
-    const std::size_t end = std::min(at.size(), begin + kRowsPerTask);
-    bool good = all_have_surfaces;
+  std::atomic<bool> all_good{true};
+  parallelFor(at.size(), kRowsPerCheck, threads, [&](std::size_t begin, std::size_t end) {
+    bool good = true;
     for (std::size_t row = begin; row < end; ++row) {
       const double u = at.parameter(row, 0), v = at.parameter(row, 1);
-      good &= (static_cast<std::uint64_t>(at.face(row)) < faces) & (u >= 0) & (u <= 1) & (v >= 0) &
-              (v <= 1);
+      const auto face = static_cast<std::uint64_t>(at.face(row));
+      good &= (face < faces) & (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1);  // without branches
+      if (!all_have_surfaces) {
+        good &= face < faces && table.faces[face].kind != TileRef::kNone;
+      }
     }
-    for (std::size_t row = begin; row < end && !good; ++row) {
-      check(at, row);
+    if (!good) {
+      all_good.store(false, std::memory_order_relaxed);
     }
+  });
+  InterruptionStride stride;
+  for (std::size_t row = 0; row < at.size() && !all_good; ++row) {
+    stride.step();
+    check(at, row);
   }
   LocationBatch result(at);
   result.checked_on_ = this;

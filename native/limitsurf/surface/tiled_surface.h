@@ -18,7 +18,7 @@ struct TiledSurface {
 
   /// Throws LocationError or MeshError for the first row that cannot be evaluated, unless the batch
   /// has been checked here before.
-  LocationBatch checked(const LocationBatch& at) const;
+  LocationBatch checked(const LocationBatch& at, int threads) const;
   /// The same, and throws std::invalid_argument for a negative number of threads.
   void check(const LocationBatch& at, int threads) const;
   /// The same for one row.

@@ -160,8 +160,8 @@ py::array_t<Number> arrayIn(Values&& values, std::vector<py::ssize_t> shape) {
   return py::array_t<Number>(std::move(shape), numbers, owner);
 }
 
-template <typename T>
-py::array_t<T> arrayOf(std::vector<T>&& values) {
+template <typename T, typename Allocator>
+py::array_t<T> arrayOf(std::vector<T, Allocator>&& values) {
   const auto count = static_cast<py::ssize_t>(values.size());
   return arrayIn<T>(std::move(values), {count});
 }

@@ -50,7 +50,7 @@ class CheckedLocations {
  public:
   template <typename Surface>
   CheckedLocations(const Surface& surface, Locations rows)
-      : rows_(std::move(rows)), batch_(surface.checkLocations(rows_)) {}
+      : rows_(std::move(rows)), batch_(surface.checkLocations(rows_, 1)) {}
 
   std::size_t size() const { return rows_.size(); }
   LocationBatch part(std::size_t begin, std::size_t count) const {

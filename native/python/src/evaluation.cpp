@@ -7,7 +7,7 @@
 #include "batches.h"
 #include "choices.h"
 #include "docstrings.h"
-#include "limitsurf/interruptible_vector.h"
+#include "limitsurf/large_pages.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -51,7 +51,7 @@ py::object evaluate(const SharedSurface& shared, const py::object& face, const p
 void framesInto(const SharedSurface& shared, const LocationArrays& at, Output& position,
                 Output& frame, int threads) {
   const LongCall call(shared.lock);
-  const LocationBatch checked = shared.surface().checkLocations(at.batch());
+  const LocationBatch checked = shared.surface().checkLocations(at.batch(), threads);
   if (double* const rotations = frame.numbers<double>()) {
     shared.surface().frames(
         checked, {{position.numbers<double>(), at.size()}, {rotations, at.size()}}, threads);
@@ -132,23 +132,11 @@ py::object stencils(const SharedSurface& shared, const py::object& face, const p
   checkThreads(threads);
   const CheckedLocations at = locationsOn(shared.surface(), face, uv);
   Stencils all;
-  all.offsets.push_back(0);
-  inChunks(shared.lock, at, [&](std::size_t, const LocationBatch& chunk) {
-    const Stencils part = shared.surface().stencils(chunk, derivatives > 0, threads);
-    const std::int64_t before = all.offsets.back();
-    for (std::size_t i = 1; i < part.offsets.size(); ++i) {
-      all.offsets.push_back(before + part.offsets[i]);
-    }
-    const auto append = [](auto& to, const auto& from) {
-      reserveMore(to, from.size());
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(all.indices, part.indices);
-    append(all.weights, part.weights);
-    append(all.du_weights, part.du_weights);
-    append(all.dv_weights, part.dv_weights);
-  });
-  const auto optional = [&](std::vector<double>&& weights) {
+  {
+    const LongCall call(shared.lock);
+    all = shared.surface().stencils(at, derivatives > 0, threads);
+  }
+  const auto optional = [&](LargePageVector<double>&& weights) {
     return derivatives > 0 ? py::object(arrayOf(std::move(weights))) : py::object(py::none());
   };
   return result("Stencils")(arrayOf(std::move(all.offsets)), arrayOf(std::move(all.indices)),

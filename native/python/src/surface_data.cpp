@@ -22,13 +22,23 @@ const Choices<Interpolation> kInterpolations = {{"none", Interpolation::none},
                                                 {"boundaries", Interpolation::boundaries},
                                                 {"all", Interpolation::all}};
 
+template <typename Real>
+void evaluateInto(const SurfaceData& data, const LocationBatch& at, Derivatives derivatives,
+                  const Output outputs[6], int threads) {
+  const auto rows = [&](int i) {
+    return typename DataArrays<Real>::Rows{outputs[i].numbers<Real>(), at.size()};
+  };
+  data.evaluate<Real>(at, derivatives, {rows(0), rows(1), rows(2), rows(3), rows(4), rows(5)},
+                      threads);
+}
+
 py::object evaluate(const SharedData& shared, const py::object& face, const py::object& uv,
                     int derivatives, int threads, const py::object& dtype) {
   checkDerivatives(derivatives, 2);
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
   const SurfaceData& data = shared.data();
-  const CheckedLocations at = locationsOn(data, face, uv);
+  const LocationArrays at(face, uv);
   const auto rows = static_cast<py::ssize_t>(at.size());
   const auto columns = static_cast<py::ssize_t>(data.columns());
   Output outputs[6];  // value, du, dv, duu, duv, dvv
@@ -36,14 +46,11 @@ py::object evaluate(const SharedData& shared, const py::object& face, const py::
   for (int i = 0; i < wanted; ++i) {
     outputs[i] = Output(type, {rows, columns});
   }
-  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
-    const DataEvaluation e = data.evaluate(chunk, static_cast<Derivatives>(derivatives), threads);
-    const DataRows* values[6] = {&e.value, &e.du, &e.dv, &e.duu, &e.duv, &e.dvv};
-    for (int i = 0; i < wanted; ++i) {
-      outputs[i].put(begin * static_cast<std::size_t>(columns), values[i]->data(),
-                     static_cast<std::size_t>(values[i]->size()));
-    }
-  });
+  {
+    const LongCall call(shared.lock);
+    const auto into = outputs[0].isSingle() ? evaluateInto<float> : evaluateInto<double>;
+    into(data, at.batch(), static_cast<Derivatives>(derivatives), outputs, threads);
+  }
   return result("DataEvaluation")(outputs[0].object(), outputs[1].object(), outputs[2].object(),
                                   outputs[3].object(), outputs[4].object(), outputs[5].object());
 }

@@ -311,7 +311,7 @@ TEST(Batch, EmptyOnesGiveEmptyResults) {
   EXPECT_EQ(e.normal.rows(), 0);
   EXPECT_EQ(surface.frames(none).rows(), 0);
   EXPECT_EQ(surface.curvature(none).gaussian.size(), 0);
-  EXPECT_EQ(surface.stencils(none).offsets, std::vector<std::int64_t>{0});
+  EXPECT_EQ(surface.stencils(none).offsets, LargePageVector<std::int64_t>{0});
 }
 
 TEST(SetPositions, RefusesWhatIsNotFiniteAndKeepsThePose) {

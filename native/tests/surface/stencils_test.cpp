@@ -40,7 +40,7 @@ std::vector<Cage> someCages() {
 }
 
 /// The sum of the positions with the weights of row `row`.
-Vector3 combined(const Stencils& stencils, const std::vector<double>& weights, int row,
+Vector3 combined(const Stencils& stencils, const LargePageVector<double>& weights, int row,
                  const Points& positions) {
   Vector3 sum = Vector3::Zero();
   for (std::int64_t k = stencils.offsets[row]; k < stencils.offsets[row + 1]; ++k) {
@@ -49,12 +49,12 @@ Vector3 combined(const Stencils& stencils, const std::vector<double>& weights, i
   return sum;
 }
 
-double total(const Stencils& stencils, const std::vector<double>& weights, int row) {
+double total(const Stencils& stencils, const LargePageVector<double>& weights, int row) {
   return std::accumulate(weights.begin() + stencils.offsets[row],
                          weights.begin() + stencils.offsets[row + 1], 0.0);
 }
 
-double totalMagnitude(const Stencils& stencils, const std::vector<double>& weights, int row) {
+double totalMagnitude(const Stencils& stencils, const LargePageVector<double>& weights, int row) {
   double sum = 0;
   for (std::int64_t k = stencils.offsets[row]; k < stencils.offsets[row + 1]; ++k) {
     sum += std::abs(weights[k]);
@@ -112,7 +112,7 @@ TEST(Stencils, TimesTheCageAreTheEvaluation) {
       const Vector3 position = combined(stencils, stencils.weights, row, cage.positions);
       EXPECT_LE((position - evaluation.position.row(row).transpose()).norm(), kPositionError * size)
           << describe(at[row]);
-      const auto compare = [&](const std::vector<double>& weights, const Points& derivatives) {
+      const auto compare = [&](const LargePageVector<double>& weights, const Points& derivatives) {
         const Vector3 expected = derivatives.row(row);
         const Vector3 got = combined(stencils, weights, row, cage.positions);
         if (expected.hasNaN()) {

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "limitsurf/parallel.h"
+
+namespace limitsurf {
+
+/// Calls body(begin, end, memory) for parts of a batch of `count` rows, as parallelFor() does: for
+/// work in steps that hand each other arrays. Parts have so few rows that these arrays stay in the
+/// cache and that all threads have some parts, and so many that rows of the same face meet in them.
+///
+/// `memory` is what make(rows) returns, with room for the rows of a part. There is one for each
+/// thread, which serves one part after the other: fresh memory costs as much as filling it.
+template <typename Make, typename Body>
+void forEachPart(std::size_t count, int threads, const Make& make, const Body& body) {
+  constexpr std::size_t kParts = 64, kFewestRows = std::size_t{1} << 11,
+                        kMostRows = std::size_t{1} << 15;
+  const std::size_t rows = std::clamp(count / kParts, kFewestRows, kMostRows);
+  using Memory = decltype(make(rows));
+  std::vector<Memory> unused;
+  std::mutex mutex;  // of `unused`
+  parallelFor(count, rows, threads, [&](std::size_t begin, std::size_t end) {
+    std::optional<Memory> memory;
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (!unused.empty()) {
+        memory.emplace(std::move(unused.back()));
+        unused.pop_back();
+      }
+    }
+    if (!memory) {
+      memory.emplace(make(std::min(rows, count)));
+    }
+    body(begin, end, *memory);
+    const std::lock_guard<std::mutex> lock(mutex);
+    unused.push_back(std::move(*memory));
+  });
+}
+
+}  // namespace limitsurf
