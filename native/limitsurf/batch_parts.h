@@ -12,21 +12,29 @@
 
 namespace limitsurf {
 
-/// Calls body(begin, end, memory) for parts of a batch of `count` rows, as parallelFor() does: for
-/// work in steps that hand each other arrays. Parts have so few rows that these arrays stay in the
-/// cache and that all threads have some parts, and so many that rows of the same face meet in them.
-///
-/// `memory` is what make(rows) returns, with room for the rows of a part. There is one for each
-/// thread, which serves one part after the other: fresh memory costs as much as filling it.
+/// The number of rows of the parts into which a batch is divided for work in steps that hand each
+/// other arrays: so few that these arrays stay in the cache and that all threads have some parts,
+/// and so many that rows of the same face meet in them.
+inline std::size_t rowsOfPart(std::size_t count) {
+  constexpr std::size_t kParts = 64, kFewest = std::size_t{1} << 11, kMost = std::size_t{1} << 15;
+  return std::clamp(count / kParts, kFewest, kMost);
+}
+
+/// Calls body(begin, end) for parts of a batch of `count` rows, as parallelFor() does.
+template <typename Body>
+void forEachPart(std::size_t count, int threads, const Body& body) {
+  parallelFor(count, rowsOfPart(count), threads, body);
+}
+
+/// Calls body(begin, end, memory) for these parts. `memory` is what make(rows) returns, with room
+/// for the rows of a part. There is one for each thread, which serves one part after the other:
+/// fresh memory costs as much as filling it.
 template <typename Make, typename Body>
 void forEachPart(std::size_t count, int threads, const Make& make, const Body& body) {
-  constexpr std::size_t kParts = 64, kFewestRows = std::size_t{1} << 11,
-                        kMostRows = std::size_t{1} << 15;
-  const std::size_t rows = std::clamp(count / kParts, kFewestRows, kMostRows);
-  using Memory = decltype(make(rows));
+  using Memory = decltype(make(count));
   std::vector<Memory> unused;
   std::mutex mutex;  // of `unused`
-  parallelFor(count, rows, threads, [&](std::size_t begin, std::size_t end) {
+  forEachPart(count, threads, [&](std::size_t begin, std::size_t end) {
     std::optional<Memory> memory;
     {
       const std::lock_guard<std::mutex> lock(mutex);
@@ -36,7 +44,7 @@ void forEachPart(std::size_t count, int threads, const Make& make, const Body& b
       }
     }
     if (!memory) {
-      memory.emplace(make(std::min(rows, count)));
+      memory.emplace(make(std::min(rowsOfPart(count), count)));
     }
     body(begin, end, *memory);
     const std::lock_guard<std::mutex> lock(mutex);

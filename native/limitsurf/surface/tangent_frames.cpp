@@ -2,10 +2,10 @@
 #include "limitsurf/surface/tangent_frames.h"
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <vector>
 
-#include "limitsurf/parallel.h"
+#include "limitsurf/batch_parts.h"
+#include "limitsurf/large_pages.h"
 #include "limitsurf/surface/map_derivatives.h"
 
 namespace limitsurf {
@@ -31,42 +31,46 @@ Vector3 alongU(const MapDerivatives& d, Eigen::Index row, double sign) {
   return scaled(Vector3(direction - direction.dot(normal) * normal));
 }
 
+/// The frames of some locations, into the rows of `out`.
+void setTangentFrames(const LimitSurface& surface, const SurfaceData& uv_map,
+                      const LocationBatch& at, Eigen::Ref<TangentFrames> out) {
+  const MapDerivatives d = directionalDerivatives(surface, uv_map, at, 1);
+  std::vector<Eigen::Index> singular;
+  std::vector<Location> places;
+  for (Eigen::Index row = 0; row < out.rows(); ++row) {
+    const double determinant = d.determinant(row), sign = determinant < 0 ? -1 : 1;
+    const Vector3 tangent = alongU(d, row, sign);
+    if (!(determinant != 0) || !tangent.allFinite() || tangent.isZero(0)) {
+      singular.push_back(row);
+      places.push_back(at[static_cast<std::size_t>(row)]);
+      continue;
+    }
+    const Vector3 normal = d.on_surface.normal.row(row).transpose();
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> frame(out.row(row).data());
+    frame.col(0) = tangent.normalized();
+    frame.col(1) = sign * normal.cross(frame.col(0));
+    frame.col(2) = normal;
+  }
+  const auto frames = surface.frames(places, 1);
+  for (std::size_t i = 0; i < singular.size(); ++i) {
+    out.row(singular[i]) = frames.row(static_cast<Eigen::Index>(i));
+  }
+}
+
 }  // namespace
 
-Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> tangentFrames(const LimitSurface& surface,
-                                                                        const SurfaceData& uv_map,
-                                                                        const LocationBatch& at,
-                                                                        int threads) {
-  const MapDerivatives d = directionalDerivatives(surface, uv_map, at, threads);
-  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> out(at.size(), 9);
-  std::vector<std::uint8_t> is_singular(at.size());
-  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      const double determinant = d.determinant(row), sign = determinant < 0 ? -1 : 1;
-      const Vector3 tangent = alongU(d, row, sign);
-      const Vector3 normal = d.on_surface.normal.row(row).transpose();
-      is_singular[i] = !(determinant != 0) || !tangent.allFinite() || tangent.isZero(0);
-      if (!is_singular[i]) {
-        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> frame(out.row(row).data());
-        frame.col(0) = tangent.normalized();
-        frame.col(1) = sign * normal.cross(frame.col(0));
-        frame.col(2) = normal;
-      }
-    }
+TangentFrames tangentFrames(const LimitSurface& surface, const SurfaceData& uv_map,
+                            const LocationBatch& at, int threads) {
+  checkMap(surface, uv_map, "uv_map");
+  const LocationBatch checked = surface.checkLocations(at, threads);
+  TangentFrames out;
+  resizeRows(out, at.size());
+  forEachPart(at.size(), threads, [&](std::size_t begin, std::size_t end) {
+    const std::size_t count = end - begin;
+    setTangentFrames(
+        surface, uv_map, checked.rows(begin, count),
+        out.middleRows(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(count)));
   });
-  std::vector<std::size_t> singular;
-  std::vector<Location> places;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    if (is_singular[i]) {
-      singular.push_back(i);
-      places.push_back(at[i]);
-    }
-  }
-  const auto frames = surface.frames(places, threads);
-  for (std::size_t i = 0; i < singular.size(); ++i) {
-    out.row(static_cast<Eigen::Index>(singular[i])) = frames.row(static_cast<Eigen::Index>(i));
-  }
   return out;
 }
 

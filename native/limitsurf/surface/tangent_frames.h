@@ -31,9 +31,8 @@ constexpr double kTangentError = 1e-11;
 /// Throws what LimitSurface::evaluate() throws, and std::invalid_argument for a map that does not
 /// have two columns or belongs to a surface with another number of faces. Cost: two evaluations for
 /// each location. Any number of threads gives the same bits.
-Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> tangentFrames(const LimitSurface& surface,
-                                                                        const SurfaceData& uv_map,
-                                                                        const LocationBatch& at,
-                                                                        int threads = 0);
+using TangentFrames = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
+TangentFrames tangentFrames(const LimitSurface& surface, const SurfaceData& uv_map,
+                            const LocationBatch& at, int threads = 0);
 
 }  // namespace limitsurf

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "limitsurf/parallel.h"
+#include "limitsurf/batch_parts.h"
 #include "limitsurf/surface/map_derivatives.h"
 
 namespace limitsurf {
@@ -27,14 +27,18 @@ double largestStretch(const Vector3& x, const Vector3& y) {
 
 MapDistortion mapDistortion(const LimitSurface& surface, const SurfaceData& uv_map,
                             const LocationBatch& at, int threads) {
-  const MapDerivatives d = directionalDerivatives(surface, uv_map, at, threads);
+  checkMap(surface, uv_map, "uv_map");
+  const LocationBatch checked = surface.checkLocations(at, threads);
   const auto rows = static_cast<Eigen::Index>(at.size());
   MapDistortion out{Eigen::VectorXd(rows), Eigen::VectorXd(rows), Eigen::VectorXd(rows)};
-  parallelFor(at.size(), kRowsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    for (auto row = static_cast<Eigen::Index>(begin); row < static_cast<Eigen::Index>(end); ++row) {
-      const double determinant = d.determinant(row);
-      const Vector3 du = d.on_surface.du.row(row).transpose(),
-                    dv = d.on_surface.dv.row(row).transpose();
+  forEachPart(at.size(), threads, [&](std::size_t begin, std::size_t end) {
+    const MapDerivatives d =
+        directionalDerivatives(surface, uv_map, checked.rows(begin, end - begin), 1);
+    for (Eigen::Index i = 0; i < d.on_map.du.rows(); ++i) {
+      const Eigen::Index row = static_cast<Eigen::Index>(begin) + i;
+      const double determinant = d.determinant(i);
+      const Vector3 du = d.on_surface.du.row(i).transpose(),
+                    dv = d.on_surface.dv.row(i).transpose();
       out.area(row) = du.cross(dv).stableNorm() / std::abs(determinant);
       if (determinant == 0) {
         out.stretch_high(row) = std::numeric_limits<double>::infinity();
@@ -42,8 +46,8 @@ MapDistortion mapDistortion(const LimitSurface& surface, const SurfaceData& uv_m
         continue;
       }
       out.stretch_high(row) =
-          largestStretch((du * d.on_map.dv(row, 1) - dv * d.on_map.du(row, 1)) / determinant,
-                         (dv * d.on_map.du(row, 0) - du * d.on_map.dv(row, 0)) / determinant);
+          largestStretch((du * d.on_map.dv(i, 1) - dv * d.on_map.du(i, 1)) / determinant,
+                         (dv * d.on_map.du(i, 0) - du * d.on_map.dv(i, 0)) / determinant);
       out.stretch_low(row) = out.stretch_high(row) > 0 ? out.area(row) / out.stretch_high(row) : 0;
     }
   });
