@@ -15,15 +15,15 @@ namespace limitsurf {
 /// The number of rows of the parts into which a batch is divided for work in steps that hand each
 /// other arrays: so few that these arrays stay in the cache and that all threads have some parts,
 /// and so many that rows of the same face meet in them.
-inline std::size_t rowsOfPart(std::size_t count) {
+inline std::size_t rowsOfPart(std::size_t count, int threads) {
   constexpr std::size_t kParts = 64, kFewest = std::size_t{1} << 11, kMost = std::size_t{1} << 15;
-  return std::clamp(count / kParts, kFewest, kMost);
+  return threads == 1 ? kMost : std::clamp(count / kParts, kFewest, kMost);
 }
 
 /// Calls body(begin, end) for parts of a batch of `count` rows, as parallelFor() does.
 template <typename Body>
 void forEachPart(std::size_t count, int threads, const Body& body) {
-  parallelFor(count, rowsOfPart(count), threads, body);
+  parallelFor(count, rowsOfPart(count, threads), threads, body);
 }
 
 /// Calls body(begin, end, memory) for these parts. `memory` is what make(rows) returns, with room
@@ -44,7 +44,7 @@ void forEachPart(std::size_t count, int threads, const Make& make, const Body& b
       }
     }
     if (!memory) {
-      memory.emplace(make(std::min(rowsOfPart(count), count)));
+      memory.emplace(make(std::min(rowsOfPart(count, threads), count)));
     }
     body(begin, end, *memory);
     const std::lock_guard<std::mutex> lock(mutex);

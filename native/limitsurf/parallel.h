@@ -3,6 +3,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -19,10 +20,15 @@ namespace limitsurf {
 /// evaluation: long enough (some 50 microseconds) that starting a task costs little.
 constexpr std::size_t kRowsPerTask = 512;
 
+/// Ends a loop within a task of another loop that has already ended with an exception. TBB drops it
+/// in favour of that one.
+struct OuterLoopEnded {};
+
 /// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or on at
 /// most `threads` of them. All ranges but the last have `grain` elements; InterruptionPoint::pass()
 /// is called after each one that the calling thread has worked on. What a body does must not depend
-/// on how the range is divided.
+/// on how the range is divided. It may call parallelFor(): if an exception ends the outer loop, the
+/// inner ones end after their present ranges.
 ///
 /// Each thread works through a part of [0, count) from its beginning on, and one that has nothing
 /// left takes over the second half of what another has before it. So threads wait for each other
@@ -34,6 +40,9 @@ void parallelFor(std::size_t count, std::size_t grain, int threads, const Body& 
     for (std::size_t i = first; i < last; ++i) {
       body(i * grain, std::min(count, (i + 1) * grain));
       InterruptionPoint::pass();  // it belongs to the calling thread
+      if (tbb::is_current_task_group_canceling()) {
+        throw OuterLoopEnded();
+      }
     }
   };
   const std::size_t ranges = count / grain + (count % grain > 0 ? 1 : 0);

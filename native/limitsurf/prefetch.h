@@ -13,9 +13,9 @@ namespace limitsurf {
 /// changes no result, and does nothing where the compiler knows no way.
 template <typename T>
 void prefetch(const T& object) {
-  constexpr std::size_t kCacheLine = 64;
+  constexpr std::size_t kCacheLine = 64, kSize = sizeof(T);
   const char* const begin = reinterpret_cast<const char*>(&object);
-  for (std::size_t at = 0; at < sizeof(T); at += kCacheLine) {
+  for (std::size_t at = 0; at < kSize; at += kCacheLine) {
 #if defined(__GNUC__)
     __builtin_prefetch(begin + at);
 #elif defined(_MSC_VER) && (defined(_M_X64) || defined(_M_IX86))

@@ -90,7 +90,6 @@ DensityField::DensityField(const Density& density, const std::vector<int>& level
   places.reserve(kBatch);
   const auto ask = [&] {
     const std::vector<double> weights = density.weights(at);
-    asked_ += at.size();
     for (std::size_t i = 0; i < at.size(); ++i) {
       values_[places[i]] = weights[i];
     }

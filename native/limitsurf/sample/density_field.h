@@ -25,8 +25,8 @@ class DensityField {
   bool isConstant() const { return first_.empty(); }
   /// Whether a function was 0 wherever it was read.
   bool isZero() const { return !(largest_ > 0); }
-  /// The number of points of the grids at which the function was read.
-  std::size_t asked() const { return asked_; }
+  /// The number of points of the grids.
+  std::size_t pointCount() const { return values_.size(); }
   /// The largest weight, by which all have been divided.
   double largest() const { return largest_; }
 
@@ -42,7 +42,6 @@ class DensityField {
   void normalise();
 
   double largest_ = 1;
-  std::size_t asked_ = 0;
   std::vector<int> levels_;
   std::vector<std::size_t> first_;
   std::vector<double> values_;  // face by face, row by row: (2^level + 1)^2 for each face

@@ -14,9 +14,11 @@ namespace limitsurf {
 namespace {
 
 /// A row takes much longer than an evaluation, so that a task has fewer of them than kRowsPerTask.
-constexpr std::size_t kStencilsPerTask = 32;
+constexpr std::size_t kStencilsPerTask = 8;
+/// So many are made before they are put together.
+constexpr std::size_t kStencilsPerChunk = std::size_t{1} << 17;
 /// So many blocks of them are copied by one task.
-constexpr std::size_t kBlocksPerCopy = 16;
+constexpr std::size_t kBlocksPerCopy = 64;
 
 /// The weights of position, du and dv on one point.
 using Weights = Eigen::Array3d;
@@ -74,7 +76,7 @@ class Row {
   /// The same as for refined points, without a map.
   void setOnVertices(const TileLocation& at) {
     forPoints(at, [&](int point, const Weights& w) {
-      entries_.push_back({point, w});
+      entries_.push_back({point, Weights::Zero() + w});  // 0 for -0
       turn(at, entries_.back().weights);
     });
     std::stable_sort(entries_.begin(), entries_.end(),
@@ -177,53 +179,55 @@ class Row {
 
 /// The stencils that one task has made.
 struct Block {
+  void add(const std::vector<Row::Entry>& entries, bool first_derivatives) {
+    sizes.push_back(static_cast<std::int64_t>(entries.size()));
+    for (const Row::Entry& entry : entries) {
+      indices.push_back(entry.vertex);
+      for (int kind = 0; kind < (first_derivatives ? 3 : 1); ++kind) {
+        weights[kind].push_back(entry.weights[kind]);
+      }
+    }
+  }
+
   std::vector<std::int64_t> sizes;  // of its rows
   std::vector<int> indices;
   std::vector<double> weights[3];  // of position, du and dv
 };
 
-}  // namespace
+/// Gives a vector this size. Where it must grow, it gets room for all rows if they are like the
+/// first `rows` of `all`.
+template <typename Vector>
+void resizeFor(Vector& values, std::size_t size, std::size_t rows, std::size_t all) {
+  if (size > values.capacity()) {
+    const double share = static_cast<double>(all) / static_cast<double>(rows);
+    values.reserve(static_cast<std::size_t>(1.02 * share * static_cast<double>(size)) + 1);
+  }
+  values.resize(size);
+}
 
-Stencils LimitSurface::stencils(const LocationBatch& at, bool first_derivatives,
-                                int threads) const {
-  const LocationBatch checked = checkLocations(at, threads);
-  const int kinds = first_derivatives ? 3 : 1;
-  std::vector<Block> blocks((at.size() + kStencilsPerTask - 1) / kStencilsPerTask);
-  parallelFor(at.size(), kStencilsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    const TileEvaluator evaluator(data_->table, data_->pose);
-    Row row(data_->table);
-    Block& block = blocks[begin / kStencilsPerTask];
-    for (std::size_t i = begin; i < end; ++i) {
-      row.set(evaluator.locate(checked[i]), first_derivatives ? 1 : 0);
-      block.sizes.push_back(static_cast<std::int64_t>(row.entries().size()));
-      for (const Row::Entry& entry : row.entries()) {
-        block.indices.push_back(entry.vertex);
-        for (int kind = 0; kind < kinds; ++kind) {
-          block.weights[kind].push_back(entry.weights[kind]);
-        }
-      }
-    }
-  });
-
-  std::vector<std::size_t> first(blocks.size() + 1, 0);  // entry of each block
+/// Appends the stencils of rows from `begin` on, and frees the blocks.
+void append(std::vector<Block>& blocks, std::size_t begin, bool first_derivatives, int threads,
+            Stencils& out) {
+  std::vector<std::size_t> first(blocks.size() + 1, out.indices.size());  // entry of each block
+  std::size_t rows = begin;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     first[i + 1] = first[i] + blocks[i].indices.size();
+    rows += blocks[i].sizes.size();
   }
-  Stencils out;
-  out.offsets.resize(at.size() + 1);
-  out.offsets[0] = 0;
-  out.indices.resize(first.back());
+  const int kinds = first_derivatives ? 3 : 1;
+  const std::size_t all = out.offsets.size() - 1;
+  resizeFor(out.indices, first.back(), rows, all);
   LargePageVector<double>* const weights[3] = {&out.weights, &out.du_weights, &out.dv_weights};
   for (int kind = 0; kind < kinds; ++kind) {
-    weights[kind]->resize(first.back());
+    resizeFor(*weights[kind], first.back(), rows, all);
   }
-  parallelFor(blocks.size(), kBlocksPerCopy, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Block block = std::move(blocks[i]);  // and frees it
+  parallelFor(blocks.size(), kBlocksPerCopy, threads, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const Block block = std::move(blocks[i]);
       auto offset = static_cast<std::int64_t>(first[i]);
       for (std::size_t row = 0; row < block.sizes.size(); ++row) {
         offset += block.sizes[row];
-        out.offsets[i * kStencilsPerTask + row + 1] = offset;
+        out.offsets[begin + i * kStencilsPerTask + row + 1] = offset;
       }
       std::copy(block.indices.begin(), block.indices.end(), out.indices.data() + first[i]);
       for (int kind = 0; kind < kinds; ++kind) {
@@ -232,6 +236,30 @@ Stencils LimitSurface::stencils(const LocationBatch& at, bool first_derivatives,
       }
     }
   });
+}
+
+}  // namespace
+
+Stencils LimitSurface::stencils(const LocationBatch& at, bool first_derivatives,
+                                int threads) const {
+  const LocationBatch checked = checkLocations(at, threads);
+  Stencils out;
+  out.offsets.resize(at.size() + 1);
+  out.offsets[0] = 0;
+  for (std::size_t begin = 0; begin < at.size(); begin += kStencilsPerChunk) {
+    const std::size_t count = std::min(kStencilsPerChunk, at.size() - begin);
+    std::vector<Block> blocks((count + kStencilsPerTask - 1) / kStencilsPerTask);
+    parallelFor(count, kStencilsPerTask, threads, [&](std::size_t first, std::size_t last) {
+      const TileEvaluator evaluator(data_->table, data_->pose);
+      Row row(data_->table);
+      Block& block = blocks[first / kStencilsPerTask];
+      for (std::size_t i = first; i < last; ++i) {
+        row.set(evaluator.locate(checked[begin + i]), first_derivatives ? 1 : 0);
+        block.add(row.entries(), first_derivatives);
+      }
+    });
+    append(blocks, begin, first_derivatives, threads, out);
+  }
   return out;
 }
 

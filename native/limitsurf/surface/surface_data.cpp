@@ -207,9 +207,15 @@ void SurfaceData::evaluate(const LocationBatch& at, Derivatives derivatives,
     for (std::size_t i = 0; i < into.size(); ++i) {
       to[i] = into[i] ? of_pose[i].data() : nullptr;
     }
+    // Other threads of the caller may change the locations; all columns shall be of the same ones.
+    std::vector<Location> same(data_->poses.size() > 1 ? end - begin : 0);
+    for (std::size_t i = 0; i < same.size(); ++i) {
+      same[i] = checked[begin + i];
+    }
+    const LocationBatch rows = same.empty() ? checked.rows(begin, end - begin) : same;
     std::size_t first = 0;
     for (const Pose& pose : data_->poses) {
-      evaluateBatch<Real>(*data_->tiles, pose, checked.rows(begin, end - begin), derivatives,
+      evaluateBatch<Real>(*data_->tiles, pose, rows, derivatives,
                           {to[0], to[1], to[2], to[3], to[4], to[5], nullptr}, 1);
       const std::size_t count = std::min<std::size_t>(Data::kColumnsPerPose, columns - first);
       for (std::size_t i = 0; i < into.size(); ++i) {

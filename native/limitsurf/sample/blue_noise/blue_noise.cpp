@@ -86,7 +86,18 @@ class BlueNoiseMaker {
           "radius is " + text(radius / patches_.scale()) + ": about " + text(expected_) +
           " points would come out; the limit is 2147483647, so choose a larger radius");
     }
-    const std::vector<Location> at = sampled(radius).at;
+    std::vector<Location> at = sampled(radius).at;
+    double finer = radius;
+    for (int i = 0; at.empty() && options_.density.function() && i < kMostReadings; ++i) {
+      finer /= 4;  // parts that are much smaller than the radius: the grid blurs them
+      readFunction(finer);
+      at = sampled(radius).at;
+    }
+    if (at.empty()) {
+      throw std::invalid_argument(
+          "no point was found where density is above 0: it is above 0 on parts of the surface that "
+          "are far smaller than the radius");
+    }
     return result(ordered(at, orderByFace(at, has_surface_.size()), threads_), radius);
   }
 
@@ -182,22 +193,33 @@ class BlueNoiseMaker {
   void readFunction(double radius) {
     if (sizes_.empty()) {
       sizes_ = faceSizes(surface_, has_surface_, patches_.scale(), threads_);
+      checkLimitsAboveZero();
     }
     int fewest = 0;
     while (fewest < kFewestLevels && (sizes_.size() << (2 * fewest)) < kFewestValues) {
       ++fewest;
     }
     density_ = DensityField(options_.density, levelsFor(radius, fewest));
-    const auto faces = static_cast<double>(sizes_.size());
-    while (density_.isZero() && density_.asked() > 0 && density_.asked() < kMostZeros &&
-           fewest < kMostLevels && std::ldexp(faces, 2 * (fewest + 1)) <= kMostValues) {
+    while (density_.isZero() && density_.pointCount() < kMostZeros && fewest < kMostLevels) {
       ++fewest;  // what is above 0 may lie between the points
       density_ = DensityField(options_.density, levelsFor(radius, fewest));
     }
     if (density_.isZero()) {
-      throw std::invalid_argument(zeroEverywhereText(density_.asked()));
+      throw std::invalid_argument(zeroEverywhereText(density_.pointCount()));
     }
     setWeighedArea();
+  }
+
+  /// Throws std::invalid_argument if all limits are 0, so that the function need not be read.
+  void checkLimitsAboveZero() const {
+    const DensityLimits& limits = options_.density.limits();
+    for (std::size_t face = 0; face < sizes_.size(); ++face) {
+      if (sizes_[face] >= 0 &&
+          (!limits.areKnown() || limits.on(static_cast<int>(face), 0, 1, 0, 1).largest > 0)) {
+        return;
+      }
+    }
+    throw std::invalid_argument(zeroEverywhereText(0));
   }
 
   /// The levels of grids whose squares are at most a radius wide, if they have no more than

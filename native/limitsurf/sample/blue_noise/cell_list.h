@@ -13,7 +13,7 @@ namespace limitsurf {
 class CellList {
  public:
   void add(Span<TrialCell> cells) {
-    if (cells.size() > 0) {
+    if (!cells.empty()) {
       lists_.push_back(cells);
       ends_.push_back(size() + cells.size());
     }

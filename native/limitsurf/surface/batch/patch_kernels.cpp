@@ -128,18 +128,27 @@ inline void interleavePadded(const Lanes<8> xyz[3], Lanes<8> out[4]) {
   out[3].numbers = __builtin_shufflevector(__builtin_shufflevector(x, y, 6, 14, 0, 0, 7, 15, 0, 0),
                                            z, 0, 1, 14, 3, 4, 5, 15, 7);
 }
-// Three of four numbers are written by one instruction.
+/// Writes three of four numbers by one instruction, which touches no memory behind them.
+[[gnu::always_inline]] inline void storeThree(double* to, __m256d numbers) {
+  // GCC would join the extraction of half a register with the masked write: VEXTRACTF64X4, which
+  // faults if there is no memory behind the three numbers, although it does not write there. So the
+  // half is in a register of its own here.
+  __asm__("" : "+v"(numbers));
+  _mm256_mask_storeu_pd(to, 7, numbers);
+}
+[[gnu::always_inline]] inline void storeThree(double* to, const Lanes<4>& point) {
+  storeThree(to, point.numbers);
+}
 [[gnu::always_inline]] inline void putPadded(double* to, const Lanes<8> padded[4],
                                              const std::size_t* rows, int count) {
 #pragma GCC unroll 4
   for (int i = 0; i < 4; ++i) {
     const auto& two = padded[i].numbers;
     if (2 * i < count) {
-      _mm256_mask_storeu_pd(to + 3 * rows[2 * i], 7, __builtin_shufflevector(two, two, 0, 1, 2, 3));
+      storeThree(to + 3 * rows[2 * i], __builtin_shufflevector(two, two, 0, 1, 2, 3));
     }
     if (2 * i + 1 < count) {
-      _mm256_mask_storeu_pd(to + 3 * rows[2 * i + 1], 7,
-                            __builtin_shufflevector(two, two, 4, 5, 6, 7));
+      storeThree(to + 3 * rows[2 * i + 1], __builtin_shufflevector(two, two, 4, 5, 6, 7));
     }
   }
 }
@@ -148,12 +157,9 @@ inline void interleavePadded(const Lanes<8> xyz[3], Lanes<8> out[4]) {
 #pragma GCC unroll 4
   for (int i = 0; i < 4; ++i) {
     if (i < count) {
-      _mm256_mask_storeu_pd(to + 3 * rows[i], 7, padded[i].numbers);
+      storeThree(to + 3 * rows[i], padded[i]);
     }
   }
-}
-[[gnu::always_inline]] inline void storeThree(double* to, const Lanes<4>& point) {
-  _mm256_mask_storeu_pd(to, 7, point.numbers);
 }
 #include "limitsurf/surface/batch/patch_kernels.inl.h"
 }  // namespace avx512
