@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/loop_order.h"
@@ -22,7 +23,7 @@ constexpr std::size_t kRowsPerTask = 512;
 
 /// Ends a loop within a task of another loop that has already ended with an exception. TBB drops it
 /// in favour of that one.
-struct OuterLoopEnded {};
+struct OuterLoopEnded : std::exception {};
 
 /// Calls body(begin, end) for ranges that cover [0, count), on all cores (threads = 0) or on at
 /// most `threads` of them. All ranges but the last have `grain` elements; InterruptionPoint::pass()

@@ -19,7 +19,7 @@ namespace avx2 {
 /// The kernels for the set in use.
 inline const auto& kernelsInUse() {
 #if LIMITSURF_X86_SETS
-  return inUse(baseline::kKernels, avx2::kKernels, avx2::kKernels);
+  return inUse(&baseline::kKernels, &avx2::kKernels, &avx2::kKernels);
 #else
   return baseline::kKernels;
 #endif

@@ -30,16 +30,16 @@ void useInstructionSet(InstructionSet set);
 
 /// Of kernels that are compiled for each instruction set, those for the set in use.
 template <typename Kernels>
-const Kernels& inUse(const Kernels& baseline, const Kernels& avx2, const Kernels& avx512) {
+const Kernels& inUse(const Kernels* baseline, const Kernels* avx2, const Kernels* avx512) {
   switch (instructionSet()) {
     case InstructionSet::avx512:
-      return avx512;
+      return *avx512;
     case InstructionSet::avx2:
-      return avx2;
+      return *avx2;
     case InstructionSet::baseline:
       break;
   }
-  return baseline;
+  return *baseline;
 }
 
 }  // namespace limitsurf

@@ -46,7 +46,7 @@ inline Lanes squareRoot(const Lanes& a) {
 /// The kernels for the set in use.
 inline const auto& kernelsInUse() {
 #if LIMITSURF_X86_SETS
-  return inUse(baseline::kKernels, avx2::kKernels, avx512::kKernels);
+  return inUse(&baseline::kKernels, &avx2::kKernels, &avx512::kKernels);
 #else
   return baseline::kKernels;
 #endif

@@ -200,7 +200,7 @@ void useInstructionSet(InstructionSet set) { setInUse() = set; }
 
 const PatchKernels& PatchKernels::get() {
 #if LIMITSURF_X86_SETS
-  return inUse(baseline::kKernels, avx2::kKernels, avx512::kKernels);
+  return inUse(&baseline::kKernels, &avx2::kKernels, &avx512::kKernels);
 #else
   return baseline::kKernels;
 #endif
