@@ -16,6 +16,7 @@ COUNT = 1_000_000
 REPEATS = 5
 SIDE, LARGE_SIDE = 100, 1000
 BLUE_NOISE = 100_000
+STENCILS = 200_000
 #: A call takes the number of threads
 Call = Callable[[int], object]
 
@@ -89,6 +90,7 @@ def calls() -> dict[str, Call]:
     down = np.tile([0.0, 0, -1], (COUNT, 1))
     far = near[shuffled] + rng.normal(scale=3.0, size=(COUNT, 3))
     evaluate, single = surface.evaluate, np.float32
+    data = surface.vertex_data(surface.positions[:, :2])
     return {
         "evaluate, P": lambda threads: evaluate(face, uv, threads=threads),
         "evaluate, P with du, dv and normals": lambda threads: evaluate(
@@ -100,6 +102,10 @@ def calls() -> dict[str, Call]:
         ),
         "evaluate, second derivatives too": lambda threads: evaluate(face, uv, 2, threads=threads),
         "frames": lambda threads: surface.frames(face, uv, threads=threads),
+        "data of two columns": lambda threads: data.evaluate(face, uv, threads=threads),
+        "stencils": lambda threads: surface.stencils(
+            face[:STENCILS], uv[:STENCILS], threads=threads
+        ),
         "closest, within a tenth of an edge": lambda threads: surface.closest(
             near, threads=threads
         ),
@@ -142,6 +148,7 @@ DRAWN = (
 )
 #: Rows of the calls that have not COUNT of them
 ROWS = {
+    "stencils": STENCILS,
     "scatter_blue_noise": BLUE_NOISE,
     "set_positions, a million quads": LARGE_SIDE**2,
     "area, a million quads": LARGE_SIDE**2,
