@@ -96,10 +96,14 @@ void AreaSampler::Data::checkLimits(const DensityLimits& limits,
                                 std::to_string(limits.faceCount()) + " faces; the surface has " +
                                 std::to_string(surface.faceCount()));
   }
+  double largest = 0;
   for (std::size_t face = 0; face < has_surface.size(); ++face) {
     if (has_surface[face]) {
-      limits.on(static_cast<int>(face), 0, 1, 0, 1);
+      largest = std::max(largest, limits.on(static_cast<int>(face), 0, 1, 0, 1).largest);
     }
+  }
+  if (!(largest > 0)) {
+    throw std::invalid_argument(zeroEverywhereText(0));
   }
 }
 

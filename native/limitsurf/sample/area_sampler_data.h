@@ -26,8 +26,8 @@ struct AreaSampler::Data {
   /// For each Ptex face whether it has a surface, with area or without.
   std::vector<bool> hasSurface() const;
 
-  /// Throws std::invalid_argument if there are limits, but not those of this surface's faces, and
-  /// naming a limit that is negative or not finite.
+  /// Throws std::invalid_argument if there are limits, but not those of this surface's faces or all
+  /// of them 0, and naming a limit that is negative or not finite.
   void checkLimits(const DensityLimits& limits, const std::vector<bool>& has_surface) const;
 
   /// AreaSampler::uniform() for a density function.

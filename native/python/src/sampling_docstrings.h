@@ -49,8 +49,8 @@ density_limits, for a function alone, are numbers that it does not exceed: (f,) 
 or (f, side, side) one for each of the equal squares [face, row along v, column along u], where side is
 a power of two up to 1024. They save the candidates that would be rejected: with a function that is
 0 outside of a thousandth of the surface a call takes a hundredth of the time. SurfaceData.bounds()
-and FilteredImage.bounds() give such numbers. The closer they are to the
-function, the faster the call. Limits must be finite and at least 0 on faces that have
+and FilteredImage.bounds() give such numbers. The closer they are to the function, the faster the
+call. Limits must be finite and at least 0 on faces that have
 a surface. A location where the function exceeds its limit raises ValueError, if it is met.
 )";
 
@@ -72,8 +72,9 @@ interpolated; no point lies where it is 0. density_limits are those of scatter_u
 
 The method is that of White, Cline & Egbert ("Poisson Disk Point Sets by Hierarchical Dart Throwing",
 2007) on the limit surface. Raises ValueError as scatter_uniform() does, for a radius that is not finite
-and above 0 or would lead to more than 2^31 points, and for faces that are sheared too strongly. Cost:
-about 5 microseconds a point on one core.
+and above 0 or would lead to more than 2^31 points, where the density is above 0 only on parts so small
+that no point is found, and for faces that are sheared too strongly. Cost: about 4 microseconds a point
+on one core.
 )";
 
 }  // namespace limitsurf::python

@@ -329,6 +329,34 @@ TEST(BlueNoise, ACountFindsItsRoomInSmallSpots) {
   }
 }
 
+/// Spots that are far smaller than the radius have a point, with nearly all seeds; where none is
+/// found, that is an error.
+TEST(BlueNoise, ARadiusFindsSmallSpotsOrSaysThatItDoesNot) {
+  const LimitSurface surface = limitSurface(grid(2, 2));
+  const AreaSampler sampler(surface);
+  const auto noiseOn = [&](double size, std::uint64_t seed) {
+    BlueNoiseOptions options = byRadius(0.5, seed);
+    options.density = Density([size](Span<Location> at, double* weights) {
+      for (const Location& location : at) {
+        *weights++ = location.face == 1 && std::abs(location.u - 0.5) < size &&
+                             std::abs(location.v - 0.5) < size
+                         ? 1.
+                         : 0.;
+      }
+    });
+    return sampler.blueNoise(options);
+  };
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    try {
+      found += noiseOn(0.02, seed).at.size() == 1 ? 1 : 0;
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  EXPECT_GE(found, 18);
+  expectThrow<std::invalid_argument>([&] { noiseOn(1e-9, 1); }, {"no point was found", "radius"});
+}
+
 /// Where a function is 0, or its limits say so, it is not read for ever.
 TEST(BlueNoise, RefusesDensitiesThatAreZero) {
   const LimitSurface surface = limitSurface(grid(2, 2));

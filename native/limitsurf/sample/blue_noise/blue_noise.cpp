@@ -93,7 +93,7 @@ class BlueNoiseMaker {
       readFunction(finer);
       at = sampled(radius).at;
     }
-    if (at.empty()) {
+    if (at.empty() && options_.density.function()) {
       throw std::invalid_argument(
           "no point was found where density is above 0: it is above 0 on parts of the surface that "
           "are far smaller than the radius");
@@ -193,7 +193,6 @@ class BlueNoiseMaker {
   void readFunction(double radius) {
     if (sizes_.empty()) {
       sizes_ = faceSizes(surface_, has_surface_, patches_.scale(), threads_);
-      checkLimitsAboveZero();
     }
     int fewest = 0;
     while (fewest < kFewestLevels && (sizes_.size() << (2 * fewest)) < kFewestValues) {
@@ -208,18 +207,6 @@ class BlueNoiseMaker {
       throw std::invalid_argument(zeroEverywhereText(density_.pointCount()));
     }
     setWeighedArea();
-  }
-
-  /// Throws std::invalid_argument if all limits are 0, so that the function need not be read.
-  void checkLimitsAboveZero() const {
-    const DensityLimits& limits = options_.density.limits();
-    for (std::size_t face = 0; face < sizes_.size(); ++face) {
-      if (sizes_[face] >= 0 &&
-          (!limits.areKnown() || limits.on(static_cast<int>(face), 0, 1, 0, 1).largest > 0)) {
-        return;
-      }
-    }
-    throw std::invalid_argument(zeroEverywhereText(0));
   }
 
   /// The levels of grids whose squares are at most a radius wide, if they have no more than
