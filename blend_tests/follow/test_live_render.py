@@ -14,9 +14,9 @@ SIDE = 64
 WORLD = 4.0  # the width of the picture in the scene
 
 
-def bar() -> tuple[bpy.types.Object, bpy.types.Object]:
+def bar(with_garment: bool = False) -> tuple[bpy.types.Object, bpy.types.Object]:
     """Adds a sheet that moves by 1 in each frame along x, by a shape key, and live hair on it: one
-    thick strand, which the camera looks at.
+    thick strand, which the camera looks at. A garment is a mesh between them that follows live.
     """
     ob = scenes.flat_grid(4)
     positions = attributes.read(ob.data, ids.POSITION) - [2, 2, 0]
@@ -28,6 +28,14 @@ def bar() -> tuple[bpy.types.Object, bpy.types.Object]:
     key.driver_add("value").driver.expression = "frame - 1"
     bpy.context.scene.frame_set(1)
     scenes.add_subsurf(ob)
+    if with_garment:
+        ob.hide_render = True
+        assert bpy.ops.object.limit_mesh(levels=1, follow="NONE", store_locations=True) == {
+            "FINISHED"
+        }
+        ob = bpy.context.object
+        ob.name = "A surface that Blender lists first"
+        follow(ob)
     shape = {"length": 0.5, "points": 4, "radius": 0.12}
     hair = scenes.add_hair(ob, distribution="UNIFORM", count=1, follow="NONE", **shape)
     bpy.context.scene.camera.location.x = float(scenes.strands(hair)[0, 0, 0]) + 0.5
@@ -75,8 +83,9 @@ def width(alpha: np.ndarray) -> float:
     return float((alpha > 0.02).sum() / SIDE * WORLD)
 
 
-def test_every_frame_of_an_animation_shows_its_own_pose(camera, tmp_path):
-    _, hair = bar()
+@pytest.mark.parametrize("with_garment", [False, True])
+def test_every_frame_of_an_animation_shows_its_own_pose(camera, tmp_path, with_garment):
+    _, hair = bar(with_garment)
     camera.frame_set(1)
     start = float(scenes.strands(hair)[0, 0, 0])
     camera.frame_start, camera.frame_end = 1, 2

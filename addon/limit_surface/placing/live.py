@@ -19,6 +19,7 @@ from ..nodes.follow import SURFACE
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes, live_surface, live_thing
 from .followers import sharers
+from .live_chains import Chains
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
 
@@ -105,8 +106,11 @@ def pose_all(depsgraph: bpy.types.Depsgraph) -> None:
     """Poses everything for the depsgraph's frame."""
     followers = followers_in(depsgraph)
     _read_changed_ones_anew(followers, depsgraph)
-    for surface, things in followers.items():
-        _pose(surface, things, depsgraph)
+    chains = Chains(followers)
+    moved: set[bpy.types.ID] = set()
+    for surface in chains.in_order():
+        is_behind = chains.depends(surface, moved)
+        moved |= _pose(surface, followers[surface], depsgraph, is_behind)
 
 
 def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
@@ -120,24 +124,34 @@ def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
         for update in depsgraph.updates
         if update.is_updated_geometry or update.is_updated_transform
     }
-    frame = depsgraph.scene.frame_float
-    for surface, things in followers.items():
-        known = _surfaces.get(ObjectKey.of(surface))
-        if (
-            known is None
-            or surface in changed
-            or any(not _is_posed(t, known, frame) for t in things)
-        ):
-            _pose(surface, things, depsgraph)
-            continue
-        for ob in things:
-            has_changed = ob in changed or not changed.isdisjoint(sharers(ob))
-            if has_changed and not _same_place(ob, surface, depsgraph):
-                _pose(surface, things, depsgraph)
-                break
+    chains = Chains(followers)
+    moved: set[bpy.types.ID] = set()
+    for surface in chains.in_order():
+        things = followers[surface]
+        is_behind = chains.depends(surface, moved)
+        if is_behind or _has_to_be_posed(surface, things, changed, depsgraph):
+            moved |= _pose(surface, things, depsgraph, is_behind)
         else:
             edited = [ob for ob in things if ob in changed or ob.data in changed]
             _take_up_edits(surface, edited, depsgraph)
+
+
+def _has_to_be_posed(
+    surface: bpy.types.Object,
+    things: Sequence[bpy.types.Object],
+    changed: set[bpy.types.ID],
+    depsgraph: bpy.types.Depsgraph,
+) -> bool:
+    known, frame = _surfaces.get(ObjectKey.of(surface)), depsgraph.scene.frame_float
+    if known is None or surface in changed:
+        return True
+    if any(not _is_posed(ob, known, frame) for ob in things):
+        return True
+    return any(
+        (ob in changed or not changed.isdisjoint(sharers(ob)))
+        and not _same_place(ob, surface, depsgraph)
+        for ob in things
+    )
 
 
 def _read_changed_ones_anew(
@@ -229,30 +243,37 @@ def _pose(
     surface: bpy.types.Object,
     things: Sequence[bpy.types.Object],
     depsgraph: bpy.types.Depsgraph,
-) -> None:
-    """Takes up edits in the pose for which they were made, and then poses all things."""
+    is_behind: bool,
+) -> set[bpy.types.ID]:
+    """Takes up edits in the pose for which they were made, and then poses all things. Returns the
+    data-blocks that were moved. `is_behind` tells that the surface depends on something that was
+    moved since the depsgraph was evaluated.
+    """
+    moved: set[bpy.types.ID] = set()
     try:
         on = _surface(surface, depsgraph)
     except live_surface.errors as error:
         _refuse(things, native.sentence(error))
-        return
+        return moved
     good = list(_each(things, lambda ob: _take_up(ob, surface, on, depsgraph)))
     try:
-        on.read(surface, depsgraph)
+        (on.read_again if is_behind else on.read)(surface, depsgraph)
     except live_surface.errors as error:
         _surfaces.pop(ObjectKey.of(surface), None)
         _refuse(things, native.sentence(error))
-        return
+        return moved
     frame = depsgraph.scene.frame_float
 
     def pose(ob: bpy.types.Object) -> None:
         check_sharers(ob, surface, depsgraph)
         thing = _thing(ob)
-        thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame)
+        if thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame):
+            moved.add(ob.data)
         thing.version = on.version
 
     for _ in _each(good, pose):
         pass
+    return moved
 
 
 def _take_up_edits(

@@ -42,11 +42,25 @@ class LiveSurface:
 
     def read(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
         """Takes the pose of the depsgraph's frame."""
-        captured = _captured(ob, depsgraph)
+        evaluated = ob.evaluated_get(depsgraph)
+        mesh = evaluated.data if evaluated.is_evaluated and evaluated.type == "MESH" else None
+        captured = _captured(ob, mesh) if mesh else None
+        self._take(ob, captured, lambda: cage.read(ob, depsgraph))
+
+    def read_again(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+        """Takes the pose that the surface has in the depsgraph's frame after something was moved
+        on which it depends, and which the depsgraph has not evaluated again.
+        """
+        with cage.opened(ob, depsgraph) as (found, mesh):
+            self._take(ob, _captured(ob, mesh), lambda: found)
+
+    def _take(
+        self, ob: bpy.types.Object, captured: _Captured | None, find: Callable[[], cage.Cage]
+    ) -> None:
         self.version += 1
         if captured is None or captured.checksums != self._checksums:
             self._checksums = None
-            self.limit = cage.read(ob, depsgraph).surface()
+            self.limit = find().surface()
         if captured is None:
             return
         if len(captured.positions) != len(self.limit.positions):
@@ -73,11 +87,8 @@ def _at(frame: float) -> Callable[[bpy.types.Object, bpy.types.Scene], None]:
     return go
 
 
-def _captured(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Captured | None:
-    evaluated = ob.evaluated_get(depsgraph)
-    if not evaluated.is_evaluated or evaluated.type != "MESH":
-        return None
-    mesh = evaluated.data
+def _captured(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> _Captured | None:
+    """Returns what the object's evaluated mesh contains, if it has the modifier."""
     stored = mesh.attributes
     if any(name not in stored for name in (ids.CAGE_POSITION, *_CHECKSUMS)) or not mesh.vertices:
         return None
