@@ -75,6 +75,9 @@ class FilteredImage {
   /// of `st` has a NaN all channels are 0. The bits of a row depend neither on the number of
   /// threads nor on the other rows.
   ///
+  /// Colours are finite: one that is beyond the numbers of single precision is the largest of them.
+  /// In images with pixels beyond 2^40 those below 2^-80 of the largest may lose digits.
+  ///
   /// Throws std::invalid_argument for different numbers of rows, and naming the first row that is
   /// infinite or has a footprint that is not finite. Cost: O(length / width) a row.
   Colours sample(const ImagePoints& st, const Footprints& footprint, int threads = 0) const;
@@ -93,6 +96,7 @@ class FilteredImage {
   static constexpr float kRounding = 16 * 0x1p-24f;
 
  private:
+  PixelUnits units_;  // those of colours after the division by alpha
   ImagePyramid pyramid_;
   Extension extension_;
 };

@@ -147,8 +147,8 @@ ColourBounds FilteredImage::bounds(const ImageBoxes& boxes, int threads) const {
                     const float largest = std::max(std::abs(low[c]), std::abs(high[c]));
                     if (largest > 0) {
                       const float rounding = std::max(kRounding * largest, kLeastRounding);
-                      low[c] = std::max(low[c] - rounding, -kLargest);
-                      high[c] = std::min(high[c] + rounding, kLargest);
+                      low[c] = std::max(units_.colour * (low[c] - rounding), -kLargest);
+                      high[c] = std::min(units_.colour * (high[c] + rounding), kLargest);
                     }
                   }
                 }

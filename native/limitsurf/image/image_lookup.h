@@ -17,9 +17,13 @@ namespace limitsurf {
 template <int kChannels>
 class ImageLookup {
  public:
-  ImageLookup(const ImagePyramid& pyramid, Extension extension)
-      : pyramid_(pyramid), extension_(extension) {}
+  ImageLookup(const ImagePyramid& pyramid, const PixelUnits& units, Extension extension)
+      : pyramid_(pyramid),
+        units_(units),
+        is_scaled_(units.colour != 1 || units.alpha != 1),
+        extension_(extension) {}
 
+  /// Numbers that single precision cannot hold become infinite.
   void sample(const double* st, const double* footprint, float* out) const {
     std::fill(out, out + kChannels, 0.f);
     const double s = nearby(st[0]), t = nearby(st[1]);
@@ -35,6 +39,11 @@ class ImageLookup {
     if (kChannels == 4) {
       for (int c = 0; c < 3; ++c) {
         out[c] = out[3] > 0 ? out[c] / out[3] : 0;
+      }
+    }
+    if (is_scaled_) {
+      for (int c = 0; c < kChannels; ++c) {
+        out[c] *= kChannels == 4 && c == 3 ? units_.alpha : units_.colour;
       }
     }
   }
@@ -155,6 +164,8 @@ class ImageLookup {
   }
 
   const ImagePyramid& pyramid_;
+  const PixelUnits& units_;
+  bool is_scaled_;
   Extension extension_;
 };
 

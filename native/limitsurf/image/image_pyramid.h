@@ -26,6 +26,14 @@ struct PixelGrid {
   std::unique_ptr<float[]> values;
 };
 
+/// Powers of two by which the pixels of an image are smaller in its pyramid than they were given,
+/// so that sums and products of very large ones stay finite. Both are 1 where no pixel is larger
+/// than kLargestPixel.
+struct PixelUnits {
+  static constexpr float kLargestPixel = 0x1p40f;
+  float colour = 1, alpha = 1;
+};
+
 /// An image and its repeated halvings, down to one pixel. Sizes are halved and rounded up. A pixel
 /// of a halved image is the mean of the larger one over the pixel's area, so that all levels cover
 /// the same square and have the same mean for any size.

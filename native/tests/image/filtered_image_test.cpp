@@ -337,6 +337,61 @@ TEST(FilteredImage, AnyFootprintHasAnAnswer) {
   }
 }
 
+/// Images of four channels, as they are and with pixels that are a power of two larger, give the
+/// same colours but for that power.
+TEST(FilteredImage, PixelsMayBeOfAnySize) {
+  const int side = 33;
+  Random random(7);
+  std::vector<float> pixels(side * side * 4), large(pixels.size());
+  for (float& value : pixels) {
+    value = static_cast<float>(random.uniform(0.1, 1));
+  }
+  const ImagePoints st = ImagePoints::Random(500, 2);
+  for (const double size : {0., 0.02, 0.3}) {
+    const Footprints footprint = size * Footprints::Random(500, 4);
+    for (const bool premultiplied : {false, true}) {
+      const auto sampled = [&](const std::vector<float>& from) {
+        const FilteredImage image(from.data(), side, side, 4, Extension::mirror, premultiplied);
+        return image.sample(st, footprint);
+      };
+      const Colours expected = sampled(pixels);
+      for (const int alpha : {0, 50, 127}) {
+        for (const int colour : {30, 90, 120}) {
+          for (std::size_t i = 0; i < pixels.size(); ++i) {
+            large[i] = std::ldexp(pixels[i], i % 4 == 3 ? alpha : colour);
+          }
+          Colours actual = sampled(large);
+          const int quotient = premultiplied ? colour - alpha : colour;
+          actual.leftCols(3) *= std::ldexp(1.f, -quotient);
+          actual.col(3) *= std::ldexp(1.f, -alpha);
+          EXPECT_TRUE(actual == expected) << size << ", alpha 2^" << alpha << ", 2^" << colour;
+        }
+      }
+    }
+  }
+}
+
+TEST(FilteredImage, ColoursAreFinite) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  const ImagePoints st = ImagePoints::Random(200, 2);
+  const Footprints footprint = 0.2 * Footprints::Random(200, 4);
+  std::vector<float> pixels(16 * 16, kLargest);
+  const FilteredImage flat(pixels.data(), 16, 16, 1, Extension::repeat);
+  const Colours colours = flat.sample(st, footprint);
+  EXPECT_TRUE((colours.array() <= kLargest && colours.array() >= 0.99999f * kLargest).all());
+  for (std::size_t i = 0; i < pixels.size(); i += 3) {
+    pixels[i] = -kLargest;
+  }
+  const FilteredImage mixed(pixels.data(), 16, 16, 1, Extension::repeat);
+  EXPECT_TRUE(mixed.sample(st, footprint).allFinite());
+  // colours that alpha divides
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    pixels[i] = i % 4 == 3 ? 1e-42f : 1.f;
+  }
+  const FilteredImage thin(pixels.data(), 8, 8, 4, Extension::repeat, true);
+  EXPECT_TRUE((thin.sample(st, Footprints::Zero(200, 4)).leftCols(3).array() == kLargest).all());
+}
+
 TEST(FilteredImage, NowhereIsTransparent) {
   const FilteredImage image = checker(1).filtered(Extension::extend);
   ImagePoints st(2, 2);
