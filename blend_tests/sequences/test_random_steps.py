@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random sequences of what an artist does: nothing crashes, nothing is left behind, and undo and
-redo restore everything. A seed that fails here fails again: `support/random_steps.py SEED STEPS
-FOLDER` repeats it.
+redo restore everything, and what follows is in its place. A seed that fails here fails again:
+`support/random_steps.py SEED STEPS FOLDER` or `support/random_following.py` repeats it.
 """
 
 import subprocess
 import sys
+from pathlib import Path
 
 import bpy
 import pytest
@@ -22,9 +23,19 @@ LINES_SHOWN = 40
     ("seed", "steps"), [(1, FEW), *scenes.slow(*((seed, MANY) for seed in range(100, 140)))]
 )
 def test_random_steps(seed, steps, tmp_path):
-    program = ROOT / "blend_tests/support/random_steps.py"
+    run("random_steps.py", seed, steps, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("seed", "steps"), [(1, FEW), *scenes.slow(*((seed, MANY) for seed in range(2, 22)))]
+)
+def test_what_follows_is_always_in_its_place(seed, steps, tmp_path):
+    run("random_following.py", seed, steps, tmp_path)
+
+
+def run(program: str, seed: int, steps: int, folder: Path) -> None:
     done = subprocess.run(
-        [sys.executable, program, str(seed), str(steps), tmp_path],
+        [sys.executable, ROOT / "blend_tests/support" / program, str(seed), str(steps), folder],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

@@ -43,7 +43,7 @@ class AtRest(NamedTuple):
 
     def carried(self, now: Frames) -> np.ndarray:
         """Returns where the points go when their roots go to these frames."""
-        return _carried(self.points, self.frames, now)
+        return carried(self.points, self.frames, now)
 
     def check(self, ob: bpy.types.Object, hair: bpy.types.Object) -> None:
         """Compares the hair as it is shown with where it has to be in this frame."""
@@ -83,9 +83,14 @@ def on_surface(
     subsurf = next((m for m in ob.modifiers if m.type == "SUBSURF"), None)
     boundary = subsurf.boundary_smooth if subsurf else "ALL"
     surface = surface or scenes.surface_without_addon(ob, boundary)
-    face, uv = scenes.locations(data)
+    return frames_at(surface, *scenes.locations(data), np.eye(4) if matrix is None else matrix)
+
+
+def frames_at(
+    surface: limitsurf.LimitSurface, face: np.ndarray, uv: np.ndarray, matrix: np.ndarray
+) -> Frames:
+    """Returns the frames at locations, in the space that the matrix leads to."""
     position, local = surface.evaluate(face, uv).position, surface.frames(face, uv)
-    matrix = np.eye(4) if matrix is None else matrix
     linear = matrix[:3, :3]
     tangent = _unit(local[:, :, 0] @ linear.T)
     normal = _unit(local[:, :, 2] @ np.linalg.inv(linear))
@@ -116,10 +121,10 @@ def matrices(quaternions: np.ndarray) -> np.ndarray:
 
 def moved(points: np.ndarray, data: bpy.types.ID, now: Frames) -> np.ndarray:
     """Returns points (n, k, 3), k of each location, carried from their rest to the frames."""
-    return _carried(points, rest(data), now)
+    return carried(points, rest(data), now)
 
 
-def _carried(points: np.ndarray, before: Frames, now: Frames) -> np.ndarray:
+def carried(points: np.ndarray, before: Frames, now: Frames) -> np.ndarray:
     local = np.einsum("nji,nkj->nki", before.frame, points - before.position[:, None])
     return now.position[:, None] + np.einsum("nij,nkj->nki", now.frame, local)
 

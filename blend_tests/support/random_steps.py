@@ -16,6 +16,7 @@ import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import NoReturn
 
 SUPPORT = Path(__file__).resolve().parent
 ROOT = SUPPORT.parents[1]
@@ -81,7 +82,7 @@ class Session:
             (3, self.link),
         ]
 
-    def run(self, steps: int) -> None:
+    def run_all(self, steps: int) -> None:
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         push("begin")
         self.add_mesh()
@@ -440,21 +441,22 @@ def differences(before: dict[str, object], after: dict[str, object]) -> list[str
     return [key for key in {**before, **after} if before.get(key) != after.get(key)]
 
 
-def main() -> int:
-    seed, steps, folder = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
-    faulthandler.enable()
-    limit_surface.register()
-    Session(seed, folder).run(steps)
-    print("all steps done", flush=True)
-    return 0
-
-
-if __name__ == "__main__":
+def end(session: type[Session]) -> NoReturn:
+    """Runs the session that the command line describes, and ends the process."""
+    code = 1
     try:
-        code = main()
+        seed, steps, folder = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
+        faulthandler.enable()
+        limit_surface.register()
+        session(seed, folder).run_all(steps)
+        print("all steps done", flush=True)
+        code = 0
     except BaseException:
         sys.excepthook(*sys.exc_info())
-        code = 1
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(code)  # the module's own clean-up at exit sometimes hangs
+
+
+if __name__ == "__main__":
+    end(Session)

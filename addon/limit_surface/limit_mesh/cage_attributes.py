@@ -39,7 +39,7 @@ _OWN = (
     ids.CAGE_VERTEX_CREASES,
 )
 #: What follows another surface stores these at its points. They mean nothing on the new mesh.
-_OF_FOLLOWERS = (ids.TILE, ids.TILE_UV, ids.LIVE_FINGERPRINT)
+_OF_FOLLOWERS = (ids.TILE, ids.TILE_UV, ids.SEAL, ids.LIVE_FINGERPRINT)
 # Rows are evaluated in parts of this size, so that progress is shown and memory stays small.
 _PART = 1 << 18
 

@@ -11,7 +11,7 @@ import numpy as np
 from .. import ids, native
 from ..reading import attributes
 from ..tasks.job import Progress
-from . import roots
+from . import roots, seals
 from .posed_surface import PosedSurface
 
 if TYPE_CHECKING:
@@ -59,3 +59,4 @@ class Binding:
         attributes.write(data, ids.UV, "FLOAT2", domain, self.locations.uv)
         attributes.write(data, ids.REST_ROOT, "FLOAT_VECTOR", domain, self.root)
         attributes.write(data, ids.REST_ROTATION, "QUATERNION", domain, self.rotation)
+        seals.seal(data, np.arange(len(self.locations)))

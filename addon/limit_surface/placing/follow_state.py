@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import bpy
 
 from .. import ids
+from ..counting import by_count, counted
 from ..nodes import groups
 from ..nodes.follow import TILES
 from ..reading import rules
-from . import all_tiles, following, live_children, mending, tables
+from . import all_tiles, following, live_children, mending, seals, tables
 from .followers import (
     followers_of,
     holder_of,
@@ -101,6 +102,10 @@ class State:
                 yield Trouble(f"The hidden tables that {ob.name} reads were deleted", ids.FOLLOW)
             elif of is not None and of != self.surface:
                 yield Trouble(f"{ob.name} reads the tables of {of.name}", ids.FOLLOW)
+            if (count := _added_to(ob)) > 0:
+                were = by_count(count, "was", "were")
+                text = f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound"
+                yield Trouble(text, ids.FOLLOW)
         obstacle = _capture_obstacle(self.surface)
         if obstacle:
             text = f"{self.surface.name}: the modifier {ids.CAPTURE_GROUP} {obstacle}"
@@ -164,6 +169,12 @@ def surfaces() -> list[bpy.types.Object]:
 def _tables_of(followers: list[bpy.types.Object]) -> list[bpy.types.Object]:
     read = dict.fromkeys(groups.get_input(modifier_of(ob), TILES) for ob in followers)
     return [table for table in read if table is not None]
+
+
+def _added_to(ob: bpy.types.Object) -> int:
+    holder = holder_of(ob)
+    broken = seals.are_broken(holder) if holder is not None else None
+    return 0 if broken is None else int(broken.sum())
 
 
 def _capture_obstacle(surface: bpy.types.Object) -> str:

@@ -7,8 +7,9 @@ changed its points since they were written, and the custom property `limit_writt
 the matrix of that moment. All of it belongs to the data: it survives saving, undo, deleted strands
 and linking. What is shown in a frame depends on the shape at rest and on the frame alone.
 
-Strands whose fingerprint is 0 are new: they were added or joined later, or have just got another
-place. They stay where they are, whatever their other attributes say, until they are admitted.
+Strands whose fingerprint is 0 are new: they were added or joined later, have just got another
+place, or their seal is broken (`seals.py`). They stay where they are, whatever their other
+attributes say, until they are admitted.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import numpy as np
 
 from .. import ids
 from ..reading import attributes
+from . import seals
 from .live_attributes import (
     POINTS,
     VECTORS,
@@ -34,7 +36,7 @@ from .live_attributes import (
     tag,
     write,
 )
-from .places import NOWHERE, ROOT_KINDS
+from .places import NOWHERE, ROOT_KINDS, Places
 
 if TYPE_CHECKING:
     import limitsurf
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
 
 def start(data: bpy.types.ID, limit: limitsurf.LimitSurface) -> None:
     """Takes the data's points for those at rest."""
+    seals.seal(data, Places.read(data).rows)
     for name in moved_names(data):
         attribute = data.attributes[name]
         values = attributes.read(data, name)
@@ -91,6 +94,10 @@ class LiveThing:
         prints = self._read(data, ids.LIVE_FINGERPRINT)
         if not _same_bits(prints, self._prints):
             self.read_anew()
+            broken = seals.are_broken(data)
+            if broken is not None and prints[broken].any():
+                prints[broken] = 0
+                write(data, ids.LIVE_FINGERPRINT, prints)
             self._prints, self._known = prints.copy(), prints.copy()
         edited: np.ndarray = self._fingerprints(data, self._poser_on(data, limit)) != self._known
         self._is_current = True
@@ -208,7 +215,7 @@ class LiveThing:
         if ids.LIVE_FINGERPRINT in data.attributes:
             is_new = added(data)
             self.lost_frames = lost_frames_of(binding, is_new)
-            binding[ids.REST_ROTATION][is_new] = 0
+            binding[ids.FACE][is_new] = NOWHERE
         binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
         if isinstance(data, bpy.types.Curves):
             binding["offsets"] = attributes.curve_offsets(data)

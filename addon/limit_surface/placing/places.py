@@ -13,6 +13,7 @@ from .. import ids
 from ..counting import counted
 from ..errors import RefusalError
 from ..reading import attributes
+from . import seals
 from .roots import Locations
 
 NOWHERE = -1  # the face of elements that have no place on the surface
@@ -57,7 +58,7 @@ class Places:
     """The locations of the elements that have one. All attributes of curves that were added later
     have Blender's default values, and snapped hair that is bound nowhere has the face NOWHERE.
     Earlier versions deleted the frames at rest of strands that were joined to hair that followed
-    live: without a frame a strand has no place.
+    live: without a frame a strand has no place. Nor have vertices whose seals are broken.
     """
 
     count: int
@@ -73,7 +74,11 @@ class Places:
                 f"{data.name} stores no locations on a limit surface: its attribute {name} is "
                 "missing, or of another type or domain"
             )
-        return cls.among({name: attributes.read(data, name) for name in ROOT_KINDS})
+        stored = {name: attributes.read(data, name) for name in ROOT_KINDS}
+        broken = seals.are_broken(data)
+        if broken is not None:
+            stored[ids.FACE][broken] = NOWHERE
+        return cls.among(stored)
 
     @classmethod
     def among(cls, stored: Mapping[str, np.ndarray]) -> Places:
@@ -129,6 +134,7 @@ class Places:
         numbers, place = np.zeros(self.count, np.int32), np.zeros((self.count, 2))
         numbers[self.rows], place[self.rows] = tile + 1, tile_uv
         domain = data.attributes[ids.FACE].domain
+        seals.seal(data, self.rows)
         attributes.write(data, ids.TILE, "INT", domain, numbers)
         attributes.write(data, ids.TILE_UV, "FLOAT2", domain, place)
         data.update_tag()

@@ -11,7 +11,7 @@ import numpy as np
 from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes, ragged_rows, splines, transform
-from . import live_attributes
+from . import live_attributes, seals
 from .followers import domain_of, holder_of, is_placed, live_modifier_of
 from .places import NOWHERE, ROOT_KINDS, Places
 from .posed_surface import transformed
@@ -45,6 +45,7 @@ class Elements:
         self.count = len(self.sizes)
         if not self.count:
             raise RefusalError(f"{ob.name} has no points")
+        self._broken = seals.are_broken(holder)
         self.has_place = np.zeros(self.count, bool)
         if is_placed(ob):
             self.has_place[Places.read(holder).rows] = True
@@ -52,7 +53,10 @@ class Elements:
     def read(self, name: str) -> np.ndarray:
         """Returns a stored attribute of the places; zeros, or no face, where there is none yet."""
         if name in self.data.attributes:
-            return attributes.read(self.data, name)
+            values = attributes.read(self.data, name)
+            if name == ids.FACE and self._broken is not None:
+                values[self._broken] = NOWHERE
+            return values
         kind = attributes.LAYOUTS[ROOT_KINDS[name]]
         shape = (self.count,) if kind.width == 1 else (self.count, kind.width)
         return np.full(shape, _NOTHING[name], kind.dtype)
@@ -111,6 +115,7 @@ class Relocation:
             kind = stored.data_type if stored else ROOT_KINDS[name]
             domain = stored.domain if stored else self.elements.domain
             attributes.write(self.data, name, kind, domain, values)
+        seals.seal(self.data, self.places.rows)
         self.data.update_tag()
 
     def _value(self, name: str) -> np.ndarray:

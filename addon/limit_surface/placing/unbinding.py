@@ -17,7 +17,7 @@ from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, transform
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside, at_once
-from . import followers, following, proxy, tables
+from . import followers, following, proxy, seals, tables
 from .places import NOWHERE, Places
 from .posed_surface import PosedSurface
 
@@ -154,6 +154,9 @@ def _freeze(
     if not (followers.is_placed(ob) and ids.TILE in data.attributes):
         return frozen  # somebody has removed or changed its places
     follows = attributes.read(data, ids.TILE) > 0
+    broken = seals.are_broken(data)
+    if broken is not None:
+        follows &= ~broken
     if posed is None or not following.holds(data, following.signature(posed.cage)):
         face = attributes.read(data, ids.FACE)
         face[follows] = NOWHERE
