@@ -119,6 +119,22 @@ def test_hair_that_follows_changes_to_another_surface(follow):
     check(other, hair)
 
 
+@pytest.mark.parametrize("follow", ["NODES", "LIVE"])
+def test_hair_that_also_follows_another_surface_by_another_object_is_refused(follow):
+    ob = deforming("grid with holes")
+    hair = scenes.add_hair(ob, follow="NODES", per_side=1)
+    twin = hair.copy()  # with the same strands
+    bpy.context.collection.objects.link(twin)
+    twin.modifiers.clear()
+    other = deforming("mixed polygons")
+    before = scenes.strands(hair).copy()
+    with pytest.raises(RuntimeError, match="Limit Hair.001 shares its data with Limit Hair, which"):
+        snap(twin, other, follow=follow)
+    np.testing.assert_array_equal(scenes.strands(hair), before)
+    assert hair.data.surface == ob
+    follow_scenes.check_hair(ob, hair)
+
+
 def combed(hair: bpy.types.Object) -> np.ndarray:
     """Combs some strands of hair that was placed, and returns all as they are shown in frame 20."""
     points = scenes.strands(hair).copy()

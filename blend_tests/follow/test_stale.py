@@ -127,6 +127,21 @@ def test_a_duplicate_of_surface_and_hair_reads_tables_of_its_own_once_it_is_boun
     check_hair(twin, twin_hair)
 
 
+def test_a_duplicate_whose_original_was_deleted_is_named():
+    ob, hair = followed()
+    for thing in (ob, hair):
+        thing.select_set(True)
+    scenes.activate(ob)
+    bpy.ops.object.duplicate()
+    twin = next(o for o in bpy.context.selected_objects if o.type == "MESH")
+    for thing in (hair, ob):
+        bpy.data.objects.remove(thing)
+    text = "Limit Hair.001 reads the tables of a surface that was deleted"
+    assert look(twin) == [(text, ids.FOLLOW)]
+    follow(twin)
+    assert look(twin) == []
+
+
 def test_changed_faces_and_rules_are_named():
     ob, _hair = followed()
     ob.modifiers["Subdivision"].boundary_smooth = "PRESERVE_CORNERS"

@@ -32,6 +32,8 @@ class Following(random_steps.Session):
             (20, self.add_thing),
             (12, self.follow),
             (6, self.unbind_or_rebind),
+            (6, self.snap),
+            (4, self.attach),
             (16, self.change_frame),
             (10, self.move_object),
             (8, self.edit_mesh),
@@ -60,7 +62,7 @@ class Following(random_steps.Session):
         return ob.name
 
     def add_thing(self) -> str:
-        surfaces = [ob for ob in _visible("MESH") if ob.data.polygons]
+        surfaces = _surfaces()
         if not surfaces or not enter_object_mode() or len(_things()) > MOST_THINGS:
             return "nothing to stand on"
         surface = self.random.choice(surfaces)
@@ -69,7 +71,10 @@ class Following(random_steps.Session):
         follow = self.random.choice(("NONE", "NODES", "AUTO"))
         kind = self.random.choice((ids.HAIR_ADD, ids.HAIR_ADD, ids.POINTS_ADD, ids.LIMIT_MESH))
         given = {"levels": 1, "store_locations": True} if kind == ids.LIMIT_MESH else {}
-        return self.run(kind, follow=follow, **given or {"per_side": 2}) + f" on {name}"
+        done = self.run(kind, follow=follow, **given or {"per_side": 2})
+        if not done.endswith("refused") and followed_places.are_elsewhere(bpy.context.object):
+            raise LeftWrongError(f"what was added to {name} does not stand where it should")
+        return f"{done} on {name}"
 
     def follow(self) -> str:
         things = _things()
@@ -87,6 +92,26 @@ class Following(random_steps.Session):
         if self.random.random() < 0.5:
             return self.run(ids.UNBIND, shape=self.random.choice(("SHOWN", "REST")))
         return self.run(ids.REBIND, method=self.random.choice(("FACE", "CLOSEST")))
+
+    def snap(self) -> str:
+        """Puts hair onto another surface, or back onto its own."""
+        hair, surfaces = _visible("CURVES"), _surfaces()
+        if not hair or not surfaces or not enter_object_mode():
+            return "nothing to snap"
+        self.select(self.random.choice(hair), self.random.choice(surfaces))
+        return self.run(ids.SNAP, follow=self.random.choice(("AUTO", "NODES", "LIVE", "NONE")))
+
+    def attach(self) -> str:
+        surfaces = _surfaces()
+        if not surfaces or not enter_object_mode() or len(bpy.data.objects) > 20:
+            return "nothing to attach to"
+        empty = bpy.data.objects.new("Attached", None)
+        bpy.context.collection.objects.link(empty)
+        empty.location = [self.random.uniform(-1, 1) for _ in range(3)]
+        surface = self.random.choice(surfaces)
+        push("empty")
+        self.select(empty, surface)
+        return self.run(ids.ATTACH)
 
     def change_frame(self) -> str:
         frame = self.random.choice((FIRST, LAST, self.random.randint(FIRST, LAST)))
@@ -127,7 +152,7 @@ class Following(random_steps.Session):
 
     def remove_strands(self) -> str:
         hair = [ob for ob in _things() if ob.type == "CURVES" and len(ob.data.curves) > 8]
-        if not hair or not enter_object_mode():
+        if not hair or not enter_object_mode() or not hasattr(hair[0].data, "remove_curves"):
             return "nothing to remove"
         data = self.random.choice(hair).data
         doomed = self.random.sample(range(len(data.curves)), 4)
@@ -149,7 +174,11 @@ class Following(random_steps.Session):
             return "could not be joined"
         push("join")
         name = bpy.context.object.name
-        return f"{name} " + self.run(ids.FOLLOW, mode=self.random.choice(("LIVE", "NODES")))
+        done = self.run(ids.FOLLOW, mode=self.random.choice(("LIVE", "NODES")))
+        if done.endswith("refused"):  # a part was bound before the faces changed
+            bpy.data.objects.remove(bpy.data.objects[name])
+            push("remove")
+        return f"{name} {done}"
 
     def select(self, *obs: bpy.types.Object) -> None:
         bpy.ops.object.select_all(action="DESELECT")
@@ -168,7 +197,13 @@ class Following(random_steps.Session):
                 raise
             return f"{verb} {properties}: refused"
         self.check_undo(f"{name} {properties}", before)
+        show_frame()
         return f"{verb} {properties}"
+
+    def undo_or_redo(self) -> str:
+        done = super().undo_or_redo()
+        show_frame()
+        return done
 
     def check(self) -> None:
         super().check()
@@ -193,12 +228,19 @@ def take_up_edits() -> None:
 
 
 def show_frame() -> None:
+    """Has Blender evaluate animation. After undo, shapes may be those of another frame until this
+    is done.
+    """
     scene = bpy.context.scene
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
 def _visible(kind: str) -> list[bpy.types.Object]:
     return [ob for ob in bpy.context.view_layer.objects if ob.type == kind and ob.visible_get()]
+
+
+def _surfaces() -> list[bpy.types.Object]:
+    return [ob for ob in _visible("MESH") if ob.data.polygons]
 
 
 def _things() -> list[bpy.types.Object]:

@@ -100,8 +100,9 @@ class State:
             of = tables.surface_of(table) if table else None
             if table is None or tables.points_of(table) is None:
                 yield Trouble(f"The hidden tables that {ob.name} reads were deleted", ids.FOLLOW)
-            elif of is not None and of != self.surface:
-                yield Trouble(f"{ob.name} reads the tables of {of.name}", ids.FOLLOW)
+            elif of != self.surface:
+                whose = of.name if of else "a surface that was deleted"
+                yield Trouble(f"{ob.name} reads the tables of {whose}", ids.FOLLOW)
             if (count := _added_to(ob)) > 0:
                 were = by_count(count, "was", "were")
                 text = f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound"

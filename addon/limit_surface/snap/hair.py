@@ -6,6 +6,10 @@ import numpy as np
 
 from .. import ids, native
 from ..counting import by_count, counted
+from ..errors import RefusalError
+from ..nodes import groups
+from ..nodes.follow import SURFACE
+from ..placing.followers import live_modifier_of, modifier_of, sharers
 from ..placing.posed_surface import transformed
 from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace, unit
@@ -31,6 +35,7 @@ class SnappedHair:
 
     def __init__(self, ob: bpy.types.Object, surface: TargetSurface, selected_only: bool) -> None:
         check_data_editable(ob.data)
+        _check_sharers(ob, surface.ob)
         self._ob = ob
         self._shape = PresentShape(ob, bpy.context.evaluated_depsgraph_get())
         self._read_transform()
@@ -139,6 +144,20 @@ class SnappedHair:
         stored = attributes.read(self._ob.data, name)
         stored[rows] = values
         attributes.write(self._ob.data, name, "FLOAT_VECTOR", "POINT", stored)
+
+
+def _check_sharers(ob: bpy.types.Object, target: bpy.types.Object) -> None:
+    """Raises RefusalError where the same strands follow another surface by another object: their
+    places cannot be on both.
+    """
+    for other in sharers(ob):
+        modifier = modifier_of(other) or live_modifier_of(other)
+        theirs = groups.get_input(modifier, SURFACE) if modifier else None
+        if theirs not in (None, target):
+            raise RefusalError(
+                f"{ob.name} shares its data with {other.name}, which follows {theirs.name}: make "
+                "one of them a single-user copy first"
+            )
 
 
 def _selected(data: bpy.types.Curves, sizes: np.ndarray) -> np.ndarray:
