@@ -39,10 +39,10 @@ void checkSize(int width, int height, int channels) {
   }
 }
 
-float unitOf(float largest) {
-  return largest > PixelUnits::kLargestPixel
-             ? std::ldexp(1.f, std::ilogb(largest) - std::ilogb(PixelUnits::kLargestPixel))
-             : 1.f;
+double unitOf(double largest) {
+  return largest > PixelUnits::kLargest
+             ? std::ldexp(1., std::ilogb(largest) - std::ilogb(PixelUnits::kLargest))
+             : 1.;
 }
 
 /// The largest magnitudes among the numbers of a row, one for each remainder of their indices
@@ -68,54 +68,91 @@ std::array<float, 4> largestOf(const float* row, std::size_t length) {
   return result;
 }
 
-/// The units of an image whose size is checked. Throws for pixels that are not finite.
-PixelUnits unitsOf(const float* pixels, int width, int height, int channels, int threads) {
-  std::vector<std::array<float, 4>> rows(static_cast<std::size_t>(height));
-  const std::size_t length = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+/// An image as the caller gives it; its size is checked.
+struct GivenImage {
+  std::size_t rowLength() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+  }
+  const float* row(std::size_t y) const { return pixels + rowLength() * y; }
+  bool hasAlpha() const { return channels == 4; }
+
+  const float* pixels;
+  int width, height, channels;
+  bool multiply;  ///< colours are to be multiplied by alpha
+};
+
+/// The largest magnitude of a row's colours after they are multiplied by alpha.
+double largestProduct(const float* row, std::size_t length) {
+  double largest = 0;
+  for (std::size_t i = 0; i < length; i += 4) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      largest = std::max(largest, std::abs(static_cast<double>(row[i + c]) * row[i + 3]));
+    }
+  }
+  return largest;
+}
+
+/// Throws for pixels that are not finite.
+PixelUnits unitsOf(const GivenImage& image, int threads) {
+  struct Largest {
+    double colour = 0, alpha = 0;
+  };
+  std::vector<Largest> rows(static_cast<std::size_t>(image.height));
+  const auto read = [&](std::size_t y) {
+    const std::array<float, 4> most = largestOf(image.row(y), image.rowLength());
+    for (const float magnitude : most) {
+      if (!std::isfinite(magnitude)) {
+        refuseRow(image.row(y), static_cast<int>(y), image.channels);
+      }
+    }
+    const float colour = std::max({most[0], most[1], most[2], image.hasAlpha() ? 0 : most[3]}),
+                alpha = image.hasAlpha() ? most[3] : 1;
+    const double bound = static_cast<double>(colour) * (image.multiply ? alpha : 1);
+    rows[y] = {bound > PixelUnits::kLargest && image.hasAlpha() && image.multiply
+                   ? largestProduct(image.row(y), image.rowLength())
+                   : bound,
+               alpha};
+  };
   parallelFor(rows.size(), kRowsOfPixelsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
-      rows[y] = largestOf(pixels + length * y, length);
+      read(y);
     }
   });
-  PixelUnits largest = {0, 0};
-  for (std::size_t y = 0; y < rows.size(); ++y) {
-    for (std::size_t c = 0; c < 4; ++c) {
-      if (!std::isfinite(rows[y][c])) {
-        refuseRow(pixels + length * y, static_cast<int>(y), channels);
-      }
-      float& of_kind = channels == 4 && c == 3 ? largest.alpha : largest.colour;
-      of_kind = std::max(of_kind, rows[y][c]);
-    }
+  Largest largest;
+  for (const Largest& row : rows) {
+    largest.colour = std::max(largest.colour, row.colour);
+    largest.alpha = std::max(largest.alpha, row.alpha);
   }
   return {unitOf(largest.colour), unitOf(largest.alpha)};
 }
 
-/// A copy of the pixels in the units. With `multiply` their colours are multiplied by alpha, if
-/// they have one.
-PixelGrid copied(const float* pixels, int width, int height, int channels, bool multiply,
-                 const PixelUnits& units, int threads) {
-  PixelGrid image(width, height, channels);
+/// What the pyramid holds of an image.
+PixelGrid copied(const GivenImage& image, const PixelUnits& units, int threads) {
+  PixelGrid grid(image.width, image.height, image.channels);
   const bool is_scaled = units.colour != 1 || units.alpha != 1;
   const auto copyRow = [&](std::size_t y) {
-    const float* from = pixels + image.rowLength() * y;
-    float* to = image.row(static_cast<int>(y));
+    const float* const from = image.row(y);
+    float* const to = grid.row(static_cast<int>(y));
     std::copy(from, from + image.rowLength(), to);
-    for (std::size_t i = 0; is_scaled && i < image.rowLength(); ++i) {
-      to[i] /= channels == 4 && i % 4 == 3 ? units.alpha : units.colour;
-    }
-    for (std::size_t i = 0; multiply && channels == 4 && i < image.rowLength(); i += 4) {
+    for (std::size_t i = 0; image.multiply && image.hasAlpha() && i < image.rowLength(); i += 4) {
       for (std::size_t c = 0; c < 3; ++c) {
         to[i + c] *= to[i + 3];
       }
     }
+    for (std::size_t i = 0; is_scaled && i < image.rowLength(); ++i) {
+      const bool is_alpha = image.hasAlpha() && i % 4 == 3;
+      const double factor =
+          image.multiply && image.hasAlpha() && !is_alpha ? from[i / 4 * 4 + 3] : 1;
+      to[i] = static_cast<float>(factor * from[i] / (is_alpha ? units.alpha : units.colour));
+    }
   };
-  parallelFor(static_cast<std::size_t>(height), kRowsOfPixelsPerTask, threads,
+  parallelFor(static_cast<std::size_t>(image.height), kRowsOfPixelsPerTask, threads,
               [&](std::size_t begin, std::size_t end) {
                 for (std::size_t y = begin; y < end; ++y) {
                   copyRow(y);
                 }
               });
-  return image;
+  return grid;
 }
 
 template <int kChannels>
@@ -160,12 +197,10 @@ void checkSamples(Eigen::Ref<const ImagePoints> st, Eigen::Ref<const Footprints>
 FilteredImage::FilteredImage(const float* pixels, int width, int height, int channels,
                              Extension extension, bool premultiplied, int threads)
     : units_((checkThreads(threads), checkSize(width, height, channels),
-              unitsOf(pixels, width, height, channels, threads))),
-      pyramid_(copied(pixels, width, height, channels, !premultiplied, units_, threads), threads),
+              unitsOf({pixels, width, height, channels, !premultiplied}, threads))),
+      pyramid_(copied({pixels, width, height, channels, !premultiplied}, units_, threads), threads),
       extension_(extension) {
-  if (premultiplied) {
-    units_.colour /= units_.alpha;
-  }
+  units_.colour /= units_.alpha;
 }
 
 Colours FilteredImage::sample(const ImagePoints& st, const Footprints& footprint,

@@ -76,7 +76,7 @@ class FilteredImage {
   /// threads nor on the other rows.
   ///
   /// Colours are finite: one that is beyond the numbers of single precision is the largest of them.
-  /// In images with pixels beyond 2^40 those below 2^-80 of the largest may lose digits.
+  /// Where colours times alpha are beyond 2^112, those below 2^-237 of the largest lose digits.
   ///
   /// Throws std::invalid_argument for different numbers of rows, and naming the first row that is
   /// infinite or has a footprint that is not finite. Cost: O(length / width) a row.

@@ -147,8 +147,11 @@ ColourBounds FilteredImage::bounds(const ImageBoxes& boxes, int threads) const {
                     const float largest = std::max(std::abs(low[c]), std::abs(high[c]));
                     if (largest > 0) {
                       const float rounding = std::max(kRounding * largest, kLeastRounding);
-                      low[c] = std::max(units_.colour * (low[c] - rounding), -kLargest);
-                      high[c] = std::min(units_.colour * (high[c] + rounding), kLargest);
+                      const auto inUnit = [&](float value) {
+                        return static_cast<float>(units_.colour * value);
+                      };
+                      low[c] = std::max(inUnit(low[c] - rounding), -kLargest);
+                      high[c] = std::min(inUnit(high[c] + rounding), kLargest);
                     }
                   }
                 }

@@ -43,7 +43,8 @@ class ImageLookup {
     }
     if (is_scaled_) {
       for (int c = 0; c < kChannels; ++c) {
-        out[c] *= kChannels == 4 && c == 3 ? units_.alpha : units_.colour;
+        const double unit = kChannels == 4 && c == 3 ? units_.alpha : units_.colour;
+        out[c] = static_cast<float>(unit * out[c]);
       }
     }
   }

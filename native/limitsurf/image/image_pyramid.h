@@ -26,12 +26,13 @@ struct PixelGrid {
   std::unique_ptr<float[]> values;
 };
 
-/// Powers of two by which the pixels of an image are smaller in its pyramid than they were given,
-/// so that sums and products of very large ones stay finite. Both are 1 where no pixel is larger
-/// than kLargestPixel.
+/// Powers of two by which the numbers of an image are smaller in its pyramid than they were given,
+/// so that sums of very large ones stay finite: colours, multiplied by alpha if they have one, and
+/// alpha. Both are 1 where none of these is larger than kLargest.
 struct PixelUnits {
-  static constexpr float kLargestPixel = 0x1p40f;
-  float colour = 1, alpha = 1;
+  /// Sums have weights of at most 2^12 together.
+  static constexpr double kLargest = 0x1p112;
+  double colour = 1, alpha = 1;
 };
 
 /// An image and its repeated halvings, down to one pixel. Sizes are halved and rounded up. A pixel

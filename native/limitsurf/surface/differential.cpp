@@ -157,9 +157,16 @@ PrincipalCurvatures principalCurvatures(const ShapeOperator& shape, const Vector
                                         const Vector3& y) {
   const double mean = shape.xx / 2 + shape.yy / 2, half = shape.xx / 2 - shape.yy / 2,
                radius = std::hypot(half, shape.xy);
-  const double angle = std::atan2(shape.xy, half) / 2;
-  return {mean + radius, mean - radius, std::cos(angle) * x + std::sin(angle) * y,
-          -std::sin(angle) * x + std::cos(angle) * y};
+  // The first direction is at half of the angle of (half, xy). Where that is obtuse its sine is
+  // taken first, so that neither is the difference of almost equal numbers.
+  double cosine = 1, sine = 0;
+  if (radius != 0) {
+    const double larger = std::sqrt(0.5 + std::abs(half) / radius / 2),
+                 smaller = std::abs(shape.xy) / radius / (2 * larger);
+    cosine = half < 0 ? smaller : larger;
+    sine = std::copysign(half < 0 ? larger : smaller, shape.xy);
+  }
+  return {mean + radius, mean - radius, cosine * x + sine * y, -sine * x + cosine * y};
 }
 
 }  // namespace limitsurf

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "limitsurf/surface/curvature/irregular_curvature.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/vertex_limit.h"
@@ -53,66 +52,6 @@ bool LimitSurface::isPosed() const { return data_->pose.isSet(); }
 LocationBatch LimitSurface::checkLocations(const LocationBatch& at, int threads) const {
   checkThreads(threads);
   return data_->tiles->checked(at, threads);
-}
-
-void checkCurvatureRadius(double radius) {
-  if (!(radius > 0 && radius <= 0.5)) {
-    std::ostringstream message;
-    message << "radius is " << radius << "; expected more than 0 and at most 0.5";
-    throw std::invalid_argument(message.str());
-  }
-}
-
-Curvature LimitSurface::curvature(const LocationBatch& at, IrregularRule rule, double radius,
-                                  int threads) const {
-  data_->check(at, threads);
-  checkCurvatureRadius(radius);
-  const auto rows = static_cast<Eigen::Index>(at.size());
-  Curvature out;
-  for (Eigen::VectorXd* values : {&out.gaussian, &out.mean, &out.k1, &out.k2}) {
-    values->resize(rows);
-  }
-  out.direction1.resize(rows, 3);
-  out.direction2.resize(rows, 3);
-  out.irregular.resize(rows);
-  const auto put = [&](Eigen::Index row, const PrincipalCurvatures& k) {
-    out.k1[row] = k.k1;
-    out.k2[row] = k.k2;
-    out.mean[row] = k.k1 / 2 + k.k2 / 2;
-    out.gaussian[row] = k.k1 * k.k2;
-    out.direction1.row(row) = k.direction1;
-    out.direction2.row(row) = k.direction2;
-  };
-  std::vector<int> rings(at.size());  // at irregular rows: the vertex's ring
-  data_->forEach(at, threads,
-                 [&](Eigen::Index row, const TileLocation& place, TileEvaluator& evaluator) {
-                   Jet jet;
-                   evaluator.evaluate<2>(place, jet);
-                   put(row, principalCurvatures(evaluator.fundamentalForms(place, jet)));
-                   out.irregular[row] = place.atVertex();
-                   if (place.atVertex()) {
-                     rings[row] = data_->table.ring_tiles[place.tile.index].ring;
-                   }
-                 });
-  if (rule == IrregularRule::none || !out.irregular.any()) {
-    return out;
-  }
-  std::vector<int> wanted;
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    if (out.irregular[row]) {
-      wanted.push_back(rings[row]);
-    }
-  }
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  const IrregularCurvature irregular(data_->table, data_->pose, data_->ptex, radius);
-  const std::vector<PrincipalCurvatures> means = irregular.around(wanted, threads);
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    if (out.irregular[row]) {
-      put(row, means[std::lower_bound(wanted.begin(), wanted.end(), rings[row]) - wanted.begin()]);
-    }
-  }
-  return out;
 }
 
 std::vector<Location> LimitSurface::vertexLocations() const {

@@ -73,6 +73,19 @@ struct Curvature {
   Eigen::Array<bool, Eigen::Dynamic, 1> irregular;
 };
 
+/// The caller's own memory for curvatures, contiguous and with a row for each location: directions
+/// have three numbers a row, all else has one.
+struct CurvatureArrays {
+  using Rows = EvaluationArrays<double>::Rows;
+  struct Flags {
+    bool* flags = nullptr;  ///< count of them
+    std::size_t count = 0;
+  };
+  Rows gaussian = {}, mean = {}, k1 = {}, k2 = {};
+  Rows direction1 = {}, direction2 = {};
+  Flags irregular = {};
+};
+
 /// What curvature() gives exactly at irregular vertices, where curvature has no limit.
 enum class IrregularRule {
   none,     ///< NaN
@@ -245,6 +258,11 @@ class LimitSurface {
   /// Cost: O(Ptex faces) if any row needs an average, and O(valence^2) for each vertex.
   Curvature curvature(const LocationBatch& at, IrregularRule rule = IrregularRule::none,
                       double radius = kCurvatureRadius, int threads = 0) const;
+  /// The same, written into the caller's own memory. Throws std::invalid_argument for an array of
+  /// another size than the batch; where it throws, rows may be half written.
+  void curvature(const LocationBatch& at, const CurvatureArrays& results,
+                 IrregularRule rule = IrregularRule::none, double radius = kCurvatureRadius,
+                 int threads = 0) const;
 
   // Weights.
   //

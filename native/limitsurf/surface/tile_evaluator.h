@@ -58,6 +58,8 @@ class TileEvaluator {
   /// Deep in a ring tile the second derivatives lie almost in the tangent plane. There their parts
   /// along the normal are added up from products of three modes each.
   FundamentalForms fundamentalForms(const TileLocation& at, const Jet& jet);
+  /// Whether the location lies so deep.
+  static bool needsModeProducts(const TileLocation& at);
 
   /// Whether derivatives up to `order`, deep in a tile of this ring, are formed of the differences
   /// of each of its modes (derivative_nets.h) instead of those of the control points that the modes
@@ -86,8 +88,6 @@ class TileEvaluator {
   /// Below those steps du x dv is taken at angles of this size, which cost it 8 bits as well.
   static constexpr double kLowestSineSquare = 0x1p-16;
 
-  /// Whether the location lies so deep in a ring tile that products of modes have to be taken.
-  static bool needsModeProducts(const TileLocation& at);
   /// What the rounding of du and dv is relative to, unless needsModeProducts(): the size of the
   /// tile's control points.
   double sizeOf(const TileLocation& at) const;

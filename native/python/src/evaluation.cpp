@@ -110,17 +110,33 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
     output = Output(type, {rows, 3});
   }
   py::array_t<bool> is_irregular(rows);
-  bool* flags = is_irregular.mutable_data();
-  inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
-    const Curvature c = shared.surface().curvature(chunk, rule, radius, threads);
-    const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
-    for (int i = 0; i < 4; ++i) {
-      scalars[i].put(begin, values[i]->data(), chunk.size());
-    }
-    directions[0].put(3 * begin, c.direction1.data(), 3 * chunk.size());
-    directions[1].put(3 * begin, c.direction2.data(), 3 * chunk.size());
-    std::copy(c.irregular.data(), c.irregular.data() + chunk.size(), flags + begin);
-  });
+  bool* const flags = is_irregular.mutable_data();
+  if (scalars[0].isSingle()) {
+    inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {
+      const Curvature c = shared.surface().curvature(chunk, rule, radius, threads);
+      const Eigen::VectorXd* values[4] = {&c.gaussian, &c.mean, &c.k1, &c.k2};
+      for (int i = 0; i < 4; ++i) {
+        scalars[i].put(begin, values[i]->data(), chunk.size());
+      }
+      directions[0].put(3 * begin, c.direction1.data(), 3 * chunk.size());
+      directions[1].put(3 * begin, c.direction2.data(), 3 * chunk.size());
+      std::copy(c.irregular.data(), c.irregular.data() + chunk.size(), flags + begin);
+    });
+  } else {
+    const auto into = [&](const Output& output) {
+      return CurvatureArrays::Rows{output.numbers<double>(), at.size()};
+    };
+    const LongCall call(shared.lock);
+    shared.surface().curvature(at,
+                               {into(scalars[0]),
+                                into(scalars[1]),
+                                into(scalars[2]),
+                                into(scalars[3]),
+                                into(directions[0]),
+                                into(directions[1]),
+                                {flags, at.size()}},
+                               rule, radius, threads);
+  }
   return result("Curvature")(scalars[0].object(), scalars[1].object(), scalars[2].object(),
                              scalars[3].object(), directions[0].object(), directions[1].object(),
                              is_irregular);

@@ -392,6 +392,24 @@ TEST(FilteredImage, ColoursAreFinite) {
   EXPECT_TRUE((thin.sample(st, Footprints::Zero(200, 4)).leftCols(3).array() == kLargest).all());
 }
 
+TEST(FilteredImage, OneVeryLargePixelLeavesTheOthersAsTheyAre) {
+  std::vector<float> pixels(4 * 64, 0.5f);
+  const ImagePoints st = ImagePoints::Constant(1, 2, 0.2);
+  for (const float large : {1e20f, 1e33f, 3e38f}) {
+    for (const float alpha : {1.f, 1e20f}) {
+      for (const bool premultiplied : {false, true}) {
+        pixels[252] = pixels[253] = pixels[254] = large;
+        pixels[255] = alpha;
+        const FilteredImage image(pixels.data(), 8, 8, 4, Extension::clip, premultiplied);
+        const Colours colours = image.sample(st, Footprints::Constant(1, 4, 0.01));
+        const float expected = premultiplied ? 1.f : 0.5f;
+        EXPECT_NEAR(colours(0, 1), expected, 1e-6) << large << ", alpha " << alpha;
+        EXPECT_NEAR(colours(0, 3), 0.5f, 1e-6);
+      }
+    }
+  }
+}
+
 TEST(FilteredImage, NowhereIsTransparent) {
   const FilteredImage image = checker(1).filtered(Extension::extend);
   ImagePoints st(2, 2);

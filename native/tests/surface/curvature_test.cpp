@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -9,6 +10,7 @@
 #include "support/cages/meshes.h"
 #include "support/cages/sharp_meshes.h"
 #include "support/cages/strange_meshes.h"
+#include "support/throws.h"
 #include "support/truth/corner_points.h"
 #include "support/truth/decompositions.h"
 #include "support/truth/witness.h"
@@ -58,6 +60,39 @@ double compareEverywhere(const std::string& name, const Cage& cage) {
     at += shells(face, 0, {3, 8, 20, 40});
   }
   return compare(name, cage, at);
+}
+
+TEST(Curvature, IsWrittenIntoMemoryOfTheCaller) {
+  const LimitSurface surface = limitSurface(cube());
+  const std::vector<Location> at{{0, 0.3, 0.2}, {1, 0, 0}, {4, 0x1p-20, 0x1p-22}, {5, 0.5, 1}};
+  const Curvature expected = surface.curvature(at, IrregularRule::average);
+  const std::size_t count = at.size();
+  std::vector<double> numbers(10 * count);
+  double* next = numbers.data();
+  const auto rows = [&](std::size_t width) {
+    const CurvatureArrays::Rows result{next, count};
+    next += width * count;
+    return result;
+  };
+  std::array<bool, 4> irregular{};
+  CurvatureArrays arrays{
+      rows(1), rows(1), rows(1), rows(1), rows(3), rows(3), {irregular.data(), count}};
+  surface.curvature(at, arrays, IrregularRule::average);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    EXPECT_EQ(arrays.gaussian.numbers[i], expected.gaussian[row]);
+    EXPECT_EQ(arrays.mean.numbers[i], expected.mean[row]);
+    EXPECT_EQ(arrays.k1.numbers[i], expected.k1[row]);
+    EXPECT_EQ(arrays.k2.numbers[i], expected.k2[row]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto column = static_cast<Eigen::Index>(c);
+      EXPECT_EQ(arrays.direction1.numbers[3 * i + c], expected.direction1(row, column));
+      EXPECT_EQ(arrays.direction2.numbers[3 * i + c], expected.direction2(row, column));
+    }
+    EXPECT_EQ(irregular[i], i == 1);
+  }
+  arrays.k2.count = 3;
+  expectThrow<std::invalid_argument>([&] { surface.curvature(at, arrays); }, {"k2", "3", "4"});
 }
 
 TEST(Curvature, IsThatOfSubdivision) {
