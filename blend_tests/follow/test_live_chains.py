@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hair that follows a surface live which itself follows another surface live."""
 
+import bmesh
 import bpy
 import follow_truth
+import live_scenes
 import numpy as np
 import pytest
 import scenes
+from limit_surface import ids
 from limit_surface.placing import live
+from limit_surface.reading import attributes
 from live_scenes import check_hair, deforming, follow, limit_of
 
 
@@ -81,3 +85,74 @@ def test_things_on_each_other_do_not_hang():
     body.modifiers.new("Bound", "SHRINKWRAP").target = cloth
     bpy.context.scene.frame_set(30)
     bpy.context.scene.frame_set(1)
+
+
+@pytest.mark.parametrize("order", ["ABC", "CBA", "BAC"])
+def test_edits_are_taken_up_before_the_surface_moves(order, tmp_path):
+    """In a file that was just opened, nothing is known about the frame in which it was saved."""
+    chain(order)
+    path = str(tmp_path / "chain.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    hair = bpy.data.objects[order[2]]
+    before = live_scenes.rest(hair).copy()
+    positions = attributes.read(hair.data, ids.POSITION) + [0, 0, 0.02]
+    attributes.write(hair.data, ids.POSITION, "FLOAT_VECTOR", "POINT", positions)
+    hair.data.update_tag()
+    bpy.context.scene.frame_set(30)
+    moved = np.linalg.norm(live_scenes.rest(hair) - before, axis=2)
+    np.testing.assert_allclose(moved, 0.02, atol=1e-6)
+
+
+def test_an_edit_that_lasts_while_the_surface_moves():
+    """Other hair has the garment move while a mesh on it is in Edit Mode."""
+    _, cloth, _ = chain("CBA")
+    scenes.activate(cloth)
+    bpy.ops.object.select_all(action="DESELECT")
+    cloth.select_set(True)
+    assert bpy.ops.object.limit_mesh(levels=1, follow="NONE", store_locations=True) == {"FINISHED"}
+    button = bpy.context.object
+    follow(button)
+    bpy.ops.object.mode_set(mode="EDIT")
+    edited = bmesh.from_edit_mesh(button.data)
+    edited.verts.ensure_lookup_table()
+    edited.verts[3].co.z += 0.05
+    bmesh.update_edit_mesh(button.data)
+    bpy.context.scene.frame_set(30)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    offset = attributes.read(button.data, ids.LIVE_REST)
+    offset -= attributes.read(button.data, ids.REST_ROOT)
+    lengths = np.linalg.norm(offset, axis=1)
+    np.testing.assert_allclose(lengths[3], 0.05, atol=1e-5)
+    assert np.delete(lengths, 3).max() < 1e-6
+
+
+def test_a_node_group_whose_inputs_have_the_same_name():
+    """The surface reads the garment by the second of them."""
+    _, cloth, old_hair = chain("CBA")
+    bpy.data.objects.remove(old_hair)
+    group = bpy.data.node_groups.new("Copy", "GeometryNodeTree")
+    group.is_modifier = True
+    for in_out in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
+    for _ in range(2):
+        group.interface.new_socket("Object", in_out="INPUT", socket_type="NodeSocketObject")
+    begin, end = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    info = group.nodes.new("GeometryNodeObjectInfo")
+    group.links.new(begin.outputs[2], info.inputs["Object"])
+    group.links.new(info.outputs["Geometry"], end.inputs[0])
+    copy = scenes.cross()
+    copy.name = "A surface that Blender lists first"
+    modifier = copy.modifiers.new("Copy", "NODES")
+    modifier.node_group = group
+    modifier["Socket_3"] = cloth
+    copy.update_tag()
+    bpy.context.view_layer.update()
+    hair = scenes.add_hair(copy, follow="NONE")
+    follow(hair)
+    for frame in (30, 7):
+        bpy.context.scene.frame_set(frame)
+        roots = follow_truth.shown_strands(hair)[:, 0].copy()
+        expected = limit_of(hair).evaluate(*scenes.locations(hair.data)).position
+        assert np.abs(roots - expected).max() < 1e-5

@@ -97,6 +97,24 @@ def test_every_frame_of_an_animation_shows_its_own_pose(camera, tmp_path, with_g
         assert width(alpha) < 0.5
 
 
+def test_a_garment_with_a_modifier_of_renders(camera, tmp_path):
+    """The garment is moved up by 1 in renders only, and its hair with it."""
+    _, hair = bar(with_garment=True)
+    garment = hair.data.surface
+    modifier = garment.modifiers.new("Raised", "DISPLACE")
+    modifier.direction, modifier.strength, modifier.mid_level = "Z", 1.0, 0.0
+    modifier.show_viewport = False
+    garment.modifiers.move(garment.modifiers.find("Raised"), 0)
+    camera.frame_set(1)
+    start = float(scenes.strands(hair)[0, 0, 0])
+    camera.camera.location.z += 1
+    camera.frame_start, camera.frame_end = 1, 2
+    camera.render.filepath = str(tmp_path / "frame")
+    bpy.ops.render.render(animation=True)
+    for frame in (1, 2):
+        assert abs(middle(coverage(tmp_path / f"frame{frame:04}.png")) - (start + frame - 1)) < 0.05
+
+
 def test_motion_is_blurred(camera, tmp_path):
     _, hair = bar()
     camera.frame_set(1)

@@ -18,14 +18,6 @@ def needed_by(ob: bpy.types.Object) -> set[bpy.types.Object]:
     return {item for item in _reached(ob, _direct) if isinstance(item, bpy.types.Object)}
 
 
-def shaped_by(ob: bpy.types.Object) -> set[bpy.types.Object]:
-    """Returns the object, and the objects that its shape depends on by way of modifiers, also by
-    those of the others. This takes far less time than `needed_by`.
-    """
-    reached = (ob, *_reached(ob, _of_modifiers))
-    return {item for item in reached if isinstance(item, bpy.types.Object)}
-
-
 def collections_shown_by(
     item: bpy.types.Object | bpy.types.Collection,
 ) -> set[bpy.types.Collection]:
@@ -57,31 +49,24 @@ def _shown(item: bpy.types.ID) -> Iterator[bpy.types.ID]:
 
 
 def _direct(item: bpy.types.ID) -> Iterator[bpy.types.ID]:
-    yield from _of_modifiers(item)
-    if isinstance(item, bpy.types.Object):
-        yield from _of_all_but_modifiers(item)
-
-
-def _of_modifiers(item: bpy.types.ID) -> Iterator[bpy.types.ID]:
     if isinstance(item, bpy.types.Collection):
         yield from item.all_objects
         yield from item.children_recursive
-        return
-    for modifier in item.modifiers:
-        yield from _pointers(modifier)
-        if modifier.type == "NODES":
-            yield from _blocks_in(groups.inputs_of(modifier))
-            yield from _blocks_in(groups.values_in(modifier.node_group))
+    else:
+        yield from _direct_of_object(item)
 
 
-def _of_all_but_modifiers(ob: bpy.types.Object) -> Iterator[bpy.types.ID]:
+def _direct_of_object(ob: bpy.types.Object) -> Iterator[bpy.types.ID]:
     if ob.parent:
         yield ob.parent
     bones = ob.pose.bones if ob.pose else ()
-    for constraint in (*ob.constraints, *(c for bone in bones for c in bone.constraints)):
-        yield from _pointers(constraint)
-        for target in getattr(constraint, "targets", ()):  # those of an Armature constraint
+    for item in (*ob.modifiers, *ob.constraints, *(c for bone in bones for c in bone.constraints)):
+        yield from _pointers(item)
+        for target in getattr(item, "targets", ()):  # those of an Armature constraint
             yield from _pointers(target)
+        if item.type == "NODES":
+            yield from _blocks_in(groups.inputs_of(item))
+            yield from _blocks_in(groups.values_in(item.node_group))
     for block in (ob, ob.data, getattr(ob.data, "shape_keys", None)):
         drivers = block.animation_data.drivers if block and block.animation_data else ()
         for curve in drivers:

@@ -6,7 +6,7 @@ Nothing that is kept here from frame to frame has an influence on the result: it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 import bpy
 import numpy as np
@@ -19,7 +19,7 @@ from ..nodes.follow import SURFACE
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes, live_surface, live_thing
 from .followers import sharers
-from .live_chains import Chains
+from .live_chains import Chains, Followers
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
 
@@ -94,9 +94,8 @@ def followers_in(
                 [ob], f"{ob.data.name} has no attribute {missing} any more: let it follow again"
             )
             continue
-        if ob.evaluated_get(depsgraph).is_evaluated and not (
-            ob.type == "MESH" and ob.mode == "EDIT"
-        ):
+        in_edit_mode = ob.type == "MESH" and ob.data.is_editmode  # perhaps by way of another object
+        if ob.evaluated_get(depsgraph).is_evaluated and not in_edit_mode:
             seen.add(ob.data)
             found.setdefault(surface, []).append(ob)
     return found
@@ -106,11 +105,7 @@ def pose_all(depsgraph: bpy.types.Depsgraph) -> None:
     """Poses everything for the depsgraph's frame."""
     followers = followers_in(depsgraph)
     _read_changed_ones_anew(followers, depsgraph)
-    chains = Chains(followers)
-    moved: set[bpy.types.ID] = set()
-    for surface in chains.in_order():
-        is_behind = chains.depends(surface, moved)
-        moved |= _pose(surface, followers[surface], depsgraph, is_behind)
+    _pose_some(followers, followers, Chains(followers), depsgraph)
 
 
 def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
@@ -124,16 +119,37 @@ def pose_changed(depsgraph: bpy.types.Depsgraph) -> None:
         for update in depsgraph.updates
         if update.is_updated_geometry or update.is_updated_transform
     }
-    chains = Chains(followers)
-    moved: set[bpy.types.ID] = set()
-    for surface in chains.in_order():
-        things = followers[surface]
-        is_behind = chains.depends(surface, moved)
-        if is_behind or _has_to_be_posed(surface, things, changed, depsgraph):
-            moved |= _pose(surface, things, depsgraph, is_behind)
-        else:
+    wanted = {
+        surface
+        for surface, things in followers.items()
+        if _has_to_be_posed(surface, things, changed, depsgraph)
+    }
+    chains = Chains(followers if wanted else {})
+    posed = chains.behind(wanted)
+    for surface, things in followers.items():
+        if surface not in posed:
             edited = [ob for ob in things if ob in changed or ob.data in changed]
             _take_up_edits(surface, edited, depsgraph)
+    _pose_some(wanted, {s: followers[s] for s in followers if s in posed}, chains, depsgraph)
+
+
+def _pose_some(
+    wanted: Collection[bpy.types.Object],
+    followers: Followers,
+    chains: Chains,
+    depsgraph: bpy.types.Depsgraph,
+) -> None:
+    """Poses what follows the surfaces that are wanted, and those that change with them. Edits of
+    all are taken up before anything moves, because the surfaces are then as they were when the
+    edits were made.
+    """
+    good = {surface: _take_up_all(surface, followers[surface], depsgraph) for surface in followers}
+    moved: set[bpy.types.ID] = set()
+    for surface in chains.in_order():
+        if surface in good:
+            is_behind = chains.depends(surface, moved)
+            if is_behind or surface in wanted:
+                moved |= _pose(surface, good[surface], depsgraph, is_behind)
 
 
 def _has_to_be_posed(
@@ -239,23 +255,34 @@ def _thing(ob: bpy.types.Object) -> LiveThing:
     return _things.setdefault((data.id_type, data.name, library), LiveThing())
 
 
+def _take_up_all(
+    surface: bpy.types.Object,
+    things: Sequence[bpy.types.Object],
+    depsgraph: bpy.types.Depsgraph,
+) -> list[bpy.types.Object]:
+    """Takes up edits in the pose for which they were made. Returns the things that can be posed."""
+    try:
+        on = _surface(surface, depsgraph)
+    except live_surface.errors as error:
+        _refuse(things, native.sentence(error))
+        return []
+    return list(_each(things, lambda ob: _take_up(ob, surface, on, depsgraph)))
+
+
 def _pose(
     surface: bpy.types.Object,
     things: Sequence[bpy.types.Object],
     depsgraph: bpy.types.Depsgraph,
     is_behind: bool,
 ) -> set[bpy.types.ID]:
-    """Takes up edits in the pose for which they were made, and then poses all things. Returns the
-    data-blocks that were moved. `is_behind` tells that the surface depends on something that was
-    moved since the depsgraph was evaluated.
+    """Poses things whose edits have been taken up. Returns the data-blocks that were moved.
+    `is_behind` tells that the surface depends on something that was moved since the depsgraph was
+    evaluated.
     """
     moved: set[bpy.types.ID] = set()
-    try:
-        on = _surface(surface, depsgraph)
-    except live_surface.errors as error:
-        _refuse(things, native.sentence(error))
+    if not things:
         return moved
-    good = list(_each(things, lambda ob: _take_up(ob, surface, on, depsgraph)))
+    on = _surfaces[ObjectKey.of(surface)]
     try:
         (on.read_again if is_behind else on.read)(surface, depsgraph)
     except live_surface.errors as error:
@@ -269,9 +296,9 @@ def _pose(
         thing = _thing(ob)
         if thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame):
             moved.add(ob.data)
-        thing.version = on.version
+        thing.version, thing.surface_pose = on.version, on.pose
 
-    for _ in _each(good, pose):
+    for _ in _each(things, pose):
         pass
     return moved
 
@@ -296,15 +323,17 @@ def _take_up(
     edited = thing.edits(ob.data, on.limit)
     if edited is None:
         return
-    limit = on.limit
     if written is None:
-        matrix = _matrix(ob, surface, depsgraph)
+        thing.take_up(ob.data, edited, on.limit, _matrix(ob, surface, depsgraph))
+    elif thing.version == on.version or written.frame == depsgraph.scene.frame_float:
+        thing.take_up(ob.data, edited, on.limit, written.matrix)
+    # the surface has another pose now than when the points were written
+    elif thing.surface_pose is not None and thing.surface_pose.limit is on.limit:
+        with on.posed_as(thing.surface_pose):
+            thing.take_up(ob.data, edited, on.limit, written.matrix)
     else:
-        matrix = written.matrix
-        # the surface may have another pose now than when the points were written
-        if thing.version != on.version and written.frame != depsgraph.scene.frame_float:
-            limit = live_surface.surface_at(surface, depsgraph, written.frame)
-    thing.take_up(ob.data, edited, limit, matrix)
+        limit = live_surface.surface_at(surface, depsgraph, written.frame)
+        thing.take_up(ob.data, edited, limit, written.matrix)
 
 
 def _each(

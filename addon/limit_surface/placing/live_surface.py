@@ -8,7 +8,8 @@ attribute. Otherwise the control mesh is read anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
@@ -16,11 +17,13 @@ import numpy as np
 
 from .. import ids, native
 from ..errors import CageError
+from ..nodes import groups
 from ..reading import attributes, cage, rules
 
 if TYPE_CHECKING:
     import limitsurf
 
+_WITHOUT_EFFECT = (ids.FOLLOW_LIVE_GROUP, ids.CAPTURE_GROUP)
 _CHECKSUMS = (ids.CAGE_COUNT, ids.CAGE_TOPOLOGY, ids.CAGE_EDGE_CREASES, ids.CAGE_VERTEX_CREASES)
 
 
@@ -31,10 +34,18 @@ class _Captured(NamedTuple):
     checksums: tuple[object, ...]
 
 
+class SurfacePose(NamedTuple):
+    """A surface, and the positions of its control mesh at some time."""
+
+    limit: limitsurf.LimitSurface
+    positions: np.ndarray  # (vertices of the control mesh, 3) float64
+
+
 class LiveSurface:
     """`version` counts the poses. Raises CageError and MeshError where there is no surface."""
 
     limit: limitsurf.LimitSurface  # there is one once it has been read
+    pose: SurfacePose
 
     def __init__(self) -> None:
         self.version = 0
@@ -42,26 +53,43 @@ class LiveSurface:
 
     def read(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
         """Takes the pose of the depsgraph's frame."""
-        evaluated = ob.evaluated_get(depsgraph)
-        mesh = evaluated.data if evaluated.is_evaluated and evaluated.type == "MESH" else None
-        captured = _captured(ob, mesh) if mesh else None
-        self._take(ob, captured, lambda: cage.read(ob, depsgraph))
+        self._take(ob, depsgraph, _evaluated(ob, depsgraph))
 
     def read_again(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
         """Takes the pose that the surface has in the depsgraph's frame after something was moved
         on which it depends, and which the depsgraph has not evaluated again.
         """
-        with cage.opened(ob, depsgraph) as (found, mesh):
-            self._take(ob, _captured(ob, mesh), lambda: found)
+        captured = _evaluated(ob, depsgraph)
+        if captured is not None:
+            if _is_bare(ob, depsgraph):
+                positions = attributes.read(ob.data, ids.POSITION).astype(np.float64)
+            else:
+                positions = _evaluated_anew(ob, depsgraph)
+            captured = captured._replace(positions=positions)
+        self._take(ob, depsgraph, captured)
+
+    @contextmanager
+    def posed_as(self, pose: SurfacePose) -> Iterator[None]:
+        """Gives the surface an earlier pose for as long as the context lasts."""
+        now = self.limit.positions.copy()
+        self.limit.set_positions(pose.positions)
+        try:
+            yield
+        finally:
+            self.limit.set_positions(now)
 
     def _take(
-        self, ob: bpy.types.Object, captured: _Captured | None, find: Callable[[], cage.Cage]
+        self,
+        ob: bpy.types.Object,
+        depsgraph: bpy.types.Depsgraph,
+        captured: _Captured | None,
     ) -> None:
         self.version += 1
         if captured is None or captured.checksums != self._checksums:
             self._checksums = None
-            self.limit = find().surface()
+            self.limit = cage.read(ob, depsgraph).surface()
         if captured is None:
+            self.pose = SurfacePose(self.limit, self.limit.positions.copy())
             return
         if len(captured.positions) != len(self.limit.positions):
             raise CageError(
@@ -70,6 +98,7 @@ class LiveSurface:
             )
         self.limit.set_positions(captured.positions)
         self._checksums = captured.checksums
+        self.pose = SurfacePose(self.limit, captured.positions)
 
 
 def surface_at(
@@ -85,6 +114,40 @@ def _at(frame: float) -> Callable[[bpy.types.Object, bpy.types.Scene], None]:
         scene.frame_float = frame
 
     return go
+
+
+def _evaluated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Captured | None:
+    """Returns what the depsgraph has evaluated last."""
+    evaluated = ob.evaluated_get(depsgraph)
+    if not evaluated.is_evaluated or evaluated.type != "MESH":
+        return None
+    return _captured(ob, evaluated.data)
+
+
+def _is_bare(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Tells whether the control mesh is the object's own mesh: no modifier changes it."""
+    shown = "show_viewport" if depsgraph.mode == "VIEWPORT" else "show_render"
+    before = [m for m in ob.modifiers[: _cut(ob)] if getattr(m, shown)]
+    return ob.data.shape_keys is None and all(
+        m.type == "NODES" and groups.name_of(m.node_group) in _WITHOUT_EFFECT for m in before
+    )
+
+
+def _evaluated_anew(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
+    """Returns the positions of the control mesh, from what the file contains now."""
+
+    def enable(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
+        for modifier in copy.modifiers if depsgraph.mode == "RENDER" else ():
+            modifier.show_viewport = modifier.show_render
+
+    with cage.evaluated_copy(ob, _cut(ob), depsgraph, enable) as evaluated:
+        return attributes.read(evaluated.data, ids.POSITION).astype(np.float64)
+
+
+def _cut(ob: bpy.types.Object) -> int:
+    """Returns the number of modifiers before the subdivision."""
+    subsurf = rules.find_subsurf(ob)
+    return ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
 
 
 def _captured(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> _Captured | None:

@@ -36,6 +36,7 @@ from .live_attributes import (
     tag,
     write,
 )
+from .live_surface import SurfacePose
 from .places import NOWHERE, ROOT_KINDS, Places
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ class LiveThing:
 
     def __init__(self) -> None:
         self.version = -1  # the surface's version for which the points were written
+        self.surface_pose: SurfacePose | None = None  # the surface's pose then
         self._limit: limitsurf.LimitSurface | None = None
         self._binding: dict[str, np.ndarray] = {}
         self._poser: limitsurf.StrandPoser | None = None

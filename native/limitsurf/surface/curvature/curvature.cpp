@@ -162,6 +162,7 @@ void LimitSurface::curvature(const LocationBatch& at, const CurvatureArrays& res
     return;
   }
   std::vector<int> wanted;
+  wanted.reserve(irregular_rows.size());
   for (const IrregularRow& irregular : irregular_rows) {
     wanted.push_back(irregular.ring);
   }
