@@ -150,7 +150,7 @@ CAGE_FITS = "cage_fits"
 TILE_MATRIX = "limit_matrix"
 TILE = "limit_tile"  # the tile of a curve or point, counted from 1; 0 for what does not follow
 TILE_UV = "tile_uv"
-SEAL = "limit_seal"  # a number of each vertex that no average of two others is
+SEAL = "limit_seal"  # numbers of each vertex that tell it from averages of others
 
 # What follows live: the property of scenes that switches it off, and attributes of the things
 LIVE = "limit_live"

@@ -103,7 +103,9 @@ class State:
             elif of != self.surface:
                 whose = of.name if of else "a surface that was deleted"
                 yield Trouble(f"{ob.name} reads the tables of {whose}", ids.FOLLOW)
-            if (count := _added_to(ob)) > 0:
+            holder = holder_of(ob)
+            count = seals.count_broken(holder) if holder else 0
+            if count:
                 were = by_count(count, "was", "were")
                 text = f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound"
                 yield Trouble(text, ids.FOLLOW)
@@ -170,12 +172,6 @@ def surfaces() -> list[bpy.types.Object]:
 def _tables_of(followers: list[bpy.types.Object]) -> list[bpy.types.Object]:
     read = dict.fromkeys(groups.get_input(modifier_of(ob), TILES) for ob in followers)
     return [table for table in read if table is not None]
-
-
-def _added_to(ob: bpy.types.Object) -> int:
-    holder = holder_of(ob)
-    broken = seals.are_broken(holder) if holder is not None else None
-    return 0 if broken is None else int(broken.sum())
 
 
 def _capture_obstacle(surface: bpy.types.Object) -> str:

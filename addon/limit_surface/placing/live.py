@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from .. import ids, native
-from ..counting import counted
+from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
@@ -38,7 +38,12 @@ def forget() -> None:
 
 def trouble(ob: bpy.types.Object) -> str:
     """Returns the reason why the object, or a part of it, does not follow at present."""
-    return _troubles.get(ObjectKey.of(ob), "") or _lost_frames(ob, _thing(ob).lost_frames)
+    thing = _thing(ob)
+    return (
+        _troubles.get(ObjectKey.of(ob), "")
+        or _lost_frames(ob, thing.lost_frames)
+        or _added(ob, thing.added)
+    )
 
 
 def trouble_in_file(ob: bpy.types.Object) -> str:
@@ -53,6 +58,17 @@ def _lost_frames(ob: bpy.types.Object, count: int) -> str:
     return (
         f"{ob.name}: {things} stay still, because an earlier version of the extension has deleted "
         "their frames at rest. Follow Limit Surface binds them where they are"
+    )
+
+
+def _added(ob: bpy.types.Object, count: int) -> str:
+    if not count:
+        return ""
+    were = by_count(count, "was", "were")
+    follow = by_count(count, "follows with its neighbors", "follow with their neighbors")
+    return (
+        f"{counted(count, 'vertices')} {were} added to {ob.name}, and {follow}. Follow Limit "
+        "Surface gives them places of their own"
     )
 
 

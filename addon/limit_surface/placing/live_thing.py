@@ -7,9 +7,9 @@ changed its points since they were written, and the custom property `limit_writt
 the matrix of that moment. All of it belongs to the data: it survives saving, undo, deleted strands
 and linking. What is shown in a frame depends on the shape at rest and on the frame alone.
 
-Strands whose fingerprint is 0 are new: they were added or joined later, have just got another
-place, or their seal is broken (`seals.py`). They stay where they are, whatever their other
-attributes say, until they are admitted.
+Strands whose fingerprint is 0 are new: they were added or joined later, or have just got another
+place. They stay where they are, whatever their other attributes say, until they are admitted.
+Vertices whose seals are broken (`seals.py`) follow with the nearest vertex that has a place.
 """
 
 from __future__ import annotations
@@ -82,6 +82,7 @@ class LiveThing:
         self._rests: set[str] = set()  # attributes at rest that the buffers hold
         self._prints = np.empty(0, np.int32)  # the fingerprints that were written last
         self._known = np.empty(0, np.int32)  # the same, but not 0 for new strands
+        self.added = 0  # the number of vertices that have no places of their own
         self.lost_frames = 0  # the number of strands that stay still because they have none
 
     def read_anew(self) -> None:
@@ -96,10 +97,6 @@ class LiveThing:
         prints = self._read(data, ids.LIVE_FINGERPRINT)
         if not _same_bits(prints, self._prints):
             self.read_anew()
-            broken = seals.are_broken(data)
-            if broken is not None and prints[broken].any():
-                prints[broken] = 0
-                write(data, ids.LIVE_FINGERPRINT, prints)
             self._prints, self._known = prints.copy(), prints.copy()
         edited: np.ndarray = self._fingerprints(data, self._poser_on(data, limit)) != self._known
         self._is_current = True
@@ -144,6 +141,7 @@ class LiveThing:
         prints = self._read(data, ids.LIVE_FINGERPRINT)
         own = self._fingerprints(data, self._poser_on(data, limit))
         write(data, ids.LIVE_FINGERPRINT, np.where(prints == 0, own, prints))
+        seals.seal(data, Places.read(data).rows)
 
     def _write_prints(self, data: bpy.types.ID, prints: np.ndarray) -> None:
         """Writes the fingerprints of all but new strands."""
@@ -218,6 +216,7 @@ class LiveThing:
             is_new = added(data)
             self.lost_frames = lost_frames_of(binding, is_new)
             binding[ids.FACE][is_new] = NOWHERE
+            self.added = _carry_added(data, binding)
         binding[ids.REST_ROTATION][binding[ids.FACE] == NOWHERE] = 0
         if isinstance(data, bpy.types.Curves):
             binding["offsets"] = attributes.curve_offsets(data)
@@ -281,6 +280,21 @@ class _Corners:
     def pose_vectors(self, rest: np.ndarray, matrix: np.ndarray, out: np.ndarray) -> np.ndarray:
         out[self._order] = self._poser.pose_vectors(rest[self._order], matrix)
         return out
+
+
+def _carry_added(data: bpy.types.ID, binding: dict[str, np.ndarray]) -> int:
+    """Gives vertices whose seals are broken the places of the nearest that have their own. Returns
+    the number of those that were added.
+    """
+    broken = seals.are_broken(data)
+    if broken is None or not broken.any():
+        return 0
+    nearest = seals.nearest_placed(data, ~broken & (binding[ids.FACE] != NOWHERE))
+    binding[ids.FACE][broken] = NOWHERE
+    carried = np.flatnonzero(broken & (nearest >= 0))
+    for name in ROOT_KINDS:
+        binding[name][carried] = binding[name][nearest[carried]]
+    return int(broken.sum())
 
 
 def _poser(

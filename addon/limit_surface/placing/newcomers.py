@@ -16,6 +16,7 @@ from ..errors import RefusalError
 from ..reading import cage
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
+from .added_vertices import AddedVertices
 from .posed_surface import Places, PosedSurface, at_closest
 from .relocation import Elements, Relocation
 
@@ -41,17 +42,25 @@ def relocations(
     found = []
     for elements in waiting.values():
         rows = np.flatnonzero(~elements.has_place)
-        found.append((yield from bound_at_closest(elements, posed, rows)))
+        added = AddedVertices(elements, posed)
+        found.append((yield from bound_at_closest(elements, posed, rows, added=added)))
     return found
 
 
 def bound_at_closest(
-    elements: Elements, posed: PosedSurface, rows: np.ndarray, max_distance: float = math.inf
+    elements: Elements,
+    posed: PosedSurface,
+    rows: np.ndarray,
+    max_distance: float = math.inf,
+    added: AddedVertices | None = None,
 ) -> Pieces:
     """Binds some elements where they are, and returns the Relocation. Those beyond the distance
-    (world units) are lost.
+    (world units) are lost. Vertices that were added are where they are in this frame.
     """
-    points = elements.first_points()[rows]
+    points = elements.first_points()
+    if added:
+        added.put_into(points)
+    points = points[rows]
     lost_row = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(lost_row):
         raise RefusalError(f"Point {rows[lost_row[0]]} has a coordinate that is not a number")
@@ -61,7 +70,9 @@ def bound_at_closest(
     found = hits.face >= 0
     relocation = Relocation(elements, lost=rows[~found], distances=np.zeros(int(found.sum())))
     at = at_closest(posed, hits)
-    yield from put_places(relocation, posed, rows[found], at.face[found], at.uv[found])
+    frames = yield from put_places(relocation, posed, rows[found], at.face[found], at.uv[found])
+    if added:
+        added.put_back(relocation, rows[found], frames)
     return relocation
 
 

@@ -31,7 +31,8 @@ class Elements:
             raise RefusalError(f"{ob.name} is neither hair, nor points, nor a mesh")
         self.ob, self.data, self.domain = ob, holder, domain_of(ob)
         if ob.type in TYPES:
-            attributes.check_names(ob, ROOT_KINDS, self.domain)
+            kinds = ROOT_KINDS | ({ids.SEAL: seals.KIND} if ob.type == "MESH" else {})
+            attributes.check_names(ob, kinds, self.domain)
         self.matrix = transform.world_matrix(ob)
         self._stores_rest = at_rest and live_modifier_of(ob) is not None
         if ids.POSITION not in holder.attributes:
@@ -45,7 +46,7 @@ class Elements:
         self.count = len(self.sizes)
         if not self.count:
             raise RefusalError(f"{ob.name} has no points")
-        self._broken = seals.are_broken(holder)
+        self.broken = seals.are_broken(holder)
         self.has_place = np.zeros(self.count, bool)
         if is_placed(ob):
             self.has_place[Places.read(holder).rows] = True
@@ -54,8 +55,8 @@ class Elements:
         """Returns a stored attribute of the places; zeros, or no face, where there is none yet."""
         if name in self.data.attributes:
             values = attributes.read(self.data, name)
-            if name == ids.FACE and self._broken is not None:
-                values[self._broken] = NOWHERE
+            if name == ids.FACE and self.broken is not None:
+                values[self.broken] = NOWHERE
             return values
         kind = attributes.LAYOUTS[ROOT_KINDS[name]]
         shape = (self.count,) if kind.width == 1 else (self.count, kind.width)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where vertices that were added to a mesh are in this frame: they are carried from the shape at
+rest by their neighbors that have places, or where they have no such neighbor, by the nearest vertex
+that has one.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from .. import ids, native
+from ..reading import attributes
+from . import live_attributes, seals
+from .posed_surface import PosedSurface, transformed
+from .relocation import Elements, Relocation
+
+
+class AddedVertices:
+    """Of an object's elements, those without a place of their own that can be carried: `rows`."""
+
+    def __init__(self, elements: Elements, posed: PosedSurface) -> None:
+        mesh = elements.data
+        self.rows: np.ndarray = np.empty(0, np.int64)
+        if elements.broken is None or not elements.broken.any():
+            return
+        nearest = seals.nearest_placed(mesh, elements.has_place)
+        self.rows = np.flatnonzero(elements.broken & (nearest >= 0))
+        self._rest = attributes.read(mesh, _rest_name(mesh))[self.rows].astype(np.float64)
+        self._turn, points = _carried(elements, posed, nearest[self.rows], self._rest)
+        row, neighbor = _neighbors(mesh, self.rows, elements.has_place)
+        carried = _carried(elements, posed, neighbor, self._rest[row])[1]
+        count = np.bincount(row, minlength=len(self.rows))
+        sums = np.stack([np.bincount(row, c, len(self.rows)) for c in carried.T], axis=1)
+        self._points = np.where(count[:, None], sums / np.maximum(count, 1)[:, None], points)
+        self._matrix = elements.matrix
+
+    def put_into(self, points: np.ndarray) -> None:
+        """Changes the points of all elements, in the world, to where the rows are in this frame."""
+        if len(self.rows):
+            points[self.rows] = transformed(self._matrix, self._points)
+
+    def put_back(self, relocation: Relocation, rows: np.ndarray, frames: np.ndarray) -> None:
+        """Brings the roots and frames of these elements, which have just got places, from this
+        frame to the shape at rest.
+        """
+        _, mine, theirs = np.intersect1d(self.rows, rows, return_indices=True)
+        if not len(mine):
+            return
+        put, back = rows[theirs], self._turn[mine].transpose(0, 2, 1)
+        offset = relocation.values[ids.REST_ROOT][put] - self._points[mine]
+        root = self._rest[mine] + np.einsum("nij,nj->ni", back, offset)
+        relocation.put(ids.REST_ROOT, put, root)
+        turned = native.limitsurf.quaternions(back @ frames[theirs])
+        relocation.put(ids.REST_ROTATION, put, turned)
+
+
+def _carried(
+    elements: Elements, posed: PosedSurface, by: np.ndarray, rest: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns how elements with places have turned since they were bound (n, 3, 3), and where
+    points (n, 3) at rest go with them.
+    """
+    face, uv = elements.read(ids.FACE)[by], elements.read(ids.UV)[by].astype(np.float64)
+    rotation = elements.read(ids.REST_ROTATION)[by].astype(np.float64)
+    now = posed.places(face, uv, elements.matrix)
+    turn = now.frame @ native.limitsurf.rotation_matrices(rotation).transpose(0, 2, 1)
+    offset = rest - elements.read(ids.REST_ROOT)[by]
+    return turn, now.position + np.einsum("nij,nj->ni", turn, offset)
+
+
+def _neighbors(
+    mesh: bpy.types.Mesh, rows: np.ndarray, has_place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns pairs: an index into the rows, and a vertex with a place that an edge leads to."""
+    number = np.full(len(has_place), -1)
+    number[rows] = np.arange(len(rows))
+    edges = attributes.read(mesh, ids.EDGE_VERTICES)
+    begin, end = np.concatenate([edges, edges[:, ::-1]]).T
+    found = (number[begin] >= 0) & has_place[end]
+    return number[begin[found]], end[found]
+
+
+def _rest_name(mesh: bpy.types.Mesh) -> str:
+    """Returns the name of the attribute that holds the shape at rest."""
+    name = live_attributes.rest_name(ids.POSITION)
+    return name if not live_attributes.missing(mesh) else ids.POSITION
