@@ -23,7 +23,7 @@ STORED = {
 def digest(saved_only: bool = False) -> dict[str, object]:
     """Returns what objects, meshes, hair, points and images contain, by their names. With
     `saved_only`, only what the file itself saves: nothing that is linked or that nobody uses, and
-    no pixels.
+    no pixels. What is linked and that nobody uses is left out always: undo may drop it.
     """
     found: dict[str, object] = {}
     for ob in _of("objects", saved_only):
@@ -51,8 +51,17 @@ def digest(saved_only: bool = False) -> dict[str, object]:
 
 
 def _of(kind: str, saved_only: bool) -> list[bpy.types.ID]:
-    blocks = getattr(bpy.data, kind, ())
+    blocks = [
+        each for each in getattr(bpy.data, kind, ()) if each.library is None or _is_used(each)
+    ]
     return [each for each in blocks if not saved_only or (each.users and each.library is None)]
+
+
+def _is_used(linked: bpy.types.ID) -> bool:
+    if isinstance(linked, bpy.types.Object) or not linked.users:
+        return bool(linked.users)
+    users = [ob for ob in bpy.data.objects if ob.data == linked]
+    return not users or any(ob.users for ob in users)
 
 
 def stored(attribute: bpy.types.Attribute) -> tuple[str, str, str]:

@@ -108,10 +108,7 @@ def set_input(modifier: bpy.types.NodesModifier, name: str, value: Any) -> None:
 def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
     """Returns the value of an input, or None if the group has no input of that name."""
     key = _identifier(modifier, name)
-    if not key:
-        return None
-    inputs = _inputs(modifier)
-    return modifier.get(key) if inputs is None else getattr(inputs, key).value
+    return _value(modifier, key) if key else None
 
 
 def check_inputs(modifier: bpy.types.NodesModifier, *names: str) -> None:
@@ -130,7 +127,7 @@ def inputs_of(modifier: bpy.types.NodesModifier) -> Iterator[Any]:
     for item in modifier.node_group.interface.items_tree if modifier.node_group else ():
         is_input = item.item_type == "SOCKET" and item.in_out == "INPUT"
         if is_input and item.socket_type != "NodeSocketGeometry":
-            yield get_input(modifier, item.name)
+            yield _value(modifier, item.identifier)
 
 
 def values_in(group: bpy.types.NodeTree | None) -> Iterator[Any]:
@@ -150,6 +147,11 @@ def values_in(group: bpy.types.NodeTree | None) -> Iterator[Any]:
 def _inputs(modifier: bpy.types.NodesModifier) -> Any:
     """Returns the holder of the inputs from Blender 5.2 on; before, the modifier holds them."""
     return getattr(getattr(modifier, "properties", None), "inputs", None)
+
+
+def _value(modifier: bpy.types.NodesModifier, identifier: str) -> Any:
+    inputs = _inputs(modifier)
+    return modifier.get(identifier) if inputs is None else getattr(inputs, identifier).value
 
 
 def _identifier(modifier: bpy.types.NodesModifier, name: str) -> str:

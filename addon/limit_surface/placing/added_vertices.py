@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where vertices that were added to a mesh are in this frame: they are carried from the shape at
-rest by their neighbors that have places, or where they have no such neighbor, by the nearest vertex
+rest by their neighbours that have places, or if they have no such neighbour, by the nearest vertex
 that has one.
 """
 
@@ -28,8 +28,8 @@ class AddedVertices:
         self.rows = np.flatnonzero(elements.broken & (nearest >= 0))
         self._rest = attributes.read(mesh, _rest_name(mesh))[self.rows].astype(np.float64)
         self._turn, points = _carried(elements, posed, nearest[self.rows], self._rest)
-        row, neighbor = _neighbors(mesh, self.rows, elements.has_place)
-        carried = _carried(elements, posed, neighbor, self._rest[row])[1]
+        row, neighbour = _neighbours(mesh, self.rows, elements.has_place)
+        carried = _carried(elements, posed, neighbour, self._rest[row])[1]
         count = np.bincount(row, minlength=len(self.rows))
         sums = np.stack([np.bincount(row, c, len(self.rows)) for c in carried.T], axis=1)
         self._points = np.where(count[:, None], sums / np.maximum(count, 1)[:, None], points)
@@ -69,7 +69,7 @@ def _carried(
     return turn, now.position + np.einsum("nij,nj->ni", turn, offset)
 
 
-def _neighbors(
+def _neighbours(
     mesh: bpy.types.Mesh, rows: np.ndarray, has_place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Returns pairs: an index into the rows, and a vertex with a place that an edge leads to."""
