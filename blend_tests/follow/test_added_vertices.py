@@ -11,7 +11,7 @@ import pytest
 import scenes
 from follow_scenes import deforming, look
 from limit_surface import ids
-from limit_surface.placing import live, seals
+from limit_surface.placing import live_kept, seals
 from limit_surface.reading import attributes
 from live_scenes import follow
 from mathutils import Matrix
@@ -127,9 +127,9 @@ def test_live_ones_follow_with_their_neighbours_until_they_are_bound():
     assert off_middles(ob, before).max() < 0.06
     added = len(ob.data.vertices) - before
     text = f"{added:,} vertices were added to Limit Mesh, and follow with their neighbors. "
-    assert live.trouble(ob).startswith(text)
+    assert live_kept.trouble(ob).startswith(text)
     follow(ob)
-    assert live.trouble(ob) == ""
+    assert live_kept.trouble(ob) == ""
 
 
 def test_the_panel_names_them():

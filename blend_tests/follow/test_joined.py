@@ -8,7 +8,7 @@ import pytest
 import scenes
 from follow_scenes import deforming
 from limit_surface import ids
-from limit_surface.placing import live
+from limit_surface.placing import live_kept
 from limit_surface.reading import attributes
 from live_scenes import follow
 
@@ -126,7 +126,7 @@ def test_a_file_of_an_earlier_version_says_what_stays_still(tmp_path, capfd):
     bpy.ops.wm.open_mainfile(filepath=path)
     assert f"Limit Surface: {expected}" in capfd.readouterr().out
     bpy.context.scene.frame_set(5)
-    assert live.trouble(bpy.data.objects["Limit Hair"]).startswith(expected)
+    assert live_kept.trouble(bpy.data.objects["Limit Hair"]).startswith(expected)
 
 
 @pytest.mark.parametrize("how", ["LIVE", "NODES", "rebind"])
@@ -141,5 +141,5 @@ def test_strands_of_an_earlier_version_are_bound_where_they_are(how):
         follow(hair, mode=how)
     assert attributes.read(hair.data, ids.REST_ROTATION).any(axis=1).all()
     if how != "NODES":
-        assert not live.trouble(hair)
+        assert not live_kept.trouble(hair)
     check(ob, hair)

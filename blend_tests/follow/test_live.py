@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live, live_attributes
+from limit_surface.placing import live_attributes, live_kept
 from limit_surface.reading import attributes
 from live_scenes import FRAMES, check_hair, deforming, follow
 from mathutils import Matrix
@@ -50,7 +50,7 @@ def test_a_frame_depends_on_nothing_but_itself():
         return [follow_truth.shown(thing, ids.POSITION).tobytes() for thing in (hair, points)]
 
     forwards = {frame: shown(frame) for frame in range(1, 13)}
-    live.forget()
+    live_kept.forget()
     for frame in (12, 3, 7, 1, 11):
         assert shown(frame) == forwards[frame]
     assert len({tuple(bits) for bits in forwards.values()}) == 12
@@ -118,7 +118,7 @@ def test_faces_that_vanish_leave_things_and_name_the_reason():
     ob.data.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
     bpy.context.scene.frame_set(20)
     np.testing.assert_array_equal(scenes.strands(hair), before)
-    assert "Ptex faces" in live.trouble(hair)
+    assert "Ptex faces" in live_kept.trouble(hair)
 
 
 def test_a_surface_without_subdivision_is_followed():
@@ -159,7 +159,7 @@ def test_the_private_scene_is_left_alone():
     hair = scenes.add_hair(ob, follow="NONE")
     follow(hair)
     scenes_before, objects_before = len(bpy.data.scenes), len(bpy.data.objects)
-    live.forget()
+    live_kept.forget()
     bpy.context.scene.frame_set(12)
     assert (len(bpy.data.scenes), len(bpy.data.objects)) == (scenes_before, objects_before)
 
@@ -172,7 +172,7 @@ def test_attributes_that_are_missing_are_named():
     before = scenes.strands(hair).copy()
     bpy.context.scene.frame_set(30)
     np.testing.assert_array_equal(scenes.strands(hair), before)
-    assert ids.LIVE_REST in live.trouble(hair)
+    assert ids.LIVE_REST in live_kept.trouble(hair)
 
 
 @pytest.mark.skipif(bpy.app.version < (4, 3), reason="Python cannot do that before Blender 4.3")

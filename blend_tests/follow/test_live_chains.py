@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live
+from limit_surface.placing import live_kept
 from limit_surface.reading import attributes
 from live_scenes import check_hair, deforming, follow, limit_of
 
@@ -45,7 +45,7 @@ def test_a_frame_depends_on_nothing_but_itself():
 
     forwards = {frame: shown(frame) for frame in range(1, 9)}
     for frame in (8, 3, 7, 1):
-        live.forget()  # as after undo, and in another file
+        live_kept.forget()  # as after undo, and in another file
         assert shown(frame) == forwards[frame]
     assert len(set(forwards.values())) == 8
 

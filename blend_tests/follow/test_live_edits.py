@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live
+from limit_surface.placing import live_kept
 from limit_surface.reading import attributes
 from live_scenes import check_hair, deforming, follow
 
@@ -63,7 +63,7 @@ def test_strands_that_are_combed_just_before_the_frame_changes_keep_their_shape(
 def test_strands_that_are_combed_without_the_extension_keep_their_shape(hair):
     go_to(20)
     combed = comb(hair)
-    live.forget()  # as when the file is loaded
+    live_kept.forget()  # as when the file is loaded
     go_to(3)
     go_to(20)
     np.testing.assert_allclose(scenes.strands(hair), combed, atol=BOUND)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live
+from limit_surface.placing import live_kept
 from limit_surface.placing.followers import live_modifier_of, modifier_of
 from live_scenes import FRAMES, check_hair, deforming, follow
 from mathutils import Matrix
@@ -82,12 +82,12 @@ def test_a_user_that_is_moved_later_stops_all_and_names_the_reason(pair):
     shown = scenes.strands(hair).copy()
     before = twin.matrix_world.copy()
     elsewhere(twin)
-    assert "another transform relative to Cross" in live.trouble(hair)
+    assert "another transform relative to Cross" in live_kept.trouble(hair)
     bpy.context.scene.frame_set(30)
     np.testing.assert_array_equal(scenes.strands(hair), shown)
     twin.matrix_world = before
     bpy.context.view_layer.update()
-    assert not live.trouble(hair)
+    assert not live_kept.trouble(hair)
     check_both(pair)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live
+from limit_surface.placing import live_kept
 from limit_surface.placing.followers import live_modifier_of, modifier_of
 from limit_surface.reading import attributes
 from live_scenes import FRAMES, check_hair, deforming
@@ -88,9 +88,9 @@ def test_roots_that_cannot_be_kept_stay_at_rest_and_are_selected():
     rest, faces = live_scenes.rest(hair).copy(), attributes.read(hair.data, ids.FACE)
     remove_faces(ob.data, {16, 17})
     bpy.context.scene.frame_set(1)
-    assert "Ptex faces" in live.trouble(hair)
+    assert "Ptex faces" in live_kept.trouble(hair)
     rebind(hair, method="FACE")
-    assert not live.trouble(hair)
+    assert not live_kept.trouble(hair)
     lost = selected(hair.data)
     np.testing.assert_array_equal(lost, np.flatnonzero(np.isin(faces, [16, 17])))
     np.testing.assert_array_equal(attributes.read(hair.data, ids.FACE)[lost], -1)

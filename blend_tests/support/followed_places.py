@@ -11,7 +11,7 @@ import limitsurf
 import numpy as np
 from limit_surface import ids, native
 from limit_surface.errors import CageError
-from limit_surface.placing import followers, following, live, live_attributes
+from limit_surface.placing import followers, following, live, live_attributes, live_kept
 from limit_surface.placing.follow_state import State
 from limit_surface.placing.places import NOWHERE, lacking, root_attributes
 from limit_surface.reading import attributes, cage
@@ -69,7 +69,7 @@ def _live(
 ) -> Iterator[tuple[bpy.types.Object, list[bpy.types.Object], str]]:
     for surface, things in live.followers_in(depsgraph).items():
         rest = live_attributes.rest_name(ids.POSITION)
-        yield surface, [ob for ob in things if not live.trouble(ob)], rest
+        yield surface, [ob for ob in things if not live_kept.trouble(ob)], rest
 
 
 def _by_nodes() -> Iterator[tuple[bpy.types.Object, list[bpy.types.Object], str]]:

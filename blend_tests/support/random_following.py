@@ -16,7 +16,7 @@ import followed_places
 import numpy as np
 from contents import digest
 from limit_surface import ids
-from limit_surface.placing import followers, live
+from limit_surface.placing import followers, live_kept
 from limit_surface.reading import attributes
 from random_steps import LeftWrongError, differences, enter_object_mode, push
 
@@ -211,7 +211,7 @@ class Following(random_steps.Session):
             return
         bpy.context.view_layer.update()
         before = digest()
-        live.forget()
+        live_kept.forget()
         show_frame()
         if differing := differences(before, digest()):
             raise LeftWrongError(f"not the same after everything was read anew: {differing}")

@@ -10,7 +10,7 @@ from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..nodes import children, groups
 from ..nodes.follow import TILES
-from ..placing import all_tiles, followers, following, live, live_children
+from ..placing import all_tiles, followers, following, live, live_children, live_kept
 from ..placing.follow_state import State, Trouble
 from ..reading import attributes, cage
 
@@ -50,7 +50,7 @@ def check_live(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
         return
     if not live.is_enabled(scene):
         raise RefusalError(f"{ob.name} follows live, which is switched off in {scene.name}")
-    reason = live.trouble(ob)
+    reason = live_kept.trouble(ob)
     if reason:
         raise RefusalError(reason)
 

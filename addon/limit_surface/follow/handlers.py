@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty
 
 from .. import ids, native
-from ..placing import live
+from ..placing import live, live_kept
 from ..reading import cage
 
 # While a render engine asks for frames in a thread of its own, artists may change the scene.
@@ -37,7 +37,7 @@ def _pose_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None
 @bpy.app.handlers.persistent
 def _forget(*_arguments: object) -> None:
     with _lock:
-        live.forget()
+        live_kept.forget()
 
 
 def _switched(_scene: bpy.types.Scene, context: bpy.types.Context) -> None:
@@ -75,4 +75,4 @@ def detach_handlers() -> None:
     for handlers, handler in _HANDLERS:
         handlers.remove(handler)
     delattr(bpy.types.Scene, ids.LIVE)
-    live.forget()
+    live_kept.forget()

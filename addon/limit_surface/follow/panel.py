@@ -5,7 +5,7 @@ import bpy
 
 from .. import ids, native
 from ..counting import by_count, counted
-from ..placing import live
+from ..placing import live, live_kept
 from ..placing.follow_state import State, Trouble
 from ..placing.followers import anything_follows, live_followers_of
 from ..tasks import wrapped_text
@@ -28,7 +28,7 @@ class VIEW3D_PT_limit_follow(bpy.types.Panel):
             return
         state, things = State.of(context.active_object), _live_things(context.active_object)
         wrong = len(stale.troubles(context, state)) if state else 0
-        wrong += sum(bool(live.trouble(ob)) for ob in things)
+        wrong += sum(bool(live_kept.trouble(ob)) for ob in things)
         if wrong:
             row = self.layout.row()
             row.alert = True
@@ -67,8 +67,8 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
         column.label(text=f"{follow} it live", icon="OBJECT_DATA")
     column.prop(context.scene, ids.LIVE)
     for thing in things:
-        if live.trouble(thing):
-            wrapped_text.draw_alert(layout.box(), live.trouble(thing))
+        if live_kept.trouble(thing):
+            wrapped_text.draw_alert(layout.box(), live_kept.trouble(thing))
     return True
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import bpy
 
 from .. import native
-from ..placing import following, live
+from ..placing import following, live_kept
 from ..placing.follow_state import State, Trouble, surfaces
 from ..placing.followers import live_modifier_of
 from ..reading import cage
@@ -86,7 +86,7 @@ def _report() -> None:
             for trouble in state.troubles(_signatures.get(ObjectKey.of(surface))):
                 print(f"Limit Surface: {trouble.text}")
     for ob in bpy.context.scene.objects:
-        if live_modifier_of(ob) and (text := live.trouble_in_file(ob)):
+        if live_modifier_of(ob) and (text := live_kept.trouble_in_file(ob)):
             print(f"Limit Surface: {text}")
 
 

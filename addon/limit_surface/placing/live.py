@@ -1,75 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All that follows surfaces live: in each frame, and after each change, it is posed by the library.
-
-Nothing that is kept here from frame to frame has an influence on the result: it only saves time.
-"""
+"""All that follows surfaces live is posed by the library in each frame, and after each change."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 
 import bpy
 import numpy as np
 
 from .. import ids, native
-from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
-from ..tasks.object_keys import ObjectKey
 from . import live_attributes, live_surface, live_thing
+from . import live_kept as kept
 from .followers import sharers
 from .live_chains import Chains, Followers
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
-
-_surfaces: dict[ObjectKey, LiveSurface] = {}
-_things: dict[tuple[str, str, str | None], LiveThing] = {}  # by type, name and library
-#: The reasons why objects do not follow at present
-_troubles: dict[ObjectKey, str] = {}
-
-
-def forget() -> None:
-    """Is called when other data may have the same names: after undo, and for another file."""
-    _surfaces.clear()
-    _things.clear()
-    _troubles.clear()
-
-
-def trouble(ob: bpy.types.Object) -> str:
-    """Returns the reason why the object, or a part of it, does not follow at present."""
-    thing = _thing(ob)
-    return (
-        _troubles.get(ObjectKey.of(ob), "")
-        or _lost_frames(ob, thing.lost_frames)
-        or _added(ob, thing.added)
-    )
-
-
-def trouble_in_file(ob: bpy.types.Object) -> str:
-    """Returns what an earlier version of the extension has left behind that does not follow."""
-    return _lost_frames(ob, live_attributes.lost_frames(ob.data))
-
-
-def _lost_frames(ob: bpy.types.Object, count: int) -> str:
-    if not count:
-        return ""
-    things = counted(count, "strands" if ob.type == "CURVES" else "points")
-    return (
-        f"{ob.name}: {things} stay still, because an earlier version of the extension has deleted "
-        "their frames at rest. Follow Limit Surface binds them where they are"
-    )
-
-
-def _added(ob: bpy.types.Object, count: int) -> str:
-    if not count:
-        return ""
-    were = by_count(count, "was", "were")
-    follow = by_count(count, "follows with its neighbors", "follow with their neighbors")
-    return (
-        f"{counted(count, 'vertices')} {were} added to {ob.name}, and {follow}. Follow Limit "
-        "Surface gives them places of their own"
-    )
 
 
 def is_enabled(scene: bpy.types.Scene) -> bool:
@@ -106,7 +54,7 @@ def followers_in(
             continue
         missing = live_attributes.missing(ob.data)
         if missing:
-            _refuse(
+            kept.refuse(
                 [ob], f"{ob.data.name} has no attribute {missing} any more: let it follow again"
             )
             continue
@@ -174,7 +122,7 @@ def _has_to_be_posed(
     changed: set[bpy.types.ID],
     depsgraph: bpy.types.Depsgraph,
 ) -> bool:
-    known, frame = _surfaces.get(ObjectKey.of(surface)), depsgraph.scene.frame_float
+    known, frame = kept.known(surface), depsgraph.scene.frame_float
     if known is None or surface in changed:
         return True
     if any(not _is_posed(ob, known, frame) for ob in things):
@@ -193,7 +141,7 @@ def _read_changed_ones_anew(
     for things in followers.values():
         for ob in things:
             if ob.data in changed:
-                _thing(ob).read_anew()
+                kept.thing(ob).read_anew()
 
 
 def take_up_edits(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
@@ -202,8 +150,8 @@ def take_up_edits(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """
     surface = surface_of(ob)
     if surface is not None:
-        on = _surface(surface, depsgraph)
-        _thing(ob).read_anew()
+        on = kept.surface(surface, depsgraph)
+        kept.thing(ob).read_anew()
         _take_up(ob, surface, on, depsgraph)
 
 
@@ -212,7 +160,7 @@ def read_anew(surface: bpy.types.Object) -> None:
     whether it has changed do not see another order of its faces, which matters once something is
     bound to them.
     """
-    _surfaces.pop(ObjectKey.of(surface), None)
+    kept.drop(surface)
 
 
 def check_sharers(
@@ -243,32 +191,16 @@ def start(ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.
     """Takes the points of the object for those at rest. Raises CageError, MeshError or
     LocationError where the points do not belong to the surface.
     """
-    live_thing.start(ob.data, _surface(surface, depsgraph).limit)
-    _thing(ob).read_anew()
+    live_thing.start(ob.data, kept.surface(surface, depsgraph).limit)
+    kept.thing(ob).read_anew()
 
 
 def admit(ob: bpy.types.Object, surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """Has strands and points follow that were added later. Raises CageError, MeshError or
     LocationError where they do not belong to the surface.
     """
-    LiveThing().admit(ob.data, _surface(surface, depsgraph).limit)
-    _thing(ob).read_anew()
-
-
-def _surface(surface: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> LiveSurface:
-    key = ObjectKey.of(surface)
-    known = _surfaces.get(key)
-    if known is None:
-        known = LiveSurface()
-        known.read(surface, depsgraph)
-        _surfaces[key] = known
-    return known
-
-
-def _thing(ob: bpy.types.Object) -> LiveThing:
-    data = ob.data
-    library = data.library.filepath if data.library else None
-    return _things.setdefault((data.id_type, data.name, library), LiveThing())
+    LiveThing().admit(ob.data, kept.surface(surface, depsgraph).limit)
+    kept.thing(ob).read_anew()
 
 
 def _take_up_all(
@@ -278,11 +210,11 @@ def _take_up_all(
 ) -> list[bpy.types.Object]:
     """Takes up edits in the pose for which they were made. Returns the things that can be posed."""
     try:
-        on = _surface(surface, depsgraph)
+        on = kept.surface(surface, depsgraph)
     except live_surface.errors as error:
-        _refuse(things, native.sentence(error))
+        kept.refuse(things, native.sentence(error))
         return []
-    return list(_each(things, lambda ob: _take_up(ob, surface, on, depsgraph)))
+    return list(kept.each(things, lambda ob: _take_up(ob, surface, on, depsgraph)))
 
 
 def _pose(
@@ -298,23 +230,23 @@ def _pose(
     moved: set[bpy.types.ID] = set()
     if not things:
         return moved
-    on = _surfaces[ObjectKey.of(surface)]
+    on = kept.surface(surface, depsgraph)
     try:
         (on.read_again if is_behind else on.read)(surface, depsgraph)
     except live_surface.errors as error:
-        _surfaces.pop(ObjectKey.of(surface), None)
-        _refuse(things, native.sentence(error))
+        kept.drop(surface)
+        kept.refuse(things, native.sentence(error))
         return moved
     frame = depsgraph.scene.frame_float
 
     def pose(ob: bpy.types.Object) -> None:
         check_sharers(ob, surface, depsgraph)
-        thing = _thing(ob)
+        thing = kept.thing(ob)
         if thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame):
             moved.add(ob.data)
         thing.version, thing.surface_pose = on.version, on.pose
 
-    for _ in _each(things, pose):
+    for _ in kept.each(things, pose):
         pass
     return moved
 
@@ -324,8 +256,8 @@ def _take_up_edits(
     things: Sequence[bpy.types.Object],
     depsgraph: bpy.types.Depsgraph,
 ) -> None:
-    on = _surfaces[ObjectKey.of(surface)]
-    for _ in _each(things, lambda ob: _take_up(ob, surface, on, depsgraph)):
+    on = kept.surface(surface, depsgraph)
+    for _ in kept.each(things, lambda ob: _take_up(ob, surface, on, depsgraph)):
         pass
 
 
@@ -335,7 +267,7 @@ def _take_up(
     on: LiveSurface,
     depsgraph: bpy.types.Depsgraph,
 ) -> None:
-    thing, written = _thing(ob), live_attributes.written(ob.data)
+    thing, written = kept.thing(ob), live_attributes.written(ob.data)
     edited = thing.edits(ob.data, on.limit)
     if edited is None:
         return
@@ -350,25 +282,6 @@ def _take_up(
     else:
         limit = live_surface.surface_at(surface, depsgraph, written.frame)
         thing.take_up(ob.data, edited, limit, written.matrix)
-
-
-def _each(
-    things: Sequence[bpy.types.Object], work: Callable[[bpy.types.Object], None]
-) -> Iterator[bpy.types.Object]:
-    """Yields the things for which the work succeeds, and keeps the reason for the others."""
-    for ob in things:
-        try:
-            work(ob)
-        except (RefusalError, ValueError, MemoryError) as error:
-            _refuse([ob], native.sentence(error) or "There is not enough memory")
-        else:
-            _troubles.pop(ObjectKey.of(ob), None)
-            yield ob
-
-
-def _refuse(things: Sequence[bpy.types.Object], reason: str) -> None:
-    for ob in things:
-        _troubles[ObjectKey.of(ob)] = reason
 
 
 def _matrix(
@@ -390,7 +303,7 @@ def _matrix(
 
 def _is_posed(ob: bpy.types.Object, on: LiveSurface, frame: float) -> bool:
     written = live_attributes.written(ob.data)
-    return written is not None and written.frame == frame and _thing(ob).version == on.version
+    return written is not None and written.frame == frame and kept.thing(ob).version == on.version
 
 
 def _same_place(

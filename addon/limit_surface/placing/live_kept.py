@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What live following keeps from frame to frame: surfaces, what is prepared for things, and the
+reasons why things do not follow. None of it has an influence on where things are: it only saves
+time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import bpy
+
+from .. import native
+from ..counting import by_count, counted
+from ..errors import RefusalError
+from ..tasks.object_keys import ObjectKey
+from . import live_attributes
+from .live_surface import LiveSurface
+from .live_thing import LiveThing
+
+_surfaces: dict[ObjectKey, LiveSurface] = {}
+_things: dict[tuple[str, str, str | None], LiveThing] = {}  # by type, name and library
+#: The reasons why objects do not follow at present
+_troubles: dict[ObjectKey, str] = {}
+
+
+def forget() -> None:
+    """Is called when other data may have the same names: after undo, and for another file."""
+    _surfaces.clear()
+    _things.clear()
+    _troubles.clear()
+
+
+def trouble(ob: bpy.types.Object) -> str:
+    """Returns the reason why the object, or a part of it, does not follow at present."""
+    kept = thing(ob)
+    return (
+        _troubles.get(ObjectKey.of(ob), "")
+        or _lost_frames(ob, kept.lost_frames)
+        or _added(ob, kept.added)
+    )
+
+
+def trouble_in_file(ob: bpy.types.Object) -> str:
+    """Returns what an earlier version of the extension has left behind that does not follow."""
+    return _lost_frames(ob, live_attributes.lost_frames(ob.data))
+
+
+def _lost_frames(ob: bpy.types.Object, count: int) -> str:
+    if not count:
+        return ""
+    things = counted(count, "strands" if ob.type == "CURVES" else "points")
+    return (
+        f"{ob.name}: {things} stay still, because an earlier version of the extension has deleted "
+        "their frames at rest. Follow Limit Surface binds them where they are"
+    )
+
+
+def _added(ob: bpy.types.Object, count: int) -> str:
+    if not count:
+        return ""
+    were = by_count(count, "was", "were")
+    follow = by_count(count, "follows with its neighbors", "follow with their neighbors")
+    return (
+        f"{counted(count, 'vertices')} {were} added to {ob.name}, and {follow}. Follow Limit "
+        "Surface gives them places of their own"
+    )
+
+
+def surface(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> LiveSurface:
+    """Returns the surface in the pose in which it was read last, or if it is not known yet, in that
+    of the depsgraph's frame. Raises CageError and MeshError where there is none.
+    """
+    key = ObjectKey.of(ob)
+    found = _surfaces.get(key)
+    if found is None:
+        found = LiveSurface()
+        found.read(ob, depsgraph)
+        _surfaces[key] = found
+    return found
+
+
+def known(ob: bpy.types.Object) -> LiveSurface | None:
+    """Returns the surface if it was read before."""
+    return _surfaces.get(ObjectKey.of(ob))
+
+
+def drop(ob: bpy.types.Object) -> None:
+    """Has the surface read as a whole for the next pose."""
+    _surfaces.pop(ObjectKey.of(ob), None)
+
+
+def thing(ob: bpy.types.Object) -> LiveThing:
+    data = ob.data
+    library = data.library.filepath if data.library else None
+    return _things.setdefault((data.id_type, data.name, library), LiveThing())
+
+
+def each(
+    things: Sequence[bpy.types.Object], work: Callable[[bpy.types.Object], None]
+) -> Iterator[bpy.types.Object]:
+    """Yields the things for which the work succeeds, and keeps the reason for the others."""
+    for ob in things:
+        try:
+            work(ob)
+        except (RefusalError, ValueError, MemoryError) as error:
+            refuse([ob], native.sentence(error) or "There is not enough memory")
+        else:
+            _troubles.pop(ObjectKey.of(ob), None)
+            yield ob
+
+
+def refuse(things: Sequence[bpy.types.Object], reason: str) -> None:
+    for ob in things:
+        _troubles[ObjectKey.of(ob)] = reason
