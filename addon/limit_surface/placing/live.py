@@ -113,7 +113,7 @@ def _pose_some(
         if surface in good:
             is_behind = chains.depends(surface, moved)
             if is_behind or surface in wanted:
-                moved |= _pose(surface, good[surface], depsgraph, is_behind)
+                moved |= _pose(surface, followers[surface], good[surface], depsgraph, is_behind)
 
 
 def _has_to_be_posed(
@@ -138,7 +138,9 @@ def _read_changed_ones_anew(
     followers: dict[bpy.types.Object, list[bpy.types.Object]], depsgraph: bpy.types.Depsgraph
 ) -> None:
     changed = {update.id.original for update in depsgraph.updates}
-    for things in followers.values():
+    for surface, things in followers.items():
+        if surface.data in changed and (known := kept.known(surface)):
+            known.look_at_faces()
         for ob in things:
             if ob.data in changed:
                 kept.thing(ob).read_anew()
@@ -220,23 +222,28 @@ def _take_up_all(
 def _pose(
     surface: bpy.types.Object,
     things: Sequence[bpy.types.Object],
+    good: Sequence[bpy.types.Object],
     depsgraph: bpy.types.Depsgraph,
     is_behind: bool,
 ) -> set[bpy.types.ID]:
-    """Poses things whose edits have been taken up. Returns the data-blocks that were moved.
-    `is_behind` tells that the surface depends on something that was moved since the depsgraph was
-    evaluated.
+    """Poses the good things, those whose edits have been taken up. Returns the data-blocks that
+    were moved. `is_behind` tells that the surface depends on something that was moved since the
+    depsgraph was evaluated.
     """
     moved: set[bpy.types.ID] = set()
-    if not things:
+    on = kept.known(surface)
+    if on is None:  # there was none when edits were to be taken up
         return moved
-    on = kept.surface(surface, depsgraph)
+    before = on.limit
     try:
         (on.read_again if is_behind else on.read)(surface, depsgraph)
     except live_surface.errors as error:
         kept.drop(surface)
         kept.refuse(things, native.sentence(error))
         return moved
+    if on.limit is not before:  # it may have the faces now that some of the things stand on
+        late = [ob for ob in things if ob not in good]
+        good = [*good, *kept.each(late, lambda ob: _take_up(ob, surface, on, depsgraph))]
     frame = depsgraph.scene.frame_float
 
     def pose(ob: bpy.types.Object) -> None:
@@ -246,7 +253,7 @@ def _pose(
             moved.add(ob.data)
         thing.version, thing.surface_pose = on.version, on.pose
 
-    for _ in kept.each(things, pose):
+    for _ in kept.each(good, pose):
         pass
     return moved
 

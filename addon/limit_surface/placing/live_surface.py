@@ -8,6 +8,7 @@ attribute. Otherwise the control mesh is read anew.
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple
@@ -50,6 +51,13 @@ class LiveSurface:
     def __init__(self) -> None:
         self.version = 0
         self._checksums: tuple[object, ...] | None = None
+        self._faces: tuple[int, int] | None = None  # the number and a checksum of the mesh's faces
+
+    def look_at_faces(self) -> None:
+        """Is called when somebody may have changed the mesh. The checksums of *Limit Capture* do
+        not see faces that were deleted or turned while their edges stayed.
+        """
+        self._faces = None
 
     def read(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
         """Takes the pose of the depsgraph's frame."""
@@ -85,6 +93,11 @@ class LiveSurface:
         captured: _Captured | None,
     ) -> None:
         self.version += 1
+        if captured is not None:
+            if self._faces is None and not ob.data.is_editmode:
+                corners = attributes.read(ob.data, ids.CORNER_VERTEX)
+                self._faces = len(ob.data.polygons), zlib.crc32(corners.data)
+            captured = captured._replace(checksums=(*captured.checksums, self._faces))
         if captured is None or captured.checksums != self._checksums:
             self._checksums = None
             self.limit = cage.read(ob, depsgraph).surface()
