@@ -146,7 +146,11 @@ def test_a_node_group_whose_inputs_have_the_same_name():
     copy.name = "A surface that Blender lists first"
     modifier = copy.modifiers.new("Copy", "NODES")
     modifier.node_group = group
-    modifier["Socket_3"] = cloth
+    inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
+    if inputs is None:  # before Blender 5.2
+        modifier["Socket_3"] = cloth
+    else:
+        inputs.Socket_3.value = cloth
     copy.update_tag()
     bpy.context.view_layer.update()
     hair = scenes.add_hair(copy, follow="NONE")

@@ -197,13 +197,15 @@ class Following(random_steps.Session):
                 raise
             return f"{verb} {properties}: refused"
         self.check_undo(f"{name} {properties}", before)
-        show_frame()
         return f"{verb} {properties}"
 
     def undo_or_redo(self) -> str:
         done = super().undo_or_redo()
         show_frame()
         return done
+
+    def evaluate_animation(self) -> None:
+        show_frame()
 
     def check(self) -> None:
         super().check()
