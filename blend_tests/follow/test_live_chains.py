@@ -104,9 +104,10 @@ def test_edits_are_taken_up_before_the_surface_moves(order, tmp_path):
     np.testing.assert_allclose(moved, 0.02, atol=1e-6)
 
 
-def test_an_edit_that_lasts_while_the_surface_moves():
+@pytest.mark.parametrize("by", ["frame", "modifier"])
+def test_an_edit_that_lasts_while_the_surface_moves(by):
     """Other hair has the garment move while a mesh on it is in Edit Mode."""
-    _, cloth, _ = chain("CBA")
+    body, cloth, _ = chain("CBA")
     scenes.activate(cloth)
     bpy.ops.object.select_all(action="DESELECT")
     cloth.select_set(True)
@@ -118,7 +119,11 @@ def test_an_edit_that_lasts_while_the_surface_moves():
     edited.verts.ensure_lookup_table()
     edited.verts[3].co.z += 0.05
     bmesh.update_edit_mesh(button.data)
-    bpy.context.scene.frame_set(30)
+    if by == "frame":
+        bpy.context.scene.frame_set(30)
+    else:
+        body.modifiers["Wave"].height = 0.6
+        bpy.context.view_layer.update()
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.context.view_layer.update()
     offset = attributes.read(button.data, ids.LIVE_REST)
@@ -160,3 +165,32 @@ def test_a_node_group_whose_inputs_have_the_same_name():
         roots = follow_truth.shown_strands(hair)[:, 0].copy()
         expected = limit_of(hair).evaluate(*scenes.locations(hair.data)).position
         assert np.abs(roots - expected).max() < 1e-5
+
+
+def test_a_surface_that_a_driver_bends_by_an_empty_on_the_garment():
+    _, cloth, old_hair = chain("CBA")
+    bpy.data.objects.remove(old_hair)
+    empty = bpy.data.objects.new("On the garment", None)
+    bpy.context.collection.objects.link(empty)
+    empty.parent, empty.parent_type, empty.parent_vertices = cloth, "VERTEX", [2, 2, 2]
+    other = scenes.cross()
+    other.name = "A surface that Blender lists first"
+    other.shape_key_add(name="Basis")
+    key = other.shape_key_add(name="Raised")
+    key.slider_min, key.slider_max = -10, 10
+    key.data.foreach_set("co", (attributes.read(other.data, ids.POSITION) + [0, 0, 1]).ravel())
+    driver = key.driver_add("value").driver
+    variable = driver.variables.new()
+    variable.type, driver.expression = "TRANSFORMS", "var"
+    variable.targets[0].id, variable.targets[0].transform_type = empty, "LOC_Z"
+    bpy.context.view_layer.update()
+    hair = scenes.add_hair(other, follow="NONE")
+    follow(hair)
+    heights = set()
+    for frame in (30, 7, 12):
+        bpy.context.scene.frame_set(frame)
+        roots = follow_truth.shown_strands(hair)[:, 0].copy()
+        expected = limit_of(hair).evaluate(*scenes.locations(hair.data)).position
+        assert np.abs(roots - expected).max() < 1e-5
+        heights.add(round(float(roots[0, 2]), 2))
+    assert len(heights) == 3

@@ -11,7 +11,7 @@ from __future__ import annotations
 import bpy
 
 from .. import native
-from ..placing import following, live_kept
+from ..placing import following, live_kept, seals
 from ..placing.follow_state import State, Trouble, surfaces
 from ..placing.followers import live_modifier_of
 from ..reading import cage
@@ -62,6 +62,7 @@ def _notice(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 def _forget(*_arguments: object) -> None:
     _signatures.clear()
     _asked.clear()
+    seals.forget()
 
 
 @bpy.app.handlers.persistent

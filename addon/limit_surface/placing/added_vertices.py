@@ -27,32 +27,36 @@ class AddedVertices:
         nearest = seals.nearest_placed(mesh, elements.has_place)
         self.rows = np.flatnonzero(elements.broken & (nearest >= 0))
         self._rest = attributes.read(mesh, _rest_name(mesh))[self.rows].astype(np.float64)
-        self._turn, points = _carried(elements, posed, nearest[self.rows], self._rest)
+        self._turn, self._points = _carried(elements, posed, nearest[self.rows], self._rest)
+        self._matrix = elements.matrix
+        if _follows_live(mesh):  # they are shown where the nearest vertices carry them
+            return
         row, neighbour = _neighbours(mesh, self.rows, elements.has_place)
         carried = _carried(elements, posed, neighbour, self._rest[row])[1]
         count = np.bincount(row, minlength=len(self.rows))
         sums = np.stack([np.bincount(row, c, len(self.rows)) for c in carried.T], axis=1)
-        self._points = np.where(count[:, None], sums / np.maximum(count, 1)[:, None], points)
-        self._matrix = elements.matrix
+        mean = sums / np.maximum(count, 1)[:, None]
+        self._points = np.where(count[:, None], mean, self._points)
 
     def put_into(self, points: np.ndarray) -> None:
         """Changes the points of all elements, in the world, to where the rows are in this frame."""
         if len(self.rows):
             points[self.rows] = transformed(self._matrix, self._points)
 
-    def put_back(self, relocation: Relocation, rows: np.ndarray, frames: np.ndarray) -> None:
-        """Brings the roots and frames of these elements, which have just got places, from this
-        frame to the shape at rest.
-        """
-        _, mine, theirs = np.intersect1d(self.rows, rows, return_indices=True)
-        if not len(mine):
+    def put_back(self, relocation: Relocation) -> None:
+        """Brings the places that the rows have just got in this frame to the shape at rest."""
+        is_found = np.isin(self.rows, relocation.lost, invert=True)
+        rows = self.rows[is_found]
+        if not len(rows):
             return
-        put, back = rows[theirs], self._turn[mine].transpose(0, 2, 1)
-        offset = relocation.values[ids.REST_ROOT][put] - self._points[mine]
-        root = self._rest[mine] + np.einsum("nij,nj->ni", back, offset)
-        relocation.put(ids.REST_ROOT, put, root)
-        turned = native.limitsurf.quaternions(back @ frames[theirs])
-        relocation.put(ids.REST_ROTATION, put, turned)
+        back = self._turn[is_found].transpose(0, 2, 1)
+        offset = relocation.values[ids.REST_ROOT][rows] - self._points[is_found]
+        root = self._rest[is_found] + np.einsum("nij,nj->ni", back, offset)
+        frames = native.limitsurf.rotation_matrices(
+            relocation.values[ids.REST_ROTATION][rows].astype(np.float64)
+        )
+        relocation.put(ids.REST_ROOT, rows, root)
+        relocation.put(ids.REST_ROTATION, rows, native.limitsurf.quaternions(back @ frames))
 
 
 def _carried(
@@ -81,7 +85,10 @@ def _neighbours(
     return number[begin[found]], end[found]
 
 
+def _follows_live(mesh: bpy.types.Mesh) -> bool:
+    return not live_attributes.missing(mesh)
+
+
 def _rest_name(mesh: bpy.types.Mesh) -> str:
     """Returns the name of the attribute that holds the shape at rest."""
-    name = live_attributes.rest_name(ids.POSITION)
-    return name if not live_attributes.missing(mesh) else ids.POSITION
+    return live_attributes.rest_name(ids.POSITION) if _follows_live(mesh) else ids.POSITION

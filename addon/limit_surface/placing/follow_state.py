@@ -86,7 +86,8 @@ class State:
             for ob in self.children
             for text in live_children.obstacles(ob, signature)
         )
-        return [*self._broken(), *(self._stale(signature) if signature else ()), *of_children]
+        stale = self._stale(signature) if signature else ()
+        return [*self._broken(), *stale, *self._added(), *of_children]
 
     def _broken(self) -> Iterator[Trouble]:
         remedy = ids.FOLLOW if self.followers or self.strays else ids.SAMPLE_TABLES
@@ -103,12 +104,6 @@ class State:
             elif of != self.surface:
                 whose = of.name if of else "a surface that was deleted"
                 yield Trouble(f"{ob.name} reads the tables of {whose}", ids.FOLLOW)
-            holder = holder_of(ob)
-            count = seals.count_broken(holder) if holder else 0
-            if count:
-                were = by_count(count, "was", "were")
-                text = f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound"
-                yield Trouble(text, ids.FOLLOW)
         obstacle = _capture_obstacle(self.surface)
         if obstacle:
             text = f"{self.surface.name}: the modifier {ids.CAPTURE_GROUP} {obstacle}"
@@ -119,6 +114,15 @@ class State:
             if tables.points_of(self.samples) is None:
                 text = f"The hidden table of points that {self.samples.name} reads was deleted"
                 yield Trouble(text, ids.SAMPLE_TABLES)
+
+    def _added(self) -> Iterator[Trouble]:
+        for ob in self.followers:
+            holder = holder_of(ob)
+            count = seals.count_broken(holder) if holder else 0
+            if count:
+                were = by_count(count, "was", "were")
+                text = f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound"
+                yield Trouble(text, ids.FOLLOW)
 
     def _stale(self, signature: str) -> Iterator[Trouble]:
         name = self.surface.name

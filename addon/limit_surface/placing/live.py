@@ -280,15 +280,17 @@ def _take_up(
         return
     if written is None:
         thing.take_up(ob.data, edited, on.limit, _matrix(ob, surface, depsgraph))
-    elif thing.version == on.version or written.frame == depsgraph.scene.frame_float:
-        thing.take_up(ob.data, edited, on.limit, written.matrix)
-    # the surface has another pose now than when the points were written
-    elif thing.surface_pose is not None and thing.surface_pose.limit is on.limit:
-        with on.posed_as(thing.surface_pose):
-            thing.take_up(ob.data, edited, on.limit, written.matrix)
-    else:
-        limit = live_surface.surface_at(surface, depsgraph, written.frame)
-        thing.take_up(ob.data, edited, limit, written.matrix)
+        return
+    pose, limit = thing.surface_pose, on.limit
+    if thing.version != on.version:
+        # the surface has another pose now than when the points were written
+        if pose is not None and pose.limit is limit:
+            with on.posed_as(pose):
+                thing.take_up(ob.data, edited, limit, written.matrix)
+            return
+        if written.frame != depsgraph.scene.frame_float:
+            limit = live_surface.surface_at(surface, depsgraph, written.frame)
+    thing.take_up(ob.data, edited, limit, written.matrix)
 
 
 def _matrix(

@@ -14,7 +14,10 @@ from .followers import sharers
 #: Objects that follow live, by the surface that they follow
 Followers = Mapping[bpy.types.Object, list[bpy.types.Object]]
 #: The data-blocks by way of which one object depends on another
-_CARRIERS = {"OBJECT", "COLLECTION", "NODETREE"}
+_CARRIERS = {
+    *("OBJECT", "COLLECTION", "NODETREE"),
+    *("ARMATURE", "CURVE", "KEY", "LATTICE", "MESH", "PARTICLE"),  # what drivers may change
+}
 
 
 class Chains:
@@ -26,9 +29,12 @@ class Chains:
         if len(followers) < 2:  # a single surface cannot depend on what follows another one
             return
         things = [ob for each in followers.values() for ob in each]
-        users = _users_of({user for ob in things for user in (ob, *sharers(ob))})
+        starts: dict[bpy.types.Object, set[bpy.types.ID]] = {
+            ob: {ob, *sharers(ob), ob.data} for ob in things
+        }
+        users = _users_of(set().union(*starts.values()))
         for ob in things:
-            for surface in _reached({ob, *sharers(ob)}, users).intersection(followers):
+            for surface in _reached(starts[ob], users).intersection(followers):
                 self._needed[surface].add(ob.data)
 
     def in_order(self) -> Iterator[bpy.types.Object]:

@@ -59,11 +59,10 @@ def _lost_frames(ob: bpy.types.Object, count: int) -> str:
 def _added(ob: bpy.types.Object, count: int) -> str:
     if not count:
         return ""
-    were = by_count(count, "was", "were")
-    follow = by_count(count, "follows with its neighbors", "follow with their neighbors")
+    were = by_count(count, "was added and has no place of its own", "were added and have no places")
     return (
-        f"{counted(count, 'vertices')} {were} added to {ob.name}, and {follow}. Follow Limit "
-        "Surface gives them places of their own"
+        f"{counted(count, 'vertices')} of {ob.name} {were}: with neighbors that have places they "
+        "follow, without they stay still. Follow Limit Surface gives them places"
     )
 
 

@@ -68,12 +68,11 @@ class LiveSurface:
         on which it depends, and which the depsgraph has not evaluated again.
         """
         captured = _evaluated(ob, depsgraph)
-        if captured is not None:
-            if _is_bare(ob, depsgraph):
-                positions = attributes.read(ob.data, ids.POSITION).astype(np.float64)
-            else:
-                positions = _evaluated_anew(ob, depsgraph)
+        if captured is not None and _is_bare(ob, depsgraph):
+            positions = attributes.read(ob.data, ids.POSITION).astype(np.float64)
             captured = captured._replace(positions=positions)
+        elif captured is not None:
+            captured = _evaluated_anew(ob, depsgraph)
         self._take(ob, depsgraph, captured)
 
     @contextmanager
@@ -146,15 +145,15 @@ def _is_bare(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
     )
 
 
-def _evaluated_anew(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:
-    """Returns the positions of the control mesh, from what the file contains now."""
+def _evaluated_anew(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Captured | None:
+    """Returns what *Limit Capture* hands on by what the file contains now."""
 
     def enable(copy: bpy.types.Object, _scene: bpy.types.Scene) -> None:
         for modifier in copy.modifiers if depsgraph.mode == "RENDER" else ():
             modifier.show_viewport = modifier.show_render
 
     with cage.evaluated_copy(ob, _cut(ob), depsgraph, enable) as evaluated:
-        return attributes.read(evaluated.data, ids.POSITION).astype(np.float64)
+        return _captured(ob, evaluated.data)
 
 
 def _cut(ob: bpy.types.Object) -> int:

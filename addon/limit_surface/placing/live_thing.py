@@ -283,8 +283,8 @@ class _Corners:
 
 
 def _carry_added(data: bpy.types.ID, binding: dict[str, np.ndarray]) -> int:
-    """Gives vertices whose seals are broken the places of the nearest that have their own. Returns
-    the number of those that were added.
+    """Gives vertices whose seals are broken the places of the nearest that have their own, where
+    edges lead to one. Returns the number of those whose seals are broken.
     """
     broken = seals.are_broken(data)
     if broken is None or not broken.any():

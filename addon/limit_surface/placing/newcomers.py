@@ -16,8 +16,11 @@ from ..errors import RefusalError
 from ..reading import cage
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
+from . import following
 from .added_vertices import AddedVertices
-from .posed_surface import Places, PosedSurface, at_closest
+from .places import Places
+from .posed_surface import Places as PosedPlaces
+from .posed_surface import PosedSurface, at_closest
 from .relocation import Elements, Relocation
 
 _DEFORMERS = {"ARMATURE", "CURVE", "HOOK", "LATTICE", "MESH_DEFORM", "SURFACE_DEFORM"}
@@ -29,7 +32,9 @@ def relocations(
     surface: bpy.types.Object,
     depsgraph: bpy.types.Depsgraph,
 ) -> Pieces:
-    """Returns the places (list[Relocation]) of those strands and points that have none yet."""
+    """Returns the places (list[Relocation]) of those strands and points that have none yet. Raises
+    RefusalError where the others were bound before the faces of the surface changed.
+    """
     waiting: dict[bpy.types.ID, Elements] = {}
     for ob in things:
         elements = Elements(ob)
@@ -41,9 +46,15 @@ def relocations(
     check_some_left(posed.in_world, surface.name)
     found = []
     for elements in waiting.values():
+        if elements.has_place.any():
+            following.check_holds(elements.ob, surface, following.signature(posed.cage))
+            Places.read(elements.data).check(posed.in_object.face_count, surface.name)
         rows = np.flatnonzero(~elements.has_place)
-        added = AddedVertices(elements, posed)
-        found.append((yield from bound_at_closest(elements, posed, rows, added=added)))
+        added, points = AddedVertices(elements, posed), elements.first_points()
+        added.put_into(points)
+        relocation = yield from bound_at_closest(elements, posed, rows, points=points)
+        added.put_back(relocation)
+        found.append(relocation)
     return found
 
 
@@ -52,15 +63,13 @@ def bound_at_closest(
     posed: PosedSurface,
     rows: np.ndarray,
     max_distance: float = math.inf,
-    added: AddedVertices | None = None,
+    points: np.ndarray | None = None,
 ) -> Pieces:
     """Binds some elements where they are, and returns the Relocation. Those beyond the distance
-    (world units) are lost. Vertices that were added are where they are in this frame.
+    (world units) are lost. `points` are the first points of all elements, in the world, where they
+    are not those of `elements`.
     """
-    points = elements.first_points()
-    if added:
-        added.put_into(points)
-    points = points[rows]
+    points = (elements.first_points() if points is None else points)[rows]
     lost_row = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(lost_row):
         raise RefusalError(f"Point {rows[lost_row[0]]} has a coordinate that is not a number")
@@ -70,9 +79,7 @@ def bound_at_closest(
     found = hits.face >= 0
     relocation = Relocation(elements, lost=rows[~found], distances=np.zeros(int(found.sum())))
     at = at_closest(posed, hits)
-    frames = yield from put_places(relocation, posed, rows[found], at.face[found], at.uv[found])
-    if added:
-        added.put_back(relocation, rows[found], frames)
+    yield from put_places(relocation, posed, rows[found], at.face[found], at.uv[found])
     return relocation
 
 
@@ -96,7 +103,7 @@ def put_places(
 
 def _turned(
     posed: PosedSurface, face: np.ndarray, uv: np.ndarray, matrix: np.ndarray
-) -> tuple[Places, np.ndarray]:
+) -> tuple[PosedPlaces, np.ndarray]:
     places = posed.places(face, uv.astype(np.float64), matrix)
     return places, native.limitsurf.quaternions(places.frame)
 

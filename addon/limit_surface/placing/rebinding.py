@@ -18,7 +18,7 @@ from ..reading import attributes, cage
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
-from . import curve_points, following, live_binding
+from . import curve_points, following, live_binding, seals
 from .changed_places import ByFace, ByUv, Closest, Finder, UvMaps, stores_uv
 from .followers import (
     holder_of,
@@ -231,13 +231,15 @@ def _moved(
         return turn
 
     turn = yield from aside(turns)
+    is_moving = np.zeros(elements.count, bool)
+    is_moving[rows] = True
+    carrier = _carriers(elements, is_moving)
+    is_moving, before, after, turn = (each[carrier] for each in (is_moving, before, after, turn))
     offsets = np.concatenate([[0], np.cumsum(elements.sizes)])
 
     def move(points: np.ndarray) -> Callable[[Progress], np.ndarray]:
         return lambda _progress: native.limitsurf.move_strands(points, offsets, before, after, turn)
 
-    is_moving = np.zeros(elements.count, bool)
-    is_moving[rows] = True
     for name in _POINTS:
         if elements.rest_name(name) in elements.data.attributes:
             points = elements.read_shape(name).astype(np.float64)
@@ -249,6 +251,18 @@ def _moved(
     if elements.domain == "POINT":
         _turn_attributes(relocation, rows, turn[rows])
     return after[rows]
+
+
+def _carriers(elements: Elements, is_moving: np.ndarray) -> np.ndarray:
+    """Returns for each element the one that it moves with: itself, or for vertices that were added,
+    the nearest one that moves.
+    """
+    carrier = np.arange(elements.count)
+    if elements.broken is not None and elements.broken.any():
+        nearest = seals.nearest_placed(elements.data, is_moving)
+        carried = elements.broken & (nearest >= 0)
+        carrier[carried] = nearest[carried]
+    return carrier
 
 
 def _turn_attributes(relocation: Relocation, rows: np.ndarray, turn: np.ndarray) -> None:
@@ -269,12 +283,16 @@ def _turn_attributes(relocation: Relocation, rows: np.ndarray, turn: np.ndarray)
 
 
 def _bind_others(relocation: Relocation, posed: PosedSurface, max_distance: float) -> Pieces:
-    """Binds elements that had no place where they are."""
+    """Binds elements that had no place where they are now."""
     elements = relocation.elements
     rows = np.flatnonzero(~elements.has_place)
     if not len(rows):
         return
-    others = yield from bound_at_closest(elements, posed, rows, max_distance)
+    points = elements.first_points()
+    moved = relocation.values.get(elements.rest_name(ids.POSITION))
+    if moved is not None and elements.broken is not None:
+        points[elements.broken] = transformed(elements.matrix, moved)[elements.broken]
+    others = yield from bound_at_closest(elements, posed, rows, max_distance, points)
     found = np.setdiff1d(rows, others.lost)
     for name, values in others.values.items():
         relocation.put(name, found, values[found])

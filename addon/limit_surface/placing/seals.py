@@ -3,9 +3,10 @@
 
 Where an edit adds vertices to a mesh, Blender gives them averages of their neighbours' attributes,
 also of the numbers of faces: a place that means nothing. So each vertex that has a place is given a
-seal: a random number and two functions of it, which averages of two seals do not keep. The chance
-is 2^-48 that one does, or that both seals are the same. A seal of 0 stands for vertices that were
-bound before there were seals; their places are trusted.
+seal: a number that is made of its place, and two functions of that number, which averages of two
+seals do not keep. The chance is 2^-48 that one does; 2^-24 is the chance that two places have the
+same seal, and averages of these are not noticed. A seal of 0 stands for vertices that were bound
+before there were seals; their places are trusted.
 """
 
 from __future__ import annotations
@@ -22,6 +23,9 @@ _UNIT = 2.0**-24
 _FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 _SHIFT = np.uint64(40)
 
+#: By the addresses of meshes: the numbers of their vertices, and of those whose seals are broken
+_counts: dict[int, tuple[int, int]] = {}
+
 
 def seal(data: bpy.types.ID, rows: np.ndarray) -> None:
     """Says of these vertices of a mesh that their places are their own; the others keep what they
@@ -29,12 +33,12 @@ def seal(data: bpy.types.ID, rows: np.ndarray) -> None:
     """
     if not isinstance(data, bpy.types.Mesh):
         return
-    count = len(data.vertices)
-    values = np.zeros((count, 3), np.float32)
+    values = np.zeros((len(data.vertices), 3), np.float32)
     if _has_seals(data):
         values[:] = attributes.read(data, ids.SEAL)
-    values[rows] = _seals(count)[rows]
+    values[rows] = _functions(_numbers_of_places(data)[rows])
     attributes.write(data, ids.SEAL, KIND, "POINT", values)
+    _counts.pop(data.as_pointer(), None)
 
 
 def are_broken(data: bpy.types.ID) -> np.ndarray | None:
@@ -53,25 +57,44 @@ def are_broken(data: bpy.types.ID) -> np.ndarray | None:
 
 
 def count_broken(data: bpy.types.ID) -> int:
-    broken = are_broken(data)
-    return 0 if broken is None else int(broken.sum())
+    """Returns the number of such vertices. It is kept as long as the mesh has as many vertices and
+    is not sealed again, because panels ask for it whenever they are drawn.
+    """
+    if not _has_seals(data):
+        return 0
+    size, count = _counts.get(data.as_pointer(), (-1, 0))
+    if size != len(data.vertices):
+        broken = are_broken(data)
+        count = 0 if broken is None else int(broken.sum())
+        _counts[data.as_pointer()] = len(data.vertices), count
+    return count
+
+
+def forget() -> None:
+    """Is called when other data may be in the same place: after undo, and for another file."""
+    _counts.clear()
 
 
 def nearest_placed(mesh: bpy.types.Mesh, has_place: np.ndarray) -> np.ndarray:
     """Returns for each vertex one that has a place (a mask): itself, or that which the fewest edges
-    lead to. Where none is connected, it is -1.
+    lead to. Where none is connected, it is -1. Cost: O(vertices + edges log edges).
     """
     nearest = np.where(has_place, np.arange(len(has_place)), -1)
     edges = attributes.read(mesh, ids.EDGE_VERTICES)
-    while len(edges):
-        known = nearest[edges] >= 0
-        open_ends = known.sum(axis=1) == 1
-        if not open_ends.any():
-            break
-        begin, end = edges[open_ends].T
-        forwards = known[open_ends, 0]
-        nearest[np.where(forwards, end, begin)] = nearest[np.where(forwards, begin, end)]
-        edges = edges[~known.all(axis=1)]
+    edges = edges[~has_place[edges].all(axis=1)]
+    begin, end = np.concatenate([edges, edges[:, ::-1]]).T
+    order = np.argsort(begin, kind="stable")
+    end = end[order]
+    first = np.searchsorted(begin[order], np.arange(len(has_place) + 1))
+    front = np.unique(begin[has_place[begin]])
+    while len(front):
+        sizes = first[front + 1] - first[front]
+        row = np.repeat(np.arange(len(front)), sizes)
+        at = np.arange(len(row)) - np.repeat(np.cumsum(sizes) - sizes, sizes) + first[front][row]
+        found = end[at]
+        new = nearest[found] < 0
+        nearest[found[new]] = nearest[front[row[new]]]
+        front = np.unique(found[new])
     return nearest
 
 
@@ -80,9 +103,15 @@ def _has_seals(data: bpy.types.ID) -> bool:
     return stored is not None and (stored.data_type, stored.domain) == (KIND, "POINT")
 
 
-def _seals(count: int) -> np.ndarray:
-    numbers = (np.arange(1, count + 1, dtype=np.uint64) * _FACTORS[0]) >> _SHIFT
-    return _functions(np.maximum(numbers, np.uint64(1)))
+def _numbers_of_places(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Returns a number from 1 to 2^24 - 1 for each vertex, the same where the places are."""
+    numbers = np.zeros(len(mesh.vertices), np.uint64)
+    for name in (ids.FACE, ids.UV, ids.REST_ROOT, ids.REST_ROTATION):
+        values = attributes.read(mesh, name)
+        for column in values.reshape(len(numbers), -1).view(np.uint32).T:
+            numbers = (numbers ^ column) * _FACTORS[0]
+            numbers ^= numbers >> np.uint64(29)
+    return np.maximum(numbers >> _SHIFT, np.uint64(1))
 
 
 def _functions(numbers: np.ndarray) -> np.ndarray:

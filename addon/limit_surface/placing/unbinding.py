@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from .. import ids, native
+from ..counting import by_count, counted
 from ..errors import CageError, RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE, TILES
@@ -154,9 +155,12 @@ def _freeze(
     if not (followers.is_placed(ob) and ids.TILE in data.attributes):
         return frozen  # somebody has removed or changed its places
     follows = attributes.read(data, ids.TILE) > 0
-    broken = seals.are_broken(data)
-    if broken is not None:
-        follows &= ~broken
+    if count := seals.count_broken(data):
+        were = by_count(count, "was", "were")
+        raise RefusalError(
+            f"{counted(count, 'vertices')} of {ob.name} {were} added since it was bound: run "
+            "Follow Limit Surface first, or unbind it with the shape At Rest"
+        )
     if posed is None or not following.holds(data, following.signature(posed.cage)):
         face = attributes.read(data, ids.FACE)
         face[follows] = NOWHERE

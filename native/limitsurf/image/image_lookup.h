@@ -36,15 +36,11 @@ class ImageLookup {
     if (average > 0) {
       addAverage(s, t, texel, static_cast<float>(average), out);
     }
-    if (kChannels == 4) {
+    if (is_scaled_) {
+      scaleBack(out);
+    } else if (kChannels == 4) {
       for (int c = 0; c < 3; ++c) {
         out[c] = out[3] > 0 ? out[c] / out[3] : 0;
-      }
-    }
-    if (is_scaled_) {
-      for (int c = 0; c < kChannels; ++c) {
-        const double unit = kChannels == 4 && c == 3 ? units_.alpha : units_.colour;
-        out[c] = static_cast<float>(unit * out[c]);
       }
     }
   }
@@ -61,6 +57,18 @@ class ImageLookup {
   static constexpr double kLeastVariance = 0.5;
   /// The bell (1 - r^2)^3 on the disc r < 1 has the variance 1 / 10 along each axis.
   static constexpr double kBellSquare = 10;
+
+  /// Brings numbers in the pyramid's units to those of the image, with straight alpha.
+  void scaleBack(float* out) const {
+    const double alpha = kChannels == 4 ? out[3] : 1;
+    constexpr int kColours = kChannels == 4 ? 3 : kChannels;
+    for (int c = 0; c < kColours; ++c) {
+      out[c] = alpha > 0 ? static_cast<float>(units_.colour * (out[c] / alpha)) : 0;
+    }
+    if (kChannels == 4) {
+      out[3] = static_cast<float>(units_.alpha * alpha);
+    }
+  }
 
   /// A place not far from the image that has the same surroundings, as far as footprints reach.
   double nearby(double x) const {
