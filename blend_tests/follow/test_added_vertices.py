@@ -259,6 +259,13 @@ def test_any_numbers_are_read(spoilt):
     assert np.flatnonzero(seals.are_broken(ob.data)).tolist() == [2]
 
 
+def test_a_mesh_without_vertices_is_sealed():
+    ob = with_places(scenes.add_mesh("Empty", [], []))
+    seals.seal(ob.data, np.arange(0))
+    assert seals.are_broken(ob.data).shape == (0,)
+    assert seals.nearest_placed(ob.data, np.zeros(0, bool)).shape == (0,)
+
+
 def test_a_vertex_group_of_that_name_is_refused():
     _, ob = garment()
     ob.data.attributes.remove(ob.data.attributes[ids.SEAL])

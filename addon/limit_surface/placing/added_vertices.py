@@ -79,7 +79,7 @@ def _neighbours(
     """Returns pairs: an index into the rows, and a vertex with a place that an edge leads to."""
     number = np.full(len(has_place), -1)
     number[rows] = np.arange(len(rows))
-    edges = attributes.read(mesh, ids.EDGE_VERTICES)
+    edges = attributes.edge_ends(mesh)
     begin, end = np.concatenate([edges, edges[:, ::-1]]).T
     found = (number[begin] >= 0) & has_place[end]
     return number[begin[found]], end[found]

@@ -23,7 +23,7 @@ _UNIT = 2.0**-24
 _FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 _SHIFT = np.uint64(40)
 
-#: By the addresses of meshes: the numbers of their vertices, and of those whose seals are broken
+#: By the meshes' session_uid: the numbers of their vertices, and of those whose seals are broken
 _counts: dict[int, tuple[int, int]] = {}
 
 
@@ -38,7 +38,7 @@ def seal(data: bpy.types.ID, rows: np.ndarray) -> None:
         values[:] = attributes.read(data, ids.SEAL)
     values[rows] = _functions(_numbers_of_places(data)[rows])
     attributes.write(data, ids.SEAL, KIND, "POINT", values)
-    _counts.pop(data.as_pointer(), None)
+    _counts.pop(data.session_uid, None)
 
 
 def are_broken(data: bpy.types.ID) -> np.ndarray | None:
@@ -62,16 +62,16 @@ def count_broken(data: bpy.types.ID) -> int:
     """
     if not _has_seals(data):
         return 0
-    size, count = _counts.get(data.as_pointer(), (-1, 0))
+    size, count = _counts.get(data.session_uid, (-1, 0))
     if size != len(data.vertices):
         broken = are_broken(data)
         count = 0 if broken is None else int(broken.sum())
-        _counts[data.as_pointer()] = len(data.vertices), count
+        _counts[data.session_uid] = len(data.vertices), count
     return count
 
 
 def forget() -> None:
-    """Is called when other data may be in the same place: after undo, and for another file."""
+    """Is called when meshes may be others than before: after undo, and for another file."""
     _counts.clear()
 
 
@@ -80,7 +80,7 @@ def nearest_placed(mesh: bpy.types.Mesh, has_place: np.ndarray) -> np.ndarray:
     lead to. Where none is connected, it is -1. Cost: O(vertices + edges log edges).
     """
     nearest = np.where(has_place, np.arange(len(has_place)), -1)
-    edges = attributes.read(mesh, ids.EDGE_VERTICES)
+    edges = attributes.edge_ends(mesh)
     edges = edges[~has_place[edges].all(axis=1)]
     begin, end = np.concatenate([edges, edges[:, ::-1]]).T
     order = np.argsort(begin, kind="stable")
@@ -108,7 +108,7 @@ def _numbers_of_places(mesh: bpy.types.Mesh) -> np.ndarray:
     numbers = np.zeros(len(mesh.vertices), np.uint64)
     for name in (ids.FACE, ids.UV, ids.REST_ROOT, ids.REST_ROTATION):
         values = attributes.read(mesh, name)
-        for column in values.reshape(len(numbers), -1).view(np.uint32).T:
+        for column in np.atleast_2d(values.view(np.uint32).T):
             numbers = (numbers ^ column) * _FACTORS[0]
             numbers ^= numbers >> np.uint64(29)
     return np.maximum(numbers >> _SHIFT, np.uint64(1))

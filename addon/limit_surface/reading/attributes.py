@@ -85,6 +85,13 @@ def curve_offsets(data: bpy.types.Curves) -> np.ndarray:
     return offsets
 
 
+def edge_ends(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Returns the vertices of the edges (n, 2). Blender stores nothing for a mesh without edges."""
+    if ids.EDGE_VERTICES not in mesh.attributes:
+        return np.empty((0, 2), np.int32)
+    return read(mesh, ids.EDGE_VERTICES)
+
+
 def size_in_bytes(attribute: bpy.types.Attribute) -> int:
     layout = LAYOUTS[attribute.data_type]
     return len(attribute.data) * layout.width * np.dtype(layout.dtype).itemsize
