@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live_kept
+from limit_surface.placing import live_kept, live_surface
 from limit_surface.reading import attributes
 from live_scenes import check_hair, deforming, follow
 
@@ -50,6 +50,19 @@ def test_combed_strands_stay_where_they_are_and_follow_from_there(hair):
         check_hair(surface(), hair)
     go_to(20)
     np.testing.assert_allclose(scenes.strands(hair), combed, atol=BOUND)
+
+
+def test_a_look_at_another_frame_leaves_animated_values_as_they_are(hair):
+    go_to(20)
+    bent = surface().data.shape_keys.key_blocks["Bent"]
+    before = bent.value
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    other = live_surface.surface_at(surface(), depsgraph, 3.0)
+    assert bent.value == before
+    surface().data.update_tag()
+    bpy.context.view_layer.update()
+    check_hair(surface(), hair)
+    assert np.abs(other.positions - live_scenes.limit_of(hair).positions).max() > 0.1
 
 
 def test_strands_that_are_combed_just_before_the_frame_changes_keep_their_shape(hair):

@@ -217,11 +217,17 @@ def evaluated_copy(
             scene.collection.objects.link(copy)
             layer = private_scene.layer(scene, depsgraph.view_layer)
             layer.update()
-            evaluated = copy.evaluated_get(layer.depsgraph)
-            # where this is animated or driven, the object is not evaluated
-            if evaluated.hide_viewport:
-                raise CageError(f"{ob.name} is hidden in the viewport at this frame")
-            yield evaluated
+            try:
+                evaluated = copy.evaluated_get(layer.depsgraph)
+                # where this is animated or driven, the object is not evaluated
+                if evaluated.hide_viewport:
+                    raise CageError(f"{ob.name} is hidden in the viewport at this frame")
+                yield evaluated
+            finally:
+                if scene.frame_float != depsgraph.scene.frame_float:
+                    # evaluation has written animated values into the file: those of another frame
+                    scene.frame_float = depsgraph.scene.frame_float
+                    layer.update()
     finally:
         _busy = was_busy
 
