@@ -65,6 +65,8 @@ def animate(ob: bpy.types.Object) -> None:
         key.keyframe_insert("value", frame=frame)
     wave = ob.modifiers.new("Wave", "WAVE")
     wave.height = 0.1
+    scene = bpy.context.scene
+    scene.frame_set(scene.frame_current)  # until now the value of the last key is shown
 
 
 def diagonal(ob: bpy.types.Object) -> float:

@@ -38,6 +38,7 @@ def with_armature(scene: str) -> bpy.types.Object:
         bone.rotation_euler = (0, angle, 0)
         bone.keyframe_insert("rotation_euler", frame=frame)
     scenes.add_subsurf(ob)
+    bpy.context.scene.frame_set(bpy.context.scene.frame_current)
     return ob
 
 

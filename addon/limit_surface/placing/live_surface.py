@@ -99,7 +99,9 @@ class LiveSurface:
             captured = captured._replace(checksums=(*captured.checksums, self._faces))
         if captured is None or captured.checksums != self._checksums:
             self._checksums = None
-            self.limit = cage.read(ob, depsgraph).surface()
+            # without the modifier the surface is read after each update
+            found = cage.read(ob, depsgraph, puts_back=captured is not None)
+            self.limit = found.surface()
         if captured is None:
             self.pose = SurfacePose(self.limit, self.limit.positions.copy())
             return

@@ -19,7 +19,16 @@ import numpy as np
 
 from .. import ids, native
 from ..errors import CageError
-from . import attributes, private_scene, rules, sharpness, subdivided_mesh, transform, uv_map
+from . import (
+    animated_values,
+    attributes,
+    private_scene,
+    rules,
+    sharpness,
+    subdivided_mesh,
+    transform,
+    uv_map,
+)
 from .rules import Interpolation
 from .uv_map import UvMap
 
@@ -124,9 +133,11 @@ class Cage:
         )
 
 
-def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Cage:
-    """Reads the object's cage at the depsgraph's frame. Raises CageError where it has none."""
-    with opened(ob, depsgraph) as (found, _):
+def read(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, *, puts_back: bool = True) -> Cage:
+    """Reads the object's cage at the depsgraph's frame. Raises CageError where it has none. See
+    `evaluated_copy` for `puts_back`.
+    """
+    with opened(ob, depsgraph, puts_back=puts_back) as (found, _):
         return found
 
 
@@ -147,6 +158,7 @@ def opened(
     ob: bpy.types.Object,
     depsgraph: bpy.types.Depsgraph,
     adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
+    puts_back: bool = True,
 ) -> Iterator[tuple[Cage, bpy.types.Mesh]]:
     """Yields the cage, and the mesh that it is read from, which lasts as long as the context."""
     if ob.data.is_editmode:  # the mesh has no faces for others then
@@ -155,7 +167,7 @@ def opened(
     cut = ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
     check_modifiers(ob, cut)
     found = rules.read(subsurf)
-    with evaluated_copy(ob, cut, depsgraph, adjust) as evaluated:
+    with evaluated_copy(ob, cut, depsgraph, adjust, puts_back) as evaluated:
         mesh = evaluated.data
         if not mesh.polygons:
             raise CageError(f"{ob.name} has no faces")
@@ -201,9 +213,12 @@ def evaluated_copy(
     cut: int,
     depsgraph: bpy.types.Depsgraph,
     adjust: Callable[[bpy.types.Object, bpy.types.Scene], None] | None = None,
+    puts_back: bool = True,
 ) -> Iterator[bpy.types.Object]:
     """Yields the object evaluated with its first `cut` modifiers; `adjust` may change the copy and
-    its private scene before that.
+    its private scene before that. With `puts_back`, animated values that were changed without a key
+    are taken as they are shown, and kept. Blender updates the user's scene afterwards if there are
+    any, so whoever is called by each update must not ask for it.
     """
     global _busy
     was_busy, _busy = _busy, True
@@ -217,6 +232,10 @@ def evaluated_copy(
             scene.collection.objects.link(copy)
             layer = private_scene.layer(scene, depsgraph.view_layer)
             layer.update()
+            is_of_another_frame = scene.frame_float != depsgraph.scene.frame_float
+            puts_back_now = puts_back and not is_of_another_frame
+            if puts_back_now and _put_back(layer, depsgraph, copy, ob):
+                layer.update()
             try:
                 evaluated = copy.evaluated_get(layer.depsgraph)
                 # where this is animated or driven, the object is not evaluated
@@ -224,12 +243,23 @@ def evaluated_copy(
                     raise CageError(f"{ob.name} is hidden in the viewport at this frame")
                 yield evaluated
             finally:
-                if scene.frame_float != depsgraph.scene.frame_float:
-                    # evaluation has written animated values into the file: those of another frame
+                if is_of_another_frame:
+                    # evaluation has written animated values into the file: those of that frame
                     scene.frame_float = depsgraph.scene.frame_float
                     layer.update()
+                    if puts_back:
+                        _put_back(layer, depsgraph, copy, ob)
     finally:
         _busy = was_busy
+
+
+def _put_back(
+    layer: bpy.types.ViewLayer,
+    shown: bpy.types.Depsgraph,
+    copy: bpy.types.Object,
+    ob: bpy.types.Object,
+) -> bool:
+    return animated_values.put_back(layer.depsgraph, shown, {copy: ob})
 
 
 @contextmanager
