@@ -72,22 +72,23 @@ def _curves(action: bpy.types.Action | None, slot: object) -> Iterator[bpy.types
 
 
 def _copy(source: bpy.types.ID, target: bpy.types.ID, path: str, index: int) -> bool:
-    """Copies a value, and returns whether it was another one."""
+    """Copies a value, and returns whether it was another one. What a curve belonged to may have
+    been deleted, and some values cannot be written.
+    """
     try:
-        owner = target.path_resolve(path, False).data
         old, new = target.path_resolve(path), source.path_resolve(path)
-    except (ValueError, AttributeError):  # what the curve belonged to was deleted
-        return False
-    if hasattr(old, "__len__") and not isinstance(old, str):
-        if index >= len(old) or old[index] == new[index]:
+        if hasattr(old, "__len__") and not isinstance(old, str):
+            is_other = old[index] != new[index]
+            if is_other:
+                old[index] = new[index]
+            return bool(is_other)
+        if old == new:
             return False
-        old[index] = new[index]
-        return True
-    if old == new:
+        owner = target.path_resolve(path, False).data
+        if path.endswith('"]'):
+            owner[path.rpartition('["')[2].removesuffix('"]')] = new
+        else:
+            setattr(owner, path.rpartition(".")[2], new)
+    except (ValueError, AttributeError, TypeError, IndexError, KeyError):
         return False
-    key = path.rpartition('["')[2].removesuffix('"]')
-    if path.endswith('"]'):
-        owner[key] = new
-    else:
-        setattr(owner, path.rpartition(".")[2], new)
     return True
