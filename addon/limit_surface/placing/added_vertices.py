@@ -24,10 +24,10 @@ class AddedVertices:
         self.rows: np.ndarray = np.empty(0, np.int64)
         if elements.broken is None or not elements.broken.any():
             return
-        nearest = seals.nearest_placed(mesh, elements.has_place)
-        self.rows = np.flatnonzero(elements.broken & (nearest >= 0))
+        by = seals.carriers(mesh, elements.broken, elements.has_place)
+        self.rows = np.flatnonzero(by != np.arange(len(by)))
         self._rest = attributes.read(mesh, _rest_name(mesh))[self.rows].astype(np.float64)
-        self._turn, self._points = _carried(elements, posed, nearest[self.rows], self._rest)
+        self._turn, self._points = _carried(elements, posed, by[self.rows], self._rest)
         self._matrix = elements.matrix
         if _follows_live(mesh):  # they are shown where the nearest vertices carry them
             return

@@ -81,13 +81,19 @@ def live_modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:
     return next(groups.modifiers(ob, ids.FOLLOW_LIVE_GROUP), None)
 
 
+def followed_surface(ob: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the surface that the object follows, by nodes or live, if it does."""
+    modifier = modifier_of(ob) or live_modifier_of(ob)
+    return groups.get_input(modifier, SURFACE) if modifier else None
+
+
 def surface_of(ob: bpy.types.Object) -> bpy.types.Object | None:
     """Returns the surface on which the object's things stand: that which it follows, hair's own
     surface, or a parent that is a mesh.
     """
-    modifier = modifier_of(ob) or live_modifier_of(ob)
-    if modifier and groups.get_input(modifier, SURFACE):
-        return groups.get_input(modifier, SURFACE)
+    followed = followed_surface(ob)
+    if followed:
+        return followed
     if ob.type == "CURVES" and ob.data.surface:
         return ob.data.surface
     return ob.parent if ob.parent and ob.parent.type == "MESH" else None

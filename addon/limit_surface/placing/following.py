@@ -263,13 +263,12 @@ def settle(ob: bpy.types.Object) -> None:
 
 def ensure_capture(surface: bpy.types.Object) -> None:
     """Puts the modifier *Limit Capture* directly before the subdivision."""
-    subsurf = rules.find_subsurf(surface)
     modifier = next(groups.modifiers(surface, ids.CAPTURE_GROUP), None)
     if modifier is None:
         modifier = groups.add_modifier(surface, CAPTURE)
     modifier.show_viewport = modifier.show_render = True
     here = surface.modifiers.find(modifier.name)
-    there = surface.modifiers.find(subsurf.name) if subsurf else len(surface.modifiers)
+    there = rules.place_of_subsurf(surface)
     wanted = there - 1 if here < there else there
     if here != wanted:
         surface.modifiers.move(here, wanted)

@@ -141,7 +141,7 @@ def _evaluated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Capture
 def _is_bare(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
     """Tells whether the control mesh is the object's own mesh: no modifier changes it."""
     shown = "show_viewport" if depsgraph.mode == "VIEWPORT" else "show_render"
-    before = [m for m in ob.modifiers[: _cut(ob)] if getattr(m, shown)]
+    before = [m for m in ob.modifiers[: rules.place_of_subsurf(ob)] if getattr(m, shown)]
     return ob.data.shape_keys is None and all(
         m.type == "NODES" and groups.name_of(m.node_group) in _WITHOUT_EFFECT for m in before
     )
@@ -154,14 +154,8 @@ def _evaluated_anew(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ca
         for modifier in copy.modifiers if depsgraph.mode == "RENDER" else ():
             modifier.show_viewport = modifier.show_render
 
-    with cage.evaluated_copy(ob, _cut(ob), depsgraph, enable) as evaluated:
+    with cage.evaluated_copy(ob, rules.place_of_subsurf(ob), depsgraph, enable) as evaluated:
         return _captured(ob, evaluated.data)
-
-
-def _cut(ob: bpy.types.Object) -> int:
-    """Returns the number of modifiers before the subdivision."""
-    subsurf = rules.find_subsurf(ob)
-    return ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
 
 
 def _captured(ob: bpy.types.Object, mesh: bpy.types.Mesh) -> _Captured | None:

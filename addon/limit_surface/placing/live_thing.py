@@ -283,17 +283,16 @@ class _Corners:
 
 
 def _carry_added(data: bpy.types.ID, binding: dict[str, np.ndarray]) -> int:
-    """Gives vertices whose seals are broken the places of the nearest that have their own, where
-    edges lead to one. Returns the number of those whose seals are broken.
+    """Gives vertices whose seals are broken the places of those that carry them. Returns the number
+    of those whose seals are broken.
     """
     broken = seals.are_broken(data)
     if broken is None or not broken.any():
         return 0
-    nearest = seals.nearest_placed(data, ~broken & (binding[ids.FACE] != NOWHERE))
     binding[ids.FACE][broken] = NOWHERE
-    carried = np.flatnonzero(broken & (nearest >= 0))
+    by = seals.carriers(data, broken, binding[ids.FACE] != NOWHERE)
     for name in ROOT_KINDS:
-        binding[name][carried] = binding[name][nearest[carried]]
+        binding[name] = binding[name][by]
     return int(broken.sum())
 
 

@@ -18,7 +18,6 @@ from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.refused_faces import check_some_left
 from . import following
 from .added_vertices import AddedVertices
-from .places import Places
 from .posed_surface import Places as PosedPlaces
 from .posed_surface import PosedSurface, at_closest
 from .relocation import Elements, Relocation
@@ -48,7 +47,7 @@ def relocations(
     for elements in waiting.values():
         if elements.has_place.any():
             following.check_holds(elements.ob, surface, following.signature(posed.cage))
-            Places.read(elements.data).check(posed.in_object.face_count, surface.name)
+            elements.places.check(posed.in_object.face_count, surface.name)
         rows = np.flatnonzero(~elements.has_place)
         added, points = AddedVertices(elements, posed), elements.first_points()
         added.put_into(points)

@@ -233,8 +233,9 @@ def _moved(
     turn = yield from aside(turns)
     is_moving = np.zeros(elements.count, bool)
     is_moving[rows] = True
-    carrier = _carriers(elements, is_moving)
-    is_moving, before, after, turn = (each[carrier] for each in (is_moving, before, after, turn))
+    if elements.broken is not None:
+        by = seals.carriers(elements.data, elements.broken, is_moving)
+        is_moving, before, after, turn = (each[by] for each in (is_moving, before, after, turn))
     offsets = np.concatenate([[0], np.cumsum(elements.sizes)])
 
     def move(points: np.ndarray) -> Callable[[Progress], np.ndarray]:
@@ -251,18 +252,6 @@ def _moved(
     if elements.domain == "POINT":
         _turn_attributes(relocation, rows, turn[rows])
     return after[rows]
-
-
-def _carriers(elements: Elements, is_moving: np.ndarray) -> np.ndarray:
-    """Returns for each element the one that it moves with: itself, or for vertices that were added,
-    the nearest one that moves.
-    """
-    carrier = np.arange(elements.count)
-    if elements.broken is not None and elements.broken.any():
-        nearest = seals.nearest_placed(elements.data, is_moving)
-        carried = elements.broken & (nearest >= 0)
-        carrier[carried] = nearest[carried]
-    return carrier
 
 
 def _turn_attributes(relocation: Relocation, rows: np.ndarray, turn: np.ndarray) -> None:

@@ -49,7 +49,12 @@ class Elements:
         self.broken = seals.are_broken(holder)
         self.has_place = np.zeros(self.count, bool)
         if is_placed(ob):
-            self.has_place[Places.read(holder).rows] = True
+            self.has_place[self.places.rows] = True
+
+    @property
+    def places(self) -> Places:
+        """The locations as they are stored."""
+        return Places.among({name: self.read(name) for name in ROOT_KINDS})
 
     def read(self, name: str) -> np.ndarray:
         """Returns a stored attribute of the places; zeros, or no face, where there is none yet."""

@@ -98,6 +98,18 @@ def nearest_placed(mesh: bpy.types.Mesh, has_place: np.ndarray) -> np.ndarray:
     return nearest
 
 
+def carriers(mesh: bpy.types.Mesh, broken: np.ndarray, has_place: np.ndarray) -> np.ndarray:
+    """Returns for each vertex the one that carries it: itself, or for those whose seals are broken
+    (a mask), the nearest one that has a place, where edges lead to one.
+    """
+    carrier = np.arange(len(broken))
+    if broken.any():
+        nearest = nearest_placed(mesh, has_place)
+        carried = broken & (nearest >= 0)
+        carrier[carried] = nearest[carried]
+    return carrier
+
+
 def _has_seals(data: bpy.types.ID) -> bool:
     stored = data.attributes.get(ids.SEAL) if isinstance(data, bpy.types.Mesh) else None
     return stored is not None and (stored.data_type, stored.domain) == (KIND, "POINT")

@@ -163,10 +163,9 @@ def opened(
     """Yields the cage, and the mesh that it is read from, which lasts as long as the context."""
     if ob.data.is_editmode:  # the mesh has no faces for others then
         raise CageError(f"{ob.name} is in Edit Mode: leave it first")
-    subsurf = rules.find_subsurf(ob)
-    cut = ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
+    cut = rules.place_of_subsurf(ob)
     check_modifiers(ob, cut)
-    found = rules.read(subsurf)
+    found = rules.read(rules.find_subsurf(ob))
     with evaluated_copy(ob, cut, depsgraph, adjust, puts_back) as evaluated:
         mesh = evaluated.data
         if not mesh.polygons:

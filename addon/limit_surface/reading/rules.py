@@ -61,6 +61,12 @@ def find_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
     return shown_subsurf(ob) or rendered_subsurf(ob)
 
 
+def place_of_subsurf(ob: bpy.types.Object) -> int:
+    """Returns the number of modifiers before that modifier, or of all modifiers without one."""
+    subsurf = find_subsurf(ob)
+    return ob.modifiers.find(subsurf.name) if subsurf else len(ob.modifiers)
+
+
 def shown_subsurf(ob: bpy.types.Object) -> bpy.types.SubsurfModifier | None:
     """Returns the first Subdivision Surface modifier that is enabled in the viewport."""
     return next((m for m in ob.modifiers if m.type == "SUBSURF" and m.show_viewport), None)

@@ -7,9 +7,7 @@ import numpy as np
 from .. import ids, native
 from ..counting import by_count, counted
 from ..errors import RefusalError
-from ..nodes import groups
-from ..nodes.follow import SURFACE
-from ..placing.followers import live_modifier_of, modifier_of, sharers
+from ..placing.followers import followed_surface, sharers
 from ..placing.posed_surface import transformed
 from ..placing.present_shape import PresentShape
 from ..placing.rotations import WorldSpace, unit
@@ -151,8 +149,7 @@ def _check_sharers(ob: bpy.types.Object, target: bpy.types.Object) -> None:
     places cannot be on both.
     """
     for other in sharers(ob):
-        modifier = modifier_of(other) or live_modifier_of(other)
-        theirs = groups.get_input(modifier, SURFACE) if modifier else None
+        theirs = followed_surface(other)
         if theirs not in (None, target):
             raise RefusalError(
                 f"{ob.name} shares its data with {other.name}, which follows {theirs.name}: make "

@@ -78,8 +78,12 @@ struct GivenImage {
 
   const float* pixels;
   int width, height, channels;
-  bool multiply;  ///< colours are to be multiplied by alpha
+  bool multiply;  ///< there is an alpha, by which colours are to be multiplied
 };
+
+GivenImage given(const float* pixels, int width, int height, int channels, bool premultiplied) {
+  return {pixels, width, height, channels, channels == 4 && !premultiplied};
+}
 
 /// The largest magnitude of a row's colours after they are multiplied by alpha.
 double largestProduct(const float* row, std::size_t length) {
@@ -108,7 +112,7 @@ PixelUnits unitsOf(const GivenImage& image, int threads) {
     const float colour = std::max({most[0], most[1], most[2], image.hasAlpha() ? 0 : most[3]}),
                 alpha = image.hasAlpha() ? most[3] : 1;
     const double bound = static_cast<double>(colour) * (image.multiply ? alpha : 1);
-    rows[y] = {bound > PixelUnits::kLargest && image.hasAlpha() && image.multiply
+    rows[y] = {bound > PixelUnits::kLargest && image.multiply
                    ? largestProduct(image.row(y), image.rowLength())
                    : bound,
                alpha};
@@ -134,15 +138,14 @@ PixelGrid copied(const GivenImage& image, const PixelUnits& units, int threads) 
     const float* const from = image.row(y);
     float* const to = grid.row(static_cast<int>(y));
     std::copy(from, from + image.rowLength(), to);
-    for (std::size_t i = 0; image.multiply && image.hasAlpha() && i < image.rowLength(); i += 4) {
+    for (std::size_t i = 0; image.multiply && i < image.rowLength(); i += 4) {
       for (std::size_t c = 0; c < 3; ++c) {
         to[i + c] *= to[i + 3];
       }
     }
     for (std::size_t i = 0; is_scaled && i < image.rowLength(); ++i) {
       const bool is_alpha = image.hasAlpha() && i % 4 == 3;
-      const double factor =
-          image.multiply && image.hasAlpha() && !is_alpha ? from[i / 4 * 4 + 3] : 1;
+      const double factor = image.multiply && !is_alpha ? from[i / 4 * 4 + 3] : 1;
       to[i] = static_cast<float>(factor * from[i] / (is_alpha ? units.alpha : units.colour));
     }
   };
@@ -197,8 +200,9 @@ void checkSamples(Eigen::Ref<const ImagePoints> st, Eigen::Ref<const Footprints>
 FilteredImage::FilteredImage(const float* pixels, int width, int height, int channels,
                              Extension extension, bool premultiplied, int threads)
     : units_((checkThreads(threads), checkSize(width, height, channels),
-              unitsOf({pixels, width, height, channels, !premultiplied}, threads))),
-      pyramid_(copied({pixels, width, height, channels, !premultiplied}, units_, threads), threads),
+              unitsOf(given(pixels, width, height, channels, premultiplied), threads))),
+      pyramid_(copied(given(pixels, width, height, channels, premultiplied), units_, threads),
+               threads),
       extension_(extension) {
   units_.colour /= units_.alpha;
 }

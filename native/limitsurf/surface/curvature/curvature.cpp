@@ -10,7 +10,6 @@
 
 #include "limitsurf/batch_parts.h"
 #include "limitsurf/row_check.h"
-#include "limitsurf/surface/batch/changed_locations.h"
 #include "limitsurf/surface/curvature/irregular_curvature.h"
 #include "limitsurf/surface/differential.h"
 #include "limitsurf/surface/limit_surface_data.h"
