@@ -40,6 +40,12 @@ def _forget(*_arguments: object) -> None:
         live_kept.forget()
 
 
+@bpy.app.handlers.persistent
+def _forget_after_undo(*_arguments: object) -> None:
+    with _lock:
+        live_kept.forget_after_undo()
+
+
 def _switched(_scene: bpy.types.Scene, context: bpy.types.Context) -> None:
     _forget()
     if context.scene == _scene and live.is_enabled(_scene):
@@ -49,8 +55,8 @@ def _switched(_scene: bpy.types.Scene, context: bpy.types.Context) -> None:
 _HANDLERS = (
     (bpy.app.handlers.frame_change_post, _pose_frame),
     (bpy.app.handlers.depsgraph_update_post, _pose_change),
-    (bpy.app.handlers.undo_post, _forget),
-    (bpy.app.handlers.redo_post, _forget),
+    (bpy.app.handlers.undo_post, _forget_after_undo),
+    (bpy.app.handlers.redo_post, _forget_after_undo),
     (bpy.app.handlers.load_post, _forget),
 )
 

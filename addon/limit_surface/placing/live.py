@@ -16,6 +16,7 @@ from . import live_attributes, live_surface, live_thing
 from . import live_kept as kept
 from .followers import sharers
 from .live_chains import Chains, Followers
+from .live_edits import Edits
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
 
@@ -234,14 +235,15 @@ def _pose(
     on = kept.known(surface)
     if on is None:  # there was none when edits were to be taken up
         return moved
-    before = on.limit
+    before, frame_before = on.limit, on.pose.frame
     try:
         (on.read_again if is_behind else on.read)(surface, depsgraph)
     except live_surface.errors as error:
         kept.drop(surface)
         kept.refuse(things, native.sentence(error))
         return moved
-    if on.limit is not before:  # it may have the faces now that some of the things stand on
+    # it may have the faces, or the pose, now that some of the things were written for
+    if on.limit is not before or on.pose.frame != frame_before:
         late = [ob for ob in things if ob not in good]
         good = [*good, *kept.each(late, lambda ob: _take_up(ob, surface, on, depsgraph))]
     frame = depsgraph.scene.frame_float
@@ -274,23 +276,13 @@ def _take_up(
     on: LiveSurface,
     depsgraph: bpy.types.Depsgraph,
 ) -> None:
-    thing, written = kept.thing(ob), live_attributes.written(ob.data)
-    edited = thing.edits(ob.data, on.limit)
-    if edited is None:
-        return
-    if written is None:
-        thing.take_up(ob.data, edited, on.limit, _matrix(ob, surface, depsgraph))
-        return
-    pose, limit = thing.surface_pose, on.limit
-    if thing.version != on.version:
-        # the surface has another pose now than when the points were written
-        if pose is not None and pose.limit is limit:
-            with on.posed_as(pose):
-                thing.take_up(ob.data, edited, limit, written.matrix)
-            return
-        if written.frame != depsgraph.scene.frame_float:
-            limit = live_surface.surface_at(surface, depsgraph, written.frame)
-    thing.take_up(ob.data, edited, limit, written.matrix)
+    def needed() -> Collection[bpy.types.ID]:
+        followers = followers_in(depsgraph)
+        followers.setdefault(surface, [ob])
+        return Chains(followers).needed_by(surface)
+
+    edits = Edits(ob, kept.thing(ob), on, needed)
+    edits.take_up(surface, depsgraph, lambda: _matrix(ob, surface, depsgraph))
 
 
 def _matrix(

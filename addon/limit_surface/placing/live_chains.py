@@ -51,6 +51,10 @@ class Chains:
     def _waits(self, surface: bpy.types.Object, moving: set[bpy.types.ID]) -> bool:
         return self.depends(surface, moving.difference(self._data_on(surface)))
 
+    def needed_by(self, surface: bpy.types.Object) -> Collection[bpy.types.ID]:
+        """Returns the data-blocks that follow live and on which the surface's shape depends."""
+        return self._needed[surface]
+
     def depends(self, surface: bpy.types.Object, moved: Collection[bpy.types.ID]) -> bool:
         """Tells whether the surface's shape depends on one of these data-blocks."""
         return not self._needed[surface].isdisjoint(moved)

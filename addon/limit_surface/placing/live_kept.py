@@ -25,10 +25,26 @@ _troubles: dict[ObjectKey, str] = {}
 
 
 def forget() -> None:
-    """Is called when other data may have the same names: after undo, and for another file."""
+    """Is called when other data may have the same names, as in another file."""
     _surfaces.clear()
     _things.clear()
     _troubles.clear()
+
+
+def forget_after_undo() -> None:
+    """Forgets all but the poses for which meshes in Edit Mode were written. These stay as they are
+    until Edit Mode is left.
+    """
+    poses = {key: thing.surface_pose for key, thing in _things.items() if _is_edited(*key)}
+    forget()
+    for key, pose in poses.items():
+        _things[key] = LiveThing()
+        _things[key].surface_pose = pose
+
+
+def _is_edited(kind: str, name: str, library: str | None) -> bool:
+    mesh = bpy.data.meshes.get((name, library)) if kind == "MESH" else None
+    return mesh is not None and mesh.is_editmode
 
 
 def trouble(ob: bpy.types.Object) -> str:

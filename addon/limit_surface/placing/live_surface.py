@@ -36,17 +36,18 @@ class _Captured(NamedTuple):
 
 
 class SurfacePose(NamedTuple):
-    """A surface, and the positions of its control mesh at some time."""
+    """The shape of a surface at some time."""
 
-    limit: limitsurf.LimitSurface
+    frame: float
     positions: np.ndarray  # (vertices of the control mesh, 3) float64
+    checksums: tuple[object, ...] | None  # without them it cannot be told what it belongs to
 
 
 class LiveSurface:
     """`version` counts the poses. Raises CageError and MeshError where there is no surface."""
 
     limit: limitsurf.LimitSurface  # there is one once it has been read
-    pose: SurfacePose
+    pose: SurfacePose  # that of the limit surface
 
     def __init__(self) -> None:
         self.version = 0
@@ -75,15 +76,20 @@ class LiveSurface:
             captured = _evaluated_anew(ob, depsgraph)
         self._take(ob, depsgraph, captured)
 
+    def had(self, pose: SurfacePose | None) -> bool:
+        """Tells whether the surface had this pose, and has the same faces and creases now."""
+        if pose is None or pose.checksums is None:
+            return False
+        return pose.checksums == self._checksums
+
     @contextmanager
-    def posed_as(self, pose: SurfacePose) -> Iterator[None]:
+    def posed_as(self, pose: SurfacePose) -> Iterator[limitsurf.LimitSurface]:
         """Gives the surface an earlier pose for as long as the context lasts."""
-        now = self.limit.positions.copy()
         self.limit.set_positions(pose.positions)
         try:
-            yield
+            yield self.limit
         finally:
-            self.limit.set_positions(now)
+            self.limit.set_positions(self.pose.positions)
 
     def _take(
         self,
@@ -92,6 +98,7 @@ class LiveSurface:
         captured: _Captured | None,
     ) -> None:
         self.version += 1
+        frame = depsgraph.scene.frame_float
         if captured is not None:
             if self._faces is None and not ob.data.is_editmode:
                 corners = attributes.read(ob.data, ids.CORNER_VERTEX)
@@ -103,7 +110,7 @@ class LiveSurface:
             found = cage.read(ob, depsgraph, puts_back=captured is not None)
             self.limit = found.surface()
         if captured is None:
-            self.pose = SurfacePose(self.limit, self.limit.positions.copy())
+            self.pose = SurfacePose(frame, self.limit.positions.copy(), None)
             return
         if len(captured.positions) != len(self.limit.positions):
             raise CageError(
@@ -112,7 +119,7 @@ class LiveSurface:
             )
         self.limit.set_positions(captured.positions)
         self._checksums = captured.checksums
-        self.pose = SurfacePose(self.limit, captured.positions)
+        self.pose = SurfacePose(frame, captured.positions, captured.checksums)
 
 
 def surface_at(

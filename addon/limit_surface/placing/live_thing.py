@@ -102,6 +102,27 @@ class LiveThing:
         self._is_current = True
         return edited if edited.any() else None
 
+    def misfit(
+        self,
+        data: bpy.types.ID,
+        edited: np.ndarray,
+        limit: limitsurf.LimitSurface,
+        matrix: np.ndarray,
+    ) -> float:
+        """Returns how far strands that nobody has edited are from where the surface in its pose
+        carries them, in units of the largest coordinate: about 0 if it is the pose for which they
+        were written. It is NaN where that cannot be told, because all were edited.
+        """
+        poser = self._poser_on(data, limit)
+        worst, largest = np.nan, 0.0
+        for name in points_of(data):
+            points, rows = self._read(data, name), ~rows_of(data, name, edited)
+            if rows.any():
+                off = poser.pose(self._at_rest(data, name), matrix)[rows] - points[rows]
+                worst = np.fmax(worst, np.abs(off).max())
+                largest = max(largest, float(np.abs(points[rows]).max()))
+        return float(worst / (largest or 1.0))
+
     def take_up(
         self,
         data: bpy.types.ID,
