@@ -323,3 +323,16 @@ def test_a_curve_that_follows_is_bound_at_its_new_places_when_it_is_snapped():
     places = follow_truth.on_surface(ob, curve_table(made).data, relation)
     np.testing.assert_allclose(control_points(made)[:, 0], places.position, atol=1e-5)
     check(made, ob)
+
+
+def test_a_curve_whose_table_was_deleted_is_named_until_it_follows_again():
+    ob = deforming("cross")
+    made = curve(ob)
+    follow(made, ob)
+    bpy.data.objects.remove(curve_table(made))
+    scenes.activate(ob)
+    with pytest.raises(RuntimeError, match="Curve follows Cross, but its locations .* deleted"):
+        bpy.ops.object.limit_hair_add(follow="NODES")
+    follow(made, ob)
+    assert bpy.ops.object.limit_hair_add(follow="NODES") == {"FINISHED"}
+    check(made, ob)

@@ -2,7 +2,7 @@
 """Where children of guides have to be: by numpy, on the surface as it is in this frame."""
 
 import bpy
-import follow_truth
+import limitsurf
 import numpy as np
 import scenes
 from limit_surface import ids
@@ -41,18 +41,27 @@ def shown_strands(ob: bpy.types.Object) -> np.ndarray:
     return points.reshape(len(data.curves), -1, 3)
 
 
-def expected(live: bpy.types.Object, guides: bpy.types.Object, ob: bpy.types.Object) -> np.ndarray:
-    """Returns the strands of live children, which are shaped in the world. The guides have points
-    at equal distances there, as many as the children, and share the surface's transform.
+def expected(
+    live: bpy.types.Object,
+    guides: bpy.types.Object,
+    ob: bpy.types.Object,
+    surface: limitsurf.LimitSurface | None = None,
+) -> np.ndarray:
+    """Returns the strands of live children in their own space. They are shaped in the world. Where
+    the guides' points are not at equal distances, or are not as many as the children's, they are
+    spread evenly along the guides.
     """
     face, uv, guide, weight = stored(live)
-    surface = scenes.surface_without_addon(ob)
-    root, normal = surface.evaluate(face, uv).position, surface.frames(face, uv)[:, :, 2]
+    surface = surface or scenes.surface_without_addon(ob)
+    in_world = np.array(ob.matrix_world, np.float64)
+    root = scenes.transformed(in_world, surface.evaluate(face, uv).position)
+    normal = surface.frames(face, uv)[:, :, 2]
     of_guides = surface.frames(*scenes.locations(guides.data))[:, :, 2]
-    matrix = np.array(live.matrix_world, np.float64)[:3, :3]
-    normal, of_guides = (_unit(np.linalg.solve(matrix.T, n.T).T) for n in (normal, of_guides))
-    strands = follow_truth.shown_strands(guides).astype(np.float64)
-    offsets = (strands - strands[:, :1]) @ matrix.T
+    inverse = np.linalg.inv(in_world[:3, :3])
+    normal, of_guides = _unit(normal @ inverse), _unit(of_guides @ inverse)
+    count = shown_strands(live).shape[1]
+    strands = np.stack([_evenly(each, count) for each in _shown_in_world(guides)])
+    offsets = strands - strands[:, :1]
     lengths = _lengths(offsets)
     shape, length = np.zeros((len(face), *strands.shape[1:])), np.zeros(len(face))
     for k in range(guide.shape[1]):
@@ -61,7 +70,22 @@ def expected(live: bpy.types.Object, guides: bpy.types.Object, ob: bpy.types.Obj
         shape += weight[:, k, None, None] * turned
         length += weight[:, k] * lengths[guide[:, k]]
     shape *= (length / _lengths(shape))[:, None, None]
-    return root[:, None] + shape @ np.linalg.inv(matrix).T
+    back = np.linalg.inv(np.array(live.matrix_world, np.float64))
+    return scenes.transformed(back, root[:, None] + shape)
+
+
+def _shown_in_world(hair: bpy.types.Object) -> list[np.ndarray]:
+    data = hair.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    points = attributes.read(data, "position").astype(np.float64)
+    points = scenes.transformed(np.array(hair.matrix_world, np.float64), points)
+    return np.split(points, attributes.curve_offsets(data)[1:-1])
+
+
+def _evenly(points: np.ndarray, count: int) -> np.ndarray:
+    """Returns so many points at equal distances along a polyline."""
+    along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    at = np.linspace(0, along[-1], count)
+    return np.stack([np.interp(at, along, each) for each in points.T], axis=1)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -6,15 +6,23 @@ its root goes to its location on the limit surface, as it is now.
 from collections.abc import Iterator
 
 import bpy
+import children_truth
 import follow_truth
 import limitsurf
 import numpy as np
 from limit_surface import ids, native
 from limit_surface.errors import CageError
-from limit_surface.placing import followers, following, live, live_attributes, live_kept
+from limit_surface.placing import (
+    followers,
+    following,
+    live,
+    live_attributes,
+    live_children,
+    live_kept,
+)
 from limit_surface.placing.follow_state import State
 from limit_surface.placing.places import NOWHERE, lacking, root_attributes
-from limit_surface.reading import attributes, cage
+from limit_surface.reading import attributes, cage, splines
 from limitsurf import MeshError
 
 #: As a share of the thing's extent and distance from the origin: the nodes' frames in single
@@ -28,14 +36,15 @@ ROOT_BOUND = 1e-4
 
 def misplaced() -> list[str]:
     """Returns what is shown elsewhere although the extension does not say that anything is wrong.
-    Of strands only the first points are looked at.
+    Of strands only the first points are looked at, but of live children all.
     """
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    wrong = []
+    wrong = [f"{ob.name}, {error:.2g} of its size" for ob, error in _grown() if error > BOUND]
     for surface, things, rest in [*_live(depsgraph), *_by_nodes()]:
         for ob in things:
             shown = _shown_alone(ob, depsgraph)
-            if shown is None or lacking(ob.data, root_attributes(ob.data)):
+            holder = followers.holder_of(ob)
+            if shown is None or holder is None or lacking(holder, root_attributes(holder)):
                 continue
             try:
                 limit = cage.read(surface, depsgraph).surface()
@@ -82,7 +91,46 @@ def _by_nodes() -> Iterator[tuple[bpy.types.Object, list[bpy.types.Object], str]
         except (CageError, *native.refusals):
             continue
         if not state.troubles(following.signature(found)):
-            yield surface, [ob for ob in state.followers if ob.type != "CURVE"], ids.POSITION
+            yield surface, list(state.followers), ids.POSITION
+
+
+def _grown() -> Iterator[tuple[bpy.types.Object, float]]:
+    """Yields live children that should grow, and how far any point is from where it has to be, as a
+    share of their extent and distance from the origin.
+    """
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    for ob in bpy.context.view_layer.objects:
+        surface = live_children.surface_of(ob)
+        if surface is None or not ob.visible_get() or ob.library or _children_may_stop(ob, surface):
+            continue
+        limit = cage.read(surface, depsgraph).surface()
+        guides = live_children.guides_of(ob)
+        assert guides is not None
+        expected = children_truth.expected(ob, guides, surface, limit)
+        shown = children_truth.shown_strands(ob)
+        if shown.shape != expected.shape:
+            yield ob, np.inf
+        elif len(shown):
+            size = np.ptp(expected, axis=(0, 1)).max() + np.abs(expected).max()
+            yield ob, float(np.abs(shown - expected).max() / size)
+
+
+def _children_may_stop(ob: bpy.types.Object, surface: bpy.types.Object) -> bool:
+    """Tells whether the extension says that the children do not grow, or nothing is to be grown."""
+    state = State.of(surface)
+    try:
+        found = cage.read(surface, bpy.context.evaluated_depsgraph_get())
+    except (CageError, *native.refusals):
+        return True
+    guides = live_children.guides_of(ob)
+    return (
+        state is None
+        or any(state.troubles(following.signature(found)))
+        or guides is None
+        or not guides.visible_get()
+        or bool(lacking(guides.data, root_attributes(guides.data)))
+        or len(ob.modifiers) != 1
+    )
 
 
 def _shown_alone(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
@@ -91,8 +139,19 @@ def _shown_alone(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.nda
     evaluated = ob.evaluated_get(depsgraph)
     if not evaluated.is_evaluated or len(enabled) != 1:
         return None
-    shown = attributes.read(evaluated.data, ids.POSITION)
-    return shown if len(shown) == len(attributes.read(ob.data, ids.POSITION)) else None
+    if ob.type == "CURVE":
+        shown = attributes.read(evaluated.to_mesh(), ids.POSITION)
+        evaluated.to_mesh_clear()
+    else:
+        shown = attributes.read(evaluated.data, ids.POSITION)
+    return shown if len(shown) == len(_points(ob, ids.POSITION)) else None
+
+
+def _points(ob: bpy.types.Object, name: str) -> np.ndarray:
+    """Returns the points of the object itself; of Curve objects the control points."""
+    if ob.type == "CURVE":
+        return splines.positions(ob.data)
+    return attributes.read(ob.data, name)
 
 
 def _error(
@@ -102,7 +161,7 @@ def _error(
     rest_name: str,
     shown: np.ndarray,
 ) -> float:
-    data = ob.data
+    data = followers.holder_of(ob)
     face, rotation = attributes.read(data, ids.FACE), attributes.read(data, ids.REST_ROTATION)
     bound = (face != NOWHERE) & rotation.any(axis=1)
     # strands that were added or joined later stay still until they are bound
@@ -113,7 +172,7 @@ def _error(
         return 0.0
     uv = attributes.read(data, ids.UV)[bound].astype(np.float64)
     now = follow_truth.frames_at(limit, face[bound], uv, follow_truth.relation(surface, ob))
-    rest = _firsts(data, attributes.read(data, rest_name))[bound].astype(np.float64)
+    rest = _firsts(data, _points(ob, rest_name))[bound].astype(np.float64)
     before = follow_truth.Frames(
         attributes.read(data, ids.REST_ROOT)[bound].astype(np.float64),
         follow_truth.matrices(rotation[bound]),

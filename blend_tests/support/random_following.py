@@ -30,6 +30,8 @@ class Following(random_steps.Session):
         self.steps = [
             (8, self.add_mesh),
             (20, self.add_thing),
+            (10, self.add_children),
+            (3, self.add_curve),
             (12, self.follow),
             (6, self.unbind_or_rebind),
             (6, self.snap),
@@ -75,6 +77,42 @@ class Following(random_steps.Session):
         if not done.endswith("refused") and followed_places.are_elsewhere(bpy.context.object):
             raise LeftWrongError(f"what was added to {name} does not stand where it should")
         return f"{done} on {name}"
+
+    def add_children(self) -> str:
+        guides = [ob for ob in _things() if ob.type == "CURVES" and len(ob.data.curves) > 2]
+        if not guides or not enter_object_mode() or len(bpy.data.objects) > 20:
+            return "no guides"
+        self.select(self.random.choice(guides))
+        return self.run(
+            ids.CHILDREN_ADD,
+            mode=self.random.choice(("LIVE", "LIVE", "MADE")),
+            follow=self.random.choice(("AUTO", "NODES", "NONE")),
+            distribution="UNIFORM",
+            count=20,
+            points=self.random.choice((4, 8)),
+            viewport_share=1,
+        )
+
+    def add_curve(self) -> str:
+        """Adds a Curve object somewhere, and has it follow by nodes."""
+        surfaces = _surfaces()
+        if not surfaces or not enter_object_mode() or len(bpy.data.objects) > 20:
+            return "nothing to follow"
+        data = bpy.data.curves.new("Curve", "CURVE")
+        data.dimensions = "3D"
+        for count in (2, 5):
+            spline = data.splines.new("POLY")
+            spline.points.add(count - 1)
+            for point in spline.points:
+                point.co[:3] = [self.random.uniform(-1, 1) for _ in range(3)]
+        ob = bpy.data.objects.new("Curve", data)
+        bpy.context.collection.objects.link(ob)
+        ob.location = [self.random.uniform(-1, 1) for _ in range(3)]
+        push("curve")
+        surface = self.random.choice(surfaces)
+        name = surface.name
+        self.select(ob, surface)
+        return f"{self.run(ids.FOLLOW, mode='NODES')} on {name}"
 
     def follow(self) -> str:
         things = _things()
@@ -138,6 +176,7 @@ class Following(random_steps.Session):
     def comb(self) -> str:
         """Moves some of a thing's points, as artists comb hair."""
         things = [ob for ob in _things() if ob.data.library is None and ob.mode == "OBJECT"]
+        things = [ob for ob in things if ob.type != "CURVE"]
         if not things or not enter_object_mode():
             return "nothing to comb"
         data = self.random.choice(things).data
@@ -247,7 +286,7 @@ def _surfaces() -> list[bpy.types.Object]:
 
 def _things() -> list[bpy.types.Object]:
     """Returns what has places on surfaces."""
-    found = [*_visible("CURVES"), *_visible("MESH")]
+    found = [*_visible("CURVES"), *_visible("MESH"), *_visible("CURVE")]
     return [ob for ob in found if followers.is_placed(ob)]
 
 

@@ -108,7 +108,10 @@ class Request:
         moved = {relocation.data: relocation.places for relocation in relocated}
         for ob in everything:
             if holder_of(ob) not in moved and not is_placed(ob):
-                raise RefusalError(f"{ob.name} stores no locations on a limit surface")
+                raise RefusalError(
+                    f"{ob.name} follows {surface.name}, but its locations on the limit surface "
+                    "were deleted: let it follow again first"
+                )
         self._places = [moved.get(data) or Places.read(data) for data in holders(everything)]
         with cage.opened(surface, depsgraph) as (found, mesh):
             self._bound = bound_to(found, mesh)
