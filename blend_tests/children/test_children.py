@@ -181,6 +181,18 @@ def test_materials_part():
     check_parted(add_children(guides, parting="MATERIALS"))
 
 
+@pytest.mark.parametrize("distribution", ["JITTERED", "UNIFORM", "BLUE_NOISE"])
+def test_no_child_stands_on_its_guide(distribution):
+    """Guides and children have the same seed, unless artists choose another."""
+    ob = scenes.grid_with_holes()
+    spread = {"distribution": distribution, "count": 300, "per_side": 4}
+    guides = add_guides(ob, **spread)
+    made = add_children(guides, **spread)
+    roots = scenes.strands(guides)[:, 0]
+    for root in scenes.strands(made)[:, 0]:
+        assert np.abs(roots - root).max(axis=1).min() > 1e-6
+
+
 def test_places_without_guides_are_left_out():
     ob = sheet()
     attributes.write(ob.data, "side", "INT", "FACE", np.tile([0, 0, 1, 1], 4))

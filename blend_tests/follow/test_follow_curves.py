@@ -2,13 +2,14 @@
 """Curve objects that follow a deforming surface by Geometry Nodes."""
 
 import bpy
+import follow_scenes
 import follow_truth
 import numpy as np
 import pytest
 import scenes
 from follow_scenes import check_hair, deforming
 from limit_surface import ids
-from limit_surface.placing.followers import curve_table
+from limit_surface.placing.followers import curve_table, surface_of
 from limit_surface.reading import attributes
 from mathutils import Euler, Matrix
 
@@ -336,3 +337,27 @@ def test_a_curve_whose_table_was_deleted_is_named_until_it_follows_again():
     follow(made, ob)
     assert bpy.ops.object.limit_hair_add(follow="NODES") == {"FINISHED"}
     check(made, ob)
+
+
+def test_rebinding_a_copy_leaves_the_original():
+    """Copies of a curve read the same hidden table."""
+    ob = deforming("grid with holes")
+    made = curve(ob)
+    follow(made, ob)
+    for each in bpy.context.selected_objects:
+        each.select_set(False)
+    made.select_set(True)
+    ob.select_set(True)
+    bpy.ops.object.duplicate()
+    (copy,) = [each for each in bpy.context.selected_objects if each.type == "MESH"]
+    scenes.activate(copy)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    assert follow_scenes.look(ob) == []
+    assert follow_scenes.look(copy) == []
+    check(made, ob)
+    (of_copy,) = [o for o in bpy.data.objects if o.type == "CURVE" and surface_of(o) == copy]
+    check(of_copy, copy)

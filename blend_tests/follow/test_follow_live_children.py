@@ -273,3 +273,75 @@ def test_what_does_not_grow_is_not_unbound(scene):
     with pytest.raises(RuntimeError, match="grows no strands"):
         bpy.ops.object.limit_unbind()
     assert live_children.modifier_of(live) is not None
+
+
+def subdivide(ob: bpy.types.Object) -> None:
+    select(ob)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide()
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_rebinding_a_copy_leaves_the_original():
+    """Copies of live children read the same hidden table."""
+    ob = scenes.grid_with_holes()
+    scenes.add_subsurf(ob)
+    guides = scenes.add_hair(ob, distribution="UNIFORM", count=12, follow="NODES")
+    live = add_live(guides)
+    select(ob, guides, live)
+    bpy.ops.object.duplicate()
+    (copy,) = [each for each in bpy.context.selected_objects if each.type == "MESH"]
+    subdivide(copy)
+    select(copy)
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    assert not troubles(ob)
+    assert not troubles(copy)
+    check(live, guides, ob)
+    (of_copy,) = live_children.on_surface(copy)
+    check(of_copy, live_children.guides_of(of_copy), copy)
+
+
+def test_other_guides_of_a_copy_leave_the_original(scene):
+    ob, guides, live = scene
+    others = scenes.add_hair(ob, distribution="UNIFORM", count=7, seed=9, follow="NODES")
+    select(live)
+    bpy.ops.object.duplicate()
+    copy = bpy.context.object
+    children_truth.set_input(copy, nodes.GUIDES, others)
+    bpy.context.view_layer.update()
+    select(copy)
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    check(live, guides, ob)
+    check(copy, others, ob)
+
+
+def tables_in_file() -> list[str]:
+    return [each.name for each in bpy.data.objects if each.name.startswith(ids.CHILDREN_TABLE)]
+
+
+def test_a_table_whose_children_were_deleted_is_removed_with_the_next_change(scene):
+    ob, guides, live = scene
+    select(live)
+    bpy.ops.object.delete()
+    assert len(tables_in_file()) == 1
+    again = add_live(guides)
+    assert len(tables_in_file()) == 1
+    check(again, guides, ob)
+    select(again)
+    bpy.ops.object.delete()
+    select(ob)
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}  # what follows
+    assert not tables_in_file()
+
+
+def test_a_table_whose_children_were_deleted_is_removed_where_nothing_follows():
+    ob = scenes.grid_with_holes()
+    scenes.add_subsurf(ob)
+    live = add_live(scenes.add_hair(ob, follow="NONE"), follow="NONE")
+    select(live)
+    bpy.ops.object.delete()
+    select(ob)
+    assert bpy.ops.object.limit_unbind() == {"FINISHED"}
+    assert not tables_in_file()
+    assert not bpy.ops.object.limit_unbind.poll()

@@ -262,6 +262,48 @@ def test_levels_of_renders(is_shown):
     check_drawn(ob, strands)
 
 
+@pytest.mark.parametrize("is_shown", [True, False])
+def test_levels_of_renders_where_simplify_lowers_those_of_the_viewport(is_shown, capfd):
+    ob = scenes.cross()
+    subsurf = scenes.add_subsurf(ob)
+    subsurf.levels, subsurf.render_levels, subsurf.show_viewport = 2, 2, is_shown
+    strands = in_world(add_hair(ob))
+    render = bpy.context.scene.render
+    render.use_simplify, render.simplify_subdivision = True, 1
+    assert convert(levels="RENDER") == {"FINISHED"}
+    at = 1 if is_shown else 0
+    assert f"but not in the viewport (level {at})" in capfd.readouterr().out
+    assert render.simplify_subdivision == 1
+    render.use_simplify, subsurf.show_viewport = False, True
+    check_drawn(ob, strands)
+
+
+def test_levels_that_a_driver_sets_are_refused():
+    ob = scenes.cross()
+    subsurf = scenes.add_subsurf(ob)
+    subsurf.render_levels = 3
+    subsurf.driver_add("levels").driver.expression = "1"
+    add_hair(ob)
+    with pytest.raises(RuntimeError, match="Drivers set the viewport levels of Subdivision"):
+        convert(levels="RENDER")
+    assert not ob.particle_systems
+    assert convert() == {"FINISHED"}
+
+
+@pytest.mark.parametrize("is_first", [True, False])
+def test_modifiers_on_whose_polygons_blender_cannot_hold_particles(is_first):
+    ob = scenes.grid_with_holes()
+    scenes.add_subsurf(ob)
+    ob.modifiers.new("Spun", "SCREW")
+    if is_first:
+        ob.modifiers.move(1, 0)
+    hair = add_hair(ob, follow="NONE")
+    with pytest.raises(RuntimeError, match="cannot hold particles on the polygons that the mod"):
+        convert()
+    assert not ob.particle_systems
+    assert bpy.context.object == hair
+
+
 def test_escape_takes_the_particles_back(monkeypatch):
     ob = scenes.cross()
     subsurf = scenes.add_subsurf(ob)

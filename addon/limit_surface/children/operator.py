@@ -18,6 +18,7 @@ from ..nodes import children as nodes
 from ..placing import all_tiles, followers, following, live_children, new_hair, roots
 from ..placing.all_tiles import AllTiles
 from ..placing.binding import Binding
+from ..placing.distribution import Distribution
 from ..placing.distribution_properties import surface_object
 from ..placing.follow_properties import follows
 from ..placing.new_hair import Strands
@@ -33,6 +34,8 @@ from . import parting
 from .spread import Followed, Spread
 
 DEPTH = 16  # of the tables of tiles that are made for live children
+# The smallest seed of children. That of guides is smaller, so that no child stands on its guide.
+_SEEDS = 1 << 32
 # properties that live children do not store: what a run is about, and what it says
 _OF_ONE_RUN = {"rna_type", "surface", "guides", "summary", "replaces", "allow_large", "add_subsurf"}
 
@@ -213,7 +216,9 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
         order = super()._read(ob, depsgraph)
         guides = guide_hair.read(hair, ob, order.region.cage, self.points, depsgraph)
         self.guides = hair.name  # so that the redo panel finds them
-        spread = Spread(order.distribution, guides, self.guide_count)
+        assert isinstance(order.distribution, Distribution)
+        own = replace(order.distribution, seed=_SEEDS + order.distribution.seed)
+        spread = Spread(own, guides, self.guide_count)
         if self.mode == "LIVE":
             following.check_surface(ob, depsgraph.scene)
             was = all_tiles.settings_of(ob)

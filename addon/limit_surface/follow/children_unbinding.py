@@ -47,7 +47,7 @@ class ChildrenUnbinding:
     def write(self, _depsgraph: bpy.types.Depsgraph) -> str:
         """Changes the file, and returns a report."""
         for made in self._curves:
-            data, table = made.ob.data, live_children.table_of(made.ob)
+            data = made.ob.data
             made.strands.fill(data)
             data.materials.clear()
             for material in made.materials:
@@ -56,8 +56,7 @@ class ChildrenUnbinding:
             for name in (ids.SIGNATURE, ids.CHILDREN_SETTINGS, ids.CHILDREN_GUIDES):
                 if name in made.ob:
                     del made.ob[name]
-            if table is not None and not tables.readers(table):
-                tables.remove_object(table)
+        tables.remove_unread()
         names = ", ".join(made.ob.name for made in self._curves)
         return f"Live children became curves as they are in this frame: {names}"
 

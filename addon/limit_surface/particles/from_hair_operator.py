@@ -13,13 +13,12 @@ from .. import ids
 from ..counting import counted
 from ..errors import RefusalError
 from ..placing import followers
-from ..reading import rules
 from ..tasks import polling
 from ..tasks.object_keys import ObjectKey
 from ..tasks.piecewise_job import Pieces, PiecewiseJob
 from ..tasks.properties import draw_summary
 from ..tasks.watched_operator import WatchedOperator
-from . import creation, strands, system
+from . import creation, levels, strands, system
 
 _NOTHING = "Make hair on a limit surface active first"
 
@@ -93,13 +92,15 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
         material = strands.material_of(hair)
         unseen = material.name if material and not strands.slot_of(material, surface) else ""
 
-        at_levels = system.at_render_levels(key) if self.levels == "RENDER" else nullcontext()
+        is_for_renders = self.levels == "RENDER"
+        at_levels = levels.at_render_levels(context, key) if is_for_renders else nullcontext()
 
         def pieces() -> Pieces:
             name = creation.add(context, key.find(), made)
             try:
                 with at_levels:
                     yield from system.write_keys(context, key, name, made.strands)
+                    system.check_keys(context, key, name, made.strands)
             except BaseException:  # ESC as well
                 system.remove(key.find(), name)
                 raise
@@ -117,7 +118,7 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
         if made.resampled:
             self.summary += f"\n{counted(made.resampled, 'strands', 'was', 'were')} resampled"
         self.report({"INFO"}, self.summary.replace("\n", "; "))
-        warnings = [_levels_warning(bpy.data.objects[made.surface], self.levels)]
+        warnings = [levels.warning(context, bpy.data.objects[made.surface], self.levels)]
         if made.unseen:
             warnings.append(
                 f"{made.surface} has no material slot with {made.unseen}, the material of the "
@@ -148,18 +149,3 @@ def _surface_of(hair: bpy.types.Object, context: bpy.types.Context) -> bpy.types
         )
     system.check_shown(surface, context)
     return surface
-
-
-def _levels_warning(surface: bpy.types.Object, levels: str) -> str:
-    """Returns a warning where the viewport and renders do not show the same polygons, or None."""
-    subsurf = rules.find_subsurf(surface)
-    if subsurf is None or subsurf.levels == subsurf.render_levels:
-        return ""
-    exact, other = "the viewport", "renders"
-    at, beside = subsurf.levels, subsurf.render_levels
-    if levels == "RENDER":
-        exact, other, at, beside = other, exact, beside, at
-    return (
-        f"The particles match the strands in {exact} (level {at}), but not in {other} (level "
-        f"{beside}): give {subsurf.name} the same levels for both"
-    )

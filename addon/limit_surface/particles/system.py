@@ -23,6 +23,11 @@ _LEAST_TIME = 0.1  # seconds between two reports of progress
 # the time of an evaluation.
 _WORK_RATIO = 4
 
+#: The number of particles whose keys are looked at once they are written, and how far they may be
+#: from their strands, as a share of the largest coordinate. Blender computes in single precision.
+_CHECKED = 1000
+_TOLERANCE = 1e-4
+
 
 @dataclass(frozen=True)
 class Shown:
@@ -112,6 +117,28 @@ def write_keys(
     surface.find().update_tag(refresh={"DATA"})
 
 
+def check_keys(
+    context: bpy.types.Context, surface: ObjectKey, name: str, strands: np.ndarray
+) -> None:
+    """Raises RefusalError if keys are not on their strands, of which it looks at some. Blender then
+    cannot tell on which polygon of the displayed mesh a particle stands.
+    """
+    shown = Shown.of(context, surface.find(), name)
+    rows = np.unique(np.linspace(0, len(strands) - 1, _CHECKED).astype(int))
+    found = [
+        key.co_object(shown.ob, shown.modifier, shown.system.particles[i])
+        for i in rows.tolist()
+        for key in shown.system.particles[i].hair_keys
+    ]
+    error = np.abs(np.reshape(found, strands[rows].shape) - strands[rows]).max()
+    if not error <= _TOLERANCE * np.abs(strands).max():
+        raise RefusalError(
+            f"Blender cannot hold particles on the polygons that the modifiers of {shown.ob.name} "
+            f"make: keys would be up to {error:.3g} away from the strands. Apply or disable "
+            "modifiers that make new geometry"
+        )
+
+
 @dataclass(frozen=True)
 class Keys:
     """The keys of particles, one particle after the other."""
@@ -151,22 +178,6 @@ def read_keys(
     steps = [np.linspace(0, 1, size) for size in sizes]
     times = np.concatenate(steps) if steps else np.empty(0)
     return Keys(found, np.array(position, np.float64).reshape(-1, 3), times)
-
-
-@contextmanager
-def at_render_levels(surface: ObjectKey) -> Iterator[None]:
-    """Has Blender evaluate the surface with the subdivision that renders have."""
-    subsurfs = [m for m in surface.find().modifiers if m.type == "SUBSURF"]
-    was = {m.name: (m.levels, m.show_viewport) for m in subsurfs}
-    for modifier in subsurfs:
-        modifier.levels, modifier.show_viewport = modifier.render_levels, modifier.show_render
-    try:
-        yield
-    finally:
-        for name, (levels, is_shown) in was.items():
-            modifier = surface.find().modifiers.get(name)
-            if modifier is not None:
-                modifier.levels, modifier.show_viewport = levels, is_shown
 
 
 @contextmanager

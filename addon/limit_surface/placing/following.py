@@ -158,6 +158,7 @@ class Request:
             begin = rows.stop
         for ob in followers:
             ensure_modifier(ob, surface, table)
+        tables.remove_unread()
         fresh = made.places[self._old :]
         return Outcome(
             surface.name,

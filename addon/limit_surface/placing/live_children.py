@@ -100,7 +100,10 @@ def make_again(
     assert modifier is not None
     if not CHILDREN.matches(modifier.node_group):
         modifier.node_group = CHILDREN.group()
-    holder = tables.hidden_object(ids.CHILDREN_TABLE, surface, table_of(ob))
+    before = table_of(ob)
+    if before is not None and tables.readers(before) != [ob]:  # a copy of the children reads it
+        before = None
+    holder = tables.hidden_object(ids.CHILDREN_TABLE, surface, before)
     table.fill(holder.data)
     groups.set_input(modifier, nodes.TABLE, holder)
     _connect(ob, surface, guides, tiles, settings)
@@ -126,6 +129,7 @@ def _connect(
     ob[ids.SIGNATURE] = tiles.signature
     ob[ids.CHILDREN_SETTINGS] = json.dumps(settings)
     ob[ids.CHILDREN_GUIDES] = _sum_of_roots(guides)
+    tables.remove_unread()
 
 
 def _sum_of_roots(guides: bpy.types.Object) -> str:

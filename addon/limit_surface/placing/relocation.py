@@ -26,10 +26,8 @@ class Elements:
     """
 
     def __init__(self, ob: bpy.types.Object, at_rest: bool = False) -> None:
-        holder = holder_of(ob)
-        if holder is None:
-            raise RefusalError(f"{ob.name} is neither hair, nor points, nor a mesh")
-        self.ob, self.data, self.domain = ob, holder, domain_of(ob)
+        self.ob, self.domain = ob, domain_of(ob)
+        holder = self.read_holder()
         if ob.type in TYPES:
             kinds = ROOT_KINDS | ({ids.SEAL: seals.KIND} if ob.type == "MESH" else {})
             attributes.check_names(ob, kinds, self.domain)
@@ -50,6 +48,14 @@ class Elements:
         self.has_place = np.zeros(self.count, bool)
         if is_placed(ob):
             self.has_place[self.places.rows] = True
+
+    def read_holder(self) -> bpy.types.ID:
+        """Reads from the object which data stores its places, and returns it."""
+        holder = holder_of(self.ob)
+        if holder is None:
+            raise RefusalError(f"{self.ob.name} is neither hair, nor points, nor a mesh")
+        self.data = holder
+        return holder
 
     @property
     def places(self) -> Places:

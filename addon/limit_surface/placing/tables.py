@@ -230,6 +230,25 @@ def readers(table: bpy.types.Object) -> list[bpy.types.ID]:
     return [user for user in users if user.id_type in ("OBJECT", "NODETREE", "MATERIAL")]
 
 
+def unread() -> list[bpy.types.Object]:
+    """Returns the tables of live children and of Curve objects that nothing reads: what read them
+    was deleted.
+    """
+    names = tuple(f"{kind} of " for kind in (ids.CHILDREN_TABLE, ids.CURVE_TABLE))
+    found = [
+        ob
+        for ob in bpy.data.objects
+        if ob.hide_select and ob.name.startswith(names) and ob.type == "MESH" and _is_own(ob)
+    ]
+    return [ob for ob in found if not readers(ob)]
+
+
+def remove_unread() -> None:
+    """Removes these tables from the file."""
+    for table in unread():
+        remove_object(table)
+
+
 def remove_object(table: bpy.types.Object) -> None:
     """Removes a table from the file, and its mesh if nothing else uses it."""
     mesh = table.data
@@ -261,6 +280,15 @@ def hidden_object(
             collection.objects.unlink(ob)
     if not ob.users_collection:
         home.objects.link(ob)
+    return ob
+
+
+def copy_of(table: bpy.types.Object, kind: str, whose: bpy.types.Object) -> bpy.types.Object:
+    """Returns a hidden object with a copy of the table's mesh."""
+    ob = hidden_object(kind, whose)
+    empty, ob.data = ob.data, table.data.copy()
+    bpy.data.meshes.remove(empty)
+    ob.data.name = ob.name
     return ob
 
 

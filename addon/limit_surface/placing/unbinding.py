@@ -224,19 +224,24 @@ def remove_unused_carriers() -> None:
 
 def leftovers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the tables of a surface that nothing reads: what followed it has been deleted. Those
-    of all tiles are not among them, because users have made these on their own.
+    of all tiles are not among them, because users have made these on their own. Unread tables of
+    live children and Curve objects, which belong to no surface, are among them.
     """
-    return [
+    of_tiles = [
         table
         for table in tables.all_of_surface(surface)
         if ids.ALL_TILES_MARK not in table and not tables.readers(table)
     ]
+    return [*of_tiles, *tables.unread()]
 
 
 def remove_leftovers(surface: bpy.types.Object) -> str:
     """Removes those tables, and returns a sentence for the report."""
-    _remove_unused(leftovers_of(surface), {surface})
-    return f"Nothing follows {surface.name}: its hidden tables were removed"
+    leftovers = leftovers_of(surface)
+    count, of_tiles = len(leftovers), [ob for ob in leftovers if tables.surface_of(ob)]
+    _remove_unused(of_tiles, {surface})
+    were = counted(count, "hidden tables", "was", "were")
+    return f"Nothing follows {surface.name}: {were} removed"
 
 
 def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Object]) -> None:
@@ -248,5 +253,6 @@ def _remove_unused(used: Iterable[bpy.types.Object], surfaces: set[bpy.types.Obj
             surfaces.add(tables.surface_of(table))
             proxy.update(None, table, False)
             tables.remove(table)
+    tables.remove_unread()
     for surface in surfaces - {None}:
         following.remove_unused_capture(surface)
