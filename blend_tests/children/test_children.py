@@ -181,6 +181,21 @@ def test_materials_part():
     check_parted(add_children(guides, parting="MATERIALS"))
 
 
+@pytest.mark.parametrize("mode", ["MADE", "LIVE"])
+def test_guides_whose_control_points_are_not_what_is_shown(mode, capfd):
+    guides = add_guides(scenes.grid_with_holes(), follow="NONE")
+    add_children(guides, mode=mode, follow="NONE")
+    assert "Bezier" not in capfd.readouterr().out
+    scenes.activate(guides)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.curves.select_all(action="SELECT")
+    bpy.ops.curves.curve_type_set(type="BEZIER")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    add_children(guides, mode=mode, follow="NONE")
+    said = capfd.readouterr().out
+    assert f"{len(guides.data.curves)} strands of {guides.name} are Bezier or NURBS" in said
+
+
 @pytest.mark.parametrize("distribution", ["JITTERED", "UNIFORM", "BLUE_NOISE"])
 def test_no_child_stands_on_its_guide(distribution):
     """Guides and children have the same seed, unless artists choose another."""

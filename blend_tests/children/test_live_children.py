@@ -72,6 +72,16 @@ def test_they_follow_combed_guides():
     check(live, guides, ob)
 
 
+def test_cyclic_guides_have_the_shape_of_open_ones():
+    ob = deforming("cross")
+    guides = add_guides(ob)
+    live = add_live(guides)
+    cyclic = guides.data.attributes.new("cyclic", "BOOLEAN", "CURVE")
+    cyclic.data.foreach_set("value", np.ones(len(guides.data.curves), bool))
+    guides.data.update_tag()
+    check(live, guides, ob)
+
+
 def test_a_child_stores_few_bytes_and_no_points():
     live = add_live(add_guides(deforming("cross")))
     data = children_truth.table_of(live).data

@@ -137,6 +137,27 @@ def test_pieces_where_the_surface_has_no_way(target):
     assert len(ob.data.splines) == 2
 
 
+def test_modifiers_that_show_a_curve_elsewhere_are_named(target, capfd):
+    ob = curve("POLY", over(target, PLACES))
+    ob.modifiers.new("Bent", "SIMPLE_DEFORM")
+    ob.modifiers.new("Tube", "NODES")
+    lay(ob, target)
+    assert "It is shown as its modifiers change it: Bent\n" in capfd.readouterr().out
+    ob.modifiers["Bent"].show_viewport = False
+    lay(ob, target)
+    assert "as its modifiers" not in capfd.readouterr().out
+
+
+def test_curves_that_another_object_shares_are_refused(target):
+    ob = curve("POLY", over(target, PLACES))
+    other = bpy.data.objects.new("Other", ob.data)
+    bpy.context.collection.objects.link(other)
+    before = drawn.control_points(ob.data.splines[0])
+    with pytest.raises(RuntimeError, match=f"{ob.name} shares its curves with Other"):
+        lay(ob, target)
+    np.testing.assert_array_equal(drawn.control_points(ob.data.splines[0]), before)
+
+
 REFUSALS = {
     "NURBS": "convert them",
     "2D": "2D curve",

@@ -192,6 +192,16 @@ def test_attached_objects_can_be_attached_anew(to_another, probes, monkeypatch, 
         check(ob, objects, before)
 
 
+def test_constraints_that_hold_objects_elsewhere_are_named(capfd):
+    ob = deforming("cross")
+    objects = props(ob, 5)
+    for each, kind in zip(objects, ("TRACK_TO", "COPY_LOCATION", "COPY_LOCATION"), strict=False):
+        each.constraints.new(kind).target = objects[4]
+    objects[2].constraints[0].influence = 0
+    attach(ob, objects)
+    assert "Constraints may hold 1 object elsewhere: Prop 1\n" in capfd.readouterr().out
+
+
 def test_modifiers_that_do_not_count_are_named(capfd):
     ob = deforming("cross")
     ob.modifiers.new("Later", "WAVE")

@@ -9,6 +9,7 @@ import scenes
 from limit_surface import ids
 from limit_surface.native import limitsurf
 from limit_surface.reading import attributes, cage, ragged_rows
+from mathutils import Matrix
 
 SINGLE = 2e-6
 
@@ -203,10 +204,13 @@ def test_offsets_are_along_the_normal_in_world_units():
         assert np.nanmax(np.abs(cosine)) < 1e-4
 
 
+@pytest.mark.parametrize("projector", [False, True])
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_normals_are_the_surfaces(mirrored):
+def test_normals_are_the_surfaces(mirrored, projector):
     ob = truth.posed(scenes.grid_with_holes(), mirrored)
-    seen_from_above(ob)
+    camera = seen_from_above(ob)
+    camera.scale.x = -1 if projector else 1
+    bpy.context.view_layer.update()
     image()
     decal = add_decal(ob)
     made = Made(decal)
@@ -218,6 +222,23 @@ def test_normals_are_the_surfaces(mirrored):
     flat = np.array([polygon.normal for polygon in decal.data.polygons])
     starts = ragged_rows.starts(made.sizes)
     assert (np.einsum("ij,ij->i", flat, exact[made.vertices[starts]]) > 0).mean() > 0.99
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_planar_decals_of_mirrored_empties_face_outwards(mirrored):
+    ob = truth.posed(scenes.grid_with_holes(), mirrored)
+    camera = seen_from_above(ob)
+    empty = bpy.data.objects.new("E", None)
+    bpy.context.collection.objects.link(empty)
+    empty.matrix_world = camera.matrix_world @ Matrix.Diagonal((-2, 2, 2, 1))
+    bpy.context.view_layer.update()
+    image()
+    decal = add_decal(ob, source="PLANAR", empty="E")
+    flat = np.array([polygon.normal for polygon in decal.data.polygons])
+    corner = np.empty(3 * len(decal.data.loops), np.float32)
+    decal.data.corner_normals.foreach_get("vector", corner)
+    first = corner.reshape(-1, 3)[[polygon.loop_start for polygon in decal.data.polygons]]
+    assert (np.einsum("ij,ij->i", flat, first) > 0).mean() > 0.99
 
 
 def test_a_decal_can_be_evaluated_again():

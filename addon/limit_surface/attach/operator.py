@@ -25,6 +25,13 @@ from .carrier import Extension, is_carrier
 from .parenting import attach, parent_matrices
 
 _WORLD = np.eye(4)
+#: Types of constraints that decide where an object is
+_PLACING = {
+    *("ACTION", "ARMATURE", "CHILD_OF", "CLAMP_TO", "COPY_LOCATION", "COPY_TRANSFORMS"),
+    *("FLOOR", "FOLLOW_PATH", "FOLLOW_TRACK", "LIMIT_DISTANCE", "LIMIT_LOCATION"),
+    *("OBJECT_SOLVER", "PIVOT", "SHRINKWRAP", "TRANSFORM", "TRANSFORM_CACHE"),
+}
+_MOST_NAMES = 3  # of a report
 _NOTHING = "Select the objects to attach and, last, the mesh that they should follow"
 
 
@@ -84,7 +91,17 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
         distances = np.linalg.norm(origins - places.position, axis=1)
         self._summarize(surface, len(objects), len(attached), distances)
         self.report({"INFO"}, "; ".join([self.summary, *posed.cage.notes]))
+        self._warn_of_constraints(objects)
         return {"FINISHED"}
+
+    def _warn_of_constraints(self, objects: list[bpy.types.Object]) -> None:
+        held = [ob for ob in objects if any(_may_hold(each) for each in ob.constraints)]
+        if held:
+            names = ", ".join(ob.name for ob in held[:_MOST_NAMES])
+            names += ", ..." if len(held) > _MOST_NAMES else ""
+            text = f"Constraints may hold {counted(len(held), 'objects')} elsewhere: {names}"
+            self.summary += f"\n{text}"
+            self.report({"WARNING"}, text)
 
     def _summarize(
         self, surface: bpy.types.Object, count: int, again: int, distances: np.ndarray
@@ -98,6 +115,10 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
                 f"{counted(again, 'objects', 'was', 'were')} attached already and got new places"
             )
         self.summary = ". ".join(sentences)
+
+
+def _may_hold(constraint: bpy.types.Constraint) -> bool:
+    return constraint.type in _PLACING and constraint.enabled and constraint.influence > 0
 
 
 def _others(context: bpy.types.Context) -> list[bpy.types.Object]:

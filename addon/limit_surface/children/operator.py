@@ -15,7 +15,7 @@ from .. import ids, native
 from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..nodes import children as nodes
-from ..placing import all_tiles, followers, following, live_children, new_hair, roots
+from ..placing import all_tiles, followers, following, live_children, new_hair, roots, shown_strands
 from ..placing.all_tiles import AllTiles
 from ..placing.binding import Binding
 from ..placing.distribution import Distribution
@@ -178,10 +178,12 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             self._why_not_following = ""
             how = f"by Geometry Nodes, as {followed.guides.key.name} shapes them"
         super()._report(made, how)
+        texts = [shown_strands.warning_of_types(followed.guides.key.find())]
         if followed.unreached:
             were = counted(followed.unreached, "places", "was", "were")
             them = by_count(followed.unreached, "it", "them")
-            text = f"{were} left out: no guide can be reached from {them}"
+            texts.append(f"{were} left out: no guide can be reached from {them}")
+        for text in filter(None, texts):
             self.report({"WARNING"}, text)
             self.summary += f"\n{text}"
 

@@ -14,6 +14,7 @@ from ..errors import RefusalError
 from ..nodes import groups, tube
 from ..placing import curve_points
 from ..placing.follow_properties import follows
+from ..placing.followers import sharers
 from ..placing.new_objects import add_on_surface
 from ..placing.posed_surface import at_closest, transformed
 from ..placing.roots import Locations
@@ -141,6 +142,12 @@ def check_drawable(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     if not ob.is_editable:
         raise RefusalError(f"{ob.name} is linked from another file")
     check_data_editable(data)
+    others = sharers(ob)
+    if others:
+        raise RefusalError(
+            f"{ob.name} shares its curves with {others[0].name}, which would change as well: make "
+            "it a single-user copy first"
+        )
     if data.shape_keys:
         raise RefusalError(f"{ob.name} has shape keys, which keep the number of its points")
     if data.dimensions == "2D":

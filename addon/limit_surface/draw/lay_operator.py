@@ -58,8 +58,6 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.t
         surface, curves = context.active_object, _curves(context)
         for ob in curves:
             curve_object.check_drawable(ob, surface)
-        if len({ob.data for ob in curves}) < len(curves):
-            raise RefusalError("Two of the selected objects share their curves: make them single")
         depsgraph = context.evaluated_depsgraph_get()
         ground = Ground(surface, depsgraph)
         for ob in curves:
@@ -78,6 +76,7 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.t
         self.summary = result.summary(everything, 0, ground, self.offset)
         result.warn_of_pieces(self, len(everything), sum(len(numbers) for _made, numbers in laid))
         result.warn_of_deviation(self, tolerance, everything)
+        result.warn_of_modifiers(self, curves)
         self.report({"INFO"}, "; ".join([self.summary, *ground.posed.cage.notes]))
         return {"FINISHED"}
 

@@ -184,6 +184,8 @@ class VIEW3D_OT_limit_draw(
                 "active: make the drawn curve active"
             )
         self.summary = result.make(context, ground, found.edited, strokes, removed, self)
+        if found.edited is not None:
+            result.warn_of_modifiers(self, [found.edited])
         notes = [self.summary, *ground.posed.cage.notes]
         why = "" if found.edited else why_it_stays(self.follow, ground.ob)
         if why:

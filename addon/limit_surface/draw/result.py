@@ -111,3 +111,17 @@ def warn_of_pieces(operator: bpy.types.Operator, laid: int, given: int) -> None:
             f"{were} made of {counted(given, 'curves')}, because no short way along the surface "
             "joins the pieces",
         )
+
+
+def warn_of_modifiers(operator: bpy.types.Operator, curves: Sequence[bpy.types.Object]) -> None:
+    """Says it where modifiers may show curves elsewhere. Geometry Nodes are left out: they carry
+    the curve with its surface, or give it thickness.
+    """
+    for ob in curves:
+        names = [m.name for m in ob.modifiers if m.show_viewport and m.type != "NODES"]
+        if names:
+            operator.report(
+                {"WARNING"},
+                f"The curve of {ob.name} itself lies on the surface. It is shown as its modifiers "
+                f"change it: {', '.join(names)}",
+            )

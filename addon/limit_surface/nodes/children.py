@@ -111,6 +111,8 @@ def _guides(tree: Tree, to_world: Value) -> tuple[Value, Outputs]:
     guides = tree.object_info(tree.inputs[GUIDES], "RELATIVE")["Geometry"]
     at = _on_surface(tree, tree.attribute(ids.FACE, "INT"), tree.attribute(ids.UV, "FLOAT_VECTOR"))
     guides = tree.get("GeometryNodeCurveSplineType", guides, True, spline_type="POLY")
+    # the segment that closes a cyclic strand is not part of its shape
+    guides = tree.get("GeometryNodeSetSplineCyclic", guides, True, False)
     guides = tree.set_position(guides, True, tree.mapped_direction(tree.position(), to_world))
     resample = tree.node("GeometryNodeResampleCurve")
     if "Mode" in resample.inputs:  # from Blender 5.0 on

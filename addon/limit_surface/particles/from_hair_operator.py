@@ -12,7 +12,7 @@ from bpy.props import EnumProperty, IntProperty
 from .. import ids
 from ..counting import counted
 from ..errors import RefusalError
-from ..placing import followers
+from ..placing import followers, shown_strands
 from ..tasks import polling
 from ..tasks.object_keys import ObjectKey
 from ..tasks.piecewise_job import Pieces, PiecewiseJob
@@ -30,6 +30,7 @@ class Made:
     count: int
     keys: int
     resampled: int  # the number of strands that had another number of points
+    of_types: str  # a warning of the types of strands
     unseen: str  # the material of the hair, if the surface has it in no slot
 
 
@@ -92,6 +93,7 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
         material = strands.material_of(hair)
         unseen = material.name if material and not strands.slot_of(material, surface) else ""
 
+        of_types = shown_strands.warning_of_types(hair)
         is_for_renders = self.levels == "RENDER"
         at_levels = levels.at_render_levels(context, key) if is_for_renders else nullcontext()
 
@@ -105,7 +107,7 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
                 system.remove(key.find(), name)
                 raise
             count, keys = made.strands.shape[:2]
-            return Made(key.name, name, count, keys, resampled, unseen)
+            return Made(key.name, name, count, keys, resampled, of_types, unseen)
 
         return self.watch(context, PiecewiseJob(pieces()), "Making particles")
 
@@ -118,7 +120,10 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
         if made.resampled:
             self.summary += f"\n{counted(made.resampled, 'strands', 'was', 'were')} resampled"
         self.report({"INFO"}, self.summary.replace("\n", "; "))
-        warnings = [levels.warning(context, bpy.data.objects[made.surface], self.levels)]
+        warnings = [
+            made.of_types,
+            levels.warning(context, bpy.data.objects[made.surface], self.levels),
+        ]
         if made.unseen:
             warnings.append(
                 f"{made.surface} has no material slot with {made.unseen}, the material of the "

@@ -9,10 +9,14 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
+from .. import ids
+from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..reading import attributes, cage, transform
 from .followers import live_modifier_of
 from .posed_surface import transformed
+
+_SMOOTH_TYPES = (2, 3)  # Blender's numbers of Bezier and NURBS curves
 
 
 def read(
@@ -46,6 +50,25 @@ def shown_as(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[b
         )
     with cage.evaluated_copy(ob, len(ob.modifiers), depsgraph) as copy:
         yield copy
+
+
+def warning_of_types(ob: bpy.types.Object) -> str:
+    """Returns a warning for hair whose strands are shown as other curves than the lines between
+    their points, or nothing. Catmull-Rom strands, which run through their points, count as lines.
+    """
+    stored = ob.data.attributes.get(ids.CURVE_TYPE)
+    if stored is None or (stored.data_type, stored.domain) != ("INT8", "CURVE"):
+        return ""
+    types = np.empty(len(stored.data), np.int8)
+    stored.data.foreach_get("value", types)
+    count = int(np.isin(types, _SMOOTH_TYPES).sum())
+    if not count:
+        return ""
+    are = by_count(count, "is a Bezier or NURBS curve", "are Bezier or NURBS curves")
+    return (
+        f"{counted(count, 'strands')} of {ob.name} {are}. Only their control points were used: "
+        "convert them to Poly or Catmull Rom to use the curves that are shown"
+    )
 
 
 def _read(

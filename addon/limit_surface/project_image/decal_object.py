@@ -7,7 +7,7 @@ import numpy as np
 from .. import ids
 from ..placing import new_objects, roots
 from ..placing.binding import Binding
-from ..reading import attributes
+from ..reading import attributes, ragged_rows
 from ..tasks.job import Progress
 from .decal import Decal
 from .world import WorldSurface
@@ -22,8 +22,6 @@ class PlacedDecal:
         """Places the vertices. `offset` is a distance along the normals, in world units."""
         hits = decal.hits
         self.st, self.sizes, self.vertices = hits.st, decal.sizes, decal.vertices
-        # Counter-clockwise in the image is clockwise from outside, seen from a mirrored object.
-        self.is_turned = world.is_mirrored
         self.locations = locations = roots.Locations(
             hits.face.astype(np.int32), hits.uv.astype(np.float32)
         )
@@ -36,6 +34,17 @@ class PlacedDecal:
             outward = side * world.axes.frames(part.frame)[:, :, 2]
             self.position[part.rows] = part.position + offset * world.axes.to_local(outward)
             self.normal[part.rows] = side * part.frame[:, :, 2]
+        # Corners run counter-clockwise in the image. From outside that is clockwise where either
+        # the surface or the projector is mirrored.
+        self.is_turned = self._faces_inwards()
+
+    def _faces_inwards(self) -> bool:
+        """Tells whether the polygons face against the normals."""
+        corners = self.position[self.vertices]
+        first = np.repeat(ragged_rows.starts(self.sizes), self.sizes)
+        fans = corners - corners[first]
+        areas = np.cross(fans, fans[ragged_rows.following(self.sizes)])
+        return bool(np.nansum(areas * self.normal[self.vertices]) < 0)
 
 
 def add(
