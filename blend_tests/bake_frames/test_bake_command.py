@@ -283,6 +283,40 @@ def test_a_folder_with_another_bake(waves, tmp_path, capfd):
     assert "bake.json is not the record of a bake" in capfd.readouterr().err
 
 
+def test_two_files_of_one_name_do_not_mix(tmp_path, capfd):
+    folder = tmp_path / "caches"
+
+    def bake_cube(shot: str, height: float, *options: str) -> int:
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        bpy.ops.mesh.primitive_cube_add(location=(0, 0, height))
+        (tmp_path / shot).mkdir(exist_ok=True)
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / shot / "scene.blend"))
+        return bake(folder, "Cube", frames="1", options=("--format", "npz", *options))
+
+    def height() -> float:
+        return float(np.load(folder / "Cube.0001.npz")["matrix_world"][2, 3])
+
+    assert bake_cube("sh010", 0) == 0
+    assert bake_cube("sh020", 7) == command.BAD_ARGUMENTS
+    assert "the .blend file has changed since, or is another one" in capfd.readouterr().err
+    assert height() == 0
+    assert bake_cube("sh020", 7, "--overwrite") == 0
+    assert height() == 7
+    elsewhere = tmp_path / "mounted elsewhere"
+    (tmp_path / "sh020").rename(elsewhere)
+    bpy.ops.wm.open_mainfile(filepath=str(elsewhere / "scene.blend"))
+    assert bake(folder, "Cube", frames="2", options=("--format", "npz")) == 0
+
+
+def test_a_mesh_without_vertices_does_not_end_the_job(waves, tmp_path, capfd):
+    empty = bpy.data.objects.new("Empty", bpy.data.meshes.new("Empty"))
+    bpy.context.collection.objects.link(empty)
+    assert bake(tmp_path, "Empty", "Flat", frames="1-2", options=("--format", "npz")) == 0
+    assert "Empty shows no points: its file is empty" in capfd.readouterr().out
+    assert len(contents_of_files(tmp_path)) == 5
+    assert np.load(tmp_path / "Empty.0001.npz")["position"].shape == (0, 3)
+
+
 def test_a_file_system_without_links(waves, tmp_path, monkeypatch):
     def no_links(*_paths):
         raise PermissionError("Operation not permitted")

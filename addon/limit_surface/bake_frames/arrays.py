@@ -48,11 +48,17 @@ def _evaluated(ob: bpy.types.Object) -> bpy.types.Object:
     return ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
 
 
+def _positions(data: bpy.types.ID) -> np.ndarray:
+    if ids.POSITION not in data.attributes:  # a new mesh without vertices
+        return np.empty((0, 3), np.float32)
+    return attributes.read(data, ids.POSITION)
+
+
 def _arrays(evaluated: bpy.types.Object) -> dict[str, np.ndarray]:
     data = evaluated.data
     found = {
         "matrix_world": np.array(evaluated.matrix_world, np.float32),
-        ids.POSITION: attributes.read(data, ids.POSITION),
+        ids.POSITION: _positions(data),
     }
     if evaluated.type == "MESH":
         found["face_sizes"] = attributes.face_sizes(data)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import sys
 import time
 from collections import Counter
@@ -19,7 +20,7 @@ from ..tasks import file_names
 from . import arrays, bindings
 from .arguments import Arguments
 from .exporters import Subject
-from .frame_files import FrameFiles
+from .frame_files import CONTENTS, FrameFiles
 
 # what has become of a file
 WRITTEN, EXISTED, FAILED = "written", "existed", "failed"
@@ -53,7 +54,9 @@ class Bake:
                 "file": Path(bpy.data.filepath).name,
                 "limitsurf": native.version(),
                 "scene": self._scene.name,
-            }
+                CONTENTS: _checksum(bpy.data.filepath),
+            },
+            self._arguments.overwrite,
         )
 
     def run(self, say: Callable[[str], None]) -> int:
@@ -141,6 +144,16 @@ def _file_names(
     if name := next((name for name, count in counts.items() if count > 1), ""):
         raise RefusalError(f"several objects would be written to the same file {name}")
     return names
+
+
+def _checksum(path: str) -> str:
+    """Returns a checksum of a file; nothing where there is none. Jobs of one bake may find the file
+    at different paths.
+    """
+    if not Path(path).is_file():
+        return ""
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _is_animated(ob: bpy.types.Object) -> bool:

@@ -20,6 +20,8 @@ from ..errors import RefusalError
 # unfinished files begin so; one that a killed job has left can be deleted
 PARTIAL = ".partial"
 RECORD = "bake.json"
+# the key of the record for a checksum of the .blend file
+CONTENTS = "file_sha256"
 
 
 class FrameFiles:
@@ -27,28 +29,30 @@ class FrameFiles:
         self._folder = folder
         self._suffix = suffix
 
-    def prepare(self, record: dict[str, str]) -> None:
+    def prepare(self, record: dict[str, str], overwrite: bool) -> None:
         """Makes the folder and writes the record. Raises RefusalError where the folder holds frames
-        with another record, which must not be mixed with new ones.
+        with another record, which must not be mixed with new ones. With `overwrite`, the contents
+        of the .blend file may be others.
         """
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             there = self._claim(record)
+            if not isinstance(there, dict):
+                raise RefusalError(f"{self._record} is not the record of a bake: delete it")
+            differ = sorted(key for key in record if there.get(key) != record[key])
+            if overwrite and differ == [CONTENTS]:
+                self._replace(record)
+                return
         except OSError as error:
             raise RefusalError(f"cannot write to {self._folder}: {error.strerror}") from error
-        if there == record:
-            return
-        if not isinstance(there, dict):
-            raise RefusalError(f"{self._record} is not the record of a bake: delete it")
-        differences = "; ".join(
-            f"{key} {there.get(key)}, not {record[key]}"
-            for key in sorted(record)
-            if there.get(key) != record[key]
-        )
-        raise RefusalError(
-            f"{self._folder} holds another bake ({differences}): give another folder, or delete "
-            "that bake"
-        )
+        if CONTENTS in differ and CONTENTS not in there:  # of an earlier version of the extension
+            differ.remove(CONTENTS)
+        if differ:
+            reasons = "; ".join(_difference(key, there.get(key), record[key]) for key in differ)
+            raise RefusalError(
+                f"{self._folder} holds another bake ({reasons}): give another folder, or delete "
+                "that bake"
+            )
 
     def path(self, name: str, frame: int) -> Path:
         sign = "-" if frame < 0 else ""
@@ -70,11 +74,15 @@ class FrameFiles:
     def _record(self) -> Path:
         return self._folder / RECORD
 
+    def _replace(self, record: dict[str, str]) -> None:
+        with _partial(self._record) as partial:
+            _write(partial, record)
+            partial.replace(self._record)
+
     def _claim(self, record: dict[str, str]) -> Any:
         """Writes the record, unless there is one, and returns the one that is there."""
         with _partial(self._record) as partial:
-            partial.write_text(json.dumps(record, indent=2, sort_keys=True) + "\n")
-            _save(partial)
+            _write(partial, record)
             try:
                 os.link(partial, self._record)  # fails where the file exists
             except FileExistsError:
@@ -86,6 +94,17 @@ class FrameFiles:
             return json.loads(self._record.read_text())
         except ValueError:
             return None
+
+
+def _difference(key: str, there: object, here: str) -> str:
+    if key == CONTENTS:
+        return "the .blend file has changed since, or is another one: --overwrite replaces all"
+    return f"{key} {there}, not {here}"
+
+
+def _write(path: Path, record: dict[str, str]) -> None:
+    path.write_text(json.dumps(record, indent=2, sort_keys=True) + "\n")
+    _save(path)
 
 
 @contextmanager
