@@ -42,7 +42,8 @@ class Order:
         if not len(found.sizes):
             raise RefusalError(
                 f"The image cannot be seen on the surface: no part of the image {self.image} falls "
-                "on the surface"
+                "on the surface, or only parts smaller than a polygon of the decal (raise "
+                "Resolution then)"
             )
         sag = decal.sag(rays, found)
         placing = part_of(progress, CAST, 1)
