@@ -339,7 +339,8 @@ def test_a_curve_whose_table_was_deleted_is_named_until_it_follows_again():
     check(made, ob)
 
 
-def test_rebinding_a_copy_leaves_the_original():
+@pytest.mark.parametrize("change", ["rebind", "add hair"])
+def test_changes_of_a_copy_leave_the_original(change):
     """Copies of a curve read the same hidden table."""
     ob = deforming("grid with holes")
     made = curve(ob)
@@ -351,11 +352,14 @@ def test_rebinding_a_copy_leaves_the_original():
     bpy.ops.object.duplicate()
     (copy,) = [each for each in bpy.context.selected_objects if each.type == "MESH"]
     scenes.activate(copy)
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_all(action="SELECT")
-    bpy.ops.mesh.subdivide()
-    bpy.ops.object.mode_set(mode="OBJECT")
-    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    if change == "rebind":
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    else:
+        assert bpy.ops.object.limit_hair_add(follow="NODES") == {"FINISHED"}
     assert follow_scenes.look(ob) == []
     assert follow_scenes.look(copy) == []
     check(made, ob)

@@ -137,19 +137,6 @@ def _store(ob: bpy.types.Object, points: np.ndarray, places: Binding) -> None:
     groups.set_input(modifier, POINTS, table)
 
 
-def separate(curves: Sequence[bpy.types.Object]) -> None:
-    """Gives these curves, which read one table, a table of their own if others read it as well:
-    copies that stand on another surface.
-    """
-    table = curve_table(curves[0])
-    if table is None or set(tables.readers(table)).issubset(curves):
-        return
-    own = tables.copy_of(table, ids.CURVE_TABLE, curves[0])
-    for ob in curves:
-        for modifier in groups.modifiers(ob, ids.FOLLOW_CURVE_GROUP):
-            groups.set_input(modifier, POINTS, own)
-
-
 def check(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     """Raises RefusalError for a curve that cannot follow the surface."""
     following.check_thing(ob, surface)

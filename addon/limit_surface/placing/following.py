@@ -23,7 +23,7 @@ from ..nodes.capture import CAPTURE, crease_sum, topology_sum
 from ..nodes.follow import SURFACE, TILES
 from ..reading import attributes, cage, rules
 from ..tasks.object_keys import ObjectKey
-from . import live_attributes, proxy, tables
+from . import live_attributes, proxy, shared_tables, tables
 from .follow_properties import follows
 from .followers import (
     ensure_modifier,
@@ -138,6 +138,9 @@ class Request:
         followers = [key.find() for key in self._followers]
         if new is not None:
             followers.append(new)
+        shared_tables.separate(followers)
+        for relocation in self._relocated:
+            relocation.elements.read_holder()
         data_blocks = holders(followers)
         moved = {relocation.data for relocation in self._relocated}
         for data, place in zip(data_blocks, made.places, strict=True):

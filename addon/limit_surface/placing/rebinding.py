@@ -150,11 +150,6 @@ class Rebinding:
 
     def write(self, context: bpy.types.Context) -> Rebound:
         """Changes the file."""
-        for relocation in self._relocations:
-            if relocation.elements.ob.type == "CURVE":
-                data = relocation.data
-                curve_points.separate([ob for ob in self._by_nodes if holder_of(ob) == data])
-                relocation.elements.read_holder()
         if self._bindings:
             self._bindings.write()
         for relocation in self._relocations_of_live:
