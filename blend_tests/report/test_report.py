@@ -247,6 +247,19 @@ def test_render_that_cannot_be_had():
     assert set(report(ob, levels="VIEWPORT")) == {"VIEWPORT"}
 
 
+def test_modifiers_that_renders_alone_show_are_named(capfd):
+    ob = scenes.cross()
+    ob.modifiers.new("Bent", "SIMPLE_DEFORM")
+    scenes.add_subsurf(ob)
+    report(ob, levels="RENDER")
+    assert "Renders do not show" not in capfd.readouterr().out
+    ob.modifiers["Bent"].show_viewport = False
+    report(ob, levels="VIEWPORT")
+    assert "Renders do not show" not in capfd.readouterr().out
+    report(ob, levels="RENDER")
+    assert "modifiers of Cross in both, or in neither: Bent\n" in capfd.readouterr().out
+
+
 def test_multiresolution():
     ob = scenes.cross()
     ob.modifiers.new("Multires", "MULTIRES")

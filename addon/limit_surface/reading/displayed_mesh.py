@@ -110,6 +110,20 @@ def read_as_set_up(
         return _read_mesh(f"{ob.name}: {_CALLED['VIEWPORT']}", evaluated.data, found, level)
 
 
+def warning_of_renders(ob: bpy.types.Object) -> str:
+    """Returns a warning where modifiers before the subdivision are enabled in renders only, or in
+    the viewport only, or nothing. The limit surface is always that of the viewport.
+    """
+    before = ob.modifiers[: rules.place_of_subsurf(ob)]
+    names = [m.name for m in before if m.show_viewport != m.show_render]
+    if not names:
+        return ""
+    return (
+        f"Renders do not show the same control mesh as the viewport, to which the limit surface "
+        f"belongs: enable these modifiers of {ob.name} in both, or in neither: {', '.join(names)}"
+    )
+
+
 @contextmanager
 def opened(
     ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, kind: Kind

@@ -142,5 +142,8 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         self.summary = "\n".join(lines)
         if refused:
             self.report({"WARNING"}, left_out(refused, len(found.face_sizes)))
+        if "RENDER" in kept and (warning := displayed_mesh.warning_of_renders(ob)):
+            self.summary += f"\n{warning}"
+            self.report({"WARNING"}, warning)
         short = "; ".join(short_sentence(*item) for item in kept.items())
         self.report({"INFO"}, "; ".join([f"{ob.name}: {short}", *found.notes]))
