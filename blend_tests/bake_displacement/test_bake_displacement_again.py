@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import scenes
 import sculpts
-from limit_surface.images import image_pixels
+from limit_surface.errors import RefusalError
+from limit_surface.images import image_pixels, image_tiles
 
 NAME = "Holes Displacement"
 
@@ -35,8 +36,15 @@ def lift(sculpt):
     sculpts.reshape(sculpt, lambda at: at + [0, 0, 1])
 
 
-def heights():
-    return image_pixels.read(bpy.data.images[NAME])[..., 2]
+def heights(tile=1001):
+    return image_pixels.read(bpy.data.images[NAME], tile)[..., 2]
+
+
+def shift_uv(ob, by):
+    layer = ob.data.uv_layers[0]
+    uv = np.empty(2 * len(layer.data), np.float32)
+    layer.data.foreach_get("uv", uv)
+    layer.data.foreach_set("uv", uv + np.tile(np.float32([by, 0]), len(layer.data)))
 
 
 def test_the_same_image_holds_the_new_numbers(base, sculpt):
@@ -107,10 +115,7 @@ def test_an_image_of_another_size_is_refused(base, sculpt):
 
 
 def test_tiles_are_written_again(base, sculpt):
-    layer = base.data.uv_layers[0]
-    uv = np.empty(2 * len(layer.data), np.float32)
-    layer.data.foreach_get("uv", uv)
-    layer.data.foreach_set("uv", uv + np.tile(np.float32([0.6, 0]), len(layer.data)))
+    shift_uv(base, 0.6)
     bake(base, sculpt, use_tiles=True)
     image = bpy.data.images[NAME]
     before = image_pixels.read(image, 1002)[..., 2]
@@ -124,12 +129,78 @@ def test_tiles_are_written_again(base, sculpt):
 
 
 def test_tiles_that_the_file_would_not_hold(base, sculpt, tmp_path):
-    layer = base.data.uv_layers[0]
-    uv = np.empty(2 * len(layer.data), np.float32)
-    layer.data.foreach_get("uv", uv)
-    layer.data.foreach_set("uv", uv + np.tile(np.float32([0.6, 0]), len(layer.data)))
+    shift_uv(base, 0.6)
     bake(base, sculpt, use_tiles=True)
     with pytest.raises(RuntimeError, match="has tiles that the file would not hold"):
         bake(base, sculpt, filepath=str(tmp_path / "holes.exr"))
     assert len(bpy.data.images[NAME].tiles) == 2
     assert not list(tmp_path.iterdir())
+
+
+def test_undo_of_tiles_in_files_that_are_replaced(base, sculpt, tmp_path):
+    shift_uv(base, 0.6)
+    how = {"use_tiles": True, "filepath": str(tmp_path / "tiles.<UDIM>.exr")}
+    bake(base, sculpt, **how)
+    before = {tile: heights(tile) for tile in (1001, 1002)}
+    lift(sculpt)
+    bpy.ops.ed.undo_push(message="before")
+    bake(base, sculpt, **how)
+    after = {tile: heights(tile) for tile in (1001, 1002)}
+    bpy.ops.ed.undo_push(message="after")
+    for step, expected in ((bpy.ops.ed.undo, before), (bpy.ops.ed.redo, after)):
+        step()
+        for tile in (1001, 1002):
+            np.testing.assert_array_equal(heights(tile), expected[tile])
+    assert np.abs(after[1002] - before[1002]).max() > 0.9
+
+
+def test_a_refusal_after_the_work_leaves_the_files(base, sculpt, tmp_path, monkeypatch):
+    how = {"filepath": str(tmp_path / "holes.exr")}
+    bake(base, sculpt, **how)
+    before, kept = (tmp_path / "holes.exr").read_bytes(), heights()
+    lift(sculpt)
+
+    def fails(*_what):
+        raise RefusalError("no space is left")
+
+    monkeypatch.setattr(image_tiles, "write_some", fails)
+    with pytest.raises(RuntimeError, match="no space is left"):
+        bake(base, sculpt, **how)
+    monkeypatch.undo()
+    assert [path.name for path in tmp_path.iterdir()] == ["holes.exr"]
+    assert (tmp_path / "holes.exr").read_bytes() == before
+    np.testing.assert_array_equal(heights(), kept)
+
+
+def test_an_image_whose_tiles_cannot_be_read(base, sculpt, tmp_path):
+    shift_uv(base, 0.6)
+    image = bpy.data.images.new(
+        NAME, 48, 40, alpha=True, float_buffer=True, is_data=True, tiled=True
+    )
+    with bpy.context.temp_override(edit_image=image):
+        bpy.ops.image.tile_add(number=1002, width=48, height=40, float=True, alpha=True)
+    with pytest.raises(RuntimeError, match=f"The tiled image {NAME} has "):
+        bake(base, sculpt, use_tiles=True, filepath=str(tmp_path / "tiles.<UDIM>.exr"))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_tile_that_the_map_has_left_is_told(base, sculpt, tmp_path, capfd):
+    how = {"use_tiles": True, "filepath": str(tmp_path / "tiles.<UDIM>.exr")}
+    shift_uv(base, 0.6)
+    bake(base, sculpt, **how)
+    second = heights(1002)
+    shift_uv(base, -0.6)
+    lift(sculpt)
+    bake(base, sculpt, **how)
+    assert f"tile 1002 of {NAME} was not baked and shows" in capfd.readouterr().out
+    np.testing.assert_array_equal(heights(1002), second)
+    assert heights().max() > 0.9
+
+
+def test_a_single_tile_that_is_not_the_first_needs_its_number_in_the_path(base, sculpt, tmp_path):
+    shift_uv(base, 1)
+    with pytest.raises(RuntimeError, match="Tile 1002 is saved in its own file: d.exr must"):
+        bake(base, sculpt, use_tiles=True, filepath=str(tmp_path / "d.exr"))
+    bake(base, sculpt, use_tiles=True, filepath=str(tmp_path / "d.<UDIM>.exr"))
+    assert [path.name for path in tmp_path.iterdir()] == ["d.1002.exr"]
+    assert bpy.data.images[NAME].source == "TILED"

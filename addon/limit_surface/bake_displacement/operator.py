@@ -80,7 +80,7 @@ class OBJECT_OT_limit_bake_displacement(
 
     def finish(self, _context: bpy.types.Context, made: Made) -> set[str]:
         ob, request, measured = made.surface.find(), made.request, made.measured
-        image = made.output.put(measured.tiles)
+        image, told = made.output.put(measured.tiles)
         image[ids.DISPLACEMENT] = json.dumps(self._described(request))
         if self.create_material:
             map_name = request.surfaces.found.chosen_uv_map.name
@@ -91,9 +91,8 @@ class OBJECT_OT_limit_bake_displacement(
             if unseen:
                 self.report({"WARNING"}, unseen)
             self._warn_of_tangents(ob, map_name, request)
-        unsaved = image_pixels.unsaved(image)
-        if unsaved:
-            self.report({"WARNING"}, unsaved)
+        for warning in filter(None, (told, image_pixels.unsaved(image))):
+            self.report({"WARNING"}, warning)
         self._tell(ob, image, request, measured)
         return {"FINISHED"}
 

@@ -82,10 +82,10 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         return self.watch(context, Job(work), f"Baking {ob.name}")
 
     def finish(self, _context: bpy.types.Context, made: Done) -> set[str]:
-        named = made.output.put(made.baked.pixels)
+        named, told = made.output.put(made.baked.pixels)
         lines = text.ranges(made.baked)
         self.summary = "\n".join(lines)
-        warnings = text.warnings(made.baked, made.flat_faces)
+        warnings = text.warnings(made.baked, made.flat_faces) + told
         warnings += filter(None, (image_pixels.unsaved(image) for image in named))
         if warnings:
             self.report({"WARNING"}, "; ".join(warnings))

@@ -16,7 +16,8 @@ image without tiles counts as one tile 1001.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,7 +25,7 @@ import bpy
 import numpy as np
 
 from ..errors import RefusalError
-from . import image_files, image_tiles, pixel_undo
+from . import failed_writes, image_files, image_tiles, pixel_undo
 from .image_files import FileKind
 from .image_tiles import FIRST_TILE
 
@@ -67,6 +68,8 @@ def checked(image: bpy.types.Image | None, *, to_write: bool = False) -> Descrip
         raise RefusalError(f"{whose} has no pixels: check that its file exists")
     tiles = {FIRST_TILE: tuple(image.size)}
     if image.source == "TILED":
+        if to_write:
+            image_tiles.check_readable(image)  # what they showed is read, for undo
         tiles = image_tiles.sizes(image)
     width, height = next(iter(tiles.values()))
     return Description(
@@ -105,28 +108,52 @@ def write(
     must not change without the user's knowledge. Other images are marked as changed, so that
     Blender asks to save them (`unsaved`).
     """
-    described = checked(image, to_write=True)
     given = pixels if isinstance(pixels, Mapping) else {tile: pixels}
-    for number, values in given.items():
+    if is_new:
+        _check_shapes(image, checked(image, to_write=True), given)
+        # A generated image would lose its pixels at any change of its settings.
+        image_tiles.write_some(image, given)
+        image.pack()
+    else:
+        with written(image, given):
+            pass
+
+
+@contextmanager
+def written(image: bpy.types.Image, pixels: Mapping[int, np.ndarray]) -> Iterator[None]:
+    """Writes the pixels of several tiles as `write` does, and takes the change back if an error
+    follows within the `with` statement. So several images change together, or none does.
+    """
+    described = checked(image, to_write=True)
+    _check_shapes(image, described, pixels)
+    is_kept = _is_kept(image, described)
+    with (
+        failed_writes.packing_restored(image, is_kept),
+        pixel_undo.recorded(image) as tell,
+        failed_writes.settings_restored(image),
+    ):
+        if is_kept:
+            _read_back_unchanged(image)
+        image_tiles.write_some(image, pixels)
+        if described.is_float and described.channels == 4 and image.source != "TILED":
+            tell(pixels)  # the image holds just these numbers
+        else:
+            tell(image_tiles.read_all(image))
+        del pixels
+        if is_kept:
+            image.pack()
+        yield
+
+
+def _check_shapes(
+    image: bpy.types.Image, described: Description, pixels: Mapping[int, np.ndarray]
+) -> None:
+    for number, values in pixels.items():
         if number not in described.tiles:
             raise RefusalError(f"The image {image.name} has no tile {number}")
         width, height = described.tiles[number]
         if values.shape != (height, width, 4):
             raise ValueError(f"pixels have shape {values.shape}; expected ({height}, {width}, 4)")
-    if is_new:
-        # A generated image would lose its pixels at any change of its settings.
-        image_tiles.write_some(image, given)
-        image.pack()
-    else:
-        is_kept = _is_kept(image, described)
-        with pixel_undo.recorded(image) as tell:
-            if is_kept:
-                _read_back_unchanged(image)
-            image_tiles.write_some(image, given)
-            if described.is_float and described.channels == 4 and image.source != "TILED":
-                tell(given)  # the image holds just these numbers
-            if is_kept:
-                image.pack()
 
 
 def unsaved(image: bpy.types.Image) -> str:
@@ -194,14 +221,21 @@ def save(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
     if image.source == "TILED":
         save_tiles(image_tiles.read_all(image), path, kind)
     else:
-        image_files.save_copy(image, _of_tile(path, FIRST_TILE), kind)
+        image_files.save_copy(image, of_tile(path, FIRST_TILE), kind)
     attach(image, path)
 
 
-def save_tiles(tiles: Mapping[int, np.ndarray], path: str | Path, kind: FileKind) -> None:
-    """Saves the pixels of each tile to its own file."""
+def save_tiles(
+    tiles: Mapping[int, np.ndarray],
+    path: str | Path,
+    kind: FileKind,
+    written_at: Callable[[str], str | Path] = str,
+) -> None:
+    """Saves the pixels of each tile to its own file. `written_at` may have the file of a path
+    written elsewhere.
+    """
     for number, pixels in tiles.items():
-        image_files.save_pixels(pixels, _of_tile(path, number), kind)
+        image_files.save_pixels(pixels, written_at(of_tile(path, number)), kind)
 
 
 def attach(image: bpy.types.Image, path: str | Path) -> None:
@@ -213,13 +247,14 @@ def attach(image: bpy.types.Image, path: str | Path) -> None:
         image.unpack(method="REMOVE")
     if image.source != "TILED":
         image.source = "FILE"
-        path = _of_tile(path, FIRST_TILE)
+        path = of_tile(path, FIRST_TILE)
     image.filepath = str(path)
     image.reload()
     image.colorspace_settings.name = colorspace
 
 
-def _of_tile(path: str | Path, tile: int) -> str:
+def of_tile(path: str | Path, tile: int) -> str:
+    """Returns the path of a tile's file. <UDIM> in the path stands for the tile's number."""
     return str(path).replace("<UDIM>", str(tile))
 
 

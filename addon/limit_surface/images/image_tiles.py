@@ -28,11 +28,31 @@ def sizes(image: bpy.types.Image) -> dict[int, tuple[int, int]]:
     return {tile.number: tuple(tile.size) for tile in image.tiles if all(tile.size)}
 
 
+def check_readable(image: bpy.types.Image) -> None:
+    """Raises RefusalError where the tiles of a tiled image cannot be read."""
+    whose = f"The tiled image {image.name}"
+    if image.is_dirty:
+        raise RefusalError(f"{whose} has changes that are not saved: save it first")
+    if not (image.packed_files or image.filepath):
+        raise RefusalError(f"{whose} has no files yet: save it first")
+    linear = image.colorspace_settings.name in image_files.UNCONVERTED
+    if image.is_float and not linear:
+        raise RefusalError(
+            f"{whose} has float pixels in the color space {image.colorspace_settings.name}, which "
+            "is not supported"
+        )
+    packed = {file.tile_number for file in image.packed_files}
+    for number in sizes(image).keys() - packed:
+        path = _path_of_tile(image, number)
+        if not Path(path).is_file():
+            raise RefusalError(f"{whose} shows tile {number} from {path}, which does not exist")
+
+
 def read_all(image: bpy.types.Image) -> dict[int, np.ndarray]:
     """Returns the pixels (height, width, 4) of all tiles as float32, by the tiles' numbers."""
     if image.source != "TILED":
         return {FIRST_TILE: _pixels(image)}
-    _check_readable(image)
+    check_readable(image)
     found = {}
     for number in sizes(image):
         with _tile_file(image, number) as file, _loaded(file) as tile:
@@ -115,27 +135,17 @@ def _narrowed(pixels: np.ndarray, channels: int) -> np.ndarray:
     return pixels[:, :, [0, 3]] if channels == 2 else pixels[:, :, :channels]
 
 
-def _check_readable(image: bpy.types.Image) -> None:
-    whose = f"The tiled image {image.name}"
-    if image.is_dirty:
-        raise RefusalError(f"{whose} has changes that are not saved: save it first")
-    if not (image.packed_files or image.filepath):
-        raise RefusalError(f"{whose} has no files yet: save it first")
-    linear = image.colorspace_settings.name in image_files.UNCONVERTED
-    if image.is_float and not linear:
-        raise RefusalError(
-            f"{whose} has float pixels in the color space {image.colorspace_settings.name}, which "
-            "is not supported"
-        )
+def _path_of_tile(image: bpy.types.Image, number: int) -> str:
+    path = bpy.path.abspath(image.filepath_raw, library=image.library)
+    across, up = (number - FIRST_TILE) % 10 + 1, (number - FIRST_TILE) // 10 + 1
+    return path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{across}_v{up}")
 
 
 @contextmanager
 def _tile_file(image: bpy.types.Image, number: int) -> Iterator[str]:
     packed = [p for p in image.packed_files if p.tile_number == number]
     if not packed:
-        path = bpy.path.abspath(image.filepath_raw, library=image.library)
-        across, up = (number - FIRST_TILE) % 10 + 1, (number - FIRST_TILE) // 10 + 1
-        yield path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{across}_v{up}")
+        yield _path_of_tile(image, number)
         return
     with TemporaryDirectory(dir=bpy.app.tempdir) as folder:
         file = Path(folder, f"tile{Path(packed[0].filepath).suffix}")

@@ -84,24 +84,29 @@ _unsaved: set[int] = set()  # images that held unsaved pixels before an undo or 
 @contextmanager
 def recorded(image: bpy.types.Image) -> Iterator[Callable[[Mapping[int, np.ndarray]], None]]:
     """Records a change of the image's pixels. If the change fails, the pixels are restored. Yields
-    a function to call with the pixels of all tiles after the change, by whoever knows them; they
-    are read from the image otherwise.
+    a function that stores the pixels of all tiles after the change, and has to be called.
     """
     mark, onto = uuid4().hex, image.get(ids.PIXELS_MARK)
     now = image_tiles.read_all(image)
-    known: dict[int, np.ndarray] = {}
+    stored: list[_Kept] = []
     shown = _shown.get(image.session_uid)
     if shown and shown.kept and shown.kept.holds(now):
         before = shown.kept
     else:
         before = _Kept.of(now, f"{mark}_before")
     del now
+
+    def tell(tiles: Mapping[int, np.ndarray]) -> None:
+        stored.append(_Kept.of(tiles, f"{mark}_after"))
+
     try:
-        yield known.update
-        after = _Kept.of(known or image_tiles.read_all(image), f"{mark}_after")
+        yield tell
+        (after,) = stored
     except BaseException:
-        before.show(image)
-        _drop([before])
+        try:
+            before.show(image)
+        finally:
+            _drop([before, *stored])
         raise
     _writes[mark] = _Write(onto, before, after)
     image[ids.PIXELS_MARK] = mark

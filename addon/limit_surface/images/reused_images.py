@@ -2,11 +2,12 @@
 """Images that an earlier bake has made, and that the next one writes into."""
 
 from collections.abc import Collection
+from pathlib import Path
 
 import bpy
 
 from ..errors import RefusalError
-from . import image_pixels
+from . import image_pixels, image_tiles
 
 
 def find(name: str) -> bpy.types.Image | None:
@@ -46,4 +47,21 @@ def check_fits(
     if not described.is_data:
         raise RefusalError(
             f"{whose} has the color space {described.colorspace}, but data need Non-Color"
+        )
+
+
+def check_saves_all(
+    image: bpy.types.Image, tiles: Collection[int], path: Path, option: str
+) -> None:
+    """Raises RefusalError where the files at this path, into which these tiles are saved, would not
+    hold all tiles of a tiled image. They hold the others if they are the image's own files.
+    """
+    if image.source != "TILED":
+        return
+    own = None if image.packed_files else bpy.path.abspath(image.filepath_raw)
+    others = image_tiles.sizes(image).keys() - set(tiles)
+    if "<UDIM>" not in path.name or (others and own != str(path)):
+        raise RefusalError(
+            f"The existing image {image.name} has tiles that the file would not hold: save the "
+            f"image yourself, set another name, or turn {option} off"
         )
