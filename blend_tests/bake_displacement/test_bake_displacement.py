@@ -241,6 +241,25 @@ def test_udim_tiles(sculpt, base):
     np.testing.assert_allclose(alone, left, atol=1e-7)
 
 
+def test_faces_outside_the_image_are_counted(sculpt, base, capfd):
+    layer = base.data.uv_layers[0]
+    uv = attributes.read(base.data, layer.name)
+    layer.data.foreach_set("uv", (uv + [0.6, 0]).astype(np.float32).ravel())
+    bake(base, sculpt, space="OBJECT")
+    assert "lie wholly or partly outside tile 1001 on the UV map" in capfd.readouterr().out
+    bake(base, sculpt, use_tiles=True, space="OBJECT", reuse=False)
+    bake(base, sculpt, layout_kind="PTEX", space="OBJECT", reuse=False)
+    assert "outside" not in capfd.readouterr().out
+
+
+def test_rounding_at_a_border_makes_no_tile(sculpt, base, tmp_path):
+    scenes.add_uv_map(base, lambda p: p[:, :2] / p[:, :2].max() * 1.0000002)
+    how = {"use_tiles": True, "space": "OBJECT", "uv_map": base.data.uv_layers[-1].name}
+    image = bake(base, sculpt, filepath=str(tmp_path / "d.exr"), **how)
+    assert image.source == "FILE"
+    assert [path.name for path in tmp_path.iterdir()] == ["d.exr"]
+
+
 def test_the_file_holds_the_numbers(sculpt, base, tmp_path):
     path = tmp_path / "displacement.exr"
     image = bake(base, sculpt, filepath=str(path))

@@ -92,6 +92,16 @@ def test_a_warning_says_that_an_image_of_its_own_file_is_not_saved(tmp_path, cap
     assert (tmp_path / "old.png").read_bytes() != file
 
 
+def test_a_warning_counts_the_faces_outside_the_image(capfd):
+    projected([0.9, 0.5, 0.1, 0.7])
+    assert "outside" not in capfd.readouterr().out
+    layer = bpy.data.objects["Holes"].data.uv_layers[0]
+    for corner in layer.data:
+        corner.uv.x += 0.5
+    projected([0.9, 0.5, 0.1, 0.7])
+    assert "lie wholly or partly outside tile 1001 on the UV map" in capfd.readouterr().out
+
+
 def test_all_colours_are_multiplied_by_alpha():
     alpha = np.float32([1, 0.5, 1e-3, 1e-6, 1e-7, 1e-20, 0])[:, None]
     straight = np.concatenate([np.full((7, 3), 0.5, np.float32), alpha], axis=1)

@@ -44,6 +44,8 @@ def measure(request: Request, progress: Progress) -> Measured:
     for i, tile in enumerate(layout.tiles):
         part = part_of(progress, i / len(layout.tiles), (i + 1) / len(layout.tiles))
         texels = layout.texels(tile, part_of(part, 0, PLACED))
+        if not texels.inside.any():
+            continue
         texels = layouts.with_surface(texels, request.surfaces.base)
         pixels = np.zeros((layout.height, layout.width, 4), np.float32)
         pixels[:, :, 3] = 1

@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import native
 from ..errors import RefusalError, TooLargeError
-from ..images import texel_places
+from ..images import texel_places, uv_tiles
 from ..images.image_pixels import FIRST_TILE
 from ..tasks.job import Progress
 from .surfaces import Surfaces
@@ -26,6 +26,7 @@ class Texels(NamedTuple):
     y: np.ndarray  # counted upwards
     face: np.ndarray
     uv: np.ndarray
+    inside: np.ndarray  # whether it lies on the map, and not only in its margin
     overlap: np.ndarray  # whether several places share it
 
 
@@ -34,7 +35,7 @@ class UvLayout:
     uv_data: limitsurf.SurfaceData
     width: int
     height: int
-    tiles: list[int]
+    tiles: tuple[int, ...]
     margin: int
     allow_overlap: bool
 
@@ -47,7 +48,7 @@ class UvLayout:
             allow_overlap=self.allow_overlap,
             progress=progress,
         )
-        return Texels(found.x, found.y, found.face, found.uv, found.overlap)
+        return Texels(found.x, found.y, found.face, found.uv, found.inside, found.overlap)
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,8 @@ class PtexLayout:
 
     def texels(self, _tile: int, _progress: Progress) -> Texels:
         found = self.layout.texels()
-        return Texels(found.x, found.y, found.face, found.uv, np.zeros(len(found.x), bool))
+        inside = np.ones(len(found.x), bool)
+        return Texels(found.x, found.y, found.face, found.uv, inside, ~inside)
 
     def described(self) -> dict[str, int]:
         """Describes all that is needed to find a place's texel."""
@@ -90,19 +92,20 @@ def of(
             raise TooLargeError(native.sentence(error)) from error
         texel_places.check_size(layout.width, layout.height, 1, 1, properties.allow_large)
         return PtexLayout(layout)
-    tiles = texel_places.tiles_of(surfaces.found) if properties.use_tiles else [FIRST_TILE]
+    uv_data, size = surfaces.uv_data, (properties.width, properties.height)
+    assert uv_data is not None
+    tiles: tuple[int, ...] = (FIRST_TILE,)
+    if properties.use_tiles:
+        tiles = uv_tiles.with_texels(surfaces.found, lambda: uv_data, size)
     if not tiles:
         raise RefusalError(
-            f"{whose}: the UV map {surfaces.found.chosen_uv_map.name} touches no UDIM tile"
+            f"{whose}: the UV map {surfaces.found.chosen_uv_map.name} covers no texel of the UDIM "
+            "tiles 1001 to 2000"
         )
-    texel_places.check_size(
-        properties.width, properties.height, len(tiles), 1, properties.allow_large
-    )
-    assert surfaces.uv_data is not None
+    texel_places.check_size(*size, len(tiles), 1, properties.allow_large)
     return UvLayout(
-        surfaces.uv_data,
-        properties.width,
-        properties.height,
+        uv_data,
+        *size,
         tiles,
         properties.margin,
         properties.overlap == "ALLOW",

@@ -11,7 +11,7 @@ import bpy
 from .. import ids
 from ..counting import by_count, counted
 from ..errors import RefusalError
-from ..images import image_files, image_names, image_pixels, material_slots, overlap
+from ..images import image_files, image_names, image_pixels, material_slots, overlap, uv_tiles
 from ..images.texture_operator import TextureOperator
 from ..tasks.job import Job, Progress
 from ..tasks.object_keys import ObjectKey
@@ -91,7 +91,7 @@ class OBJECT_OT_limit_bake_displacement(
             if unseen:
                 self.report({"WARNING"}, unseen)
             self._warn_of_tangents(ob, map_name, request)
-        for warning in filter(None, (told, image_pixels.unsaved(image))):
+        for warning in filter(None, (self._outside(request), told, image_pixels.unsaved(image))):
             self.report({"WARNING"}, warning)
         self._tell(ob, image, request, measured)
         return {"FINISHED"}
@@ -106,6 +106,14 @@ class OBJECT_OT_limit_bake_displacement(
         if isinstance(request.layout, PtexLayout):
             return {**told, "layout": "PTEX", **request.layout.described()}
         return {**told, "layout": "UV", "uv_map": request.surfaces.found.chosen_uv_map.name}
+
+    def _outside(self, request: Request) -> str:
+        """Returns a warning about the faces outside the image's tiles, or none."""
+        if isinstance(request.layout, PtexLayout):
+            return ""
+        tiles = None if self.use_tiles else request.layout.tiles
+        size = request.layout.width, request.layout.height
+        return uv_tiles.told(uv_tiles.faces_outside(request.surfaces.found, size, tiles), tiles)
 
     def _warn_of_tangents(self, ob: bpy.types.Object, map_name: str, request: Request) -> None:
         """Warns where the node for vectors would use another UV map: it always takes tangents from

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..images import texel_places
+from ..errors import RefusalError
+from ..images import texel_places, uv_tiles
 from ..reading import cage
 from .bodies import Body
 from .map_images import Order
@@ -23,6 +24,7 @@ class Inputs:
     settings: Settings
     size: tuple[int, int]
     tiles: tuple[int, ...]
+    all_tiles: bool  # whether these are all in which the map has texels
     margin: int
     allow_overlap: bool
     is_encoded: bool
@@ -30,6 +32,12 @@ class Inputs:
     @property
     def flat_faces(self) -> int:
         return texel_places.faces_without_area(self.found)
+
+    @property
+    def outside(self) -> str:
+        """A warning about the faces outside the tiles that are baked, or none."""
+        tiles = None if self.all_tiles else self.tiles
+        return uv_tiles.told(uv_tiles.faces_outside(self.found, self.size, tiles), tiles)
 
     def order(self) -> Order:
         body = Body(self.found, self.whose, in_world=self.in_world)
@@ -48,3 +56,15 @@ class Inputs:
             allow_overlap=self.allow_overlap,
             is_encoded=self.is_encoded,
         )
+
+
+def tiles_of(found: cage.Cage, whose: str, size: tuple[int, int]) -> tuple[int, ...]:
+    """Returns all tiles in which the map has texels. Raises RefusalError where there are none."""
+    tiles = uv_tiles.with_texels(
+        found, lambda: texel_places.uv_data(found.surface(), found, whose), size
+    )
+    if not tiles:
+        raise RefusalError(
+            "The UV map covers no texel of the UDIM tiles 1001 to 2000: move its islands onto them"
+        )
+    return tiles

@@ -92,7 +92,7 @@ def bake(order: Order, progress: Progress) -> Baked:
     for i, tile in enumerate(order.tiles):
         part = part_of(progress, 0.9 * i / len(order.tiles), 0.9 * (i + 1) / len(order.tiles))
         found = _values(order, tile, made, part)
-        if len(found.texels.x):
+        if found.texels.inside.any():
             tiles[tile] = found
     if not made.texels:
         where = "tile 1001" if order.tiles == (1001,) else "any of the tiles"

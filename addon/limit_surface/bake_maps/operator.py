@@ -14,7 +14,7 @@ from ..images import image_files, image_pixels, texel_places
 from ..images.texture_operator import TextureOperator
 from ..tasks.job import Job, Progress
 from . import properties, shading, text
-from .inputs import Inputs
+from .inputs import Inputs, tiles_of
 from .map_images import Baked, bake
 from .maps import IRREGULAR_RADIUS, KINDS, NORMAL_TANGENT, Settings
 from .output import Output
@@ -24,6 +24,7 @@ class Done(NamedTuple):
     baked: Baked
     output: Output
     flat_faces: int
+    outside: str  # a warning about the faces outside the tiles, or none
 
 
 class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.types.Operator):
@@ -45,16 +46,11 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
             raise RefusalError("No map is chosen")
         depsgraph = context.evaluated_depsgraph_get()
         found = texel_places.read_cage(ob, depsgraph, self.uv_map)
+        size = self.width, self.height
         tiles = (
-            tuple(texel_places.tiles_of(found))
-            if self.tiles == "ALL"
-            else (image_pixels.FIRST_TILE,)
+            tiles_of(found, ob.name, size) if self.tiles == "ALL" else (image_pixels.FIRST_TILE,)
         )
-        if not tiles:
-            raise RefusalError(
-                "The UV map lies outside the UDIM tiles 1001 to 2000: move its islands onto them"
-            )
-        texel_places.check_size(self.width, self.height, len(tiles), len(maps), self.allow_large)
+        texel_places.check_size(*size, len(tiles), len(maps), self.allow_large)
         output = self._output(ob, tiles)
         output.check(maps)
         corners = None
@@ -69,15 +65,16 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
             settings=Settings(
                 self.curvature_range, self.cavity_radius, self.distortion_range, IRREGULAR_RADIUS
             ),
-            size=(self.width, self.height),
+            size=size,
             tiles=tiles,
+            all_tiles=self.tiles == "ALL",
             margin=self.margin,
             allow_overlap=self.overlap == "ALLOW",
             is_encoded=not output.kind.is_float,
         )
 
         def work(progress: Progress) -> Done:
-            return Done(bake(inputs.order(), progress), output, inputs.flat_faces)
+            return Done(bake(inputs.order(), progress), output, inputs.flat_faces, inputs.outside)
 
         return self.watch(context, Job(work), f"Baking {ob.name}")
 
@@ -85,7 +82,8 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         named, told = made.output.put(made.baked.pixels)
         lines = text.ranges(made.baked)
         self.summary = "\n".join(lines)
-        warnings = text.warnings(made.baked, made.flat_faces) + told
+        warnings = text.warnings(made.baked, made.flat_faces)
+        warnings += filter(None, (made.outside, *told))
         warnings += filter(None, (image_pixels.unsaved(image) for image in named))
         if warnings:
             self.report({"WARNING"}, "; ".join(warnings))

@@ -23,7 +23,7 @@ from ..errors import RefusalError, TooLargeError
 from ..reading import cage, ragged_rows, uv_map
 from ..tasks.job import Progress, slices
 from ..tasks.request_size import LARGE_MEMORY, memory_text
-from . import overlap
+from . import overlap, uv_tiles
 from .image_pixels import FIRST_TILE
 
 if TYPE_CHECKING:
@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 # Texels are evaluated in parts of this size, so that progress is shown and memory stays small.
 PART = 1 << 18
+
+# Beyond, rounding would move texels: the map's farthest point limits how exact all others are.
+FARTHEST = 1e8
 
 BYTES_PER_TEXEL = 40  # bytes that a texel's place on the surface takes, measured at the peak
 BYTES_PER_PIXEL = 32  # bytes that a texel of each image takes, with its source and its packed copy
@@ -48,9 +51,17 @@ def read_cage(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph, name: str = 
 
 
 def check_uv_map(found: cage.Cage, whose: str) -> None:
-    """Raises RefusalError where the cage has no UV map, or none of its faces has an area on it."""
+    """Raises RefusalError where the cage has no UV map, or one that reaches too far, or none of its
+    faces has an area on it.
+    """
     if found.uv_map is None:
         raise RefusalError(f"{whose}: {found.without_uv_map or 'there is no UV map'}")
+    reach = np.abs(found.uv_map.values).max(initial=0)
+    if reach > FARTHEST:
+        raise RefusalError(
+            f"{whose}: the UV map {found.uv_map.name} has coordinates up to {reach:.3g}. Texels "
+            f"have exact places only up to {FARTHEST:.0e}: move these corners to the others"
+        )
     if faces_without_area(found) == len(found.face_sizes):
         raise RefusalError(f"{whose}: no face has an area on the UV map {found.uv_map.name}")
 
@@ -88,32 +99,11 @@ def texels(
     """
     width, height = size
     found = uv_data.rasterize(
-        width, height, tile=tile_corner(tile), margin=margin, progress=progress
+        width, height, tile=uv_tiles.corner(tile), margin=margin, progress=progress
     )
     if not allow_overlap:
         overlap.check(found, f" of tile {tile}" if tile != FIRST_TILE else "")
     return found
-
-
-def tile_corner(tile: int) -> tuple[int, int]:
-    """Returns the lower left corner of a UDIM tile on the map."""
-    return (tile - FIRST_TILE) % 10, (tile - FIRST_TILE) // 10
-
-
-def tiles_of(found: cage.Cage) -> list[int]:
-    """Returns the UDIM tiles that the UV map's faces touch and that have a UDIM number."""
-    at = found.chosen_uv_map.values[found.chosen_uv_map.indices]
-    starts = ragged_rows.starts(found.face_sizes)
-    low = np.floor(np.minimum.reduceat(at, starts)).astype(int)
-    high = np.ceil(np.maximum.reduceat(at, starts)).astype(int) - 1
-    numbers = set()
-    for across, up, last_across, last_up in np.unique(np.hstack([low, high]), axis=0):
-        numbers |= {
-            FIRST_TILE + x + 10 * y
-            for x in range(max(across, 0), min(last_across, 9) + 1)
-            for y in range(max(up, 0), min(last_up, 99) + 1)
-        }
-    return sorted(numbers)
 
 
 def parts(count: int, progress: Progress) -> Iterator[slice]:

@@ -11,7 +11,14 @@ import numpy as np
 
 from ..counting import counted
 from ..errors import RefusalError
-from ..images import image_names, image_pixels, material_slots, overlap, texel_places
+from ..images import (
+    image_names,
+    image_pixels,
+    material_slots,
+    overlap,
+    texel_places,
+    uv_tiles,
+)
 from ..tasks.job import Progress, part_of
 from ..tasks.object_keys import ObjectKey
 from . import colours, inputs, material
@@ -65,14 +72,22 @@ class Order:
             count += paint(canvas, texels, self.uv_map, self.source, self.opacity, painting)
         if not count:
             raise RefusalError(f"No part of the image {self.image} falls on the surface's UV map")
-        return Made(self, count, overlap.told(overlapping) if overlapping else "")
+        return Made(
+            self, count, [overlap.told(overlapping) if overlapping else "", self._outside()]
+        )
+
+    def _outside(self) -> str:
+        """Returns a warning about the faces outside the image's tiles, or none."""
+        width, height = np.max([canvas.size for canvas in self.canvases.values()], axis=0).tolist()
+        count = uv_tiles.faces_outside(self.world.cage, (width, height), self.canvases.keys())
+        return uv_tiles.told(count, self.canvases.keys())
 
 
 @dataclass(frozen=True)
 class Made:
     order: Order
     count: int
-    warning: str
+    warnings: list[str]
 
     def put(self, _context: bpy.types.Context, surface: bpy.types.Object) -> tuple[str, list[str]]:
         target, canvases = self.order.target, self.order.canvases
@@ -96,7 +111,7 @@ class Made:
                 )
         pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
         image_pixels.write(image, pixels, is_new=isinstance(target, NewImage))
-        warnings = [self.warning, image_pixels.unsaved(image)]
+        warnings = [*self.warnings, image_pixels.unsaved(image)]
         if self.order.create_material:
             shown_by = material.show(surface, image, self.order.world.cage.chosen_uv_map.name)
             warnings.append(material_slots.unseen(surface, shown_by))
