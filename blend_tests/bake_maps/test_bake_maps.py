@@ -188,6 +188,27 @@ def test_ranges_that_are_found_hold_most_values():
     assert 0.03 < at_ends < 0.07
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("form", ["PNG_16", "PNG_8"])
+@pytest.mark.parametrize("largest", [1e30, 1e-38])
+def test_ranges_whose_squares_single_precision_does_not_hold(form, largest):
+    paraboloid()
+    got = bake(maps={"CURVATURE_GAUSSIAN"}, format=form, curvature_range=largest)
+    expected = 0.5 if largest > 1 else 0.0  # the paraboloid is a saddle everywhere
+    np.testing.assert_allclose(got["CURVATURE_GAUSSIAN"], expected, atol=1 / 255)
+
+
+@pytest.mark.filterwarnings("error")
+def test_positions_of_a_flat_mesh_far_from_the_origin():
+    ob = paraboloid()
+    for vertex in ob.data.vertices:
+        vertex.co.z = 2**30
+    got = bake(maps={"POSITION"}, format="PNG_16")["POSITION"]
+    assert np.isfinite(got).all()
+    assert np.ptp(got[..., 0]) > 0.4
+    assert np.ptp(got[..., 2]) < 1e-6
+
+
 def test_margin_and_what_is_not_covered():
     ob = paraboloid()
     add_uv(ob, lambda xy: xy / SIDE / 2 + 0.5)  # the middle quarter

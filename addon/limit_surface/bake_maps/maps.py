@@ -23,6 +23,9 @@ MOST_OCTAVES = 16.0
 #: At irregular vertices curvature is averaged at this distance from them, as a share of an edge.
 IRREGULAR_RADIUS = 1 / 64
 
+#: Values that become colors at a time, so that their double precision takes little memory
+ENCODED = 1 << 16
+
 # the value that becomes 0, and the one that becomes 1
 Range = tuple[np.ndarray | float, np.ndarray | float]
 
@@ -50,7 +53,7 @@ def _of_unit_vectors(_body: Body, _settings: Settings, _values: np.ndarray) -> R
 def _of_positions(body: Body, _settings: Settings, _values: np.ndarray) -> Range:
     low, high = body.bounds
     flat = high <= low
-    return low, np.where(flat, low + 1, high)
+    return low, np.where(flat, np.maximum(low + 1, np.nextafter(low, np.inf)), high)
 
 
 def _of_curvature(_body: Body, settings: Settings, values: np.ndarray) -> Range:
@@ -113,8 +116,16 @@ def compared(octaves: np.ndarray, mean: float) -> np.ndarray:
 
 
 def encoded(values: np.ndarray, range_: Range) -> np.ndarray:
-    low, high = (np.asarray(end, np.float32) for end in range_)
-    return ((values - low) / (high - low)).clip(0, 1)
+    """Returns float32 numbers from 0 to 1. In between, double precision holds every range: the
+    square of a large curvature overflows single precision, and a flat box far from the origin
+    vanishes there.
+    """
+    low, high = (np.asarray(end, np.float64) for end in range_)
+    out = np.empty(values.shape, np.float32)
+    for begin in range(0, len(values), ENCODED):
+        part = values[begin : begin + ENCODED].astype(np.float64)
+        out[begin : begin + ENCODED] = ((part - low) / (high - low)).clip(0, 1)
+    return out
 
 
 NORMAL_TANGENT = "NORMAL_TANGENT"
