@@ -354,6 +354,24 @@ def test_what_is_refused(tmp_path):
     assert image.source == "GENERATED"
 
 
+def test_images_of_several_layers_are_refused_at_once(tmp_path):
+    scene = bpy.context.scene
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    scene.collection.objects.link(scene.camera)
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.resolution_x = scene.render.resolution_y = 4
+    bpy.context.view_layer.use_pass_z = True
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):  # from Blender 5.0 on
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    scene.render.filepath = str(tmp_path / "layers.exr")
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(scene.render.filepath)
+    with pytest.raises(RefusalError, match="layers.exr has several layers"):
+        image_pixels.checked(image)
+
+
 def test_linked_images_are_read_but_not_written(tmp_path):
     new_image("packed 8", tmp_path)
     path = str(tmp_path / "library.blend")

@@ -60,11 +60,12 @@ def checked(image: bpy.types.Image | None, *, to_write: bool = False) -> Descrip
     whose = f"The image {image.name}"
     if image.source in _WITHOUT_PIXELS:
         raise RefusalError(f"{whose} {_WITHOUT_PIXELS[image.source]}, which is not supported")
+    has_pixels = len(image.pixels) > 0  # reads the file, and only then Blender knows its layers
     if image.type == "MULTILAYER":
         raise RefusalError(f"{whose} has several layers, which is not supported")
     if to_write and not image.is_editable:
         raise RefusalError(f"{whose} is linked from another file and cannot be changed")
-    if not len(image.pixels):
+    if not has_pixels:
         raise RefusalError(f"{whose} has no pixels: check that its file exists")
     tiles = {FIRST_TILE: tuple(image.size)}
     if image.source == "TILED":
