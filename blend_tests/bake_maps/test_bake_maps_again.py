@@ -78,6 +78,28 @@ def test_undo_of_tiles_in_files_that_are_replaced(mesh, tmp_path, form, rounded)
             np.testing.assert_allclose(found[tile], expected[tile], rtol=0, atol=rounded)
 
 
+def test_undo_of_tiles_whose_files_are_gone(mesh, tmp_path):
+    over_tiles(mesh, 2)
+    how = {"tiles": "ALL", "folder": str(tmp_path)}
+    bake(**how)
+    lift(3)
+    bpy.ops.ed.undo_push(message="move")
+    bake(**how)
+    for path in tmp_path.iterdir():
+        path.unlink()
+    bpy.ops.ed.undo()
+    assert heights() == {1001: 0, 1002: 0}
+
+
+def test_the_error_names_the_file_that_is_wanted(mesh, tmp_path, monkeypatch):
+    def fails(_pixels, path, _kind):
+        raise RefusalError(f"{path} cannot be written: no space is left")
+
+    monkeypatch.setattr(image_files, "save_pixels", fails)
+    path = tmp_path / "Grid_Position.exr"
+    refused(f"Error: {path} cannot be written: no space is left", folder=str(tmp_path))
+
+
 @pytest.mark.parametrize("in_files", [False, True])
 def test_a_single_tile_that_is_not_the_first(mesh, tmp_path, in_files):
     over_tiles(mesh, 1, first=1)
@@ -108,6 +130,9 @@ def test_one_tile_of_an_image_in_files(mesh, tmp_path, capfd):
     over_tiles(mesh, 2)
     bake(tiles="ALL", folder=str(tmp_path))
     second = (tmp_path / "Grid_Position.1002.exr").read_bytes()
+    bpy.data.images["Grid Position"].filepath_raw = f"{tmp_path}/../{tmp_path.name}/" + (
+        "Grid_Position.<UDIM>.exr"
+    )
     lift(3)
     image = bake(tiles="FIRST", folder=str(tmp_path))
     assert "tile 1002 of Grid Position was not baked and shows" in capfd.readouterr().out

@@ -236,7 +236,12 @@ def save_tiles(
     written elsewhere.
     """
     for number, pixels in tiles.items():
-        image_files.save_pixels(pixels, written_at(of_tile(path, number)), kind)
+        wanted = of_tile(path, number)
+        there = str(written_at(wanted))
+        try:
+            image_files.save_pixels(pixels, there, kind)
+        except RefusalError as error:
+            raise RefusalError(str(error).replace(there, wanted)) from error
 
 
 def attach(image: bpy.types.Image, path: str | Path) -> None:

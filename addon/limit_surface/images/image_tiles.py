@@ -73,7 +73,9 @@ def write_some(image: bpy.types.Image, tiles: Mapping[int, np.ndarray]) -> None:
         image.pixels.foreach_set(np.ascontiguousarray(channels, np.float32).ravel())
         image.update()
         return
-    all_tiles = {**read_all(image), **tiles}
+    # The old tiles are not read if none of them stays: their files may be gone.
+    stay = sizes(image).keys() - tiles.keys()
+    all_tiles = {**(read_all(image) if stay else {}), **tiles}
     path, colorspace = image.filepath_raw, image.colorspace_settings.name
     with _saved(all_tiles, image.is_float) as files:
         if image.packed_files:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Images that an earlier bake has made, and that the next one writes into."""
 
+import os
 from collections.abc import Collection
 from pathlib import Path
 
@@ -58,9 +59,10 @@ def check_saves_all(
     """
     if image.source != "TILED":
         return
-    own = None if image.packed_files else bpy.path.abspath(image.filepath_raw)
+    own = os.path.realpath(bpy.path.abspath(image.filepath_raw))
+    are_own = not image.packed_files and own == os.path.realpath(path)
     others = image_tiles.sizes(image).keys() - set(tiles)
-    if "<UDIM>" not in path.name or (others and own != str(path)):
+    if "<UDIM>" not in path.name or (others and not are_own):
         raise RefusalError(
             f"The existing image {image.name} has tiles that the file would not hold: save the "
             f"image yourself, set another name, or turn {option} off"
