@@ -58,6 +58,16 @@ def test_polygons_are_shaded_as_the_limit_surface(make, target, smooth):
     assert np.percentile(apart[~turned], 99) < 0.1
 
 
+def test_modifiers_that_renders_alone_show_are_named(capfd):
+    ob = suzanne(smooth=True)
+    ob.modifiers.new("Bent", "SIMPLE_DEFORM").show_viewport = False
+    ob.modifiers.move(1, 0)
+    for target, is_told in (("VIEWPORT", False), ("RENDER", True)):
+        bpy.ops.object.limit_bake_maps(width=SIZE, height=SIZE, target=target, overlap="ALLOW")
+        said = capfd.readouterr().out
+        assert ("of Suzanne in both, or in neither: Bent" in said) == is_told
+
+
 def flat_map(ob: bpy.types.Object) -> float:
     """Returns the median error of shading without the map."""
     bpy.ops.object.limit_bake_maps(maps={"NORMAL_OBJECT"}, width=SIZE, height=SIZE, overlap="ALLOW")

@@ -28,7 +28,7 @@ from limitsurf import MeshError
 #: As a share of the thing's extent and distance from the origin: the nodes' frames in single
 #: precision have errors of up to 0.02 at rounded corners, and what an edit has moved away from its
 #: root is turned by them. A frame or an edit moves things farther.
-BOUND = 1e-2
+BOUND = 2e-2
 #: Places at vertices are stored a little inside the face; at those of high valence positions change
 #: quickly there.
 ROOT_BOUND = 1e-4

@@ -12,6 +12,7 @@ from ..counting import counted
 from ..errors import RefusalError
 from ..images import image_files, image_pixels, texel_places
 from ..images.texture_operator import TextureOperator
+from ..reading import displayed_mesh
 from ..tasks.job import Job, Progress
 from . import properties, shading, text
 from .inputs import Inputs, tiles_of
@@ -24,7 +25,7 @@ class Done(NamedTuple):
     baked: Baked
     output: Output
     flat_faces: int
-    outside: str  # a warning about the faces outside the tiles, or none
+    remarks: tuple[str, ...]  # warnings about what was baked; some may be empty
 
 
 class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.types.Operator):
@@ -53,8 +54,10 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         texel_places.check_size(*size, len(tiles), len(maps), self.allow_large)
         output = self._output(ob, tiles)
         output.check(maps)
-        corners = None
+        corners, of_renders = None, ""
         if NORMAL_TANGENT in maps:
+            if self.target == "RENDER":
+                of_renders = displayed_mesh.warning_of_renders(ob)
             corners = shading.read(ob, depsgraph, self.target, found.chosen_uv_map.name)
         inputs = Inputs(
             found,
@@ -74,7 +77,8 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         )
 
         def work(progress: Progress) -> Done:
-            return Done(bake(inputs.order(), progress), output, inputs.flat_faces, inputs.outside)
+            baked = bake(inputs.order(), progress)
+            return Done(baked, output, inputs.flat_faces, (of_renders, inputs.outside))
 
         return self.watch(context, Job(work), f"Baking {ob.name}")
 
@@ -83,7 +87,7 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
         lines = text.ranges(made.baked)
         self.summary = "\n".join(lines)
         warnings = text.warnings(made.baked, made.flat_faces)
-        warnings += filter(None, (made.outside, *told))
+        warnings += filter(None, (*made.remarks, *told))
         warnings += filter(None, (image_pixels.unsaved(image) for image in named))
         if warnings:
             self.report({"WARNING"}, "; ".join(warnings))
