@@ -7,6 +7,7 @@
 
 #include "limitsurf/geodesic/triangle_cells.h"
 #include "limitsurf/geodesic/triangle_cutter.h"
+#include "limitsurf/own_unit.h"
 #include "limitsurf/search/surface_search.h"
 
 namespace limitsurf {
@@ -14,6 +15,9 @@ namespace {
 
 /// Samples of a curve on the length of a triangle's side.
 constexpr double kSamplesPerSide = 2;
+/// The shortest side that is assumed, as a share of the mean longest side. Triangles thinner than
+/// its square, 1 : 64, would ask for thousands of samples each.
+constexpr double kShortestSide = 1. / 8;
 /// Points of a curve that are closer together, as a share of the distance of samples, are left out.
 constexpr double kClosest = 0.1;
 /// The distances in which places are taken for points and sides of triangles, as a share of a
@@ -26,13 +30,26 @@ struct Samples {
   std::vector<std::size_t> first = {0};
 };
 
-double meanSide(const SurfaceTriangles& triangles) {
-  double twice_area = 0;
+/// The power of two that brings the largest coordinate to between 1 and 2, so that products of
+/// several lengths stay in range.
+double ownUnit(const SurfaceTriangles& triangles) {
+  double largest = 0;
+  for (const Vector3& point : triangles.points) {
+    largest = std::max(largest, point.cwiseAbs().maxCoeff());
+  }
+  return scaleToOwnUnit(largest);
+}
+
+double typicalSide(const SurfaceTriangles& triangles) {
+  double twice_area = 0, longest = 0;
   for (const auto& [a, b, c] : triangles.vertices) {
     const Vector3& origin = triangles.points[a];
-    twice_area += (triangles.points[b] - origin).cross(triangles.points[c] - origin).norm();
+    const Vector3 to_b = triangles.points[b] - origin, to_c = triangles.points[c] - origin;
+    twice_area += to_b.cross(to_c).norm();
+    longest += std::max({to_b.norm(), to_c.norm(), (to_c - to_b).norm()});
   }
-  return std::sqrt(twice_area / static_cast<double>(triangles.vertices.size()));
+  const double count = static_cast<double>(triangles.vertices.size());
+  return std::max(std::sqrt(twice_area / count), kShortestSide * longest / count);
 }
 
 void sampleLine(const Vector3& from, const Vector3& to, double spacing,
@@ -44,16 +61,16 @@ void sampleLine(const Vector3& from, const Vector3& to, double spacing,
   }
 }
 
-Samples sample(const Polylines& curves, double spacing) {
+Samples sample(const Polylines& curves, double unit, double spacing) {
   Samples samples;
   for (std::size_t curve = 0; curve + 1 < curves.offsets.size(); ++curve) {
     const std::int64_t begin = curves.offsets[curve], last = curves.offsets[curve + 1] - 1;
     if (last <= begin) {
       continue;
     }
-    samples.points.emplace_back(curves.points.row(begin));
+    samples.points.emplace_back(unit * curves.points.row(begin));
     for (std::int64_t row = begin + 1; row <= last; ++row) {
-      const Vector3 to = curves.points.row(row), from = samples.points.back();
+      const Vector3 to = unit * curves.points.row(row), from = samples.points.back();
       if (row == last || (to - from).norm() > kClosest * spacing) {
         sampleLine(from, to, spacing, samples.points);
       }
@@ -63,27 +80,26 @@ Samples sample(const Polylines& curves, double spacing) {
   return samples;
 }
 
-}  // namespace
-
-void cutAlongCurves(SurfaceTriangles& triangles, const LimitSurface& surface,
-                    const std::vector<int>& levels, const Polylines& curves, int threads) {
-  const double side = triangles.vertices.empty() ? 0 : meanSide(triangles);
+/// Cuts triangles whose points have been multiplied by the unit.
+void cutInUnit(SurfaceTriangles& triangles, double unit, const LimitSurface& surface,
+               const std::vector<int>& levels, const Polylines& curves, int threads) {
+  const double side = triangles.vertices.empty() ? 0 : typicalSide(triangles);
   if (!(side > 0)) {
     return;
   }
-  const Samples samples = sample(curves, side / kSamplesPerSide);
+  const Samples samples = sample(curves, unit, side / kSamplesPerSide);
   if (samples.points.empty()) {
     return;
   }
   Points points(static_cast<Eigen::Index>(samples.points.size()), 3);
   for (std::size_t row = 0; row < samples.points.size(); ++row) {
-    points.row(static_cast<Eigen::Index>(row)) = samples.points[row];
+    points.row(static_cast<Eigen::Index>(row)) = samples.points[row] / unit;
   }
   const Hits hits = SurfaceSearch(surface, threads).closest(points, {}, threads);
   const TriangleCells cells(surface, levels, triangles);
   std::vector<int> triangle(hits.at.size());
   for (std::size_t row = 0; row < hits.at.size(); ++row) {
-    triangle[row] = cells.find(triangles, hits.at[row]);
+    triangle[row] = hits.at[row].face < 0 ? -1 : cells.find(triangles, hits.at[row]);
   }
   TriangleCutter cutter(triangles);
   const auto insert = [&](std::size_t row, double tolerance) {
@@ -116,6 +132,20 @@ void cutAlongCurves(SurfaceTriangles& triangles, const LimitSurface& surface,
       cutter.connect(first, ends[curve].second);
       cutter.connect(ends[curve].last_but_one, last);
     }
+  }
+}
+
+}  // namespace
+
+void cutAlongCurves(SurfaceTriangles& triangles, const LimitSurface& surface,
+                    const std::vector<int>& levels, const Polylines& curves, int threads) {
+  const double unit = ownUnit(triangles);
+  for (Vector3& point : triangles.points) {
+    point *= unit;
+  }
+  cutInUnit(triangles, unit, surface, levels, curves, threads);
+  for (Vector3& point : triangles.points) {
+    point /= unit;
   }
 }
 

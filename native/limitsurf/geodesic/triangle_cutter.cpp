@@ -43,7 +43,14 @@ TriangleCutter::TriangleCutter(SurfaceTriangles& triangles)
 int TriangleCutter::insert(int triangle, const Location& at, double tolerance) {
   const auto pieces = pieces_.find(triangle);
   if (pieces != pieces_.end()) {
-    triangle = deepest(triangles_, pieces->second, at);
+    const int deepest_piece = deepest(triangles_, pieces->second, at);
+    if (deepest_piece < 0) {  // rounding has left none of the pieces an area in (u, v)
+      return triangles_.vertices[triangle][0];
+    }
+    triangle = deepest_piece;
+  }
+  if (triangle < 0) {
+    return -1;
   }
   std::array<double, 3> weights = barycentric(triangles_.corners[triangle], at.u, at.v);
   double sum = 0;
@@ -221,7 +228,7 @@ std::optional<TriangleCutter::Crossing> TriangleCutter::nextCrossing(int at, int
 }
 
 void TriangleCutter::connect(int from, int to) {
-  if (from == to) {
+  if (from == to || from < 0 || to < 0) {
     return;
   }
   const Vector3 normal = normalAround(to, normalAround(from, Vector3::Zero()));

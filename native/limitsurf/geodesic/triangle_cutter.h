@@ -18,12 +18,12 @@ class TriangleCutter {
 
   /// Makes a location a point of the triangles. `triangle` is the one in which it lay before any
   /// was divided. A point or side that is closer than `tolerance`, as a share of the triangle's
-  /// height, is taken for it.
+  /// height, is taken for it. Returns the point; -1 where there is no triangle (-1).
   int insert(int triangle, const Location& at, double tolerance);
 
   /// Cuts the triangles from one of their points to another, along the section by the plane that
   /// contains both and the normal. Where that leads elsewhere, a short way on sides of triangles is
-  /// cut; where there is none either, nothing more.
+  /// cut; where there is none either, nothing more. Does nothing from or to the point -1.
   void connect(int from, int to);
 
  private:

@@ -61,6 +61,23 @@ class ClosestSearch {
   /// The location of the closest point, with face -1 if none is within `max_distance`. Lengths are
   /// in the unit of the tree.
   Location find(const Vector3& point, double max_distance, const Facing* facing) {
+    const bool is_bounded = has_last_ && !facing;
+    const Location found = findOnce(point, max_distance, facing);
+    if (found.face >= 0 || !is_bounded) {
+      return found;
+    }
+    // On patches that are squeezed to lines, rounding may hide the place of the last search.
+    return findOnce(point, max_distance, facing);
+  }
+
+ private:
+  static constexpr double kDistanceRounding = 1e-15;
+  /// A search with a condition on normals ends after this many leaves if it has no cones.
+  static constexpr std::int64_t kPatience = 8;
+  static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+  /// The same, in reach of the place that the last search found, if it found one.
+  Location findOnce(const Vector3& point, double max_distance, const Facing* facing) {
     gave_up_ = false;
     last_leaf_ = facing && !cones_ ? leaves_ + kPatience : kForever;
     if (facing && cones_) {
@@ -98,12 +115,6 @@ class ClosestSearch {
     }
     return best_.at;
   }
-
- private:
-  static constexpr double kDistanceRounding = 1e-15;
-  /// A search with a condition on normals ends after this many leaves if it has no cones.
-  static constexpr std::int64_t kPatience = 8;
-  static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
   /// Walks down the tree, nearer boxes first.
   void descend() {

@@ -73,6 +73,18 @@ def test_curves_keep_regions_apart(sheet):
     np.testing.assert_array_equal((one.guide >= 0).sum(axis=1), np.where(x > 2.6, 1, 2))
 
 
+def test_curves_part_thin_sheets_without_many_samples():
+    """Half a side of a square with the same area would be a ten thousandth of a triangle here."""
+    across = 1e-7
+    positions, faces = shapes.grid(3, 3)
+    thin = ls.LimitSurface(ls.ControlMesh.from_faces(positions * [1, across, 1], faces))
+    guides, at = ([0, 8], [[0.5, 0.5], [0.5, 0.5]]), ([0, 3, 5, 8], np.full((4, 2), 0.5))
+    cut = np.array([[-1, 4, 0], [4, -1, 0]]) * [1, across, 1]
+    found = thin.guide_weights(*guides, *at, 2, cut_points=cut)
+    np.testing.assert_array_equal(found.guide[:, 0], [0, 0, 1, 1])
+    np.testing.assert_array_equal(found.guide[:, 1], -1)
+
+
 def test_any_number_of_threads_gives_the_same(sheet):
     guides, at = places(sheet, 12, 6), places(sheet, 5000, 7)
     one = sheet.guide_weights(*guides, *at, threads=1)

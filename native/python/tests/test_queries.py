@@ -394,3 +394,37 @@ print("ready", flush=True)
 surface.{call}
 """
     assert "KeyboardInterrupt" in ctrl_c.errors_of(program)
+
+
+# A mesh in a plane with triangles, a fin and a hole, to be squeezed a billion times
+THIN_X = [
+    -0.2, 1.2, 1.8, 3.1, 4.1, 0.6, 0.9, 1.8, 3.4, 3.8, -0.1, 1.2,
+    2.2, 2.9, 3.8, -0.1, 1.5, 2.1, 3.0, 4.3, 0.2, 1.0, 1.8, 2.7,
+    3.7, 0.7, 2.4, -0.2, 1.2,
+]  # fmt: skip
+THIN_Y = [
+    0.0, -0.4, 0.0, 0.1, 0.1, 0.5, 0.8, 1.1, 0.5, 1.2, 2.1, 2.0,
+    1.8, 2.2, 1.8, 2.9, 2.9, 2.8, 3.2, 2.9, 4.2, 4.0, 4.3, 4.5,
+    4.5, 1.3, 3.7, 0.0, -0.4,
+]  # fmt: skip
+THIN_FACES = [
+    [0, 1, 6, 5], [1, 2, 7, 6], [3, 4, 9, 8], [5, 6, 25],
+    [6, 11, 25], [11, 10, 25], [10, 5, 25], [6, 7, 12, 11],
+    [7, 8, 13], [7, 13, 12], [8, 9, 14, 13], [10, 11, 16, 15],
+    [11, 12, 17, 16], [12, 13, 18, 17], [13, 14, 19, 18], [15, 16, 21, 20],
+    [16, 17, 22, 21], [17, 18, 26], [18, 23, 26], [23, 22, 26],
+    [22, 17, 26], [18, 19, 24, 23], [0, 1, 28, 27],
+]  # fmt: skip
+
+
+def test_searches_one_after_the_other_find_something_on_nearly_a_line():
+    """Rounding may hide the place of the last search, near which the next one looks."""
+    positions = np.column_stack([THIN_X, 1e-9 * np.array(THIN_Y), 0 * np.array(THIN_X)])
+    mesh = ls.ControlMesh.from_faces(positions, THIN_FACES, holes=[15])
+    surface = ls.LimitSurface(mesh)
+    begin, end = np.array([5.49, -2.45, 2.30]), np.array([-4.47, 6.07, 0.41])
+    points = begin + np.linspace(0.43, 0.47, 40_000)[:, None] * (end - begin)
+    found = surface.closest(points, threads=1)
+    assert (found.face >= 0).all()
+    alone = surface.closest(points[::4000])
+    np.testing.assert_allclose(found.distance[::4000], alone.distance, rtol=1e-9)

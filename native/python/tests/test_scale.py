@@ -157,7 +157,12 @@ def blue_noise(whole, unit, shape):
 def guides(whole, unit, shape):
     face, uv = places(whole)
     found = whole.guide_weights(face[1:5], uv[1:5], face, uv, 3)
-    return [(0, found.guide), (0, found.weight), (1, found.distance)]
+    cut = whole.mesh.positions[[0, -1]]
+    parted = whole.guide_weights(face[1:5], uv[1:5], face, uv, 3, cut_points=cut)
+    return [
+        *((0, found.guide), (0, found.weight), (1, found.distance)),
+        *((0, parted.guide), (0, parted.weight), (1, parted.distance)),
+    ]
 
 
 def polygons(whole, unit, shape):
