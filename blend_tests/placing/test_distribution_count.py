@@ -131,6 +131,23 @@ def test_changes_are_noticed():
     assert answered(ids.HAIR_PANEL) == "8 strands"
 
 
+def test_counting_is_no_change():
+    """In a window Blender updates all objects after the surface was read, which must not have it
+    counted again without end.
+    """
+    ob = scenes.cross()
+    add_subsurf(ob)
+    bpy.context.view_layer.update()
+    settings_of(ids.HAIR_ADD)
+    answered(ids.HAIR_PANEL)
+    bpy.context.view_layer.update()
+    assert not any(count._is_stale for count in live_count._counts.values())
+    ob.data.vertices[0].co.z += 1
+    ob.data.update()
+    bpy.context.view_layer.update()
+    assert all(count._is_stale for count in live_count._counts.values())
+
+
 def test_both_panels_at_once():
     scenes.cross()
     settings_of(ids.HAIR_ADD, per_side=2)

@@ -7,6 +7,7 @@ Python that has them is called instead.
 
 import threading
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -100,6 +101,29 @@ def test_a_new_file_while_somebody_waits(slowly):
     wait_for(job)
     with pytest.raises(CancelledError):
         job.result()
+
+
+@pytest.mark.parametrize("what", ["faces", "Edit Mode"])
+def test_the_surface_is_changed_meanwhile(slowly, what):
+    """By another window, a script or another add-on."""
+    ob = subdivided_cross()
+    operator, context = stand_in("hair", per_side=3), window_context()
+    operator.invoke(context, None)
+    if what == "faces":
+        changed = bmesh.new()
+        changed.from_mesh(ob.data)
+        bmesh.ops.subdivide_edges(changed, edges=changed.edges, cuts=1, use_grid_fill=True)
+        changed.to_mesh(ob.data)
+        changed.free()
+        reason = "The faces of Cross were changed meanwhile: run the operator again"
+    else:
+        bpy.ops.object.mode_set(mode="EDIT")
+        reason = "Cross was put into Edit Mode meanwhile: leave it first"
+    slowly.set()
+    wait_for(operator._job)
+    assert operator.modal(context, event("TIMER")) == {"CANCELLED"}
+    operator.report.assert_called_with({"ERROR"}, reason)
+    assert not bpy.data.hair_curves
 
 
 def test_the_surface_is_gone_meanwhile(slowly):

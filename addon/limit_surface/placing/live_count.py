@@ -136,7 +136,14 @@ def text(context: bpy.types.Context, settings: bpy.types.OperatorProperties, nou
 @bpy.app.handlers.persistent
 def _notice(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     if _counts and not cage.is_busy():
-        changed = {update.id.name for update in depsgraph.updates}
+        # Reading the surface makes Blender name all objects once more, without such a change.
+        changed = {
+            update.id.name
+            for update in depsgraph.updates
+            if update.is_updated_geometry
+            or update.is_updated_transform
+            or update.id.id_type == "IMAGE"
+        }
         for count in _counts.values():
             count.notice(changed)
 

@@ -34,6 +34,7 @@ from .distribution import Expected, Scattered, why_nothing
 from .follow_properties import FollowOrLiveProperties, why_it_stays
 from .followers import ground_of
 from .rotations import WorldSpace
+from .unchanged import Faces
 
 # the parts of the progress at which the locations and the things are made
 SCATTERED, MADE = 0.5, 0.9
@@ -155,6 +156,7 @@ class ScatterOperator(
     bl_options = {"REGISTER", "UNDO", "PRESET"}
     noun = ""
     _why_not_following = ""
+    _faces: Faces | None = None  # of the surface, as they were read
     _question = ""  # what a dialog asks while it offers a modifier
 
     @property
@@ -178,6 +180,8 @@ class ScatterOperator(
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
+        if self._faces is not None:
+            self._faces.check(surface)
         if self._adds_subsurf(surface):
             quality = setup.add(surface, made.ground.cage).quality
             if quality < setup.QUALITY:
@@ -297,6 +301,7 @@ class ScatterOperator(
             return self._read(ob, depsgraph)
 
     def _read(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Order:
+        self._faces = Faces(ob)
         distribution = distribution_properties.distribution(self.properties)
         covered = region.read(
             ob,
