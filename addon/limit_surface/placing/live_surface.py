@@ -8,7 +8,6 @@ attribute. Otherwise the control mesh is read anew.
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple
@@ -20,6 +19,7 @@ from .. import ids, native
 from ..errors import CageError
 from ..nodes import groups
 from ..reading import attributes, cage, rules
+from .unchanged import faces_of
 
 if TYPE_CHECKING:
     import limitsurf
@@ -52,7 +52,7 @@ class LiveSurface:
     def __init__(self) -> None:
         self.version = 0
         self._checksums: tuple[object, ...] | None = None
-        self._faces: tuple[int, int] | None = None  # the number and a checksum of the mesh's faces
+        self._faces: tuple[int, int, int] | None = None  # what tells the mesh's faces from others
 
     def look_at_faces(self) -> None:
         """Is called when somebody may have changed the mesh. The checksums of *Limit Capture* do
@@ -101,8 +101,7 @@ class LiveSurface:
         frame = depsgraph.scene.frame_float
         if captured is not None:
             if self._faces is None and not ob.data.is_editmode:
-                corners = attributes.read(ob.data, ids.CORNER_VERTEX)
-                self._faces = len(ob.data.polygons), zlib.crc32(corners.data)
+                self._faces = faces_of(ob.data)
             captured = captured._replace(checksums=(*captured.checksums, self._faces))
         if captured is None or captured.checksums != self._checksums:
             self._checksums = None

@@ -17,19 +17,22 @@ class Faces:
     """The faces of a mesh in Object Mode, as they are now."""
 
     def __init__(self, ob: bpy.types.Object) -> None:
-        self._counts, self._checksum = _faces(ob.data)
+        self._faces = faces_of(ob.data)
 
     def check(self, ob: bpy.types.Object) -> None:
         """Raises RefusalError where the mesh has others now, or is in Edit Mode."""
         if ob.mode == "EDIT":
             raise RefusalError(f"{ob.name} was put into Edit Mode meanwhile: leave it first")
-        if _faces(ob.data) != (self._counts, self._checksum):
+        if faces_of(ob.data) != self._faces:
             raise RefusalError(
                 f"The faces of {ob.name} were changed meanwhile: run the operator again"
             )
 
 
-def _faces(mesh: bpy.types.Mesh) -> tuple[tuple[int, int], int]:
+def faces_of(mesh: bpy.types.Mesh) -> tuple[int, int, int]:
+    """Returns what differs where the faces of a mesh in Object Mode do: the numbers of vertices and
+    faces, and a checksum of the faces' corners.
+    """
     corners = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("vertex_index", corners)
-    return (len(mesh.vertices), len(mesh.polygons)), zlib.crc32(corners.data)
+    return len(mesh.vertices), len(mesh.polygons), zlib.crc32(corners.data)
