@@ -22,8 +22,7 @@ class WorldSurface:
     def __init__(self, found: cage.Cage, called: str) -> None:
         self.cage = found
         self.axes = WorldSpace(found.matrix, called)  # refuses a scale of 0
-        self.is_mirrored = found.is_mirrored
-        self.from_world = MIRROR if self.is_mirrored else np.eye(4)
+        self.from_world = MIRROR if found.is_mirrored else np.eye(4)
         self.surface, self.local = found.surface(), found.surface()
         check_some_left(self.surface, called)
         self.surface.set_positions(self.to_surface(found.world_positions()))
