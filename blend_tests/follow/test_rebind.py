@@ -248,7 +248,7 @@ def refused(match: str, ob: bpy.types.Object, **properties: object) -> None:
 
 def test_refusals():
     ob = deforming("grid with holes")
-    refused("Select a surface or what follows it", ob)
+    refused("Select a surface that something follows, or what follows it", ob)
     hair = scenes.add_hair(ob, follow="NODES")
     refused("does not store the UVs of its roots", hair, method="UV")
     scenes.add_uv_map(ob, lambda p: p[:, :2])

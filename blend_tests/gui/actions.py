@@ -156,6 +156,11 @@ def hair(per_side: int) -> None:
     bpy.context.active_object.name = "Hair"
 
 
+def report() -> None:
+    """Measures how far the displayed mesh of the active object is from its limit surface."""
+    bpy.ops.object.limit_report()
+
+
 def smooth_sheet() -> None:
     """Adds a sheet as users have it: subdivided and with smooth shading."""
     sheet = bpy.data.objects["Sheet"]

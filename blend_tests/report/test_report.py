@@ -350,9 +350,11 @@ def test_panel_shows_the_numbers():
     assert not drawn(panel).box.called
     found = report(ob)
     column = drawn(panel).box().column()
-    labels = [call.kwargs["text"] for call in column.label.call_args_list]
-    assert "Viewport, level 1" in labels
-    assert f"{found['RENDER']['slide_max']:.4g}" in " ".join(labels)
+    assert column.label.call_args_list[0].kwargs["text"] == "Viewport, level 1"
+    values = [call.kwargs["text"] for call in column.split().row().label.call_args_list]
+    numbers = found["RENDER"]
+    last = [f"{numbers[f'slide_{of}']:.3g}" for of in ("max", "mean")]
+    assert values[-2:] == last
 
 
 def test_redo_panel_shows_what_was_found():

@@ -256,10 +256,10 @@ def test_panel_chooses_the_target():
     target = scenes.cross()
     layout = MagicMock()
     bpy.types.VIEW3D_PT_limit_snap.draw(SimpleNamespace(layout=layout), bpy.context)
-    layout.prop.assert_called_once_with(bpy.context.scene.limit_surface, "target")
-    assert (
-        layout.column().label.call_args.kwargs["text"] == f"Target now: active mesh {target.name}"
-    )
+    layout.row().prop.assert_called_once_with(bpy.context.scene.limit_surface, "target")
+    assert layout.row().active is False
+    lines = [call.kwargs["text"] for call in layout.column().label.call_args_list]
+    assert " ".join(lines) == f"In Object Mode, the target is the active mesh: {target.name}"
     assert ids.SNAP in [call.args[0] for call in layout.column().operator.call_args_list]
 
 

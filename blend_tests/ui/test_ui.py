@@ -13,6 +13,7 @@ import limitsurf
 import pytest
 import scenes
 from limit_surface import ids
+from limit_surface.placing import live_children, live_kept
 from limit_surface.preferences import LimitSurfacePreferences
 from processes import ROOT, run_python
 
@@ -83,6 +84,55 @@ def test_panel_tells_what_is_bound():
     row = drawn(bpy.types.VIEW3D_PT_limit_follow, "draw_header_preset").row()
     assert labels(row) == ["1 problem"]
     assert row.alert is True
+
+
+def test_a_surface_in_edit_mode_is_no_problem():
+    ob = scenes.cross()
+    hair = scenes.add_hair(ob, follow="LIVE")
+    scenes.activate(ob)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.view_layer.update()
+    assert "Edit Mode" in live_kept.trouble(hair)
+    row = drawn(bpy.types.VIEW3D_PT_limit_follow, "draw_header_preset").row()
+    assert not row.label.called
+    column = drawn(bpy.types.VIEW3D_PT_limit_follow).column()
+    said = " ".join(filter(None, labels(column)))
+    assert "What follows live moves when Cross leaves Edit Mode" in said
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_panel_counts_live_children():
+    ob = scenes.cross()
+    scenes.add_hair(ob, follow="NODES")
+    bpy.ops.object.limit_children_add(mode="LIVE")
+    assert live_children.on_surface(ob)
+    assert "2 objects follow it" in labels(drawn(bpy.types.VIEW3D_PT_limit_surface))
+
+
+def test_panel_tells_where_hair_stands_that_does_not_follow():
+    scenes.add_hair(scenes.cross(), follow="NONE")
+    said = " ".join(labels(drawn(bpy.types.VIEW3D_PT_limit_follow).column()))
+    assert said == "Limit Hair stands on Cross and does not follow it"
+
+
+def test_following_is_offered_where_something_can_follow():
+    ob = scenes.cross()
+    offered = (
+        bpy.ops.object.limit_follow,
+        bpy.ops.object.limit_rebind,
+        bpy.ops.object.limit_unbind,
+    )
+    assert [operator.poll() for operator in offered] == [False, False, False]
+    hair = scenes.add_hair(ob, follow="NONE")
+    assert [operator.poll() for operator in offered] == [True, True, False]
+    hair.select_set(False)
+    scenes.activate(ob)
+    assert [operator.poll() for operator in offered] == [False, False, False]
+    scenes.activate(hair)
+    bpy.ops.object.limit_follow()
+    hair.select_set(False)
+    scenes.activate(ob)
+    assert [operator.poll() for operator in offered] == [True, True, True]
 
 
 def test_panel_asks_no_objects_where_nothing_can_follow(monkeypatch):

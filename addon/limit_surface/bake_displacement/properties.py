@@ -152,7 +152,10 @@ class DisplacementProperties(TextureProperties):
         description="Resolution of each face's tile: the number of parts into which a side "
         "of the face is divided. The tile is one texel wider and higher than "
         "this number",
-        items=tuple((str(n), str(n), "", n) for n in FACE_RESOLUTIONS),
+        items=tuple(
+            (str(n), str(n), f"Divide each side of a face into {n} parts", n)
+            for n in FACE_RESOLUTIONS
+        ),
         default="16",
     )
     image_name: StringProperty(

@@ -239,7 +239,8 @@ class Pen:
         self._area.header_text_set("   ".join(parts))
         context.workspace.status_text_set(
             "Drag: draw   Ctrl drag: erase   Shift drag: smooth   [ ]: brush size   X: mirror   "
-            "J: join at ends   Ctrl Z: undo   Enter or Space: confirm   Esc or right click: cancel"
+            "J: join at ends   Ctrl Z: undo   Ctrl Shift Z: redo   Enter or Space: confirm   "
+            "Esc or right click: cancel"
         )
         self._area.tag_redraw()
 

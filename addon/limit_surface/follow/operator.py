@@ -15,7 +15,7 @@ from ..tasks import polling
 from ..tasks.job import Progress
 from ..tasks.piecewise_job import Pieces, aside
 from ..tasks.properties import draw_summary
-from .subjects import BINDABLE, selected, to_bind
+from .subjects import has_to_bind, selected, to_bind
 
 Things = dict[bpy.types.Object, list[bpy.types.Object]]  # by their surface
 
@@ -66,9 +66,7 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.in_object_mode(
-            cls, context, lambda: any(ob.type in BINDABLE for ob in selected(context)), NOTHING
-        )
+        return polling.in_object_mode(cls, context, lambda: has_to_bind(context), NOTHING)
 
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True

@@ -7,7 +7,7 @@ from .. import ids, native
 from ..counting import by_count, counted
 from ..placing import live, live_kept
 from ..placing.follow_state import State, Trouble
-from ..placing.followers import anything_follows, live_followers_of
+from ..placing.followers import anything_follows, is_placed, live_followers_of, surface_of
 from ..tasks import wrapped_text
 from . import stale
 
@@ -28,7 +28,7 @@ class VIEW3D_PT_limit_follow(bpy.types.Panel):
             return
         state, things = State.of(context.active_object), _live_things(context.active_object)
         wrong = len(stale.troubles(context, state)) if state else 0
-        wrong += sum(bool(live_kept.trouble(ob)) for ob in things)
+        wrong += len(_live_troubles(things))
         if wrong:
             row = self.layout.row()
             row.alert = True
@@ -39,7 +39,7 @@ class VIEW3D_PT_limit_follow(bpy.types.Panel):
         state = State.of(context.active_object)
         is_live = _draw_live(layout, context)
         if state is None and not is_live:
-            layout.label(text="Nothing follows the active object", icon="INFO")
+            wrapped_text.draw(layout, _rest(context.active_object), "INFO")
         elif state is not None:
             _draw_state(layout, state)
             for trouble in stale.troubles(context, state):
@@ -66,9 +66,11 @@ def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
         follow = counted(len(things), "objects", "follows", "follow")
         column.label(text=f"{follow} it live", icon="OBJECT_DATA")
     column.prop(context.scene, ids.LIVE)
-    for thing in things:
-        if live_kept.trouble(thing):
-            wrapped_text.draw_alert(layout.box(), live_kept.trouble(thing))
+    if waiting := next(filter(None, map(_edited_surface, things)), None):
+        text = f"What follows live moves when {waiting.name} leaves Edit Mode"
+        wrapped_text.draw(layout, text, "EDITMODE_HLT")
+    for text in _live_troubles(things):
+        wrapped_text.draw_alert(layout.box(), text)
     return True
 
 
@@ -77,6 +79,25 @@ def _live_things(ob: bpy.types.Object | None) -> list[bpy.types.Object]:
     if ob is None:
         return []
     return [ob] if live.surface_of(ob) is not None else live_followers_of(ob)
+
+
+def _rest(ob: bpy.types.Object | None) -> str:
+    """Returns what is said where nothing follows."""
+    if ob is not None and is_placed(ob) and (surface := surface_of(ob)) is not None:
+        return f"{ob.name} stands on {surface.name} and does not follow it"
+    return "Nothing follows the active object"
+
+
+def _edited_surface(thing: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns the surface that an object follows live, if the surface is in Edit Mode."""
+    surface = live.surface_of(thing)
+    return surface if surface is not None and surface.data.is_editmode else None
+
+
+def _live_troubles(things: list[bpy.types.Object]) -> list[str]:
+    """Returns why things do not follow live, other than that their surface is in Edit Mode."""
+    troubles = (live_kept.trouble(ob) for ob in things if _edited_surface(ob) is None)
+    return [text for text in troubles if text]
 
 
 def _draw_state(layout: bpy.types.UILayout, state: State) -> None:

@@ -14,9 +14,9 @@ from ..tasks import polling
 from ..tasks.piecewise_job import Pieces
 from ..tasks.properties import draw_summary
 from . import children_rebinding
-from .subjects import children_to_rebind, to_rebind
+from .subjects import children_to_rebind, has_to_rebind, to_rebind
 
-_NOTHING = "Select a surface or what follows it"
+_NOTHING = "Select a surface that something follows, or what follows it"
 
 
 class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
@@ -65,9 +65,7 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return polling.in_object_mode(
-            cls, context, lambda: bool(context.selected_objects or context.active_object), _NOTHING
-        )
+        return polling.in_object_mode(cls, context, lambda: has_to_rebind(context), _NOTHING)
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout

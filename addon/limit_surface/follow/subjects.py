@@ -16,8 +16,10 @@ from ..placing.followers import (
     own_followers_of,
     strays_of,
     surface_of,
+    was_bound,
 )
 from ..placing.relocation import TYPES
+from ..reading.users import own_objects_using
 
 BINDABLE = (*TYPES, "CURVE")
 
@@ -74,6 +76,30 @@ def to_bind(
             )
         found.setdefault(surface, []).append(ob)
     return found
+
+
+def has_to_bind(context: bpy.types.Context) -> bool:
+    """Tells whether there is something to bind. Things without a surface count, because the
+    operator says what they lack.
+    """
+    try:
+        return bool(to_bind(context))
+    except RefusalError:
+        return True
+
+
+def has_to_rebind(context: bpy.types.Context) -> bool:
+    """Tells whether something is selected that stands on a surface, or a mesh that something
+    follows or has followed.
+    """
+    chosen = selected(context)
+    if any(modifier_of(ob) or is_placed(ob) or live_children.modifier_of(ob) for ob in chosen):
+        return True
+    meshes = [ob for ob in chosen if ob.type == "MESH"]
+    return any(
+        was_bound(ob) or live_modifier_of(ob) or live_children.modifier_of(ob)
+        for ob in own_objects_using(*meshes)
+    )
 
 
 def to_rebind(

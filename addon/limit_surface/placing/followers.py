@@ -14,6 +14,7 @@ from ..nodes.follow import SURFACE, TILES
 from ..nodes.follow_curve import FOLLOW_CURVE, POINTS
 from ..nodes.groups import Kind
 from ..reading import attributes
+from ..reading.users import objects_using, own_objects_using
 from .places import lacking, root_attributes
 
 _GROUPS = (
@@ -69,7 +70,6 @@ def is_placed(ob: bpy.types.Object) -> bool:
 
 def modifier_of(ob: bpy.types.Object) -> bpy.types.NodesModifier | None:
     """Returns the modifier by which the object follows a surface, if it does."""
-    # one pass over the modifiers: panels ask it of every object in the file
     for modifier in ob.modifiers:
         if modifier.type == "NODES" and groups.name_of(modifier.node_group) in _GROUPS:
             return modifier
@@ -103,7 +103,12 @@ def sharers(ob: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the other objects that have the same data."""
     if ob.data is None or ob.data.users < 2:
         return []
-    return [other for other in bpy.data.objects if other.data == ob.data and other != ob]
+    return [other for other in users_of(ob.data) if other != ob]
+
+
+def users_of(data: bpy.types.ID) -> list[bpy.types.Object]:
+    """Returns the objects whose data this is."""
+    return [ob for ob in objects_using(data) if ob.data == data]
 
 
 def ground_of(ob: bpy.types.Object | None) -> bpy.types.Object | None:
@@ -120,12 +125,7 @@ def _is_points(ob: bpy.types.Object) -> bool:
 
 def followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that follow a surface by nodes."""
-    found = []
-    for ob in bpy.data.objects:
-        modifier = modifier_of(ob) if ob.library is None else None
-        if modifier and groups.get_input(modifier, SURFACE) == surface:
-            found.append(ob)
-    return found
+    return [ob for ob in own_objects_using(surface) if _is_its(modifier_of(ob), surface)]
 
 
 def own_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
@@ -135,12 +135,11 @@ def own_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
 
 def live_followers_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that follow a surface live."""
-    found = []
-    for ob in bpy.data.objects:
-        modifier = live_modifier_of(ob) if ob.library is None else None
-        if modifier and groups.get_input(modifier, SURFACE) == surface:
-            found.append(ob)
-    return found
+    return [ob for ob in own_objects_using(surface) if _is_its(live_modifier_of(ob), surface)]
+
+
+def _is_its(modifier: bpy.types.NodesModifier | None, surface: bpy.types.Object) -> bool:
+    return modifier is not None and groups.get_input(modifier, SURFACE) == surface
 
 
 def anything_follows() -> bool:
@@ -155,9 +154,8 @@ def strays_of(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects that were bound to a surface and have lost their modifier."""
     return [
         ob
-        for ob in bpy.data.objects
-        if ob.library is None
-        and _has_tiles(ob)
+        for ob in own_objects_using(surface)
+        if _has_tiles(ob)
         and is_placed(ob)
         and modifier_of(ob) is None
         and live_modifier_of(ob) is None

@@ -319,8 +319,8 @@ def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     theirs = surface_of(ob) if is_placed(ob) or ob.type == "CURVES" else None
     if theirs not in (None, surface):
         raise RefusalError(f"{ob.name} belongs to {theirs.name}, not to {surface.name}")
-    for other in bpy.data.objects if ob.data.users > 1 else ():
-        if other.data == ob.data and surface_of(other) not in (None, surface):
+    for other in sharers(ob):
+        if surface_of(other) not in (None, surface):
             raise RefusalError(
                 f"{ob.name} shares its data with {other.name}, which stands on another surface: "
                 "make it a single-user copy first"

@@ -12,6 +12,7 @@ from .. import ids, native
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
+from ..reading.users import objects_using
 from . import live_attributes, live_surface, live_thing
 from . import live_kept as kept
 from .followers import sharers
@@ -41,13 +42,7 @@ def followers_in(
     found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
     seen: set[bpy.types.ID] = set()
     marks = {g for g in bpy.data.node_groups if groups.is_of(g, ids.FOLLOW_LIVE_GROUP)}
-    if not marks:
-        return found
-    for ob in bpy.data.objects:
-        # this is asked for each object in each frame, so that the quick question comes first
-        modifiers = ob.modifiers
-        if not modifiers or not any(m.type == "NODES" and m.node_group in marks for m in modifiers):
-            continue
+    for ob in objects_using(*marks):
         if ob.type not in ("CURVES", "MESH", "POINTCLOUD") or ob.data in seen:
             continue
         surface = surface_of(ob)

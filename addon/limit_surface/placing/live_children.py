@@ -20,6 +20,7 @@ from ..nodes import children as nodes
 from ..nodes import groups
 from ..nodes.children import CHILDREN
 from ..reading import attributes
+from ..reading.users import own_objects_using
 from . import following, tables
 from .all_tiles import AllTiles
 from .new_objects import add_on_surface
@@ -162,7 +163,7 @@ def surface_of(ob: bpy.types.Object) -> bpy.types.Object | None:
 
 def on_surface(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns the file's own objects of live children on a surface."""
-    return [ob for ob in bpy.data.objects if ob.library is None and surface_of(ob) == surface]
+    return [ob for ob in own_objects_using(surface) if surface_of(ob) == surface]
 
 
 def count_of(ob: bpy.types.Object) -> int:

@@ -20,6 +20,7 @@ from ..nodes import groups
 from ..nodes import tiles as nodes
 from ..nodes.tiles import TILES
 from ..reading import attributes, ragged_rows
+from ..reading.users import objects_using, own_objects_using
 
 if TYPE_CHECKING:
     import limitsurf
@@ -125,7 +126,7 @@ def of_surface(surface: bpy.types.Object) -> bpy.types.Object | None:
 
 def all_of_surface(surface: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns all of the file's own tables of tiles of a surface."""
-    return [ob for ob in bpy.data.objects if _is_own(ob) and surface_of(ob) == surface]
+    return [ob for ob in own_objects_using(surface) if _is_own(ob) and surface_of(ob) == surface]
 
 
 def _is_own(ob: bpy.types.Object) -> bool:
@@ -214,7 +215,7 @@ def _unread_points(surface: bpy.types.Object) -> bpy.types.Object | None:
     ob = bpy.data.objects.get((_name(ids.POINTS_TABLE, surface), None))
     if ob is None or ob.type != "MESH" or nodes.ROW not in ob.data.attributes:
         return None
-    return None if any(points_of(other) == ob for other in bpy.data.objects) else ob
+    return None if any(points_of(other) == ob for other in objects_using(ob)) else ob
 
 
 def remove(table: bpy.types.Object) -> None:

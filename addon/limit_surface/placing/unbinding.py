@@ -92,7 +92,7 @@ class Unbinding:
         for frozen in self._frozen:
             frozen.write()
         for data in followers.holders(self._things):
-            if not any(followers.modifier_of(other) for other in _users(data)):
+            if not any(followers.modifier_of(other) for other in followers.users_of(data)):
                 _remove_attributes(data)
         _remove_unused(used - {None}, surfaces - {None})
         names = ", ".join(ob.name for ob in self._things)
@@ -107,7 +107,7 @@ def _check_own_data(ob: bpy.types.Object) -> None:
             f"{ob.name} is a Curve object, whose shape in this frame nodes alone know: choose the "
             "shape At Rest, or convert it to Curves first"
         )
-    others = [other.name for other in _users(ob.data) if other != ob]
+    others = [other.name for other in followers.sharers(ob)]
     if others:
         raise RefusalError(
             f"{ob.name} shares its data with {others[0]}: make it a single user, or choose the "
@@ -196,10 +196,6 @@ def _shown(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, np
         # Normals that are angles turn with the polygons.
         names = [n for n in _MOVED if n in stored and stored[n].data_type in attributes.LAYOUTS]
         return {name: attributes.read(evaluated.data, name) for name in names}
-
-
-def _users(data: bpy.types.ID) -> list[bpy.types.Object]:
-    return [ob for ob in bpy.data.objects if ob.data == data]
 
 
 def _remove_attributes(data: bpy.types.ID) -> None:

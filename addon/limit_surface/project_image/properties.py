@@ -155,7 +155,11 @@ class ProjectionProperties(TextureProperties, FollowProperties):
         name="Samples",
         description="Number of rays for each texel. More rays make the borders of hidden parts "
         "smoother",
-        items=(("1", "1", "", 1), ("4", "4", "", 4), ("16", "16", "", 16)),
+        items=(
+            ("1", "1", "Cast one ray for each texel: the fastest choice", 1),
+            ("4", "4", "Cast 4 rays for each texel", 4),
+            ("16", "16", "Cast 16 rays for each texel: the smoothest choice", 16),
+        ),
         default="4",
     )
     soft_edge: FloatProperty(

@@ -28,5 +28,9 @@ class VIEW3D_PT_limit_report(bpy.types.Panel):
         for name, kept in ob[ids.REPORT].items():
             box = layout.box().column(align=True)
             box.label(text=f"{text.MESHES[name]}, level {kept['level']}")
-            box.label(text=f"To the surface: {text.spread(kept, '')}")
-            box.label(text=f"Same place: {text.spread(kept, 'slide_')}")
+            for title, *values in text.rows(kept):
+                line = box.split(factor=0.46)
+                line.label(text=title)
+                columns = line.row()
+                for value in values:
+                    columns.label(text=value)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The texts of the report."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from .distances import Distances
 
@@ -33,6 +33,13 @@ def short_sentence(mesh: str, kept: Mapping[str, float]) -> str:
         f"{MESHES[mesh]}, level {kept['level']}: at most {largest:.3g} from the surface, "
         f"{slide:.3g} from the same place"
     )
+
+
+def rows(kept: Mapping[str, float]) -> Iterator[tuple[str, str, str]]:
+    """Yields the rows of a table that fits a sidebar of the usual width."""
+    yield "Distance from", "Largest", "Mean"
+    for title, of in (("the surface", ""), ("the same place", "slide_")):
+        yield title, f"{kept[f'{of}max']:.3g}", f"{kept[f'{of}mean']:.3g}"
 
 
 def spread(kept: Mapping[str, float], of: str) -> str:

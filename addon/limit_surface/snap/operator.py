@@ -53,7 +53,7 @@ class OBJECT_OT_limit_snap(
     axis: EnumProperty(
         name="Axis",
         description="Axis to move along",
-        items=tuple((name, name, "", i) for i, name in enumerate("XYZ")),
+        items=tuple((name, name, f"Move along the {name} axis", i) for i, name in enumerate("XYZ")),
         default="Z",
     )
     orientation: EnumProperty(

@@ -19,11 +19,18 @@ class VIEW3D_PT_limit_snap(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
-        layout.prop(context.scene.limit_surface, "target")
-        if context.mode == "OBJECT":
+        is_object_mode = context.mode == "OBJECT"
+        row = layout.row()
+        row.active = not is_object_mode  # the active mesh is the target there
+        row.prop(context.scene.limit_surface, "target")
+        if is_object_mode:
             target = find_target(context)
             name = target.name if target is not None and target.type == "MESH" else ""
-            text = f"Target now: active mesh {name}" if name else "No active mesh"
+            text = (
+                f"In Object Mode, the target is the active mesh: {name}"
+                if name
+                else "No active mesh"
+            )
             wrapped_text.draw(layout, text, "INFO")
         column = layout.column()
         column.enabled = native.available()

@@ -22,10 +22,10 @@ _CHANNELS = (
         "",
         0,
     ),
-    ("RED", "Red", "", "", 1),
-    ("GREEN", "Green", "", "", 2),
-    ("BLUE", "Blue", "", "", 3),
-    ("ALPHA", "Alpha", "", "", 4),
+    ("RED", "Red", "Use the red channel", "", 1),
+    ("GREEN", "Green", "Use the green channel", "", 2),
+    ("BLUE", "Blue", "Use the blue channel", "", 3),
+    ("ALPHA", "Alpha", "Use the alpha channel", "", 4),
 )
 _SOURCES = (
     ("VERTEX_GROUP", "Vertex Group", "Use the weights of a vertex group", "GROUP_VERTEX", 1),

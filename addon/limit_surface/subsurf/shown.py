@@ -14,6 +14,7 @@ from .setup import QUALITY
 class Shown(NamedTuple):
     text: str  # what is shown, in a few words
     is_limit: bool  # whether the displayed vertices lie on the limit surface
+    is_far: bool = True  # whether one can see that they do not
 
 
 def of(ob: bpy.types.Object, scene: bpy.types.Scene) -> Shown:
@@ -29,12 +30,12 @@ def of(ob: bpy.types.Object, scene: bpy.types.Scene) -> Shown:
     if level == 0:
         return Shown("Control mesh: level is 0", False)
     if subsurf.subdivision_type == "SIMPLE":
-        return Shown(f"Level {level}, simple", True)
+        return Shown(f"Level {level}, simple", True, False)
     if not subsurf.use_limit_surface:
         return Shown(f"Level {level}, away from the limit", False)
     if subsurf.quality < QUALITY:
-        return Shown(f"Level {level}, near the limit", False)
-    return Shown(f"Level {level}, on the limit", True)
+        return Shown(f"Level {level}, near the limit", False, False)
+    return Shown(f"Level {level}, on the limit", True, False)
 
 
 def shown_level(subsurf: bpy.types.SubsurfModifier, scene: bpy.types.Scene) -> int:

@@ -6,6 +6,7 @@ place things on it.
 import bpy
 
 from .. import ids, native
+from ..placing import live_children
 from ..placing.followers import (
     anything_follows,
     followers_of,
@@ -63,11 +64,11 @@ def _draw_shown(
     layout: bpy.types.UILayout, surface: bpy.types.Object, scene: bpy.types.Scene
 ) -> None:
     """Draws whether the viewport shows the limit surface, and offers to show it."""
-    text, is_limit = shown.of(surface, scene)
+    found = shown.of(surface, scene)
     row = layout.row()
-    row.alert = not is_limit
-    row.label(text=text, icon="HIDE_OFF" if is_limit else "ERROR")
-    if not is_limit:
+    row.alert = found.is_far
+    row.label(text=found.text, icon="ERROR" if found.is_far else "HIDE_OFF")
+    if not found.is_limit:
         row = layout.row()
         row.enabled = native.available()
         row.operator(ids.SHOW, icon="HIDE_OFF")
@@ -78,5 +79,6 @@ def _draw_bound(layout: bpy.types.UILayout, surface: bpy.types.Object) -> None:
     count = 0
     if anything_follows():
         count = len(followers_of(surface)) + len(live_followers_of(surface))
+        count += len(live_children.on_surface(surface))
     noun = "object follows" if count == 1 else "objects follow"
     layout.label(text=f"{count:,} {noun} it" if count else "Nothing follows it", icon="LINKED")
