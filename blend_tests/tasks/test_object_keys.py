@@ -11,7 +11,7 @@ from limit_surface.tasks.object_keys import MaterialKey, ObjectKey
 def test_an_object_is_found_again():
     ob = scenes.cross()
     key = ObjectKey.of(ob)
-    assert key == ("Cross", None)
+    assert key == ("Cross", None, ob.session_uid)
     assert key.find() == ob
 
 
@@ -20,6 +20,15 @@ def test_an_object_that_is_gone_is_refused():
     bpy.data.objects.remove(bpy.data.objects["Cross"])
     with pytest.raises(RefusalError, match="Cross does not exist any more"):
         key.find()
+
+
+def test_an_object_is_told_from_another_that_has_got_its_name():
+    ob = scenes.cross()
+    key = ObjectKey.of(ob)
+    ob.name = "Other"
+    assert key.find() == ob
+    scenes.cross()
+    assert key.find() == ob
 
 
 def test_a_linked_object_is_told_from_one_of_the_same_name(tmp_path):

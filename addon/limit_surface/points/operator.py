@@ -24,6 +24,7 @@ from ..sources import steering
 from ..sources.index import IndexChoice
 from ..sources.source_mesh import Choice
 from ..tasks.job import Progress
+from ..tasks.object_keys import CollectionKey, ObjectKey
 from . import posing
 from .orientation import Poser
 from .steering import INDEX, STEERED, SteeringProperties, draw
@@ -47,6 +48,9 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
     bl_idname = ids.POINTS_ADD
     bl_label = "Add Points on Limit Surface"
     noun = "points"
+
+    # that of which instances are put on the points
+    _shown: ObjectKey | CollectionKey | None = None
 
     instances: EnumProperty(
         name="Instances",
@@ -87,10 +91,13 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
     )
 
     def check_properties(self) -> None:
+        self._shown = None
         if self.instances == "OBJECT" and self.instance:
-            find_object(self.instance, "the object to put on the points")
+            found = find_object(self.instance, "the object to put on the points")
+            self._shown = ObjectKey.of(found)
         if self.instances == "COLLECTION":
             found = bpy.data.collections.get(self.collection)
+            self._shown = found and CollectionKey.of(found)
             if found is None:
                 raise RefusalError(
                     f"There is no collection {self.collection!r} to put on the points"
@@ -157,7 +164,7 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
             if made.member is not None:
                 attributes.write(mesh, ids.MEMBER, "INT", "POINT", made.member)
             mesh.update()
-            shown = _shown(self)
+            shown = self._shown.find() if self._shown else None
             ob = add_on_surface(context, ids.POINTS_OBJECT, mesh, surface, shown)
             if self.instances == "SCALE":
                 put_scales(ob, self.scale_length / made.world_scale)
@@ -169,13 +176,3 @@ class OBJECT_OT_limit_points_add(ScatterOperator, SteeringProperties, bpy.types.
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
-
-
-def _shown(
-    properties: bpy.types.OperatorProperties,
-) -> bpy.types.Object | bpy.types.Collection | None:
-    """Returns that of which instances are put on the points."""
-    if properties.instances == "COLLECTION":
-        return bpy.data.collections[properties.collection]
-    named = properties.instances == "OBJECT" and properties.instance
-    return bpy.data.objects[properties.instance] if named else None

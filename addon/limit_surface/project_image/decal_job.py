@@ -14,7 +14,7 @@ from ..errors import RefusalError
 from ..placing import following
 from ..reading.projector import Projector, fitted
 from ..tasks.job import Progress, part_of
-from ..tasks.object_keys import ObjectKey
+from ..tasks.object_keys import ImageKey, ObjectKey
 from ..tasks.request_size import RequestSize
 from . import decal, decal_object, inputs, material
 from .world import WorldSurface
@@ -27,7 +27,7 @@ class Order:
     surface: ObjectKey
     world: WorldSurface
     projector: Projector
-    image: str
+    image: ImageKey
     quads: tuple[int, int]
     steepest: float
     two_sided: bool
@@ -41,9 +41,9 @@ class Order:
         found = decal.make(rays, self.quads, part_of(progress, 0, CAST))
         if not len(found.sizes):
             raise RefusalError(
-                f"The image cannot be seen on the surface: no part of the image {self.image} falls "
-                "on the surface, or only parts smaller than a polygon of the decal (raise "
-                "Resolution then)"
+                "The image cannot be seen on the surface: no part of the image "
+                f"{self.image.name} falls on the surface, or only parts smaller than a polygon of "
+                "the decal (raise Resolution then)"
             )
         sag = decal.sag(rays, found)
         placing = part_of(progress, CAST, 1)
@@ -69,9 +69,7 @@ class Made:
         )
 
     def put(self, context: bpy.types.Context, surface: bpy.types.Object) -> tuple[str, list[str]]:
-        image = bpy.data.images.get(self.order.image)
-        if image is None:
-            raise RefusalError(f"{self.order.image} does not exist any more")
+        image = self.order.image.find()
         made = decal_object.add(context, ids.DECAL_OBJECT, self.placed, surface)
         if self.order.create_material:
             material.for_decal(made, image, ids.DECAL_UV)
@@ -98,7 +96,7 @@ def order(
         surface=ObjectKey.of(surface),
         world=world,
         projector=inputs.projector(properties, context, world, size),
-        image=image.name,
+        image=ImageKey.of(image),
         quads=(columns, rows),
         steepest=inputs.facing(properties)[1],
         two_sided=properties.two_sided,

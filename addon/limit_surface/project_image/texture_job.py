@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ from ..images import (
     uv_tiles,
 )
 from ..tasks.job import Progress, part_of
-from ..tasks.object_keys import ObjectKey
+from ..tasks.object_keys import ImageKey, ObjectKey
 from . import colours, inputs, material
 from .painting import Canvas, paint
 from .sources import Source
@@ -47,8 +48,9 @@ class Order:
     uv_map: limitsurf.SurfaceData
     source: Source
     image: str
-    target: str | NewImage
+    target: ImageKey | NewImage
     canvases: dict[int, Canvas]  # pixels by tile
+    sums: dict[int, int]  # checksums of the pixels of an image that exists, by tile
     margin: int
     allow_overlap: bool
     opacity: float
@@ -101,14 +103,8 @@ class Made:
                 alpha=True,
             )
         else:
-            image = bpy.data.images.get(target)
-            if image is None:
-                raise RefusalError(f"{target} does not exist any more")
-            sizes = image_pixels.checked(image, to_write=True).tiles
-            if any(sizes.get(tile) != canvas.size for tile, canvas in canvases.items()):
-                raise RefusalError(
-                    f"The size of {target} has changed since the work began: run the operator again"
-                )
+            image = target.find()
+            self._check(image)
         pixels = {tile: canvas.pixels for tile, canvas in canvases.items()}
         image_pixels.write(image, pixels, is_new=isinstance(target, NewImage))
         warnings = [*self.warnings, image_pixels.unsaved(image)]
@@ -116,6 +112,18 @@ class Made:
             shown_by = material.show(surface, image, self.order.world.cage.chosen_uv_map.name)
             warnings.append(material_slots.unseen(surface, shown_by))
         return f"{counted(self.count, 'texels')} of {image.name}", warnings
+
+    def _check(self, image: bpy.types.Image) -> None:
+        """Raises RefusalError for an image that is not what was painted over any more."""
+        sizes = image_pixels.checked(image, to_write=True).tiles
+        if any(sizes.get(tile) != canvas.size for tile, canvas in self.order.canvases.items()):
+            raise RefusalError(
+                f"The size of {image.name} has changed since the work began: run the operator again"
+            )
+        if any(_sum(image_pixels.read(image, tile)) != s for tile, s in self.order.sums.items()):
+            raise RefusalError(
+                f"The pixels of {image.name} were changed meanwhile: run the operator again"
+            )
 
 
 def order(
@@ -130,6 +138,8 @@ def order(
         material.check(surface)
     shown = inputs.image(properties.image)
     target = _target(properties)
+    canvases = _canvases(target, properties.allow_large)
+    is_new = isinstance(target, NewImage)
     return Order(
         surface=ObjectKey.of(surface),
         world=world,
@@ -137,7 +147,8 @@ def order(
         source=inputs.source(properties, context, world, shown),
         image=shown.name,
         target=target,
-        canvases=_canvases(target, properties.allow_large),
+        canvases=canvases,
+        sums={} if is_new else {tile: _sum(of.pixels) for tile, of in canvases.items()},
         margin=properties.margin,
         allow_overlap=properties.overlap == "ALLOW",
         opacity=properties.opacity,
@@ -145,7 +156,11 @@ def order(
     )
 
 
-def _target(properties: bpy.types.OperatorProperties) -> str | NewImage:
+def _sum(pixels: np.ndarray) -> int:
+    return zlib.crc32(np.ascontiguousarray(pixels).data)
+
+
+def _target(properties: bpy.types.OperatorProperties) -> ImageKey | NewImage:
     if properties.output == "NEW":
         name = properties.target or image_names.with_ending(properties.image, " Projected")
         return NewImage(name, properties.width, properties.height, properties.use_float)
@@ -155,15 +170,15 @@ def _target(properties: bpy.types.OperatorProperties) -> str | NewImage:
         raise RefusalError(f"There is no image {properties.target!r} to paint into")
     if properties.target == properties.image:
         raise RefusalError(f"The image {properties.image} cannot be painted into itself")
-    return properties.target
+    return ImageKey.of(bpy.data.images[properties.target])
 
 
-def _canvases(target: str | NewImage, allow_large: bool) -> dict[int, Canvas]:
+def _canvases(target: ImageKey | NewImage, allow_large: bool) -> dict[int, Canvas]:
     if isinstance(target, NewImage):
         texel_places.check_size(target.width, target.height, 1, 1, allow_large)
         blank = np.zeros((target.height, target.width, 4), np.float32)
         return {image_pixels.FIRST_TILE: Canvas(blank, colours.of_new(target.is_float))}
-    image = bpy.data.images[target]
+    image = target.find()
     tiles = image_pixels.checked(image, to_write=True).tiles
     encoding = colours.of(image)
     return {tile: Canvas(image_pixels.read(image, tile), encoding) for tile in tiles}
