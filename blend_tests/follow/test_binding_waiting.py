@@ -233,7 +233,7 @@ def test_things_that_are_removed_meanwhile_are_missed(slowly):
     while (result := operator.modal(context, event("TIMER"))) == {"RUNNING_MODAL"}:
         pass
     assert result == {"CANCELLED"}
-    assert "removed meanwhile" in operator.report.call_args.args[1]
+    assert "does not exist any more" in operator.report.call_args.args[1]
 
 
 def test_work_aside():

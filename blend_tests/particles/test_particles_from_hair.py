@@ -318,7 +318,7 @@ def test_escape_takes_the_particles_back(monkeypatch):
     with pytest.raises(RuntimeError, match="ZeroDivisionError"):
         convert(levels="RENDER")
     (job,) = jobs
-    job.advance(0.05)
+    job.wait(0.05)
     assert 0 < job.part < 1
     assert len(ob.particle_systems) == 1
     job.cancel()

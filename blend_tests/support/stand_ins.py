@@ -3,7 +3,7 @@
 there is a window.
 """
 
-from types import SimpleNamespace
+from types import CellType, FunctionType, SimpleNamespace
 from unittest.mock import MagicMock
 
 import bpy
@@ -27,9 +27,26 @@ def stand_in_of(operator, **chosen):
     own = {name: value for name, value in vars(operator).items() if not name.startswith("bl_")}
     own = {name: value for name, value in own.items() if not name.startswith("__")}
     bases = tuple(base for base in operator.__bases__ if base is not bpy.types.Operator)
-    made = type("StandIn", bases, own)()
+    cell = CellType()
+    own = {name: _with_class(value, cell) for name, value in own.items()}
+    cell.cell_contents = cls = type("StandIn", bases, own)
+    made = cls()
     kind = getattr(bpy.ops.object, operator.bl_idname.partition(".")[2]).get_rna_type()
     return with_properties(made, kind, chosen)
+
+
+def _with_class(value, cell):
+    """Returns a method that calls `super()` as one of the class that the cell will hold."""
+    if not isinstance(value, FunctionType) or "__class__" not in value.__code__.co_freevars:
+        return value
+    names = value.__code__.co_freevars
+    closure = tuple(
+        cell if name == "__class__" else old
+        for name, old in zip(names, value.__closure__, strict=True)
+    )
+    return FunctionType(
+        value.__code__, value.__globals__, value.__name__, value.__defaults__, closure
+    )
 
 
 def with_properties(made, kind, chosen):
@@ -53,7 +70,7 @@ def window_context():
     """
     context = MagicMock(wraps=bpy.context)
     names = ("active_object", "scene", "view_layer", "selected_objects", "space_data", "mode")
-    for name in (*names, "objects_in_mode"):
+    for name in (*names, "objects_in_mode", "objects_in_mode_unique_data"):
         setattr(context, name, getattr(bpy.context, name, []))
     context.window_manager, context.workspace = MagicMock(), MagicMock()
     context.window = MagicMock()

@@ -62,6 +62,8 @@ class OBJECT_OT_limit_attach(BindingOperator, bpy.types.Operator):
         depsgraph = context.evaluated_depsgraph_get()
         following.check_surface(surface, depsgraph.scene)
         _check(objects, surface)
+        self.rely_on(surface, placed=True)
+        self.rely_on(*objects, data=False, placed=True)
 
         posed = PosedSurface(cage.read(surface, depsgraph))
         check_some_left(posed.in_world, surface.name)

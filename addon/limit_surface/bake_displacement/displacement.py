@@ -65,7 +65,7 @@ def measure(request: Request, progress: Progress) -> Measured:
         )
     if not ranges:
         raise RefusalError(
-            f"No normal of the surface meets {request.surfaces.target_name} in the chosen "
+            f"No normal of the surface meets {request.surfaces.target.name} in the chosen "
             "direction and within the chosen distance"
         )
     lows, highs = zip(*ranges, strict=True)
@@ -77,7 +77,7 @@ def _measured(request: Request, texels: Texels) -> tuple[np.ndarray, np.ndarray]
     is met.
     """
     surfaces = request.surfaces
-    base, target = surfaces.base, surfaces.target
+    base, target = surfaces.base, surfaces.sculpted
     if not request.is_vector:
         distances = base.scalar_displacement(
             target,

@@ -55,6 +55,10 @@ class OBJECT_OT_limit_bake_displacement(
         if self.create_material:
             material.check(ob)
         both = surfaces.read(self.properties, context, ob)
+        in_world = self.transform == "WORLD"
+        maps = [both.found.chosen_uv_map.name] if both.uv_data else ()
+        self.rely_on(ob, placed=in_world, named=maps)
+        self.rely_on(both.target.find(), placed=in_world)
         request = Request(
             surfaces=both,
             layout=layouts.of(self.properties, both, ob.name),
@@ -137,7 +141,7 @@ class OBJECT_OT_limit_bake_displacement(
         if measured.missing:
             self.report(
                 {"WARNING"},
-                f"{request.surfaces.target_name} was not found along the normals of "
+                f"{request.surfaces.target.name} was not found along the normals of "
                 f"{measured.missing:,} of {counted(measured.count, 'texels')}: "
                 f"{by_count(measured.missing, 'this texel holds', 'these texels hold')} 0",
             )

@@ -14,6 +14,7 @@ from ..errors import RefusalError
 from ..images import texel_places
 from ..reading import attributes, cage, transform
 from ..reading.named import find_object
+from ..tasks.object_keys import ObjectKey
 from ..tasks.refused_faces import check_some_left
 
 if TYPE_CHECKING:
@@ -23,10 +24,10 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Surfaces:
     base: limitsurf.LimitSurface
-    target: limitsurf.LimitSurface
+    sculpted: limitsurf.LimitSurface
     uv_data: limitsurf.SurfaceData | None  # the UV map of the base, where one is needed
     found: cage.Cage  # the cage of the base
-    target_name: str
+    target: ObjectKey
 
 
 def read(
@@ -53,7 +54,7 @@ def read(
     sculpted = _surface(mesh, target.name)
     if properties.transform == "WORLD":
         sculpted.set_positions(_carried(mesh.positions, matrix, found.matrix, ob.name))
-    return Surfaces(base, sculpted, uv_data, found, target.name)
+    return Surfaces(base, sculpted, uv_data, found, ObjectKey.of(target))
 
 
 def _target(name: str, context: bpy.types.Context, ob: bpy.types.Object) -> bpy.types.Object:

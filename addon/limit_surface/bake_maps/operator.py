@@ -47,6 +47,7 @@ class OBJECT_OT_limit_bake_maps(TextureOperator, properties.BakeProperties, bpy.
             raise RefusalError("No map is chosen")
         depsgraph = context.evaluated_depsgraph_get()
         found = texel_places.read_cage(ob, depsgraph, self.uv_map)
+        self.rely_on(ob, named=[found.chosen_uv_map.name], placed=self.space == "WORLD")
         size = self.width, self.height
         tiles = (
             tiles_of(found, ob.name, size) if self.tiles == "ALL" else (image_pixels.FIRST_TILE,)

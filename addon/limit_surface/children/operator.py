@@ -29,6 +29,7 @@ from ..reading.named import find_object
 from ..sources.source_mesh import Choice
 from ..tasks import polling
 from ..tasks.job import Progress
+from ..tasks.object_keys import ObjectKey
 from . import guides as guide_hair
 from . import parting
 from .spread import Followed, Spread
@@ -52,6 +53,8 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
     # what is read for live children
     _tiles: AllTiles | None = None
     _guides_binding: following.Request | None = None
+
+    _guides_key: ObjectKey | None = None
 
     mode: EnumProperty(
         name="Mode",
@@ -217,6 +220,8 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             )
         order = super()._read(ob, depsgraph)
         guides = guide_hair.read(hair, ob, order.region.cage, self.points, depsgraph)
+        self.rely_on(hair, named=[ids.FACE, ids.UV])
+        self._guides_key = ObjectKey.of(hair)
         self.guides = hair.name  # so that the redo panel finds them
         assert isinstance(order.distribution, Distribution)
         own = replace(order.distribution, seed=_SEEDS + order.distribution.seed)
@@ -245,7 +250,9 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
     def add(
         self, context: bpy.types.Context, surface: bpy.types.Object, made: Any
     ) -> bpy.types.Object:
-        guides = bpy.data.objects[self.guides]
+        assert self._guides_key is not None  # as `_read` has found
+        guides = self._guides_key.find()
+        self.guides = guides.name
         if isinstance(made, live_children.Table):
             materials = guides.data.materials
             inputs = {

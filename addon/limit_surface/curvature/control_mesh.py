@@ -24,6 +24,10 @@ class ControlMesh:
         self._settings = settings
         self._check(ob)
 
+    def relied_on(self) -> list[tuple[bpy.types.Object, tuple[str, ...]]]:
+        """Returns the objects that were read, with the names of those of their attributes."""
+        return [(self._key.find(), ())]
+
     def measure(self, progress: Progress) -> list[Values]:
         on = CurvedSurface(self._found, self._settings.in_world, self._settings.radius)
         at = on.surface.vertex_locations()

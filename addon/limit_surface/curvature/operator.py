@@ -144,6 +144,8 @@ class OBJECT_OT_limit_curvature(WatchedOperator, LargeCountProperty, bpy.types.O
             raise RefusalError("Make a mesh object active first")
         settings = Settings(self.space == "WORLD", self.radius, self.levels, self.allow_large)
         places = _PLACES[self.on](context, settings)
+        for ob, names in places.relied_on():
+            self.rely_on(ob, named=names)
 
         def work(progress: Progress) -> tuple[Places, list[Values]]:
             return places, places.measure(progress)

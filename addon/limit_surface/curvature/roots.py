@@ -24,6 +24,7 @@ _DOMAINS = {"CURVES": "CURVE", "MESH": "POINT"}
 
 class _Part(NamedTuple):
     key: ObjectKey
+    surface: ObjectKey
     face: np.ndarray
     uv: np.ndarray
     matrix: np.ndarray
@@ -53,7 +54,7 @@ class StoredRoots:
                     raise RefusalError(f"{ob.name} has no surface: parent it to the mesh below it")
                 if surface not in cages:
                     cages[surface] = cage.read(surface, depsgraph)
-                self._parts.append(_read(ob, cages[surface], surface.name))
+                self._parts.append(_read(ob, cages[surface], surface))
             except RefusalError as error:
                 failures[str(error)] += 1
         if not self._parts:
@@ -63,6 +64,14 @@ class StoredRoots:
                 f"{ids.FACE} and {ids.UV}: select hair or points that stand on a limit surface"
             )
         self.notes = tuple(f"{n:,} left out: {reason}" for reason, n in failures.items())
+
+    def relied_on(self) -> list[tuple[bpy.types.Object, tuple[str, ...]]]:
+        """Returns the objects that were read, with the names of those of their attributes."""
+        surfaces = dict.fromkeys(part.surface for part in self._parts)
+        return [
+            *((part.key.find(), (ids.FACE, ids.UV)) for part in self._parts),
+            *((surface.find(), ()) for surface in surfaces),
+        ]
 
     def measure(self, progress: Progress) -> list[Values]:
         surfaces: dict[int, CurvedSurface] = {}
@@ -81,13 +90,8 @@ class StoredRoots:
         self, _context: bpy.types.Context, values: list[Values], colors: list[np.ndarray]
     ) -> str:
         stored = [part.key.find() for part in self._parts]
-        for ob, part in zip(stored, self._parts, strict=True):
+        for ob in stored:
             _check(ob)
-            if len(attributes.read(ob.data, ids.FACE)) != len(part.face):
-                raise RefusalError(
-                    f"{ob.name} has changed while its curvature was "
-                    "calculated: run the operator again"
-                )
         for ob, of, color in zip(stored, values, colors, strict=True):
             storage.write(ob.data, _DOMAINS[ob.type], of, color)
             ob.data.update_tag()
@@ -126,12 +130,13 @@ def _check(ob: bpy.types.Object) -> None:
     storage.check(ob, domain)
 
 
-def _read(ob: bpy.types.Object, found: cage.Cage, surface: str) -> _Part:
+def _read(ob: bpy.types.Object, found: cage.Cage, surface: bpy.types.Object) -> _Part:
     _check(ob)
     face = attributes.read(ob.data, ids.FACE)
     uv = attributes.read(ob.data, ids.UV).astype(np.float64)
     there = face != NOWHERE
     known = (face[there] >= 0) & (face[there] < found.ptex_face_count)
     if not (known.all() and ((uv[there] >= 0) & (uv[there] <= 1)).all()):
-        raise RefusalError(f"{ob.name} stands on faces that {surface} does not have")
-    return _Part(ObjectKey.of(ob), face, uv, transform.world_matrix(ob), found)
+        raise RefusalError(f"{ob.name} stands on faces that {surface.name} does not have")
+    matrix = transform.world_matrix(ob)
+    return _Part(ObjectKey.of(ob), ObjectKey.of(surface), face, uv, matrix, found)

@@ -38,6 +38,10 @@ class Tessellation:
         RequestSize("polygons", count, 1, is_exact=False).check(settings.allow_large)
         self._mesh: limitsurf.Tessellation | None = None
 
+    def relied_on(self) -> list[tuple[bpy.types.Object, tuple[str, ...]]]:
+        """Returns the objects that were read, with the names of those of their attributes."""
+        return [(self._key.find(), ())]
+
     def measure(self, progress: Progress) -> list[Values]:
         found, settings = self._found, self._settings
         local = CurvedSurface(found, False, settings.radius)

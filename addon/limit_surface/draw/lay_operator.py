@@ -58,6 +58,8 @@ class OBJECT_OT_limit_curve_lay(properties.FitProperties, WatchedOperator, bpy.t
         surface, curves = context.active_object, _curves(context)
         for ob in curves:
             curve_object.check_drawable(ob, surface)
+        self.rely_on(surface, placed=True)
+        self.rely_on(*curves, placed=True, shape=True)
         depsgraph = context.evaluated_depsgraph_get()
         ground = Ground(surface, depsgraph)
         for ob in curves:

@@ -98,8 +98,11 @@ def strokes(ob: bpy.types.Object, ground: Ground, tolerance: float) -> list[Stro
 def strokes_by_spline(
     ob: bpy.types.Object, ground: Ground, tolerance: float
 ) -> Iterator[list[Stroke]]:
-    """Yields the strokes of one spline after the other."""
-    for number, spline in enumerate(ob.data.splines):
+    """Yields the strokes of one spline after the other. No spline is held meanwhile: undo may
+    replace it.
+    """
+    for number in range(len(ob.data.splines)):
+        spline = ob.data.splines[number]
         if spline.type == "NURBS":
             raise RefusalError(
                 f"{ob.name} has NURBS splines: convert them to Bézier or poly splines first"

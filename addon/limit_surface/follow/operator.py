@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, EnumProperty
 from .. import ids
 from ..errors import RefusalError
 from ..placing import curve_points, following, live_binding, newcomers
-from ..placing.binding_operator import BindingOperator
+from ..placing.binding_operator import BindingOperator, rely_on_bound
 from ..placing.followers import live_modifier_of
 from ..tasks import polling
 from ..tasks.job import Progress
@@ -78,6 +78,9 @@ class OBJECT_OT_limit_follow(BindingOperator, bpy.types.Operator):
         by_surface = to_bind(context)
         if not by_surface:
             raise RefusalError(NOTHING)
+        for surface, things in by_surface.items():
+            self.rely_on(surface)
+            rely_on_bound(self, things)
         live, others = self._divided(context, by_surface)
         requests = yield from self._located(context, live)
         lines = (yield from self._by_nodes(context, others)) if others else []

@@ -8,7 +8,7 @@ from bpy.props import EnumProperty, FloatProperty
 
 from .. import ids
 from ..errors import RefusalError
-from ..placing.binding_operator import BindingOperator
+from ..placing.binding_operator import BindingOperator, rely_on_bound
 from ..placing.rebinding import Rebinding
 from ..tasks import polling
 from ..tasks.piecewise_job import Pieces
@@ -86,6 +86,10 @@ class OBJECT_OT_limit_rebind(BindingOperator, bpy.types.Operator):
             Rebinding(on, depsgraph, things, self.method, limit)
             for on, things in by_surface.items()
         ]
+        self.rely_on(*children)
+        for surface, rebinding in zip(by_surface, rebindings, strict=True):
+            self.rely_on(surface, named=rebinding.uv_maps)
+            rely_on_bound(self, rebinding.bound)
         for rebinding in rebindings:
             yield from rebinding.compute(context)
         done = [rebinding.write(context) for rebinding in rebindings]

@@ -5,6 +5,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from .. import ids
+from ..placing.binding_operator import rely_on_bound
 from ..placing.followers import live_modifier_of
 from ..placing.live_unbinding import LiveUnbinding
 from ..placing.unbinding import Unbinding, leftovers_of, remove_leftovers
@@ -59,6 +60,8 @@ class OBJECT_OT_limit_unbind(WatchedOperator, bpy.types.Operator):
         """Unbinds in the last piece, and returns a report."""
         things = chosen_followers(context)
         children = children_to_unbind(context)
+        self.rely_on(*children)
+        rely_on_bound(self, things)
         live = [ob for ob in things if live_modifier_of(ob)]
         by_nodes = [ob for ob in things if ob not in live]
         if not things and not children:

@@ -150,6 +150,7 @@ class OBJECT_OT_limit_mesh(
         source = tessellation.read(
             ob, depsgraph, self._chooser(context, ob), not self.exact_normals
         )
+        self.rely_on(ob)
         notes = [*source.attributes.notes]
         if ob.data.shape_keys:
             notes.append("shape keys are not carried over")

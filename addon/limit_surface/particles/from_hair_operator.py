@@ -90,6 +90,7 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
         depsgraph = context.evaluated_depsgraph_get()
         made, resampled = strands.read(hair, surface, self.keys, depsgraph)
         key = ObjectKey.of(surface)
+        self.rely_on(surface)
         material = strands.material_of(hair)
         unseen = material.name if material and not strands.slot_of(material, surface) else ""
 
@@ -107,7 +108,7 @@ class OBJECT_OT_limit_particles_from_hair(WatchedOperator, bpy.types.Operator):
                 system.remove(key.find(), name)
                 raise
             count, keys = made.strands.shape[:2]
-            return Made(key.name, name, count, keys, resampled, of_types, unseen)
+            return Made(key.find().name, name, count, keys, resampled, of_types, unseen)
 
         return self.watch(context, PiecewiseJob(pieces()), "Making particles")
 

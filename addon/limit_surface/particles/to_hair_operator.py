@@ -21,7 +21,7 @@ from ..placing.rotations import WorldSpace
 from ..reading import cage
 from ..tasks import polling
 from ..tasks.job import Job
-from ..tasks.object_keys import ObjectKey
+from ..tasks.object_keys import MaterialKey, ObjectKey
 from ..tasks.piecewise_job import Pieces, PiecewiseJob
 from ..tasks.properties import draw_summary
 from ..tasks.refused_faces import check_some_left
@@ -36,6 +36,7 @@ _POLL = 0.05  # seconds between two looks at a thread
 class Made:
     surface: ObjectKey
     system: str
+    material: MaterialKey | None  # of the particles
     strands: Strands
     bindings: following.Bindings | None
     farthest: float  # the largest distance of a root from the surface, in the world
@@ -133,6 +134,8 @@ class OBJECT_OT_limit_hair_from_particles(
         )
         scale = WorldSpace(target.found.matrix, target.found.name).mean_scale
         key = ObjectKey.of(surface)
+        uv_map = target.found.uv_map  # strands store their places on it
+        self.rely_on(surface, named=[uv_map.name] if uv_map else ())
 
         def pieces() -> Pieces:
             settings = key.find().particle_systems[name].settings
@@ -141,17 +144,18 @@ class OBJECT_OT_limit_hair_from_particles(
             if not len(keys.sizes):
                 raise RefusalError(f"The particle system {name} has no hair")
             radius = thickness.radii(settings, keys.time) / scale
+            material = _material(key.find(), settings)
             job = Job(lambda _progress: target.strands(keys, radius))
             job.start()
             while not job.wait(_POLL):
                 yield 1.0
-            return Made(key, name, *job.result())
+            return Made(key, name, material, *job.result())
 
         return self.watch(context, PiecewiseJob(pieces()), "Reading particles")
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
-        hair = new_hair.add(context, ids.HAIR_OBJECT, surface, made.strands, _material(made))
+        hair = new_hair.add(context, ids.HAIR_OBJECT, surface, made.strands, _found(made.material))
         how, why = "", ""
         if made.bindings:
             made.bindings.write(hair)
@@ -190,10 +194,15 @@ class OBJECT_OT_limit_hair_from_particles(
         self.summary += "".join(f"\n{note[0].upper()}{note[1:]}" for note in notes)
 
 
-def _material(made: Made) -> list[bpy.types.Material]:
+def _material(
+    surface: bpy.types.Object, settings: bpy.types.ParticleSettings
+) -> MaterialKey | None:
     """Returns the material of the particles, if there is one."""
-    surface = made.surface.find()
-    settings = surface.particle_systems[made.system].settings
     slots = surface.material_slots
     slot = slots[min(settings.material, len(slots)) - 1] if len(slots) else None
-    return [slot.material] if slot and slot.material else []
+    return MaterialKey.of(slot.material) if slot and slot.material else None
+
+
+def _found(key: MaterialKey | None) -> list[bpy.types.Material]:
+    material = key.find() if key else None
+    return [material] if material else []

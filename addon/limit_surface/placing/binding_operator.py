@@ -3,11 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
 
+from .. import ids
 from ..tasks.piecewise_job import Pieces, PiecewiseJob
 from ..tasks.watched_operator import WatchedOperator
+from . import live_binding
+from .followers import live_modifier_of
 from .mending import mended
+
+_PLACES = (ids.FACE, ids.UV, ids.REST_ROOT)
 
 
 class BindingOperator(WatchedOperator):
@@ -36,3 +43,11 @@ class BindingOperator(WatchedOperator):
     def _pieces(self, context: bpy.types.Context) -> Pieces:
         with mended():
             return (yield from self.bind(context))
+
+
+def rely_on_bound(operator: WatchedOperator, things: Sequence[bpy.types.Object]) -> None:
+    """Has the operator rely on things that stand on a surface, and on what shares their data. The
+    shape of what follows live is that of the frame, and does not count.
+    """
+    for ob in live_binding.with_sharers(things):
+        operator.rely_on(ob, shape=live_modifier_of(ob) is None, named=_PLACES)

@@ -50,6 +50,7 @@ class UvMaps:
     ) -> None:
         self._posed, self._mesh, self._surface = posed, mesh, surface
         self._read: dict[bpy.types.ID, limitsurf.SurfaceData | RefusalError] = {}
+        self.names: set[str] = set()  # of the maps that have been read
 
     def read(self, data: bpy.types.ID) -> None:
         """Reads the map that the hair names, or else the active one, as long as the mesh is
@@ -78,6 +79,7 @@ class UvMaps:
         obstacle = uv_map.obstacle(self._mesh, name)
         if obstacle:
             raise RefusalError(f"{self._surface.name}: {obstacle}")
+        self.names.add(name)
         found = uv_map.read(self._mesh, name)
         return self._posed.in_object.face_varying(
             found.values, found.indices, self._posed.cage.shown_uv_interpolation

@@ -19,7 +19,7 @@ from .. import ids, native
 from ..errors import CageError
 from ..nodes import groups
 from ..reading import attributes, cage, rules
-from .unchanged import faces_of
+from ..tasks.unchanged import faces_of
 
 if TYPE_CHECKING:
     import limitsurf

@@ -126,7 +126,7 @@ class Rebinding:
             self._find = ByUv(maps)
         else:
             self._find = ByFace(self._posed)
-        self._target = surface
+        self._target, self.bound, self.uv_maps = surface, bound, maps.names
         self._surface, self._names = surface.name, [ob.name for ob in bound]
         self._by_nodes = [ob for ob in kept if ob not in self._live]
 

@@ -34,7 +34,6 @@ from .distribution import Expected, Scattered, why_nothing
 from .follow_properties import FollowOrLiveProperties, why_it_stays
 from .followers import ground_of
 from .rotations import WorldSpace
-from .unchanged import Faces
 
 # the parts of the progress at which the locations and the things are made
 SCATTERED, MADE = 0.5, 0.9
@@ -156,7 +155,6 @@ class ScatterOperator(
     bl_options = {"REGISTER", "UNDO", "PRESET"}
     noun = ""
     _why_not_following = ""
-    _faces: Faces | None = None  # of the surface, as they were read
     _question = ""  # what a dialog asks while it offers a modifier
 
     @property
@@ -180,8 +178,7 @@ class ScatterOperator(
 
     def finish(self, context: bpy.types.Context, made: Made) -> set[str]:
         surface = made.surface.find()
-        if self._faces is not None:
-            self._faces.check(surface)
+        self.surface = surface.name
         if self._adds_subsurf(surface):
             quality = setup.add(surface, made.ground.cage).quality
             if quality < setup.QUALITY:
@@ -301,7 +298,6 @@ class ScatterOperator(
             return self._read(ob, depsgraph)
 
     def _read(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Order:
-        self._faces = Faces(ob)
         distribution = distribution_properties.distribution(self.properties)
         covered = region.read(
             ob,
@@ -311,6 +307,8 @@ class ScatterOperator(
             self.sources(),
             border_properties.choice(self.properties),
         )
+        uv_map = covered.cage.uv_map  # things store their places on it
+        self.rely_on(ob, named=[uv_map.name] if uv_map else ())
         expected = distribution.expected(covered)
         size = RequestSize(
             self.noun,

@@ -38,8 +38,10 @@ class OBJECT_OT_limit_project_image(
         depsgraph = context.evaluated_depsgraph_get()
         if self.mode == "DECAL":
             found = cage.read(ob, depsgraph)
+            self.rely_on(ob)
         else:
             found = texel_places.read_cage(ob, depsgraph, self.uv_map)
+            self.rely_on(ob, named=[found.chosen_uv_map.name])
         world = WorldSurface(found, ob.name)
         order = MODES[self.mode].order(self.properties, context, world, ob)
         return self.watch(context, Job(order.work), f"Projecting {self.image}")

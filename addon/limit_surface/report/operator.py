@@ -111,6 +111,7 @@ class OBJECT_OT_limit_report(WatchedOperator, bpy.types.Operator):
         meshes: dict[str, displayed_mesh.DisplayedMesh] = {}
         ob, depsgraph = key.find(), context.evaluated_depsgraph_get()
         found = cage.read(ob, depsgraph)
+        self.rely_on(ob)
         if not cage.why_not_on_mesh(ob, found):
             check_attributes(ob)
         for name, kind in self._kinds().items():

@@ -80,6 +80,7 @@ class OBJECT_OT_limit_show(WatchedOperator, LargeCountProperty, bpy.types.Operat
         assert ob is not None  # as poll has found
         setup.check_editable(ob)
         found = cage.read(ob, depsgraph)
+        self.rely_on(ob)
         polygons = int(subdivided_mesh.polygon_counts(found.face_sizes, self.levels).sum())
         RequestSize("polygons", polygons, 1).check(self.allow_large)
         display = LimitDisplay.of(found, self.levels)

@@ -60,6 +60,7 @@ class OBJECT_OT_limit_sample_tables(WatchedOperator, bpy.types.Operator):
         if not any(self.properties.is_property_set(name) for name in ("depth", "levels")):
             self._keep_settings(surface)
         tables = AllTiles(surface, context.evaluated_depsgraph_get(), self.depth, self.levels)
+        self.rely_on(surface)
 
         def work(progress: Progress) -> AllTiles:
             tables.compute(progress)

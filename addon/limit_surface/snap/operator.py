@@ -183,6 +183,8 @@ class OBJECT_OT_limit_snap(
         surface = TargetSurface(target, context.evaluated_depsgraph_get(), self.target)
         selection = gather(context, surface)
         parts = selection.parts
+        self.rely_on(target, placed=True)
+        self._rely_on_snapped(context, target)
         placements = []
         for i, part in enumerate(parts):
             elements = part.elements()
@@ -207,6 +209,14 @@ class OBJECT_OT_limit_snap(
         for warning in bind_again(followers, target, context, self.follow):
             self.report({"WARNING"}, warning)
         return self._report(surface, context.evaluated_depsgraph_get(), merged(outcomes))
+
+    def _rely_on_snapped(self, context: bpy.types.Context, target: bpy.types.Object) -> None:
+        """Of whole objects only the place counts; of others also what is moved within them."""
+        is_whole = context.mode == "OBJECT"
+        for ob in context.selected_objects if is_whole else context.objects_in_mode_unique_data:
+            moves_within = not is_whole or ob.type == "CURVES"
+            if ob != target:
+                self.rely_on(ob, data=moves_within, shape=moves_within, placed=True)
 
     def _aim(self, context: bpy.types.Context) -> Aim:
         by_view = self.mode == "AXIS" and self.orientation == "VIEW"

@@ -58,8 +58,16 @@ class Job:
         """Returns whether the work is done by then."""
         return self._done.wait(seconds)
 
-    def advance(self, _seconds: float) -> None:
-        """Gives work that has no thread of its own so much time of the calling one."""
+    def advance(self, _seconds: float, check: Callable[[], None]) -> bool:
+        """Gives work that has no thread of its own so much time of the calling one, and returns
+        whether the work is done. Calls `check` where Blender's data may have changed before they
+        are used again; what it raises ends the work.
+        """
+        if not self.is_done:
+            return False
+        if self._error is None:
+            self._checked(check)
+        return True
 
     @property
     def is_done(self) -> bool:
@@ -74,6 +82,12 @@ class Job:
         if self._error is not None:
             raise self._error
         return self._made
+
+    def _checked(self, check: Callable[[], None]) -> None:
+        try:
+            check()
+        except Exception as error:
+            self._error = error
 
     def _run(self, show: Progress) -> None:
         def progress(part: float) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator
+from contextlib import suppress
 from typing import Any
 
 from ..errors import CancelledError, RefusalError
@@ -17,6 +18,12 @@ Pieces = Generator[float, None, Any]
 POLL = 0.02  # seconds between two looks at work that is done aside
 
 
+class Aside(float):
+    """The part that is done where work goes on aside: the next piece only looks whether it is done,
+    and uses none of Blender's data.
+    """
+
+
 def aside(work: Callable[[Progress], Any]) -> Pieces:
     """Runs work on plain arrays in a thread of its own, and returns its result. Where it is
     cancelled it ends when it next reports its progress; nobody waits for that.
@@ -25,9 +32,10 @@ def aside(work: Callable[[Progress], Any]) -> Pieces:
     job.start()
     try:
         while not job.wait(POLL):
-            yield job.part
+            yield Aside(job.part)
     finally:
         job.cancel()
+    yield job.part  # so that what has changed meanwhile is found before the result is used
     return job.result()
 
 
@@ -58,19 +66,33 @@ class PiecewiseJob(Job):
     def start(self) -> None:
         """Does nothing: the work goes on in `advance` and `wait`."""
 
-    def advance(self, seconds: float) -> None:
+    def advance(self, seconds: float, check: Callable[[], None]) -> bool:
         deadline = time.monotonic() + seconds
+        is_checked = False
         while not self.is_done and time.monotonic() < deadline:
-            self._step()
+            if not is_checked and not isinstance(self.part, Aside):
+                # nobody else changes anything until this method returns
+                self._checked(check)
+                is_checked = True
+            if self._error is None:
+                self._step()
+            else:
+                self._end()
+        return self.is_done
 
     def wait(self, seconds: float) -> bool:
-        self.advance(seconds)
-        return self.is_done
+        """Works so long. Nothing can have changed before, because the work begins here."""
+        return self.advance(seconds, lambda: None)
 
     def cancel(self) -> None:
         if not self.is_done:
             self._error = CancelledError("Cancelled: nothing was made")
-            self._done.set()
+            self._end()
+
+    def _end(self) -> None:
+        """Has the work clean up."""
+        self._done.set()
+        with suppress(RefusalError, ReferenceError):  # what it would clean up has been removed
             self._pieces.close()
 
     def _step(self) -> None:

@@ -11,19 +11,22 @@ and the class that provides it:
    step 3; with anything else it goes on with step 5.
 3. `execute`: WatchedOperator calls `start`, and reports refusals as errors. This is where scripts,
    the redo panel and confirmed dialogs begin.
-4. `start`: the operator reads from Blender what the work needs, and hands a job to `watch`.
+4. `start`: the operator reads from Blender what the work needs, names the objects that this came
+   from to `rely_on`, and hands a job to `watch`. A PiecewiseJob may call `rely_on` in its pieces.
 5. `watch`: WatchedOperator runs the job. It is done at once for scripts; where somebody waits, it
    runs in a thread, and `modal` looks after it until it is done or ESC ends it by `cancel`. A
    PiecewiseJob (`tasks/piecewise_job.py`), which works on Blender's own data, runs piece by piece
    in `modal` instead.
-6. `finish`: the operator gets what the job has made, and is the first to change anything.
+6. `modal`: where objects that the work relies on have changed meanwhile, WatchedOperator refuses
+   the result.
+7. `finish`: the operator gets what the job has made, and is the first to change anything.
 
-`placing/scatter_operator.py` says how a ScatterOperator divides steps 4 to 6 further.
+`placing/scatter_operator.py` says how a ScatterOperator divides steps 4 to 7 further.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any
 
 import bpy
@@ -33,6 +36,7 @@ from .job import Job
 from .polling import mesh_in_object_mode
 from .progress import TICK, Waiting, progress_bar
 from .properties import SummaryProperty, check_numbers
+from .unchanged import Unchanged
 
 #: Where a user waits, work that is not done after so many seconds shows its progress while Blender
 #: stays usable.
@@ -46,7 +50,7 @@ class WatchedOperator(SummaryProperty):
     Blender stays usable, until it is done or ESC ends it. In scripts it runs at once. Refusals are
     reported as errors.
 
-    A subclass provides `start` and `finish`.
+    A subclass provides `start` and `finish`, and says what it relies on.
     """
 
     if TYPE_CHECKING:  # of bpy.types.Operator, the other base of its subclasses
@@ -57,6 +61,7 @@ class WatchedOperator(SummaryProperty):
 
     _someone_waits = False
     _job: Job | None = None
+    _relied_on: tuple[Unchanged, ...] = ()
 
     @property
     def too_large(self) -> str:
@@ -94,9 +99,9 @@ class WatchedOperator(SummaryProperty):
             return {"RUNNING_MODAL"}
         job = self._job
         assert job is not None
-        job.advance(TICK)
+        is_done = job.advance(TICK, self._check_relied_on)
         self._waiting.show(job.part)
-        if not job.is_done:
+        if not is_done:
             return {"RUNNING_MODAL"}
         self._waiting.end()
         return self._guarded(self._finish, context, self._taken_job())
@@ -123,18 +128,40 @@ class WatchedOperator(SummaryProperty):
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
+    def rely_on(
+        self,
+        *objects: bpy.types.Object,
+        data: bool = True,
+        shape: bool = False,
+        placed: bool = False,
+        named: Collection[str] = (),
+    ) -> None:
+        """Has the result refused where these objects are not what they are now, before it is used.
+        `tasks/unchanged.py` says what counts.
+        """
+        self._relied_on += tuple(
+            Unchanged(ob, data=data, shape=shape, placed=placed, named=named) for ob in objects
+        )
+
+    def _check_relied_on(self) -> None:
+        for each in self._relied_on:
+            each.check()
+
     def _taken_job(self) -> Job | None:
         """Returns the job and forgets it: Blender keeps operators for the redo panel, so they must
         not keep results.
         """
         job, self._job = self._job, None
+        self._relied_on = ()
         return job
 
     def _start(self, context: bpy.types.Context) -> set[str]:
+        self._relied_on = ()
         check_numbers(self.properties)
         return self.start(context)
 
     def _finish(self, context: bpy.types.Context, job: Job) -> set[str]:
+        self._relied_on = ()
         return self.finish(context, job.result())
 
     def _guarded(self, step: Callable[..., set[str]], *arguments: Any) -> set[str]:
