@@ -263,3 +263,14 @@ def test_work_aside():
     with pytest.raises(CancelledError):
         job.result()
     assert np.isclose(job.part, 0)
+
+
+def test_groups_that_somebody_makes_meanwhile_stay(slowly):
+    slowly.set()
+    operator, context = CASES["rebind by the closest point"](), window_context()
+    slowly.clear()
+    assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    used = bpy.data.node_groups.new("Mine", "GeometryNodeTree")
+    bpy.context.active_object.modifiers.new("Mine", "NODES").node_group = used
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert "Mine" in bpy.data.node_groups

@@ -19,6 +19,7 @@ from ..nodes.follow import (
 )
 from ..nodes.follow_curve import FOLLOW_CURVE
 from ..nodes.tiles import TILES
+from ..tasks.object_keys import ObjectKey
 
 _KINDS = (
     CAPTURE,
@@ -34,19 +35,33 @@ _KINDS = (
 
 @contextmanager
 def mended() -> Iterator[None]:
-    """Gives these modifiers their groups again, and takes them back if an error occurs."""
-    found = list(_broken())
-    groups_before = set(bpy.data.node_groups)
-    for modifier, kind in found:
+    """Gives these modifiers their groups again, and takes them back if an error occurs. Nothing is
+    held until then: undo may replace it, and users may make groups of their own meanwhile.
+    """
+    before = {group.session_uid for group in bpy.data.node_groups}
+    found: list[tuple[ObjectKey, str]] = []
+    for ob, modifier, kind in list(_broken()):
         modifier.node_group = kind.group()
+        found.append((ObjectKey.of(ob), modifier.name))
     try:
         yield
     except BaseException:
-        for modifier, _kind in found:
-            modifier.node_group = None
-        for group in set(bpy.data.node_groups) - groups_before:
-            bpy.data.node_groups.remove(group)
+        for key, name in found:
+            ob = key.among(bpy.data.objects)
+            if ob is not None and name in ob.modifiers:
+                ob.modifiers[name].node_group = None
+        while made := _unused_since(before):
+            bpy.data.batch_remove(made)
         raise
+
+
+def _unused_since(before: set[int]) -> list[bpy.types.NodeTree]:
+    """Returns the groups that are none of these, by their session_uid, and that nothing uses."""
+    return [
+        group
+        for group in bpy.data.node_groups
+        if group.session_uid not in before and not group.users
+    ]
 
 
 def is_broken(ob: bpy.types.Object) -> bool:
@@ -58,9 +73,9 @@ def is_broken(ob: bpy.types.Object) -> bool:
     )
 
 
-def _broken() -> Iterator[tuple[bpy.types.NodesModifier, groups.Kind]]:
+def _broken() -> Iterator[tuple[bpy.types.Object, bpy.types.NodesModifier, groups.Kind]]:
     for ob in bpy.data.objects:
         if ob.library is None:
             for kind in _KINDS:
                 for modifier in groups.without_group(ob, kind.name):
-                    yield modifier, kind
+                    yield ob, modifier, kind
