@@ -112,7 +112,9 @@ void DartModes::projectTransposed(const Eigen::MatrixXd& mode_weights, int first
   for (std::size_t i = 0; i < given_.size(); ++i) {
     add(given_[i].left, first + static_cast<int>(i));
   }
+  InterruptionStride stride;
   for (int mode = static_cast<int>(given_.size()); mode < count(); ++mode) {
+    stride.step();
     const Wave& w = wave(mode);
     const auto weight = mode_weights.row(first + mode);
     forEachCosine(w.powers, faces_, [&](int n, double cosine) {

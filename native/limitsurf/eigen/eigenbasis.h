@@ -104,6 +104,7 @@ class Eigenbasis {
   void projectInPlace(Eigen::Array4d ring_points[], Points& coefficients) const;
 
   /// The transpose of project(): weights on modes (rows) become weights on the ring's points.
+  /// O(faces log faces) for each column, or O(faces^2) for a dart.
   Eigen::MatrixXd projectTransposed(const Eigen::MatrixXd& mode_weights) const;
 
   /// A mode on the ring: one value per point. The modes are the columns of U0 (Lacewell & Burley,
@@ -206,6 +207,10 @@ class Eigenbasis {
     double cosine, sine;
   };
   int parts(int m, bool plus, int face, Part out[2]) const;
+  /// Add the share of the spoke modes to projectTransposed(): sum by sum, and by the transform of
+  /// rings with many faces.
+  void addSpokesTransposed(const Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& ring) const;
+  void transformSpokesTransposed(const Eigen::MatrixXd& mode_weights, Eigen::MatrixXd& ring) const;
   int firstMode(int m) const { return 1 + fixedCount() + (rotates() ? 4 : 2) * (m - 1); }
   int spokeOf(int mode) const { return 1 + (mode - 1 - fixedCount()) / (rotates() ? 4 : 2); }
 

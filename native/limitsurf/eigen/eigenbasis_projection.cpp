@@ -2,6 +2,8 @@
 //
 // From a ring's points to the coefficients of its modes (U0^-1 of Lacewell & Burley 2007, section
 // 3.2), and the transpose of that.
+#include <algorithm>
+
 #include "limitsurf/eigen/curve_mode.h"
 #include "limitsurf/eigen/eigenbasis.h"
 #include "limitsurf/eigen/tip_bend.h"
@@ -113,9 +115,9 @@ void Eigenbasis::projectInPlace(Padded ring_points[], Points& coefficients) cons
   });
 }
 
-Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weights) const {
+void Eigenbasis::addSpokesTransposed(const Eigen::MatrixXd& mode_weights,
+                                     Eigen::MatrixXd& ring) const {
   const int faces = ring_.faces, edges = ring_.edges();
-  Eigen::MatrixXd ring = Eigen::MatrixXd::Zero(ring_.size(), mode_weights.cols());
   for (int m = 1; m <= spokeCount(); ++m) {
     const double norm = (alternates(m) ? 1. : 2.) / faces;
     for (const bool plus : {true, false}) {
@@ -133,6 +135,44 @@ Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weight
         }
       }
     }
+  }
+}
+
+void Eigenbasis::transformSpokesTransposed(const Eigen::MatrixXd& mode_weights,
+                                           Eigen::MatrixXd& ring) const {
+  for (Eigen::Index begin = 0; begin < mode_weights.cols(); begin += 4) {
+    const Eigen::Index columns = std::min<Eigen::Index>(4, mode_weights.cols() - begin);
+    const auto weightsOf = [&](int m) {
+      RingWaves::Sums<Padded> sums{Padded::Zero(), Padded::Zero(), Padded::Zero(), Padded::Zero()};
+      const double norm = (alternates(m) ? 1. : 2.) / ring_.faces;
+      for (const bool plus : {true, false}) {
+        const Spoke& spoke = spokes_[pairIndex(m, plus)];
+        Part part[2];
+        const int count = parts(m, plus, 0, part);
+        for (int p = 0; p < count; ++p) {
+          const bool is_cosine = part[p].cosine != 0;
+          Padded weight = Padded::Zero();
+          weight.head(columns) =
+              norm * spoke.scale * mode_weights.row(part[p].mode).segment(begin, columns).array();
+          (is_cosine ? sums.edge_cos : sums.edge_sin) += spoke.edge * weight;
+          (is_cosine ? sums.face_cos : sums.face_sin) += spoke.face / 4 * weight;
+        }
+      }
+      return sums;
+    };
+    waves_->transposedSums<Padded>(spokeCount(), weightsOf, [&](int point, const Padded& sum) {
+      ring.row(point).segment(begin, columns) += sum.head(columns).matrix().transpose();
+    });
+  }
+}
+
+Eigen::MatrixXd Eigenbasis::projectTransposed(const Eigen::MatrixXd& mode_weights) const {
+  const int faces = ring_.faces;
+  Eigen::MatrixXd ring = Eigen::MatrixXd::Zero(ring_.size(), mode_weights.cols());
+  if (waves_->hasTransform()) {
+    transformSpokesTransposed(mode_weights, ring);
+  } else {
+    addSpokesTransposed(mode_weights, ring);
   }
 
   if (dart_) {

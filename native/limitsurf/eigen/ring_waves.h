@@ -56,6 +56,42 @@ class RingWaves {
     }
   }
 
+  /// Whether there are so many faces that sums one by one would take longer.
+  bool hasTransform() const { return transform_ != nullptr; }
+
+  /// The transpose of sums(), which needs hasTransform(): calls add(point, value) for the points
+  /// around the vertex with the sum over the modes m = 1, ..., count of their values at the point
+  /// times weight(m), which is a Sums<Value>. On rings without cosines the weights of cosines
+  /// must be 0.
+  /// Cost: O(faces log faces) together.
+  template <typename Value, typename Weight, typename Add>
+  void transposedSums(int count, const Weight& weight, const Add& add) const {
+    // The sum over modes of c_m cos(a m) + s_m sin(a m) is the real part of the transform of
+    // c_m + i s_m. The half of it at m and the conjugate of that at n - m have this real part
+    // alone, which leaves the imaginary part to the faces.
+    const std::size_t n = transform_->count();
+    const Value zero = 0 * weight(1).edge_sin;
+    std::vector<Value> re(n, zero), im(n, zero);
+    for (int m = 1; m <= count; ++m) {
+      const std::size_t i = static_cast<std::size_t>(m), j = n - i;
+      const Sums<Value> w = weight(m);
+      const Value edge_re = 0.5 * w.edge_cos, edge_im = 0.5 * w.edge_sin;
+      const Value face_re = 0.5 * (cos_[i] * w.face_cos + sin_[i] * w.face_sin),
+                  face_im = 0.5 * (cos_[i] * w.face_sin - sin_[i] * w.face_cos);
+      re[i] += edge_re - face_im;
+      im[i] += edge_im + face_re;
+      re[j] += edge_re + face_im;
+      im[j] += face_re - edge_im;
+    }
+    transform_->apply(re, im);
+    for (int i = 0; i < ring_.edges(); ++i) {
+      add(ring_.edge(i), re[static_cast<std::size_t>(i)]);
+    }
+    for (int j = 0; j < ring_.faces; ++j) {
+      add(ring_.face(j), im[static_cast<std::size_t>(j)]);
+    }
+  }
+
  private:
   /// Up to here the transform would take longer.
   static constexpr int kFewFaces = 128;

@@ -271,6 +271,8 @@ class LimitSurface {
   // tiles() where another program (a shader, a node tree) evaluates many locations itself.
 
   /// The exact linear weights of the position (and of du and dv) on the control mesh's vertices.
+  /// Cost: O(1) for each location, but O(valence log valence) on faces of an extraordinary vertex,
+  /// and O(valence^2) at a dart.
   Stencils stencils(const LocationBatch& at, bool first_derivatives = false, int threads = 0) const;
 
   /// The bicubic tiles that the locations lie in, for evaluating them elsewhere and in other poses.
@@ -281,9 +283,9 @@ class LimitSurface {
   ///
   /// Depends on the topology alone, not on the pose. Error: kTilePositionError and
   /// kTileDerivativeError. Throws std::invalid_argument for a max_depth outside
-  /// [1, SurfaceTiles::kLargestDepth]. Cost: O(1) for each location, and O(valence^2) for each tile
-  /// beside an extraordinary vertex; the rows of its points are as long as its neighbourhood is
-  /// large.
+  /// [1, SurfaceTiles::kLargestDepth]. Cost: O(1) for each location, and O(valence log valence) for
+  /// each tile beside an extraordinary vertex, O(valence^2) at a dart; the rows of its points are
+  /// as long as its neighbourhood is large.
   SurfaceTiles tiles(const LocationBatch& at, int max_depth = SurfaceTiles::kDefaultDepth,
                      int threads = 0) const;
 

@@ -48,7 +48,8 @@ single precision.
 
 Everything depends on the topology and on the locations alone, not on the pose. Error: 1e-14 of the
 diagonal of the mesh's bounding box in position, 1e-12 of the tile's size in derivatives by tile_uv.
-Cost: O(1) a location, O(valence^2) a tile beside an extraordinary vertex.
+Cost: O(1) a location, O(valence log valence) a tile beside an extraordinary vertex (at a dart
+O(valence^2)).
 
 Raises LocationError for a face or (u, v) that does not exist, MeshError for a face that has no limit
 surface, ValueError for a max_depth out of range.

@@ -92,6 +92,44 @@ TEST(RingWaves, AreSummedToTheirLastDigits) {
   }
 }
 
+/// Weights of mode m, as they may be on a ring of its kind.
+RingWaves::Sums<double> randomWeights(const Ring& ring, int m) {
+  Random random(m);
+  const Vector3 a = random.vector(1), b = random.vector(1);
+  const bool has_cosines = ring.closed() && ring.kind != RingKind::dart;
+  return {has_cosines ? a[0] : 0, a[1], has_cosines ? a[2] : 0, b[0]};
+}
+
+TEST(RingWaves, AreSpreadToTheirLastDigits) {
+  for (const Ring& ring : kRings) {
+    const Tables tables(ring);
+    const RingWaves waves(ring, tables.cos, tables.sin);
+    EXPECT_EQ(waves.hasTransform(), ring.faces > 128);
+    if (!waves.hasTransform()) continue;
+    std::vector<DoubleDouble> exact(static_cast<std::size_t>(ring.size()), 0);
+    for (int m = 1; m <= modeCount(ring); ++m) {
+      const auto weight = randomWeights(ring, m);
+      for (int i = 0; i < ring.edges(); ++i) {
+        const auto& wave = tables.at(2 * std::int64_t{m} * i);
+        exact[ring.edge(i)] += wave.cos.times(weight.edge_cos) + wave.sin.times(weight.edge_sin);
+      }
+      for (int j = 0; j < ring.faces; ++j) {
+        const auto& wave = tables.at((2 * std::int64_t{j} + 1) * m);
+        exact[ring.face(j)] += wave.cos.times(weight.face_cos) + wave.sin.times(weight.face_sin);
+      }
+    }
+    int points = 0;
+    waves.transposedSums<double>(
+        modeCount(ring), [&](int m) { return randomWeights(ring, m); },
+        [&](int point, double sum) {
+          ++points;
+          EXPECT_NEAR(sum, static_cast<double>(exact[point]), 2e-16 * ring.faces)
+              << ring.faces << ", point " << point;
+        });
+    EXPECT_EQ(points, ring.size() - 1);
+  }
+}
+
 /// A number that counts the products with it.
 struct Counted {
   double value;

@@ -11,6 +11,7 @@
 #include "limitsurf/search/box_tree.h"
 #include "limitsurf/search/surface_search.h"
 #include "limitsurf/surface/limit_surface.h"
+#include "limitsurf/surface/strands/frame_rows.h"
 #include "limitsurf/surface/surface_data.h"
 #include "support/cages/cage.h"
 #include "support/cages/meshes.h"
@@ -117,6 +118,23 @@ TEST(Interruption, IsPossibleWithinOneTaskOfASearch) {
   const long passes = passesOf([&] { search.closest(points, options, 1); });
   ASSERT_GE(leaves, 100'000);
   EXPECT_GE(passes, leaves / 4096);
+}
+
+// Where thousands of faces meet, a tile and a stencil have thousands of weights.
+TEST(Interruption, IsPossibleBetweenTilesOfPoles) {
+  const LimitSurface surface = limitSurface(fan(3000, true, 1));
+  std::vector<Location> at;
+  for (int face = 0; face < 64; ++face) {
+    at.push_back({face, 0.01, 0.01});
+  }
+  // For each tile one when it is made for the last time, and one for each task of four.
+  EXPECT_GE(passesOf([&] { surface.tiles(at, 8, 1); }), 64 + 64 / 4);
+  EXPECT_GE(passesOf([&] { surface.stencils(at, true, 1); }), 64 / 8);
+}
+
+TEST(Interruption, IsPossibleWithinAStrand) {
+  const Points root = Points::Zero(1, 3), along = Points::Ones(1, 3);
+  EXPECT_GE(passesOf([&] { straightStrands(root, along, 1'000'000, 1); }), 15);
 }
 
 TEST(Interruption, OfAPoseIsToldAndHealedByTheNextPose) {

@@ -3,11 +3,13 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/row_check.h"
 #include "limitsurf/surface/differential.h"
@@ -20,6 +22,8 @@ using Frame = Eigen::Map<const Matrix>;
 
 /// Rows of one task: some nanoseconds each.
 constexpr std::size_t kFramesPerTask = 2048;
+/// Points of one strand between two passes of the interruption point.
+constexpr int kPointsBetweenPasses = 1 << 16;
 
 template <typename Body>
 void forEachRow(Eigen::Index rows, int threads, const Body& body) {
@@ -119,9 +123,16 @@ void straightStrands(const Eigen::Ref<const Points>& roots, const Eigen::Ref<con
   checkRows("strands", strands.rows(), roots.rows() * points);
   forEachRow(roots.rows(), threads, [&](Eigen::Index row) {
     const Eigen::RowVector3d root = roots.row(row), whole = along.row(row);
-    for (int point = 0; point < points; ++point) {
-      const double step = points == 1 ? 0 : static_cast<double>(point) / (points - 1);
-      strands.row(row * points + point) = (root + step * whole).cast<float>();
+    for (int begin = 0; begin < points;) {
+      const int end = begin + std::min(points - begin, kPointsBetweenPasses);
+      for (int point = begin; point < end; ++point) {
+        const double step = points == 1 ? 0 : static_cast<double>(point) / (points - 1);
+        strands.row(row * points + point) = (root + step * whole).cast<float>();
+      }
+      begin = end;
+      if (begin < points) {  // a strand may have a billion of them
+        InterruptionPoint::pass();
+      }
     }
   });
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "limitsurf/interruption_point.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/surface/limit_surface_data.h"
 #include "limitsurf/surface/tiles/point_rows.h"
@@ -20,9 +21,20 @@ namespace {
 
 /// Locations that make one task: finding their tile costs far less than an evaluation.
 constexpr std::size_t kPlacesPerTask = 4096;
-/// Tiles that make one task: a tile costs up to 16 rows of weights. And how many are made before
-/// their points get numbers: the rows of all tiles take several times the memory of the result.
-constexpr std::size_t kTilesPerTask = 16, kTilesPerBlock = 4096;
+/// Tiles that make one task: a tile costs up to 17 rows of weights, each on all points around a
+/// vertex. And how many are made before their points get numbers, where these rows are not long:
+/// the rows of all tiles take several times the memory of the result.
+constexpr std::size_t kTilesPerTask = 4, kTilesPerBlock = 4096;
+/// So many weights may wait for numbers, if there are more than one task's (12 bytes each).
+constexpr std::size_t kWeightsPerBlock = std::size_t{1} << 25;
+
+std::size_t tilesPerBlock(const TileTable& table) {
+  std::size_t longest = 16;
+  for (const RingPoints& ring : table.rings) {
+    longest = std::max(longest, ring.points.size());
+  }
+  return std::clamp(kWeightsPerBlock / (17 * longest), kTilesPerTask, kTilesPerBlock);
+}
 
 /// Gives refined points their numbers, equal rows the same.
 class PointNumbers {
@@ -83,9 +95,8 @@ int tileOf(const std::vector<TilePart>& parts, std::uint64_t key) {
 
 void addTiles(const ControlPoints* controls, std::size_t count, PointNumbers& numbers,
               SurfaceTiles& out) {
-  InterruptionStride stride;
   for (std::size_t i = 0; i < count; ++i) {
-    stride.step();
+    InterruptionPoint::pass();  // rows may be as long as a vertex has neighbors
     std::array<int, 16> points;
     for (std::size_t k = 0; k < points.size(); ++k) {
       points[k] = numbers.numberOf(controls[i].points[k]);
@@ -145,9 +156,10 @@ SurfaceTiles LimitSurface::tiles(const LocationBatch& at, int max_depth, int thr
   SurfaceTiles out;
   PointNumbers numbers(table.points, out);
   const TileBuilder build(table);
-  std::vector<ControlPoints> controls(std::min(parts.size(), kTilesPerBlock));
-  for (std::size_t first = 0; first < parts.size(); first += kTilesPerBlock) {
-    const std::size_t count = std::min(kTilesPerBlock, parts.size() - first);
+  const std::size_t block = tilesPerBlock(table);
+  std::vector<ControlPoints> controls(std::min(parts.size(), block));
+  for (std::size_t first = 0; first < parts.size(); first += block) {
+    const std::size_t count = std::min(block, parts.size() - first);
     parallelFor(count, kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         controls[i] = build(parts[first + i]);
