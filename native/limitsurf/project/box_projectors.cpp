@@ -2,10 +2,10 @@
 #include "limitsurf/project/box_projectors.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/direction_maps.h"
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/project/projector.h"
@@ -32,7 +32,7 @@ BoxWeights boxWeights(const Points& normals, double blend, const Eigen::Matrix4d
   if (!(blend >= 0 && blend <= 1)) {
     throw std::invalid_argument("blend is " + numberText(blend) + "; expected 0 to 1");
   }
-  const Eigen::Matrix3d to_box = invertibleLinearPart(matrix, "matrix").inverse().transpose();
+  const Eigen::Matrix3d to_box = DirectionMaps(invertibleLinearPart(matrix, "matrix")).normals;
   checkDirections(normals);
   BoxWeights weights = BoxWeights::Zero(normals.rows(), 6);
   InterruptionStride stride;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/direction_maps.h"
 #include "limitsurf/number_text.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/pi.h"
@@ -29,14 +30,15 @@ double smoothStep(double x) {
 class WorldAngles {
  public:
   explicit WorldAngles(const Eigen::Matrix4d& world)
-      : linear_(invertibleLinearPart(world, "world")), normals_(linear_.inverse().transpose()) {}
+      : to_world_(invertibleLinearPart(world, "world")) {}
 
   double cosine(const Vector3& normal, const Vector3& direction) const {
-    return (normals_ * normal).normalized().dot((linear_ * direction).normalized());
+    return safelyNormalized(to_world_.normals * normal)
+        .dot(safelyNormalized(to_world_.vectors * direction));
   }
 
  private:
-  Eigen::Matrix3d linear_, normals_;
+  DirectionMaps to_world_;
 };
 
 /// The part of [x - reach, x + reach] that lies in [0, 1].

@@ -103,8 +103,8 @@ struct NormalProjectOptions {
 /// both maps; where they do not exist it is taken as by project(). It is 0 where the ray is tangent
 /// to the source or the source's map is singular.
 ///
-/// Throws as project(), and for a max_distance that is NaN or below 0. Cost: an evaluation, and a
-/// ray in each direction.
+/// Throws as project(), for a max_distance that is NaN or below 0, and for a transform that takes
+/// places beyond SurfaceSearch::farthestOrigin(). Cost: an evaluation, and a ray in each direction.
 Projection projectAlongNormals(const LimitSurface& surface, const SurfaceData& map,
                                const LocationBatch& at, const LimitSurface& source,
                                const SurfaceData& source_map, const SurfaceSearch& source_search,

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/direction_maps.h"
 #include "limitsurf/number_text.h"
 
 namespace limitsurf {
@@ -57,14 +58,17 @@ Eigen::Matrix3d invertibleLinearPart(const Eigen::Matrix4d& matrix, const char* 
     throw std::invalid_argument(std::string(name) + " is not affine: its last row is not 0 0 0 1");
   }
   const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>();
-  if (!(std::abs(linear.colwise().normalized().eval().determinant()) > kSingular)) {
+  const Eigen::Matrix3d in_units = withColumnsTimes(linear, -columnExponents(linear));
+  if (!(std::abs(in_units.colwise().normalized().eval().determinant()) > kSingular)) {
     refuseSingular(name);
   }
   return linear;
 }
 
 Projector::Projector(const Eigen::Matrix4d& matrix, const LimitSurface& surface)
-    : matrix_(matrix), eye_(Vector3::Zero()), backwards_(Vector3::Zero()) {
+    : matrix_(scaleToOwnUnit(matrix.row(3).cwiseAbs().maxCoeff()) * matrix),
+      eye_(Vector3::Zero()),
+      backwards_(Vector3::Zero()) {
   checkFinite(matrix, "matrix");
   // All is computed in coordinates in which the surface has size 1 and lies around the origin.
   const Points& cage = surface.positions();
@@ -78,7 +82,11 @@ Projector::Projector(const Eigen::Matrix4d& matrix, const LimitSurface& surface)
   Eigen::Matrix4d from_unit = Eigen::Matrix4d::Identity();
   from_unit.topLeftCorner<3, 3>() *= size;
   from_unit.topRightCorner<3, 1>() = middle;
-  Eigen::Matrix4d rows = matrix * from_unit;
+  Eigen::Matrix4d rows = matrix;
+  for (int i = 0; i < 4; ++i) {
+    rows.row(i) *= scaleToOwnUnit(matrix.row(i).cwiseAbs().maxCoeff());
+  }
+  rows = (rows * from_unit).eval();
   for (int i = 0; i < 4; ++i) {
     rows.row(i) = rows.row(i).stableNormalized().eval();
   }

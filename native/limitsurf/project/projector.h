@@ -43,6 +43,8 @@ class Projector {
   const Vector3& eye() const { return eye_; }
 
  private:
+  /// Times a number, which changes no image: its last row is in a unit of its own, so that the
+  /// images of points neither overflow nor vanish.
   Eigen::Matrix4d matrix_;
   bool has_eye_;
   Vector3 eye_;        ///< if has_eye_

@@ -12,9 +12,6 @@
 namespace limitsurf {
 namespace {
 
-/// The squares of distances between larger coordinates would overflow.
-constexpr double kFarthest = 1e150;
-
 [[noreturn]] void refuse(const char* name, Eigen::Index row, const Points& rows,
                          const char* reason) {
   std::ostringstream message;
@@ -30,8 +27,8 @@ void checkFinite(const Points& rows, const char* name, double scale) {
     if (!rows.row(row).allFinite()) {
       refuse(name, row, rows, "is not finite");
     }
-    if (scale * rows.row(row).cwiseAbs().maxCoeff() > kFarthest) {
-      const std::string most = numberText(kFarthest / scale);
+    if (scale * rows.row(row).cwiseAbs().maxCoeff() > kFarthestPoint) {
+      const std::string most = numberText(kFarthestPoint / scale);
       refuse(name, row, rows, ("is too far away: coordinates may go up to " + most).c_str());
     }
   }

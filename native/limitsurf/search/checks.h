@@ -7,6 +7,9 @@ namespace limitsurf {
 
 // Checks of arguments. Each throws std::invalid_argument naming the first wrong row or value.
 
+/// The largest coordinate of a point, times the scale of a search, whose square does not overflow.
+constexpr double kFarthestPoint = 1e150;
+
 /// Coordinates must be finite and, times `scale`, so small that their squares do not overflow.
 /// `name` is what a row is called in the message, as in "point".
 void checkFinite(const Points& rows, const char* name, double scale = 1);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/search/checks.h"
 #include "limitsurf/search/normals/normal_cones.h"
 #include "limitsurf/search/search_tree.h"
 
@@ -205,5 +206,7 @@ SurfaceSearch::SurfaceSearch(const LimitSurface& surface, int threads)
 SurfaceSearch::~SurfaceSearch() = default;
 SurfaceSearch::SurfaceSearch(SurfaceSearch&&) noexcept = default;
 SurfaceSearch& SurfaceSearch::operator=(SurfaceSearch&&) noexcept = default;
+
+double SurfaceSearch::farthestOrigin() const { return kFarthestPoint / data_->scale; }
 
 }  // namespace limitsurf

@@ -81,6 +81,10 @@ class SurfaceSearch {
   /// angle out of range.
   Hits closest(const Points& points, const ClosestOptions& options = {}, int threads = 0) const;
 
+  /// The largest coordinate that the origin of a ray may have, and a point whose closest point is
+  /// sought.
+  double farthestOrigin() const;
+
   /// The first point at which each ray meets the surface, from either side. The distance is
   /// measured along the ray and is at least 0. A ray that touches the surface hits it, and no ray
   /// passes between two faces; a ray that misses by less than kSearchError may count as a hit, and

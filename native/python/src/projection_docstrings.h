@@ -161,8 +161,8 @@ first hit counts, from either side. Where derivatives have no limit they are tak
 the ray is tangent to the source, or its map is singular, the footprint is 0. Vectors longer than four
 images are shortened to four.
 
-Raises ValueError as project() does, for a max_distance below 0, and for a transform that is singular or
-not finite.
+Raises ValueError as project() does, for a max_distance below 0, for a transform that is singular or not
+finite, and for one that takes places too far from the source.
 )";
 
 constexpr const char* kEyeIsInsideDoc =

@@ -2,13 +2,13 @@
 #include "limitsurf/surface/strands/frame_rows.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "limitsurf/direction_maps.h"
 #include "limitsurf/interruption_point.h"
 #include "limitsurf/parallel.h"
 #include "limitsurf/row_check.h"
@@ -76,16 +76,15 @@ Quaternions quaternionsOf(const Eigen::Ref<const Rotations>& rotations, int thre
 
 Rotations framesInWorld(const Eigen::Ref<const Rotations>& frames, const Eigen::Matrix3d& linear,
                         int threads) {
-  const Eigen::Matrix3d normals = linear.inverse().transpose();
-  const double handedness = linear.determinant() < 0 ? -1 : 1;
+  const DirectionMaps maps(linear);
   Rotations result(frames.rows(), 9);
   forEachRow(frames.rows(), threads, [&](Eigen::Index row) {
     const Frame frame(frames.row(row).data());
-    const Vector3 tangent = unitDirection(linear * frame.col(0));
-    const Vector3 normal = unitDirection(normals * frame.col(2));
+    const Vector3 tangent = unitDirection(maps.vectors * frame.col(0));
+    const Vector3 normal = unitDirection(maps.normals * frame.col(2));
     Eigen::Map<Matrix> world(result.row(row).data());
     world.col(0) = tangent;
-    world.col(1) = handedness * normal.cross(tangent);
+    world.col(1) = maps.side * normal.cross(tangent);
     world.col(2) = normal;
   });
   return result;

@@ -34,7 +34,7 @@ RootPose RootFinder::operator()(const TileLocation& at) {
       normal_square > kSafeSine * kSafeSine * du_square * dv_square &&
       normal_square > kSmallSquare) {
     root.frame[0] = (1 / std::sqrt(du_square)) * du;
-    root.frame[2] = (side_ / std::sqrt(normal_square)) * normal;
+    root.frame[2] = (directions_.side / std::sqrt(normal_square)) * normal;
     root.frame[1] = cross(root.frame[2], root.frame[0]);
   } else {
     setFrame(at, jet, root.frame);
@@ -53,12 +53,12 @@ void RootFinder::setFrame(const TileLocation& at, const Jet& jet, Padded out[3])
     on_surface = frame(vector(jet.patch.du), vector(jet.patch.dv),
                        normal.allFinite() ? normal : Vector3(Vector3::Zero()));
   }
-  Eigen::Matrix3d linear;
-  linear << vector(map_[0]), vector(map_[1]), vector(map_[2]);
-  const Vector3 tangent = linear * on_surface.col(0), across = linear * on_surface.col(1);
-  const Vector3 normal = side_ * unitNormal(tangent, across);
+  const Vector3 tangent = directions_.vectors * on_surface.col(0),
+                across = directions_.vectors * on_surface.col(1);
+  const double side = directions_.side;
+  const Vector3 normal = side * unitNormal(tangent, across);
   const Eigen::Matrix3d result =
-      frame(tangent, side_ * across, normal.allFinite() ? normal : Vector3(Vector3::Zero()));
+      frame(tangent, side * across, normal.allFinite() ? normal : Vector3(Vector3::Zero()));
   for (int column = 0; column < 3; ++column) {
     out[column] = Padded(result(0, column), result(1, column), result(2, column), 0);
   }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
+#include "limitsurf/direction_maps.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/pose.h"
 #include "limitsurf/surface/tile_evaluator.h"
@@ -20,12 +20,13 @@ struct RootPose {
 /// own.
 class RootFinder {
  public:
-  RootFinder(const TileTable& table, const Pose& pose, const Eigen::Matrix4d& map)
-      : table_(table), pose_(pose), evaluator_(table, pose) {
+  /// `directions` are those of the map. Keeps references to all arguments but the map.
+  RootFinder(const TileTable& table, const Pose& pose, const Eigen::Matrix4d& map,
+             const DirectionMaps& directions)
+      : table_(table), pose_(pose), evaluator_(table, pose), directions_(directions) {
     for (int column = 0; column < 4; ++column) {
       map_[column] = Padded(map(0, column), map(1, column), map(2, column), 0);
     }
-    side_ = map.topLeftCorner<3, 3>().determinant() < 0 ? -1 : 1;
   }
 
   RootPose operator()(const TileLocation& at);
@@ -47,7 +48,8 @@ class RootFinder {
   const Pose& pose_;
   TileEvaluator evaluator_;
   Padded map_[4];  // the columns
-  double side_;    // of the carried normal, seen along the cross product of the carried du and dv
+  /// Its side is that of the carried normal, seen along the cross product of the carried du and dv.
+  const DirectionMaps& directions_;
 };
 
 }  // namespace limitsurf

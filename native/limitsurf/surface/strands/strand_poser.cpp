@@ -200,8 +200,9 @@ struct StrandPoser::Data {
   template <typename Body, typename After>
   void forEachBound(const Eigen::Matrix4d& to_strands, int threads, const Body& body,
                     const After& after) const {
+    const DirectionMaps directions(to_strands.topLeftCorner<3, 3>());
     parallelFor(bound.size(), kRowsPerTask, threads, [&](std::size_t first, std::size_t last) {
-      RootFinder root(surface.table, surface.pose, to_strands);
+      RootFinder root(surface.table, surface.pose, to_strands, directions);
       for (std::size_t i = first; i < last; ++i) {
         const Strand& strand = bound[i];
         if (i + kPrefetched < last) {
