@@ -12,8 +12,20 @@ REAL = "typing.SupportsFloat | typing.SupportsIndex"
 OR_NONE = " | None"
 NATIVE = "limitsurf._limitsurf."
 
-#: The least and the largest integer of an argument, if they are not those of 32 bits
-RANGES = {"seed": (0, 2**64 - 1), "count": (-(2**63), 2**63 - 1)}
+#: The least and the largest integer of arguments that have 64 bits; signatures do not tell. All
+#: others have 32, also those of the same name.
+BITS_32 = (-(2**31), 2**31 - 1)
+BITS_64 = (-(2**63), 2**63 - 1)
+SEEDS = (0, 2**64 - 1)
+RANGES = {
+    ("scatter_jittered", "seed"): SEEDS,
+    ("scatter_uniform", "seed"): SEEDS,
+    ("scatter_uniform", "count"): BITS_64,
+    ("scatter_blue_noise", "seed"): SEEDS,
+    ("scatter_blue_noise", "count"): BITS_64,
+    ("scatter_along", "seed"): SEEDS,
+    ("scatter_along", "count"): BITS_64,
+}
 
 # pybind11's signature of the only form of a function or a constructor, and where a parameter begins
 # in it.
@@ -41,7 +53,8 @@ def explanation(text: str, positional: Sequence[object], named: Mapping[str, obj
     function = found["made"].removeprefix(NATIVE) or found["function"]
     given = dict(zip(parameters, positional, strict=False)) | dict(named)
     for name, value in given.items():
-        expected = name in parameters and _complaint(parameters[name].kind, name, value)
+        allowed = RANGES.get((function, name), BITS_32)
+        expected = name in parameters and _complaint(parameters[name].kind, allowed, value)
         if expected:
             return f"{name} is {reprlib.repr(value)}; expected {expected}"
     if len(positional) > places:
@@ -75,7 +88,7 @@ def _parameters(signature: str) -> tuple[dict[str, Parameter], int]:
     return parameters, places
 
 
-def _complaint(kind: str, name: str, value: object) -> str | None:
+def _complaint(kind: str, allowed: tuple[int, int], value: object) -> str | None:
     """What was expected instead of the value; None if its type is right, or not one of these."""
     if kind.endswith(OR_NONE):
         kind = kind.removesuffix(OR_NONE)
@@ -86,7 +99,7 @@ def _complaint(kind: str, name: str, value: object) -> str | None:
             number = operator.index(value)  # type: ignore[arg-type]
         except TypeError:
             return "an integer"
-        least, most = RANGES.get(name, (-(2**31), 2**31 - 1))
+        least, most = allowed
         if number > most:
             return f"an integer below {most + 1}"
         if number < least:

@@ -590,6 +590,69 @@ def test_threads_of_a_wrong_type(name, wrong):
         call(**given, threads=wrong)
 
 
+#: Right arguments for functions whose cases above do not take their integers, or that have none
+INTEGER_CASES = {
+    **CASES,
+    "resample_strands": (ls.resample_strands, {"points": POINTS, "offsets": [0, 3], "count": 2}),
+    "straight_strands": (ls.straight_strands, {"roots": POINTS, "along": UP, "points": 2}),
+    "PtexLayout.__init__": (ls.PtexLayout, {"face_count": 2, "resolution": 4}),
+    "SurfaceData.bounds": (UV_MAP.bounds, {}),
+    "SurfaceData.rasterize": (UV_MAP.rasterize, {"width": 3, "height": 3}),
+    "LimitSurface.scatter_along": (SURFACE.scatter_along, {"curves": CURVES, "count": 3}),
+    "LimitSurface.tile_quadtree": (SURFACE.tile_quadtree, {}),
+    "LimitSurface.even_path": (SURFACE.even_path, {**ON, "count": 3}),
+    "LimitSurface.project": (
+        SURFACE.project,
+        {"uv_map": UV_MAP, **ON, "matrix": VIEW, "texel": (0.1, 0.1)},
+    ),
+    "LimitSurface.scatter_jittered": (SURFACE.scatter_jittered, {"per_side": 2}),
+    "LimitSurface.scatter_uniform": (SURFACE.scatter_uniform, {"count": 3}),
+    "LimitSurface.scatter_blue_noise": (SURFACE.scatter_blue_noise, {"count": 3}),
+    "LimitSurface.levels_within": (SURFACE.levels_within, {"tolerance": 0.5}),
+    "LimitSurface.levels_of_length": (SURFACE.levels_of_length, {"length": 0.5}),
+}
+
+
+def integer_parameters():
+    """(function, parameter) for every parameter that is one integer; of some functions that have
+    no other one, `threads` is left out.
+    """
+    for name, definition in FUNCTIONS.items():
+        at = definition.args
+        for a in (*at.args, *at.kwonlyargs):
+            is_integer = a.annotation and ast.unparse(a.annotation) in ("int", "int | None")
+            if is_integer and (name in INTEGER_CASES or a.arg != "threads"):
+                yield name, a.arg
+
+
+#: Where 2**31 and more are right
+HAVE_64_BITS = {
+    *((f"LimitSurface.scatter_{way}", "count") for way in ("along", "uniform", "blue_noise")),
+    *((f"LimitSurface.scatter_{way}", "seed") for way in ("along", "uniform", "blue_noise")),
+    ("LimitSurface.scatter_jittered", "seed"),
+}
+
+
+@pytest.mark.parametrize(("name", "argument"), list(integer_parameters()))
+@pytest.mark.parametrize("wrong", [1.5, "a", [], 2**64, 2**63, 2**31, -(2**31) - 1, -(2**63) - 1])
+def test_integers_of_wrong_types_and_sizes(name, argument, wrong):
+    bits = 64 if (name, argument) in HAVE_64_BITS else 32
+    least = 0 if argument == "seed" else -(2 ** (bits - 1))
+    most = 2**bits if argument == "seed" else 2 ** (bits - 1)
+    if isinstance(wrong, int) and least <= wrong < most:
+        return
+    if not isinstance(wrong, int):
+        expected = ""
+    elif wrong < 0:
+        expected = f" of at least {least}"
+    else:
+        expected = f" below {most}"
+    call, given = INTEGER_CASES[name]
+    with pytest.raises(TypeError) as error:
+        call(**{**given, argument: wrong})
+    assert str(error.value) == f"{argument} is {wrong!r}; expected an integer{expected}"
+
+
 EYE = np.eye(4)
 ANY_MAP: Any = SURFACE.vertex_data(SQUARES[:, :2])
 # mypy would see what is wrong.
