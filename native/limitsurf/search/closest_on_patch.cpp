@@ -60,8 +60,13 @@ class PatchSearch {
   /// After this many cells the normals of the patch are bounded, to leave out cells without feet:
   /// if the tangents are nearly parallel, the squared distance is convex in a narrow band only.
   static constexpr int kFewCells = 16;
+  /// After this many cells each is compared with a plane of its own (isAside()).
+  static constexpr int kManyCells = 256;
   /// The squared distance is computed anew after every so many divisions.
   static constexpr int kFreshDepths = 4;
+  /// The rounding of a cell's points and of their distance from a plane, relative to the largest
+  /// coordinate: a dozen units in the last place.
+  static constexpr double kPlaneRounding = 0x1p-48;
   /// The relative rounding of the squared distance's coefficients: a few units in the last place.
   static constexpr double kRounding = 1e-15;
 
@@ -170,6 +175,37 @@ class PatchSearch {
     return hasNoFoot(points, normals, best_.tolerance);
   }
 
+  /// Whether a plane beside the searching point, no nearer to it than the closest point so far, has
+  /// the whole cell on its other side.
+  ///
+  /// A patch that is squeezed to nearly a line crosses the plane perpendicular to the line along a
+  /// long curve of its parameters. The squared distances at the control points of a cell beside
+  /// that curve are large along the line and say nothing about the small distance across, for which
+  /// the cell would be divided until it is as short as the patch is narrow. The plane is parallel
+  /// to the line, so only what is across counts.
+  bool isAside(const Cell& cell) const {
+    if (best_.from.isFar()) {
+      return false;
+    }
+    double largest = 0;
+    for (const BezierPatch::Point& point : relative_.points) {
+      largest = std::max(largest, point.abs().maxCoeff());
+    }
+    const double enough = best_.excess - best_.tolerance + kPlaneRounding * largest;
+    BezierPatch::Point p[16];
+    pointsOf(cell, p);
+    const BezierPatch::Point one = p[15] - p[0], other = p[12] - p[3];
+    const BezierPatch::Point line = dot(one, one) > dot(other, other) ? one : other;
+    const BezierPatch::Point middle = 0.25 * ((p[0] + p[3]) + (p[12] + p[15]));
+    const double square = dot(line, line);
+    const BezierPatch::Point across =
+        square > 0 ? BezierPatch::Point(middle - (dot(middle, line) / square) * line) : middle;
+    const double length = std::sqrt(dot(across, across));
+    return length > enough && std::all_of(p, p + 16, [&](const BezierPatch::Point& point) {
+             return dot(point, across) >= enough * length;
+           });
+  }
+
   /// The sides of the cell at which the sheet ends, as bits.
   unsigned bordersOf(const Cell& cell) const {
     return patch_.borders & ((cell.s == 0 ? kSideS0 : 0u) | (cell.t == 0 ? kSideT0 : 0u) |
@@ -234,7 +270,8 @@ class PatchSearch {
       offer(s, t);
       return;
     }
-    if (cells_ > kFewCells && hasNoFootOfSheet(f, cell)) {
+    if ((cells_ > kFewCells && hasNoFootOfSheet(f, cell)) ||
+        (cells_ > kManyCells && isAside(cell))) {
       return;
     }
     if (!facing_) {

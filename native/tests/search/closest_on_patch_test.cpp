@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The cost of a search on one patch that is squeezed to nearly a line.
+#include "limitsurf/search/closest_on_patch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/random.h"
+
+namespace limitsurf::test {
+namespace {
+
+/// Cells of the search of one patch: twice what the searches below need.
+constexpr int kMostCells = 1000;
+
+/// A patch in the plane z = 0 whose lines of constant y are curved: narrow along x.
+BezierPatch narrowPatch(double squeeze, Random& random) {
+  BezierPatch patch;
+  patch.anchor.setZero();
+  patch.borders = kSideS0 | kSideS1 | kSideT0 | kSideT1;  // its closest point may be no foot
+  for (int i = 0; i < 16; ++i) {
+    const Vector3 bump = random.vector(0.05);
+    const int row = i / 4, column = i % 4;
+    patch.points[i] = {squeeze * (column / 3. + bump[0]), row / 3. + bump[1], 0, 0};
+  }
+  return patch;
+}
+
+TEST(ClosestOnPatch, TakesABoundedTimeOnNarrowPatches) {
+  Random random(1);
+  for (const double squeeze : {1e-8, 1e-10, 1e-11, 1e-12, 1e-13, 1e-15}) {
+    for (int round = 0; round < 100; ++round) {
+      const BezierPatch patch = narrowPatch(squeeze, random);
+      BezierPatch::Values place;
+      patch.evaluate<0>(random.uniform(), random.uniform(), place);
+      const double aside = round % 4 * squeeze;
+      const Vector3 point = place.value.head<3>().matrix() + Vector3(aside, 0, 0);
+      ClosestSoFar best;
+      best.from = SearchPoint(point, Vector3::Zero(), 1);
+      best.tolerance = 1e-13;
+      closestOnPatch(patch, FootBound(patch), nullptr, best);
+      EXPECT_LE(best.excess, aside + 1.01 * best.tolerance) << squeeze;
+      EXPECT_LE(best.cells, kMostCells) << squeeze << ", aside " << aside;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limitsurf::test
