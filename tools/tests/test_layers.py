@@ -106,6 +106,16 @@ def test_the_library_knows_neither_python_nor_blender():
     assert not lines
 
 
+def test_one_header_of_the_module_includes_pybind11():
+    """So that its casters of numbers stand before all code that uses them."""
+    including = [
+        path.name
+        for path in (NATIVE / "python/src").rglob("*")
+        if path.suffix in (".h", ".cpp") and "#include <pybind11/" in path.read_text()
+    ]
+    assert including == ["numbers.h"]
+
+
 def test_the_tests_have_the_folders_of_the_library():
     folders = {path.name for path in (NATIVE / "tests").iterdir() if path.is_dir()}
     assert folders - set(LAYERS) == {"consumer", "data", "fuzz", "truth"}

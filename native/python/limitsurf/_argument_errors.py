@@ -7,6 +7,8 @@ import reprlib
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 INTEGER = "typing.SupportsInt | typing.SupportsIndex"
 REAL = "typing.SupportsFloat | typing.SupportsIndex"
 OR_NONE = " | None"
@@ -99,13 +101,15 @@ def _complaint(kind: str, allowed: tuple[int, int], value: object) -> str | None
             number = operator.index(value)  # type: ignore[arg-type]
         except TypeError:
             return "an integer"
+        if isinstance(value, np.ma.MaskedArray):
+            return "an integer, not a masked array"
         least, most = allowed
         if number > most:
             return f"an integer below {most + 1}"
         if number < least:
             return f"an integer of at least {least}"
-    if kind == REAL and not (_has(value, "__float__") or _has(value, "__index__")):
-        return "a number"
+    if kind == REAL:
+        return _complaint_of_real(value)
     if kind.startswith(NATIVE):
         wanted = kind.removeprefix(NATIVE)
         if wanted not in [base.__name__ for base in type(value).__mro__]:
@@ -114,6 +118,22 @@ def _complaint(kind: str, allowed: tuple[int, int], value: object) -> str | None
         return "a string"
     if kind == "bool" and not _has(value, "__bool__"):
         return "True or False"
+    return None
+
+
+def _complaint_of_real(value: object) -> str | None:
+    if not (_has(value, "__float__") or _has(value, "__index__")):
+        return "a number"
+    if isinstance(value, np.ma.MaskedArray):
+        return "a number, not a masked array"
+    if isinstance(value, np.ndarray) and value.ndim > 0:
+        return "a number"
+    try:
+        float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return "a number"
+    except OverflowError:
+        return "a number below 1.8e308"
     return None
 
 

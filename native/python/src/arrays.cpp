@@ -11,12 +11,6 @@
 namespace limitsurf::python {
 namespace {
 
-bool isMasked(const py::handle& object) {
-  static PyObject* const masked_array =
-      py::object(py::module_::import("numpy.ma").attr("MaskedArray")).release().ptr();  // for good
-  return PyObject_IsInstance(object.ptr(), masked_array) == 1;
-}
-
 void refuseMasked(const py::handle& object, const char* name) {
   bool masked = isMasked(object);
   if (!masked && (PyList_Check(object.ptr()) || PyTuple_Check(object.ptr()))) {

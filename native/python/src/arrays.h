@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -15,6 +12,7 @@
 #include "limitsurf/types.h"
 #include "locks/gil.h"
 #include "locks/signals.h"
+#include "numbers.h"
 
 namespace limitsurf::python {
 

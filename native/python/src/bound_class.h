@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <string>
 #include <typeinfo>
+
+#include "numbers.h"
 
 namespace limitsurf::python {
 

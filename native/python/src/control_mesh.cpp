@@ -103,10 +103,16 @@ std::shared_ptr<BoundMesh> makeMesh(const py::object& positions, const py::objec
   return std::shared_ptr<BoundMesh>(new BoundMesh(points, size_vector, vertex_vector, options));
 }
 
+/// Whether numpy reads an object as an array without looking at its elements.
+bool isArray(const py::object& object) {
+  return PyObject_CheckBuffer(object.ptr()) != 0 || py::hasattr(object, "__array__") ||
+         py::hasattr(object, "__array_interface__");
+}
+
 /// The face sizes and face vertices of an (F, k) array or of a sequence of sequences.
 std::pair<py::object, py::object> flattened(const py::object& faces) {
   const py::module_ numpy = py::module_::import("numpy");
-  if (py::isinstance<py::array>(faces)) {
+  if (isArray(faces)) {
     const Integers array = integers<MeshError>(faces, "faces");
     if (array.ndim() != 2) {
       throw MeshError("faces has shape " + shapeText(array) + "; expected (F, k)");

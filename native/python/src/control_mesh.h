@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <memory>
 
 #include "limitsurf/mesh/control_mesh.h"
+#include "numbers.h"
 
 namespace limitsurf::python {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edge_curves.h"
 
-#include <pybind11/stl.h>
-
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +14,7 @@
 #include "edge_curves_docstrings.h"
 #include "limitsurf/curves/edge_curves.h"
 #include "limitsurf/curves/scatter_along.h"
+#include "numbers.h"
 #include "progress.h"
 
 namespace limitsurf::python {

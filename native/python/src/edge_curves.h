@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/pybind11.h>
-
+#include "numbers.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {

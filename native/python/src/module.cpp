@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pybind11/pybind11.h>
-
 #include "control_mesh.h"
 #include "displacement.h"
 #include "edge_curves.h"
@@ -10,6 +8,7 @@
 #include "limit_surface.h"
 #include "limitsurf/error.h"
 #include "locks/numpy_calls.h"
+#include "numbers.h"
 #include "ptex_layout.h"
 #include "short_errors.h"
 #include "strand_poser.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include "limitsurf/search/polylines.h"
+#include "numbers.h"
 
 namespace limitsurf::python {
 

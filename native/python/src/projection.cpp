@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "projection.h"
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -13,6 +11,7 @@
 #include "choices.h"
 #include "limitsurf/project/projection.h"
 #include "matrices.h"
+#include "numbers.h"
 #include "progress.h"
 #include "projection_docstrings.h"
 #include "surface_data.h"

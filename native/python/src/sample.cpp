@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "limitsurf/sample/area.h"
 #include "limitsurf/sample/area_sampler.h"
 #include "limitsurf/sample/jittered_sampling.h"
+#include "numbers.h"
 #include "progress.h"
 #include "sampling_docstrings.h"
 #include "shared_surface.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pybind11/functional.h>
 
 #include <limits>
 #include <stdexcept>
@@ -8,6 +7,7 @@
 #include "batches.h"
 #include "docstrings.h"
 #include "limitsurf/search/checks.h"
+#include "numbers.h"
 #include "progress.h"
 #include "shared_surface.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <cstdint>
 #include <vector>
 
+#include "numbers.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {

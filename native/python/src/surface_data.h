@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <string>
 #include <utility>
 
@@ -10,6 +8,7 @@
 #include "limitsurf/uv/uv_map.h"
 #include "locks/call_lock.h"
 #include "locks/kept_value.h"
+#include "numbers.h"
 
 namespace limitsurf::python {
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/surface/tiles/surface_tiles.h"
 
-#include <pybind11/stl.h>
-
 #include <optional>
 #include <utility>
 
 #include "batches.h"
 #include "limitsurf/surface/tiles/tile_quadtree.h"
+#include "numbers.h"
 #include "progress.h"
 #include "shared_surface.h"
 

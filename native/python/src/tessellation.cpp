@@ -19,11 +19,6 @@
 namespace limitsurf::python {
 namespace {
 
-bool isOneNumber(const py::object& object) {
-  return PyIndex_Check(object.ptr()) &&
-         !(py::isinstance<py::array>(object) && py::cast<py::array>(object).ndim() > 0);
-}
-
 constexpr std::int64_t kLargestInt = std::numeric_limits<int>::max();
 
 [[noreturn]] void refuseLevel(const std::string& name, const std::string& value, int least) {
@@ -43,9 +38,9 @@ int leastLevel(const ControlMesh& mesh) {
 
 Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
                           const TessellationOptions& options) {
-  if (isOneNumber(levels)) {
+  if (const py::object one = integerOf(levels)) {
     int overflow = 0;
-    const std::int64_t wide = PyLong_AsLongLongAndOverflow(py::int_(levels).ptr(), &overflow);
+    const std::int64_t wide = PyLong_AsLongLongAndOverflow(one.ptr(), &overflow);
     if (overflow != 0 || std::abs(wide) > kLargestInt) {
       refuseLevel("levels", valueText(levels), leastLevel(*shared.mesh));
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "../numbers.h"
 
 #if defined(__GLIBCXX__)
 #include <cxxabi.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numpy_calls.h"
 
-#include <pybind11/numpy.h>
-
+#include "../numbers.h"
 #include "gil.h"
 
 namespace limitsurf::python {
