@@ -46,6 +46,23 @@ def _forget_after_undo(*_arguments: object) -> None:
         live_kept.forget_after_undo()
 
 
+@bpy.app.handlers.persistent
+def _pose_file(*_arguments: object) -> None:
+    """Poses what a file holds: surfaces may have changed while the extension was not there."""
+    _forget()
+    _pose_present()
+
+
+def _pose_present() -> None:
+    """Is also called by a timer."""
+    if native.available() and bpy.context.scene is not None:
+        _pose_frame(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
+
+
+def _in_background() -> bool:
+    return bool(bpy.app.background)
+
+
 def _switched(_scene: bpy.types.Scene, context: bpy.types.Context) -> None:
     _forget()
     if context.scene == _scene and live.is_enabled(_scene):
@@ -57,7 +74,7 @@ _HANDLERS = (
     (bpy.app.handlers.depsgraph_update_post, _pose_change),
     (bpy.app.handlers.undo_post, _forget_after_undo),
     (bpy.app.handlers.redo_post, _forget_after_undo),
-    (bpy.app.handlers.load_post, _forget),
+    (bpy.app.handlers.load_post, _pose_file),
 )
 
 
@@ -75,9 +92,14 @@ def attach_handlers() -> None:
     )
     for handlers, handler in _HANDLERS:
         handlers.append(handler)
+    if not _in_background():  # no timers run there
+        # While the extension is being enabled, Blender's data may not be read.
+        bpy.app.timers.register(_pose_present, first_interval=0)
 
 
 def detach_handlers() -> None:
+    if bpy.app.timers.is_registered(_pose_present):
+        bpy.app.timers.unregister(_pose_present)
     for handlers, handler in _HANDLERS:
         handlers.remove(handler)
     delattr(bpy.types.Scene, ids.LIVE)
