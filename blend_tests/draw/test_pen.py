@@ -38,10 +38,14 @@ def area():
     return Area(regions=[region], header="")
 
 
+class Workspace(SimpleNamespace):
+    def status_text_set(self, text):
+        self.status = text
+
+
 @pytest.fixture
-def context():
-    status = SimpleNamespace(text="", status_text_set=lambda text: None)
-    return SimpleNamespace(workspace=status)
+def context(area):
+    return SimpleNamespace(workspace=Workspace(name="Layout"), screen=SimpleNamespace(areas=[area]))
 
 
 @pytest.fixture
@@ -52,14 +56,15 @@ def pen(area):
     return Pen(area, Session(ground, Settings(TOLERANCE), []), 20, True)
 
 
-def event(kind, value="PRESS", at=(0, 0), ctrl=False, shift=False, pressure=None):
+def event(kind, value="PRESS", at=(0, 0), pressure=None, **held):
+    modifiers = {name: name in held for name in ("ctrl", "shift", "alt", "oskey")}
     return SimpleNamespace(
         type=kind,
         value=value,
         mouse_x=at[0],
         mouse_y=at[1],
-        ctrl=ctrl,
-        shift=shift,
+        **modifiers,
+        is_repeat=False,
         is_tablet=pressure is not None,
         pressure=1.0 if pressure is None else pressure,
     )
@@ -101,6 +106,23 @@ def test_escape_drops_the_stroke_and_then_ends(pen, context):
 def test_view_can_be_moved_between_strokes(pen, context):
     assert pen.take(context, event("MIDDLEMOUSE")) == {"PASS_THROUGH"}
     assert pen.take(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}
+    assert pen.take(context, event("NUMPAD_1", ctrl=True)) == {"PASS_THROUGH"}
+
+
+def test_nothing_else_than_the_view_is_left_to_blender(pen, context):
+    """With these modifiers the wheel and the keys change the frame, fields, the selection or the
+    camera.
+    """
+    for kind, held in (
+        ("WHEELUPMOUSE", "alt"),
+        ("NUMPAD_0", "ctrl"),
+        ("NUMPAD_PLUS", "ctrl"),
+        ("NUMPAD_0", "alt"),
+    ):
+        assert pen.take(context, event(kind, **{held: True})) == {"RUNNING_MODAL"}
+    beside = (SIDE + 10, 10)
+    assert pen.take(context, event("WHEELUPMOUSE", at=beside)) == {"PASS_THROUGH"}
+    assert pen.take(context, event("WHEELUPMOUSE", at=beside, ctrl=True)) == {"RUNNING_MODAL"}
 
 
 def test_pressure(pen, context):
@@ -155,6 +177,90 @@ def test_keys_switch_joining_and_mirroring(pen, context):
     assert pen.session.settings.is_mirrored
     pen.take(context, event("RIGHT_BRACKET"))
     assert pen.brush == 25
+
+
+def test_keys_with_other_modifiers_do_nothing(pen, context):
+    stroke(pen, context, [(1, 1), (2, 1)])
+    for kind in ("SPACE", "RET", "ESC", "RIGHTMOUSE", "X", "J", "LEFT_BRACKET", "Z"):
+        for held in ("ctrl", "shift", "alt", "oskey"):
+            if (kind, held) != ("Z", "ctrl"):
+                assert pen.take(context, event(kind, **{held: True})) == {"RUNNING_MODAL"}
+    assert not pen.session.settings.is_mirrored
+    assert pen.session.settings.continues
+    assert pen.brush == 20
+    assert len(pen.session.strokes) == 1
+
+
+def test_drags_with_other_modifiers_do_nothing(pen, context):
+    stroke(pen, context, [(1, 1), (3, 1)])
+    (before,) = pen.session.strokes
+    for held in ({"alt": True}, {"ctrl": True, "shift": True}, {"oskey": True}):
+        stroke(pen, context, [(1.5, 1), (2.5, 1)], **held)
+    (after,) = pen.session.strokes
+    assert after is before
+
+
+def brushes(pen, context, kind, count):
+    """Returns the brush after each press of a key."""
+    found = []
+    for _ in range(count):
+        pen.take(context, event(kind))
+        found.append(pen.brush)
+    return found
+
+
+def test_each_key_of_the_brush_takes_back_the_other(pen, context):
+    pen.brush = 25
+    down = brushes(pen, context, "LEFT_BRACKET", 12)
+    assert down == [20, 16, 13, 10, 8, 7, 5, 4, 3, 2, 1, 1]
+    assert brushes(pen, context, "RIGHT_BRACKET", 11) == [*down[-3::-1], 25]
+    up = brushes(pen, context, "RIGHT_BRACKET", 18)
+    assert up[-2:] == [1000, 1000]
+    assert brushes(pen, context, "LEFT_BRACKET", 17) == [*up[-3::-1], 25]
+
+
+@pytest.mark.parametrize("begun", range(1, 60))
+def test_each_step_of_the_brush_changes_it(pen, context, begun):
+    pen.brush = begun
+    (larger,) = brushes(pen, context, "RIGHT_BRACKET", 1)
+    assert begun < larger <= max(begun + 1, 1.5 * begun)
+    pen.brush = begun
+    (smaller,) = brushes(pen, context, "LEFT_BRACKET", 1)
+    assert begun / 2 <= smaller < begun or smaller == begun == 1
+
+
+def overlap(area, kind, **place):
+    """Adds a region that lies over the viewport."""
+    area.regions.append(SimpleNamespace(type=kind, **place))
+
+
+@pytest.mark.parametrize("kind", ["UI", "TOOLS", "HEADER", "TOOL_HEADER", "HUD", "ASSET_SHELF"])
+def test_what_lies_over_the_viewport_is_no_surface(pen, context, area, kind):
+    overlap(area, kind, x=200, y=0, width=100, height=SIDE)
+    stroke(pen, context, [(2.2, 1), (2.8, 1)])
+    assert not pen.session.strokes
+    assert "no surface under the mouse" in area.header
+    stroke(pen, context, [(1, 2), (3.5, 2)])
+    first, second = pen.session.strokes
+    np.testing.assert_allclose(ends(first), [(1, 2), (2, 2)], atol=0.05)
+    np.testing.assert_allclose(ends(second), [(3, 2), (3.5, 2)], atol=0.05)
+
+
+def test_regions_that_are_hidden_cover_nothing(pen, context, area):
+    overlap(area, "UI", x=100, y=100, width=1, height=1)
+    stroke(pen, context, [(1, 1), (2, 1)])
+    assert len(pen.session.strokes) == 1
+
+
+def test_another_workspace_is_shown_meanwhile(pen, context, area):
+    """Nothing is drawn through a viewport that is not seen, and no text stays anywhere."""
+    stroke(pen, context, [(1, 1), (2, 1)])
+    first, context.workspace = context.workspace, Workspace(name="Modeling")
+    context.screen = SimpleNamespace(areas=[])
+    stroke(pen, context, [(1, 2), (2, 2)])
+    assert len(pen.session.strokes) == 1
+    pen.close(context)
+    assert (first.status, context.workspace.status, area.header) == (None, None, None)
 
 
 def test_stroke_is_divided_where_it_leaves_the_surface(pen, context):

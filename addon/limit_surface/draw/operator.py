@@ -10,7 +10,7 @@ from .. import ids, native
 from ..errors import RefusalError
 from ..placing.follow_properties import FollowProperties, why_it_stays
 from ..tasks.properties import SummaryProperty, check_numbers, draw_summary
-from . import curve_object, properties, result, splines, stroke, subject
+from . import brush_sizes, curve_object, properties, result, splines, stroke, subject
 from .ground import Ground
 from .pen import Pen
 from .session import Session, Settings
@@ -74,9 +74,9 @@ class VIEW3D_OT_limit_draw(
     brush: IntProperty(
         name="Brush",
         description="Radius of the brushes that erase and smooth, in pixels",
-        default=25,
-        min=1,
-        max=1000,
+        default=brush_sizes.DEFAULT,
+        min=brush_sizes.LEAST,
+        max=brush_sizes.MOST,
         subtype="PIXEL",
     )
 

@@ -3,37 +3,35 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
 import numpy as np
 
 from ..viewport import ray
 from ..viewport.lines import pixel_size
+from . import brush_sizes, keys, texts
 from .overlay import Mark, Overlay
 from .session import Samples, Session
 
 if TYPE_CHECKING:
     import limitsurf
 
-NAVIGATION = {
-    "MIDDLEMOUSE",
-    "WHEELUPMOUSE",
-    "WHEELDOWNMOUSE",
-    "NDOF_MOTION",
-    "TRACKPADPAN",
-    "TRACKPADZOOM",
-}
-MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
-CONFIRM = {"RET", "NUMPAD_ENTER", "SPACE"}
-BRUSH_KEYS = {"LEFT_BRACKET": 0.8, "RIGHT_BRACKET": 1.25}
 #: In pixels: how far apart a stroke is sampled, and how near to an end a stroke continues it
 SPACING, REACH = 4, 12
 MOST_RAYS = 256  # between two events
 #: Brushes touch the surface at every so many of their own radii.
 TOUCHES = 0.5
-TOOL_NAMES = {"DRAW": "Draw", "ERASE": "Erase", "SMOOTH": "Smooth"}
 RUNNING = {"RUNNING_MODAL"}
+
+
+class Sight(NamedTuple):
+    """What is seen through a pixel."""
+
+    region: bpy.types.Region
+    ray: ray.Ray
+    pressure: float
 
 
 class Pen:
@@ -50,34 +48,32 @@ class Pen:
         self._pressure = 1.0
         self._samples: Samples | None = None
         self._is_astray = False
-        self._has_left = False  # whether the last rays would have been beside the viewport
         self._shown = -1
         self._is_open = True
+        self._is_shown = True  # whether the screen shows the area
+        self._told: list[bpy.types.WorkSpace] = []  # in whose status bar the keys are
         # builds the search structure now, not at the first move
         session.ground.surface.ray_cast(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))
         self._overlay = Overlay(session.ground.size)
 
     def take(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Handles an event, and returns what the operator returns: FINISHED to confirm."""
-        kind, is_press = event.type, event.value == "PRESS"
-        is_view = kind in NAVIGATION or (kind.startswith("NUMPAD_") and kind not in CONFIRM)
-        if self._tool is None and is_view:
-            return {"PASS_THROUGH"}
-        if kind in MOVES:
+        self._is_shown = any(area == self._area for area in context.screen.areas)
+        if self._tool is None:
+            over = self._region(event.mouse_x, event.mouse_y) is not None
+            if keys.is_view(event, over):
+                return {"PASS_THROUGH"}
+        if event.type in keys.MOVES:
             self.move(event)
-        elif kind == "LEFTMOUSE":
-            if is_press:
+        elif event.type == "LEFTMOUSE":
+            if event.value == "PRESS":
                 self._press(event)
             elif event.value == "RELEASE":
                 self._release()
-        elif is_press and kind in {"ESC", "RIGHTMOUSE"}:
-            if self._tool is None:
-                return {"CANCELLED"}
-            self._drop()
-        elif is_press and self._tool is None:
-            if kind in CONFIRM:
-                return {"FINISHED"}
-            self._key(event)
+        elif event.value == "PRESS":
+            answer = self._key(event)
+            if answer:
+                return {answer}
         self.show(context)
         return RUNNING
 
@@ -86,31 +82,31 @@ class Pen:
             self._is_open = False
             self._overlay.remove()
             self._area.header_text_set(None)
-            context.workspace.status_text_set(None)
+            for workspace in self._told:
+                with suppress(ReferenceError):  # it has been removed
+                    workspace.status_text_set(None)
             self._area.tag_redraw()
 
     def move(self, event: bpy.types.Event) -> None:
         """Follows the mouse: draws, erases or smooths while the button is held."""
-        self._hovering = _tool(event)
+        self._hovering = keys.tool(event) or self._hovering
         to = np.array([event.mouse_x, event.mouse_y], np.float64)
         pressure = self._pressure_of(event)
         sights = self._sights(to, pressure)
         self._at, self._pressure = to, pressure
-        if sights:
-            self._follow(sights)
-        elif self._samples is not None:  # beside the viewport
-            self._samples.interrupt()
+        self._follow(sights)
         self._area.tag_redraw()
 
     def _press(self, event: bpy.types.Event) -> None:
-        self._tool = _tool(event)
+        self._tool = keys.tool(event)
+        if self._tool is None:
+            return
         self._at = np.array([event.mouse_x, event.mouse_y], np.float64)
         self._pressure = self._pressure_of(event)
         self.session.begin()
         sights = self._sights(self._at, self._pressure)
         self._samples = Samples(0.0) if self._tool == "DRAW" else None
-        if sights:
-            self._follow(sights)
+        self._follow(sights)
 
     def _release(self) -> None:
         if self._samples is not None:
@@ -125,57 +121,73 @@ class Pen:
         self._samples, self._tool = None, None
         self._overlay.pen = []
 
-    def _key(self, event: bpy.types.Event) -> None:
+    def _key(self, event: bpy.types.Event) -> str | None:
+        """Handles a key or the right button, and returns how the drawing ends if it does."""
+        if self._tool is not None:
+            if event.type in keys.LEAVING:
+                self._drop()
+            return None
+        command = keys.command(event)
         settings = self.session.settings
-        if event.type == "Z" and event.ctrl:
-            (self.session.redo if event.shift else self.session.undo)()
-        elif event.type == "X":
+        if command == "CONFIRM":
+            return "FINISHED"
+        if command == "LEAVE":
+            return "CANCELLED"
+        if command == "UNDO":
+            self.session.undo()
+        elif command == "REDO":
+            self.session.redo()
+        elif command == "MIRROR":
             settings.is_mirrored = not settings.is_mirrored
-        elif event.type == "J":
+        elif command == "JOIN":
             settings.continues = not settings.continues
-        elif event.type in BRUSH_KEYS:
-            self.brush = int(np.clip(round(self.brush * BRUSH_KEYS[event.type]), 1, 1000))
-        self._hovering = _tool(event)
+        elif command == "SMALLER":
+            self.brush = brush_sizes.smaller(self.brush)
+        elif command == "LARGER":
+            self.brush = brush_sizes.larger(self.brush)
+        self._hovering = keys.tool(event) or self._hovering
+        return None
 
-    def _sights(
-        self, to: np.ndarray, pressure: float
-    ) -> list[tuple[bpy.types.Region, ray.Ray, float]]:
-        """Returns rays through the pixels between the last place and this one, with the pressure
-        there. While no button is held this place alone counts.
+    def _sights(self, to: np.ndarray, pressure: float) -> list[Sight | None]:
+        """Returns lines of sight through the pixels between the last place and this one: None where
+        the viewport is not seen. While no button is held this place alone counts.
         """
         steps = 1
         if self._tool is not None:
             spacing = SPACING if self._tool == "DRAW" else max(TOUCHES * self.brush, 1)
             steps = int(np.clip(np.ceil(np.linalg.norm(to - self._at) / spacing), 1, MOST_RAYS))
-        found = []
-        self._has_left = False
+        found: list[Sight | None] = []
         for t in np.linspace(1 / steps, 1, steps):
             x, y = (1 - t) * self._at + t * to
             region = self._region(x, y)
             if region is None:
-                self._has_left = True
+                found.append(None)
             else:
                 at = (1 - t) * self._pressure + t * pressure
-                found.append((region, ray.through(region, region.data, x, y), float(at)))
+                found.append(Sight(region, ray.through(region, region.data, x, y), float(at)))
         return found
 
-    def _follow(self, sights: list[tuple[bpy.types.Region, ray.Ray, float]]) -> None:
-        surface = self.session.ground.surface
-        hits = surface.ray_cast(
-            np.stack([sight.origin for _region, sight, _pressure in sights]),
-            np.stack([sight.direction for _region, sight, _pressure in sights]),
-        )
-        for row, (region, _sight, pressure) in enumerate(sights):
-            if hits.face[row] < 0:
-                if self._samples is not None:
-                    self._samples.interrupt()
-                continue
-            uv = hits.uv[row].astype(np.float32).astype(np.float64)
-            self._touch(region, int(hits.face[row]), uv, hits.position[row], pressure)
-        if self._has_left and self._samples is not None:
-            self._samples.interrupt()
-        self._is_astray = bool(hits.face[-1] < 0)
-        self._mark(sights[-1][0], hits)
+    def _follow(self, sights: list[Sight | None]) -> None:
+        self._is_astray = True
+        self._overlay.mark = self._overlay.end = None
+        seen = [sight for sight in sights if sight is not None]
+        if seen:
+            hits = self.session.ground.surface.ray_cast(
+                np.stack([sight.ray.origin for sight in seen]),
+                np.stack([sight.ray.direction for sight in seen]),
+            )
+        row = -1
+        for sight in sights:
+            row += sight is not None
+            self._is_astray = sight is None or bool(hits.face[row] < 0)
+            if sight is not None and not self._is_astray:
+                uv = hits.uv[row].astype(np.float32).astype(np.float64)
+                position = hits.position[row]
+                self._touch(sight.region, int(hits.face[row]), uv, position, sight.pressure)
+            elif self._samples is not None:
+                self._samples.interrupt()
+        if seen and not self._is_astray:
+            self._mark(seen[-1].region, hits)
 
     def _touch(
         self,
@@ -197,9 +209,6 @@ class Pen:
 
     def _mark(self, region: bpy.types.Region, hits: limitsurf.Hits) -> None:
         """Shows the brush, and the end that a new stroke would continue."""
-        self._overlay.mark, self._overlay.end = None, None
-        if self._is_astray:
-            return
         tool = self._tool or self._hovering
         position = hits.position[-1]
         frame = self.session.ground.surface.frames(hits.face[-1:], hits.uv[-1:])[0]
@@ -211,11 +220,12 @@ class Pen:
             self._overlay.end = end.position if end else None
 
     def _region(self, x: float, y: float) -> bpy.types.Region | None:
-        for region in self._area.regions:
-            inside = 0 <= x - region.x < region.width and 0 <= y - region.y < region.height
-            if region.type == "WINDOW" and inside:
-                return region
-        return None
+        """Returns the view that is seen at this place of the window: none where the header, the
+        sidebar or another region lies over it, or where the screen shows something else by now.
+        """
+        at = [region for region in self._area.regions if _covers(region, x, y)]
+        is_view = self._is_shown and all(region.type == "WINDOW" for region in at)
+        return at[0] if at and is_view else None
 
     def _pressure_of(self, event: bpy.types.Event) -> float:
         return event.pressure if self._use_pressure and event.is_tablet else 1.0
@@ -226,30 +236,18 @@ class Pen:
         if self._shown != session.version:
             self._shown = session.version
             self._overlay.show(session.strokes)
-        settings = session.settings
-        parts = [
-            TOOL_NAMES[self._tool or self._hovering],
-            f"Strokes: {len(session.strokes)}",
-            f"Brush: {self.brush} px",
-            f"X Mirror: {_on(settings.is_mirrored)}",
-            f"Join: {_on(settings.continues)}",
-        ]
-        if self._is_astray:
-            parts.append("no surface under the mouse")
-        self._area.header_text_set("   ".join(parts))
-        context.workspace.status_text_set(
-            "Drag: draw   Ctrl drag: erase   Shift drag: smooth   [ ]: brush size   X: mirror   "
-            "J: join at ends   Ctrl Z: undo   Ctrl Shift Z: redo   Enter or Space: confirm   "
-            "Esc or right click: cancel"
+        notes = ["no surface under the mouse"] if self._is_astray else []
+        self._area.header_text_set(
+            texts.state(session, self._tool or self._hovering, self.brush, notes)
         )
+        workspace = context.workspace
+        if workspace not in self._told:  # another one may be shown by now
+            self._told.append(workspace)
+        workspace.status_text_set(texts.KEYS)
         self._area.tag_redraw()
 
 
-def _tool(event: bpy.types.Event) -> str:
-    if event.ctrl:
-        return "ERASE"
-    return "SMOOTH" if event.shift else "DRAW"
-
-
-def _on(value: bool) -> str:
-    return "on" if value else "off"
+def _covers(region: bpy.types.Region, x: float, y: float) -> bool:
+    """Tells whether the place lies on the region. One that is hidden has a single pixel."""
+    is_shown = region.width > 1 and region.height > 1
+    return is_shown and 0 <= x - region.x < region.width and 0 <= y - region.y < region.height
