@@ -32,6 +32,10 @@ class Pen:
     def show(self, _context):
         pass
 
+    def stand_on(self, ground):
+        self.obstacle = ""
+        self.session.stand_on(ground)
+
     def close(self, _context):
         self.is_closed = True
 
@@ -88,6 +92,63 @@ def test_the_stroke_is_on_the_surface_as_it_is_at_the_end(start, target):
     assert drawn.distance_from(target, shown).max() < 1e-5
     wanted = drawn.world_places(target, STROKE)
     assert drawn.distance_from_polyline(wanted, shown).max() < 1e-3
+
+
+def rise(ob):
+    """Animates the object upwards, by 1 in each frame."""
+    for frame in (1, 11):
+        ob.location.z = frame - 1
+        ob.keyframe_insert("location", frame=frame)
+    for layer in ob.animation_data.action.fcurves:
+        for key in layer.keyframe_points:
+            key.interpolation = "LINEAR"
+
+
+def test_drawing_goes_on_where_the_surface_is_in_another_frame(start, target):
+    rise(target)
+    bpy.context.scene.frame_set(1)
+    operator = start()
+    session = operator._pen.session
+    (before,) = session.strokes
+    bpy.context.scene.frame_set(6)
+    operator._keep_up(stand_ins.window_context())
+    hit = session.ground.surface.ray_cast([[1.0, 1, 20]], [[0.0, 0, -1]])
+    assert hit.position[0, 2] == pytest.approx(5)
+    (after,) = session.strokes
+    np.testing.assert_array_equal(after.face, before.face)
+    np.testing.assert_array_equal(after.uv, before.uv)
+    np.testing.assert_allclose(after.position, before.position + (0, 0, 5), atol=1e-6)
+    ground = session.ground
+    operator._keep_up(stand_ins.window_context())
+    assert session.ground is ground
+    assert operator.enter() == {"FINISHED"}
+    shown = drawn.world_points(bpy.context.active_object, 0)
+    np.testing.assert_allclose(shown[:, 2], 5, atol=1e-5)
+    assert not any("SurfaceWatch" in str(each) for each in bpy.app.handlers.frame_change_post)
+
+
+def test_the_surface_is_read_again_only_after_it_has_changed(start, target, monkeypatch):
+    other = bpy.data.objects.new("Other", None)
+    bpy.context.collection.objects.link(other)
+    rise(other)
+    bpy.context.scene.frame_set(1)
+    operator = start()
+    monkeypatch.setattr(operator._pen.session.ground, "now", None)
+    bpy.context.scene.frame_set(6)
+    operator._keep_up(stand_ins.window_context())  # would fail if it asked
+
+
+def test_nothing_is_drawn_while_the_surface_has_other_faces(start, target):
+    operator = start()
+    faces = target.modifiers.new("Triangles", "TRIANGULATE")
+    bpy.context.view_layer.update()
+    operator._keep_up(stand_ins.window_context())
+    assert operator._pen.obstacle.startswith("The faces of Flat have changed meanwhile")
+    target.modifiers.remove(faces)
+    bpy.context.view_layer.update()
+    operator._keep_up(stand_ins.window_context())
+    assert not operator._pen.obstacle
+    assert operator.enter() == {"FINISHED"}
 
 
 def test_a_surface_with_other_faces_is_refused(start, target):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The events of view3d.limit_draw, with a viewport that looks straight down and has no window."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import bpy
@@ -266,6 +267,63 @@ def test_another_workspace_is_shown_meanwhile(pen, context, area):
 def test_stroke_is_divided_where_it_leaves_the_surface(pen, context):
     stroke(pen, context, [(0.6, 2), (-0.5, 2), (-0.5, 2.5), (0.6, 2.5)])
     assert len(pen.session.strokes) == 2
+
+
+def moved(pen, **place):
+    """Moves the surface, and returns it as it is then."""
+    ob = pen.session.ground.ob
+    for name, value in place.items():
+        setattr(ob.location, name, value)
+    bpy.context.view_layer.update()
+    return pen.session.ground.now(ob, bpy.context.evaluated_depsgraph_get())
+
+
+def test_strokes_stay_at_their_locations_while_the_surface_moves(pen, context):
+    stroke(pen, context, [(1, 1), (2, 1)])
+    stroke(pen, context, [(1, 2), (2, 2)])
+    pen.take(context, event("Z", ctrl=True))
+    pen.take(context, event("LEFTMOUSE", "PRESS", (100, 300)))
+    pen.take(context, event("MOUSEMOVE", "NOTHING", (200, 300)))
+    pen.stand_on(moved(pen, x=1))
+    np.testing.assert_allclose(pen._overlay.pen[0][[0, -1], :2], [(2, 3), (3, 3)], atol=1e-5)
+    pen.take(context, event("MOUSEMOVE", "NOTHING", (350, 300)))
+    pen.take(context, event("LEFTMOUSE", "RELEASE", (350, 300)))
+    first, second = pen.session.strokes
+    np.testing.assert_allclose(ends(first), [(2, 1), (3, 1)], atol=1e-5)
+    np.testing.assert_allclose(ends(second), [(2, 3), (3.5, 3)], atol=1e-5)
+    pen.take(context, event("Z", ctrl=True))
+    (kept,) = pen.session.strokes
+    assert kept is first
+    pen.stand_on(moved(pen, x=0))
+    pen.take(context, event("Z", ctrl=True, shift=True))
+    np.testing.assert_allclose(ends(pen.session.strokes[1]), [(1, 3), (2.5, 3)], atol=1e-5)
+
+
+def test_strokes_that_splines_hold_are_not_changed_by_a_surface_that_moves(pen):
+    ground = pen.session.ground
+    held = [ground.stroke([0, 1], [(0.5, 0.5)] * 2, np.ones(2))]
+    held = [replace(each, spline=3) for each in held]
+    pen.session = Session(ground, Settings(TOLERANCE), held)
+    pen.stand_on(moved(pen, x=1))
+    assert not pen.session.is_changed
+
+
+def test_nothing_is_drawn_nor_confirmed_at_an_obstacle(pen, context, area):
+    pen.obstacle = "The faces have changed"
+    stroke(pen, context, [(1, 1), (2, 1)])
+    assert not pen.session.strokes
+    assert "The faces have changed" in area.header
+    assert pen.take(context, event("RET")) == {"RUNNING_MODAL"}
+    pen.stand_on(pen.session.ground)
+    assert pen.take(context, event("RET")) == {"FINISHED"}
+
+
+def test_a_notice_is_shown_until_something_is_drawn(pen, context, area):
+    pen.notice = "Playback was stopped"
+    pen.take(context, event("MOUSEMOVE", "NOTHING", (100, 100)))
+    assert "Playback was stopped" in area.header
+    stroke(pen, context, [(1, 1), (2, 1)])
+    assert "Playback" not in area.header
 
 
 def test_mirror(pen, context):

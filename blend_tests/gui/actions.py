@@ -269,6 +269,30 @@ def camera() -> dict[str, object]:
     }
 
 
+def animate(name: str) -> None:
+    """Lets the object move along X."""
+    ob = bpy.data.objects[name]
+    for frame, x in ((1, 0), (250, 5)):
+        ob.location.x += x
+        ob.keyframe_insert("location", frame=frame)
+
+
+def play() -> None:
+    bpy.ops.screen.animation_play()
+
+
+def is_playing() -> bool:
+    return bpy.context.screen.is_animation_playing
+
+
+def set_frame(frame: int) -> None:
+    bpy.context.scene.frame_set(frame)
+
+
+def area_count() -> int:
+    return len(bpy.context.screen.areas)
+
+
 def matrix(name: str) -> list[list[float]]:
     bpy.context.view_layer.update()
     return [list(row) for row in bpy.data.objects[name].matrix_world]

@@ -234,6 +234,65 @@ def test_nothing_drawn_is_nothing_made(blender, sheet, seen):
     assert blender.call("contents") == there
 
 
+def test_drawing_stops_playback(blender, sheet, seen):
+    blender.call("animate", "Sheet")
+    blender.call("play")
+    blender.settle()
+    start(blender)
+    assert not blender.call("is_playing")
+    blender.stroke(along(seen, LINE))
+    blender.key("Return")
+    assert len(splines(blender)) == 1
+    assert_on_sheet(blender, Sheet(blender.call("matrix", "Sheet")))
+
+
+def test_strokes_go_on_in_another_frame(blender, sheet, seen):
+    blender.call("animate", "Sheet")
+    blender.call("set_frame", 1)
+    start(blender)
+    pixels = along(seen, LINE)
+    blender.stroke(pixels)
+    blender.call("set_frame", 60)
+    moved = Sheet(blender.call("matrix", "Sheet"))
+    assert np.linalg.norm(moved.matrix - sheet.matrix) > 0.5
+    blender.stroke(pixels)
+    blender.key("Return")
+    first, second = splines(blender)
+    camera = Camera(**blender.call("camera"))
+    ends = [camera.pixel(np.array(second["points"][i])) for i in (0, -1)]
+    np.testing.assert_allclose(ends, [pixels[0], pixels[-1]], atol=0.1)
+    ends = [moved.local(np.array(first["points"][i]))[:2] for i in (0, -1)]
+    np.testing.assert_allclose(ends, [LINE[0], LINE[-1]], atol=0.02)
+    assert_on_sheet(blender, moved)
+
+
+def test_the_sidebar_is_no_surface(blender):
+    blender.call("large_sheet", 20)  # it fills the viewport
+    blender.call("show_sidebar")
+    blender.settle()
+    bar = blender.call("sidebar")
+    there = blender.call("contents")
+    start(blender)
+    x, y = bar["left"] + 40, (bar["bottom"] + bar["top"]) / 2
+    blender.stroke([(x + 8 * i, y + 5 * i) for i in range(8)])
+    blender.key("Return")
+    assert not blender.call("running")
+    assert blender.call("contents") == there
+
+
+def test_other_keys_do_nothing(blender, sheet, seen):
+    """Ctrl Space would maximise the viewport."""
+    areas = blender.call("area_count")
+    start(blender, brush=3)
+    blender.stroke(along(seen, LINE))
+    blender.key("ctrl+space", "shift+space", "ctrl+x", "ctrl+j", "alt+Return")
+    assert blender.call("running")
+    assert blender.call("area_count") == areas
+    blender.key("bracketleft", "bracketright", "Return")
+    assert len(splines(blender)) == 1
+    assert blender.call("next_settings", "view3d.limit_draw", "brush") == [3]
+
+
 def test_begun_by_the_button_and_adjusted_afterwards(blender, sheet, seen):
     blender.call("remember")
     blender.open_tab()

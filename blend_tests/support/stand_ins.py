@@ -74,6 +74,7 @@ def window_context():
         setattr(context, name, getattr(bpy.context, name, []))
     context.window_manager, context.workspace = MagicMock(), MagicMock()
     context.window = MagicMock()
+    context.screen = MagicMock(is_animation_playing=False)
     return context
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
@@ -30,9 +31,15 @@ STEP = 0.01
 
 
 class Ground:
-    def __init__(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+    def __init__(
+        self,
+        ob: bpy.types.Object,
+        depsgraph: bpy.types.Depsgraph,
+        found: cage.Cage | None = None,
+    ) -> None:
+        """The cage is read unless it has been found before."""
         self.ob = ob
-        self.posed = PosedSurface(cage.read(ob, depsgraph))
+        self.posed = PosedSurface(found or cage.read(ob, depsgraph))
         self.surface: limitsurf.LimitSurface = self.posed.in_world
         check_some_left(self.surface, ob.name)
         self.matrix = self.posed.cage.matrix
@@ -50,13 +57,15 @@ class Ground:
         before, found = self.posed.cage, cage.read(ob, depsgraph)
         signatures = following.signature(before), following.signature(found)
         if not following.have_same_faces(*signatures):
-            raise RefusalError(f"The faces of {ob.name} have changed meanwhile: nothing was made")
+            raise RefusalError(
+                f"The faces of {ob.name} have changed meanwhile: the strokes have no place on it"
+            )
         is_same = (
             np.array_equal(before.matrix, found.matrix)
             and np.array_equal(before.mesh.positions, found.mesh.positions)
             and signatures[0] == signatures[1]
         )
-        return self if is_same else Ground(ob, depsgraph)
+        return self if is_same else Ground(ob, depsgraph, found)
 
     def tolerance(self, chosen: float) -> float:
         """Returns the tolerance in world units; 0 chooses one by the surface's size."""
@@ -70,6 +79,11 @@ class Ground:
         assert on.normal is not None
         normal = self.outward * on.normal
         return Stroke(np.asarray(face, np.int32), uv, radius, on.position, normal, is_closed)
+
+    def again(self, stroke: Stroke) -> Stroke:
+        """Returns a stroke of another pose of the surface at the same locations."""
+        moved = self.stroke(stroke.face, stroke.uv, stroke.radius, stroke.is_closed)
+        return replace(moved, spline=stroke.spline)
 
     def lay(
         self,

@@ -15,6 +15,7 @@ from .ground import Ground
 from .pen import Pen
 from .session import Session, Settings
 from .stroke import LIMIT_PG_draw_point, LIMIT_PG_draw_spline
+from .surface_watch import SurfaceWatch
 
 
 class VIEW3D_OT_limit_draw(
@@ -126,31 +127,62 @@ class VIEW3D_OT_limit_draw(
         except native.refusals as error:
             return self._refuse(error)
         self._keys = subject.Keys.of(found)
+        self._watch = SurfaceWatch(found.surface)
         settings = Settings(tolerance, self.steadying, self.use_mirror, self.use_join)
         self._pen = Pen(
             context.area, Session(ground, settings, begun), self.brush, self.use_pressure
         )
         context.window_manager.modal_handler_add(self)
+        self._stop_playback(context)
         self._pen.show(context)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:
+            self._keep_up(context)
             answer = self._pen.take(context, event)
             if answer == {"FINISHED"}:
                 answer = self._confirm(context)
         except native.refusals as error:
             answer = self._refuse(error)
         except BaseException:
-            self._pen.close(context)
+            self._close(context)
             raise
         if answer & {"FINISHED", "CANCELLED"}:
-            self._pen.close(context)
+            self._close(context)
         return answer
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Is called when Blender ends the operator, for example because another file is opened."""
+        self._close(context)
+
+    def _close(self, context: bpy.types.Context) -> None:
+        self._watch.close()
         self._pen.close(context)
+
+    def _stop_playback(self, context: bpy.types.Context) -> None:
+        """Stops it in the present frame: over a surface that moves under the pen, the hand's line
+        would become another one.
+        """
+        if context.screen.is_animation_playing:
+            bpy.ops.screen.animation_cancel(restore_frame=False)
+            self._pen.notice = "Playback was stopped: a surface that moves cannot be drawn on"
+            self.report({"INFO"}, self._pen.notice)
+
+    def _keep_up(self, context: bpy.types.Context) -> None:
+        """Draws on the surface as it is by now, if a script has changed it or the frame."""
+        if not self._watch.take():
+            return
+        try:
+            found, depsgraph = self._keys.find(), context.evaluated_depsgraph_get()
+            ground = self._pen.session.ground.now(found.surface, depsgraph)
+        except native.refusals as error:
+            self._pen.obstacle = native.sentence(error)
+        else:
+            self._pen.stand_on(ground)
+        # Where reading has put back a pose without keys, the surface is evaluated once more.
+        context.evaluated_depsgraph_get()
+        self._watch.take()
 
     def _confirm(self, context: bpy.types.Context) -> set[str]:
         session = self._pen.session

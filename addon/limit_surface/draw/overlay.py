@@ -45,7 +45,7 @@ class Overlay:
         self.mark: Mark | None = None
         self.end: np.ndarray | None = None
         self.pen: list[np.ndarray] = []
-        self._before = BEFORE * size
+        self.set_size(size)
         self._lines = np.empty((0, 3), np.float32)
         self._handler = bpy.types.SpaceView3D.draw_handler_add(
             self._draw, (), "WINDOW", "POST_VIEW"
@@ -53,6 +53,10 @@ class Overlay:
 
     def remove(self) -> None:
         bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
+
+    def set_size(self, size: float) -> None:
+        """Is told the surface's extent."""
+        self._before = BEFORE * size
 
     def show(self, strokes: list[Stroke]) -> None:
         shown = [

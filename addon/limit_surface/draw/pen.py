@@ -12,6 +12,7 @@ import numpy as np
 from ..viewport import ray
 from ..viewport.lines import pixel_size
 from . import brush_sizes, keys, texts
+from .ground import Ground
 from .overlay import Mark, Overlay
 from .session import Samples, Session
 
@@ -41,6 +42,8 @@ class Pen:
         self, area: bpy.types.Area, session: Session, brush: int, use_pressure: bool
     ) -> None:
         self.session, self.brush = session, brush
+        self.notice = ""  # is shown until something is drawn
+        self.obstacle = ""  # why nothing can be drawn or confirmed at present
         self._area, self._use_pressure = area, use_pressure
         self._tool: str | None = None  # while the button is held
         self._hovering = "DRAW"
@@ -52,9 +55,26 @@ class Pen:
         self._is_open = True
         self._is_shown = True  # whether the screen shows the area
         self._told: list[bpy.types.WorkSpace] = []  # in whose status bar the keys are
-        # builds the search structure now, not at the first move
-        session.ground.surface.ray_cast(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))
         self._overlay = Overlay(session.ground.size)
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Builds the search structure now, not at the next move."""
+        surface = self.session.ground.surface
+        surface.ray_cast(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))
+
+    def stand_on(self, ground: Ground) -> None:
+        """Goes on with the surface as it is by now."""
+        self.obstacle = ""
+        if ground is self.session.ground:
+            return
+        self.session.stand_on(ground)
+        self._overlay.set_size(ground.size)
+        self._overlay.mark = self._overlay.end = None
+        if self._samples is not None:
+            self._samples.stand_on(ground)
+            self._overlay.pen = self._samples.positions()
+        self._prepare()
 
     def take(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Handles an event, and returns what the operator returns: FINISHED to confirm."""
@@ -101,6 +121,7 @@ class Pen:
         self._tool = keys.tool(event)
         if self._tool is None:
             return
+        self.notice = ""
         self._at = np.array([event.mouse_x, event.mouse_y], np.float64)
         self._pressure = self._pressure_of(event)
         self.session.begin()
@@ -130,7 +151,7 @@ class Pen:
         command = keys.command(event)
         settings = self.session.settings
         if command == "CONFIRM":
-            return "FINISHED"
+            return None if self.obstacle else "FINISHED"
         if command == "LEAVE":
             return "CANCELLED"
         if command == "UNDO":
@@ -221,10 +242,12 @@ class Pen:
 
     def _region(self, x: float, y: float) -> bpy.types.Region | None:
         """Returns the view that is seen at this place of the window: none where the header, the
-        sidebar or another region lies over it, or where the screen shows something else by now.
+        sidebar or another region lies over it, or where the screen shows something else by now. Nor
+        while there is an obstacle.
         """
         at = [region for region in self._area.regions if _covers(region, x, y)]
-        is_view = self._is_shown and all(region.type == "WINDOW" for region in at)
+        is_view = self._is_shown and not self.obstacle
+        is_view = is_view and all(region.type == "WINDOW" for region in at)
         return at[0] if at and is_view else None
 
     def _pressure_of(self, event: bpy.types.Event) -> float:
@@ -237,6 +260,7 @@ class Pen:
             self._shown = session.version
             self._overlay.show(session.strokes)
         notes = ["no surface under the mouse"] if self._is_astray else []
+        notes = [self.obstacle] if self.obstacle else [*notes, *filter(None, [self.notice])]
         self._area.header_text_set(
             texts.state(session, self._tool or self._hovering, self.brush, notes)
         )

@@ -49,6 +49,16 @@ class Samples:
     def interrupt(self) -> None:
         self.is_interrupted = True
 
+    def stand_on(self, ground: Ground) -> None:
+        """Moves what was drawn to the same locations in another pose of the surface."""
+        for part in self.parts:
+            face, uv = [face for face, *_rest in part], [uv for _face, uv, *_rest in part]
+            positions = ground.surface.evaluate(face, np.array(uv)).position
+            part[:] = [
+                (face, uv, pressure, position)
+                for (face, uv, pressure, _before), position in zip(part, positions, strict=True)
+            ]
+
     def positions(self) -> list[np.ndarray]:
         return [np.array([sample[3] for sample in part]) for part in self.parts if len(part) > 1]
 
@@ -91,6 +101,26 @@ class Session:
         """The splines whose strokes have gone or changed, all of them or some."""
         kept = {id(stroke) for stroke in self.strokes}
         return sorted({stroke.spline for stroke in self._original if id(stroke) not in kept})
+
+    def stand_on(self, ground: Ground) -> None:
+        """Goes on with another pose of the surface: all strokes, those that were taken back among
+        them, stay at their locations.
+        """
+        self.ground = ground
+        moved: dict[Stroke, Stroke] = {}
+
+        def there(strokes: list[Stroke]) -> list[Stroke]:
+            for stroke in strokes:
+                if stroke not in moved:  # the same stroke stays the same in all lists
+                    moved[stroke] = ground.again(stroke)
+            return [moved[stroke] for stroke in strokes]
+
+        self.strokes, self._original = there(self.strokes), there(self._original)
+        self._undo = [there(strokes) for strokes in self._undo]
+        self._redo = [there(strokes) for strokes in self._redo]
+        if self._before is not None:
+            self._before = there(self._before)
+        self.version += 1
 
     def begin(self) -> None:
         """Begins a change that is taken back as a whole."""
