@@ -337,3 +337,64 @@ def test_mirror(pen, context):
     one, other = pen.session.strokes
     np.testing.assert_allclose(ends(one), [(2.5, 1), (3, 2)], atol=1e-5)
     np.testing.assert_allclose(ends(other), [(1.5, 1), (1, 2)], atol=1e-5)
+
+
+def mirrored(pen):
+    """Mirrors along the plane x = 0, where the sheet begins."""
+    pen.session = Session(pen.session.ground, Settings(TOLERANCE, is_mirrored=True), [])
+    pen.session.settings.steadying = 0
+
+
+def test_no_mirror_image_where_the_surface_has_no_other_half(pen, context, area):
+    mirrored(pen)
+    stroke(pen, context, [(0.5, 1), (3, 2)])
+    (drawn,) = pen.session.strokes
+    np.testing.assert_allclose(ends(drawn), [(0.5, 1), (3, 2)], atol=1e-5)
+    assert "no surface at the mirrored place" in area.header
+    pen.take(context, event("X"))
+    assert "mirrored place" not in area.header
+
+
+def test_mirrored_brushes_touch_nothing_where_the_surface_has_no_other_half(pen, context):
+    mirrored(pen)
+    stroke(pen, context, [(0.05, 1), (0.05, 3)])
+    (before,) = pen.session.strokes
+    stroke(pen, context, [(0.29, 2), (0.3, 2)], ctrl=True)  # its radius is 0.2
+    (after,) = pen.session.strokes
+    assert after is before
+
+
+def lopsided(pen, asymmetry):
+    """Returns the session on a sheet from x = -2 to 1.5, whose left half bulges by a share of the
+    extent, mirrored at x = 2 in the view.
+    """
+    ob = pen.session.ground.ob
+    ob.data.transform(Matrix.Translation((-2, 0, 0)))
+    ob.location.x = 2
+    bulge = asymmetry * pen.session.ground.size
+    for vertex in ob.data.vertices:
+        if vertex.co.x < -0.5:
+            vertex.co.z += bulge
+        vertex.co.x = min(vertex.co.x, 1.5)
+    ob.data.update()
+    bpy.context.view_layer.update()
+    ground = Ground(ob, bpy.context.evaluated_depsgraph_get())
+    pen.session = Session(ground, Settings(TOLERANCE, is_mirrored=True), [])
+
+
+def test_mirror_images_on_a_sculpt_that_is_not_quite_symmetric(pen, context, area):
+    lopsided(pen, 0.02)
+    stroke(pen, context, [(3.2, 1), (3, 3)])
+    one, other = pen.session.strokes
+    assert "mirrored place" not in area.header
+    np.testing.assert_allclose(ends(other)[:, 1], ends(one)[:, 1], atol=0.05)
+    assert other.position[:, 2].min() > 0.05
+
+
+def test_a_mirror_image_ends_where_the_surface_does(pen, context, area):
+    lopsided(pen, 0)
+    stroke(pen, context, [(1.5, 2), (0.1, 2)])
+    one, other = pen.session.strokes
+    np.testing.assert_allclose(ends(one), [(1.5, 2), (0.1, 2)], atol=1e-5)
+    np.testing.assert_allclose(ends(other), [(2.5, 2), (3.5, 2)], atol=0.06)
+    assert "no surface at the mirrored place" in area.header

@@ -55,31 +55,8 @@ def erased(
     return [
         piece
         for dense in _dense(stroke, centre, radius, ground, tolerance)
-        for piece in _outside(dense, centre, radius)
+        for piece in dense.pieces(_distances(dense, centre) >= radius)
     ]
-
-
-def _outside(stroke: Stroke, centre: np.ndarray, radius: float) -> list[Stroke]:
-    keeps = _distances(stroke, centre) >= radius
-    if keeps.all():
-        return [stroke]
-    order = np.arange(len(stroke))
-    if stroke.is_closed:  # it opens at the first point that is erased
-        order = np.roll(order[:-1], -int(np.argmin(keeps[:-1])))
-    kept = keeps[order]
-    borders = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]])))
-    runs = [order[begin:end] for begin, end in zip(borders[::2], borders[1::2], strict=True)]
-    return [_rows(stroke, run) for run in runs if len(run) > 1]
-
-
-def _rows(stroke: Stroke, rows: np.ndarray) -> Stroke:
-    return Stroke(
-        stroke.face[rows],
-        stroke.uv[rows],
-        stroke.radius[rows],
-        stroke.position[rows],
-        stroke.normal[rows],
-    )
 
 
 def smoothed(
@@ -124,7 +101,7 @@ def continued(before: Stroke, is_last: bool, after: Stroke) -> Stroke:
     between them is still to be laid.
     """
     rows = np.arange(len(before))
-    begun = _rows(before, rows if is_last else rows[::-1])
+    begun = before.rows(rows if is_last else rows[::-1])
 
     def joined(name: str) -> np.ndarray:
         return np.concatenate([getattr(begun, name), getattr(after, name)])

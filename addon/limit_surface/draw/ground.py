@@ -29,6 +29,11 @@ PATH = 0.25
 #: path could be missed.
 STEP = 0.01
 
+#: How far the surface may be from a mirrored place, as shares of its extent. Sculpts are not quite
+#: symmetric, so it may be above or below it. It may hardly be beside it, which is where the surface
+#: ends before it comes there: on a half, strokes would be pressed together along the border.
+MIRROR_ABOVE, MIRROR_BESIDE = 0.03, 0.005
+
 
 class Ground:
     def __init__(
@@ -130,6 +135,19 @@ class Ground:
         """Returns points (n, 3) of the world mirrored along the X axis of the surface's object."""
         flip = self.matrix @ np.diag([-1.0, 1.0, 1.0, 1.0]) @ np.linalg.inv(self.matrix)
         return transformed(flip, points)
+
+    def mirror_places(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Returns the places (n, 3) of the surface that mirror points of it, and whether the
+        surface is there at all.
+        """
+        wanted = self.mirrored(points)
+        hits = self.surface.closest(wanted)
+        normal = self.surface.frames(hits.face, hits.uv)[:, :, 2]
+        arm = wanted - hits.position
+        above = np.einsum("ij,ij->i", arm, normal)
+        beside = np.linalg.norm(arm - above[:, None] * normal, axis=1)
+        is_there = np.abs(above) <= MIRROR_ABOVE * self.size
+        return hits.position, is_there & (beside <= MIRROR_BESIDE * self.size)
 
     def mirror_stroke(self, stroke: Stroke, tolerance: float) -> list[Stroke]:
         points, radius = self.mirrored(stroke.position), stroke.radius

@@ -58,7 +58,8 @@ class VIEW3D_OT_limit_draw(
     use_mirror: BoolProperty(
         name="X Mirror",
         description="Also draw, erase and smooth at the place that is mirrored along the "
-        "surface's X axis",
+        "surface's X axis. Nothing is made where the surface is farther than 3 % of its extent "
+        "from that place, or ends before it",
         default=False,
     )
     use_pressure: BoolProperty(

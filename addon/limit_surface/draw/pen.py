@@ -51,6 +51,7 @@ class Pen:
         self._pressure = 1.0
         self._samples: Samples | None = None
         self._is_astray = False
+        self._lacks_mirror = False  # whether the surface has no mirrored place of that of the mouse
         self._shown = -1
         self._is_open = True
         self._is_shown = True  # whether the screen shows the area
@@ -160,6 +161,7 @@ class Pen:
             self.session.redo()
         elif command == "MIRROR":
             settings.is_mirrored = not settings.is_mirrored
+            self._lacks_mirror = self.session.lacks_mirror = False
         elif command == "JOIN":
             settings.continues = not settings.continues
         elif command == "SMALLER":
@@ -189,7 +191,7 @@ class Pen:
         return found
 
     def _follow(self, sights: list[Sight | None]) -> None:
-        self._is_astray = True
+        self._is_astray, self._lacks_mirror = True, False
         self._overlay.mark = self._overlay.end = None
         seen = [sight for sight in sights if sight is not None]
         if seen:
@@ -232,6 +234,9 @@ class Pen:
         """Shows the brush, and the end that a new stroke would continue."""
         tool = self._tool or self._hovering
         position = hits.position[-1]
+        if self.session.settings.is_mirrored:
+            _places, is_there = self.session.ground.mirror_places(position[None])
+            self._lacks_mirror = not is_there[0]
         frame = self.session.ground.surface.frames(hits.face[-1:], hits.uv[-1:])[0]
         pixels = REACH / 2 if tool == "DRAW" else self.brush
         self._overlay.mark = Mark(position, frame, pixels, tool)
@@ -260,6 +265,8 @@ class Pen:
             self._shown = session.version
             self._overlay.show(session.strokes)
         notes = ["no surface under the mouse"] if self._is_astray else []
+        if session.settings.is_mirrored and (self._lacks_mirror or session.lacks_mirror):
+            notes.append("no surface at the mirrored place")
         notes = [self.obstacle] if self.obstacle else [*notes, *filter(None, [self.notice])]
         self._area.header_text_set(
             texts.state(session, self._tool or self._hovering, self.brush, notes)

@@ -81,6 +81,7 @@ class Session:
         self.ground, self.settings = ground, settings
         self.strokes = list(strokes)
         self.version = 0  # grows with every change
+        self.lacks_mirror = False  # whether the last change had no mirror image, or not all of it
         self._original = list(strokes)
         self._undo: list[list[Stroke]] = []
         self._redo: list[list[Stroke]] = []
@@ -125,6 +126,7 @@ class Session:
     def begin(self) -> None:
         """Begins a change that is taken back as a whole."""
         self._before = list(self.strokes)
+        self.lacks_mirror = False
 
     def end(self) -> None:
         before, self._before = self._before, None
@@ -172,9 +174,16 @@ class Session:
         self._touch(brush.smoothed, centre, radius)
 
     def _mirrored(self, stroke: Stroke) -> list[Stroke]:
+        """Returns the mirror image of a stroke, as far as the surface is there."""
         if not self.settings.is_mirrored:
             return []
-        return self.ground.mirror_stroke(stroke, self.settings.tolerance)
+        _places, is_there = self.ground.mirror_places(stroke.position)
+        self.lacks_mirror |= not is_there.all()
+        return [
+            laid
+            for piece in stroke.pieces(is_there)
+            for laid in self.ground.mirror_stroke(piece, self.settings.tolerance)
+        ]
 
     def _add(self, new: Stroke, reach: float) -> None:
         """Steadies a stroke and adds it, at the end of another one where it begins there."""
@@ -212,7 +221,9 @@ class Session:
     ) -> None:
         centres = [centre]
         if self.settings.is_mirrored:
-            centres.append(self.ground.mirrored(centre[None])[0])
+            places, is_there = self.ground.mirror_places(centre[None])
+            self.lacks_mirror |= not is_there.all()
+            centres += list(places[is_there])
         for at in centres:
             after = [
                 piece

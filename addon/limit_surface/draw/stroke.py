@@ -26,6 +26,28 @@ class Stroke:
     def __len__(self) -> int:
         return len(self.face)
 
+    def rows(self, rows: np.ndarray) -> Stroke:
+        """Returns an open stroke of these points."""
+        return Stroke(
+            self.face[rows],
+            self.uv[rows],
+            self.radius[rows],
+            self.position[rows],
+            self.normal[rows],
+        )
+
+    def pieces(self, keeps: np.ndarray) -> list[Stroke]:
+        """Returns what is left of the stroke without some of its points; itself if it keeps all."""
+        if keeps.all():
+            return [self]
+        order = np.arange(len(self))
+        if self.is_closed:  # it opens at the first point that it does not keep
+            order = np.roll(order[:-1], -int(np.argmin(keeps[:-1])))
+        kept = keeps[order]
+        borders = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]])))
+        runs = [order[begin:end] for begin, end in zip(borders[::2], borders[1::2], strict=True)]
+        return [self.rows(run) for run in runs if len(run) > 1]
+
 
 class LIMIT_PG_draw_point(bpy.types.PropertyGroup):
     """A point of a stroke, as scripts and the redo panel pass it to the operator."""
