@@ -55,7 +55,7 @@ def stroke(blender: BlenderSession) -> np.ndarray:
     blender.new_file()
     found = drags.draw_over_large_sheet(blender)
     blender.release()
-    blender.key("Escape")
+    blender.key("Escape", "Escape")
     return found
 
 

@@ -57,7 +57,7 @@ def pen(area):
     return Pen(area, Session(ground, Settings(TOLERANCE), []), 20, True)
 
 
-def event(kind, value="PRESS", at=(0, 0), pressure=None, **held):
+def event(kind, value="PRESS", at=(0, 0), pressure=None, is_repeat=False, **held):
     modifiers = {name: name in held for name in ("ctrl", "shift", "alt", "oskey")}
     return SimpleNamespace(
         type=kind,
@@ -65,7 +65,7 @@ def event(kind, value="PRESS", at=(0, 0), pressure=None, **held):
         mouse_x=at[0],
         mouse_y=at[1],
         **modifiers,
-        is_repeat=False,
+        is_repeat=is_repeat,
         is_tablet=pressure is not None,
         pressure=1.0 if pressure is None else pressure,
     )
@@ -102,6 +102,40 @@ def test_escape_drops_the_stroke_and_then_ends(pen, context):
     assert pen.take(context, event("ESC")) == {"CANCELLED"}
     pen.close(context)
     pen.close(context)  # Blender may ask for it again
+
+
+@pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
+def test_strokes_are_discarded_only_after_a_question(pen, context, area, key):
+    stroke(pen, context, [(1, 1), (2, 1)])
+    stroke(pen, context, [(1, 2), (2, 2)])
+    assert pen.take(context, event(key)) == {"RUNNING_MODAL"}
+    assert area.header.startswith("Discard 2 strokes?")
+    assert "discard what was drawn" in context.workspace.status
+    pen.take(context, event("MOUSEMOVE", "NOTHING", (100, 100)))
+    assert pen.take(context, event("MIDDLEMOUSE")) == {"PASS_THROUGH"}
+    assert area.header.startswith("Discard 2 strokes?")
+    assert len(pen.session.strokes) == 2
+    assert pen.take(context, event(key, "RELEASE")) == {"RUNNING_MODAL"}
+    assert pen.take(context, event(key)) == {"CANCELLED"}
+
+
+def test_a_key_that_is_held_does_not_answer_its_own_question(pen, context):
+    stroke(pen, context, [(1, 1), (2, 1)])
+    pen.take(context, event("ESC"))
+    for _ in range(3):
+        assert pen.take(context, event("ESC", is_repeat=True)) == {"RUNNING_MODAL"}
+    assert pen.take(context, event("RET")) == {"FINISHED"}
+
+
+def test_drawing_goes_on_after_the_question(pen, context, area):
+    stroke(pen, context, [(1, 1), (2, 1)])
+    pen.take(context, event("ESC"))
+    stroke(pen, context, [(1, 2), (2, 2)])
+    assert "Strokes: 2" in area.header
+    assert pen.take(context, event("ESC")) == {"RUNNING_MODAL"}
+    pen.take(context, event("Z", ctrl=True))
+    pen.take(context, event("Z", ctrl=True))
+    assert pen.take(context, event("ESC")) == {"CANCELLED"}  # nothing is lost
 
 
 def test_view_can_be_moved_between_strokes(pen, context):

@@ -54,6 +54,7 @@ class Pen:
         self._lacks_mirror = False  # whether the surface has no mirrored place of that of the mouse
         self._shown = -1
         self._is_open = True
+        self._asks = False  # whether to discard everything
         self._is_shown = True  # whether the screen shows the area
         self._told: list[bpy.types.WorkSpace] = []  # in whose status bar the keys are
         self._overlay = Overlay(session.ground.size)
@@ -122,7 +123,7 @@ class Pen:
         self._tool = keys.tool(event)
         if self._tool is None:
             return
-        self.notice = ""
+        self.notice, self._asks = "", False
         self._at = np.array([event.mouse_x, event.mouse_y], np.float64)
         self._pressure = self._pressure_of(event)
         self.session.begin()
@@ -154,7 +155,8 @@ class Pen:
         if command == "CONFIRM":
             return None if self.obstacle else "FINISHED"
         if command == "LEAVE":
-            return "CANCELLED"
+            return self._leave(event)
+        self._asks = False
         if command == "UNDO":
             self.session.undo()
         elif command == "REDO":
@@ -169,6 +171,15 @@ class Pen:
         elif command == "LARGER":
             self.brush = brush_sizes.larger(self.brush)
         self._hovering = keys.tool(event) or self._hovering
+        return None
+
+    def _leave(self, event: bpy.types.Event) -> str | None:
+        """Asks before anything that was drawn is lost: nothing could bring it back."""
+        if event.is_repeat:  # the key is still held
+            return None
+        if self._asks or not self.session.is_changed:
+            return "CANCELLED"
+        self._asks = True
         return None
 
     def _sights(self, to: np.ndarray, pressure: float) -> list[Sight | None]:
@@ -269,12 +280,14 @@ class Pen:
             notes.append("no surface at the mirrored place")
         notes = [self.obstacle] if self.obstacle else [*notes, *filter(None, [self.notice])]
         self._area.header_text_set(
-            texts.state(session, self._tool or self._hovering, self.brush, notes)
+            texts.question(session)
+            if self._asks
+            else texts.state(session, self._tool or self._hovering, self.brush, notes)
         )
         workspace = context.workspace
         if workspace not in self._told:  # another one may be shown by now
             self._told.append(workspace)
-        workspace.status_text_set(texts.KEYS)
+        workspace.status_text_set(texts.ANSWERS if self._asks else texts.KEYS)
         self._area.tag_redraw()
 
 

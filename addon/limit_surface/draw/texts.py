@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..counting import counted
 from .session import Session
 
 TOOL_NAMES = {"DRAW": "Draw", "ERASE": "Erase", "SMOOTH": "Smooth"}
@@ -12,6 +13,10 @@ KEYS = (
     "Drag: draw   Ctrl drag: erase   Shift drag: smooth   [ ]: brush size   X: mirror   "
     "J: join at ends   Ctrl Z: undo   Ctrl Shift Z: redo   Enter or Space: confirm   "
     "Esc or right click: cancel"
+)
+ANSWERS = (
+    "Esc or right click: discard what was drawn   Enter or Space: confirm   "
+    "Any other key or a drag: go on drawing"
 )
 
 
@@ -26,6 +31,13 @@ def state(session: Session, tool: str, brush: int, notes: Sequence[str]) -> str:
         *notes,
     ]
     return "   ".join(parts)
+
+
+def question(session: Session) -> str:
+    """Asks whether what was drawn is to be lost."""
+    count = len(session.changed)
+    what = counted(count, "strokes") if count else "the changes"
+    return f"Discard {what}? Press Esc or the right mouse button again"
 
 
 def _on(value: bool) -> str:
