@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The events of view3d.limit_draw, with a viewport that looks straight down and has no window."""
 
+from contextlib import contextmanager
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -39,14 +40,27 @@ def area():
     return Area(regions=[region], header="")
 
 
-class Workspace(SimpleNamespace):
-    def status_text_set(self, text):
-        self.status = text
+class Context(SimpleNamespace):
+    """Sets the status text of its own workspace, as Blender does, whichever is named."""
+
+    def add_workspace(self):
+        def set_text(text):
+            self.workspace.status = text
+
+        return SimpleNamespace(status_text_set=set_text, status=None)
+
+    @contextmanager
+    def temp_override(self, workspace):
+        before, self.workspace = self.workspace, workspace
+        yield
+        self.workspace = before
 
 
 @pytest.fixture
 def context(area):
-    return SimpleNamespace(workspace=Workspace(name="Layout"), screen=SimpleNamespace(areas=[area]))
+    made = Context(screen=SimpleNamespace(areas=[area]))
+    made.workspace = made.add_workspace()
+    return made
 
 
 @pytest.fixture
@@ -290,7 +304,7 @@ def test_regions_that_are_hidden_cover_nothing(pen, context, area):
 def test_another_workspace_is_shown_meanwhile(pen, context, area):
     """Nothing is drawn through a viewport that is not seen, and no text stays anywhere."""
     stroke(pen, context, [(1, 1), (2, 1)])
-    first, context.workspace = context.workspace, Workspace(name="Modeling")
+    first, context.workspace = context.workspace, context.add_workspace()
     context.screen = SimpleNamespace(areas=[])
     stroke(pen, context, [(1, 2), (2, 2)])
     assert len(pen.session.strokes) == 1

@@ -381,3 +381,7 @@ def vertex_count(name: str) -> int:
 
 def last_operator() -> str:
     return bpy.context.window_manager.operators[-1].bl_idname
+
+
+def show_workspace(name: str) -> None:
+    bpy.context.window.workspace = bpy.data.workspaces[name]

@@ -294,6 +294,22 @@ def test_other_keys_do_nothing(blender, sheet, seen):
     assert blender.call("next_settings", "view3d.limit_draw", "brush") == [3]
 
 
+def test_no_text_stays_where_another_workspace_is_shown_meanwhile(blender, sheet):
+    x, y = blender.call("view_centre")
+    before = blender.screenshot("draw_before")
+    start(blender)
+    for name in ("Rendering", "Layout"):
+        blender.call("show_workspace", name)
+        blender.settle()
+        blender.move(x + 20, y)
+        blender.key("Return")  # ends it in the first
+    assert not blender.call("running")
+    blender.move(x, y)
+    after = blender.screenshot("draw_status")
+    keys = np.s_[-20:, :400]  # where the status bar named them
+    np.testing.assert_array_equal(after[keys], before[keys])
+
+
 def test_begun_by_the_button_and_adjusted_afterwards(blender, sheet, seen):
     blender.call("remember")
     blender.open_tab()

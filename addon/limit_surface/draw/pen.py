@@ -105,7 +105,8 @@ class Pen:
             self._overlay.remove()
             self._area.header_text_set(None)
             for workspace in self._told:
-                with suppress(ReferenceError):  # it has been removed
+                # Blender sets the text of the context's workspace, whichever is named.
+                with suppress(ReferenceError), context.temp_override(workspace=workspace):
                     workspace.status_text_set(None)
             self._area.tag_redraw()
 
