@@ -23,7 +23,7 @@ class Pen:
     """Draws one stroke, and takes any event for Enter."""
 
     def __init__(self, _area, session, brush, _use_pressure):
-        self.session, self.brush = session, brush
+        self.session, self.brush, self.obstacle = session, brush, ""
         session.strokes.append(session.ground.stroke(STROKE.face, STROKE.uv, np.ones(3)))
 
     def take(self, _context, _event):
@@ -144,6 +144,9 @@ def test_nothing_is_drawn_while_the_surface_has_other_faces(start, target):
     bpy.context.view_layer.update()
     operator._keep_up(stand_ins.window_context())
     assert operator._pen.obstacle.startswith("The faces of Flat have changed meanwhile")
+    assert operator.enter() == {"RUNNING_MODAL"}
+    assert "The faces of Flat have changed meanwhile" in said(operator)
+    assert not bpy.data.curves
     target.modifiers.remove(faces)
     bpy.context.view_layer.update()
     operator._keep_up(stand_ins.window_context())

@@ -289,6 +289,12 @@ def set_frame(frame: int) -> None:
     bpy.context.scene.frame_set(frame)
 
 
+def look_closely() -> None:
+    """Brings the view so near that what lies in its middle fills it."""
+    _, window = view()
+    window.data.view_distance = 4
+
+
 def area_count() -> int:
     return len(bpy.context.screen.areas)
 

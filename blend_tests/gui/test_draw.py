@@ -268,7 +268,8 @@ def test_strokes_go_on_in_another_frame(blender, sheet, seen):
 
 
 def test_the_sidebar_is_no_surface(blender):
-    blender.call("large_sheet", 20)  # it fills the viewport
+    blender.call("large_sheet", 20)
+    blender.call("look_closely")  # the sheet fills the viewport
     blender.call("show_sidebar")
     blender.settle()
     bar = blender.call("sidebar")

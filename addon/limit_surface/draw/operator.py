@@ -142,7 +142,11 @@ class VIEW3D_OT_limit_draw(
         try:
             self._keep_up(context)
             answer = self._pen.take(context, event)
-            if answer == {"FINISHED"}:
+            if answer == {"FINISHED"} and self._pen.obstacle:
+                # it may pass, and the strokes would be lost
+                self._refuse(self._pen.obstacle)
+                answer = {"RUNNING_MODAL"}
+            elif answer == {"FINISHED"}:
                 answer = self._confirm(context)
         except native.refusals as error:
             answer = self._refuse(error)

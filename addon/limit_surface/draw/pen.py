@@ -43,7 +43,7 @@ class Pen:
     ) -> None:
         self.session, self.brush = session, brush
         self.notice = ""  # is shown until something is drawn
-        self.obstacle = ""  # why nothing can be drawn or confirmed at present
+        self.obstacle = ""  # why nothing can be drawn at present
         self._area, self._use_pressure = area, use_pressure
         self._tool: str | None = None  # while the button is held
         self._hovering = "DRAW"
@@ -154,7 +154,7 @@ class Pen:
         command = keys.command(event)
         settings = self.session.settings
         if command == "CONFIRM":
-            return None if self.obstacle else "FINISHED"
+            return "FINISHED"
         if command == "LEAVE":
             return self._leave(event)
         self._asks = False
