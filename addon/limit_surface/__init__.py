@@ -29,6 +29,7 @@ from . import (
 from .follow import stale
 from .images import pixel_undo
 from .placing import live_count
+from .tasks import running
 
 _parts = (
     preferences,
@@ -78,6 +79,7 @@ def register() -> None:
 
 def unregister() -> None:
     atexit.unregister(unregister)
+    running.end_all()
     ui.detach_presets()
     ui.remove_menus()
     sampling.detach_library()

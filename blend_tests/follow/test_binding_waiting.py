@@ -26,7 +26,7 @@ from limit_surface.snap.operator import OBJECT_OT_limit_snap
 from limit_surface.tasks import piecewise_job, watched_operator
 from limit_surface.tasks.job import Job
 from limit_surface.tasks.piecewise_job import PiecewiseJob, aside, at_once
-from stand_ins import event, stand_in_of, window_context
+from stand_ins import event, stand_in_of, status_text, window_context
 from waiting import wait_for
 
 
@@ -155,7 +155,7 @@ def test_esc_leaves_everything_as_it_was(name, slowly):
     slowly.clear()
     before = in_file()
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}
-    assert "ESC: Cancel" in context.workspace.status_text_set.call_args.args[0]
+    assert "ESC: Cancel" in status_text(context)
     assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
     assert operator.modal(context, event("A")) == {"RUNNING_MODAL"}
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}  # while the work still stands

@@ -19,6 +19,7 @@ preferences.view.show_splash = False
 preferences.view.show_tooltips = False
 
 import actions  # noqa: E402
+import meanwhile_actions  # noqa: E402
 import texture_actions  # noqa: E402
 import waiting_actions  # noqa: E402
 
@@ -31,7 +32,7 @@ POLL = 0.005  # seconds
 #: mouse in the next round, and a button that is used by a key is lit for 0.02 s before it acts.
 ROUNDS = 6
 ACTIONS = {}
-for module in (actions, texture_actions, waiting_actions):
+for module in (actions, meanwhile_actions, texture_actions, waiting_actions):
     for word, action in vars(module).items():
         if callable(action) and ACTIONS.setdefault(word, action) is not action:
             raise ImportError(f"two functions for the window tests have the name {word}")

@@ -4,6 +4,9 @@
 How soon it ends is measured by tools/bench_window.py.
 """
 
+import time
+
+import numpy as np
 import pytest
 from session import class_name
 
@@ -12,6 +15,8 @@ POINTS = "Limit Points"
 START = ["Camera", "Cube", "Light"]
 SOME_SECONDS = 200_000  # number of points
 MOST = 3_000_000  # the largest number made without confirmation, which takes about a minute
+AT_ONCE = 15  # seconds that are less than that minute, also on a busy machine
+STATUS_BAR = 20  # the number of rows of pixels at the lower edge of the screen
 
 
 @pytest.fixture
@@ -44,6 +49,23 @@ def test_esc_ends_it_at_once(blender, scatter):
     blender.click(*blender.find_button(ADD_POINTS))
     blender.await_end(ADD_POINTS)
     assert blender.call("vertex_count", POINTS) == 300
+
+
+def test_disabling_the_extension_ends_it(blender, scatter):
+    threads = blender.call("threads")
+    blender.move(*blender.call("view_centre"))
+    before = blender.screenshot("before_waiting")[-STATUS_BAR:]
+    scatter(MOST)
+    assert blender.call("running") == [class_name(ADD_POINTS)]
+    started = time.monotonic()
+    blender.call("disable_and_enable")
+    blender.move(*blender.call("view_centre"))  # Blender forgets the operator at the next event
+    assert blender.call("running") == []
+    blender.await_value(threads, "threads")
+    assert time.monotonic() - started < AT_ONCE
+    assert blender.call("objects") == START
+    after = blender.screenshot("waiting_disabled")[-STATUS_BAR:]
+    np.testing.assert_array_equal(after, before)
 
 
 def test_points_come_when_they_are_ready(blender, scatter):

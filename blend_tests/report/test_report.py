@@ -23,6 +23,7 @@ from limit_surface.tasks import watched_operator as watched_module
 from limit_surface.tasks.watched_operator import WatchedOperator
 from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
+from stand_ins import status_text
 from waiting import LIMIT, wait_for
 
 AMONG = 8  # number of parts along a side of each triangle
@@ -429,7 +430,7 @@ def test_long_work_is_waited_for(slowly):
     operator, context = watched()
     assert operator.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
     assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
-    assert "Measuring sheet: 50%" in context.workspace.status_text_set.call_args.args[0]
+    assert "Measuring sheet: 50%" in status_text(context)
     assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}
     assert ids.DISTANCE not in ob.data.attributes
     slowly.set()

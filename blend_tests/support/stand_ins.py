@@ -31,7 +31,8 @@ def stand_in_of(operator, **chosen):
     own = {name: _with_class(value, cell) for name, value in own.items()}
     cell.cell_contents = cls = type("StandIn", bases, own)
     made = cls()
-    kind = getattr(bpy.ops.object, operator.bl_idname.partition(".")[2]).get_rna_type()
+    category, name = operator.bl_idname.split(".")
+    kind = getattr(getattr(bpy.ops, category), name).get_rna_type()
     return with_properties(made, kind, chosen)
 
 
@@ -76,6 +77,13 @@ def window_context():
     context.window = MagicMock()
     context.screen = MagicMock(is_animation_playing=False)
     return context
+
+
+def status_text(context):
+    """Returns the text that the status bar shows in the context's window."""
+    header, draw = MagicMock(), context.workspace.status_text_set.call_args.args[0]
+    draw(header, context)
+    return header.layout.label.call_args.kwargs["text"]
 
 
 def event(kind, value="PRESS"):

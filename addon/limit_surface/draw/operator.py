@@ -10,6 +10,7 @@ from .. import ids, native
 from ..errors import RefusalError
 from ..placing.follow_properties import FollowProperties, why_it_stays
 from ..tasks.properties import SummaryProperty, check_numbers, draw_summary
+from ..tasks.running import Running
 from . import brush_sizes, curve_object, properties, result, splines, stroke, subject
 from .ground import Ground
 from .pen import Pen
@@ -133,6 +134,7 @@ class VIEW3D_OT_limit_draw(
         self._pen = Pen(
             context.area, Session(ground, settings, begun), self.brush, self.use_pressure
         )
+        self._pen.running = Running(context, self._close)
         context.window_manager.modal_handler_add(self)
         self._stop_playback(context)
         self._pen.show(context)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import bpy
 import numpy as np
 
+from ..tasks.running import Running
 from ..viewport import ray
 from ..viewport.lines import pixel_size
 from . import brush_sizes, keys, texts
@@ -37,6 +38,8 @@ class Sight(NamedTuple):
 
 class Pen:
     """Turns events into changes of the session."""
+
+    running: Running | None = None
 
     def __init__(
         self, area: bpy.types.Area, session: Session, brush: int, use_pressure: bool
@@ -102,6 +105,8 @@ class Pen:
     def close(self, context: bpy.types.Context) -> None:
         if self._is_open:
             self._is_open = False
+            if self.running:
+                self.running.over()
             self._overlay.remove()
             self._area.header_text_set(None)
             for workspace in self._told:

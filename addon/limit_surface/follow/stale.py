@@ -106,5 +106,8 @@ def attach_handlers() -> None:
 
 def detach_handlers() -> None:
     _forget()
+    for timer in (_look, _report):
+        if bpy.app.timers.is_registered(timer):
+            bpy.app.timers.unregister(timer)
     for handlers, handler in _HANDLERS:
         handlers.remove(handler)

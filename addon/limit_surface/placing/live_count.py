@@ -85,6 +85,11 @@ class LiveCount:
         self._trouble = ""
         self._is_stale = True
 
+    def stop(self) -> None:
+        """Ends the timer."""
+        if bpy.app.timers.is_registered(self._look_later):
+            bpy.app.timers.unregister(self._look_later)
+
     def _look(self) -> float | None:
         """Is called by a timer, and returns the seconds until the next call, or None."""
         if self._question is None:
@@ -174,6 +179,8 @@ def attach_handlers() -> None:
 
 
 def detach_handlers() -> None:
+    for count in _counts.values():
+        count.stop()
     _counts.clear()
     for handlers, handler in _HANDLERS:
         handlers.remove(handler)

@@ -8,6 +8,8 @@ from contextlib import contextmanager
 
 import bpy
 
+from .status_bar import StatusText
+
 TICK = 0.1  # seconds
 
 
@@ -30,7 +32,7 @@ class Waiting:
 
     def __init__(self, context: bpy.types.Context, text: str) -> None:
         self._text = text
-        self._workspace = context.workspace
+        self._status = StatusText(context)
         self._window_manager = context.window_manager
         self._timer = self._window_manager.event_timer_add(TICK, window=context.window)
         self._window_manager.progress_begin(0, 100)
@@ -38,9 +40,9 @@ class Waiting:
 
     def show(self, part: float) -> None:
         self._window_manager.progress_update(int(100 * part))
-        self._workspace.status_text_set(f"{self._text}: {part:.0%}    ESC: Cancel")
+        self._status.show(f"{self._text}: {part:.0%}    ESC: Cancel")
 
     def end(self) -> None:
         self._window_manager.event_timer_remove(self._timer)
         self._window_manager.progress_end()
-        self._workspace.status_text_set(None)
+        self._status.clear()

@@ -36,6 +36,7 @@ from .job import Job
 from .polling import mesh_in_object_mode
 from .progress import TICK, Waiting, progress_bar
 from .properties import SummaryProperty, check_numbers
+from .running import Running
 from .unchanged import Unchanged
 
 #: Where a user waits, work that is not done after so many seconds shows its progress while Blender
@@ -103,17 +104,17 @@ class WatchedOperator(SummaryProperty):
         self._waiting.show(job.part)
         if not is_done:
             return {"RUNNING_MODAL"}
-        self._waiting.end()
+        self._end_waiting()
         return self._guarded(self._finish, context, self._taken_job())
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """Is called at ESC, or when another file is loaded or Blender quits while the work runs.
-        ESC in a dialog calls it before there is a job.
+        """Is called at ESC, or when another file is loaded, Blender quits or the extension is
+        disabled while the work runs. ESC in a dialog calls it before there is a job.
         """
         job = self._taken_job()
         if job is not None:
             job.cancel()
-            self._waiting.end()
+            self._end_waiting()
 
     def watch(self, context: bpy.types.Context, job: Job, text: str) -> set[str]:
         someone_waits, self._someone_waits = self._someone_waits, False
@@ -125,6 +126,7 @@ class WatchedOperator(SummaryProperty):
         if job.wait(PATIENCE):
             return self._finish(context, job)
         self._job, self._waiting = job, Waiting(context, text)
+        self._running = Running(context, self.cancel)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -142,6 +144,10 @@ class WatchedOperator(SummaryProperty):
         self._relied_on += tuple(
             Unchanged(ob, data=data, shape=shape, placed=placed, named=named) for ob in objects
         )
+
+    def _end_waiting(self) -> None:
+        self._running.over()
+        self._waiting.end()
 
     def _check_relied_on(self) -> None:
         for each in self._relied_on:
