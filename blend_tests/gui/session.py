@@ -130,6 +130,7 @@ class BlenderSession:
         self._screen = screen
         # where something was found the last time: it is searched there first
         self._heights: dict[str, float] = {}
+        self._read = 0  # the number of characters of Blender's output that were read
         self.installed = install_extension(user)
         address = user / "socket"
         self._environment = {
@@ -180,6 +181,12 @@ class BlenderSession:
         raised, value = self._connection.recv()
         assert not raised, value
         return value
+
+    def log(self) -> str:
+        """Returns what Blender has printed since this was called the last time."""
+        text = (OUT / "blender.log").read_text()
+        begin, self._read = self._read, len(text)
+        return text[begin:]
 
     def await_value(self, value: Any, name: str, *arguments: Any) -> None:
         """Waits until the function within Blender returns this value."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from .. import ids, native
 from ..reading import attributes, cage
+from ..tasks.object_keys import ObjectKey
 from . import live_attributes
 from .followers import live_modifier_of, modifier_of, surface_of
 from .live_unbinding import places_now
@@ -23,7 +24,7 @@ class PresentShape:
     """Raises RefusalError or CageError where it is not known."""
 
     def __init__(self, ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
-        self.data = ob.data
+        self._key = ObjectKey.of(ob)  # undo may take all data away while hair is dragged
         self._values: dict[str, np.ndarray] = {}  # of those attributes that differ from the data's
         surface = surface_of(ob)
         if modifier_of(ob):
@@ -34,6 +35,10 @@ class PresentShape:
             rotation = attributes.read(ob.data, ids.REST_ROTATION)
             rotation[rows] = native.limitsurf.quaternions(places.frame)
             self._values[ids.REST_ROTATION] = rotation
+
+    @property
+    def data(self) -> bpy.types.Curves:
+        return self._key.find().data
 
     def read(self, name: str) -> np.ndarray:
         """Returns a copy of the attribute's values."""

@@ -28,8 +28,8 @@ class HairBinding:
     """
 
     def __init__(self, shape: PresentShape, surface: TargetSurface, is_whole: bool) -> None:
-        data: bpy.types.Curves = shape.data
-        self._data, self._shape = data, shape
+        data = shape.data
+        self._shape = shape
         self._surface, self._is_whole = surface, is_whole
         for name, kind in _KINDS.items():
             attribute = data.attributes.get(name)
@@ -43,6 +43,10 @@ class HairBinding:
                 f"{data.name} is hair of {data.surface.name}: select all its strands to move it to "
                 f"{surface.ob.name}"
             )
+
+    @property
+    def _data(self) -> bpy.types.Curves:
+        return self._shape.data
 
     @property
     def target(self) -> bpy.types.Object:

@@ -37,16 +37,28 @@ class SnappedVertices(SnappedPoints):
 
     def move(self, rows: np.ndarray, moves: np.ndarray) -> None:
         with _outside_edit_mode():
-            mesh, key = self.ob.data, self.ob.active_shape_key
-            if key is None:
-                _move_vertices(mesh, rows, moves)
-            else:
-                blocks = mesh.shape_keys.key_blocks
-                for block in (key, *_dependent(key, blocks)):
-                    _move_points(block.data, rows, moves)
-                if key == mesh.shape_keys.reference_key:
-                    _move_vertices(mesh, rows, moves)
-            mesh.update()
+            move_in_object_mode(self.ob, rows, moves)
+
+
+def points_in_object_mode(ob: bpy.types.Object) -> np.ndarray:
+    """Returns the positions (n, 3) of the points that editing the mesh would show."""
+    points = ob.active_shape_key.data if ob.active_shape_key else ob.data.vertices
+    found = np.empty((len(points), 3), np.float32)
+    points.foreach_get("co", found.ravel())
+    return found
+
+
+def move_in_object_mode(ob: bpy.types.Object, rows: np.ndarray, moves: np.ndarray) -> None:
+    mesh, key = ob.data, ob.active_shape_key
+    if key is None:
+        _move_vertices(mesh, rows, moves)
+    else:
+        blocks = mesh.shape_keys.key_blocks
+        for block in (key, *_dependent(key, blocks)):
+            _move_points(block.data, rows, moves)
+        if key == mesh.shape_keys.reference_key:
+            _move_vertices(mesh, rows, moves)
+    mesh.update()
 
 
 def _flags(mesh: bpy.types.Mesh, name: str) -> np.ndarray:

@@ -1,14 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The limit surface in world space to which things are snapped."""
 
+from __future__ import annotations
+
 from typing import Literal
 
 import bpy
 import numpy as np
 
+from ..errors import RefusalError
+from ..placing import following
 from ..placing.posed_surface import SAME, Places, PosedSurface, positions_seen_from, seen_from
-from ..reading import cage, displayed_mesh, rules
+from ..reading import cage, displayed_mesh
+from ..tasks.object_keys import ObjectKey
 from ..tasks.refused_faces import check_some_left
+from ..tasks.unchanged import AGAIN, Unchanged
 
 
 class TargetSurface:
@@ -23,7 +29,8 @@ class TargetSurface:
         depsgraph: bpy.types.Depsgraph,
         kind: displayed_mesh.Kind | Literal["LIMIT"],
     ) -> None:
-        self.ob = ob
+        # undo may take all objects away while something is dragged
+        self._key, self._unchanged, self._kind = ObjectKey.of(ob), Unchanged(ob), kind
         self._stood = ob.matrix_world.copy()
         self.cage = cage.read(ob, depsgraph)
         posed = PosedSurface(self.cage)
@@ -35,15 +42,38 @@ class TargetSurface:
         )
         self.outward = -1.0 if self.cage.is_mirrored else 1.0
 
-    def has_changed(self, depsgraph: bpy.types.Depsgraph) -> bool:
-        """Tells whether the surface has changed since it was read, because it depends on what was
-        put on it.
+    @property
+    def ob(self) -> bpy.types.Object:
+        """Raises RefusalError if the object has been removed."""
+        return self._key.find()
+
+    def now(self, depsgraph: bpy.types.Depsgraph) -> TargetSurface:
+        """Returns the surface of the same object as it is by now. Raises RefusalError if its faces
+        have changed, so that locations on them mean other places.
         """
-        if self.ob.matrix_world != self._stood:
+        self._unchanged.check()
+        ob, before = self.ob, self.cage
+        found = cage.read(ob, depsgraph)
+        signatures = following.signature(before), following.signature(found)
+        if not following.have_same_faces(*signatures):
+            raise RefusalError(f"The faces of {ob.name} were changed meanwhile: {AGAIN}")
+        is_same = (
+            self._shown is None
+            and signatures[0] == signatures[1]
+            and np.array_equal(before.matrix, found.matrix)
+            and np.array_equal(before.mesh.positions, found.mesh.positions)
+        )
+        return self if is_same else TargetSurface(ob, depsgraph, self._kind)
+
+    def has_changed(self, depsgraph: bpy.types.Depsgraph) -> bool:
+        """Tells whether the surface lies elsewhere than when it was read. Where nothing else can
+        have changed since, it depends on what was put on it: by its constraints, its drivers, which
+        also move shape keys, or its modifiers.
+        """
+        ob = self.ob
+        if ob.matrix_world != self._stood:
             return True
-        if not self.ob.modifiers or self.ob.modifiers[0] == rules.find_subsurf(self.ob):
-            return False
-        now, before = cage.read(self.ob, depsgraph).mesh.positions, self.cage.mesh.positions
+        now, before = cage.read(ob, depsgraph).mesh.positions, self.cage.mesh.positions
         return now.shape != before.shape or np.abs(now - before).max() > SAME * np.abs(before).max()
 
     def size(self) -> float:

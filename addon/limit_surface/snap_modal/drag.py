@@ -7,6 +7,7 @@ from functools import cached_property
 import bpy
 import numpy as np
 
+from .. import native
 from ..errors import RefusalError
 from ..snap.surface import TargetSurface
 from ..viewport.ray import Ray
@@ -74,7 +75,8 @@ class Glide:
     def place(self, offset: float) -> Place:
         found = self.surface.places(np.array([self.face]), self.uv[None], np.eye(4))
         position, frame = found.position[0], found.frame[0]
-        return Place(self.face, self.uv, position + offset * frame[:, 2], frame)
+        position = position + offset * frame[:, 2]
+        return Place(self.surface, self.face, self.uv, position, frame)
 
     def bending(self) -> Bending:
         surface = self.surface
@@ -96,19 +98,44 @@ class Drag:
             self.place = self.glide.place(offset)
             self.handle.put(self.place, align, hair)
 
-    def confirm(self) -> None:
-        """Confirms the place. If this raises a RefusalError, everything is restored."""
+    def confirm(self, offset: float, align: str, hair: str) -> None:
+        """Puts the thing at its location on the surface as it is now, which may have moved since it
+        was read, and leaves it there. If this raises an error, everything is restored.
+        """
         try:
-            if self.glide.surface.has_changed(bpy.context.evaluated_depsgraph_get()):
-                raise RefusalError(
-                    f"{self.handle.name} cannot be put there, because {self.glide.surface.ob.name} "
-                    "depends on it"
-                )
+            self.handle.check()
+            surface = self.glide.surface = self._surface_now()
+            self.put(offset, align, hair)
+            if surface.has_changed(bpy.context.evaluated_depsgraph_get()):
+                raise self._is_depended_on()
             assert self.place is not None
-            self.handle.confirm(self.place)
-        except RefusalError:
+            self.handle.confirm(self.place, align)
+        except Exception:
             self.handle.restore()
             raise
+
+    def _surface_now(self) -> TargetSurface:
+        """Returns the surface as it is now. Raises RefusalError if it would be another one without
+        what is dragged.
+        """
+        before = self.glide.surface
+        try:
+            now = before.now(bpy.context.evaluated_depsgraph_get())
+        except native.refusals:
+            self.handle.restore()
+            before.now(bpy.context.evaluated_depsgraph_get())  # raises the reason again, or:
+            raise self._is_depended_on() from None
+        if now is not before:
+            self.handle.restore()
+            if now.has_changed(bpy.context.evaluated_depsgraph_get()):
+                raise self._is_depended_on()
+        return now
+
+    def _is_depended_on(self) -> RefusalError:
+        return RefusalError(
+            f"{self.handle.name} cannot be put there, because {self.glide.surface.ob.name} "
+            "depends on it"
+        )
 
 
 def offset_step(surface: TargetSurface) -> float:

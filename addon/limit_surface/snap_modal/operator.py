@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operator view3d.limit_snap_modal."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import bpy
 import numpy as np
 from bpy.props import FloatVectorProperty, IntProperty
@@ -11,7 +15,9 @@ from ..snap.binding_again import bind_again
 from ..snap.properties import ALIGNMENTS, HAIR, PlacingProperties
 from ..snap.surface import TargetSurface
 from ..tasks.properties import check_numbers
-from ..viewport import ray
+from ..tasks.running import Running
+from ..viewport.ray import Ray
+from ..viewport.view import View
 from .drag import Drag, Glide, nearest_in_sight, offset_step
 from .drawing import Drawing, Mark
 from .subject import Subject, find_subject
@@ -24,6 +30,12 @@ MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 WHEEL = {"WHEELUPMOUSE": 1, "WHEELDOWNMOUSE": -1}
 CLICK = 3  # in pixels: a smaller move with the button pressed is a click, not a drag
 FINE = 0.1  # the share of a wheel step that is used with Shift
+KEYS = (
+    "Click or Enter: confirm   Esc or right click: cancel   Wheel or number: offset "
+    "(Shift: fine)   X: face border   Y: boundary   Z: free   A: align   H: hair   "
+    "Ctrl Wheel, middle mouse: view"
+)
+RUNNING = {"RUNNING_MODAL"}
 
 
 class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
@@ -94,10 +106,10 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             glide.go_to(self.face, self.uv)
             drag = Drag(glide, subject.handle(self.element, surface))
             drag.put(self.offset, self.align, self.hair)
-            drag.confirm()
+            drag.confirm(self.offset, self.align, self.hair)
         except native.refusals as error:
             return self._refuse(error)
-        self._bind_again(subject, context)
+        self._bind_again(subject)
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -105,6 +117,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             return self._refuse("Only available in a 3D viewport")
         try:
             self._subject = find_subject(context)
+            self._unchanged = self._subject.unchanged()
             depsgraph = context.evaluated_depsgraph_get()
             self._glide = Glide(TargetSurface(self._subject.target, depsgraph, self.target))
             self._glide.prepare()
@@ -117,78 +130,101 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
                 self._take(-1)
         except native.refusals as error:
             return self._refuse(error)
-        self._area = context.area
+        self._view, self._drawing = View(context), Drawing()
+        self._running = Running(context, self.cancel)
         self._step = offset_step(self._glide.surface)
         self._typed, self._offset_before_typing = TypedNumber(), self.offset
         self._pressed_at: tuple[int, int] | None = None
         self._is_astray = False
-        self._drawing = Drawing()
-        context.window_manager.modal_handler_add(self)
-        self._show_keys(context)
-        self._follow(context, event)
-        return {"RUNNING_MODAL"}
+        self._view.show_keys(KEYS)
+        answer = self._take_event(event, self._begin)
+        if answer == RUNNING:
+            context.window_manager.modal_handler_add(self)
+        return answer
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        try:
-            result = self._handle(context, event)
-        except native.refusals as error:
-            self._restore()
-            result = self._refuse(error)
-        except BaseException:
-            self._restore()
-            self._clean_up(context)
-            raise
-        if result & {"FINISHED", "CANCELLED"}:
-            self._clean_up(context)
-        return result
+        return self._take_event(event, self._handle)
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Is called when Blender ends the operator, for example because another file is opened."""
-        self._restore()
-        self._clean_up(context)
+        """Is called when Blender ends the operator, for example because another file is opened, and
+        when the extension is disabled.
+        """
+        self._end(restores=True)
 
-    def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def _take_event(
+        self, event: bpy.types.Event, handle: Callable[[bpy.types.Event], set[str]]
+    ) -> set[str]:
+        """Handles an event. However the drag ends, nothing of it stays on the screen."""
+        answer = {"CANCELLED"}
+        try:
+            if not self._view.exists:
+                raise RefusalError("The 3D viewport was closed meanwhile")
+            answer = handle(event)
+            if answer == RUNNING:
+                self._show_state()
+        except native.refusals as error:
+            answer = self._refuse(error)
+        finally:
+            if answer & {"FINISHED", "CANCELLED"}:
+                self._end(restores=answer == {"CANCELLED"})
+        return answer
+
+    def _begin(self, event: bpy.types.Event) -> set[str]:
+        self._follow(event)
+        return RUNNING
+
+    def _handle(self, event: bpy.types.Event) -> set[str]:
         kind, is_press = event.type, event.value == "PRESS"
         if kind in NAVIGATION or (kind in WHEEL and (event.ctrl or self._drag is None)):
             return {"PASS_THROUGH"}
         if kind in MOVES:
-            self._follow(context, event)
+            self._follow(event)
         elif kind in {"ESC", "RIGHTMOUSE"} and is_press:
-            self._restore()
             return {"CANCELLED"}
         elif kind == "LEFTMOUSE":
-            return self._click(context, event)
+            return self._click(event)
         elif self._drag is None or not is_press:
             pass
         elif kind in {"RET", "NUMPAD_ENTER"}:
-            return self._confirm(context)
-        elif kind in WHEEL:
+            return self._confirm()
+        elif not (event.ctrl or event.alt or event.oskey):
+            # with one of these a key means something else, which has to wait: undo, for example
+            self._key(event)
+        return RUNNING
+
+    def _key(self, event: bpy.types.Event) -> None:
+        drag, kind = self._drag, event.type
+        assert drag is not None
+        if kind in WHEEL:
             self._typed = TypedNumber()
             self.offset += WHEEL[kind] * self._step * (FINE if event.shift else 1)
             self._put()
         elif kind in LOCK_KEYS:
             self._lock(LOCK_KEYS[kind])
-            self._follow(context, event)
-        elif kind == "A" and self._drag.handle.can_turn:
+            self._follow(event)
+        elif kind == "A" and drag.handle.can_turn:
             self.align = _next(ALIGNMENTS, self.align)
             self._put()
-        elif kind == "H" and self._drag.handle.has_strand:
+        elif kind == "H" and drag.handle.has_strand:
             self.hair = _next(HAIR, self.hair)
             self._put()
         else:
             self._type(event)
-        self._show_state(context)
-        return {"RUNNING_MODAL"}
 
-    def _click(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def _click(self, event: bpy.types.Event) -> set[str]:
         """Picks an element with the mouse. It is dragged while the button is held, or after a click
         until the next click confirms.
+
+        A click beside the viewport, also on a sidebar or header that overlaps it, is ignored: it is
+        not meant for what is behind, and a button there would change the scene during the drag.
         """
         at = (event.mouse_x, event.mouse_y)
+        if event.value == "PRESS" and not self._view.is_over(event):
+            return RUNNING
         if event.value == "PRESS":
             if self._drag is not None:
-                return self._confirm(context)
-            self._follow(context, event)
+                return self._confirm()
+            self._follow(event)
             if self._hovered is not None:
                 self._take(self._hovered)
                 self._pressed_at = at
@@ -196,34 +232,27 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             dragged = np.hypot(*np.subtract(at, self._pressed_at)) > CLICK
             self._pressed_at = None
             if dragged:
-                return self._confirm(context)
-        self._show_state(context)
-        return {"RUNNING_MODAL"}
+                return self._confirm()
+        return RUNNING
 
     def _take(self, element: int) -> None:
+        self._unchanged.check()
         self.element = element
         handle = self._subject.handle(element, self._glide.surface)
         self._drag = Drag(self._glide, handle)
 
-    def _follow(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
-        sight = self._sight(event)
+    def _follow(self, event: bpy.types.Event) -> None:
+        sight = self._view.sight(event)
         if sight is None:
-            return
-        if self._drag is None:
+            self._is_astray = True
+        elif self._drag is None:
             self._hover(sight)
         else:
             self._is_astray = not self._glide.follow(sight)
             self._put()
-        self._area.tag_redraw()
+        self._view.redraw()
 
-    def _sight(self, event: bpy.types.Event) -> ray.Ray | None:
-        for region in self._area.regions:
-            x, y = event.mouse_x - region.x, event.mouse_y - region.y
-            if region.type == "WINDOW" and 0 <= x < region.width and 0 <= y < region.height:
-                return ray.through(region, region.data, event.mouse_x, event.mouse_y)
-        return None
-
-    def _hover(self, sight: ray.Ray) -> None:
+    def _hover(self, sight: Ray) -> None:
         candidates = self._candidates
         assert candidates is not None
         self._hovered = nearest_in_sight(candidates, sight, self._glide.surface)
@@ -240,7 +269,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         if place is not None:
             directions = self._glide.bending().directions
             self._drawing.mark = Mark(place.position, place.frame, place.frame[:, 2], directions)
-        self._area.tag_redraw()
+        self._view.redraw()
 
     def _lock(self, lock: str) -> None:
         """Locks the drag to a border. The same key releases it again."""
@@ -261,7 +290,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         self.offset = self._typed.value if self._typed else self._offset_before_typing
         self._put()
 
-    def _confirm(self, context: bpy.types.Context) -> set[str]:
+    def _confirm(self) -> set[str]:
         drag = self._drag
         assert drag is not None
         if drag.place is None:
@@ -269,25 +298,24 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
                 {"WARNING"}, "Nothing was moved, because the mouse was never over the surface"
             )
             return {"CANCELLED"}
-        drag.confirm()
-        self._bind_again(self._subject, context)
+        drag.confirm(self.offset, self.align, self.hair)
+        self._bind_again(self._subject)
         self.face, self.uv = self._glide.face, self._glide.uv
         return {"FINISHED"}
 
-    def _bind_again(self, subject: Subject, context: bpy.types.Context) -> None:
+    def _bind_again(self, subject: Subject) -> None:
         if subject.kind == "STRAND":
-            for warning in bind_again([subject.ob], subject.target, context):
+            for warning in bind_again([subject.ob], subject.target, bpy.context):
                 self.report({"WARNING"}, warning)
 
-    def _restore(self) -> None:
-        if self._drag is not None:
-            self._drag.handle.restore()
-
-    def _clean_up(self, context: bpy.types.Context) -> None:
-        self._drawing.remove()
-        self._area.header_text_set(None)
-        context.workspace.status_text_set(None)
-        self._area.tag_redraw()
+    def _end(self, restores: bool) -> None:
+        self._running.over()
+        try:
+            if restores and self._drag is not None:
+                self._drag.handle.restore()
+        finally:
+            self._drawing.remove()
+            self._view.clear()
 
     def _check_element(self, subject: Subject) -> None:
         if subject.is_picked and not 0 <= self.element < len(subject.candidates()):
@@ -297,12 +325,10 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         self.report({"ERROR"}, native.sentence(reason))
         return {"CANCELLED"}
 
-    def _show_state(self, context: bpy.types.Context) -> None:
+    def _show_state(self) -> None:
         if self._drag is None:
             noun = "vertex" if self._subject.kind == "VERTEX" else "strand"
-            self._area.header_text_set(
-                f"Press the mouse button on a {noun} and drag it, or click it"
-            )
+            self._view.show_state(f"Press the mouse button on a {noun} and drag it, or click it")
             return
         offset = self._typed.text or f"{self.offset:.6g}"
         parts = [f"Offset: {offset}", LOCK_NAMES[self._glide.lock]]
@@ -313,15 +339,7 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             parts.append(f"Hair: {_label(HAIR, self.hair)}")
         if self._is_astray:
             parts.append("no surface under the mouse")
-        self._area.header_text_set("   ".join(parts))
-
-    def _show_keys(self, context: bpy.types.Context) -> None:
-        context.workspace.status_text_set(
-            "Click or Enter: confirm   Esc or right click: cancel   Wheel or number: offset "
-            "(Shift: fine)   X: face border   Y: boundary   Z: free   A: align   H: hair   "
-            "Ctrl Wheel, middle mouse: view"
-        )
-        self._show_state(context)
+        self._view.show_state("   ".join(parts))
 
 
 def _next(items: tuple[tuple[str, str, str, int], ...], chosen: str) -> str:

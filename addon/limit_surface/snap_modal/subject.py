@@ -14,16 +14,32 @@ from ..snap.mesh_vertices import as_edited
 from ..snap.selection import ancestors
 from ..snap.surface import TargetSurface
 from ..tasks.editable import check_data_editable
-from .handles import DraggedObject, DraggedStrand, DraggedVertex, Handle
+from ..tasks.object_keys import ObjectKey
+from ..tasks.unchanged import Unchanged
+from .dragged_strand import DraggedStrand
+from .dragged_vertex import DraggedVertex
+from .handles import DraggedObject, Handle
 
 HAIR_MODES = ("OBJECT", "EDIT_CURVES", "SCULPT_CURVES")
 
 
 @dataclass(frozen=True)
 class Subject:
+    """It finds both objects anew each time, because they may be removed meanwhile, also by undo."""
+
     kind: str  # OBJECT, VERTEX, STRAND
-    ob: bpy.types.Object
-    target: bpy.types.Object
+    dragged: ObjectKey
+    surface: ObjectKey
+
+    @property
+    def ob(self) -> bpy.types.Object:
+        """Raises RefusalError if it has been removed."""
+        return self.dragged.find()
+
+    @property
+    def target(self) -> bpy.types.Object:
+        """Raises RefusalError if it has been removed."""
+        return self.surface.find()
 
     @property
     def is_picked(self) -> bool:
@@ -42,6 +58,10 @@ class Subject:
         data.curves.foreach_get("first_point_index", first)
         shape = PresentShape(self.ob, bpy.context.evaluated_depsgraph_get())
         return transformed(matrix, shape.read(ids.POSITION)[first].astype(np.float64))
+
+    def unchanged(self) -> Unchanged:
+        """Returns what tells later whether the elements are still those that are there now."""
+        return Unchanged(self.ob, data=self.is_picked)
 
     def handle(self, element: int, surface: TargetSurface) -> Handle:
         if self.kind == "OBJECT":
@@ -73,7 +93,7 @@ def find_subject(context: bpy.types.Context) -> Subject:
     if target.data == active.data:
         raise RefusalError(f"{active.name} cannot be dragged over itself: choose another target")
     check_data_editable(active.data)
-    return Subject(kind, active, target)
+    return Subject(kind, ObjectKey.of(active), ObjectKey.of(target))
 
 
 def _object(context: bpy.types.Context, target: bpy.types.Object) -> Subject:
@@ -85,7 +105,7 @@ def _object(context: bpy.types.Context, target: bpy.types.Object) -> Subject:
         raise RefusalError(f"{ob.name} is linked from another file")
     if ob in ancestors(target):
         raise RefusalError(f"{ob.name} would move {target.name} with it")
-    return Subject("OBJECT", ob, target)
+    return Subject("OBJECT", ObjectKey.of(ob), ObjectKey.of(target))
 
 
 def _vertices(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -16,7 +16,7 @@ from ..errors import RefusalError
 from ..reading import attributes, splines
 from .object_keys import ObjectKey
 
-_AGAIN = "run the operator again"
+AGAIN = "run the operator again"
 #: What a report calls the layout of an object's data
 _LAYOUTS = {
     "MESH": "The faces",
@@ -58,7 +58,7 @@ class Unchanged:
         """Raises RefusalError where that is not so any more."""
         ob = self._key.find()
         if self._matrix is not None and ob.matrix_world != self._matrix:
-            raise RefusalError(f"{ob.name} was moved meanwhile: {_AGAIN}")
+            raise RefusalError(f"{ob.name} was moved meanwhile: {AGAIN}")
         if self._of_data:
             self._check_data(ob)
 
@@ -67,20 +67,18 @@ class Unchanged:
         if is_edited and not self._is_edited:
             raise RefusalError(f"{ob.name} was put into Edit Mode meanwhile: leave it first")
         if self._is_edited and not is_edited:
-            raise RefusalError(f"{ob.name} has left Edit Mode meanwhile: {_AGAIN}")
+            raise RefusalError(f"{ob.name} has left Edit Mode meanwhile: {AGAIN}")
         if _number_of(ob.data) != self._data:
-            raise RefusalError(f"{ob.name} was given other data meanwhile: {_AGAIN}")
+            raise RefusalError(f"{ob.name} was given other data meanwhile: {AGAIN}")
         if _layout_of(ob) != self._layout:
             what = _LAYOUTS[ob.type]
-            raise RefusalError(f"{what} of {ob.name} were changed meanwhile: {_AGAIN}")
+            raise RefusalError(f"{what} of {ob.name} were changed meanwhile: {AGAIN}")
         if self._shape is not None and _shape_of(ob) != self._shape:
-            raise RefusalError(f"Points of {ob.name} were moved meanwhile: {_AGAIN}")
+            raise RefusalError(f"Points of {ob.name} were moved meanwhile: {AGAIN}")
         for name, before in self._sums.items():
             if _sum_of(ob.data, name) != before:
                 kind = "UV map" if name in self._uv_maps else "attribute"
-                raise RefusalError(
-                    f"The {kind} {name} of {ob.name} was changed meanwhile: {_AGAIN}"
-                )
+                raise RefusalError(f"The {kind} {name} of {ob.name} was changed meanwhile: {AGAIN}")
 
 
 def faces_of(mesh: bpy.types.Mesh) -> tuple[int, int, int]:
