@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The events of view3d.limit_draw, with a viewport that looks straight down and has no window."""
 
-from contextlib import contextmanager
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,6 +12,7 @@ from limit_surface.draw.ground import Ground
 from limit_surface.draw.pen import Pen
 from limit_surface.draw.session import Session, Settings
 from mathutils import Matrix
+from stand_ins import status_text, window_context
 
 SIDE = 400  # pixels that show 4 units
 TOLERANCE = 1e-3
@@ -40,35 +40,21 @@ def area():
     return Area(regions=[region], header="")
 
 
-class Context(SimpleNamespace):
-    """Sets the status text of its own workspace, as Blender does, whichever is named."""
-
-    def add_workspace(self):
-        def set_text(text):
-            self.workspace.status = text
-
-        return SimpleNamespace(status_text_set=set_text, status=None)
-
-    @contextmanager
-    def temp_override(self, workspace):
-        before, self.workspace = self.workspace, workspace
-        yield
-        self.workspace = before
-
-
 @pytest.fixture
 def context(area):
-    made = Context(screen=SimpleNamespace(areas=[area]))
-    made.workspace = made.add_workspace()
+    made = window_context()
+    made.screen = SimpleNamespace(areas=[area])
     return made
 
 
 @pytest.fixture
-def pen(area):
+def pen(area, context):
     ob = scenes.flat_grid(4)
     bpy.context.view_layer.update()
     ground = Ground(ob, bpy.context.evaluated_depsgraph_get())
-    return Pen(area, Session(ground, Settings(TOLERANCE), []), 20, True)
+    made = Pen(area, Session(ground, Settings(TOLERANCE), []), 20, True)
+    yield made
+    made.close(context)
 
 
 def event(kind, value="PRESS", at=(0, 0), pressure=None, is_repeat=False, **held):
@@ -124,7 +110,7 @@ def test_strokes_are_discarded_only_after_a_question(pen, context, area, key):
     stroke(pen, context, [(1, 2), (2, 2)])
     assert pen.take(context, event(key)) == {"RUNNING_MODAL"}
     assert area.header.startswith("Discard 2 strokes?")
-    assert "discard what was drawn" in context.workspace.status
+    assert "discard what was drawn" in status_text(context)
     pen.take(context, event("MOUSEMOVE", "NOTHING", (100, 100)))
     assert pen.take(context, event("MIDDLEMOUSE")) == {"PASS_THROUGH"}
     assert area.header.startswith("Discard 2 strokes?")
@@ -304,12 +290,12 @@ def test_regions_that_are_hidden_cover_nothing(pen, context, area):
 def test_another_workspace_is_shown_meanwhile(pen, context, area):
     """Nothing is drawn through a viewport that is not seen, and no text stays anywhere."""
     stroke(pen, context, [(1, 1), (2, 1)])
-    first, context.workspace = context.workspace, context.add_workspace()
     context.screen = SimpleNamespace(areas=[])
     stroke(pen, context, [(1, 2), (2, 2)])
     assert len(pen.session.strokes) == 1
     pen.close(context)
-    assert (first.status, context.workspace.status, area.header) == (None, None, None)
+    context.workspace.status_text_set.assert_called_with(None)
+    assert area.header is None
 
 
 def test_stroke_is_divided_where_it_leaves_the_surface(pen, context):

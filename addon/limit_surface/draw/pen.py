@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
 import numpy as np
 
 from ..tasks.running import Running
+from ..tasks.status_bar import StatusText
 from ..viewport import ray
 from ..viewport.lines import pixel_size
+from ..viewport.view import region_at
 from . import brush_sizes, keys, texts
 from .ground import Ground
 from .overlay import Mark, Overlay
@@ -59,7 +60,7 @@ class Pen:
         self._is_open = True
         self._asks = False  # whether to discard everything
         self._is_shown = True  # whether the screen shows the area
-        self._told: list[bpy.types.WorkSpace] = []  # in whose status bar the keys are
+        self._status: StatusText | None = None
         self._overlay = Overlay(session.ground.size)
         self._prepare()
 
@@ -109,10 +110,8 @@ class Pen:
                 self.running.over()
             self._overlay.remove()
             self._area.header_text_set(None)
-            for workspace in self._told:
-                # Blender sets the text of the context's workspace, whichever is named.
-                with suppress(ReferenceError), context.temp_override(workspace=workspace):
-                    workspace.status_text_set(None)
+            if self._status:
+                self._status.clear()
             self._area.tag_redraw()
 
     def move(self, event: bpy.types.Event) -> None:
@@ -267,10 +266,7 @@ class Pen:
         sidebar or another region lies over it, or where the screen shows something else by now. Nor
         while there is an obstacle.
         """
-        at = [region for region in self._area.regions if _covers(region, x, y)]
-        is_view = self._is_shown and not self.obstacle
-        is_view = is_view and all(region.type == "WINDOW" for region in at)
-        return at[0] if at and is_view else None
+        return region_at(self._area, x, y) if self._is_shown and not self.obstacle else None
 
     def _pressure_of(self, event: bpy.types.Event) -> float:
         return event.pressure if self._use_pressure and event.is_tablet else 1.0
@@ -290,14 +286,7 @@ class Pen:
             if self._asks
             else texts.state(session, self._tool or self._hovering, self.brush, notes)
         )
-        workspace = context.workspace
-        if workspace not in self._told:  # another one may be shown by now
-            self._told.append(workspace)
-        workspace.status_text_set(texts.ANSWERS if self._asks else texts.KEYS)
+        if self._status is None:
+            self._status = StatusText(context)
+        self._status.show(texts.ANSWERS if self._asks else texts.KEYS)
         self._area.tag_redraw()
-
-
-def _covers(region: bpy.types.Region, x: float, y: float) -> bool:
-    """Tells whether the place lies on the region. One that is hidden has a single pixel."""
-    is_shown = region.width > 1 and region.height > 1
-    return is_shown and 0 <= x - region.x < region.width and 0 <= y - region.y < region.height
