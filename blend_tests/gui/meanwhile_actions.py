@@ -67,7 +67,3 @@ def middle_of(kind: str) -> tuple[float, float]:
 def points(name: str) -> list[tuple[float, ...]]:
     """Returns the positions of a mesh's vertices, in Edit Mode as before it."""
     return [tuple(vertex.co) for vertex in bpy.data.objects[name].data.vertices]
-
-
-def show_workspace(name: str) -> None:
-    bpy.context.window.workspace = bpy.data.workspaces[name]

@@ -18,7 +18,7 @@ from limit_surface.placing import scatter_operator
 from limit_surface.reading import attributes
 from limit_surface.tasks import watched_operator
 from limit_surface.tasks.job import Job, part_of
-from stand_ins import OPERATORS, event, stand_in, window_context
+from stand_ins import OPERATORS, event, stand_in, status_text, window_context
 from waiting import LIMIT, wait_for
 
 
@@ -52,7 +52,7 @@ def test_long_work_is_waited_for(name, slowly):
     before = scenes.file_contents()
     assert operator.invoke(context, None) == {"RUNNING_MODAL"}
     context.window_manager.modal_handler_add.assert_called_once_with(operator)
-    assert "ESC: Cancel" in context.workspace.status_text_set.call_args.args[0]
+    assert "ESC: Cancel" in status_text(context)
     for what in ("TIMER", "MOUSEMOVE", "A"):
         assert operator.modal(context, event(what)) == {"RUNNING_MODAL"}
     assert operator.modal(context, event("WHEELUPMOUSE")) == {"PASS_THROUGH"}

@@ -14,6 +14,7 @@ from limit_surface.errors import CancelledError
 from limit_surface.project_image import decal_job, properties, texture_job
 from limit_surface.tasks import watched_operator as watched_module
 from limit_surface.tasks.watched_operator import WatchedOperator
+from stand_ins import status_text, window_context
 from waiting import wait_for
 
 OPERATOR = "OBJECT_OT_limit_project_image"
@@ -34,11 +35,7 @@ def waiting_operator(**chosen):
         setattr(operator, p.identifier, chosen.get(p.identifier, value))
     operator.properties = operator
     operator.report, operator.layout = MagicMock(), MagicMock()
-    context = MagicMock(wraps=bpy.context)
-    context.active_object = bpy.context.active_object
-    context.scene = bpy.context.scene
-    context.window_manager, context.workspace = MagicMock(), MagicMock()
-    return operator, context
+    return operator, window_context()
 
 
 @pytest.fixture
@@ -87,8 +84,7 @@ def test_long_work_can_be_cancelled(slowly, mode):
     assert operator.execute(context) == {"RUNNING_MODAL"}
     job = operator._job
     assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
-    said = context.workspace.status_text_set.call_args.args[0]
-    assert "Projecting Shown: 50%" in said
+    assert "Projecting Shown: 50%" in status_text(context)
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
     assert operator.report.call_args.args[1] == "Cancelled: nothing was projected"
     slowly.set()
