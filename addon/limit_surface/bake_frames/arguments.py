@@ -45,7 +45,7 @@ def parse(argv: Sequence[str]) -> Arguments:
     return Arguments(
         frames=range(first, last + 1, found.step),
         objects=tuple(sorted(set(found.objects))),
-        folder=Path(found.output).absolute(),
+        folder=found.output.absolute(),
         format=exporters.FORMATS[found.format],
         overwrite=found.overwrite,
     )
@@ -73,8 +73,21 @@ def _parser() -> argparse.ArgumentParser:
         help="first and last frame, or one frame; write --frames=-5-10 where the first is negative",
     )
     add("--step", type=_step, default=1, metavar="N", help="only every N-th frame, counted from A")
-    add("--objects", required=True, nargs="+", metavar="NAME", help="names of the objects")
-    add("--output", required=True, metavar="DIR", help="the folder to write to; made if missing")
+    add(
+        "--objects",
+        required=True,
+        nargs="+",
+        action="extend",
+        metavar="NAME",
+        help="names of the objects; write --objects=NAME for one that begins with a dash",
+    )
+    add(
+        "--output",
+        required=True,
+        type=_folder,
+        metavar="DIR",
+        help="the folder to write to; made if missing",
+    )
     add(
         "--format",
         choices=exporters.FORMATS,
@@ -98,6 +111,16 @@ def _frames(text: str) -> tuple[int, int]:
             f"{text!r}: Blender has no frames before {-_LARGEST_FRAME} or after {_LARGEST_FRAME}"
         )
     return first, last
+
+
+def _folder(text: str) -> Path:
+    if not text:
+        raise argparse.ArgumentTypeError("it is empty; expected a folder")
+    if text.startswith("//"):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is relative to the .blend file, which only Blender's own paths can be"
+        )
+    return Path(text)
 
 
 def _step(text: str) -> int:

@@ -34,6 +34,7 @@ class Bake:
 
     def __init__(self, arguments: Arguments) -> None:
         arguments.format.check()
+        _check_libraries()
         self._arguments = arguments
         self._scene = bpy.context.scene
         self.objects = _find(arguments, self._scene)
@@ -90,7 +91,8 @@ class Bake:
                 _show(subjects)
                 is_shown = True
             try:
-                bindings.check_frame(subject.ob, self._scene)
+                as_rendered = self._arguments.format.as_rendered
+                bindings.check_frame(subject.ob, self._scene, as_rendered)
                 with self._files.written(path) as partial:
                     self._arguments.format.write(partial, subject)
             except _TROUBLE as error:
@@ -103,6 +105,24 @@ class Bake:
             if self._arguments.format.as_rendered and subject.ob.hide_render:
                 remarks.append(f"{subject.ob.name} is disabled in renders: its file is empty")
         return done, remarks
+
+
+def _check_libraries() -> None:
+    """Raises RefusalError where something is missing that the file links: Blender shows what
+    depends on it without it, at rest for example, and says nothing.
+    """
+    for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.hair_curves, bpy.data.armatures):
+        for block in kind:
+            if block.is_missing:
+                raise RefusalError(
+                    f"{block.name} is missing: it cannot be read from {block.library.filepath}"
+                )
+    for library in bpy.data.libraries:
+        path = Path(bpy.path.abspath(library.filepath, library=library.parent))
+        if not library.packed_file and not path.is_file():
+            raise RefusalError(
+                f"the library {library.filepath} is missing: there is no file {path}"
+            )
 
 
 def _find(arguments: Arguments, scene: bpy.types.Scene) -> list[bpy.types.Object]:

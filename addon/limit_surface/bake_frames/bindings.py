@@ -12,7 +12,16 @@ from ..nodes import children, groups
 from ..nodes.follow import TILES
 from ..placing import all_tiles, followers, following, live, live_children, live_kept
 from ..placing.follow_state import State, Trouble
-from ..reading import attributes, cage
+from ..reading import attributes, cage, rules
+
+#: The types of modifiers that move vertices, or change their data, and nothing else
+_DEFORMING = {
+    *("ARMATURE", "CAST", "CLOTH", "CORRECTIVE_SMOOTH", "CURVE", "DATA_TRANSFER", "DISPLACE"),
+    *("HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH", "LATTICE", "MESH_CACHE", "MESH_DEFORM"),
+    *("MESH_SEQUENCE_CACHE", "NORMAL_EDIT", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY"),
+    *("SURFACE_DEFORM", "UV_PROJECT", "UV_WARP", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX"),
+    *("VERTEX_WEIGHT_PROXIMITY", "VOLUME_DISPLACE", "WARP", "WAVE", "WEIGHTED_NORMAL"),
+}
 
 
 def check(objects: Sequence[bpy.types.Object]) -> None:
@@ -37,11 +46,15 @@ def check(objects: Sequence[bpy.types.Object]) -> None:
             _check_nodes(thing, depsgraph.scene)
 
 
-def check_frame(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    """Raises RefusalError if the object cannot follow its surface in the current frame."""
+def check_frame(ob: bpy.types.Object, scene: bpy.types.Scene, as_rendered: bool) -> None:
+    """Raises RefusalError if the object cannot follow its surface in the current frame.
+    `as_rendered` tells that what renders show is written, and not what the viewport shows.
+    """
     for thing in _needed(ob):
         check_live(thing, scene)
         _check_nodes(thing, scene)
+        if as_rendered:
+            _check_render(thing)
 
 
 def check_live(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
@@ -53,6 +66,22 @@ def check_live(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
     reason = live_kept.trouble(ob)
     if reason:
         raise RefusalError(reason)
+
+
+def _check_render(ob: bpy.types.Object) -> None:
+    """Raises RefusalError where renders show other faces of its surface than the viewport, to which
+    the object is bound.
+    """
+    surface = followers.followed_surface(ob) or live_children.surface_of(ob)
+    if surface is None:
+        return
+    for modifier in surface.modifiers[: rules.place_of_subsurf(surface)]:
+        if modifier.show_viewport != modifier.show_render and modifier.type not in _DEFORMING:
+            raise RefusalError(
+                f"{ob.name} is bound to the faces that the viewport shows of {surface.name}, and "
+                "files of this format hold what renders show: enable the modifier "
+                f"{modifier.name} in both, or in neither, or use --format npz"
+            )
 
 
 def _needed(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:

@@ -18,7 +18,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..errors import RefusalError
-from . import alembic_file, arrays
+from . import alembic_file, arrays, usd_file
 
 #: Of a matrix, as a share of its largest number. Rounding in Blender loses 5e-5 where an axis is a
 #: thousand times shorter than the others.
@@ -57,6 +57,7 @@ def build_options() -> Any:
 
 
 def _write_alembic(path: Path, subject: Subject) -> None:
+    _check_scale(subject.ob)
     _check_shear(subject.ob)
     _export(
         bpy.ops.wm.alembic_export,
@@ -73,6 +74,7 @@ def _write_alembic(path: Path, subject: Subject) -> None:
 
 
 def _write_usd(path: Path, subject: Subject) -> None:
+    _check_scale(subject.ob)
     _export(
         bpy.ops.wm.usd_export,
         filepath=str(path),
@@ -88,6 +90,24 @@ def _write_usd(path: Path, subject: Subject) -> None:
         xform_op_mode="MAT",  # location, rotation and scale cannot hold shear
         evaluation_mode="RENDER",
     )
+    usd_file.check_complete(path)
+
+
+def _check_scale(ob: bpy.types.Object) -> None:
+    """Raises RefusalError where the object or one of its parents is flat: the exporters then write
+    a transform of zeros.
+    """
+    flat = ""
+    found: bpy.types.Object | None = ob
+    while found:
+        if not all(found.matrix_world.to_scale()):
+            flat = found.name  # the last one has made the others flat
+        found = found.parent
+    if flat:
+        raise RefusalError(
+            f"{flat} has a scale of 0 along an axis, which Blender's exporters do not write: use "
+            "--format npz"
+        )
 
 
 def _check_shear(ob: bpy.types.Object) -> None:

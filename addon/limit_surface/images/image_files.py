@@ -45,6 +45,10 @@ PNG_8 = FileKind("PNG", "8", ".png")
 KINDS = {"EXR_32": EXR_32, "EXR_16": EXR_16, "PNG_16": PNG_16, "PNG_8": PNG_8}
 
 
+#: The last chunk of every PNG file: no bytes of the kind IEND, and their checksum
+_PNG_END = bytes(4) + b"IEND" + bytes.fromhex("ae426082")
+
+
 def save_copy(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
     """Saves a copy of the image, which itself does not change. Raises RefusalError where the file
     cannot be written.
@@ -56,6 +60,19 @@ def save_copy(image: bpy.types.Image, path: str | Path, kind: FileKind) -> None:
             image.save_render(str(path), scene=scene)
     except RuntimeError as error:
         raise RefusalError(f"{path} cannot be written: {str(error).strip()}") from error
+    if kind.file_format == "PNG" and not _is_whole_png(path):
+        raise RefusalError(f"{path} was not written completely: the disk may be full")
+
+
+def _is_whole_png(path: Path) -> bool:
+    """Tells whether a file has the end of a PNG file: Blender does not say where it could write
+    only a part.
+    """
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - len(_PNG_END)))
+        return file.read() == _PNG_END
 
 
 def save_pixels(pixels: np.ndarray, path: str | Path, kind: FileKind) -> None:

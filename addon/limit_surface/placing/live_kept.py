@@ -15,6 +15,7 @@ from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes
+from .followers import sharers
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
 
@@ -50,8 +51,10 @@ def _is_edited(kind: str, name: str, library: str | None) -> bool:
 def trouble(ob: bpy.types.Object) -> str:
     """Returns the reason why the object, or a part of it, does not follow at present."""
     kept = thing(ob)
+    # of objects that share their data one is posed, for all
+    reasons = (_troubles.get(ObjectKey.of(each), "") for each in (ob, *sharers(ob)))
     return (
-        _troubles.get(ObjectKey.of(ob), "")
+        next(filter(None, reasons), "")
         or _lost_frames(ob, kept.lost_frames)
         or _added(ob, kept.added)
     )
@@ -121,7 +124,8 @@ def each(
         except (RefusalError, ValueError, MemoryError) as error:
             refuse([ob], native.sentence(error) or "There is not enough memory")
         else:
-            _troubles.pop(ObjectKey.of(ob), None)
+            for well in (ob, *sharers(ob)):
+                _troubles.pop(ObjectKey.of(well), None)
             yield ob
 
 
