@@ -13,6 +13,7 @@ from limit_surface.nodes import groups
 from limit_surface.placing.followers import live_modifier_of, modifier_of
 from limit_surface.reading import attributes
 from mathutils import Euler, Matrix
+from meanwhile_cases import select
 
 FRAMES = ((1, 0.0), (13, 0.5), (30, 0.0))
 #: What attaching may change in an object's matrix, in single precision
@@ -44,13 +45,6 @@ def props(ob: bpy.types.Object, count: int = 6, seed: int = 1) -> list[bpy.types
         made.append(add_object(f"Prop {i}", data, matrix @ Matrix.Diagonal((1, 2, 0.5, 1))))
     bpy.context.view_layer.update()
     return made
-
-
-def select(ob: bpy.types.Object, objects: list[bpy.types.Object]) -> None:
-    bpy.ops.object.select_all(action="DESELECT")
-    for each in (*objects, ob):
-        each.select_set(True)
-    scenes.activate(ob)
 
 
 def attach(ob: bpy.types.Object, objects: list[bpy.types.Object]) -> None:

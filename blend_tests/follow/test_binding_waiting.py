@@ -26,6 +26,7 @@ from limit_surface.snap.operator import OBJECT_OT_limit_snap
 from limit_surface.tasks import piecewise_job, watched_operator
 from limit_surface.tasks.job import Job
 from limit_surface.tasks.piecewise_job import PiecewiseJob, aside, at_once
+from meanwhile_cases import add_cable, select
 from stand_ins import event, stand_in_of, status_text, window_context
 from waiting import wait_for
 
@@ -46,13 +47,6 @@ def loose_hair(ob):
         if name.startswith("limit_"):
             hair.data.attributes.remove(hair.data.attributes[name])
     return hair
-
-
-def select(ob, things):
-    bpy.ops.object.select_all(action="DESELECT")
-    for each in (*things, ob):
-        each.select_set(True)
-    scenes.activate(ob)
 
 
 def bound(mode):
@@ -192,15 +186,8 @@ def test_curves_are_laid_piece_by_piece(monkeypatch):
     monkeypatch.setattr(fitting.Fit, "spline", slow_fit)
     monkeypatch.setattr(watched_operator, "PATIENCE", 0.01)
     monkeypatch.setattr(watched_operator, "TICK", 0.01)
-    ob = surface()
-    data = bpy.data.curves.new("Cable", "CURVE")
-    data.dimensions = "3D"
-    for i in range(6):
-        spline = data.splines.new("POLY")
-        spline.points.add(1)
-        spline.points[0].co, spline.points[1].co = (0.4, 0.2 + 0.1 * i, 1, 1), (0.8, 0.3, 1, 1)
-    cable = bpy.data.objects.new("Cable", data)
-    bpy.context.collection.objects.link(cable)
+    ob, cable = surface(), add_cable()
+    data = cable.data
     select(ob, [cable])
     before = [tuple(point.co) for spline in data.splines for point in spline.points]
 

@@ -13,6 +13,8 @@ if shutil.which("xdotool") is None or not Path("/out").is_dir():
     collect_ignore_glob = ["*.py"]
 else:
     sys.path.insert(0, str(Path(__file__).parent))
+    import numpy as np
+    from quadric import Camera, Sheet, height
     from session import BlenderSession, virtual_screen
 
     @pytest.fixture(scope="session")
@@ -32,3 +34,15 @@ else:
         """
         session.new_file()
         return session
+
+    @pytest.fixture
+    def sheet(blender):
+        found = Sheet(blender.call("sheet"))
+        blender.settle()
+        return found
+
+    @pytest.fixture
+    def seen(blender, sheet):
+        """Returns the pixel, in whole numbers, at which a local point of the sheet is seen."""
+        camera = Camera(**blender.call("camera"))
+        return lambda x, y: np.round(camera.pixel(sheet.world(np.array([x, y, height(x, y)]))))

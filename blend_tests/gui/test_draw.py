@@ -4,7 +4,7 @@
 import drags
 import numpy as np
 import pytest
-from quadric import Camera, Sheet, height
+from quadric import Camera, Sheet
 from session import is_near
 
 TOLERANCE = 1e-3
@@ -14,20 +14,6 @@ SIZE = np.array([6.0, 5.0])  # of the sheet
 #: Half a pixel at the distance of the sheet, and what steadying straightens
 PIXELS = 3.0
 STROKE, PEN = (38, 217, 255), (255, 204, 26)
-
-
-@pytest.fixture
-def sheet(blender):
-    found = Sheet(blender.call("sheet"))
-    blender.settle()
-    return found
-
-
-@pytest.fixture
-def seen(blender, sheet):
-    """Returns the pixel, in whole numbers, at which a local point of the sheet is seen."""
-    camera = Camera(**blender.call("camera"))
-    return lambda x, y: np.round(camera.pixel(sheet.world(np.array([x, y, height(x, y)]))))
 
 
 def start(blender, **properties):

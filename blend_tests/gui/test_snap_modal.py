@@ -3,27 +3,13 @@
 
 import numpy as np
 import pytest
-from quadric import Camera, Sheet, boundary_height, height
+from quadric import Camera, boundary_height, height
 
 ON_SURFACE = 1e-6  # the error of Blender's single precision for coordinates up to 4
 PIXEL = 0.1  # the error of single precision in the view's inverted matrix
 
 DRAWN = ((0.25, 0.55, 1.0), (1.0, 0.45, 0.1), (0.2, 0.85, 0.35))  # normal, principal directions
 STORED = ("limit_face", "limit_uv", "rest_root")
-
-
-@pytest.fixture
-def sheet(blender):
-    found = Sheet(blender.call("sheet"))
-    blender.settle()
-    return found
-
-
-@pytest.fixture
-def seen(blender, sheet):
-    """Returns the pixel, in whole numbers, at which a local point of the sheet is seen."""
-    camera = Camera(**blender.call("camera"))
-    return lambda x, y: np.round(camera.pixel(sheet.world(np.array([x, y, height(x, y)]))))
 
 
 def position(blender, name):

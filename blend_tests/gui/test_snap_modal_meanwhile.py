@@ -14,17 +14,10 @@ ROUNDED = 2  # the largest difference of a color where the same is drawn anew
 
 
 @pytest.fixture
-def sheet(blender):
-    found = Sheet(blender.call("sheet"))
+def sheet(blender, sheet):
     blender.call("pin")
     blender.settle()
-    return found
-
-
-@pytest.fixture
-def seen(blender, sheet):
-    camera = Camera(**blender.call("camera"))
-    return lambda x, y: np.round(camera.pixel(sheet.world(np.array([x, y, height(x, y)]))))
+    return sheet
 
 
 def position(blender, name="Pin"):

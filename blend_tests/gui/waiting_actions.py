@@ -1,10 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Functions for the window tests of work that takes long."""
 
+import gc
+
 import bpy
 import numpy as np
 from actions import activate, remember, sheet
 from texture_actions import start
+
+EXTENSION = "bl_ext.user_default.limit_surface"
+KEPT = []  # filled by keep_job
+
+
+def keep_job() -> None:
+    """Keeps the one job that runs, also where the extension forgets it."""
+    (job,) = (
+        each
+        for each in gc.get_objects()
+        if type(each).__name__ == "Job" and type(each).__module__.startswith(EXTENSION)
+        if not each.is_done
+    )
+    KEPT.append(job)
+
+
+def kept_job_is_cancelled() -> bool:
+    return KEPT[-1]._cancelled.is_set()
 
 
 def points_above_sheet(count: int) -> None:

@@ -179,8 +179,8 @@ def snapped_hair():
     return stand_in_of(OBJECT_OT_limit_snap)
 
 
-def laid_curve():
-    ob = surface()
+def add_cable() -> bpy.types.Object:
+    """Adds six lines above the surface, to be laid onto it."""
     data = bpy.data.curves.new("Cable", "CURVE")
     data.dimensions = "3D"
     for i in range(6):
@@ -189,7 +189,12 @@ def laid_curve():
         spline.points[0].co, spline.points[1].co = (0.4, 0.2 + 0.1 * i, 1, 1), (0.8, 0.3, 1, 1)
     cable = bpy.data.objects.new("Cable", data)
     bpy.context.collection.objects.link(cable)
-    select(ob, [cable])
+    return cable
+
+
+def laid_curve():
+    ob = surface()
+    select(ob, [add_cable()])
     return stand_in_of(OBJECT_OT_limit_curve_lay, spline="POLY")
 
 
