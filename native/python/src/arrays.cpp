@@ -7,6 +7,7 @@
 
 #include "limitsurf/error.h"
 #include "limitsurf/parallel.h"
+#include "result_memory.h"
 
 namespace limitsurf::python {
 namespace {
@@ -223,14 +224,14 @@ Points pointsOf(const Doubles& array, int threads) {
 py::array_t<double> pointArray(Points points) { return rowArray(std::move(points)); }
 
 Output::Output(const py::dtype& dtype, std::vector<py::ssize_t> shape)
-    : array_(py::array(dtype, std::move(shape))),
+    : array_(newArray(dtype, std::move(shape))),
       data_(array_->mutable_data()),
       single_(dtype.itemsize() == 4) {}
 
 Floats resultArray(const py::object& out, const std::string& name,
                    const std::vector<py::ssize_t>& shape) {
   if (out.is_none()) {
-    return Floats(shape);
+    return newArray(py::dtype::of<float>(), shape);
   }
   refuseMasked(out, name.c_str());
   if (!py::isinstance<Floats>(out)) {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "limitsurf/error.h"
+#include "result_memory.h"
 
 namespace limitsurf::python {
 namespace {
@@ -69,8 +70,8 @@ void checkDerivatives(int derivatives, int highest) {
 
 py::object locations(const Locations& at) {
   const auto rows = static_cast<py::ssize_t>(at.size());
-  py::array_t<int> face(rows);
-  py::array_t<double> uv({rows, py::ssize_t{2}});
+  auto face = newArray<int>({rows});
+  auto uv = newArray<double>({rows, 2});
   int* faces = face.mutable_data();
   double* uvs = uv.mutable_data();
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

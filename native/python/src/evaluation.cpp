@@ -8,6 +8,7 @@
 #include "choices.h"
 #include "docstrings.h"
 #include "limitsurf/large_pages.h"
+#include "result_memory.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -109,7 +110,7 @@ py::object curvature(const SharedSurface& shared, const py::object& face, const 
   for (Output& output : directions) {
     output = Output(type, {rows, 3});
   }
-  py::array_t<bool> is_irregular(rows);
+  auto is_irregular = newArray<bool>({rows});
   bool* const flags = is_irregular.mutable_data();
   if (scalars[0].isSingle()) {
     inChunks(shared.lock, at, [&](std::size_t begin, const LocationBatch& chunk) {

@@ -15,6 +15,7 @@
 #include "matrices.h"
 #include "progress.h"
 #include "projection_docstrings.h"
+#include "result_memory.h"
 
 namespace limitsurf::python {
 namespace {
@@ -64,7 +65,7 @@ py::object sample(const FilteredImage& image, const py::object& st, const py::ob
   }
   const ProgressReport report(progress);
   const Eigen::Index rows = places.shape(0);
-  Floats out({rows, Eigen::Index{image.channels()}});
+  Floats out = newArray<float>({rows, Eigen::Index{image.channels()}});
   const Eigen::Map<const ImagePoints> all_places(places.data(), rows, 2);
   const Eigen::Map<const Footprints> all_steps(steps.data(), rows, 4);
   float* to = out.mutable_data();
@@ -97,7 +98,7 @@ py::object imageBounds(const FilteredImage& image, const py::object& boxes, int 
     bounds = image.bounds(Eigen::Map<const ImageBoxes>(array.data(), array.shape(0), 4), threads);
   }
   const auto channels = static_cast<std::size_t>(image.channels());
-  Floats out({array.shape(0), py::ssize_t{2}, static_cast<py::ssize_t>(channels)});
+  Floats out = newArray<float>({array.shape(0), 2, static_cast<py::ssize_t>(channels)});
   float* const to = out.mutable_data();
   forEachRow(static_cast<std::size_t>(array.shape(0)), [&](std::size_t row) {
     std::copy_n(bounds.low.data() + channels * row, channels, to + 2 * channels * row);

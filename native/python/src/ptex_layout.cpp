@@ -10,6 +10,7 @@
 #include "bound_class.h"
 #include "limitsurf/displace/ptex_layout.h"
 #include "limitsurf/image/bilinear_image.h"
+#include "result_memory.h"
 
 namespace limitsurf::python {
 namespace {
@@ -65,8 +66,8 @@ py::object texels(const PtexLayout& layout) {
   const std::vector<PtexLayout::Pixel> pixels = released([&] { return layout.pixels(); });
   const Locations at = released([&] { return layout.locations(); });
   const auto rows = static_cast<py::ssize_t>(at.size());
-  py::array_t<int> x(rows), y(rows), face(rows);
-  py::array_t<double> uv({rows, py::ssize_t{2}});
+  auto x = newArray<int>({rows}), y = newArray<int>({rows}), face = newArray<int>({rows});
+  auto uv = newArray<double>({rows, 2});
   int *const to_x = x.mutable_data(), *const to_y = y.mutable_data();
   int* const to_face = face.mutable_data();
   double* const to_uv = uv.mutable_data();

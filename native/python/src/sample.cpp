@@ -11,6 +11,7 @@
 #include "limitsurf/sample/jittered_sampling.h"
 #include "numbers.h"
 #include "progress.h"
+#include "result_memory.h"
 #include "sampling_docstrings.h"
 #include "shared_surface.h"
 
@@ -20,8 +21,8 @@ namespace {
 /// Writes what a Python function of (face, uv) gives. The thread must hold the GIL.
 void writeWeights(const py::object& function, Span<Location> at, double* weights) {
   const auto rows = static_cast<py::ssize_t>(at.size());
-  py::array_t<int> face(rows);
-  py::array_t<double> uv({rows, py::ssize_t{2}});
+  auto face = newArray<int>({rows});
+  auto uv = newArray<double>({rows, 2});
   int* faces = face.mutable_data();
   double* uvs = uv.mutable_data();
   for (std::size_t i = 0; i < at.size(); ++i) {

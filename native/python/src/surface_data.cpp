@@ -10,6 +10,7 @@
 #include "choices.h"
 #include "docstrings.h"
 #include "limitsurf/error.h"
+#include "result_memory.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -64,8 +65,8 @@ py::object bounds(const SharedData& shared, int side, int threads) {
   }
   const auto rows = static_cast<std::size_t>(boxes.low.rows());
   const auto columns = static_cast<std::size_t>(boxes.low.cols());
-  py::array_t<double> out({py::ssize_t{shared.data().faceCount()}, py::ssize_t{side},
-                           py::ssize_t{side}, py::ssize_t{2}, static_cast<py::ssize_t>(columns)});
+  auto out = newArray<double>({py::ssize_t{shared.data().faceCount()}, py::ssize_t{side},
+                               py::ssize_t{side}, 2, static_cast<py::ssize_t>(columns)});
   double* const to = out.mutable_data();
   forEachRow(rows, [&](std::size_t row) {
     std::copy_n(boxes.low.data() + columns * row, columns, to + 2 * columns * row);

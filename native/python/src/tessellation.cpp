@@ -14,6 +14,7 @@
 #include "limitsurf/tessellate/tessellated_face.h"
 #include "limitsurf/tessellate/tessellation_levels.h"
 #include "progress.h"
+#include "result_memory.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -68,7 +69,7 @@ Tessellation tessellation(const SharedSurface& shared, const py::object& levels,
 /// The polygons as rows of four corners; the rows of triangles end in -1.
 py::array_t<int> facesOf(const Tessellation& t) {
   const auto count = static_cast<py::ssize_t>(t.face_sizes.size());
-  py::array_t<int> faces({count, py::ssize_t{4}});
+  auto faces = newArray<int>({count, 4});
   const int* corner = t.face_vertices.data();
   int* row = faces.mutable_data();
   forEachRow(t.face_sizes.size(), [&](std::size_t face) {
@@ -80,7 +81,7 @@ py::array_t<int> facesOf(const Tessellation& t) {
 }
 
 py::array_t<float> cornerUvs(const Tessellation& t) {
-  py::array_t<float> uvs({static_cast<py::ssize_t>(t.corners.size()), py::ssize_t{2}});
+  auto uvs = newArray<float>({static_cast<py::ssize_t>(t.corners.size()), 2});
   float* to = uvs.mutable_data();
   forEachRow(t.corners.size(), [&](std::size_t i) {
     *to++ = static_cast<float>(t.corners[i].u) / Tessellation::Corner::kSteps;
