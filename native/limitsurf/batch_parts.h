@@ -16,7 +16,7 @@ namespace limitsurf {
 /// other arrays: so few that these arrays stay in the cache and that all threads have some parts,
 /// and so many that rows of the same face meet in them.
 inline std::size_t rowsOfPart(std::size_t count, int threads) {
-  constexpr std::size_t kParts = 64, kFewest = std::size_t{1} << 11, kMost = std::size_t{1} << 15;
+  constexpr std::size_t kParts = 64, kFewest = std::size_t{1} << 11, kMost = std::size_t{1} << 12;
   return threads == 1 ? kMost : std::clamp(count / kParts, kFewest, kMost);
 }
 
