@@ -25,6 +25,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "docs")]
 
+import bench_python  # noqa: E402
 import bench_threads  # noqa: E402
 import limitsurf  # noqa: E402
 from figures.plots import plt, save  # noqa: E402
@@ -228,7 +229,9 @@ def main(arguments: list[str]) -> None:
         page = with_image(page, OPENING, "benchmark_opening", what)
     if "python" in wanted:
         found = bench_threads.measured()
-        page = replaced(page, "### From Python", [bench_threads.table(found)])
+        beside = bench_python.lines(bench_python.ROWS, bench_python.SAMPLES, ("P,D1",))
+        made = [bench_threads.table(found), "".join(f"{line}\n" for line in beside)]
+        page = replaced(page, "### From Python", made)
         draw_threads(found)
         what = "Time of calls against the number of threads"
         page = with_image(page, "### From Python", "benchmark_threads", what)

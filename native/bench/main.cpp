@@ -6,11 +6,12 @@
 //   limitsurf_bench --benchmark_filter=boundary-EV
 //   limitsurf_bench --samples=20000       the number of locations in a batch (default 100000)
 //   limitsurf_bench --fresh-memory        results in memory newly allocated by the system
-//   limitsurf_bench --large[=1000]        time and memory for opening a grid of 1000 x 1000 quads
-//   limitsurf_bench --semi-sharp[=100]    the same for 100 x 100 quads whose edges are semi-sharp
-//   limitsurf_bench --queries[=1000000]   closest points and rays beside Embree, and random points
-//   limitsurf_bench --uv[=4096]           UV maps inverted, for an image with this many texels a
-//   side
+//   limitsurf_bench --save=FOLDER         writes the meshes and locations of the table of
+//   evaluation limitsurf_bench --large[=1000]        time and memory for opening a grid of 1000 x
+//   1000 quads limitsurf_bench --semi-sharp[=100]    the same for 100 x 100 quads whose edges are
+//   semi-sharp limitsurf_bench --queries[=1000000]   closest points and rays beside Embree, and
+//   random points limitsurf_bench --uv[=4096]           UV maps inverted, for an image with this
+//   many texels a side
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 #include <opensubdiv/version.h>
@@ -19,6 +20,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <string>
 #include <vector>
 
 #include "bench/support/agreement.h"
@@ -100,6 +102,7 @@ int main(int argc, char** argv) {
   int sample_count = 100000;
   int large_side = 0, semi_sharp_side = 0, query_count = 0, uv_side = 0;
   bool is_memory_fresh = false;
+  std::string saved_to;
   for (int i = 1; i < argc; ++i) {
     if (const int count = valueOf(argv[i], "--samples", 0)) {
       sample_count = count;
@@ -111,6 +114,8 @@ int main(int argc, char** argv) {
       query_count = queries;
     } else if (const int texels = valueOf(argv[i], "--uv", 4096)) {
       uv_side = texels;
+    } else if (std::strncmp(argv[i], "--save=", 7) == 0) {
+      saved_to = argv[i] + 7;
     } else if (std::strcmp(argv[i], "--fresh-memory") == 0) {
       is_memory_fresh = true;
     } else {
@@ -118,6 +123,10 @@ int main(int argc, char** argv) {
     }
   }
   try {
+    if (!saved_to.empty()) {
+      limitsurf::bench::saveEvaluation(saved_to, sample_count);
+      return 0;
+    }
     if (large_side > 0) return limitsurf::bench::measureLargeMesh(large_side);
     if (semi_sharp_side > 0) return limitsurf::bench::measureSemiSharpMesh(semi_sharp_side);
     if (uv_side > 0) return limitsurf::bench::measureUvMaps(uv_side);

@@ -11,6 +11,7 @@
 #include "bench/support/face_classes.h"
 #include "bench/support/location_samples.h"
 #include "bench/support/mesh_arrays.h"
+#include "bench/support/numpy_file.h"
 #include "support/cages/benchmark_cages.h"
 
 namespace limitsurf::bench {
@@ -66,6 +67,7 @@ class Samples {
         near_ev_(near_ev),
         count_(count) {}
 
+  const std::string& name() const { return name_; }
   OpenCage& cage() const { return *cage_; }
   const std::vector<Location>& sorted() {
     make();
@@ -148,6 +150,50 @@ void addGroup(std::vector<Group>& groups, const std::string& row, std::shared_pt
   groups.push_back(std::move(group));
 }
 
+/// The samples of the rows of the table of evaluation.
+std::vector<std::shared_ptr<Samples>> evaluationRows(int sample_count) {
+  const auto every_class = std::make_shared<OpenCage>(test::everyClassCage);
+  const auto crosses = std::make_shared<OpenCage>(test::crossesCage);
+  const auto polygons = std::make_shared<OpenCage>(test::polygonsCage);
+  const auto mixed = std::make_shared<OpenCage>(+[] { return test::largeCage(144); });
+  struct Row {
+    std::string name;
+    std::shared_ptr<OpenCage> cage;
+    std::optional<FaceClass> face_class;
+    std::optional<Distances> near_ev;
+  };
+  const Row rows[] = {
+      {"regular", every_class, FaceClass::regular, {}},
+      {"interior-EV", every_class, FaceClass::interior_ev, {}},
+      {"boundary-EV", every_class, FaceClass::boundary_ev, {}},
+      {"corner", every_class, FaceClass::corner, {}},
+      {"multi-EV", crosses, FaceClass::multi_ev, {}},
+      {"n-gon", polygons, FaceClass::polygon, {}},
+      {"near-interior-EV", every_class, FaceClass::interior_ev, kNear},
+      {"near-boundary-EV", every_class, FaceClass::boundary_ev, kNear},
+      {"near-corner", every_class, FaceClass::corner, kNear},
+      {"mixed-20k-faces", mixed, std::nullopt, {}},
+  };
+  std::vector<std::shared_ptr<Samples>> samples;
+  for (const Row& row : rows) {
+    samples.push_back(
+        std::make_shared<Samples>(row.name, row.cage, row.face_class, row.near_ev, sample_count));
+  }
+  return samples;
+}
+
+void saveLocations(const std::string& path, const std::vector<Location>& locations) {
+  std::vector<std::int64_t> faces;
+  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> uv(
+      static_cast<Eigen::Index>(locations.size()), 2);
+  for (const Location& location : locations) {
+    uv.row(static_cast<Eigen::Index>(faces.size())) << location.u, location.v;
+    faces.push_back(location.face);
+  }
+  writeNumpy(path + ".face.npy", faces);
+  writeNumpy(path + ".uv.npy", uv);
+}
+
 }  // namespace
 
 std::vector<Group> depthGroups(int sample_count) {
@@ -168,40 +214,28 @@ std::vector<Group> depthGroups(int sample_count) {
 }
 
 std::vector<Group> evaluationGroups(int sample_count) {
-  const auto every_class = std::make_shared<OpenCage>(test::everyClassCage);
-  const auto crosses = std::make_shared<OpenCage>(test::crossesCage);
-  const auto polygons = std::make_shared<OpenCage>(test::polygonsCage);
-  const auto mixed = std::make_shared<OpenCage>(+[] { return test::largeCage(144); });
-  struct Row {
-    std::string name;
-    std::shared_ptr<OpenCage> cage;
-    std::optional<FaceClass> face_class;
-    std::optional<Distances> near_ev;
-  };
-  const std::vector<Row> rows = {
-      {"regular", every_class, FaceClass::regular, {}},
-      {"interior-EV", every_class, FaceClass::interior_ev, {}},
-      {"boundary-EV", every_class, FaceClass::boundary_ev, {}},
-      {"corner", every_class, FaceClass::corner, {}},
-      {"multi-EV", crosses, FaceClass::multi_ev, {}},
-      {"n-gon", polygons, FaceClass::polygon, {}},
-      {"near-interior-EV", every_class, FaceClass::interior_ev, kNear},
-      {"near-boundary-EV", every_class, FaceClass::boundary_ev, kNear},
-      {"near-corner", every_class, FaceClass::corner, kNear},
-      {"mixed-20k-faces", mixed, std::nullopt, {}},
-  };
   std::vector<Group> groups;
-  for (const Row& row : rows) {
-    const auto samples =
-        std::make_shared<Samples>(row.name, row.cage, row.face_class, row.near_ev, sample_count);
+  for (const std::shared_ptr<Samples>& samples : evaluationRows(sample_count)) {
     for (const bool is_random : {false, true}) {
-      const std::string label = row.name + (is_random ? "/random/" : "/sorted/");
+      const std::string label = samples->name() + (is_random ? "/random/" : "/sorted/");
       addGroup<Derivatives::none>(groups, label + "P", samples, is_random);
       addGroup<Derivatives::first>(groups, label + "P,D1", samples, is_random);
       addGroup<Derivatives::second>(groups, label + "P,D1,D2", samples, is_random);
     }
   }
   return groups;
+}
+
+void saveEvaluation(const std::string& folder, int sample_count) {
+  for (const std::shared_ptr<Samples>& samples : evaluationRows(sample_count)) {
+    const std::string path = folder + "/" + samples->name();
+    const MeshArrays& cage = samples->cage().cage();
+    writeNumpy(path + ".positions.npy", cage.positions);
+    writeNumpy(path + ".face_sizes.npy", cage.face_sizes);
+    writeNumpy(path + ".face_vertices.npy", cage.face_vertices);
+    saveLocations(path + ".sorted", samples->sorted());
+    saveLocations(path + ".random", samples->shuffled());
+  }
 }
 
 }  // namespace limitsurf::bench

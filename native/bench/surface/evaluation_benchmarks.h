@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "bench/support/ratio_reporter.h"
@@ -12,6 +13,11 @@ constexpr char kEvaluationTable[] = "evaluate";
 /// Benchmarks of batches of about `sample_count` locations, by class of face, order of the
 /// locations and order of derivatives.
 std::vector<Group> evaluationGroups(int sample_count);
+
+/// Writes the meshes and the locations of all these rows as numpy's files into an existing folder:
+/// ROW.positions.npy, ROW.face_sizes.npy, ROW.face_vertices.npy; and for both orders
+/// ROW.sorted.face.npy, ROW.sorted.uv.npy, ROW.random.face.npy, ROW.random.uv.npy.
+void saveEvaluation(const std::string& folder, int sample_count);
 
 constexpr char kDepthTable[] = "depth";
 
