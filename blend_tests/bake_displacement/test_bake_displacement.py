@@ -344,7 +344,7 @@ def test_refusals(base, sculpt):
     refused(base, "Sun is not a mesh", target="Sun")
     refused(base, "Holes has no UV map 'Other'", target="Sculpt", uv_map="Other")
     refused(base, "the layout UV Map", target="Sculpt", layout_kind="PTEX", create_material=True)
-    refused(base, "GiB of memory: set Allow Large", target="Sculpt", width=16384, height=16384)
+    refused(base, "GiB of memory: turn on Allow Large", target="Sculpt", width=16384, height=16384)
     cross = scenes.cross()
     refused(base, "Structures do not match: the target has 5 faces; the base's 18 become 72",
             target=cross.name)  # fmt: skip

@@ -146,7 +146,9 @@ def test_points_without_coordinates_are_refused():
     points = scenes.add_mesh("Points", [(0, 0, 2), (0, float("nan"), 1)], [])
     points.select_set(True)
     scenes.activate(ob)
-    with pytest.raises(RuntimeError, match="Point 1 has a coordinate that is not a number"):
+    with pytest.raises(
+        RuntimeError, match="Vertex 1 of Points has a coordinate that is not a finite number"
+    ):
         bpy.ops.object.limit_follow()
 
 

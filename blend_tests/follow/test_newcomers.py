@@ -188,7 +188,7 @@ def test_bad_things_are_refused():
     refused("has an attribute limit_face of another type or domain", ob, hair)
     parent = scenes.cross()
     ob.parent = parent
-    refused("cannot follow itself, nor what is parented to it", ob, parent)
+    refused("cannot follow itself or an object that is parented to it", ob, parent)
 
 
 def test_a_surface_in_edit_mode_is_refused():

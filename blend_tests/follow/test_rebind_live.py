@@ -144,4 +144,4 @@ def test_a_shape_at_rest_that_was_deleted_is_refused():
     ob = deforming("grid with holes")
     hair = live_hair(ob)
     hair.data.attributes.remove(hair.data.attributes[ids.LIVE_REST])
-    refused(f"has no attribute {ids.LIVE_REST}: let it follow again", hair)
+    refused(f"has no attribute {ids.LIVE_REST}: run Follow Limit Surface again", hair)

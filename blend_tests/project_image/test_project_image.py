@@ -441,7 +441,7 @@ def test_refusals_about_images():
     refused(ob, "Shown cannot be painted into itself", target="Shown", **existing)
     bpy.data.images["Target"].colorspace_settings.name = "AgX Base sRGB"
     refused(ob, "Target has the color space AgX Base sRGB", target="Target", **existing)
-    refused(ob, "GiB of memory: set Allow Large Images", width=16384, height=16384)
+    refused(ob, "GiB of memory: turn on Allow Large Images", width=16384, height=16384)
     endless = np.ones((8, 8, 4))
     endless[2, 3, 1] = np.inf
     filled("Endless", endless, is_float=True)

@@ -89,7 +89,7 @@ def test_very_many_sides_get_a_low_quality(faces, capfd):
     ob = scenes.add_mesh("Disc", positions, found)
     text = show(capfd)
     assert (ob.modifiers[0].quality, ob.modifiers[0].levels) == (1, 3)
-    assert "Warning: Quality is 1, because at more Blender would take seconds" in text
+    assert "Warning: Quality is 1, because at a higher quality Blender would take seconds" in text
     assert farthest_vertex(ob) < 0.01
 
 
@@ -142,7 +142,7 @@ def test_settings_that_are_driven_are_refused():
 
 def test_millions_of_polygons_are_refused():
     ob = scenes.flat_grid(60)
-    check_refused(ob, "14,745,600 polygons .*: set Allow Large Counts", levels=6)
+    check_refused(ob, "14,745,600 polygons .*: turn on Allow Large Counts", levels=6)
     assert bpy.ops.object.limit_show(levels=2) == {"FINISHED"}
 
 

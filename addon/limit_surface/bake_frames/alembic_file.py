@@ -144,7 +144,7 @@ class _Rewriter:
         begin = position + _NUMBER.size
         end = begin + self._number(position)
         if end > len(self._contents):
-            raise ValueError(f"data at {position} ends behind it")
+            raise ValueError(f"what begins at byte {position} goes beyond its end")
         return self._contents[begin:end]
 
     def _number(self, position: int) -> int:

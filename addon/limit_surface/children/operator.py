@@ -120,7 +120,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
 
     replaces: StringProperty(
         name="Replaces",
-        description="Name of the object of live children that are made again, in place of new ones",
+        description="Name of the live children to make again. If empty, new ones are made",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
@@ -185,7 +185,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
         if followed.unreached:
             were = counted(followed.unreached, "places", "was", "were")
             them = by_count(followed.unreached, "it", "them")
-            texts.append(f"{were} left out: no guide can be reached from {them}")
+            texts.append(f"{were} left out: no path along the surface leads from {them} to a guide")
         for text in filter(None, texts):
             self.report({"WARNING"}, text)
             self.summary += f"\n{text}"

@@ -86,7 +86,7 @@ class OBJECT_OT_limit_curvature(WatchedOperator, LargeCountProperty, bpy.types.O
     radius: FloatProperty(
         name="Radius",
         description="Distance from irregular vertices, such as poles, at which curvature is "
-        "averaged over the faces around the vertex, as a share of an edge. At the vertex itself "
+        "averaged over the faces around the vertex, as a fraction of an edge. At the vertex itself "
         "curvature has no value in general",
         default=1 / 64,
         min=2**-20,

@@ -50,7 +50,7 @@ class VIEW3D_OT_limit_draw(
     )
     steadying: IntProperty(
         name="Steady",
-        description="Number of smoothing steps for new strokes. 8 of them remove the stairs that "
+        description="Number of smoothing steps for new strokes. 8 of them remove the steps that "
         "come from the pixels of the screen",
         default=8,
         min=0,
@@ -59,13 +59,13 @@ class VIEW3D_OT_limit_draw(
     use_mirror: BoolProperty(
         name="X Mirror",
         description="Also draw, erase and smooth at the place that is mirrored along the "
-        "surface's X axis. Nothing is made where the surface is farther than 3 % of its extent "
+        "surface's X axis. Nothing is made where the surface is farther than 3 % of its size "
         "from that place, or ends before it",
         default=False,
     )
     use_pressure: BoolProperty(
         name="Pressure",
-        description="Let the pressure of a pen make the curves thinner",
+        description="Make the curves thinner where the pressure of the pen is low",
         default=True,
     )
     use_join: BoolProperty(
@@ -103,7 +103,9 @@ class VIEW3D_OT_limit_draw(
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Makes what the stored strokes say; without strokes there is nothing to do."""
         if not self.strokes and not self.removed:
-            return self._refuse("Drawing needs a window and a mouse or pen: scripts set `strokes`")
+            return self._refuse(
+                "Drawing needs a window and a mouse or pen. Scripts set `strokes` instead"
+            )
         try:
             found = subject.find(context)
             ground = Ground(found.surface, context.evaluated_depsgraph_get())

@@ -17,8 +17,8 @@ class FitProperties:
     tolerance: FloatProperty(
         name="Tolerance",
         description="How far the curves may be from the surface, or from the places to which "
-        "Offset moves them, in world units. 0 chooses a ten-thousandth of the surface's extent. "
-        "The smallest tolerance is a millionth of this extent",
+        "Offset moves them, in world units. 0 chooses a ten-thousandth of the surface's size. "
+        "The smallest tolerance is a millionth of this size",
         default=0.0,
         min=0.0,
         soft_max=0.1,

@@ -103,12 +103,12 @@ def warn_of_deviation(
 
 
 def warn_of_pieces(operator: bpy.types.Operator, laid: int, given: int) -> None:
-    """Says it where curves were divided, because no short way along the surface was found."""
+    """Says it where curves were divided, because no short path along the surface was found."""
     if laid > given:
         were = counted(laid, "pieces", "was", "were")
         operator.report(
             {"WARNING"},
-            f"{were} made of {counted(given, 'curves')}, because no short way along the surface "
+            f"{were} made of {counted(given, 'curves')}, because no short path along the surface "
             "joins the pieces",
         )
 

@@ -65,8 +65,8 @@ class LIMIT_PG_draw_point(bpy.types.PropertyGroup):
     )
     radius: FloatProperty(
         name="Radius",
-        description="Radius at the point, as a share of the operator's radius. For a pen, this is "
-        "its pressure",
+        description="Radius at the point, as a fraction of the operator's radius. For a pen, this "
+        "is its pressure",
         default=1.0,
         min=0.0,
     )

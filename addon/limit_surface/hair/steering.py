@@ -34,8 +34,8 @@ class SteeringProperties(flow_properties.FlowProperties):
         **RANDOM.properties("the random part", "Factor of Random and Random Length"),
         "random_length": FloatProperty(
             name="Random Length",
-            description="Largest part of its length by which a strand is shorter, at random: at "
-            "0.4, strands have 60% to 100% of the length",
+            description="How much shorter strands may be at random, as a fraction of their "
+            "length: 0.4 gives 60% to 100% of it",
             default=0.0,
             min=0.0,
             max=1.0,

@@ -119,7 +119,7 @@ def check_size(width: int, height: int, tiles: int, images: int, allow_large: bo
         tiled = f", {tiles} tiles" if tiles > 1 else ""
         raise TooLargeError(
             f"{counted(images, 'images')} of {width:,} x {height:,} pixels{tiled} "
-            f"take {memory_text(needed)}: set Allow Large Images (allow_large) to make them"
+            f"take {memory_text(needed)}: turn on Allow Large Images (allow_large) to make them"
         )
 
 

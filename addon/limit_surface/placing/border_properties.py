@@ -31,7 +31,7 @@ class BorderProperties:
     )
     border_jitter: FloatProperty(
         name="Jitter",
-        description="Random movement along the border, as a part of the distance between "
+        description="Random movement along the border, as a fraction of the distance between "
         "neighbors. At 1 each strand or point moves by at most half of this distance to either "
         "side",
         default=0.0,

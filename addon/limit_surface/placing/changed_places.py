@@ -96,8 +96,8 @@ class Closest(Finder):
         lost = np.flatnonzero(~np.isfinite(roots).all(axis=1))
         if len(lost):
             raise RefusalError(
-                f"Root {rows[lost[0]]} of {elements.ob.name} has a coordinate that is not a finite "
-                "number: delete it, or choose another method"
+                f"{elements.called(rows[lost[0]])} has a coordinate that is not a finite number: "
+                "delete it, or choose another method"
             )
         hits = yield from aside(
             lambda progress: self.posed.in_world.closest(

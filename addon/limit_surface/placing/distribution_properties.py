@@ -253,7 +253,7 @@ def _amount(properties: bpy.types.OperatorProperties) -> str:
     given = [n for n in ("count", "density", "distance") if properties.is_property_set(n)]
     if len(given) > 1:
         raise RefusalError(
-            f"{' and '.join(given)} are given: choose one of them by the property amount"
+            f"{' and '.join(given)} are given: choose one of them with the property amount"
         )
     return given[0].upper() if given else properties.amount
 

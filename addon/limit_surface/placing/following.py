@@ -110,7 +110,7 @@ class Request:
             if holder_of(ob) not in moved and not is_placed(ob):
                 raise RefusalError(
                     f"{ob.name} follows {surface.name}, but its locations on the limit surface "
-                    "were deleted: let it follow again first"
+                    "were deleted: run Follow Limit Surface on it first"
                 )
         self._places = [moved.get(data) or Places.read(data) for data in holders(everything)]
         with cage.opened(surface, depsgraph) as (found, mesh):
@@ -328,7 +328,9 @@ def check_thing(ob: bpy.types.Object, surface: bpy.types.Object) -> None:
     carrier: bpy.types.Object | None = surface
     while carrier:
         if carrier == ob:
-            raise RefusalError(f"{ob.name} cannot follow itself, nor what is parented to it")
+            raise RefusalError(
+                f"{ob.name} cannot follow itself or an object that is parented to it"
+            )
         carrier = carrier.parent
 
 

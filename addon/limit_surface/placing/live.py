@@ -51,7 +51,9 @@ def followers_in(
         missing = live_attributes.missing(ob.data)
         if missing:
             kept.refuse(
-                [ob], f"{ob.data.name} has no attribute {missing} any more: let it follow again"
+                [ob],
+                f"{ob.data.name} has no attribute {missing} any more: run Follow Limit Surface "
+                "again",
             )
             continue
         in_edit_mode = ob.type == "MESH" and ob.data.is_editmode  # perhaps by way of another object

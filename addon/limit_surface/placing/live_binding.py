@@ -130,7 +130,9 @@ def prepare_rebinding(things: Sequence[bpy.types.Object], depsgraph: bpy.types.D
     for ob in things:
         lacking = live_attributes.missing(ob.data)
         if lacking:
-            raise RefusalError(f"{ob.data.name} has no attribute {lacking}: let it follow again")
+            raise RefusalError(
+                f"{ob.data.name} has no attribute {lacking}: run Follow Limit Surface again"
+            )
     for ob in things:
         try:
             live.take_up_edits(ob, depsgraph)

@@ -80,8 +80,8 @@ def _added(ob: bpy.types.Object, count: int) -> str:
         return ""
     were = by_count(count, "was added and has no place of its own", "were added and have no places")
     return (
-        f"{counted(count, 'vertices')} of {ob.name} {were}: with neighbors that have places they "
-        "follow, without they stay still. Follow Limit Surface gives them places"
+        f"{counted(count, 'vertices')} of {ob.name} {were}: they follow neighbors that have "
+        "places, and stay still without such neighbors. Follow Limit Surface gives them places"
     )
 
 

@@ -71,7 +71,9 @@ def bound_at_closest(
     points = (elements.first_points() if points is None else points)[rows]
     lost_row = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(lost_row):
-        raise RefusalError(f"Point {rows[lost_row[0]]} has a coordinate that is not a number")
+        raise RefusalError(
+            f"{elements.called(rows[lost_row[0]])} has a coordinate that is not a finite number"
+        )
     hits = yield from aside(
         lambda progress: posed.in_world.closest(points, max_distance, progress=progress)
     )

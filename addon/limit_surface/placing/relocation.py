@@ -17,6 +17,7 @@ from .places import NOWHERE, ROOT_KINDS, Places
 from .posed_surface import transformed
 
 TYPES = ("CURVES", "MESH", "POINTCLOUD")
+_NOUNS = {"CURVES": "strand", "MESH": "vertex", "POINTCLOUD": "point", "CURVE": "control point"}
 _NOTHING = {ids.FACE: NOWHERE, ids.UV: 0.0, ids.REST_ROOT: 0.0, ids.REST_ROTATION: 0.0}
 
 
@@ -56,6 +57,10 @@ class Elements:
             raise RefusalError(f"{self.ob.name} is neither hair, nor points, nor a mesh")
         self.data = holder
         return holder
+
+    def called(self, row: int) -> str:
+        """Returns what an element is called at the beginning of a message."""
+        return f"{_NOUNS[self.ob.type].capitalize()} {row} of {self.ob.name}"
 
     @property
     def places(self) -> Places:

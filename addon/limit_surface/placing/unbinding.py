@@ -104,8 +104,8 @@ class Unbinding:
 def _check_own_data(ob: bpy.types.Object) -> None:
     if ob.type == "CURVE":
         raise RefusalError(
-            f"{ob.name} is a Curve object, whose shape in this frame nodes alone know: choose the "
-            "shape At Rest, or convert it to Curves first"
+            f"{ob.name} is a Curve object, whose shape in this frame only its nodes know: choose "
+            "the shape At Rest, or convert it to Curves first"
         )
     others = [other.name for other in followers.sharers(ob)]
     if others:
@@ -147,7 +147,7 @@ def _freeze(
     yield 0.0
     if any(len(attributes.read(data, name)) != len(v) for name, v in frozen.values.items()):
         raise RefusalError(
-            f"The modifier by which {ob.name} follows makes another number of points of it: unbind "
+            f"The modifier by which {ob.name} follows gives it another number of points: unbind "
             "it with the shape At Rest"
         )
     if all(np.array_equal(attributes.read(data, name), v) for name, v in frozen.values.items()):

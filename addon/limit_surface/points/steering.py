@@ -41,8 +41,8 @@ class SteeringProperties(flow_properties.FlowProperties):
         ),
         "random_scale": FloatProperty(
             name="Random Scale",
-            description="Largest part of its size by which an instance is smaller, at random: at "
-            "0.4, instances have 60% to 100% of the size",
+            description="How much smaller instances may be at random, as a fraction of their "
+            "size: 0.4 gives 60% to 100% of it",
             default=0.0,
             min=0.0,
             max=1.0,

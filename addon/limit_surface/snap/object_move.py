@@ -106,7 +106,7 @@ class ObjectMove:
         size = max(np.abs(self._position).max(), np.abs(self._before[:3, 3]).max())
         if not np.abs(now[:3, 3] - self._position).max() <= ELSEWHERE * size:
             if self._ob.parent and not self._scale().all():
-                return "its scale is 0, and its parent is not an object as a whole"
+                return "its scale is 0, and its parent is a bone or vertices of an object"
             return "constraints or drivers hold the object elsewhere"
         if self._align != "NONE":
             askew = np.cross(unit(now[:3, 2]), self._frame[:, 2])

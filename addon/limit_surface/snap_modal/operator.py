@@ -95,7 +95,8 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
         """Puts the element at a stored location; without one there is nothing to do."""
         if self.face < 0:
             return self._refuse(
-                "Dragging needs a window and a mouse: set `face` and `uv`, or use object.limit_snap"
+                "Dragging needs a window and a mouse. Scripts set `face` and `uv` instead, or use "
+                "object.limit_snap"
             )
         try:
             check_numbers(self.properties)

@@ -107,7 +107,7 @@ class SourceNames:
             self.range: FloatVectorProperty(
                 name="Range",
                 description=f"{low} where the source is 0 (Low), and where it is 1 (High). For "
-                "other values of the source, the number lies on the straight line through both",
+                "other values of the source, it changes in proportion",
                 size=2,
                 default=(0.0, 1.0),
                 soft_min=0.0,

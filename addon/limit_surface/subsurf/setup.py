@@ -30,8 +30,8 @@ MOST_CUBES = 100**3  # the sum of these cubes up to which the modifier gets the 
 
 
 LOW_QUALITY_REASON = (
-    "because at more Blender would take seconds for vertices and faces of so many sides: near them "
-    "the displayed mesh is a little beside the limit surface"
+    "because at a higher quality Blender would take seconds for vertices and faces with so many "
+    "edges: near them the displayed mesh is a little off the limit surface"
 )
 
 

@@ -49,7 +49,7 @@ class RequestSize:
         if self.elements > MOST_ELEMENTS:
             raise TooLargeError(f"{self} are more than the {MOST_ELEMENTS:,} that Blender holds")
         if self.is_large and not allow_large:
-            raise TooLargeError(f"{self}: set Allow Large Counts (allow_large) to make them")
+            raise TooLargeError(f"{self}: turn on Allow Large Counts (allow_large) to make them")
 
     @property
     def how_many(self) -> str:
