@@ -339,6 +339,41 @@ SOURCES = {
 }
 
 
+def test_without_a_name_the_active_vertex_group_and_color_attribute_are_used():
+    ob = scenes.cross()
+    ob.vertex_groups.new(name="Empty")
+    weigh(ob)
+    ob.vertex_groups.active = ob.vertex_groups["Where"]
+    colour(ob, "FLOAT_COLOR", "CORNER", "Others")
+    colour(ob, "FLOAT_COLOR", "POINT")
+    ob.data.color_attributes.active_color = ob.data.color_attributes["Colours"]
+    for source, name, value in (
+        ("VERTEX_GROUP", "vertex_group", "Where"),
+        ("COLOR_ATTRIBUTE", "color_attribute", "Colours"),
+    ):
+        stood = [
+            locations(add_points(ob, density_source=source, **named).data)
+            for named in ({}, {name: value})
+        ]
+        np.testing.assert_array_equal(stood[0][0], stood[1][0])
+        np.testing.assert_array_equal(stood[0][1], stood[1][1])
+    ob.vertex_groups.active = ob.vertex_groups["Empty"]
+    scenes.activate(ob)
+    check_refused("The density is 0 everywhere", density_source="VERTEX_GROUP")
+
+
+@pytest.mark.parametrize("source", ["VERTEX_GROUP", "COLOR_ATTRIBUTE"])
+def test_without_a_name_and_without_an_active_one_the_message_says_what_to_do(source):
+    scenes.cross()
+    what = source.replace("_", " ").lower()
+    check_refused(f"Cross has no {what}: add one in its Object Data", density_source=source)
+
+
+def test_without_any_image_the_message_says_what_to_do():
+    scenes.cross()
+    check_refused("The file has no image: open one in an Image Editor", density_source="IMAGE")
+
+
 @pytest.mark.parametrize("distribution", ["JITTERED", "UNIFORM", "BLUE_NOISE"])
 @pytest.mark.parametrize("match", SOURCES)
 def test_sources_that_are_missing(match, distribution):

@@ -158,6 +158,18 @@ def test_both_panels_at_once():
     assert shown_count(ids.HAIR_PANEL) == "20 strands"
 
 
+def test_the_active_vertex_group_counts():
+    ob = scenes.cross()
+    for name, weight in (("All", 1.0), ("None", 1e-3)):
+        ob.vertex_groups.new(name=name).add(range(12), weight, "REPLACE")
+    ob.vertex_groups.active_index = 0
+    settings_of(ids.HAIR_ADD, per_side=20, density_source="VERTEX_GROUP")
+    assert answered(ids.HAIR_PANEL) == "About 2,000 strands"
+    ob.vertex_groups.active_index = 1
+    bpy.context.view_layer.update()
+    assert answered(ids.HAIR_PANEL) == "About 2 strands"
+
+
 def test_why_there_is_no_telling():
     ob = scenes.cross()
     settings_of(ids.HAIR_ADD, density_source="VERTEX_GROUP", vertex_group="Nix")

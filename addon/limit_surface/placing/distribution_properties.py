@@ -167,7 +167,8 @@ class DistributionProperties(DensityProperties, border_properties.BorderProperti
     )
     color_attribute: StringProperty(
         name="Color Attribute",
-        description="Name of the color attribute that steers the density",
+        description="Name of the color attribute that steers the density. If empty, the active "
+        "color attribute is used",
     )
     invert: BoolProperty(
         name="Invert",

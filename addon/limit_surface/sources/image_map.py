@@ -53,6 +53,8 @@ class ImageMap:
 def find(name: str) -> bpy.types.Image:
     """Returns the image of that name. Raises RefusalError where there is none."""
     if not name:
+        if not bpy.data.images:
+            raise RefusalError("The file has no image: open one in an Image Editor")
         raise RefusalError("Choose an image")
     image = bpy.data.images.get(name)
     if image is None:

@@ -41,7 +41,7 @@ class SourceMesh:
         """Returns the UV map that places an image: the active one if no name is given."""
         if not name:
             if self.cage.uv_map is None:
-                why = self.cage.without_uv_map or f"{self.ob.name} has no UV map"
+                why = self.cage.without_uv_map or f"{self.ob.name} has no UV map: unwrap it first"
                 raise RefusalError(f"The image {image} cannot be placed: {why}")
             return self.cage.uv_map
         if name not in self.mesh.uv_layers:
@@ -67,10 +67,18 @@ def wanted_vertex_groups(ob: bpy.types.Object, choices: Iterable[Choice]) -> lis
     return list(dict.fromkeys(names))
 
 
-def check_vertex_group(ob: bpy.types.Object, name: str) -> None:
-    """Raises RefusalError where the object has no such group, or its weights cannot be read."""
+def vertex_group(ob: bpy.types.Object, name: str) -> str:
+    """Returns the name of the group: that of the active one if no name is given. Raises
+    RefusalError where the object has no such group, or its weights cannot be read.
+    """
     if not name:
-        raise RefusalError(f"Choose a vertex group of {ob.name}")
+        active = ob.vertex_groups.active
+        if active is None:
+            raise RefusalError(
+                f"{ob.name} has no vertex group: add one in its Object Data properties, or choose "
+                "another source"
+            )
+        name = active.name
     if name not in ob.vertex_groups:
         raise RefusalError(f"{ob.name} has no vertex group {name!r}")
     if name in ob.data.attributes:
@@ -78,6 +86,22 @@ def check_vertex_group(ob: bpy.types.Object, name: str) -> None:
             f"{ob.name} has an attribute with the same name as the vertex group {name}, which "
             "hides the group: rename the group"
         )
+    return name
+
+
+def color_attribute(ob: bpy.types.Object, name: str) -> str:
+    """Returns the name of the color attribute: that of the active one if no name is given. Raises
+    RefusalError where there is none.
+    """
+    if name:
+        return name
+    active = ob.data.color_attributes.active_color
+    if active is None:
+        raise RefusalError(
+            f"{ob.name} has no color attribute: add one in its Object Data properties, or choose "
+            "another source"
+        )
+    return str(active.name)
 
 
 def read_weights(mesh: bpy.types.Mesh, names: list[str]) -> dict[str, np.ndarray | None]:

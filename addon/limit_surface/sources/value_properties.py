@@ -89,7 +89,8 @@ class SourceNames:
             ),
             self.vertex_group: StringProperty(
                 name="Vertex Group",
-                description=f"Name of the vertex group whose weights steer {what}",
+                description=f"Name of the vertex group whose weights steer {what}. If empty, the "
+                "active vertex group is used",
             ),
             self.image: StringProperty(
                 name="Image", description=f"Name of the image that steers {what}"

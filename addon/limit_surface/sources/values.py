@@ -18,7 +18,7 @@ from ..reading import attributes, rules
 from . import image_map
 from .channels import pick
 from .image_map import ImageMap
-from .source_mesh import SourceMesh, check_vertex_group
+from .source_mesh import SourceMesh, color_attribute, vertex_group
 
 if TYPE_CHECKING:
     import bpy
@@ -93,7 +93,9 @@ class ValueMap:
 
 @dataclass(frozen=True)
 class ValueChoice:
-    """The choice of a source. Its errors begin with `label`, which says what it is for."""
+    """The choice of a source. Its errors begin with `label`, which says what it is for. Where no
+    vertex group, color attribute or UV map is named, the active one of the object is used.
+    """
 
     label: str
     source: str  # NONE, VERTEX_GROUP, IMAGE, ATTRIBUTE or COLOR_ATTRIBUTE
@@ -110,8 +112,7 @@ class ValueChoice:
         if self.source != "VERTEX_GROUP":
             return []
         with labelled(self.label):
-            check_vertex_group(ob, self.vertex_group)
-        return [self.vertex_group]
+            return [vertex_group(ob, self.vertex_group)]
 
     def read(self, mesh: SourceMesh) -> ValueMap | None:
         """Returns the values, or None where no source is chosen. Raises RefusalError where the
@@ -130,17 +131,17 @@ class ValueChoice:
         return ValueMap(column, indices, rules.LINEAR, None, self.low, self.high)
 
     def _of_vertex_group(self, mesh: SourceMesh) -> tuple[np.ndarray, np.ndarray | None]:
-        values = mesh.weights[self.vertex_group]
+        name = vertex_group(mesh.ob, self.vertex_group)
+        values = mesh.weights[name]
         if values is None:
-            raise RefusalError(
-                f"{mesh.ob.name}: the modifiers remove the vertex group {self.vertex_group}"
-            )
+            raise RefusalError(f"{mesh.ob.name}: the modifiers remove the vertex group {name}")
         return values, mesh.cage.mesh.face_vertices
 
     def _of_attribute(self, mesh: SourceMesh) -> tuple[np.ndarray, np.ndarray | None]:
         name = self.attribute
         if self.source == "COLOR_ATTRIBUTE":
-            self._check_is_color(mesh)
+            name = color_attribute(mesh.ob, name)
+            _check_is_color(mesh, name)
         found = mesh.find_attribute(name)
         if found.data_type not in _NUMBERS or found.domain == "EDGE":
             raise RefusalError(
@@ -157,15 +158,6 @@ class ValueChoice:
         is_of_corners = found.domain == "CORNER"
         return values, np.arange(len(values)) if is_of_corners else mesh.cage.mesh.face_vertices
 
-    def _check_is_color(self, mesh: SourceMesh) -> None:
-        name, ob = self.attribute, mesh.ob
-        if not name:
-            raise RefusalError(f"Choose a color attribute of {ob.name}")
-        if name not in mesh.mesh.color_attributes:
-            if name in ob.data.color_attributes:
-                raise RefusalError(f"{ob.name}: the modifiers remove the color attribute {name}")
-            raise RefusalError(f"{ob.name} has no color attribute {name!r}")
-
     def _of_image(self, mesh: SourceMesh) -> ValueMap:
         image = image_map.find(self.image)
         placed = mesh.find_uv_map(self.uv_map, self.image)
@@ -178,6 +170,14 @@ class ValueChoice:
             self.low,
             self.high,
         )
+
+
+def _check_is_color(mesh: SourceMesh, name: str) -> None:
+    ob = mesh.ob
+    if name not in mesh.mesh.color_attributes:
+        if name in ob.data.color_attributes:
+            raise RefusalError(f"{ob.name}: the modifiers remove the color attribute {name}")
+        raise RefusalError(f"{ob.name} has no color attribute {name!r}")
 
 
 @contextmanager
