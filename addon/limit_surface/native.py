@@ -7,7 +7,10 @@ still be registered, and shows the reason in the sidebar and in the Preferences.
 
 from __future__ import annotations
 
+import re
 import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -59,14 +62,38 @@ errors: tuple[type[Exception], ...] = (
 refusals: tuple[type[Exception], ...] = (RefusalError, *errors)
 
 
-def sentence(reason: object) -> str:
-    """Returns the text of an error as a sentence for users: errors of the library begin with the
-    name of what is wrong, in lower case. Texts of the add-on may begin with the name of an object.
+# How errors of the library begin: with the row of an array, or with the name of an argument
+_ROW = re.compile(r"row (\d+): (.*)", re.DOTALL)
+_ARGUMENT = re.compile(r"[a-z]+(_[a-z]+)+\b")
+
+
+def sentence(reason: object, called: Callable[[int], str] | None = None) -> str:
+    """Returns the text of an error as a sentence for users: errors of the library begin with what
+    is wrong, in lower case, and name rows of arrays and arguments. `called` says what Blender calls
+    a row; without it the row is left out, because nobody knows of which array it is. Arguments are
+    called as properties are. Texts of the add-on may begin with the name of an object.
     """
     text = str(reason)
-    if isinstance(reason, ValueError):
-        text = text[:1].upper() + text[1:]
-    return text
+    if not isinstance(reason, ValueError):
+        return text
+    if found := _ROW.match(text):
+        row, text = int(found[1]), found[2]
+        if called:
+            return f"{called(row)}: {text}"
+    if argument := _ARGUMENT.match(text):
+        text = argument[0].replace("_", " ").title() + text[argument.end() :]
+    return text[:1].upper() + text[1:]
+
+
+@contextmanager
+def rows_called(called: Callable[[int], str]) -> Iterator[None]:
+    """Has errors of the library about rows of arrays begin with what Blender calls the row."""
+    try:
+        yield
+    except ValueError as error:
+        if not _ROW.match(str(error)):
+            raise
+        raise RefusalError(sentence(error, called)) from error
 
 
 def available() -> bool:

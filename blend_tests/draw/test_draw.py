@@ -156,7 +156,7 @@ def test_why_a_drawing_does_not_follow_by_itself_is_told(target, capfd):
 
 
 REFUSED = [
-    ({}, "scripts set `strokes`"),
+    ({}, "Scripts set `strokes`"),
     ({"strokes": drawn.points(drawn.Given([99, 99], [(0, 0), (1, 1)]))}, "face 99 is not"),
     ({"strokes": drawn.points(drawn.Given([0], [(0, 0)]))}, "at least two"),
     ({"strokes": drawn.points(ONE_PLACE)}, "at least two different points"),
@@ -187,9 +187,13 @@ def test_refusals_change_nothing(target, properties, reason):
     assert scenes.file_contents() == before
 
 
-def test_what_the_library_refuses_is_a_sentence(target):
-    with pytest.raises(RuntimeError, match=r"^Error: Row \d+: face 999 "):
-        draw([drawn.Given([0, 999], [(0.5, 0.5), (0.5, 0.5)])])
+def test_points_without_a_place_are_named(target):
+    wrong = drawn.Given([0, 999], [(0.5, 0.5), (0.5, 0.5)])
+    with pytest.raises(RuntimeError, match=r"^Error: Point 1 of the strokes: face 999 "):
+        draw([wrong])
+    number = len(drawn.points(ACROSS)) + 1
+    with pytest.raises(RuntimeError, match=rf"^Error: Point {number} of the strokes: face 999 "):
+        draw([ACROSS, wrong])
 
 
 def test_strokes_at_one_place_are_left_out(target):

@@ -44,7 +44,7 @@ def test_strokes_are_read_as_they_were_written():
     stroke.write(strokes, points)
     assert len(points) == 5 + 3 + 2  # the repeated point of the closed stroke is left out
     assert stroke.count(points) == 3
-    for before, (face, uv, radius, is_closed) in zip(strokes, stroke.read(points), strict=True):
+    for before, (face, uv, radius, is_closed, _) in zip(strokes, stroke.read(points), strict=True):
         count = len(before) - before.is_closed
         assert is_closed == before.is_closed
         np.testing.assert_array_equal(face, before.face[:count])

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hair and points that follow a deforming surface live."""
 
+import re
+
 import bpy
 import follow_truth
 import live_scenes
@@ -118,7 +120,19 @@ def test_faces_that_vanish_leave_things_and_name_the_reason():
     ob.data.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
     bpy.context.scene.frame_set(20)
     np.testing.assert_array_equal(scenes.strands(hair), before)
-    assert "Ptex faces" in live_kept.trouble(hair)
+    assert re.match(r"Strand \d+ of Limit Hair: face \d+ is not among", live_kept.trouble(hair))
+
+
+def test_the_strand_whose_root_is_no_place_is_named():
+    ob = deforming("cross")
+    hair = scenes.add_hair(ob, per_side=1, follow="NONE")
+    follow(hair)
+    root = attributes.read(hair.data, ids.REST_ROOT)
+    root[3] = np.nan
+    attributes.write(hair.data, ids.REST_ROOT, "FLOAT_VECTOR", "CURVE", root)
+    live_kept.forget()
+    bpy.context.scene.frame_set(20)
+    assert live_kept.trouble(hair).startswith("Strand 3 of Limit Hair: the rest root is (nan")
 
 
 def test_a_surface_without_subdivision_is_followed():

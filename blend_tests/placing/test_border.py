@@ -230,6 +230,13 @@ def test_what_cannot_be_done_is_refused():
     check_refused("faces that are chosen have no edges", distribution="BORDER", faces="SELECTED")
 
 
+def test_settings_are_called_as_in_the_panel():
+    scenes.activate(scenes.cross())
+    check_refused(
+        "Error: Row Distance is too small", distribution="BORDER", rows=2, row_distance=1e-6
+    )
+
+
 @pytest.mark.parametrize("add", [add_hair, add_points])
 def test_they_follow_a_mesh_that_deforms(add):
     ob = scenes.grid_with_holes()

@@ -22,6 +22,7 @@ LONGEST = 500
 #: What messages of programs look like
 NOT_PLAIN = re.compile(
     r"Traceback|bpy\.ops|bpy_|NoneType|ndarray|numpy|dtype|\w+Error\b|object at 0x|\barray\("
+    r"|\b[Rr]ow \d+:|^[A-Z][a-z]+_[a-z]+ (is|has)\b"
 )
 FIRST = re.compile(r"[A-Z0-9_']")
 

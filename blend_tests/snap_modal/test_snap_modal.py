@@ -132,7 +132,7 @@ def test_refusals(target):
     refused("Select one object to drag")
     ob = pin(target)
     refused("Dragging needs a window and a mouse", face=-1)
-    refused("Error: Row 0: face 1000", face=1000)
+    refused("Error: Cross: face 1000 is not among", face=1000)
     ob.lock_location = (True, True, True)
     refused("Pin cannot be put there: the location or rotation is locked")
     ob.lock_location = (False, False, False)
@@ -143,7 +143,7 @@ def test_refusals(target):
 
 def test_refusals_of_hair(target):
     hair = scenes.add_hair(target, per_side=1)
-    refused("no element 7000", element=7000)
+    refused("has no strand 7000", element=7000)
     bpy.context.scene.limit_surface.target = None
     hair.data.surface = None
     refused("Choose a target in the sidebar tab Limit", element=0)

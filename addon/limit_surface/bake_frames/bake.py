@@ -232,7 +232,7 @@ def _count(done: Counter[str]) -> str:
 
 
 def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split()) or type(error).__name__
+    return " ".join(native.sentence(error).split()) or type(error).__name__
 
 
 def say(text: str) -> None:

@@ -70,7 +70,7 @@ def _window() -> Iterator[None]:
 
 
 def _refuse(error: Exception, code: int) -> int:
-    print(f"limit_surface: error: {error}", file=sys.stderr, flush=True)
+    print(f"limit_surface: error: {native.sentence(error)}", file=sys.stderr, flush=True)
     return code
 
 

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import bpy
 import numpy as np
 
+from .. import native
 from ..counting import counted
 from ..errors import RefusalError
 from . import curve_object, guides, stroke
@@ -22,18 +24,23 @@ def read_strokes(
 ) -> list[Stroke]:
     """Returns the strokes of an operator's property, laid onto the surface between their points.
     Those whose points are all at one place are left out, like those of one point. Raises
-    LocationError or MeshError for points that have no place on the surface.
+    RefusalError for points that have no place on the surface.
     """
     found = []
-    for face, uv, radius, is_closed in stroke.read(points):
+    for face, uv, radius, is_closed, first in stroke.read(points):
         if np.isnan(radius).any():
             raise RefusalError("The radius of a point is not a number")
-        begun = ground.stroke(face, uv.astype(np.float64), radius)
+        with native.rows_called(partial(_point_called, first)):
+            begun = ground.stroke(face, uv.astype(np.float64), radius)
         if np.ptp(begun.position.astype(np.float32), axis=0).any():
             found += ground.lay(begun.position, radius, tolerance, is_closed)
     if points and not found:
         raise RefusalError("A stroke needs at least two different points")
     return found
+
+
+def _point_called(first: int, row: int) -> str:
+    return f"Point {first + row} of the strokes"
 
 
 def make(

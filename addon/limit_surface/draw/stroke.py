@@ -114,8 +114,10 @@ def count(points: bpy.types.bpy_prop_collection) -> int:
 
 def read(
     points: bpy.types.bpy_prop_collection,
-) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, bool]]:
-    """Returns the face, (u, v), radius and closedness of each stroke of a collection."""
+) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, bool, int]]:
+    """Returns the face, (u, v), radius and closedness of each stroke of a collection, and the
+    number of its first point.
+    """
     count = len(points)
     face, uv, radius = np.empty(count, np.int32), np.empty((count, 2), np.float32), np.empty(count)
     if not count:
@@ -131,7 +133,7 @@ def read(
     first = np.flatnonzero(is_first).tolist()
     ends = [*first[1:], count]
     return [
-        (face[begin:end], uv[begin:end], radius[begin:end], bool(is_closed[begin]))
+        (face[begin:end], uv[begin:end], radius[begin:end], bool(is_closed[begin]), begin)
         for begin, end in zip(first, ends, strict=True)
         if end > begin + 1
     ]

@@ -25,6 +25,12 @@ _GROUPS = (
     ids.FOLLOW_NORMALS_GROUP,
     ids.FOLLOW_CURVE_GROUP,
 )
+_ELEMENTS = {
+    "CURVES": "Strand",
+    "MESH": "Vertex",
+    "POINTCLOUD": "Point",
+    "CURVE": "Control point",
+}
 _BEZIER = 2  # the value of the attribute curve_type for such strands
 
 
@@ -60,6 +66,11 @@ def curve_table(ob: bpy.types.Object) -> bpy.types.Object | None:
 def domain_of(ob: bpy.types.Object) -> str:
     """Returns the domain on which the object's locations are stored."""
     return "CURVE" if ob.type == "CURVES" else "POINT"
+
+
+def element_called(ob: bpy.types.Object, row: int) -> str:
+    """Returns what one of the object's strands or points is called in messages."""
+    return f"{_ELEMENTS[ob.type]} {row} of {ob.name}"
 
 
 def is_placed(ob: bpy.types.Object) -> bool:

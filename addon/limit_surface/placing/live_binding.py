@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import bpy
 
-from .. import ids
+from .. import ids, native
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
@@ -63,7 +64,8 @@ class LiveRequest:
             if ob.data not in relocated:
                 following.check_holds(ob, self._surface, self._signature)
                 Places.read(ob.data).check(limit.face_count, self._surface.name)
-                live_thing.check(ob.data, limit)
+                with native.rows_called(partial(followers.element_called, ob)):
+                    live_thing.check(ob.data, limit)
         self._relocations = located
 
     def write(self, context: bpy.types.Context) -> LiveOutcome:

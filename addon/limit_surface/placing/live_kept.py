@@ -7,6 +7,7 @@ time.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import bpy
 
@@ -15,7 +16,7 @@ from ..counting import by_count, counted
 from ..errors import RefusalError
 from ..tasks.object_keys import ObjectKey
 from . import live_attributes
-from .followers import sharers
+from .followers import element_called, sharers
 from .live_surface import LiveSurface
 from .live_thing import LiveThing
 
@@ -122,7 +123,8 @@ def each(
         try:
             work(ob)
         except (RefusalError, ValueError, MemoryError) as error:
-            refuse([ob], native.sentence(error) or "There is not enough memory")
+            reason = native.sentence(error, partial(element_called, ob))
+            refuse([ob], reason or "There is not enough memory")
         else:
             for well in (ob, *sharers(ob)):
                 _troubles.pop(ObjectKey.of(well), None)

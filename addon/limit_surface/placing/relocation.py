@@ -12,12 +12,11 @@ from .. import ids
 from ..errors import RefusalError
 from ..reading import attributes, ragged_rows, splines, transform
 from . import live_attributes, seals
-from .followers import domain_of, holder_of, is_placed, live_modifier_of
+from .followers import domain_of, element_called, holder_of, is_placed, live_modifier_of
 from .places import NOWHERE, ROOT_KINDS, Places
 from .posed_surface import transformed
 
 TYPES = ("CURVES", "MESH", "POINTCLOUD")
-_NOUNS = {"CURVES": "strand", "MESH": "vertex", "POINTCLOUD": "point", "CURVE": "control point"}
 _NOTHING = {ids.FACE: NOWHERE, ids.UV: 0.0, ids.REST_ROOT: 0.0, ids.REST_ROTATION: 0.0}
 
 
@@ -60,7 +59,7 @@ class Elements:
 
     def called(self, row: int) -> str:
         """Returns what an element is called at the beginning of a message."""
-        return f"{_NOUNS[self.ob.type].capitalize()} {row} of {self.ob.name}"
+        return element_called(self.ob, row)
 
     @property
     def places(self) -> Places:

@@ -48,7 +48,8 @@ def bind_again(
             if ob.type == "CURVE" and modifier_of(ob):
                 curve_points.bind([ob], target, context)
     except native.refusals as error:
-        return [f"What was snapped does not follow {target.name} properly now: {error}"]
+        reason = native.sentence(error)
+        return [f"What was snapped does not follow {target.name} properly now: {reason}"]
     return []
 
 

@@ -106,7 +106,8 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
             glide = Glide(surface)
             glide.go_to(self.face, self.uv)
             drag = Drag(glide, subject.handle(self.element, surface))
-            drag.put(self.offset, self.align, self.hair)
+            with native.rows_called(lambda _row: subject.target.name):
+                drag.put(self.offset, self.align, self.hair)
             drag.confirm(self.offset, self.align, self.hair)
         except native.refusals as error:
             return self._refuse(error)
@@ -320,7 +321,8 @@ class VIEW3D_OT_limit_snap_modal(PlacingProperties, bpy.types.Operator):
 
     def _check_element(self, subject: Subject) -> None:
         if subject.is_picked and not 0 <= self.element < len(subject.candidates()):
-            raise RefusalError(f"{subject.ob.name} has no element {self.element}")
+            noun = "vertex" if subject.kind == "VERTEX" else "strand"
+            raise RefusalError(f"{subject.ob.name} has no {noun} {self.element}")
 
     def _refuse(self, reason: object) -> set[str]:
         self.report({"ERROR"}, native.sentence(reason))
