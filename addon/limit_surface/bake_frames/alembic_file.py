@@ -70,6 +70,7 @@ class _Rewriter:
         new = []
         for i, old in enumerate(self._children(self._number(8))):
             if i == _OBJECTS:
+                self._check_alone(old)
                 new.append(self._object(old))
             elif i == _METADATA:
                 new.append(self._data(_DATE.sub(_EPOCH, self._bytes(old))))
@@ -78,6 +79,15 @@ class _Rewriter:
         position = self._group(new).position
         self._target.seek(8)
         self._target.write(_NUMBER.pack(position))
+
+    def _check_alone(self, old: int) -> None:
+        """Raises RefusalError where there is more than one object below the root."""
+        _properties, *below, _headers = self._children(old)
+        if len(below) > 1:
+            raise RefusalError(
+                "Blender has written other objects into the file, too, because a script adds or "
+                "removes data in depsgraph_update_post: disable the script, or use --format npz"
+            )
 
     def _object(self, old: int) -> _Part:
         """Copies an object: its properties, the objects below it, and their headers."""

@@ -16,6 +16,7 @@ import bpy
 from .. import ids, native
 from ..counting import counted
 from ..errors import RefusalError
+from ..placing import live_kept
 from ..tasks import file_names
 from . import arrays, bindings
 from .arguments import Arguments
@@ -93,8 +94,12 @@ class Bake:
             try:
                 as_rendered = self._arguments.format.as_rendered
                 bindings.check_frame(subject.ob, self._scene, as_rendered)
+                moves = live_kept.moves()
                 with self._files.written(path) as partial:
                     self._arguments.format.write(partial, subject)
+                    bindings.check_posed(subject.ob, self._scene)
+                # what was posed as in renders is to be posed as in the viewport for the next object
+                is_shown = live_kept.moves() == moves
             except _TROUBLE as error:
                 done[FAILED] += 1
                 remarks.append(f"{path.name}: {_one_line(error)}")

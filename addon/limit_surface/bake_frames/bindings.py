@@ -57,6 +57,12 @@ def check_frame(ob: bpy.types.Object, scene: bpy.types.Scene, as_rendered: bool)
             _check_render(thing)
 
 
+def check_posed(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Raises RefusalError if the object could not be posed when it was last evaluated."""
+    for thing in _needed(ob):
+        check_live(thing, scene)
+
+
 def check_live(ob: bpy.types.Object, scene: bpy.types.Scene) -> None:
     """Raises RefusalError if the object follows by handlers that could not pose it."""
     if followers.live_modifier_of(ob) is None:
@@ -75,8 +81,19 @@ def _check_render(ob: bpy.types.Object) -> None:
     surface = followers.followed_surface(ob) or live_children.surface_of(ob)
     if surface is None:
         return
-    for modifier in surface.modifiers[: rules.place_of_subsurf(surface)]:
-        if modifier.show_viewport != modifier.show_render and modifier.type not in _DEFORMING:
+    before = surface.modifiers[: rules.place_of_subsurf(surface)]
+    hands_on = any(groups.modifiers(surface, ids.CAPTURE_GROUP))
+    for modifier in before:
+        if modifier.show_viewport == modifier.show_render:
+            continue
+        if not hands_on and followers.live_modifier_of(ob) is not None:
+            raise RefusalError(
+                f"{ob.name} follows {surface.name} as the viewport shows it, because "
+                f"{surface.name} has no modifier {ids.CAPTURE_GROUP}, and files of this format "
+                f"hold what renders show: enable the modifier {modifier.name} in both, or in "
+                "neither, or use --format npz"
+            )
+        if modifier.type not in _DEFORMING:
             raise RefusalError(
                 f"{ob.name} is bound to the faces that the viewport shows of {surface.name}, and "
                 "files of this format hold what renders show: enable the modifier "

@@ -17,12 +17,18 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from .. import ids
 from ..errors import RefusalError
+from ..placing import live_kept
+from ..reading import private_scene
 from . import alembic_file, arrays, usd_file
 
 #: Of a matrix, as a share of its largest number. Rounding in Blender loses 5e-5 where an axis is a
 #: thousand times shorter than the others.
 _LARGEST_LOSS = 1e-4
+
+#: The longest chain of surfaces each of which follows another one live
+_LONGEST_CHAIN = 16
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,7 @@ def _write_alembic(path: Path, subject: Subject) -> None:
     _check_scale(subject.ob)
     _check_shear(subject.ob)
     _export(
+        subject.ob,
         bpy.ops.wm.alembic_export,
         filepath=str(path),
         collection=subject.collection.name,
@@ -76,6 +83,7 @@ def _write_alembic(path: Path, subject: Subject) -> None:
 def _write_usd(path: Path, subject: Subject) -> None:
     _check_scale(subject.ob)
     _export(
+        subject.ob,
         bpy.ops.wm.usd_export,
         filepath=str(path),
         collection=subject.collection.name,
@@ -129,13 +137,27 @@ def _check_shear(ob: bpy.types.Object) -> None:
         found = found.parent
 
 
-def _export(operator: Callable[..., set[str]], **properties: object) -> None:
+def _export(ob: bpy.types.Object, operator: Callable[..., set[str]], **properties: object) -> None:
+    """Writes the file, in which all is posed as renders show it. While an exporter is at work, the
+    handlers of live following cannot evaluate surfaces on their own. A surface that has changed
+    because another one was posed is right when the exporter evaluates it again.
+    """
     # Versions of Blender differ in what can be chosen.
     known = operator.get_rna_type().properties.keys()  # type: ignore[attr-defined]
-    if operator(**{key: value for key, value in properties.items() if key in known}) != {
-        "FINISHED"
-    }:
-        raise RefusalError("Blender's exporter has written nothing")
+    properties = {key: value for key, value in properties.items() if key in known}
+    for _ in range(_LONGEST_CHAIN):
+        before = live_kept.moves()
+        with private_scene.barred() as bar:
+            if operator(**properties) != {"FINISHED"}:
+                raise RefusalError("Blender's exporter has written nothing")
+        if not bar.attempts:
+            return
+        if live_kept.moves() == before:
+            break
+    raise RefusalError(
+        f"{ob.name} cannot be posed as renders show it, because the surface that it follows has no "
+        f"modifier {ids.CAPTURE_GROUP}: object.limit_follow adds the modifier, or use --format npz"
+    )
 
 
 def _write_arrays(path: Path, subject: Subject) -> None:

@@ -8,26 +8,29 @@ from bpy.props import BoolProperty
 
 from .. import ids, native
 from ..placing import live, live_kept
-from ..reading import cage
+from ..reading import cage, private_scene
 
 # While a render engine asks for frames in a thread of its own, artists may change the scene.
 _lock = threading.RLock()
 
 
-def _has_work(scene: bpy.types.Scene) -> bool:
-    return native.available() and not cage.is_busy() and live.is_enabled(scene)
+def _has_work(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    # The viewport is posed again when the exporter has finished.
+    is_behind_exporter = private_scene.is_barred() and depsgraph.mode == "VIEWPORT"
+    is_free = not cage.is_busy() and not is_behind_exporter
+    return native.available() and is_free and live.is_enabled(scene)
 
 
 @bpy.app.handlers.persistent
 def _pose_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    if _has_work(scene):
+    if _has_work(scene, depsgraph):
         with _lock:
             live.pose_all(depsgraph)
 
 
 @bpy.app.handlers.persistent
 def _pose_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    if _has_work(scene) and _lock.acquire(blocking=False):
+    if _has_work(scene, depsgraph) and _lock.acquire(blocking=False):
         try:
             live.pose_changed(depsgraph)
         finally:

@@ -12,6 +12,7 @@ from .. import ids, native
 from ..errors import RefusalError
 from ..nodes import groups
 from ..nodes.follow import SURFACE
+from ..reading import private_scene
 from ..reading.users import objects_using
 from . import live_attributes, live_surface, live_thing
 from . import live_kept as kept
@@ -236,7 +237,8 @@ def _pose(
     try:
         (on.read_again if is_behind else on.read)(surface, depsgraph)
     except live_surface.errors as error:
-        kept.drop(surface)
+        if not private_scene.is_barred():  # it can only be read later
+            kept.drop(surface)
         kept.refuse(things, native.sentence(error))
         return moved
     # it may have the faces, or the pose, now that some of the things were written for
@@ -250,6 +252,7 @@ def _pose(
         thing = kept.thing(ob)
         if thing.pose(ob.data, on.limit, _matrix(ob, surface, depsgraph), frame):
             moved.add(ob.data)
+            kept.count_move()
         thing.version, thing.surface_pose = on.version, on.pose
 
     for _ in kept.each(good, pose):

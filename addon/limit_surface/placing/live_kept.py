@@ -24,6 +24,7 @@ _surfaces: dict[ObjectKey, LiveSurface] = {}
 _things: dict[tuple[str, str, str | None], LiveThing] = {}  # by type, name and library
 #: The reasons why objects do not follow at present
 _troubles: dict[ObjectKey, str] = {}
+_moves = 0
 
 
 def forget() -> None:
@@ -97,6 +98,18 @@ def surface(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> LiveSurface
         found.read(ob, depsgraph)
         _surfaces[key] = found
     return found
+
+
+def count_move() -> None:
+    global _moves
+    _moves += 1
+
+
+def moves() -> int:
+    """Returns how often something was moved: whoever compares two numbers learns whether anything
+    has moved between.
+    """
+    return _moves
 
 
 def known(ob: bpy.types.Object) -> LiveSurface | None:

@@ -18,7 +18,7 @@ import numpy as np
 from .. import ids, native
 from ..errors import CageError
 from ..nodes import groups
-from ..reading import attributes, cage, rules
+from ..reading import attributes, cage, private_scene, rules
 from ..tasks.unchanged import faces_of
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ class LiveSurface:
 
     def __init__(self) -> None:
         self.version = 0
+        self._is_behind = True  # something has moved since the pose was read, or there is none yet
         self._checksums: tuple[object, ...] | None = None
         self._faces: tuple[int, int, int] | None = None  # what tells the mesh's faces from others
 
@@ -68,6 +69,7 @@ class LiveSurface:
         """Takes the pose that the surface has in the depsgraph's frame after something was moved
         on which it depends, and which the depsgraph has not evaluated again.
         """
+        self._is_behind = True
         captured = _evaluated(ob, depsgraph)
         if captured is not None and _is_bare(ob, depsgraph):
             positions = attributes.read(ob.data, ids.POSITION).astype(np.float64)
@@ -97,28 +99,39 @@ class LiveSurface:
         depsgraph: bpy.types.Depsgraph,
         captured: _Captured | None,
     ) -> None:
-        self.version += 1
         frame = depsgraph.scene.frame_float
         if captured is not None:
             if self._faces is None and not ob.data.is_editmode:
                 self._faces = faces_of(ob.data)
             captured = captured._replace(checksums=(*captured.checksums, self._faces))
-        if captured is None or captured.checksums != self._checksums:
+        is_other = captured is None or captured.checksums != self._checksums
+        if is_other and private_scene.is_barred() and self.version:
+            if captured is not None:
+                raise CageError(_other_in_renders(ob))
+            if not self._is_behind and self.pose.frame == frame:
+                return  # it was read for this frame before the exporter began
+        self.version += 1
+        if is_other:
             self._checksums = None
             # without the modifier the surface is read after each update
             found = cage.read(ob, depsgraph, puts_back=captured is not None)
             self.limit = found.surface()
+        self._is_behind = False
         if captured is None:
             self.pose = SurfacePose(frame, self.limit.positions.copy(), None)
             return
         if len(captured.positions) != len(self.limit.positions):
-            raise CageError(
-                f"The modifiers of {ob.name} give another control mesh in renders "
-                "than in the viewport: enable each of them in both, or in neither"
-            )
+            raise CageError(_other_in_renders(ob))
         self.limit.set_positions(captured.positions)
         self._checksums = captured.checksums
         self.pose = SurfacePose(frame, captured.positions, captured.checksums)
+
+
+def _other_in_renders(ob: bpy.types.Object) -> str:
+    return (
+        f"The modifiers of {ob.name} give another control mesh in renders than in the viewport: "
+        "enable each of them in both, or in neither"
+    )
 
 
 def surface_at(

@@ -3,12 +3,15 @@
 scene.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import bpy
 
 from .. import ids
+from ..errors import CageError
 
 # In earlier versions a copy of a scene counts itself twice as a user of the objects that it links.
 _CAN_COPY = bpy.app.version >= (4, 5)
@@ -20,9 +23,38 @@ _CARRIED = {
 }
 
 
+_bars: list[Bar] = []
+
+
+class Bar:
+    """`attempts` counts how often a private scene was asked for in vain."""
+
+    def __init__(self) -> None:
+        self.attempts = 0
+
+
+@contextmanager
+def barred() -> Iterator[Bar]:
+    """Has `like` raise CageError as long as the context lasts. When data are added or removed while
+    an exporter is at work, Blender builds its depsgraph again, with all objects of the scene.
+    """
+    _bars.append(Bar())
+    try:
+        yield _bars[-1]
+    finally:
+        _bars.pop()
+
+
+def is_barred() -> bool:
+    return bool(_bars)
+
+
 @contextmanager
 def like(scene: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
     """Yields a private scene that exists as long as the context lasts."""
+    if _bars:
+        _bars[-1].attempts += 1
+        raise CageError("no object can be evaluated on its own while an exporter is at work")
     private = scene.copy() if _CAN_COPY else bpy.data.scenes.new(ids.CAGE_SCENE)
     try:
         private.name = ids.CAGE_SCENE
