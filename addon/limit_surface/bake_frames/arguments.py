@@ -94,7 +94,12 @@ def _parser() -> argparse.ArgumentParser:
         default="abc",
         help="Alembic, USD, USD as text, or numpy arrays; abc by default",
     )
-    add("--overwrite", action="store_true", help="replace files that exist already")
+    add(
+        "--overwrite",
+        action="store_true",
+        help="replace files that exist already; after a change of the .blend file or of what it "
+        "links, only if that replaces all frames in DIR",
+    )
     return parser
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import sys
 import time
 from collections import Counter
@@ -18,10 +17,10 @@ from ..counting import counted
 from ..errors import RefusalError
 from ..placing import live_kept
 from ..tasks import file_names
-from . import arrays, bindings
+from . import arrays, bindings, sources
 from .arguments import Arguments
 from .exporters import Subject
-from .frame_files import CONTENTS, FrameFiles
+from .frame_files import CONTENTS, LIBRARIES, FrameFiles
 
 # what has become of a file
 WRITTEN, EXISTED, FAILED = "written", "existed", "failed"
@@ -35,7 +34,7 @@ class Bake:
 
     def __init__(self, arguments: Arguments) -> None:
         arguments.format.check()
-        _check_libraries()
+        sources.check()
         self._arguments = arguments
         self._scene = bpy.context.scene
         self.objects = _find(arguments, self._scene)
@@ -56,9 +55,18 @@ class Bake:
                 "file": Path(bpy.data.filepath).name,
                 "limitsurf": native.version(),
                 "scene": self._scene.name,
-                CONTENTS: _checksum(bpy.data.filepath),
+                CONTENTS: sources.checksum(),
+                LIBRARIES: sources.library_checksums(),
             },
-            self._arguments.overwrite,
+            self._planned() if self._arguments.overwrite else frozenset(),
+        )
+
+    def _planned(self) -> frozenset[Path]:
+        """Returns the files that this job writes."""
+        return frozenset(
+            self._files.path(name, frame)
+            for name in self._names.values()
+            for frame in self._arguments.frames
         )
 
     def run(self, say: Callable[[str], None]) -> int:
@@ -112,24 +120,6 @@ class Bake:
         return done, remarks
 
 
-def _check_libraries() -> None:
-    """Raises RefusalError where something is missing that the file links: Blender shows what
-    depends on it without it, at rest for example, and says nothing.
-    """
-    for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.hair_curves, bpy.data.armatures):
-        for block in kind:
-            if block.is_missing:
-                raise RefusalError(
-                    f"{block.name} is missing: it cannot be read from {block.library.filepath}"
-                )
-    for library in bpy.data.libraries:
-        path = Path(bpy.path.abspath(library.filepath, library=library.parent))
-        if not library.packed_file and not path.is_file():
-            raise RefusalError(
-                f"the library {library.filepath} is missing: there is no file {path}"
-            )
-
-
 def _find(arguments: Arguments, scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Returns the objects to bake, or raises RefusalError."""
     where = bpy.data.filepath or "no file is open"
@@ -169,16 +159,6 @@ def _file_names(
     if name := next((name for name, count in counts.items() if count > 1), ""):
         raise RefusalError(f"several objects would be written to the same file {name}")
     return names
-
-
-def _checksum(path: str) -> str:
-    """Returns a checksum of a file; nothing where there is none. Jobs of one bake may find the file
-    at different paths.
-    """
-    if not Path(path).is_file():
-        return ""
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _is_animated(ob: bpy.types.Object) -> bool:

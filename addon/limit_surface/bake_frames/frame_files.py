@@ -9,19 +9,26 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from ..counting import counted
 from ..errors import RefusalError
 
 # unfinished files begin so; one that a killed job has left can be deleted
 PARTIAL = ".partial"
 RECORD = "bake.json"
-# the key of the record for a checksum of the .blend file
+# the keys of the record for checksums of the .blend file, and of each file that it links
 CONTENTS = "file_sha256"
+LIBRARIES = "libraries_sha256"
+
+Record = Mapping[str, str | dict[str, str]]
+
+_FRAME = re.compile(r".+\.-?\d{4,}\.(?:abc|usda?|npz)")
 
 
 class FrameFiles:
@@ -29,26 +36,28 @@ class FrameFiles:
         self._folder = folder
         self._suffix = suffix
 
-    def prepare(self, record: dict[str, str], overwrite: bool) -> None:
+    def prepare(self, record: Record, replaced: Set[Path]) -> None:
         """Makes the folder and writes the record. Raises RefusalError where the folder holds frames
-        with another record, which must not be mixed with new ones. With `overwrite`, the contents
-        of the .blend file may be others.
+        with another record, which must not be mixed with new ones. The contents of the .blend file
+        and of what it links may be others if each frame in the folder is to be `replaced`.
         """
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             there = self._claim(record)
             if not isinstance(there, dict):
                 raise RefusalError(f"{self._record} is not the record of a bake: delete it")
-            differ = sorted(key for key in record if there.get(key) != record[key])
-            if overwrite and differ == [CONTENTS]:
-                self._replace(record)
+            # records of earlier versions of the extension lack some checksums
+            unknown = {key for key in (CONTENTS, LIBRARIES) if key not in there}
+            differ = {key for key in record if there.get(key) != record[key]} - unknown
+            if replaced and (differ or unknown) and differ <= {CONTENTS, LIBRARIES}:
+                self._replace(record, replaced, bool(differ))
                 return
         except OSError as error:
             raise RefusalError(f"cannot write to {self._folder}: {error.strerror}") from error
-        if CONTENTS in differ and CONTENTS not in there:  # of an earlier version of the extension
-            differ.remove(CONTENTS)
         if differ:
-            reasons = "; ".join(_difference(key, there.get(key), record[key]) for key in differ)
+            reasons = "; ".join(
+                _difference(key, there.get(key), record[key]) for key in sorted(differ)
+            )
             raise RefusalError(
                 f"{self._folder} holds another bake ({reasons}): give another folder, or delete "
                 "that bake"
@@ -74,12 +83,28 @@ class FrameFiles:
     def _record(self) -> Path:
         return self._folder / RECORD
 
-    def _replace(self, record: dict[str, str]) -> None:
+    def _replace(self, record: Record, replaced: Set[Path], has_changed: bool) -> None:
+        """Deletes all frames, and writes the record. So a job that is ended before it has written
+        all frames anew leaves none of the old ones.
+        """
+        old = {p for p in self._folder.iterdir() if _FRAME.fullmatch(p.name) and p.is_file()}
+        rest = sorted(old - replaced)
+        if rest and not has_changed:
+            return
+        if rest:
+            raise RefusalError(
+                f"{self._folder} holds {counted(len(rest), 'files')} that this job would not "
+                f"replace, such as {rest[0].name}, and the .blend file or a file that it links "
+                "has changed since they were written: bake all frames and objects in one job, "
+                "give another folder, or delete the old files first"
+            )
+        for path in old:
+            path.unlink()
         with _partial(self._record) as partial:
             _write(partial, record)
             partial.replace(self._record)
 
-    def _claim(self, record: dict[str, str]) -> Any:
+    def _claim(self, record: Record) -> Any:
         """Writes the record, unless there is one, and returns the one that is there."""
         with _partial(self._record) as partial:
             _write(partial, record)
@@ -96,13 +121,16 @@ class FrameFiles:
             return None
 
 
-def _difference(key: str, there: object, here: str) -> str:
+def _difference(key: str, there: object, here: object) -> str:
     if key == CONTENTS:
         return "the .blend file has changed since, or is another one: --overwrite replaces all"
+    if key == LIBRARIES and isinstance(there, dict) and isinstance(here, dict):
+        names = sorted(n for n in there.keys() | here.keys() if there.get(n) != here.get(n))
+        return f"linked files have changed since: {', '.join(names)}; --overwrite replaces all"
     return f"{key} {there}, not {here}"
 
 
-def _write(path: Path, record: dict[str, str]) -> None:
+def _write(path: Path, record: Record) -> None:
     path.write_text(json.dumps(record, indent=2, sort_keys=True) + "\n")
     _save(path)
 
