@@ -132,3 +132,21 @@ def test_objects_that_share_data_are_all_refused(tmp_path, capfd):
     for ob in (hair, other):
         assert bake(tmp_path, ob.name, frames="1") == 3
         assert "shares its data with" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(("form", "suffix"), [("npz", ".0001.npz"), ("abc", ".-0100.abc")])
+def test_names_that_are_too_long_for_files(tmp_path, capfd, form, suffix):
+    """Blender 5 allows names of 255 bytes, and earlier versions 63."""
+    sheet, _hair = hair_on_sheet("NONE")
+    frame = "--frames=" + suffix.split(".")[1]
+    where = ("--output", str(tmp_path), "--format", form)
+    sheet.name = "ä" * 126 + "x"
+    if len(sheet.name) < 100:
+        pytest.skip("this Blender has no names of that length")
+    assert command.main(["bake", frame, "--objects", sheet.name, *where]) == command.BAD_ARGUMENTS
+    err = capfd.readouterr().err
+    assert f"has {253 + len(suffix)} bytes, and 255 are allowed. Give the object a" in err
+    assert not contents(tmp_path)
+    sheet.name = "ä" * 122
+    assert command.main(["bake", frame, "--objects", sheet.name, *where]) == 0
+    assert contents(tmp_path).keys() == {sheet.name + suffix, "bake.json"}

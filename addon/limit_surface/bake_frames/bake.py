@@ -40,6 +40,8 @@ class Bake:
         self.objects = _find(arguments, self._scene)
         self._names = _file_names(self._scene, self.objects)
         self._files = FrameFiles(arguments.folder, arguments.format.suffix)
+        for ob, name in self._names.items():
+            self._files.check_name(name, arguments.frames, ob.name)
 
     @contextmanager
     def at_first_frame(self) -> Iterator[None]:

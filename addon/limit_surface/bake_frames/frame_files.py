@@ -18,6 +18,7 @@ from typing import Any
 
 from ..counting import counted
 from ..errors import RefusalError
+from ..tasks import file_names
 
 # unfinished files begin so; one that a killed job has left can be deleted
 PARTIAL = ".partial"
@@ -27,6 +28,9 @@ CONTENTS = "file_sha256"
 LIBRARIES = "libraries_sha256"
 
 Record = Mapping[str, str | dict[str, str]]
+
+#: Bytes of a file's name on most systems
+_LONGEST_NAME = 255
 
 _FRAME = re.compile(r".+\.-?\d{4,}\.(?:abc|usda?|npz)")
 
@@ -66,6 +70,16 @@ class FrameFiles:
     def path(self, name: str, frame: int) -> Path:
         sign = "-" if frame < 0 else ""
         return self._folder / f"{name}.{sign}{abs(frame):04d}{self._suffix}"
+
+    def check_name(self, name: str, frames: range, whose: str) -> None:
+        """Raises RefusalError where the name is too long for files of these frames."""
+        longest = max((self.path(name, frame).name for frame in (frames[0], frames[-1])), key=len)
+        size = len(longest.encode())
+        if size > _LONGEST_NAME:
+            raise RefusalError(
+                f"the name of the object {whose} is too long for files: {longest} has {size} "
+                f"bytes, and {_LONGEST_NAME} are allowed. Give the object a shorter name"
+            )
 
     @contextmanager
     def written(self, path: Path) -> Iterator[Path]:
@@ -139,7 +153,8 @@ def _write(path: Path, record: Record) -> None:
 def _partial(path: Path) -> Iterator[Path]:
     """Yields a name that no other job uses, and leaves no file of that name."""
     job = f"{socket.gethostname()}-{os.getpid()}"
-    partial = path.with_name(f"{PARTIAL}-{job}-{path.name}")
+    # without the whole name, because that may be as long as names can be
+    partial = path.with_name(f"{PARTIAL}-{job}-{file_names.number(path.name)}{path.suffix}")
     try:
         yield partial
     finally:
