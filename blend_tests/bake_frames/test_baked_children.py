@@ -135,3 +135,55 @@ def test_the_share_of_the_viewport_is_that_of_arrays(live, tmp_path):
     assert bake(tmp_path, NAME, frames="1", options=("--format", "npz")) == 0
     with np.load(tmp_path / f"{NAME}.0001.npz") as arrays:
         assert len(arrays["curve_offsets"]) - 1 == len(children_truth.shown_strands(live)) < 30
+
+
+def remove_the_surface(live):
+    bpy.data.objects.remove(live.data.surface)
+
+
+def remove_the_group(live):
+    bpy.data.node_groups.remove(live_children.modifier_of(live).node_group)
+
+
+@pytest.mark.parametrize("form", ["npz", "abc"])
+@pytest.mark.parametrize("is_linked", [False, True])
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (remove_the_surface, "does not grow: its surface was deleted"),
+        (remove_the_group, "does not grow: the node group of its modifier Limit Children was"),
+    ],
+)
+def test_what_children_cannot_grow_without(live, tmp_path, capfd, change, reason, form, is_linked):
+    change(live)
+    if is_linked:
+        link_from(tmp_path / "library.blend")
+    assert bake(tmp_path / "out", NAME, options=("--format", form)) == command.STALE_BINDING
+    assert reason in capfd.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def link_from(library):
+    """Saves the file and links its children in an empty one."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(library))
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(str(library), link=True) as (_, here):
+        here.objects = [NAME]
+    bpy.context.scene.collection.objects.link(here.objects[0])
+
+
+def test_a_group_that_its_library_does_not_hold_any_more(live, tmp_path, capfd):
+    """The group was linked from a library, as those of an asset library are."""
+    group = live_children.modifier_of(live).node_group
+    library, shot = tmp_path / "library.blend", tmp_path / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(library), copy=True)
+    with bpy.data.libraries.load(str(library), link=True) as (_, here):
+        here.node_groups = [group.name]
+    live_children.modifier_of(live).node_group = here.node_groups[0]
+    bpy.ops.wm.save_as_mainfile(filepath=str(shot))
+    assert bake(tmp_path / "whole", NAME, frames="1", options=("--format", "npz")) == 0
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(library))
+    bpy.ops.wm.open_mainfile(filepath=str(shot))
+    assert bake(tmp_path / "broken", NAME, options=("--format", "npz")) == command.BAD_ARGUMENTS
+    assert "Limit Children is missing: it cannot be read from" in capfd.readouterr().err

@@ -32,6 +32,7 @@ def check(objects: Sequence[bpy.types.Object]) -> None:
         for thing in _needed(ob):
             check_live(thing, depsgraph.scene)
             ground = live_children.surface_of(thing)
+            _check_growing(thing)
             surface = followers.surface_of(thing) if followers.is_placed(thing) else ground
             if surface is None:
                 continue
@@ -150,6 +151,22 @@ def _check_guide_count(ob: bpy.types.Object, modifier: bpy.types.NodesModifier, 
         raise RefusalError(
             f"{ob.name} does not grow in frame {frame}: it has {counted(now, 'guides')} there, and "
             f"had {before:,} when it was made"
+        )
+
+
+def _check_growing(ob: bpy.types.Object) -> None:
+    """Raises RefusalError where live children have lost what they cannot grow without, and where
+    their surface cannot even be found.
+    """
+    if any(groups.without_group(ob, ids.CHILDREN_GROUP)):
+        raise RefusalError(
+            f"{ob.name} does not grow: the node group of its modifier {ids.CHILDREN_GROUP} was "
+            "deleted. Choose the group in the modifier again, or add the children again"
+        )
+    if live_children.modifier_of(ob) and live_children.surface_of(ob) is None:
+        raise RefusalError(
+            f"{ob.name} does not grow: its surface was deleted. Choose another surface in its "
+            "modifier, and rebind it"
         )
 
 

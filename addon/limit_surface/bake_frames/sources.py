@@ -17,9 +17,9 @@ def check() -> None:
     depends on it without it, at rest for example, and says nothing. Refused are also changes that
     are not saved, because no checksum of a file would tell them from others.
     """
-    for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.hair_curves, bpy.data.armatures):
-        for block in kind:
-            if block.is_missing:
+    for prop in bpy.data.bl_rna.properties:
+        for block in getattr(bpy.data, prop.identifier) if prop.type == "COLLECTION" else ():
+            if block.is_missing and block.library:
                 raise RefusalError(
                     f"{block.name} is missing: it cannot be read from {block.library.filepath}"
                 )
