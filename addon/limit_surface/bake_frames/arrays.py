@@ -27,8 +27,9 @@ _CARRIED = (
 )
 
 
-def write(path: Path, ob: bpy.types.Object) -> None:
-    """Writes the object as the viewport shows it. Positions are in the object's space.
+def write(path: Path, ob: bpy.types.Object) -> bool:
+    """Writes the object as the viewport shows it, and tells whether it has any points. Positions
+    are in the object's space.
 
     The same arrays give the same bytes: numpy writes no date.
     """
@@ -36,11 +37,12 @@ def write(path: Path, ob: bpy.types.Object) -> None:
     if not evaluated.is_evaluated:  # so this would be the object without its modifiers
         raise RefusalError(f"Blender does not evaluate {ob.name} in this frame")
     np.savez(path, **_arrays(evaluated))
+    return not is_empty(evaluated)
 
 
-def is_empty(ob: bpy.types.Object) -> bool:
-    """Tells whether the viewport shows no points of the object, of which arrays could be made."""
-    position = _evaluated(ob).data.attributes.get(ids.POSITION)
+def is_empty(evaluated: bpy.types.Object) -> bool:
+    """Tells whether an evaluated object has no points, of which arrays could be made."""
+    position = evaluated.data.attributes.get(ids.POSITION)
     return position is None or not len(position.data)
 
 

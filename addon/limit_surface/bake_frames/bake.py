@@ -17,7 +17,7 @@ from ..counting import counted
 from ..errors import RefusalError
 from ..placing import live_kept
 from ..tasks import file_names
-from . import arrays, bindings, sources
+from . import bindings, sources
 from .arguments import Arguments
 from .exporters import Subject
 from .frame_files import CONTENTS, LIBRARIES, FrameFiles
@@ -106,7 +106,7 @@ class Bake:
                 bindings.check_frame(subject.ob, self._scene, as_rendered)
                 moves = live_kept.moves()
                 with self._files.written(path) as partial:
-                    self._arguments.format.write(partial, subject)
+                    shows = self._arguments.format.write(partial, subject)
                     bindings.check_posed(subject.ob, self._scene)
                 # what was posed as in renders is to be posed as in the viewport for the next object
                 is_shown = live_kept.moves() == moves
@@ -115,10 +115,10 @@ class Bake:
                 remarks.append(f"{path.name}: {_one_line(error)}")
                 continue
             done[WRITTEN] += 1
-            if not self._arguments.format.as_rendered and arrays.is_empty(subject.ob):
-                remarks.append(f"{subject.ob.name} shows no points: its file is empty")
             if self._arguments.format.as_rendered and subject.ob.hide_render:
                 remarks.append(f"{subject.ob.name} is disabled in renders: its file is empty")
+            elif not shows:
+                remarks.append(f"{subject.ob.name} shows no points: its file is empty")
         return done, remarks
 
 

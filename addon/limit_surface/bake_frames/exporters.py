@@ -8,7 +8,8 @@ same frame gives the same bytes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -45,7 +46,7 @@ class Subject:
 class Format:
     name: str
     suffix: str
-    write: Callable[[Path, Subject], None]
+    write: Callable[[Path, Subject], bool]  # tells whether the object shows anything
     build_option: str  # what Blender must have been built with
     as_rendered: bool  # whether settings for renders count, and not those of the viewport
     types: frozenset[str] = frozenset()  # the types of objects that it can hold; empty: all
@@ -62,10 +63,10 @@ def build_options() -> Any:
     return bpy.app.build_options
 
 
-def _write_alembic(path: Path, subject: Subject) -> None:
+def _write_alembic(path: Path, subject: Subject) -> bool:
     _check_scale(subject.ob)
     _check_shear(subject.ob)
-    _export(
+    shows = _export(
         subject.ob,
         bpy.ops.wm.alembic_export,
         filepath=str(path),
@@ -78,11 +79,12 @@ def _write_alembic(path: Path, subject: Subject) -> None:
         evaluation_mode="RENDER",
     )
     alembic_file.normalize(path)
+    return shows
 
 
-def _write_usd(path: Path, subject: Subject) -> None:
+def _write_usd(path: Path, subject: Subject) -> bool:
     _check_scale(subject.ob)
-    _export(
+    shows = _export(
         subject.ob,
         bpy.ops.wm.usd_export,
         filepath=str(path),
@@ -99,6 +101,7 @@ def _write_usd(path: Path, subject: Subject) -> None:
         evaluation_mode="RENDER",
     )
     usd_file.check_complete(path)
+    return shows
 
 
 def _check_scale(ob: bpy.types.Object) -> None:
@@ -137,31 +140,55 @@ def _check_shear(ob: bpy.types.Object) -> None:
         found = found.parent
 
 
-def _export(ob: bpy.types.Object, operator: Callable[..., set[str]], **properties: object) -> None:
-    """Writes the file, in which all is posed as renders show it. While an exporter is at work, the
-    handlers of live following cannot evaluate surfaces on their own. A surface that has changed
-    because another one was posed is right when the exporter evaluates it again.
+@contextmanager
+def _watched(ob: bpy.types.Object) -> Iterator[list[bool]]:
+    """Yields a list to which each evaluation of an exporter adds whether the object shows anything:
+    points or instances.
+    """
+    shows: list[bool] = []
+
+    def look(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+        evaluated = ob.evaluated_get(depsgraph)
+        if depsgraph.mode == "RENDER" and evaluated.is_evaluated and ob.type in arrays.TYPES:
+            shows.append(not arrays.is_empty(evaluated) or _has_instances(ob, depsgraph))
+
+    handlers = bpy.app.handlers.depsgraph_update_post
+    handlers.append(look)
+    try:
+        yield shows
+    finally:
+        handlers.remove(look)
+
+
+def _has_instances(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
+    return any(
+        each.is_instance and each.parent and each.parent.original == ob
+        for each in depsgraph.object_instances
+    )
+
+
+def _export(ob: bpy.types.Object, operator: Callable[..., set[str]], **properties: object) -> bool:
+    """Writes the file, in which all is posed as renders show it, and tells whether the object shows
+    anything there. While an exporter is at work, the handlers of live following cannot evaluate
+    surfaces on their own. A surface that has changed because another one was posed is right when
+    the exporter evaluates it again.
     """
     # Versions of Blender differ in what can be chosen.
     known = operator.get_rna_type().properties.keys()  # type: ignore[attr-defined]
     properties = {key: value for key, value in properties.items() if key in known}
     for _ in range(_LONGEST_CHAIN):
         before = live_kept.moves()
-        with private_scene.barred() as bar:
+        with private_scene.barred() as bar, _watched(ob) as shows:
             if operator(**properties) != {"FINISHED"}:
                 raise RefusalError("Blender's exporter has written nothing")
         if not bar.attempts:
-            return
+            return all(shows[-1:])
         if live_kept.moves() == before:
             break
     raise RefusalError(
         f"{ob.name} cannot be posed as renders show it, because the surface that it follows has no "
         f"modifier {ids.CAPTURE_GROUP}: object.limit_follow adds the modifier, or use --format npz"
     )
-
-
-def _write_arrays(path: Path, subject: Subject) -> None:
-    arrays.write(path, subject.ob)
 
 
 FORMATS = {
