@@ -79,11 +79,18 @@ namespace {
 
 /// The bounding box of some points.
 struct Box {
-  Padded low = Padded::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  double low[3], high[3];
 
-  void include(const Padded& least, const Padded& most) {
-    low = low.min(least);
-    high = high.max(most);
+  Box() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    std::fill_n(low, 3, kInfinity);
+    std::fill_n(high, 3, -kInfinity);
+  }
+  void include(const double least[3], const double most[3]) {
+    for (int c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], least[c]);
+      high[c] = std::max(high[c], most[c]);
+    }
   }
 };
 
@@ -101,9 +108,10 @@ void Pose::set(const Points& cage, int threads) {
   parallelFor(count, kPointsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     Box part;
     for (std::size_t i = begin; i < end; ++i) {
-      const Padded point = padded(cage.row(static_cast<Eigen::Index>(i)).transpose());
-      points_[i] = point;
-      part.include(point, point);
+      const double* const from = cage.data() + 3 * i;
+      double* const to = points_[i].data();
+      to[0] = from[0], to[1] = from[1], to[2] = from[2], to[3] = 0;
+      part.include(from, from);
     }
     parts[begin / kPointsPerTask] = part;
   });
@@ -111,11 +119,13 @@ void Pose::set(const Points& cage, int threads) {
   for (const Box& part : parts) {
     box.include(part.low, part.high);
   }
-  if (count == 0) {
-    box.low = box.high = Padded::Zero();
+  extent_ = 0;
+  double largest = 0;
+  for (int c = 0; c < 3 && count > 0; ++c) {
+    extent_ = std::max(extent_, box.high[c] - box.low[c]);
+    largest = std::max({largest, std::abs(box.low[c]), std::abs(box.high[c])});
   }
-  extent_ = (box.high - box.low).maxCoeff();
-  residual_unit_ = powerOfTwo(box.low.abs().max(box.high.abs()).maxCoeff());
+  residual_unit_ = powerOfTwo(largest);
   refinePoints();
   steps_made_.clear();
   parallelFor(rings_.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
