@@ -205,8 +205,15 @@ double TileEvaluator::sizeOf(const TileLocation& at) const {
       size = std::max(size, pose_.difference(point, tile.points[5]).abs().maxCoeff());
     }
   } else {
-    const Points& modes = pose_.ring(table_.ring_tiles[at.tile.index].ring).coefficients;
+    const int index = static_cast<int>(at.tile.index);
+    const RingTile& tile = table_.ring_tiles[index];
+    const RingPoints& ring = table_.rings[tile.ring];
+    const Points& modes = pose_.ring(tile.ring).coefficients;
     size = modes.bottomRows(modes.rows() - 1).cwiseAbs().maxCoeff();
+    const Pose::OuterPoints outer = pose_.outerPoints(index);
+    for (std::size_t i = 0; i < ring.basis->outerModes(tile.face).slots().size(); ++i) {
+      size = std::max(size, outer.points[i].abs().maxCoeff());
+    }
   }
   return std::ldexp(size, at.depth);
 }

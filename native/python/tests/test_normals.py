@@ -83,6 +83,28 @@ def test_a_mesh_without_area_has_no_normals(collapsed):
     assert np.isfinite(whole.frames(*at)).all()
 
 
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize(
+    "shape",
+    [
+        shapes.grid(2, 2),
+        (shapes.grid(3, 3)[0], shapes.halves(shapes.grid_faces(3, 3))),
+        shapes.pole(5),
+    ],
+)
+def test_a_mesh_on_a_line_has_no_normals_where_a_ring_is_one_point(shape, seed):
+    # What is around an irregular vertex is in one place: only points farther away have an extent.
+    positions, faces = shape
+    rng = np.random.default_rng(seed)
+    on_line = np.outer(rng.integers(0, 2, len(positions)), [0.3, 0.7, 0.11])
+    whole = ls.LimitSurface(ls.ControlMesh.from_faces(on_line, faces))
+    face = np.repeat(np.arange(whole.face_count), 100)
+    uv = rng.random((len(face), 2))
+    uv[::2] = np.abs((uv[::2] > 0.5) - 2.0 ** -rng.integers(1, 41, (len(uv[::2]), 2)))
+    assert np.isnan(whole.evaluate(face, uv, 1).normal).all()
+    assert np.isnan(whole.curvature(face, uv).mean).all()
+
+
 def test_an_edge_collapsed_to_a_point():
     # The face's side v = 0 is one point in the control mesh, but the surface there is smooth.
     positions, faces = shapes.grid(3, 3)
