@@ -38,6 +38,12 @@ class PatchSearch {
     if ((facing_ || isBoundUseful(bound)) && findsFoot(bound)) {
       return;
     }
+    if (isPoint()) {
+      if (!facing_ || isFoot(0, 0)) {
+        offer(0, 0);
+      }
+      return;
+    }
     const SquaredDistance f(kernels_, relative_.points, away_);
     const double noise = noiseOf(f);
     if (isBetter(f.least() - noise)) {
@@ -109,6 +115,14 @@ class PatchSearch {
     double z[16];
     kernels_.along(numbersOf(relative_.points), direction.data(), z);
     return bound.holds(z, distance);
+  }
+
+  /// Whether the whole patch is in one place. On a mesh without extent, where the tolerance is 0,
+  /// the cells of such a patch would be divided in vain: all are equally close but for rounding.
+  bool isPoint() const {
+    return std::all_of(patch_.points + 1, patch_.points + 16, [&](const BezierPatch::Point& point) {
+      return (point == patch_.points[0]).all();
+    });
   }
 
   /// The closest point of the plane of the patch's mean derivatives.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The cost of a search on one patch that is squeezed to nearly a line.
+// The cost of a search on one patch that is squeezed to nearly a line, or to a point.
 #include "limitsurf/search/closest_on_patch.h"
 
 #include <gtest/gtest.h>
@@ -44,6 +44,27 @@ TEST(ClosestOnPatch, TakesABoundedTimeOnNarrowPatches) {
       EXPECT_LE(best.excess, aside + 1.01 * best.tolerance) << squeeze;
       EXPECT_LE(best.cells, kMostCells) << squeeze << ", aside " << aside;
     }
+  }
+}
+
+/// As on a mesh whose vertices are all in one place, such as an object that is scaled to 0. All
+/// parts of the patch are equally close but for rounding, and without extent the tolerance is 0.
+TEST(ClosestOnPatch, LooksOnceAtAPatchInOnePlace) {
+  Random random(2);
+  BezierPatch patch;
+  patch.anchor = {0.1, -7, 1000, 0};
+  patch.borders = 0;
+  for (BezierPatch::Point& point : patch.points) {
+    point.setZero();
+  }
+  const Vector3 place = patch.anchor.head<3>().matrix();
+  for (int round = 0; round < 100; ++round) {
+    const Vector3 point = place + random.vector(1);
+    ClosestSoFar best;
+    best.from = SearchPoint(point, place, 0);
+    closestOnPatch(patch, FootBound(patch), nullptr, best);
+    EXPECT_NEAR(best.excess, (point - place).norm(), 1e-13);
+    EXPECT_LE(best.cells, 1);
   }
 }
 
