@@ -1,93 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "result_memory.h"
 
-#include <algorithm>
-#include <iterator>
-#include <memory>
-#include <new>
-#include <utility>
+#include <cstdint>
+#include <cstring>
 
-#include "limitsurf/large_pages.h"
-#include "traced_memory.h"
+#include "kept_memory.h"
 
 namespace limitsurf::python {
 namespace {
 
-constexpr std::size_t kLargePage = std::size_t{1} << 21;
-constexpr std::size_t kCacheLine = 64;
-
-/// The sizes of blocks are an eighth of a power of two apart, so that arrays of almost equal size
-/// can have the same memory, one after another.
-std::size_t blockSize(std::size_t bytes) {
-  std::size_t step = kLeastKept / 8;
-  while (16 * step <= bytes) step *= 2;
-  return (bytes + step - 1) / step * step;
-}
-
-std::align_val_t alignmentOf(std::size_t size) {
-  return std::align_val_t(size < kLargePage ? kCacheLine : kLargePage);
-}
-
-struct Block {
-  void* memory;
-  std::size_t size;
+/// PyDataMem_Handler of numpy 1.22 and later, version 1 (NEP 49, Data allocation strategies).
+struct Handler {
+  char name[127];
+  std::uint8_t version;
+  void* context;
+  void* (*allocate)(void*, std::size_t);
+  void* (*allocateZeros)(void*, std::size_t, std::size_t);
+  void* (*reallocate)(void*, void*, std::size_t);
+  void (*free)(void*, void*, std::size_t);
 };
 
-void freeBlock(const Block& block) { ::operator delete(block.memory, alignmentOf(block.size)); }
+void* zeros(void*, std::size_t count, std::size_t size) {
+  void* const memory = takeMemory(count * size);
+  if (memory != nullptr) std::memset(memory, 0, count * size);
+  return memory;
+}
 
-/// Freed blocks, the oldest first. The GIL guards them.
-class KeptBlocks {
+Handler kHandler = {
+    "limitsurf",
+    1,
+    nullptr,
+    [](void*, std::size_t bytes) { return takeMemory(bytes); },
+    zeros,
+    [](void*, void* memory, std::size_t bytes) { return resizeMemory(memory, bytes); },
+    [](void*, void* memory, std::size_t) { returnMemory(memory); },
+};
+
+/// PyDataMem_SetHandler(): says how new arrays of this thread get their memory, and returns the
+/// capsule that said so before, or null with an error set.
+using SetHandler = PyObject* (*)(PyObject*);
+
+SetHandler setHandler() {
+  constexpr int kPlace = 304;  // in numpy's table of functions
+  const py::object table = py::detail::import_numpy_core_submodule("multiarray").attr("_ARRAY_API");
+  void** const functions = static_cast<void**>(PyCapsule_GetPointer(table.ptr(), nullptr));
+  if (functions == nullptr) throw py::error_already_set();
+  return reinterpret_cast<SetHandler>(functions[kPlace]);
+}
+
+/// While it exists, new arrays of this thread have memory that is kept.
+class KeptMemory {
  public:
-  /// A block of this size; the one that was freed last is the likeliest to be in a cache.
-  Block take(std::size_t size) {
-    const auto kept = std::find_if(blocks_.rbegin(), blocks_.rend(),
-                                   [&](const Block& block) { return block.size == size; });
-    if (kept != blocks_.rend()) {
-      const Block block = *kept;
-      blocks_.erase(std::next(kept).base());
-      bytes_ -= size;
-      return block;
-    }
-    void* const memory = ::operator new(size, alignmentOf(size));
-    askForLargePages(memory, size);
-    return {memory, size};
+  KeptMemory() {
+    static const SetHandler set = setHandler();
+    static const py::handle ours = py::capsule(&kHandler, "mem_handler").release();  // for good
+    set_ = set;
+    before_ = set_(ours.ptr());
+    if (before_ == nullptr) throw py::error_already_set();
   }
-
-  void keep(const Block& block) {
-    blocks_.push_back(block);
-    bytes_ += block.size;
-    while (bytes_ > kMostKept) {
-      bytes_ -= blocks_.front().size;
-      freeBlock(blocks_.front());
-      blocks_.erase(blocks_.begin());
-    }
+  ~KeptMemory() {
+    PyObject* const ours = set_(before_);
+    if (ours == nullptr) PyErr_WriteUnraisable(nullptr);
+    Py_XDECREF(ours);
+    Py_DECREF(before_);
   }
+  KeptMemory(const KeptMemory&) = delete;
+  KeptMemory& operator=(const KeptMemory&) = delete;
 
  private:
-  std::vector<Block> blocks_;
-  std::size_t bytes_ = 0;
+  SetHandler set_;
+  PyObject* before_;
 };
-
-KeptBlocks& keptBlocks() {
-  static auto* const blocks = new KeptBlocks;  // arrays may be freed when the process ends
-  return *blocks;
-}
 
 }  // namespace
 
 py::array newArray(const py::dtype& dtype, std::vector<py::ssize_t> shape) {
-  std::size_t bytes = static_cast<std::size_t>(dtype.itemsize());
+  auto bytes = static_cast<std::size_t>(dtype.itemsize());
   for (const py::ssize_t extent : shape) bytes *= static_cast<std::size_t>(extent);
-  if (bytes < kLeastKept || bytes > kMostKept) return py::array(dtype, std::move(shape));
-  auto block = std::make_unique<Block>(keptBlocks().take(blockSize(bytes)));
-  const py::capsule owner(block.get(), [](void* pointer) {
-    const std::unique_ptr<Block> freed(static_cast<Block*>(pointer));
-    untraceMemory(freed->memory);
-    keptBlocks().keep(*freed);
-  });
-  void* const memory = block.release()->memory;
-  traceMemory(memory, bytes);
-  return py::array(dtype, std::move(shape), memory, owner);
+  if (bytes < kLeastKept) return py::array(dtype, std::move(shape));
+  const KeptMemory memory;
+  return py::array(dtype, std::move(shape));
 }
 
 }  // namespace limitsurf::python

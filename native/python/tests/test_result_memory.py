@@ -53,8 +53,27 @@ def test_a_result_is_an_array_like_others(surface):
     assert array.flags.c_contiguous
     assert array.flags.writeable
     assert array.flags.aligned
+    assert array.flags.owndata
+    array.setflags(write=False)
+    array.setflags(write=True)
     array += 1
     assert np.array_equal(pickle.loads(pickle.dumps(array)), array)
+
+
+@pytest.mark.parametrize("rows", [ROWS // 100, 3 * ROWS])
+def test_a_result_can_be_resized(surface, rows):
+    array = evaluated(surface, 0.25).position
+    before = array.copy()
+    array.resize((rows, 3), refcheck=False)
+    both = min(rows, ROWS)
+    assert np.array_equal(array[:both], before[:both])
+    assert not array[both:].any()
+
+
+def test_arrays_of_others_have_memory_of_numpy(surface):
+    freed = addresses(evaluated(surface, 0.25))
+    others = [np.empty((ROWS, 3)) for _ in range(8)]
+    assert not freed & {array.ctypes.data for array in others}
 
 
 def test_tracemalloc_counts_results_as_it_counts_arrays_of_numpy(surface):
