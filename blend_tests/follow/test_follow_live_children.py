@@ -169,6 +169,35 @@ def test_settings_are_those_that_they_were_made_with(scene):
         np.testing.assert_array_equal(old, new)
 
 
+def add_groups(ob: bpy.types.Object) -> None:
+    """Adds groups of the left and of the right half, and colors of the same."""
+    right = np.array([vertex.co.x > 0 for vertex in ob.data.vertices])
+    for name, inside in (("Left", ~right), ("Right", right)):
+        ob.vertex_groups.new(name=name).add(np.flatnonzero(inside).tolist(), 1.0, "REPLACE")
+        colors = np.repeat(inside.astype(np.float32)[:, None], 4, axis=1)
+        attribute = ob.data.color_attributes.new(f"{name} Color", "FLOAT_COLOR", "POINT")
+        attribute.data.foreach_set("color", colors.ravel())
+
+
+def activate_group(ob: bpy.types.Object, name: str) -> None:
+    ob.vertex_groups.active = ob.vertex_groups[name]
+    ob.data.color_attributes.active_color = ob.data.color_attributes[f"{name} Color"]
+
+
+@pytest.mark.parametrize("source", ["VERTEX_GROUP", "COLOR_ATTRIBUTE"])
+def test_what_was_active_when_they_were_made_steers_them_again(scene, source):
+    ob, guides, _live = scene
+    add_groups(ob)
+    activate_group(ob, "Left")
+    live = add_live(guides, density_source=source)
+    before = children_truth.stored(live)
+    activate_group(ob, "Right")
+    select(live)
+    assert bpy.ops.object.limit_rebind() == {"FINISHED"}
+    for old, new in zip(before, children_truth.stored(live), strict=True):
+        np.testing.assert_array_equal(old, new)
+
+
 @pytest.mark.parametrize("table", [nodes.TABLE, nodes.TILES])
 def test_a_deleted_table_is_made_again(scene, table):
     ob, guides, live = scene

@@ -19,7 +19,7 @@ from ..placing import all_tiles, followers, following, live_children, new_hair, 
 from ..placing.all_tiles import AllTiles
 from ..placing.binding import Binding
 from ..placing.distribution import Distribution
-from ..placing.distribution_properties import surface_object
+from ..placing.distribution_properties import DENSITY, surface_object
 from ..placing.follow_properties import follows
 from ..placing.new_hair import Strands
 from ..placing.rotations import WorldSpace
@@ -263,7 +263,7 @@ class OBJECT_OT_limit_children_add(ScatterOperator, parting.PartingProperties, b
             }
             tiles, self._tiles = self._tiles, None
             assert tiles is not None
-            settings = self._settings()
+            settings = self._settings() | DENSITY.names_of_active(self, surface)
             old = bpy.data.objects.get(self.replaces)
             if old is not None:
                 live_children.make_again(old, surface, guides, tiles, made, settings)

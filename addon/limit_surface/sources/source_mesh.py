@@ -74,10 +74,7 @@ def vertex_group(ob: bpy.types.Object, name: str) -> str:
     if not name:
         active = ob.vertex_groups.active
         if active is None:
-            raise RefusalError(
-                f"{ob.name} has no vertex group: add one in its Object Data properties, or choose "
-                "another source"
-            )
+            raise RefusalError(_without(ob, "vertex group", bool(ob.vertex_groups)))
         name = active.name
     if name not in ob.vertex_groups:
         raise RefusalError(f"{ob.name} has no vertex group {name!r}")
@@ -97,11 +94,18 @@ def color_attribute(ob: bpy.types.Object, name: str) -> str:
         return name
     active = ob.data.color_attributes.active_color
     if active is None:
-        raise RefusalError(
-            f"{ob.name} has no color attribute: add one in its Object Data properties, or choose "
-            "another source"
-        )
+        raise RefusalError(_without(ob, "color attribute", bool(ob.data.color_attributes)))
     return str(active.name)
+
+
+def _without(ob: bpy.types.Object, kind: str, has_others: bool) -> str:
+    if has_others:
+        return (
+            f"{ob.name} has no active {kind}: name one, or click one in its Object Data properties"
+        )
+    return (
+        f"{ob.name} has no {kind}: add one in its Object Data properties, or choose another source"
+    )
 
 
 def read_weights(mesh: bpy.types.Mesh, names: list[str]) -> dict[str, np.ndarray | None]:

@@ -138,6 +138,27 @@ class SourceNames:
             high=high,
         )
 
+    def names_of_active(
+        self, properties: bpy.types.OperatorProperties, ob: bpy.types.Object
+    ) -> dict[str, str]:
+        """Returns the properties of what is chosen without a name, and the name of what is active
+        on the object now. Choices that are used again later are stored with it: another group may
+        be active then.
+        """
+        source = getattr(properties, self.source)
+        group, color, uv_map = (
+            ob.vertex_groups.active,
+            ob.data.color_attributes.active_color,
+            ob.data.uv_layers.active,
+        )
+        active = {
+            "VERTEX_GROUP": (self.vertex_group, group),
+            "COLOR_ATTRIBUTE": (self.color_attribute, color),
+            "IMAGE": ("uv_map", uv_map),
+        }
+        name, used = active.get(source, ("", None))
+        return {name: used.name} if used is not None and not getattr(properties, name) else {}
+
     def draw(
         self,
         layout: bpy.types.UILayout,
