@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import scenes
 from limit_surface import ids
-from limit_surface.placing import live_attributes, live_kept
+from limit_surface.placing import live_attributes, live_kept, live_surface
 from limit_surface.reading import attributes
 from live_scenes import FRAMES, check_hair, deforming, follow
 from mathutils import Matrix
@@ -40,6 +40,18 @@ def test_strands_follow_an_armature():
     bone.rotation_euler[1] += 0.3  # without a key, as in posing
     bpy.context.view_layer.update()
     check_hair(ob, hair)
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 5), reason="Blender gives only the subdivided mesh")
+def test_the_surface_is_not_subdivided_for_reading():
+    ob = deforming("cross")
+    follow(scenes.add_hair(ob, follow="NONE"))
+    ob.modifiers[-1].levels = 2
+    bpy.context.view_layer.update()
+    shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    _geometry, mesh = live_surface.least_subdivided(shown)
+    assert len(mesh.vertices) == len(ob.data.vertices) < len(shown.data.vertices)
+    assert ids.CAGE_POSITION in mesh.attributes
 
 
 def test_a_frame_depends_on_nothing_but_itself():

@@ -154,7 +154,22 @@ def _evaluated(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Capture
     evaluated = ob.evaluated_get(depsgraph)
     if not evaluated.is_evaluated or evaluated.type != "MESH":
         return None
-    return _captured(ob, evaluated.data)
+    geometry, mesh = least_subdivided(evaluated)  # the mesh lives as long as the geometry
+    return None if mesh is None else _captured(ob, mesh)
+
+
+def least_subdivided(
+    evaluated: bpy.types.Object,
+) -> tuple[object, bpy.types.Mesh | None]:
+    """Returns an evaluated object's mesh, and what holds it. Blender leaves a last Subdivision
+    Surface modifier to the graphics card, or to whoever reads `evaluated.data`: that would take the
+    processor several times as long as all that is done here. Such a modifier is not applied to this
+    mesh.
+    """
+    if bpy.app.version < (4, 5):
+        return evaluated, evaluated.data
+    geometry = evaluated.evaluated_geometry()
+    return geometry, geometry.mesh_base
 
 
 def _is_bare(ob: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
