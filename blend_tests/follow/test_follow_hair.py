@@ -131,3 +131,23 @@ def test_hair_that_follows_is_bound_at_its_new_places_when_it_is_snapped(to_anot
     for frame in (1, 30):
         bpy.context.scene.frame_set(frame)
         check(ob, hair, (ids.POSITION,))
+
+
+def test_new_hair_is_evaluated_once():
+    """Evaluation takes longer than all else for many strands."""
+    ob = deforming("cross")
+    evaluated = []
+
+    def note(_scene, depsgraph):
+        evaluated.extend(
+            update.id.name
+            for update in depsgraph.updates
+            if update.is_updated_geometry and isinstance(update.id, bpy.types.Curves)
+        )
+
+    bpy.app.handlers.depsgraph_update_post.append(note)
+    try:
+        hair = scenes.add_hair(ob, follow="NODES")
+    finally:
+        bpy.app.handlers.depsgraph_update_post.remove(note)
+    assert evaluated == [hair.data.name]

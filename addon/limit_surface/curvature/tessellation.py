@@ -61,10 +61,12 @@ class Tessellation:
         try:
             self._fill(mesh)
             storage.write_on_mesh(mesh, values[0], colors[0])
-            return new_objects.add_on_surface(context, ids.CURVATURE_OBJECT, mesh, surface).name
+            ob = new_objects.add_on_surface(context, ids.CURVATURE_OBJECT, mesh, surface)
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
+        context.view_layer.update()
+        return ob.name
 
     def _fill(self, mesh: bpy.types.Mesh) -> None:
         made = self._mesh

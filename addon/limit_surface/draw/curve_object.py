@@ -62,6 +62,7 @@ def add_new(
             # Nodes see control points only where the curve itself has no bevel.
             sides = 4 * (thickness.bevel_resolution + 1)
             tube.add_tube(ob, thickness.radius / scale, sides)
+    context.view_layer.update()
     return ob
 
 

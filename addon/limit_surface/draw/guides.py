@@ -58,6 +58,7 @@ def add_new(
         raise
     if bindings:
         bindings.write(ob)
+    context.view_layer.update()
     return ob
 
 

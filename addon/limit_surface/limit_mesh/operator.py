@@ -185,6 +185,7 @@ class OBJECT_OT_limit_mesh(
             raise
         if result.bindings:
             result.bindings.write(ob)
+        context.view_layer.update()
         if self.hide_original:
             surface.hide_set(True)
             surface.hide_render = True

@@ -166,6 +166,7 @@ class OBJECT_OT_limit_hair_from_particles(
             how = "live"
         elif self.follow == "AUTO" and can_deform(surface):
             why = why_not_automatic(surface)
+        context.view_layer.update()
         self._report(made, how, why)
         return {"FINISHED"}
 

@@ -21,7 +21,9 @@ def add_on_surface(
     shown: bpy.types.Object | bpy.types.Collection | None = None,
 ) -> bpy.types.Object:
     """Adds an object that shares the surface's transform, makes it active and selects it alone.
-    `shown` is that of which it will show instances.
+    `shown` is that of which it will show instances. Blender has not evaluated the object yet: with
+    many strands that takes longer than to make them, so it is for the caller to update the view
+    layer once the object is complete.
     """
     ob = bpy.data.objects.new(name, data)
     put_on_surface(ob, surface)
@@ -32,7 +34,6 @@ def add_on_surface(
         other.select_set(False)
     ob.select_set(True)
     context.view_layer.objects.active = ob
-    context.view_layer.update()
     return ob
 
 

@@ -192,6 +192,7 @@ class ScatterOperator(
             depsgraph = context.evaluated_depsgraph_get()
             live_binding.LiveRequest(surface, depsgraph, [ob]).write(context)
             how = "live"
+        context.view_layer.update()
         self._report(made, how)
         return {"FINISHED"}
 

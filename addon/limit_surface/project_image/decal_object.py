@@ -53,10 +53,12 @@ def add(
     mesh = bpy.data.meshes.new(name)
     try:
         _fill(mesh, placed)
-        return new_objects.add_on_surface(context, name, mesh, surface)
+        ob = new_objects.add_on_surface(context, name, mesh, surface)
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise
+    context.view_layer.update()
+    return ob
 
 
 def _fill(mesh: bpy.types.Mesh, placed: PlacedDecal) -> None:
