@@ -1,44 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
-#include <functional>
-#include <map>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "limitsurf/patch/refined_points.h"
 
 namespace limitsurf {
 
-/// Weights on points, in the order of their numbers from the last one to the first, so that refined
-/// points come before the points that they are made of. A weight is a number, or an Eigen array of
-/// numbers.
+/// Weights on points. A weight is a number, or an Eigen array of numbers.
 template <typename Weight>
-using PointWeights = std::map<int, Weight, std::greater<int>>;
+class PointWeights {
+ public:
+  struct Entry {
+    int point;
+    Weight weight;
+  };
 
-inline void addWeight(PointWeights<double>& weights, int point, double weight) {
-  weights[point] += weight;
-}
+  /// `zero` is the weight of a point to which nothing has been added.
+  explicit PointWeights(const Weight& zero) : zero_(zero) { clear(); }
 
-inline void addWeight(PointWeights<Eigen::Array3d>& weights, int point,
-                      const Eigen::Array3d& weight) {
-  weights.try_emplace(point, Eigen::Array3d::Zero()).first->second += weight;
-}
+  void clear() {
+    entries_.clear();
+    slots_.assign(kLeastSlots, kFree);
+  }
 
-/// Replaces refined points by the control mesh's vertices. Cost: O(refined points that the weights
-/// depend on).
-template <typename Weight>
-void moveToVertices(const RefinedPoints& points, PointWeights<Weight>& weights) {
-  while (!weights.empty() && weights.begin()->first >= points.cagePoints()) {
-    const auto [point, weight] = *weights.begin();
-    weights.erase(weights.begin());
-    const Span<int> sources = points.sources(point);
-    const Span<double> mask = points.weights(point);
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-      addWeight(weights, sources[i], mask[i] * weight);
+  void add(int point, const Weight& weight) { entries_[find(point)].weight += weight; }
+
+  /// In the order in which they were added, or of their points after moveToVertices().
+  const std::vector<Entry>& entries() const { return entries_; }
+  std::vector<Entry>& entries() { return entries_; }
+
+  /// Replaces refined points by the control mesh's vertices, and puts these in order. Nothing can
+  /// be added afterwards. Refined points come before the points that they are made of, from the
+  /// last one to the first, so that each is complete when it is replaced.
+  /// Cost: O(n log n) for the n points that the weights depend on.
+  void moveToVertices(const RefinedPoints& points) {
+    refined_.clear();
+    for (const Entry& entry : entries_) {
+      if (entry.point >= points.cagePoints()) {
+        refined_.push_back(entry.point);
+      }
+    }
+    std::make_heap(refined_.begin(), refined_.end());
+    while (!refined_.empty()) {
+      std::pop_heap(refined_.begin(), refined_.end());
+      const int point = refined_.back();
+      refined_.pop_back();
+      const Weight weight = entries_[find(point)].weight;
+      const Span<int> sources = points.sources(point);
+      const Span<double> mask = points.weights(point);
+      for (std::size_t i = 0; i < sources.size(); ++i) {
+        const std::size_t before = entries_.size();
+        add(sources[i], mask[i] * weight);
+        if (entries_.size() > before && sources[i] >= points.cagePoints()) {
+          refined_.push_back(sources[i]);
+          std::push_heap(refined_.begin(), refined_.end());
+        }
+      }
+    }
+    entries_.erase(
+        std::remove_if(entries_.begin(), entries_.end(),
+                       [&](const Entry& entry) { return entry.point >= points.cagePoints(); }),
+        entries_.end());
+    std::sort(entries_.begin(), entries_.end(),
+              [](const Entry& a, const Entry& b) { return a.point < b.point; });
+  }
+
+ private:
+  static constexpr int kFree = -1;
+  static constexpr std::size_t kLeastSlots = 128;  // a power of two, as all numbers of slots
+
+  /// The place of a point among the entries, to which it is added if it is not there.
+  std::size_t find(int point) {
+    std::size_t slot = slotOf(point);
+    for (; slots_[slot] != kFree; slot = (slot + 1) % slots_.size()) {
+      if (entries_[static_cast<std::size_t>(slots_[slot])].point == point) {
+        return static_cast<std::size_t>(slots_[slot]);
+      }
+    }
+    slots_[slot] = static_cast<int>(entries_.size());
+    entries_.push_back({point, zero_});
+    if (2 * entries_.size() > slots_.size()) {
+      spread();
+    }
+    return entries_.size() - 1;
+  }
+
+  std::size_t slotOf(int point) const {
+    // Neighbouring numbers, the commonest, get different slots.
+    const std::uint32_t mixed = static_cast<std::uint32_t>(point) * 2654435769u;
+    return (mixed ^ (mixed >> 16)) & (slots_.size() - 1);
+  }
+
+  void spread() {
+    slots_.assign(2 * slots_.size(), kFree);
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      std::size_t slot = slotOf(entries_[i].point);
+      while (slots_[slot] != kFree) {
+        slot = (slot + 1) % slots_.size();
+      }
+      slots_[slot] = static_cast<int>(i);
     }
   }
-}
+
+  Weight zero_;
+  std::vector<Entry> entries_;
+  std::vector<int> slots_;    // places of entries by their points (open addressing)
+  std::vector<int> refined_;  // points that are to be replaced (a heap)
+};
 
 }  // namespace limitsurf

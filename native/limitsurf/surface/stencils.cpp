@@ -31,7 +31,9 @@ class Row {
     Weights weights;
   };
 
-  explicit Row(const TileTable& table) : table_(table) {}
+  explicit Row(const TileTable& table) : table_(table), weights_(Weights::Zero()) {
+    entries_.reserve(16);
+  }
 
   void set(const TileLocation& at, int order) {
     entries_.clear();
@@ -42,25 +44,25 @@ class Row {
     weights_.clear();
     undefined_[0] = undefined_[1] = false;
     if (at.tile.kind == TileRef::kBSpline) {
-      forPoints(at, [this](int point, const Weights& w) { addWeight(weights_, point, w); });
+      forPoints(at, [this](int point, const Weights& w) { weights_.add(point, w); });
     } else {
       addRing(at, order);
     }
-    for (auto& [point, w] : weights_) {
-      turn(at, w);
+    for (auto& entry : weights_.entries()) {
+      turn(at, entry.weight);
     }
     if (at.turns % 2 == 1) {
       std::swap(undefined_[0], undefined_[1]);
     }
-    moveToVertices(table_.points, weights_);
-    for (auto entry = weights_.rbegin(); entry != weights_.rend(); ++entry) {
-      Weights w = entry->second;
+    weights_.moveToVertices(table_.points);
+    for (const auto& entry : weights_.entries()) {
+      Weights w = entry.weight;
       for (int d = 0; d < 2; ++d) {
         if (undefined_[d]) {
           w[1 + d] = std::numeric_limits<double>::quiet_NaN();
         }
       }
-      entries_.push_back({entry->first, w});
+      entries_.push_back({entry.point, w});
     }
   }
 
@@ -144,11 +146,11 @@ class Row {
       return w;
     };
     for (std::size_t i = 0; i < ring.points.size(); ++i) {
-      addWeight(weights_, ring.points[i],
-                weightsOf(on_ring.row(static_cast<Eigen::Index>(i)).transpose()));
+      weights_.add(ring.points[i],
+                   weightsOf(on_ring.row(static_cast<Eigen::Index>(i)).transpose()));
     }
     for (Eigen::Index i = 0; i < outer_weights.cols(); ++i) {
-      addWeight(weights_, tile.outer[i], weightsOf(outer_weights.col(i)));
+      weights_.add(tile.outer[i], weightsOf(outer_weights.col(i)));
     }
   }
 
@@ -173,12 +175,22 @@ class Row {
 
   const TileTable& table_;
   std::vector<Entry> entries_;
-  PointWeights<Weights> weights_;  // on all points, refined ones first
+  PointWeights<Weights> weights_;
   bool undefined_[2] = {false, false};
 };
 
 /// The stencils that one task has made.
 struct Block {
+  /// Makes room for rows like most rows: memory for each entry by itself takes as long as its
+  /// weights.
+  void reserve(std::size_t rows, bool first_derivatives) {
+    sizes.reserve(rows);
+    indices.reserve(16 * rows);
+    for (int kind = 0; kind < (first_derivatives ? 3 : 1); ++kind) {
+      weights[kind].reserve(16 * rows);
+    }
+  }
+
   void add(const std::vector<Row::Entry>& entries, bool first_derivatives) {
     sizes.push_back(static_cast<std::int64_t>(entries.size()));
     for (const Row::Entry& entry : entries) {
@@ -253,6 +265,7 @@ Stencils LimitSurface::stencils(const LocationBatch& at, bool first_derivatives,
       const TileEvaluator evaluator(data_->table, data_->pose);
       Row row(data_->table);
       Block& block = blocks[first / kStencilsPerTask];
+      block.reserve(last - first, first_derivatives);
       for (std::size_t i = first; i < last; ++i) {
         row.set(evaluator.locate(checked[begin + i]), first_derivatives ? 1 : 0);
         block.add(row.entries(), first_derivatives);

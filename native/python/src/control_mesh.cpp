@@ -109,6 +109,27 @@ bool isArray(const py::object& object) {
          py::hasattr(object, "__array_interface__");
 }
 
+/// Appends the elements of a list or a tuple of Python's own integers below 2^63, the commonest
+/// face. Of anything else it appends nothing and returns false.
+bool appendIntegers(const py::handle& object, std::vector<std::int64_t>& numbers) {
+  if (!PyList_CheckExact(object.ptr()) && !PyTuple_CheckExact(object.ptr())) {
+    return false;
+  }
+  const std::size_t before = numbers.size();
+  PyObject* const* const elements = PySequence_Fast_ITEMS(object.ptr());
+  for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(object.ptr()); ++i) {
+    int overflow = 1;
+    if (PyLong_CheckExact(elements[i])) {
+      numbers.push_back(PyLong_AsLongLongAndOverflow(elements[i], &overflow));
+    }
+    if (overflow != 0) {
+      numbers.resize(before);
+      return false;
+    }
+  }
+  return true;
+}
+
 /// The face sizes and face vertices of an (F, k) array or of a sequence of sequences.
 std::pair<py::object, py::object> flattened(const py::object& faces) {
   const py::module_ numpy = py::module_::import("numpy");
@@ -122,21 +143,22 @@ std::pair<py::object, py::object> flattened(const py::object& faces) {
   if (!py::isinstance<py::iterable>(faces)) {
     throw py::type_error("faces is " + valueText(faces) + "; expected lists of vertex indices");
   }
-  std::vector<std::int64_t> sizes;
-  py::list vertices;
+  std::vector<std::int64_t> sizes, vertices;
   for (const py::handle face : py::iter(faces)) {
     if (sizes.size() % 4096 == 0 && PyErr_CheckSignals() != 0) {
       throw py::error_already_set();
     }
-    const std::string name = "faces[" + std::to_string(sizes.size()) + "]";
-    const Integers corner_vertices = integers<MeshError>(face, name.c_str());
-    requireVector<MeshError>(corner_vertices, name.c_str());
-    sizes.push_back(corner_vertices.size());
-    vertices.append(corner_vertices);
+    const std::size_t before = vertices.size();
+    if (!appendIntegers(face, vertices)) {
+      const std::string name = "faces[" + std::to_string(sizes.size()) + "]";
+      const Integers corner_vertices = integers<MeshError>(face, name.c_str());
+      requireVector<MeshError>(corner_vertices, name.c_str());
+      vertices.insert(vertices.end(), corner_vertices.data(),
+                      corner_vertices.data() + corner_vertices.size());
+    }
+    sizes.push_back(static_cast<std::int64_t>(vertices.size() - before));
   }
-  return {py::array_t<std::int64_t>(static_cast<py::ssize_t>(sizes.size()), sizes.data()),
-          sizes.empty() ? py::object(py::array_t<std::int64_t>(0))
-                        : numpy.attr("concatenate")(vertices)};
+  return {arrayOf(sizes), arrayOf(vertices)};
 }
 
 py::object edgeSharpness(const ControlMesh& mesh) {

@@ -37,13 +37,25 @@ def test_its_arrays_are_copies():
         FACES.tolist(),
         tuple(map(tuple, FACES)),
         list(FACES),
+        [FACES[0].tolist(), tuple(FACES[1])],
         FACES.astype(np.uint8),
         FACES.astype(np.int16),
         FACES.astype(np.uint64),
         np.asfortranarray(FACES),
         np.repeat(FACES, 2, axis=0)[::2],
     ],
-    ids=["array", "lists", "tuples", "arrays", "uint8", "int16", "uint64", "fortran", "strided"],
+    ids=[
+        "array",
+        "lists",
+        "tuples",
+        "arrays",
+        "mixed",
+        "uint8",
+        "int16",
+        "uint64",
+        "fortran",
+        "strided",
+    ],
 )
 def test_from_faces_takes_arrays_and_lists(faces):
     mesh = ls.ControlMesh.from_faces(POSITIONS, faces)

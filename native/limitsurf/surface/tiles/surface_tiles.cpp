@@ -52,7 +52,9 @@ class PointNumbers {
     }
     const auto [known, is_new] = of_table_.try_emplace(point.point, 0);
     if (is_new) {
-      known->second = numberOf(onCage(points_, {{point.point, 1}}));
+      weights_.clear();
+      weights_.add(point.point, 1);
+      known->second = numberOf(onCage(points_, weights_));
     }
     return known->second;
   }
@@ -65,6 +67,7 @@ class PointNumbers {
   const RefinedPoints& points_;
   PointRows rows_;
   std::unordered_map<int, int> of_table_;
+  PointWeights<double> weights_{0};
 };
 
 /// The different parts in the order of their keys.

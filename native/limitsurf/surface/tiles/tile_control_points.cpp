@@ -52,13 +52,15 @@ AxisMatrix acrossStrip(float sharpness, bool cut, double near, double far) {
 
 }  // namespace
 
-CageRow onCage(const RefinedPoints& points, PointWeights<double> weights) {
-  moveToVertices(points, weights);
+CageRow onCage(const RefinedPoints& points, PointWeights<double>& weights) {
+  weights.moveToVertices(points);
   CageRow row;
-  for (auto entry = weights.rbegin(); entry != weights.rend(); ++entry) {
-    if (entry->second != 0) {
-      row.indices.push_back(entry->first);
-      row.weights.push_back(entry->second);
+  row.indices.reserve(weights.entries().size());
+  row.weights.reserve(weights.entries().size());
+  for (const auto& [point, weight] : weights.entries()) {
+    if (weight != 0) {
+      row.indices.push_back(point);
+      row.weights.push_back(weight);
     }
   }
   return row;
@@ -111,6 +113,7 @@ void TileBuilder::buildStrip(const TilePart& part, ControlPoints& control) const
   const int anchor = tile.points[5];
   control.anchor.point = anchor;
   control.relative = tile.fine;
+  PointWeights<double> weights(0);
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
       ControlPoint& out = control.points[4 * j + i];
@@ -119,18 +122,18 @@ void TileBuilder::buildStrip(const TilePart& part, ControlPoints& control) const
         out.point = tile.points[4 * j + i];
         continue;
       }
-      PointWeights<double> weights;
+      weights.clear();
       for (int k = 0; k < 4; ++k) {
         for (int l = 0; l < 4; ++l) {
           if (const double w = y(j, k) * x(i, l); w != 0) {
-            weights[tile.points[4 * k + l]] += w;
+            weights.add(tile.points[4 * k + l], w);
           }
         }
       }
       if (tile.fine) {
-        weights[anchor] -= 1;
+        weights.add(anchor, -1);
       }
-      out.row = onCage(table_.points, std::move(weights));
+      out.row = onCage(table_.points, weights);
     }
   }
 }
@@ -159,15 +162,16 @@ void TileBuilder::buildQuarter(const TilePart& part, ControlPoints& control) con
   on_modes.col(16).setZero();
   on_modes(0, 16) = 1;  // the limit itself
   const Eigen::MatrixXd on_ring = basis.projectTransposed(on_modes);
+  PointWeights<double> weights(0);
   const auto rowOf = [&](Eigen::Index column) {
-    PointWeights<double> weights;
+    weights.clear();
     for (std::size_t i = 0; i < ring.points.size(); ++i) {
-      weights[ring.points[i]] += on_ring(static_cast<Eigen::Index>(i), column);
+      weights.add(ring.points[i], on_ring(static_cast<Eigen::Index>(i), column));
     }
     for (Eigen::Index i = 0; column < 16 && i < on_outer.rows(); ++i) {
-      weights[tile.outer[static_cast<std::size_t>(i)]] += on_outer(i, column);
+      weights.add(tile.outer[static_cast<std::size_t>(i)], on_outer(i, column));
     }
-    return onCage(table_.points, std::move(weights));
+    return onCage(table_.points, weights);
   };
   for (int i = 0; i < 16; ++i) {
     control.points[i].row = rowOf(i);

@@ -16,7 +16,7 @@ struct CageRow {
 };
 
 /// Moves weights on refined points to the vertices, and leaves out those that are 0.
-CageRow onCage(const RefinedPoints& points, PointWeights<double> weights);
+CageRow onCage(const RefinedPoints& points, PointWeights<double>& weights);
 
 /// A point of a tile: one of the table's points, or a row of its own.
 struct ControlPoint {
