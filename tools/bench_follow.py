@@ -2,11 +2,13 @@
 """The cost of hair that follows a deforming surface: each way of following is compared with
 Blender's own node *Deform Curves on Surface*. Prints a table in Markdown.
 
-    .venv/bin/python tools/bench_follow.py [COUNT ...]
+    .venv/bin/python tools/bench_follow.py [COUNT ...] [--level N] [--catmull-rom]
 
 Each row has a file of its own: an open, wavy mesh of about 10,000 faces with holes, bent by a shape
-key, without polygons of its subdivision (level 0), and so many strands of 8 points. Times are of
-the processor, over all cores: the smallest of several frames, and for binding one call.
+key, and so many strands of 8 points. The mesh is subdivided for display up to level N, by default
+0. Strands are polylines, or Catmull-Rom curves as the extension makes them: Blender evaluates those
+between their points in each frame. Times are of the processor, over all cores: the smallest of
+several frames, and for binding one call.
 """
 
 import argparse
@@ -33,12 +35,14 @@ FRAMES = 8
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("counts", nargs="*", type=int, default=COUNTS, metavar="COUNT")
-    counts = parser.parse_args().counts
+    parser.add_argument("--level", type=int, default=0, metavar="N")
+    parser.add_argument("--catmull-rom", action="store_true")
+    options = parser.parse_args()
     print("| roots | followed by | bind, s | ms a frame | bytes a root in the file |")
     print("|---:|---|---:|---:|---:|")
-    for count in counts:
+    for count in options.counts:
         for name, bind in WAYS.items():
-            hair = add_hair(count)
+            hair = add_hair(count, options.level, options.catmull_rom)
             before = file_size()
             begin = time.process_time()
             bind(hair)
@@ -50,7 +54,7 @@ def main() -> None:
             )
 
 
-def add_hair(count: int) -> bpy.types.Object:
+def add_hair(count: int, level: int, is_smooth: bool) -> bpy.types.Object:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     ob = truth.add_sheet(SIDE)
     positions = attributes.read(ob.data, "position")
@@ -64,14 +68,14 @@ def add_hair(count: int) -> bpy.types.Object:
     for frame, value in ((1, 0.0), (30, 1.0)):
         key.value = value
         key.keyframe_insert("value", frame=frame)
-    ob.modifiers[0].levels = 0
+    ob.modifiers[0].levels = level
     bpy.context.view_layer.objects.active = ob
     bpy.ops.object.limit_hair_add(
         distribution="UNIFORM", count=count, points=POINTS, follow="NONE", allow_large=True
     )
     hair = bpy.context.active_object
-    # Blender evaluates curves of other types between their points, for each frame
-    hair.data.set_types(type="POLY")
+    if not is_smooth:
+        hair.data.set_types(type="POLY")
     return hair
 
 

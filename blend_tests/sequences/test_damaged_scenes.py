@@ -77,7 +77,7 @@ def test_every_stage_works_undamaged(name):
     assert stages.STAGES[name].run() == {"FINISHED"}
 
 
-@pytest.mark.parametrize(("name", "damages"), cases())
+@pytest.mark.parametrize(("name", "damages"), list(cases()))
 def test_nothing_but_a_sentence(name, damages, tmp_path, capfd):
     wrong = []
     for i, (what, how, harm) in enumerate(damages):

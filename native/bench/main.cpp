@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
     }
   }
   try {
-    if (!saved_to.empty()) {
+    if (!saved_to.empty() && query_count == 0) {
       limitsurf::bench::saveEvaluation(saved_to, sample_count);
       return 0;
     }
@@ -132,7 +132,9 @@ int main(int argc, char** argv) {
     if (uv_side > 0) return limitsurf::bench::measureUvMaps(uv_side);
     if (query_count > 0) {
 #ifdef LIMITSURF_BENCH_EMBREE
-      return limitsurf::bench::measureSearches(query_count);
+      if (saved_to.empty()) return limitsurf::bench::measureSearches(query_count);
+      limitsurf::bench::saveSearches(saved_to, query_count);
+      return 0;
 #else
       std::fprintf(stderr, "built without Embree\n");
       return 2;

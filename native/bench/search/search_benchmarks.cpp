@@ -9,10 +9,12 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bench/support/embree_peer.h"
 #include "bench/support/mesh_arrays.h"
+#include "bench/support/numpy_file.h"
 #include "bench/support/process_cost.h"
 #include "limitsurf/pi.h"
 #include "limitsurf/sample/area.h"
@@ -90,6 +92,7 @@ bool measureSetUp(const MeshArrays& cage) {
 
 struct Queries {
   const char* name;
+  const char* file_name;
   Points origins;
   Points directions;  ///< those of rays, of length 1; no rows for closest points
 };
@@ -101,9 +104,10 @@ Vector3 randomDirection(test::BenchmarkRandom& random) {
 }
 
 /// Points at a random distance from the surface, `reach` at most.
-Queries pointsNear(const char* name, const Points& on_surface, double reach) {
+Queries pointsNear(const char* name, const char* file_name, const Points& on_surface,
+                   double reach) {
   test::BenchmarkRandom random(1);
-  Queries queries{name, on_surface, {}};
+  Queries queries{name, file_name, on_surface, {}};
   for (Eigen::Index i = 0; i < on_surface.rows(); ++i) {
     const double distance = random.uniform(0, reach);
     queries.origins.row(i) += distance * randomDirection(random).transpose();
@@ -112,15 +116,29 @@ Queries pointsNear(const char* name, const Points& on_surface, double reach) {
 }
 
 /// Rays towards places of the surface; a ray may meet other places before.
-Queries raysTo(const char* name, const Points& on_surface, double distance,
+Queries raysTo(const char* name, const char* file_name, const Points& on_surface, double distance,
                const std::function<Vector3(test::BenchmarkRandom&)>& direction) {
   test::BenchmarkRandom random(2);
-  Queries queries{name, on_surface, Points(on_surface.rows(), 3)};
+  Queries queries{name, file_name, on_surface, Points(on_surface.rows(), 3)};
   for (Eigen::Index i = 0; i < on_surface.rows(); ++i) {
     queries.directions.row(i) = direction(random).transpose();
     queries.origins.row(i) -= distance * queries.directions.row(i);
   }
   return queries;
+}
+
+/// The queries of each row of the table.
+std::vector<Queries> allQueries(const MeshArrays& cage, const LimitSurface& surface,
+                                const AreaSampler& sampler, int count) {
+  const double diagonal = cage.diagonal();
+  const double face_width = std::sqrt(surfaceArea(surface) / cage.faceCount());
+  const Points on_surface = surface.evaluate(sampler.uniform(count, 1)).position;
+  const auto down = [](test::BenchmarkRandom&) { return Vector3(0, 0, -1); };
+  return {pointsNear("closest, to 5 % of the diagonal", "closest-far", on_surface, 0.05 * diagonal),
+          pointsNear("closest, to 5 % of a face's width", "closest-near", on_surface,
+                     0.05 * face_width),
+          raysTo("rays, from above", "rays-above", on_surface, diagonal, down),
+          raysTo("rays, from all sides", "rays-all-sides", on_surface, diagonal, randomDirection)};
 }
 
 struct Errors {
@@ -202,23 +220,26 @@ int measureSearches(int count) {
   const SurfaceSearch search(surface);
   const AreaSampler sampler(surface);
   const EmbreePeer peer(tessellate(surface, kPeerLevel));
-  const Points on_surface = surface.evaluate(sampler.uniform(count, 1)).position;
-  const double face_width = std::sqrt(surfaceArea(surface) / cage.faceCount());
   std::printf(
       "| | limitsurf s | CPU s | Embree s | CPU s | Embree / ours | its distance: max | RMS | its "
       "position: max | "
       "RMS | missed | invented |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
-  compare(pointsNear("closest, to 5 % of the diagonal", on_surface, 0.05 * diagonal), search, peer,
-          diagonal);
-  compare(pointsNear("closest, to 5 % of a face's width", on_surface, 0.05 * face_width), search,
-          peer, diagonal);
-  compare(raysTo("rays, from above", on_surface, diagonal,
-                 [](test::BenchmarkRandom&) { return Vector3(0, 0, -1); }),
-          search, peer, diagonal);
-  compare(raysTo("rays, from all sides", on_surface, diagonal, randomDirection), search, peer,
-          diagonal);
+  for (const Queries& queries : allQueries(cage, surface, sampler, count)) {
+    compare(queries, search, peer, diagonal);
+  }
   timeScattering(sampler, count, surfaceArea(surface));
   return 0;
+}
+
+void saveSearches(const std::string& folder, int count) {
+  const MeshArrays cage = test::largeCage(kSide);
+  const LimitSurface surface(cage.controlMesh());
+  for (const Queries& queries : allQueries(cage, surface, AreaSampler(surface), count)) {
+    const std::string path = folder + "/" + queries.file_name;
+    cage.save(path);
+    writeNumpy(path + ".origins.npy", queries.origins);
+    writeNumpy(path + ".directions.npy", queries.directions);
+  }
 }
 
 }  // namespace limitsurf::bench

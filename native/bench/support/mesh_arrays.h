@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "limitsurf/mesh/control_mesh.h"
@@ -20,6 +21,9 @@ struct MeshArrays {
   ControlMesh controlMesh() const {
     return ControlMesh(positions, face_sizes, face_vertices, options);
   }
+
+  /// Writes PATH.positions.npy, PATH.face_sizes.npy and PATH.face_vertices.npy.
+  void save(const std::string& path) const;
 
   Points positions;
   std::vector<std::int64_t> face_sizes;

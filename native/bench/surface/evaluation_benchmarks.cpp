@@ -229,10 +229,7 @@ std::vector<Group> evaluationGroups(int sample_count) {
 void saveEvaluation(const std::string& folder, int sample_count) {
   for (const std::shared_ptr<Samples>& samples : evaluationRows(sample_count)) {
     const std::string path = folder + "/" + samples->name();
-    const MeshArrays& cage = samples->cage().cage();
-    writeNumpy(path + ".positions.npy", cage.positions);
-    writeNumpy(path + ".face_sizes.npy", cage.face_sizes);
-    writeNumpy(path + ".face_vertices.npy", cage.face_vertices);
+    samples->cage().cage().save(path);
     saveLocations(path + ".sorted", samples->sorted());
     saveLocations(path + ".random", samples->shuffled());
   }

@@ -15,8 +15,8 @@ constexpr char kEvaluationTable[] = "evaluate";
 std::vector<Group> evaluationGroups(int sample_count);
 
 /// Writes the meshes and the locations of all these rows as numpy's files into an existing folder:
-/// ROW.positions.npy, ROW.face_sizes.npy, ROW.face_vertices.npy; and for both orders
-/// ROW.sorted.face.npy, ROW.sorted.uv.npy, ROW.random.face.npy, ROW.random.uv.npy.
+/// besides the mesh (MeshArrays::save()) ROW.sorted.face.npy and ROW.sorted.uv.npy, and the same
+/// with "random".
 void saveEvaluation(const std::string& folder, int sample_count);
 
 constexpr char kDepthTable[] = "depth";

@@ -9,6 +9,7 @@
 #include "limitsurf/search/checks.h"
 #include "numbers.h"
 #include "progress.h"
+#include "result_memory.h"
 #include "shared_surface.h"
 
 namespace limitsurf::python {
@@ -44,7 +45,7 @@ class HitArrays {
  public:
   HitArrays() = default;
   HitArrays(py::ssize_t rows, const py::dtype& type)
-      : face_(rows),
+      : face_(newArray<int>({rows})),
         uv_(type, {rows, 2}),
         position_(type, {rows, 3}),
         distance_(type, {rows}),
@@ -104,13 +105,15 @@ py::object closest(const SharedSurface& shared, const py::object& points, double
   ClosestOptions options;
   options.max_distance = max_distance;
   options.max_angle = max_angle;
+  Points part;  // one after the other in the same memory
   searchInParts(shared, all.rows(), threads, progress,
                 [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
                   if (directions.rows() > 0) {
                     options.facing = directions.middleRows(begin, count);
                   }
+                  part = all.middleRows(begin, count);
                   arrays.put(static_cast<std::size_t>(begin),
-                             search.closest(all.middleRows(begin, count), options, threads));
+                             search.closest(part, options, threads));
                 });
   return arrays.object("Hits");
 }
@@ -133,13 +136,14 @@ py::object rayCast(const SharedSurface& shared, const py::object& origins,
   checkThreads(threads);
   const Rays rays(origins, directions, max_distance);
   HitArrays arrays(rays.origins.rows(), floatType(dtype));
-  searchInParts(
-      shared, rays.origins.rows(), threads, progress,
-      [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
-        arrays.put(static_cast<std::size_t>(begin),
-                   search.rayCast(rays.origins.middleRows(begin, count),
-                                  rays.directions.middleRows(begin, count), max_distance, threads));
-      });
+  Points from, along;  // of one part after the other in the same memory
+  searchInParts(shared, rays.origins.rows(), threads, progress,
+                [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
+                  from = rays.origins.middleRows(begin, count);
+                  along = rays.directions.middleRows(begin, count);
+                  arrays.put(static_cast<std::size_t>(begin),
+                             search.rayCast(from, along, max_distance, threads));
+                });
   return arrays.object("Hits");
 }
 
