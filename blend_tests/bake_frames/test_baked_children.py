@@ -6,7 +6,7 @@ import children_truth
 import numpy as np
 import pytest
 import scenes
-from bakes import bake, contents
+from bakes import bake, contents, geometry_tree
 from follow_scenes import deforming
 from limit_surface import ids
 from limit_surface.bake_frames import command
@@ -117,10 +117,7 @@ def key(modifier, shown):
 
 
 def all_twice():
-    tree = bpy.data.node_groups.new("Twice", "GeometryNodeTree")
-    for direction in ("INPUT", "OUTPUT"):
-        tree.interface.new_socket("G", in_out=direction, socket_type="NodeSocketGeometry")
-    begin, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    tree, begin, end = geometry_tree("Twice")
     join = tree.nodes.new("GeometryNodeJoinGeometry")
     tree.links.new(begin.outputs[0], join.inputs[0])
     moved = tree.nodes.new("GeometryNodeTransform")

@@ -7,7 +7,7 @@ import bpy
 import live_scenes
 import pytest
 import scenes
-from bakes import bake, contents
+from bakes import bake, contents, geometry_tree
 from limit_surface import ids
 from limit_surface.bake_frames import command
 
@@ -109,11 +109,7 @@ def test_nodes_that_make_other_faces_in_renders(hair, tmp_path, capfd, form):
 
 
 def triangles_in_renders():
-    tree = bpy.data.node_groups.new("Triangles", "GeometryNodeTree")
-    tree.is_modifier = True
-    for direction in ("INPUT", "OUTPUT"):
-        tree.interface.new_socket("G", in_out=direction, socket_type="NodeSocketGeometry")
-    begin, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    tree, begin, end = geometry_tree("Triangles")
     triangles = tree.nodes.new("GeometryNodeTriangulate")
     tree.links.new(begin.outputs[0], triangles.inputs[0])
     switch = tree.nodes.new("GeometryNodeSwitch")

@@ -4,7 +4,7 @@
 import bpy
 import pytest
 import scenes
-from bakes import bake
+from bakes import bake, geometry_tree
 
 FORMS = ["npz", "abc", "usd", "usda"]
 REMARK = "1 written; Hair shows no points: its file is empty"
@@ -53,10 +53,7 @@ def test_what_a_modifier_empties_in_some_frames(sheet, tmp_path, capfd, form):
 def test_hair_that_nodes_make_a_mesh_is_not_empty(sheet, tmp_path, capfd, form):
     hair = scenes.add_hair(sheet, per_side=1, follow="NONE")
     hair.name = "Hair"
-    tree = bpy.data.node_groups.new("Mesh", "GeometryNodeTree")
-    for direction in ("INPUT", "OUTPUT"):
-        tree.interface.new_socket("G", in_out=direction, socket_type="NodeSocketGeometry")
-    begin, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    tree, begin, end = geometry_tree("Mesh")
     mesh = tree.nodes.new("GeometryNodeCurveToMesh")
     tree.links.new(begin.outputs[0], mesh.inputs[0])
     tree.links.new(mesh.outputs[0], end.inputs[0])

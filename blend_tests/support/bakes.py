@@ -67,3 +67,12 @@ def read_back(path: Path, kind: str) -> np.ndarray:
     for ob in new:
         bpy.data.objects.remove(ob)
     return result
+
+
+def geometry_tree(name):
+    """Returns a tree of Geometry Nodes for a modifier, its input and its output."""
+    tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    tree.is_modifier = True
+    for direction in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("G", in_out=direction, socket_type="NodeSocketGeometry")
+    return tree, tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
