@@ -9,7 +9,7 @@ import scenes
 import snap_scenes
 from follow_scenes import deforming
 from limit_surface import ids
-from limit_surface.reading import attributes
+from limit_surface.reading import attributes, curve_lines
 
 HANDLES = ("handle_left", "handle_right")
 
@@ -151,3 +151,90 @@ def test_new_hair_is_evaluated_once():
     finally:
         bpy.app.handlers.depsgraph_update_post.remove(note)
     assert evaluated == [hair.data.name]
+
+
+def store(data: bpy.types.Curves, name: str, value: int) -> None:
+    kind, values = {"cyclic": ("BOOLEAN", bool), "resolution": ("INT", np.int32)}[name]
+    attributes.write(data, name, kind, "CURVE", np.full(len(data.curves), value, values))
+
+
+def write_new(data: bpy.types.Curves, name: str, value: int) -> None:
+    store(data, name, value)
+
+
+def overwrite(data: bpy.types.Curves, name: str, value: int) -> None:
+    store(data, name, {"cyclic": 0, "resolution": 1}[name])
+    data.update_tag()
+    bpy.context.view_layer.update()
+    store(data, name, value)
+
+
+def rename(data: bpy.types.Curves, name: str, value: int) -> None:
+    store(data, name, value)
+    data.attributes[name].name = "other"
+    data.update_tag()
+    bpy.context.view_layer.update()
+    data.attributes["other"].name = name
+
+
+def shown_lines(hair: bpy.types.Object) -> np.ndarray:
+    hair.data.update_tag()
+    return curve_lines.read(hair, bpy.context.evaluated_depsgraph_get())
+
+
+def check_all_lines_are_there(hair: bpy.types.Object, count: int) -> None:
+    lines = shown_lines(hair)
+    assert len(lines) == count
+    corners = np.array(hair.evaluated_get(bpy.context.evaluated_depsgraph_get()).bound_box)
+    corners = scenes.transformed(np.array(hair.matrix_world), corners)
+    assert (lines >= corners.min(axis=0) - 1e-5).all()
+    assert (lines <= corners.max(axis=0) + 1e-5).all()
+
+
+CHANGES = pytest.mark.parametrize("change", [write_new, overwrite, rename])
+ATTRIBUTES = pytest.mark.parametrize(
+    ("name", "value", "segments"), [("cyclic", 1, 8 * 12), ("resolution", 40, 7 * 40)]
+)
+
+
+@CHANGES
+@ATTRIBUTES
+def test_attributes_that_change_the_number_of_evaluated_points_are_noticed(
+    name, value, segments, change
+):
+    """Blender itself does not notice all of them, and has written beyond the end of memory."""
+    hair = scenes.add_hair(deforming("cross"), points=8, follow="NODES")
+    bpy.context.view_layer.update()
+    change(hair.data, name, value)
+    check_all_lines_are_there(hair, segments * len(hair.data.curves))
+
+
+@CHANGES
+@ATTRIBUTES
+@pytest.mark.parametrize("follow", ["NONE", "LIVE"])
+def test_hair_without_nodes_is_read_with_these_changes(name, value, segments, change, follow):
+    hair = scenes.add_hair(deforming("cross"), points=8, follow=follow)
+    bpy.context.view_layer.update()
+    change(hair.data, name, value)
+    lines = shown_lines(hair)
+    assert len(lines) == segments * len(hair.data.curves)
+    assert np.abs(lines).max() < 10
+
+
+def test_bezier_strands_whose_number_of_evaluated_points_changes_are_counted_anew():
+    ob = deforming("cross")
+    hair = bezier_hair(ob, "FREE")
+    follow(hair)
+    bpy.context.view_layer.update()
+    overwrite(hair.data, "resolution", 40)
+    check_all_lines_are_there(hair, 3 * 40 * len(hair.data.curves))
+
+
+def test_hair_becomes_cyclic_in_edit_mode():
+    hair = scenes.add_hair(deforming("cross"), points=8, follow="NODES")
+    bpy.context.view_layer.update()
+    scenes.activate(hair)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bpy.ops.curves.cyclic_toggle() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    check_all_lines_are_there(hair, 8 * 12 * len(hair.data.curves))

@@ -127,15 +127,27 @@ def with_handles(tree: Tree, on: Carried) -> Value:
     return moved
 
 
+def _counted_anew(tree: Tree) -> Value:
+    """Returns the strands as they are, and has Blender count anew the points that it evaluates on
+    them.
+
+    Blender keeps these counts. It does not notice when a script writes the attributes cyclic or
+    resolution, or when somebody gives an attribute one of these names, and then it writes beyond
+    the end of its memory as soon as the strands have been moved. The node forgets the counts. No
+    strand is selected, so that none changes.
+    """
+    return tree.get("GeometryNodeSetSplineCyclic", tree.inputs["Geometry"], False, False)
+
+
 def _build_hair() -> bpy.types.NodeTree:
     tree = new_tree(ids.FOLLOW_HAIR_GROUP, "Hair")
-    on = carried(tree, tree.inputs["Geometry"], "CURVE", own_roots(tree))
+    on = carried(tree, _counted_anew(tree), "CURVE", own_roots(tree))
     return finished(tree, on, tree.set_position(on.geometry, True, on.moved(tree, tree.position())))
 
 
 def _build_bezier_hair() -> bpy.types.NodeTree:
     tree = new_tree(ids.FOLLOW_BEZIER_GROUP, "Hair with Bézier strands")
-    on = carried(tree, tree.inputs["Geometry"], "CURVE", own_roots(tree))
+    on = carried(tree, _counted_anew(tree), "CURVE", own_roots(tree))
     return finished(tree, on, with_handles(tree, on))
 
 
@@ -172,8 +184,8 @@ def _build_normals() -> bpy.types.NodeTree:
     )
 
 
-FOLLOW_HAIR = Kind(ids.FOLLOW_HAIR_GROUP, 2, _build_hair)
-FOLLOW_BEZIER = Kind(ids.FOLLOW_BEZIER_GROUP, 2, _build_bezier_hair)
+FOLLOW_HAIR = Kind(ids.FOLLOW_HAIR_GROUP, 3, _build_hair)
+FOLLOW_BEZIER = Kind(ids.FOLLOW_BEZIER_GROUP, 3, _build_bezier_hair)
 FOLLOW_POINTS = Kind(ids.FOLLOW_POINTS_GROUP, 2, _build_points)
 FOLLOW_ORIENTED = Kind(ids.FOLLOW_ORIENTED_GROUP, 2, _build_oriented_points)
 FOLLOW_NORMALS = Kind(ids.FOLLOW_NORMALS_GROUP, 2, _build_normals)

@@ -95,9 +95,14 @@ def _fill(tree: bpy.types.NodeTree, ob: bpy.types.Object) -> None:
     info = tree.nodes.new("GeometryNodeObjectInfo")
     info.transform_space = "ORIGINAL"
     info.inputs["Object"].default_value = ob
+    # Blender does not notice all changes of attributes that alter the number of evaluated points.
+    # This node, which selects no curve, has it count them anew (`nodes/follow.py` says more).
+    counted = tree.nodes.new("GeometryNodeSetSplineCyclic")
+    counted.inputs["Selection"].default_value = False
     to_mesh = tree.nodes.new("GeometryNodeCurveToMesh")
     output = tree.nodes.new("NodeGroupOutput")
-    tree.links.new(info.outputs["Geometry"], to_mesh.inputs["Curve"])
+    tree.links.new(info.outputs["Geometry"], counted.inputs[0])
+    tree.links.new(counted.outputs[0], to_mesh.inputs["Curve"])
     tree.links.new(to_mesh.outputs["Mesh"], output.inputs["Geometry"])
 
 
