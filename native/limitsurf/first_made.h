@@ -16,6 +16,8 @@ class FirstMade {
   FirstMade(const FirstMade&) = delete;
   FirstMade& operator=(const FirstMade&) = delete;
 
+  /// The value, or null if it is not made yet.
+  const T* made() const { return made_.load(std::memory_order_acquire); }
   /// The value; make() returns a new one, a std::unique_ptr.
   template <typename Make>
   const T& get(const Make& make) const {

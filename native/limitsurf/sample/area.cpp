@@ -243,7 +243,7 @@ std::vector<std::size_t> worstTiles(const std::vector<SurfaceArea>& areas, doubl
 
 SurfaceArea measuredArea(const LimitSurface& surface, int threads) {
   checkThreads(threads);
-  SurfacePatches patches(surface, threads, PatchUnit::own, RingHulls::none);
+  SurfacePatches patches(surface, threads, PatchUnit::own);
   patches.prepareCoreNormals();
   std::vector<SurfaceArea> areas(static_cast<std::size_t>(patches.tileCount()));
   parallelFor(areas.size(), kTilesPerTask, threads, [&](std::size_t begin, std::size_t end) {

@@ -14,7 +14,7 @@ namespace limitsurf {
 struct AreaSampler::Data {
   Data(const LimitSurface& limit_surface, int threads)
       : surface(limit_surface),
-        patches(limit_surface, threads, PatchUnit::own, RingHulls::none),
+        patches(limit_surface, threads, PatchUnit::own),
         cells(areaCells(patches, threads)),
         uniform(cells) {}
 

@@ -55,6 +55,10 @@ class BoxTree::Builder {
       return;
     }
     nodes_.resize(leaves_.size() - 1);
+    if (all.size() <= kLeavesPerTask) {
+      setNodes(all);
+      return;
+    }
     // Large parts are divided one level of the tree after the other, and each of the others is left
     // to one thread.
     std::vector<Part> large{all}, halves, whole;

@@ -99,7 +99,7 @@ class ClosestSearch {
       const double rounding = kDistanceRounding * (distance + last_.cwiseAbs().maxCoeff());
       best_.excess = std::min(best_.excess, distance + rounding + 2 * data_.tolerance);
     }
-    if (!data_.tree->empty()) {
+    if (!data_.empty()) {
       point_in_boxes_ = data_.inBoxes(point);
       cores_.begin(facing, point_in_boxes_);
       descend();
@@ -120,43 +120,44 @@ class ClosestSearch {
   void descend() {
     const BoxPoint box_point(best_.from, point_in_boxes_);
     NearestFirst open;
-    NearestFirst::Entry next{0, -std::numeric_limits<float>::infinity()};
+    NearestFirst::Entry next = SearchTree::kRoot;
     do {
       if (!(next.key < best_.enough())) {
         continue;
       }
+      const LeafBox* const box = data_.boxBeforeNest(next);
+      if (box && !(squaredDistanceTo(*box, best_.from, point_in_boxes_) < best_.enough())) {
+        continue;
+      }
+      const TreePart& part = data_.part(next);
       if (!WideTree::isLeaf(next.place)) {
-        const WideTree::Node& node = data_.tree->node(next.place);
+        const WideTree::Node& node = part.nodes[static_cast<std::size_t>(next.place)];
         const WideTree::Row squared = box_point.squaredDistances(node);
         const double enough = best_.enough();
         const auto matters = [&](int child) {
           return squared[child] < enough &&
                  !(facing_ && cones_ && child < node.count &&
-                   cones_->cannotFace(next.place, child, point_in_boxes_, unit_, reach_));
+                   cones_->cannotFace(next, child, point_in_boxes_, unit_, reach_));
         };
-        open.add(node, squared, WideTree::children(node, matters));
+        open.add(node, squared, WideTree::children(node, matters), next.part);
         continue;
       }
       const std::int32_t leaf = WideTree::leaf(next.place);
-      const double squared = squaredDistanceTo(data_.leaves[leaf].box, best_.from, point_in_boxes_);
+      const SearchLeaf& found = part.leaves[static_cast<std::size_t>(leaf)];
+      const double squared = squaredDistanceTo(found.box, best_.from, point_in_boxes_);
       if (squared < best_.enough()) {
         if (leaves_ == last_leaf_) {
           gave_up_ = true;
           return;
         }
         ++leaves_;
-        visitLeaf(leaf, squared);
+        if (found.piece.isCore()) {
+          cores_.putOff(found.piece, squared);
+        } else {
+          closestOnPatch(cache_.patch(part, next), found.foot_bound, facing_, best_);
+        }
       }
     } while (open.take(next));
-  }
-
-  void visitLeaf(std::int32_t leaf, double squared) {
-    const SearchLeaf& found = data_.leaves[leaf];
-    if (found.piece.isCore()) {
-      cores_.putOff(found.piece, squared);
-    } else {
-      closestOnPatch(cache_.patch(leaf), found.foot_bound, facing_, best_);
-    }
   }
 
   const SearchTree& data_;

@@ -29,8 +29,7 @@ void OrientedBox<Real>::place(const Vector3& centre, const Eigen::Matrix3d& fram
 }
 
 template <typename Real>
-OrientedBox<Real>::OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& along,
-                               const Vector3& across) {
+OrientedBox<Real>::OrientedBox(Span<Padded> points, const Vector3& along, const Vector3& across) {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  // an axis in each row
   const Vector3 normal = along.cross(across);
   if (normal.norm() > kLeastSine * along.norm() * across.norm() && along.allFinite() &&
@@ -39,14 +38,26 @@ OrientedBox<Real>::OrientedBox(const Eigen::Ref<const Points>& points, const Vec
     frame.row(2) = normal.normalized();
     frame.row(1) = frame.row(2).cross(frame.row(0));
   }
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> turned = points * frame.transpose();
-  const Eigen::RowVector3d low = turned.colwise().minCoeff(), high = turned.colwise().maxCoeff();
-  place(frame.transpose() * (0.5 * (low + high)).transpose(), frame);
-  // Extents are measured along the axes as they were rounded.
+  Padded axes[3];  // a coordinate of all three in each
+  for (int i = 0; i < 3; ++i) {
+    axes[i] << frame.col(i).array(), 0;
+  }
+  const auto turn = [&](const Padded& v) -> Padded {
+    return v[0] * axes[0] + v[1] * axes[1] + v[2] * axes[2];
+  };
+  Padded low = turn(points[0]), high = low;
+  for (const Padded& point : points) {
+    const Padded turned = turn(point);
+    low = low.min(turned);
+    high = high.max(turned);
+  }
+  place(frame.transpose() * (0.5 * (low + high)).head<3>().matrix(), frame);
+  // Extents are measured along the axes as they were rounded. (Four numbers at a time, GCC 12
+  // leaves out the rounding.)
   for (int i = 0; i < 3; ++i) {
     double half = 0;
-    for (Eigen::Index p = 0; p < points.rows(); ++p) {
-      half = std::max(half, std::abs(coordinate(i, points.row(p).transpose())));
+    for (const Padded& point : points) {
+      half = std::max(half, std::abs(coordinate(i, point.head<3>())));
     }
     half_[i] = roundedUpTo<Real>(half);
   }
@@ -63,10 +74,8 @@ OrientedBox<Real>::OrientedBox(const CoreHull& hull, const Vector3& middle) {
   }
 }
 
-template OrientedBox<float>::OrientedBox(const Eigen::Ref<const Points>&, const Vector3&,
-                                         const Vector3&);
-template OrientedBox<double>::OrientedBox(const Eigen::Ref<const Points>&, const Vector3&,
-                                          const Vector3&);
+template OrientedBox<float>::OrientedBox(Span<Padded>, const Vector3&, const Vector3&);
+template OrientedBox<double>::OrientedBox(Span<Padded>, const Vector3&, const Vector3&);
 template OrientedBox<double>::OrientedBox(const CoreHull&, const Vector3&);
 
 }  // namespace limitsurf

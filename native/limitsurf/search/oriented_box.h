@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "limitsurf/surface/padded.h"
 #include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
@@ -20,24 +21,21 @@ template <typename Real>
 class OrientedBox {
  public:
   OrientedBox() = default;
-  /// A box around points, one a row, whose axes are as close as possible to the two directions.
-  OrientedBox(const Eigen::Ref<const Points>& points, const Vector3& along, const Vector3& across);
+  /// A box around points, at least one, whose axes are as close as possible to the two directions.
+  OrientedBox(Span<Padded> points, const Vector3& along, const Vector3& across);
   /// A hull, relative to `middle`.
   OrientedBox(const CoreHull& hull, const Vector3& middle);
 
-  /// Its corners, one a row.
-  Eigen::Matrix<double, 8, 3, Eigen::RowMajor> corners() const {
-    Eigen::Matrix<double, 8, 3, Eigen::RowMajor> points;
-    for (int corner = 0; corner < 8; ++corner) {
-      for (int j = 0; j < 3; ++j) {
-        double at = centre_[j];
-        for (int i = 0; i < 3; ++i) {
-          at += ((corner >> i & 1) != 0 ? 1 : -1) * double{half_[i]} * axes_[i][j];
-        }
-        points(corner, j) = at;
+  /// One of its eight corners.
+  Padded corner(int number) const {
+    Padded point = Padded::Zero();
+    for (int j = 0; j < 3; ++j) {
+      point[j] = centre_[j];
+      for (int i = 0; i < 3; ++i) {
+        point[j] += ((number >> i & 1) != 0 ? 1 : -1) * double{half_[i]} * axes_[i][j];
       }
     }
-    return points;
+    return point;
   }
 
   /// A lower bound of the squared distance of the box from a point.

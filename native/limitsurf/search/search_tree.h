@@ -8,28 +8,24 @@
 #include "limitsurf/first_made.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/prefetch.h"
-#include "limitsurf/search/foot_bound.h"
-#include "limitsurf/search/oriented_box.h"
+#include "limitsurf/search/leaf_maker.h"
+#include "limitsurf/search/nest_store.h"
 #include "limitsurf/search/rings/search_rings.h"
 #include "limitsurf/search/surface_search.h"
-#include "limitsurf/search/wide_tree.h"
+#include "limitsurf/search/tree_part.h"
 #include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
-
-/// A leaf of the search tree: a bicubic patch, or a core, which searches split when they reach it.
-/// All cores around a vertex with many faces are one leaf, at the place of the first of them.
-struct SearchLeaf {
-  LeafBox box;
-  SurfacePiece piece;
-  FootBound foot_bound;  ///< of a patch
-};
 
 class NormalCones;
 
 /// The patches of a surface under a tree of boxes, and their common unit: `scale` times lengths of
 /// the surface, so that the diagonal of the control mesh is about 1. Boxes are in that unit and
 /// relative to `middle`, so that single precision can hold squares of their coordinates.
+///
+/// The top of the tree has regular patches as leaves, and nests: the parts of the tree below Ptex
+/// faces with extraordinary vertices, which have many leaves each. A nest is made when a search
+/// first reaches it, so that a few searches in each pose of a surface do not pay for all.
 struct SearchTree {
   SearchTree(const LimitSurface& limit_surface, int threads);
   ~SearchTree();
@@ -43,66 +39,111 @@ struct SearchTree {
   Vector3 inBoxes(const Vector3& point) const { return point - middle; }
 
   SearchRings rings;
-  LargePageVector<SearchLeaf> leaves;  ///< in the order of the tree
-  std::unique_ptr<WideTree> tree;
-  /// The patches of the leaves, or none if they would need more than kPatchBytes together; those of
-  /// cores are not set.
-  LargePageVector<BezierPatch> kept;
+
+  bool empty() const { return top_.nodes.empty(); }
+  static constexpr std::int32_t kTop = -1;
+  /// Where a walk begins.
+  static constexpr NearestFirst::Entry kRoot{0, -std::numeric_limits<float>::infinity(), kTop};
+  /// The part of the tree that a node or a leaf is in. A nest, which is a node without children in
+  /// the top, becomes the root of its own part, which is made if nobody has asked for it before.
+  const TreePart& part(NearestFirst::Entry& at) const {
+    if (at.part == kTop) {
+      if (at.place < first_nest_) {
+        return top_;
+      }
+      at.part = at.place - first_nest_;
+      at.place = 0;
+    }
+    return nest(at.part);
+  }
+  /// If a node is a nest that is not made yet, a box that fits it more closely than that of the
+  /// node and costs less than the nest. Otherwise null.
+  const LeafBox* boxBeforeNest(const NearestFirst::Entry& at) const {
+    return at.part == kTop && at.place >= first_nest_ ? closeBox(at.place - first_nest_) : nullptr;
+  }
+  /// Has the memory of a node or a leaf brought into the processor's caches.
+  void expect(const NearestFirst::Entry& at) const;
+
+  const TreePart& top() const { return top_; }
+  std::int32_t nestCount() const { return static_cast<std::int32_t>(nest_tiles_.size()); }
+  /// The number of nests that have been made.
+  std::int32_t nestsMade() const;
+  const TreePart& nest(std::int32_t i) const {
+    const TreePart* const made = nests_->made(static_cast<std::size_t>(i));
+    return made ? *made : makeNest(i);
+  }
+
   /// Cones around normals, made when they are first asked for. Must not be called from within a
   /// parallel loop.
   const NormalCones& normalCones(int threads) const;
 
  private:
+  /// The memory for kept patches of all parts.
   static constexpr std::size_t kPatchBytes = std::size_t{64} << 20;
 
-  FirstMade<NormalCones> cones_;
+  /// The tiles of a Ptex face.
+  struct Tiles {
+    int first, count;
+  };
+  struct Pieces;
 
-  /// Appends the pieces of a tile and boxes around them. Cores are split so far that their boxes
-  /// fit closely.
-  void addLeaves(int tile, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
-  /// The number of steps that a core is split before searches.
-  int stepsBefore(const SurfacePiece& core) const;
-  /// Appends the cores around a vertex as one leaf.
-  void addRing(int ring, std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
-  void addCore(const SurfacePiece& core, SurfacePatches::SplitCore& split,
-               std::vector<SearchLeaf>& out, std::vector<BoxF>& boxes) const;
+  /// Appends the leaves of a face's tiles, or the face as a nest.
+  void addFace(const Tiles& tiles, Pieces& out) const;
+  std::vector<SurfacePiece> piecesOf(const Tiles& tiles) const;
+  const LeafBox* closeBox(std::int32_t nest) const;
+  const TreePart& makeNest(std::int32_t i) const;
+
+  LeafMaker maker_;
+  LargePageVector<WideTree::Node> top_nodes_;
+  LargePageVector<SearchLeaf> top_leaves_;
+  LargePageVector<BezierPatch> top_patches_;
+  TreePart top_;
+  std::int32_t first_nest_ = 0;  ///< its number as a child in the top: nests come after all nodes
+  std::vector<Tiles> nest_tiles_;
+  std::unique_ptr<FirstMade<LeafBox>[]> nest_boxes_;
+  std::unique_ptr<NestStore> nests_;
+  FirstMade<NormalCones> cones_;
 };
 
 /// The patches of leaves: kept by the tree, or else in a cache, since neighbouring searches need
 /// the same patches. A cache belongs to one thread.
 class PatchCache {
  public:
-  explicit PatchCache(const SearchTree& data) : data_(data) {
-    if (data.kept.empty()) {
-      patches_.reset(new BezierPatch[kSize]);
-      std::fill(leaves_, leaves_ + kSize, -1);
-    }
-  }
+  explicit PatchCache(const SearchTree& data) : data_(data) {}
 
-  const BezierPatch& patch(std::int32_t leaf) {
-    if (!data_.kept.empty()) {
-      return data_.kept[static_cast<std::size_t>(leaf)];
+  /// The patch of a leaf, which is in a part of the tree.
+  const BezierPatch& patch(const TreePart& part, const NearestFirst::Entry& at) {
+    const auto leaf = static_cast<std::size_t>(WideTree::leaf(at.place));
+    if (!part.kept.empty()) {
+      return part.kept[leaf];
     }
-    const std::size_t slot = static_cast<std::uint32_t>(leaf) % kSize;
-    if (leaves_[slot] != leaf) {
-      patches_[slot] = data_.patches.patch(data_.leaves[leaf].piece);
-      leaves_[slot] = leaf;
+    if (!patches_) {
+      patches_.reset(new BezierPatch[kSize]);
+    }
+    // Neighbouring nests have neighbouring numbers, and need different slots.
+    const std::size_t slot =
+        (static_cast<std::size_t>(at.part - SearchTree::kTop) * kLeavesPerNest + leaf) % kSize;
+    const SearchLeaf* const of = &part.leaves[leaf];
+    if (leaves_[slot] != of) {
+      patches_[slot] = data_.patches.patch(of->piece);
+      leaves_[slot] = of;
     }
     return patches_[slot];
   }
 
   /// Has the memory of a patch brought into the processor's caches, if the tree keeps it.
-  void expect(std::int32_t leaf) const {
-    if (!data_.kept.empty()) {
-      prefetch(data_.kept[static_cast<std::size_t>(leaf)]);
+  static void expect(const TreePart& part, std::int32_t leaf) {
+    if (!part.kept.empty()) {
+      prefetch(part.kept[static_cast<std::size_t>(leaf)]);
     }
   }
 
  private:
   static constexpr std::size_t kSize = 256;
+  static constexpr std::size_t kLeavesPerNest = 10;  // as most have
   const SearchTree& data_;
   std::unique_ptr<BezierPatch[]> patches_;
-  std::int32_t leaves_[kSize];
+  const SearchLeaf* leaves_[kSize] = {};
 };
 
 }  // namespace limitsurf

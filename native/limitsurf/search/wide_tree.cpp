@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/wide_tree.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "limitsurf/parallel.h"
@@ -13,16 +14,21 @@ class WideTree::Builder {
 
   /// The nodes at the top are gathered first, then those below each of them by one thread each.
   void build(LargePageVector<Node>& nodes, int threads) {
-    std::vector<Node> top;
+    if (tree_.leafCount() <= kLeavesPerTask) {
+      nodes.reserve(static_cast<std::size_t>(tree_.leafCount()) / 2 + 1);
+      add(0, tree_.leafCount(), nullptr, nodes);
+      return;
+    }
+    LargePageVector<Node> top;
     add(0, tree_.leafCount(), &parts_, top);
-    std::vector<std::vector<Node>> below(parts_.size());
+    std::vector<LargePageVector<Node>> below(parts_.size());
     parallelFor(parts_.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         add(parts_[i].place, parts_[i].leaves, nullptr, below[i]);
       }
     });
     std::vector<std::int32_t> first{static_cast<std::int32_t>(top.size())};
-    for (const std::vector<Node>& part : below) {
+    for (const LargePageVector<Node>& part : below) {
       first.push_back(first.back() + static_cast<std::int32_t>(part.size()));
     }
     nodes.resize(static_cast<std::size_t>(first.back()));
@@ -55,24 +61,19 @@ class WideTree::Builder {
   /// it. With `parts`, nodes over kLeavesPerTask leaves or fewer are put there in place of being
   /// added. Returns the node's number.
   std::int32_t add(std::int32_t binary, std::int32_t leaves, std::vector<Child>* parts,
-                   std::vector<Node>& nodes) const {
+                   LargePageVector<Node>& nodes) const {
     Child children[kWidth];
     const int count = gather(binary, leaves, children);
     const auto index = static_cast<std::int32_t>(nodes.size());
-    nodes.emplace_back();
-    Node& node = nodes.back();
-    node.count = count;
-    for (int axis = 0; axis < 3; ++axis) {
-      Row &low = node.bounds[axis][0], &high = node.bounds[axis][1];
-      low.setConstant(std::numeric_limits<float>::infinity());
-      high = -low;
-      for (int i = 0; i < count; ++i) {
-        low[i] = children[i].box.low[axis];
-        high[i] = children[i].box.high[axis];
-      }
+    BoxF boxes[kWidth];
+    std::int32_t places[kWidth];
+    for (int i = 0; i < count; ++i) {
+      boxes[i] = children[i].box;
+      places[i] = children[i].place;
     }
-    for (int i = 0; i < kWidth; ++i) {
-      std::int32_t child = i < count ? children[i].place : ~0;
+    nodes.push_back(nodeOver(boxes, places, count));
+    for (int i = 0; i < count; ++i) {
+      std::int32_t child = places[i];
       if (!BoxTree::isLeaf(child)) {
         if (parts && children[i].leaves <= kLeavesPerTask) {
           child = kPart + static_cast<std::int32_t>(parts->size());
@@ -124,7 +125,7 @@ class WideTree::Builder {
 
   /// Copies nodes, with their children's numbers as `moved(number)`; leaves stay as they are.
   template <typename Moved>
-  static void copy(const std::vector<Node>& from, Node* to, const Moved& moved) {
+  static void copy(const LargePageVector<Node>& from, Node* to, const Moved& moved) {
     for (const Node& node : from) {
       *to = node;
       for (std::int32_t& child : to->children) {
@@ -137,6 +138,22 @@ class WideTree::Builder {
   const BoxTree& tree_;
   std::vector<Child> parts_;
 };
+
+WideTree::Node WideTree::nodeOver(const BoxF boxes[], const std::int32_t children[], int count) {
+  Node node;
+  node.count = count;
+  for (int axis = 0; axis < 3; ++axis) {
+    Row &low = node.bounds[axis][0], &high = node.bounds[axis][1];
+    low.setConstant(std::numeric_limits<float>::infinity());
+    high = -low;
+    for (int i = 0; i < count; ++i) {
+      low[i] = boxes[i].low[axis];
+      high[i] = boxes[i].high[axis];
+    }
+  }
+  std::fill_n(std::copy_n(children, count, node.children), kWidth - count, ~0);
+  return node;
+}
 
 WideTree::WideTree(const BoxTree& tree, int threads) {
   if (!tree.empty()) {

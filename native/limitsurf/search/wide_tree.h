@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "limitsurf/large_pages.h"
@@ -30,12 +31,14 @@ class WideTree {
   /// of threads. Must not be called from within a parallel loop.
   explicit WideTree(const BoxTree& tree, int threads = 0);
 
-  bool empty() const { return nodes_.empty(); }
-  const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
-  /// Children have higher numbers than their parents.
-  std::int32_t nodeCount() const { return static_cast<std::int32_t>(nodes_.size()); }
+  /// The root first; children have higher numbers than their parents.
+  const LargePageVector<Node>& nodes() const { return nodes_; }
+  LargePageVector<Node> takeNodes() { return std::move(nodes_); }
   static bool isLeaf(std::int32_t child) { return child < 0; }
   static std::int32_t leaf(std::int32_t child) { return ~child; }
+
+  /// A node over some boxes, one to four.
+  static Node nodeOver(const BoxF boxes[], const std::int32_t children[], int count);
 
   /// A bit for each child of a node for which `matters(child)`.
   template <typename Matters>
@@ -47,12 +50,9 @@ class WideTree {
     return bits;
   }
 
-  /// A walk from the root that puts all children but one aside at each node puts at most so many.
-  static constexpr int kMostOpen = (kWidth - 1) * BoxTree::kMostDepth + 1;
-
  private:
   class Builder;
-  LargePageVector<Node> nodes_;  ///< the root first
+  LargePageVector<Node> nodes_;
 };
 
 /// What a walk down a tree has still to visit. The last one added of those that are nearest among
@@ -62,14 +62,20 @@ class NearestFirst {
   struct Entry {
     std::int32_t place;  ///< as WideTree::Node::children
     float key;           ///< how near it is
+    std::int32_t part;   ///< the tree of which it is a node or a leaf, if there are several
   };
 
-  /// Adds those children of a node that have a bit in `bits`.
-  void add(const WideTree::Node& node, const WideTree::Row& keys, unsigned bits) {
+  /// A walk puts all children but one aside at each node. The longest way leads through a BoxTree
+  /// and then as many nodes below.
+  static constexpr int kMostOpen = (WideTree::kWidth - 1) * 2 * BoxTree::kMostDepth + 1;
+
+  /// Adds those children of a node of a part that have a bit in `bits`.
+  void add(const WideTree::Node& node, const WideTree::Row& keys, unsigned bits,
+           std::int32_t part) {
     static_assert(WideTree::kWidth == 4, "a network that sorts four");
     if ((bits & (bits - 1)) == 0) {  // there is one, as at most nodes, or none
       const auto child = static_cast<int>((bits >> 1) - (bits >> 3));
-      entries_[height_] = {node.children[child], keys[child]};
+      entries_[height_] = {node.children[child], keys[child], part};
       height_ += bits != 0 ? 1 : 0;
       return;
     }
@@ -88,7 +94,7 @@ class NearestFirst {
     sortTwo(order[1], order[2]);
     for (int i = 3; i >= 0; --i) {
       const auto child = static_cast<int>(order[i] & 3);
-      entries_[height_] = {node.children[child], keys[child]};
+      entries_[height_] = {node.children[child], keys[child], part};
       height_ += order[i] != kNone ? 1 : 0;
     }
   }
@@ -119,7 +125,7 @@ class NearestFirst {
     a = less;
   }
 
-  Entry entries_[WideTree::kMostOpen];
+  Entry entries_[kMostOpen];
   int height_ = 0;
 };
 

@@ -176,7 +176,7 @@ DataBounds SurfaceData::bounds(int side, int threads) const {
   result.low.resize(rows, columns());
   result.high.resize(rows, columns());
   for (Eigen::Index first = 0; first < columns(); first += 3) {
-    const SurfacePatches patches(*this, threads, first, PatchUnit::own, RingHulls::none);
+    const SurfacePatches patches(*this, threads, first, PatchUnit::own);
     const std::vector<int> tiles = firstTiles(patches, faceCount());
     const double padding = kBoundsPadding * patches.diagonal();
     const Eigen::Index count = std::min<Eigen::Index>(3, columns() - first);

@@ -104,19 +104,24 @@ TEST(NormalCones, OfASideContainsItsDirectionsBeyondThePatch) {
   }
 }
 
-/// The ways through a tree to its leaves: from the root to each leaf, nodes and the number of the
-/// child.
-using Way = std::vector<std::pair<std::int32_t, int>>;
-void addWays(const WideTree& tree, std::int32_t node, Way way, std::vector<Way>& ways) {
-  for (int i = 0; i < tree.node(node).count; ++i) {
-    way.emplace_back(node, i);
-    const std::int32_t child = tree.node(node).children[i];
-    if (WideTree::isLeaf(child)) {
-      ways[static_cast<std::size_t>(WideTree::leaf(child))] = way;
-    } else {
-      addWays(tree, child, way, ways);
-    }
-    way.pop_back();
+/// A leaf of a tree and the way to it: from the root, nodes and the number of the child.
+struct LeafWay {
+  SurfacePiece piece;
+  std::vector<std::pair<NearestFirst::Entry, int>> way;
+};
+void addWays(const SearchTree& tree, NearestFirst::Entry at, LeafWay way,
+             std::vector<LeafWay>& ways) {
+  const TreePart& part = tree.part(at);
+  if (WideTree::isLeaf(at.place)) {
+    way.piece = part.leaves[static_cast<std::size_t>(WideTree::leaf(at.place))].piece;
+    ways.push_back(way);
+    return;
+  }
+  const WideTree::Node& node = part.nodes[static_cast<std::size_t>(at.place)];
+  for (int i = 0; i < node.count; ++i) {
+    way.way.emplace_back(at, i);
+    addWays(tree, {node.children[i], 0, at.part}, way, ways);
+    way.way.pop_back();
   }
 }
 
@@ -142,15 +147,15 @@ TEST(NormalCones, NoLocalMinimumIsLeftOut) {
   for (const auto& [name, cage] : queryCages()) {
     const LimitSurface surface = limitSurface(cage);
     const SearchTree tree(surface, 1);
-    if (tree.tree->empty()) {
+    if (tree.empty()) {
       continue;
     }
     const NormalCones cones(tree, 1);
-    std::vector<Way> ways(tree.leaves.size());
-    addWays(*tree.tree, 0, {}, ways);
+    std::vector<LeafWay> ways;
+    addWays(tree, SearchTree::kRoot, {}, ways);
     for (int round = 0; round < 400; ++round) {
       const auto leaf = static_cast<std::size_t>(random.below(static_cast<int>(ways.size())));
-      const BezierPatch patch = somePatch(tree, tree.leaves[leaf].piece, random);
+      const BezierPatch patch = somePatch(tree, ways[leaf].piece, random);
       double s = random.uniform(), t = random.uniform();
       const unsigned sides[] = {kSideS0, kSideS1, kSideT0, kSideT1};
       const unsigned side = sides[random.below(4)];
@@ -175,7 +180,7 @@ TEST(NormalCones, NoLocalMinimumIsLeftOut) {
       }
       ++(ends ? on_border : inside);
       bool is_left_out = false;
-      for (const auto& [node, child] : ways[leaf]) {
+      for (const auto& [node, child] : ways[leaf].way) {
         EXPECT_FALSE(cones.cannotFace(node, child, place + way, facing, 1e-3))
             << name << ", leaf " << leaf;
         // The wrong side, for comparison: a search that leaves out nothing would pass.

@@ -22,7 +22,7 @@ struct Walk {
 
 void visit(const WideTree& tree, std::int32_t index, const BoxF& around, const Boxes& boxes,
            const std::vector<std::int32_t>& order, Walk& walk) {
-  const WideTree::Node& node = tree.node(index);
+  const WideTree::Node& node = tree.nodes()[static_cast<std::size_t>(index)];
   ++walk.nodes;
   EXPECT_GE(node.count, boxes.size() > 1 ? 2 : 1);
   EXPECT_LE(node.count, WideTree::kWidth);
@@ -59,15 +59,15 @@ TEST(WideTree, HasEveryLeafOnceInItsBoxes) {
     }
     std::vector<std::int32_t> order;
     const WideTree tree(BoxTree(boxes, order));
-    EXPECT_EQ(tree.empty(), count == 0);
+    EXPECT_EQ(tree.nodes().empty(), count == 0);
     if (count == 0) continue;
     Walk walk;
     walk.seen.assign(boxes.size(), 0);
     visit(tree, 0, around, boxes, order, walk);
     EXPECT_EQ(std::count(walk.seen.begin(), walk.seen.end(), 1), count);
-    EXPECT_EQ(walk.nodes, tree.nodeCount());
+    EXPECT_EQ(static_cast<std::size_t>(walk.nodes), tree.nodes().size());
     if (count >= 1000) {  // nodes are nearly full
-      EXPECT_LE(tree.nodeCount(), count / 2);
+      EXPECT_LE(walk.nodes, count / 2);
     }
   }
 }
@@ -83,9 +83,9 @@ TEST(WideTree, DoesNotDependOnTheNumberOfThreads) {
   std::vector<std::int32_t> order, other_order;
   const WideTree tree(BoxTree(boxes, order, 1), 1), other(BoxTree(boxes, other_order, 0), 0);
   EXPECT_EQ(order, other_order);
-  ASSERT_EQ(tree.nodeCount(), other.nodeCount());
-  for (std::int32_t i = 0; i < tree.nodeCount(); ++i) {
-    const WideTree::Node &a = tree.node(i), &b = other.node(i);
+  ASSERT_EQ(tree.nodes().size(), other.nodes().size());
+  for (std::size_t i = 0; i < tree.nodes().size(); ++i) {
+    const WideTree::Node &a = tree.nodes()[i], &b = other.nodes()[i];
     EXPECT_EQ(a.count, b.count);
     EXPECT_TRUE(std::equal(a.children, a.children + WideTree::kWidth, b.children));
     for (int axis = 0; axis < 3; ++axis) {
@@ -109,16 +109,18 @@ TEST(WideTree, NearestFirstKeepsTheOrderOfKeys) {
       node.children[i] = 10 + i;
       keys[i] = static_cast<float>(random.below(5) - 2);  // often equal, often negative
       matters[i] = random.below(3) > 0;
-      if (i < node.count && matters[i]) expected.push_back({node.children[i], keys[i]});
+      if (i < node.count && matters[i]) expected.push_back({node.children[i], keys[i], round});
     }
     std::stable_sort(expected.begin(), expected.end(),
                      [](const auto& a, const auto& b) { return a.key < b.key; });
-    open.add(node, keys, WideTree::children(node, [&](int child) { return matters[child]; }));
+    open.add(node, keys, WideTree::children(node, [&](int child) { return matters[child]; }),
+             round);
     NearestFirst::Entry next;
     for (const NearestFirst::Entry& entry : expected) {
       ASSERT_TRUE(open.take(next));
       EXPECT_EQ(next.place, entry.place);
       EXPECT_EQ(next.key, entry.key);
+      EXPECT_EQ(next.part, round);
     }
     EXPECT_FALSE(open.take(next));
   }

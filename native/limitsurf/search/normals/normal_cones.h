@@ -14,11 +14,11 @@ class NormalCones {
  public:
   NormalCones(const SearchTree& tree, int threads);
 
-  /// Whether no place of a node's child, 0 to 3, has both: a normal within `angle` of `direction`,
-  /// a unit vector, and the smallest distance from `point` in its neighbourhood. The point is in
-  /// the coordinates of boxes.
-  bool cannotFace(std::int32_t node, int child, const Vector3& point, const Vector3& direction,
-                  double angle) const;
+  /// Whether no place of a child, 0 to 3, of a node of the tree has both: a normal within `angle`
+  /// of `direction`, a unit vector, and the smallest distance from `point` in its neighbourhood.
+  /// The point is in the coordinates of boxes.
+  bool cannotFace(NearestFirst::Entry node, int child, const Vector3& point,
+                  const Vector3& direction, double angle) const;
 
  private:
   /// A PieceNormals whose cone along the border, which few have, is elsewhere.
@@ -28,13 +28,19 @@ class NormalCones {
   };
   static constexpr std::int32_t kNoBorder = -1, kUnknownBorder = -2;
 
-  static std::size_t place(std::int32_t node, int child) {
-    return WideTree::kWidth * static_cast<std::size_t>(node) + static_cast<std::size_t>(child);
+  /// Where the cone of a node's child is.
+  std::size_t place(const NearestFirst::Entry& node, int child) const {
+    return WideTree::kWidth * (first_[static_cast<std::size_t>(node.part - SearchTree::kTop)] +
+                               static_cast<std::size_t>(node.place)) +
+           static_cast<std::size_t>(child);
   }
-  PieceNormals of(std::int32_t node, int child) const;
-  void set(std::int32_t node, int child, const PieceNormals& piece);
+  /// Sets those of a part, the top or a nest, from those of its leaves. Nests come before the top.
+  void setPart(std::int32_t number, const PieceNormals leaves[]);
+  PieceNormals of(std::size_t place) const;
+  void set(std::size_t place, const PieceNormals& piece);
 
-  const WideTree& tree_;
+  const SearchTree& tree_;
+  std::vector<std::size_t> first_;  ///< for the top and each nest, the number of its first node
   std::vector<Normals> children_;
   std::vector<DirectionCone> along_borders_;
 };

@@ -48,21 +48,28 @@ class RaySearch {
     box_ray_ = BoxRay(ray_);
     begin_ = roundedDown(this->start());
     open_.clear();
-    next_ = {0, begin_};
+    next_ = SearchTree::kRoot;
+    next_.key = begin_;
     box_met_ = false;
   }
 
   /// Visits a node, the box of a leaf, or a leaf. Returns false when there is nothing left to do.
   bool step() {
+    const LeafBox* const box = data_.boxBeforeNest(next_);
+    double enter = start();
+    if (box && !box->meets(ray_, margin(), enter, end())) {
+      return takeNext();
+    }
+    const TreePart& part = data_.part(next_);
     if (!WideTree::isLeaf(next_.place)) {
-      const WideTree::Node& node = data_.tree->node(next_.place);
+      const WideTree::Node& node = part.nodes[static_cast<std::size_t>(next_.place)];
       WideTree::Row from;
       const unsigned met = box_ray_.meet(node, begin_, roundedUp(end()), from);
-      open_.add(node, from, met);
+      open_.add(node, from, met, next_.part);
       return takeNext();
     }
     const std::int32_t leaf = WideTree::leaf(next_.place);
-    const SearchLeaf& found = data_.leaves[leaf];
+    const SearchLeaf& found = part.leaves[static_cast<std::size_t>(leaf)];
     if (!box_met_) {
       double from = start();
       if (!found.box.meets(ray_, margin(), from, end())) {
@@ -70,14 +77,14 @@ class RaySearch {
       }
       if (!found.piece.isCore()) {
         box_met_ = true;
-        cache_.expect(leaf);
+        PatchCache::expect(part, leaf);
         return true;
       }
       visitCore(found.piece);
       return takeNext();
     }
     box_met_ = false;
-    intersectPatch(cache_.patch(leaf), frame_, found_);
+    intersectPatch(cache_.patch(part, next_), frame_, found_);
     return takeNext();
   }
 
@@ -112,11 +119,7 @@ class RaySearch {
         return false;
       }
     } while (next_.key > end());
-    if (WideTree::isLeaf(next_.place)) {
-      prefetch(data_.leaves[WideTree::leaf(next_.place)]);
-    } else {
-      prefetch(data_.tree->node(next_.place));
-    }
+    data_.expect(next_);
     return true;
   }
 
@@ -256,7 +259,7 @@ constexpr std::size_t kRaysAtOnce = 8;
 template <typename Found>
 void searchRays(const SearchTree& tree, const Points& origins, const Points& directions,
                 double max_distance, bool first_only, int threads, const Found& found) {
-  if (tree.tree->empty()) {
+  if (tree.empty()) {
     return;
   }
   parallelFor(static_cast<std::size_t>(origins.rows()), kRowsPerTask, threads,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limitsurf/interruption_point.h"
+#include "limitsurf/search/box_points.h"
 
 namespace limitsurf {
 namespace {
@@ -30,20 +31,17 @@ SectorTree::SectorTree(const SurfacePatches& patches, const std::vector<SurfaceP
   for (int i = 0; i < count_; ++i) {
     stride.step();
     patches.split(cores[static_cast<std::size_t>(i)], split);
-    Eigen::Matrix<double, 3 * 16, 3, Eigen::RowMajor> points;
-    for (int quarter = 0; quarter < 3; ++quarter) {
-      const BezierPatch& patch = split.patches[quarter];
-      const Vector3 offset = patch.anchor.head<3>().matrix() - vertex;
-      for (int p = 0; p < 16; ++p) {
-        points.row(16 * quarter + p) = (patch.points[p].head<3>().matrix() + offset).transpose();
-      }
+    BoxPoints points(vertex);
+    points.reserve(3 * 16);
+    for (const BezierPatch& patch : split.patches) {
+      points.add(patch);
     }
     // The core's opposite corner is the last point of the second patch; its next corners are the
     // last of the first patch's first row and the first of the third patch's last row.
-    const Vector3 along = points.row(31), s = points.row(3), t = points.row(32 + 12);
+    const Vector3 along = points.point(31), s = points.point(3), t = points.point(32 + 12);
     const Vector3 across = t - s, normal = along.cross(across);
     const std::size_t leaf = static_cast<std::size_t>(count_ + i);
-    boxes_[leaf] = CoreBox(points, along, across);
+    boxes_[leaf] = points.oriented<double>(along, across);
     directions[leaf] = {along.normalized(), normal.normalized(), 1};
   }
   for (std::size_t node = static_cast<std::size_t>(count_) - 1; node >= kRoot; --node) {
@@ -51,13 +49,13 @@ SectorTree::SectorTree(const SurfacePatches& patches, const std::vector<SurfaceP
     const Directions &a = directions[2 * node], &b = directions[2 * node + 1];
     Directions& both = directions[node];
     both = {a.along + b.along, a.normal + b.normal, a.faces + b.faces};
-    Eigen::Matrix<double, 16, 3, Eigen::RowMajor> corners;
-    corners.topRows<8>() = boxes_[2 * node].corners();
-    corners.bottomRows<8>() = boxes_[2 * node + 1].corners();
+    BoxPoints corners(Vector3::Zero());
+    corners.add(boxes_[2 * node]);
+    corners.add(boxes_[2 * node + 1]);
     const bool is_sector = both.along.norm() > kLeastLength * both.faces;
     const Vector3 along = is_sector ? both.along : Vector3(frame.row(0));
     const Vector3 normal = is_sector ? both.normal : Vector3(frame.row(2));
-    boxes_[node] = CoreBox(corners, along, normal.cross(along));
+    boxes_[node] = corners.oriented<double>(along, normal.cross(along));
   }
 }
 

@@ -27,19 +27,18 @@ void multiply(BezierPatch& patch, double scale) {
 
 }  // namespace
 
-SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads, PatchUnit unit,
-                               RingHulls hulls)
+SurfacePatches::SurfacePatches(const LimitSurface& surface, int threads, PatchUnit unit)
     : data_(std::make_unique<Data>(surface.data_->table, surface.data_->pose, unit)) {
-  data_->setLevels(threads, hulls);
+  data_->setLevels(threads);
 }
 SurfacePatches::SurfacePatches(const SurfaceData& data, int threads, Eigen::Index first_column,
-                               PatchUnit unit, RingHulls hulls)
+                               PatchUnit unit)
     : data_(std::make_unique<Data>(
           data.data_->tiles->table,
           data.data_
               ->poses[static_cast<std::size_t>(first_column / SurfaceData::Data::kColumnsPerPose)],
           unit)) {
-  data_->setLevels(threads, hulls);
+  data_->setLevels(threads);
 }
 SurfacePatches::~SurfacePatches() = default;
 SurfacePatches::SurfacePatches(SurfacePatches&&) noexcept = default;
@@ -126,6 +125,24 @@ CoreHull SurfacePatches::restHull(const SplitCore& split) const {
   hull.low *= data_->scale;
   hull.high *= data_->scale;
   return hull;
+}
+
+void SurfacePatches::appendRestPoints(const SplitCore& split, std::vector<Padded>& points) const {
+  const RingTile& tile = data_->ringTile(split.core);
+  const Padded anchor = data_->pose.ring(tile.ring).limit;
+  const int step = std::min(split.core.steps + tile.ring_steps, data_->keptSteps(tile.ring));
+  const Padded* of_ring = data_->ringPoints(tile.ring, step);
+  const auto append = [&](const Padded& point) {
+    points.push_back(data_->scale * (anchor + point));
+  };
+  for (std::size_t i = 0; i < data_->table.rings[tile.ring].points.size(); ++i) {
+    append(of_ring[i]);
+  }
+  for (const int c : tile_grid::kOuterSlots) {
+    if (tile_grid::exists(tile.sides, c)) {
+      append(split.grid_[c]);
+    }
+  }
 }
 
 Box SurfacePatches::coreBox(const SurfacePiece& core) const {

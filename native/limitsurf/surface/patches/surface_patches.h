@@ -64,9 +64,6 @@ enum class PatchUnit {
   own
 };
 
-/// What is kept of the rings of cores for searches.
-enum class RingHulls { kept, none };
-
 /// The limit surface in its present pose as bicubic patches, for searches and integrals.
 ///
 /// A face without extraordinary vertices is one patch, or a few strips along a semi-sharp edge. A
@@ -86,15 +83,12 @@ class SurfacePatches {
   /// Around vertices with more faces than this, the ring's points are kept for all steps.
   static constexpr int kFewFaces = 16;
 
-  /// Without hulls, which integrals do not need, restHull() and the frames of rings do not exist.
   explicit SurfacePatches(const LimitSurface& surface, int threads = 0,
-                          PatchUnit unit = PatchUnit::coordinates,
-                          RingHulls hulls = RingHulls::kept);
+                          PatchUnit unit = PatchUnit::coordinates);
   /// Three columns of data, as if they were positions: `first_column`, a multiple of three, and the
   /// next two. Missing columns are 0.
   explicit SurfacePatches(const SurfaceData& data, int threads = 0, Eigen::Index first_column = 0,
-                          PatchUnit unit = PatchUnit::coordinates,
-                          RingHulls hulls = RingHulls::kept);
+                          PatchUnit unit = PatchUnit::coordinates);
   ~SurfacePatches();
   SurfacePatches(SurfacePatches&&) noexcept;
   SurfacePatches& operator=(SurfacePatches&&) noexcept;
@@ -131,6 +125,10 @@ class SurfacePatches {
   /// A box around the rest of a split. Its axes are those of the ring, so that it is as flat as the
   /// ring is, whichever way the surface lies.
   CoreHull restHull(const SplitCore& split) const;
+
+  /// Appends points, relative to nothing, in whose convex hull the rest of a split lies: those of
+  /// the ring and the outer ones of the grid. Cost: O(valence).
+  void appendRestPoints(const SplitCore& split, std::vector<Padded>& points) const;
 
   /// A box around the surface on a tile's whole core (steps = 0).
   Box coreBox(const SurfacePiece& core) const;

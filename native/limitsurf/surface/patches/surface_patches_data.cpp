@@ -39,9 +39,6 @@ constexpr double kLeastSine = 1e-6;
 /// The rounding of the coordinates of a point in a frame, of its largest coordinate: three products
 /// and two sums, each of at most sqrt(3) times that.
 constexpr double kTurnRounding = 9 * 0x1p-53;
-/// The number of points for which memory is taken between two interruption points.
-constexpr std::size_t kPointsPerPass = std::size_t{1} << 18;
-
 /// The quarters of a core in the order of SplitCore.
 constexpr int kQuarters[3][2] = {{1, 0}, {1, 1}, {0, 1}};
 
@@ -95,40 +92,24 @@ int SurfacePatches::Data::flatSteps(int ring) const {
   return std::max(keptSteps(ring), kFlatSteps);
 }
 
-void SurfacePatches::Data::setLevels(int threads, RingHulls hulls) {
+void SurfacePatches::Data::setLevels(int threads) {
   radii.resize(table.rings.size() * (kMostSteps + 1));
   first_level.resize(table.rings.size());
-  first_extent.resize(table.rings.size());
-  if (hulls == RingHulls::kept) {
-    frames.resize(table.rings.size());
-  }
-  std::size_t size = 0, steps = 0;
+  hulls_ = std::make_unique<FirstMade<RingHull>[]>(table.rings.size());
+  std::size_t size = 0;
   for (std::size_t ring = 0; ring < table.rings.size(); ++ring) {
     first_level[ring] = size;
-    first_extent[ring] = steps;
     const int kept = keptSteps(static_cast<int>(ring));
     size += table.rings[ring].points.size() * static_cast<std::size_t>(kept + 1);
-    steps += static_cast<std::size_t>(flatSteps(static_cast<int>(ring)) + 1);
     const Eigenbasis* basis = table.rings[ring].basis.get();
     if (kept < kMostSteps && shrinkages_.count(basis) == 0) {
       shrinkages_[basis] = ringShrinkage(*basis, kMostSteps - kept);
     }
   }
-  if (hulls == RingHulls::kept) {
-    extents.resize(steps);
-  }
-  // The system hands out memory when it is first written to, which may take long.
-  levels.reserve(size);
-  while (levels.size() < size) {
-    levels.resize(std::min(size, levels.size() + kPointsPerPass));
-    InterruptionPoint::pass();
-  }
+  levels.resize(size);
   parallelFor(table.rings.size(), kRingsPerTask, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t ring = begin; ring < end; ++ring) {
       setRingLevels(static_cast<int>(ring));
-      if (hulls == RingHulls::kept) {
-        setExtents(static_cast<int>(ring));
-      }
     }
   });
 }
@@ -186,49 +167,58 @@ Eigen::Matrix3d SurfacePatches::Data::frameOf(int ring) const {
   return axes;
 }
 
-void SurfacePatches::Data::setExtents(int ring) {
-  frames[ring] = frameOf(ring);
+std::unique_ptr<SurfacePatches::Data::RingHull> SurfacePatches::Data::makeHull(int ring) const {
+  auto hull = std::make_unique<RingHull>();
+  hull->frame = frameOf(ring);
+  hull->extents.reserve(static_cast<std::size_t>(flatSteps(ring) + 1));
   const std::size_t count = table.rings[ring].points.size();
   const Padded* points = &levels[first_level[ring]];
-  Extent* extent = &extents[first_extent[ring]];
   const int kept = keptSteps(ring);
   for (int step = 0; step <= kept; ++step, points += count) {
-    setExtent(points, count, frames[ring], *extent++);
+    hull->extents.push_back(extentOf(points, count, hull->frame));
   }
   std::vector<Padded> last(points - count, points), next(count);
   for (int step = kept + 1; step <= flatSteps(ring); ++step) {
     table.rings[ring].basis->step().apply([&](int i) -> const Padded& { return last[i]; },
                                           [&](int i) -> Padded& { return next[i]; });
     last.swap(next);
-    setExtent(last.data(), count, frames[ring], *extent++);
+    hull->extents.push_back(extentOf(last.data(), count, hull->frame));
   }
+  return hull;
 }
 
-void SurfacePatches::Data::setExtent(const Padded* points, std::size_t count,
-                                     const Eigen::Matrix3d& frame, Extent& extent) const {
+SurfacePatches::Data::Extent SurfacePatches::Data::extentOf(const Padded* points, std::size_t count,
+                                                            const Eigen::Matrix3d& frame) const {
+  Padded axes[3];  // a coordinate of all three in each
+  for (int i = 0; i < 3; ++i) {
+    axes[i] << frame.col(i).array(), 0;
+  }
   // The limit, 0, is in the hull, but for rounding.
-  Vector3 low = Vector3::Zero(), high = low;
+  Padded low = Padded::Zero(), high = low;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vector3 turned = frame * points[i].head<3>().matrix();
-    low = low.cwiseMin(turned);
-    high = high.cwiseMax(turned);
+    const Padded turned = points[i][0] * axes[0] + points[i][1] * axes[1] + points[i][2] * axes[2];
+    low = low.min(turned);
+    high = high.max(turned);
   }
   const double margin = kTurnRounding * std::max(-low.minCoeff(), high.maxCoeff());
+  Extent extent;
   for (int axis = 0; axis < 3; ++axis) {
     extent.low[axis] = roundedDown((low[axis] - margin) / unit);
     extent.high[axis] = roundedUp((high[axis] + margin) / unit);
   }
+  return extent;
 }
 
 CoreHull SurfacePatches::Data::hull(const SurfacePiece& core, const Padded* grid) const {
   const RingTile& tile = ringTile(core);
+  const RingHull& of_ring = ringHull(tile.ring);
   CoreHull hull;
   hull.vertex = pose.ring(tile.ring).limit.head<3>();
-  hull.axes = frames[tile.ring];
+  hull.axes = of_ring.frame;
   // Later points lie in the hull of earlier ones.
   const int step = core.steps + tile.ring_steps;
   const int flat = std::min(step, flatSteps(tile.ring));
-  const Extent& extent = extents[first_extent[tile.ring] + static_cast<std::size_t>(flat)];
+  const Extent& extent = of_ring.extents[static_cast<std::size_t>(flat)];
   const double reach = radius(core);
   for (int axis = 0; axis < 3; ++axis) {
     hull.low[axis] = std::max(unit * extent.low[axis], -reach);

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
+#include "limitsurf/first_made.h"
+#include "limitsurf/large_pages.h"
 #include "limitsurf/patch/tile_table.h"
 #include "limitsurf/surface/patches/surface_patches.h"
 #include "limitsurf/surface/pose.h"
@@ -19,8 +22,8 @@ struct SurfacePatches::Data {
 
   Data(const TileTable& tile_table, const Pose& control_points, PatchUnit patch_unit);
 
-  /// Fills `radii` and `levels`, and if there are to be hulls `frames` and `extents`.
-  void setLevels(int threads, RingHulls hulls);
+  /// Fills `radii` and `levels`.
+  void setLevels(int threads);
 
   const RingTile& ringTile(const SurfacePiece& piece) const {
     return table.ring_tiles[tiles[piece.tile].ref.index];
@@ -59,13 +62,19 @@ struct SurfacePatches::Data {
   struct Extent {
     float low[3], high[3];
   };
+  /// How flat a ring is.
+  struct RingHull {
+    Eigen::Matrix3d frame;        ///< an axis in each row
+    std::vector<Extent> extents;  ///< after each step to flatSteps()
+  };
+  /// Made when a search first comes near the ring; integrals do without.
+  const RingHull& ringHull(int ring) const {
+    return hulls_[static_cast<std::size_t>(ring)].get([&] { return makeHull(ring); });
+  }
 
-  std::vector<float> radii;               // kMostSteps + 1 for each ring, in `unit`
-  std::vector<std::size_t> first_level;   // for each ring
-  std::vector<Padded> levels;             // relative to the rings' limits
-  std::vector<Eigen::Matrix3d> frames;    // for each ring, an axis in each row
-  std::vector<std::size_t> first_extent;  // for each ring
-  std::vector<Extent> extents;            // after each step to flatSteps()
+  std::vector<float> radii;              // kMostSteps + 1 for each ring, in `unit`
+  std::vector<std::size_t> first_level;  // for each ring
+  LargePageVector<Padded> levels;        // relative to the rings' limits
   /// Known for some kinds of cores.
   std::map<CoreKind, CoreNormal> core_normals;
   Box cage_box;
@@ -91,12 +100,12 @@ struct SurfacePatches::Data {
   std::pair<Vector3, Vector3> planeOf(int ring) const;
   /// Axes along which the ring's points after many steps are as flat as can be.
   Eigen::Matrix3d frameOf(int ring) const;
-  void setExtents(int ring);
-  void setExtent(const Padded* points, std::size_t count, const Eigen::Matrix3d& frame,
-                 Extent& extent) const;
+  std::unique_ptr<RingHull> makeHull(int ring) const;
+  Extent extentOf(const Padded* points, std::size_t count, const Eigen::Matrix3d& frame) const;
   void setRingLevels(int ring);
   void stripPatch(const BSplineTile& tile, int strip, BezierPatch& out) const;
 
+  std::unique_ptr<FirstMade<RingHull>[]> hulls_;
   /// ringShrinkage() of rings with few faces, for the steps of which no points are kept.
   std::map<const Eigenbasis*, std::vector<double>> shrinkages_;
 };

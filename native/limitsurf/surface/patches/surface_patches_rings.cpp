@@ -108,7 +108,7 @@ int SurfacePatches::ringLevel(const SurfacePiece& core) const {
   return core.steps + data_->ringTile(core).ring_steps;
 }
 
-Eigen::Matrix3d SurfacePatches::ringFrame(int ring) const { return data_->frames[ring]; }
+Eigen::Matrix3d SurfacePatches::ringFrame(int ring) const { return data_->ringHull(ring).frame; }
 
 double SurfacePatches::ringAsymmetry(const std::vector<SurfacePiece>& cores, double enough) const {
   constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -120,7 +120,7 @@ double SurfacePatches::ringAsymmetry(const std::vector<SurfacePiece>& cores, dou
   if (ring.kind != RingKind::interior || static_cast<int>(cores.size()) != ring.faces) {
     return kNone;
   }
-  const Eigen::Matrix3d& frame = data_->frames[ring_index];
+  const Eigen::Matrix3d& frame = data_->ringHull(ring_index).frame;
   Padded first[tile_grid::kSlots], grid[tile_grid::kSlots];
   data_->nextGrid(cores[0], false, first);
   // The frame's last axis may point to either side, so that the faces turn either way around it.

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/search/leaf_maker.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "limitsurf/parallel.h"
+#include "limitsurf/search/box_points.h"
+
+namespace limitsurf {
+namespace {
+
+Vector3 sideS(const BezierPatch& patch) {
+  const BezierPatch::Point* p = patch.points;
+  return ((p[3] - p[0]) + (p[15] - p[12])).head<3>();
+}
+Vector3 sideT(const BezierPatch& patch) {
+  const BezierPatch::Point* p = patch.points;
+  return ((p[12] - p[0]) + (p[15] - p[3])).head<3>();
+}
+
+}  // namespace
+
+LeafMaker::Leaf LeafMaker::ofPatch(const SurfacePiece& piece, const BezierPatch& patch) const {
+  BoxPoints points(middle_);
+  points.reserve(16);
+  points.add(patch);
+  return {{points.oriented<float>(sideS(patch), sideT(patch)), piece, FootBound(patch)},
+          points.axisAligned()};
+}
+
+LeafMaker::Leaf LeafMaker::ofCore(const SurfacePiece& core,
+                                  SurfacePatches::SplitCore& split) const {
+  // The box is found from the patches of one more step and the hull of the rest.
+  patches_.split(core, split);
+  BoxPoints points(middle_);
+  points.reserve(3 * 16 + 8);
+  for (const BezierPatch& patch : split.patches) {
+    points.add(patch);
+  }
+  const CoreHull rest = patches_.restHull(split);
+  points.add(rest);
+  // The core's opposite corner, the last point of the second patch, gives the first axis.
+  const Vector3 normal = rest.axes.row(2);
+  const Vector3 along = points.point(2 * 16 - 1) - (rest.vertex - middle_);
+  const Vector3 tangent = along - along.dot(normal) * normal;
+  return {{points.oriented<float>(tangent, normal.cross(tangent)), core, {}}, points.axisAligned()};
+}
+
+LeafMaker::Leaf LeafMaker::ofRing(int ring) const {
+  const int first = rings_.firstLevel(ring);
+  BoxPoints points(middle_);
+  SurfacePatches::SplitCore split;
+  InterruptionStride stride;
+  for (int place = 0; place < rings_.coreCount(ring); ++place) {
+    stride.step();
+    patches_.split(rings_.core(ring, place, first), split);
+    for (const BezierPatch& patch : split.patches) {
+      points.add(patch);
+    }
+    points.add(patches_.restHull(split));
+  }
+  const Eigen::Matrix3d frame = patches_.ringFrame(ring);
+  return {{points.oriented<float>(frame.row(0), frame.row(1)), rings_.core(ring, 0, first), {}},
+          points.axisAligned()};
+}
+
+int LeafMaker::stepsBefore(const SurfacePiece& core) const {
+  const int ring = patches_.ringOf(core);
+  if (rings_.isLarge(ring)) {
+    return rings_.firstLevel(ring) - patches_.ringLevel(core);
+  }
+  // The cores of small tiles are split once, those of whole faces twice.
+  const FaceRectangle on = patches_.rectangle(core);
+  return std::abs(on.us + on.ut) == 1 ? 2 : 1;
+}
+
+template <typename Add, typename AddRest>
+void LeafMaker::forEachPatch(const SurfacePiece& piece, const Add& add,
+                             const AddRest& addRest) const {
+  if (!piece.isCore()) {
+    add(patches_.patch(piece));
+    return;
+  }
+  const bool is_of_ring = isOfRing(piece);
+  const int steps = is_of_ring ? stepsBefore(piece) : 1;
+  SurfacePiece rest = piece;
+  SurfacePatches::SplitCore split;
+  for (int step = 0; step < steps; ++step) {
+    patches_.split(rest, split);
+    rest = split.core;
+    for (const BezierPatch& patch : split.patches) {
+      add(patch);
+    }
+  }
+  if (!is_of_ring) {
+    addRest(split);
+  }
+}
+
+Box LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Padded low = Padded::Constant(kInfinity), high = -low;
+  std::vector<Padded> rest;
+  const auto add = [&](const BezierPatch& patch) {
+    for (const Padded& point : patch.points) {
+      low = low.min(patch.anchor + point);
+      high = high.max(patch.anchor + point);
+    }
+  };
+  const auto addRest = [&](const SurfacePatches::SplitCore& split) {
+    rest.clear();
+    patches_.appendRestPoints(split, rest);
+    for (const Padded& point : rest) {
+      low = low.min(point);
+      high = high.max(point);
+    }
+  };
+  for (const SurfacePiece& piece : pieces) {
+    forEachPatch(piece, add, addRest);
+  }
+  return {low.head<3>().matrix() - middle_, high.head<3>().matrix() - middle_};
+}
+
+LeafBox LeafMaker::closeBoxAround(const std::vector<SurfacePiece>& pieces) const {
+  BoxPoints points(middle_);
+  points.reserve(64 * pieces.size());
+  Vector3 along_u = Vector3::Zero(), along_v = along_u;
+  std::vector<Padded> rest;
+  const auto add = [&](const BezierPatch& patch) {
+    points.add(patch);
+    const Vector3 s = sideS(patch), t = sideT(patch);
+    along_u += patch.on.us * s + patch.on.ut * t;
+    along_v += patch.on.vs * s + patch.on.vt * t;
+  };
+  const auto addRest = [&](const SurfacePatches::SplitCore& split) {
+    rest.clear();
+    patches_.appendRestPoints(split, rest);
+    points.add(rest);
+  };
+  for (const SurfacePiece& piece : pieces) {
+    forEachPatch(piece, add, addRest);
+  }
+  return points.oriented<float>(along_u, along_v);
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limitsurf/search/nest_builder.h"
+
+#include "limitsurf/search/box_tree.h"
+#include "limitsurf/search/wide_tree.h"
+
+namespace limitsurf {
+
+BuiltPart NestBuilder::build(const std::vector<SurfacePiece>& pieces) const {
+  std::vector<LeafMaker::Leaf> leaves;
+  std::vector<BezierPatch> patches;
+  const std::size_t count = leafCount(pieces);
+  leaves.reserve(count);
+  patches.reserve(count);
+  SurfacePatches::SplitCore split;
+  for (const SurfacePiece& piece : pieces) {
+    if (!piece.isCore()) {
+      patches.push_back(patches_.patch(piece));
+      leaves.push_back(maker_.ofPatch(piece, patches.back()));
+      continue;
+    }
+    SurfacePiece rest = piece;
+    for (int step = maker_.stepsBefore(piece); step > 0; --step) {
+      patches_.split(rest, split);
+      rest = split.core;
+      for (int quarter = 0; quarter < 3; ++quarter) {
+        patches.push_back(split.patches[quarter]);
+        leaves.push_back(maker_.ofPatch(split.pieces[quarter], patches.back()));
+      }
+    }
+    if (!maker_.isOfRing(piece)) {
+      patches.emplace_back();
+      leaves.push_back(maker_.ofCore(rest, split));
+    }
+  }
+  std::vector<BoxF> boxes;
+  boxes.reserve(leaves.size());
+  for (const LeafMaker::Leaf& leaf : leaves) {
+    boxes.push_back(leaf.box);
+  }
+  std::vector<std::int32_t> order;
+  BuiltPart nest;
+  nest.nodes = WideTree(BoxTree(boxes, order, 1), 1).takeNodes();
+  nest.leaves.reserve(leaves.size());
+  nest.patches.reserve(leaves.size());
+  for (const std::int32_t leaf : order) {
+    nest.leaves.push_back(leaves[static_cast<std::size_t>(leaf)].leaf);
+    nest.patches.push_back(patches[static_cast<std::size_t>(leaf)]);
+  }
+  return nest;
+}
+
+std::size_t NestBuilder::leafCount(const std::vector<SurfacePiece>& pieces) const {
+  std::size_t leaves = 0;
+  for (const SurfacePiece& piece : pieces) {
+    const int of_core = piece.isCore() ? 3 * maker_.stepsBefore(piece) : 0;
+    leaves +=
+        static_cast<std::size_t>(of_core) + (piece.isCore() && maker_.isOfRing(piece) ? 0 : 1);
+  }
+  return leaves;
+}
+
+}  // namespace limitsurf

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The parts of a search tree: together they hold the whole surface, in boxes that contain it, and
+// those below faces with extraordinary vertices are only made when a search comes near.
+#include "limitsurf/search/search_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "limitsurf/search/surface_search.h"
+#include "limitsurf/surface/limit_surface.h"
+#include "support/cages/meshes.h"
+#include "support/cages/query_cages.h"
+#include "support/random.h"
+
+namespace limitsurf::test {
+namespace {
+
+/// Half a thousandth of a percent of the diagonal: more than single precision rounds.
+constexpr double kRounding = 5e-6;
+
+double area(const FaceRectangle& on) { return std::abs((on.us + on.ut) * (on.vs + on.vt)); }
+
+/// Walks through a tree and checks the boxes against points of the surface.
+class Walk {
+ public:
+  Walk(const SearchTree& tree, Random& random)
+      : covered(static_cast<std::size_t>(tree.surface.faceCount()), 0),
+        tree_(tree),
+        random_(random) {}
+
+  void visit(NearestFirst::Entry at, std::vector<Box> boxes) {
+    const TreePart& part = tree_.part(at);
+    if (WideTree::isLeaf(at.place)) {
+      visitLeaf(part.leaves[static_cast<std::size_t>(WideTree::leaf(at.place))], boxes);
+      return;
+    }
+    const WideTree::Node& node = part.nodes[static_cast<std::size_t>(at.place)];
+    for (int i = 0; i < node.count; ++i) {
+      Box box;
+      for (int axis = 0; axis < 3; ++axis) {
+        box.low[axis] = node.bounds[axis][0][i];
+        box.high[axis] = node.bounds[axis][1][i];
+      }
+      boxes.push_back(box);
+      visit({node.children[i], 0, at.part}, boxes);
+      boxes.pop_back();
+    }
+  }
+
+  std::vector<double> covered;  ///< the area of each face's leaves, of their parameters
+  int points = 0;
+
+ private:
+  void visitLeaf(const SearchLeaf& leaf, const std::vector<Box>& boxes) {
+    const bool is_ring =
+        leaf.piece.isCore() && tree_.rings.isLarge(tree_.patches.ringOf(leaf.piece));
+    std::vector<SurfacePiece> pieces{leaf.piece};
+    if (is_ring) {
+      const int ring = tree_.patches.ringOf(leaf.piece);
+      pieces = tree_.rings.cores(ring, tree_.rings.firstLevel(ring));
+    }
+    for (const SurfacePiece& piece : pieces) {
+      const FaceRectangle on = tree_.patches.rectangle(piece);
+      covered[static_cast<std::size_t>(on.face)] += area(on);
+      for (int i = 0; i < 4; ++i) {
+        const Location at = on.at(random_.uniform(), random_.uniform());
+        const Vector3 place =
+            tree_.scale * tree_.surface.evaluate({&at, 1}, Derivatives::none, false, 1)
+                              .position.row(0)
+                              .transpose();
+        const Vector3 in_boxes = tree_.inBoxes(place);
+        for (const Box& box : boxes) {
+          EXPECT_LE((box.low - in_boxes).maxCoeff(), kRounding);
+          EXPECT_LE((in_boxes - box.high).maxCoeff(), kRounding);
+        }
+        EXPECT_LE(std::sqrt(leaf.box.squaredDistance(in_boxes)), kRounding);
+        ++points;
+      }
+    }
+  }
+
+  const SearchTree& tree_;
+  Random& random_;
+};
+
+TEST(SearchTree, LeavesCoverAllFacesWithinTheirBoxes) {
+  Random random(1);
+  int nests = 0;
+  for (const auto& [name, cage] : queryCages()) {
+    SCOPED_TRACE(name);
+    const LimitSurface surface = limitSurface(cage);
+    const SearchTree tree(surface, 1);
+    if (tree.empty()) {
+      continue;
+    }
+    Walk walk(tree, random);
+    walk.visit(SearchTree::kRoot, {});
+    EXPECT_EQ(tree.nestsMade(), tree.nestCount());
+    nests += tree.nestCount();
+    for (int tile = 0; tile < tree.patches.tileCount(); ++tile) {
+      const auto face = static_cast<std::size_t>(tree.patches.rectangle({tile, 0, 0}).face);
+      EXPECT_NEAR(walk.covered[face], 1, 1e-12) << face;
+    }
+  }
+  EXPECT_GT(nests, 200);
+}
+
+/// The box that stands for a nest before it is made contains all of its leaves.
+TEST(SearchTree, TheBoxBeforeANestContainsIt) {
+  Random random(2);
+  int points = 0;
+  for (const auto& [name, cage] : queryCages()) {
+    SCOPED_TRACE(name);
+    const LimitSurface surface = limitSurface(cage);
+    const SearchTree tree(surface, 1);
+    for (const WideTree::Node& node : tree.top().nodes) {
+      for (int i = 0; i < node.count; ++i) {
+        NearestFirst::Entry at{node.children[i], 0, SearchTree::kTop};
+        const LeafBox* const box = tree.boxBeforeNest(at);
+        if (!box) {
+          continue;
+        }
+        const TreePart& nest = tree.part(at);
+        EXPECT_EQ(tree.boxBeforeNest({node.children[i], 0, SearchTree::kTop}), nullptr);
+        for (const SearchLeaf& leaf : nest.leaves) {
+          for (int round = 0; round < 4; ++round) {
+            const Location place =
+                tree.patches.rectangle(leaf.piece).at(random.uniform(), random.uniform());
+            const Points position =
+                surface.evaluate({&place, 1}, Derivatives::none, false, 1).position;
+            const Vector3 in_boxes = tree.inBoxes(tree.scale * position.row(0).transpose());
+            EXPECT_LE(std::sqrt(box->squaredDistance(in_boxes)), kRounding);
+            ++points;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(points, 5000);
+}
+
+/// A sheet of triangles: all faces have extraordinary vertices.
+Cage sheetOfTriangles() { return inTriangles(perturbed(fullGrid(30, 30), 0.1, 1)); }
+
+TEST(SearchTree, AFewSearchesMakeFewNests) {
+  const LimitSurface surface = limitSurface(sheetOfTriangles());
+  const SearchTree tree(surface, 1);
+  EXPECT_EQ(tree.nestsMade(), 0);
+  NearestFirst::Entry at = SearchTree::kRoot;
+  while (at.part == SearchTree::kTop) {  // down to the first nest
+    const WideTree::Node& node = tree.part(at).nodes[static_cast<std::size_t>(at.place)];
+    at = {node.children[0], 0, at.part};
+    if (at.place >= static_cast<std::int32_t>(tree.top().nodes.size())) {
+      EXPECT_NE(tree.boxBeforeNest(at), nullptr);
+      EXPECT_EQ(tree.nestsMade(), 0);
+      tree.part(at);
+    }
+  }
+  EXPECT_EQ(tree.nestsMade(), 1);
+  EXPECT_GT(tree.nestCount(), 5000);
+}
+
+/// Results depend neither on which searches came before nor on the number of threads, which race to
+/// make the same nests.
+TEST(SearchTree, ResultsDoNotDependOnTheNestsThatAreMade) {
+  const LimitSurface surface = limitSurface(sheetOfTriangles());
+  Random random(3);
+  Points points(3000, 3);
+  for (Eigen::Index row = 0; row < points.rows(); ++row) {
+    points.row(row) << random.uniform(0, 30), random.uniform(0, 30), random.uniform(-3, 3);
+  }
+  const SurfaceSearch search(surface, 1);
+  const Hits first = search.closest(points, {}, 1), again = search.closest(points, {}, 1);
+  for (int round = 0; round < 4; ++round) {
+    const SurfaceSearch fresh(surface);
+    std::vector<Hits> found(4);
+    std::vector<std::thread> threads;
+    for (Hits& hits : found) {
+      threads.emplace_back([&] { hits = fresh.closest(points, {}, 1); });
+    }
+    for (std::thread& thread : threads) {
+      thread.join();
+    }
+    found.push_back(again);
+    for (const Hits& hits : found) {
+      EXPECT_TRUE(hits.position == first.position && hits.distance == first.distance);
+      for (std::size_t row = 0; row < first.at.size(); ++row) {
+        ASSERT_EQ(hits.at[row].face, first.at[row].face);
+        ASSERT_EQ(hits.at[row].u, first.at[row].u);
+        ASSERT_EQ(hits.at[row].v, first.at[row].v);
+      }
+    }
+  }
+}
+
+/// What there is no room for is kept elsewhere.
+TEST(SearchTree, TheStoreKeepsTheFirstOfTwoNests) {
+  BuiltPart built;
+  built.nodes.resize(2);
+  built.leaves.resize(5);
+  built.patches.resize(5);
+  for (std::size_t leaf = 0; leaf < 5; ++leaf) {
+    built.leaves[leaf].piece.tile = static_cast<int>(leaf);
+  }
+  for (const std::size_t room : {0, 5, 12, 100}) {
+    NestStore store({3, room, room, room});
+    for (const std::size_t nest : {0, 1, 2}) {
+      EXPECT_EQ(store.made(nest), nullptr);
+      const TreePart& kept = store.keep(nest, built);
+      EXPECT_EQ(store.made(nest), &kept);
+      EXPECT_EQ(&store.keep(nest, built), &kept);
+      EXPECT_EQ(kept.nodes.size(), 2u);
+      ASSERT_EQ(kept.leaves.size(), 5u);
+      EXPECT_EQ(kept.leaves[4].piece.tile, 4);
+      EXPECT_TRUE(kept.kept.empty() || kept.kept.size() == 5);
+      EXPECT_TRUE(room > 0 || kept.kept.empty());
+    }
+    EXPECT_EQ(store.made(0)->kept.size(), room >= 5 ? 5u : 0u);
+  }
+}
+
+}  // namespace
+}  // namespace limitsurf::test
