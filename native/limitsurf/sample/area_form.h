@@ -75,6 +75,32 @@ class AreaForm {
     return 5 * bound;
   }
 
+  /// Upper bounds of the lengths of its second derivatives.
+  struct SecondBounds {
+    double ss = 0, st = 0, tt = 0;
+  };
+  SecondBounds secondDerivativeBounds() const {
+    SecondBounds bounds;
+    const auto raise = [](double& bound, const Vector3& difference, double factor) {
+      bound = std::max(bound, factor * length(difference));
+    };
+    for (int j = 0; j < 6; ++j) {
+      for (int i = 0; i < 6; ++i) {
+        const Vector3* p = points_ + 6 * j + i;
+        if (i < 4) {
+          raise(bounds.ss, (p[2] - p[1]) - (p[1] - p[0]), 5 * 4);
+        }
+        if (j < 4) {
+          raise(bounds.tt, (p[12] - p[6]) - (p[6] - p[0]), 5 * 4);
+        }
+        if (i < 5 && j < 5) {
+          raise(bounds.st, (p[7] - p[6]) - (p[1] - p[0]), 5 * 5);
+        }
+      }
+    }
+    return bounds;
+  }
+
   /// The form on the lower (0) or upper (1) half of the rectangle along s or t.
   AreaForm half(bool along_t, int which) const {
     AreaForm result = *this;

@@ -16,11 +16,7 @@ namespace limitsurf::test {
 namespace {
 
 /// The number of trials for each point, where there are about two points for each face.
-double trialsPerPoint(Cage cage) {
-  for (int vertex = 0; vertex < cage.vertexCount(); ++vertex) {
-    auto p = cage.positions.row(vertex);
-    p[2] = std::sin(0.9 * p[0]) * std::sin(p[1]);
-  }
+double trialsPerPoint(const Cage& cage) {
   const LimitSurface surface = limitSurface(cage);
   const SurfacePatches patches(surface);
   Box box;
@@ -33,6 +29,30 @@ double trialsPerPoint(Cage cage) {
   return static_cast<double>(sampling.trials()) / static_cast<double>(points);
 }
 
+Cage wavy(Cage cage) {
+  for (int vertex = 0; vertex < cage.vertexCount(); ++vertex) {
+    auto p = cage.positions.row(vertex);
+    p[2] = std::sin(0.9 * p[0]) * std::sin(p[1]);
+  }
+  return cage;
+}
+
+/// A grid whose vertices, but for those of the boundary, are moved at random by several edges in
+/// its plane, and by `height` times as much out of it: its faces fold over each other.
+Cage folded(double height, std::uint64_t seed) {
+  constexpr int kSide = 20;
+  Cage cage = fullGrid(kSide, kSide);
+  Random random(seed);
+  for (int j = 1; j < kSide; ++j) {
+    for (int i = 1; i < kSide; ++i) {
+      const Vector3 move = random.vector(4);
+      cage.positions.row(i + (kSide + 1) * j) +=
+          Eigen::RowVector3d(move[0], move[1], height * move[2]);
+    }
+  }
+  return cage;
+}
+
 TEST(PoissonDiscSampling, TakesFewTrialsForEachPoint) {
   const Cage quads = perturbed(grid(40, 40), 0.1, 1);
   Cage triangles = quads;
@@ -41,13 +61,86 @@ TEST(PoissonDiscSampling, TakesFewTrialsForEachPoint) {
     triangles.faces.push_back({f[0], f[1], f[2]});
     triangles.faces.push_back({f[0], f[2], f[3]});
   }
-  EXPECT_LE(trialsPerPoint(quads), 20);
-  EXPECT_LE(trialsPerPoint(triangles), 36);
+  EXPECT_LE(trialsPerPoint(wavy(quads)), 20);
+  EXPECT_LE(trialsPerPoint(wavy(triangles)), 36);
+}
+
+/// No disc sees both sheets of a fold. Cells on folds were divided until they were as small as a
+/// gap, which took some thousand trials for each point, whether the sheets were in one plane or
+/// nearly so.
+TEST(PoissonDiscSampling, TakesABoundedNumberOfTrialsAtFolds) {
+  for (const double height : {0., 1e-12, 1e-9, 1e-6, 1e-3, 0.01, 0.1, 1.}) {
+    for (const std::uint64_t seed : {1, 2}) {
+      const double trials = trialsPerPoint(folded(height, seed));
+      EXPECT_LE(trials, 1000) << height;
+    }
+  }
+}
+
+/// What is said to be seen is seen, and what is left is a strip as narrow as it is said to be.
+TEST(PoissonDiscSampling, DiscsSeeTheSidesOfFoldsAsFarAsBoundsTell) {
+  Random random(3);
+  int seen_places = 0, known_widths = 0;
+  for (int round = 0; round < 400; ++round) {
+    // A patch with a fold along t, in space or nearly in a plane.
+    BezierPatch patch;
+    patch.anchor.setZero();
+    const double height = round % 4 == 0 ? 0 : std::pow(10., -random.uniform(0, 8));
+    for (int i = 0; i < 16; ++i) {
+      const int row = i / 4, column = i % 4;
+      const double s = column / 3. - 0.5, t = row / 3.;
+      const Vector3 bump = random.vector(0.1);
+      patch.points[i] = {s * s + bump[0], t + bump[1], height * (s + 3 * bump[2]), 0};
+    }
+    const BoundedPatch bounded(patch);
+    TrialCell cell;
+    cell.s_level = cell.t_level = static_cast<std::uint8_t>(2 + round % 7);
+    cell.column = random.below(std::uint32_t{1} << cell.s_level);
+    cell.row = random.below(std::uint32_t{1} << cell.t_level);
+    const TurningNormals normals = bounded.turningNormals(cell);
+    const Vector3 unit = random.vector(1).normalized();
+    const bool is_up = unit.dot(normals.axis) > 0;
+    const double above = normals.seenAbove(unit, is_up ? normals.axis : Vector3(-normals.axis));
+    const auto at = [&](double s, double t) {
+      BezierPatch::Values values;
+      patch.evaluate<1>((cell.column + s) * cell.width(), (cell.row + t) * cell.height(), values);
+      return values;
+    };
+    const auto alongAxis = [&](const BezierPatch::Values& values) {
+      return limitsurf::cross(values.ds, values.dt).dot(normals.axis);
+    };
+    const auto isNarrow = [&](const BezierPatch::Values& one, const BezierPatch::Values& other) {
+      return length(BezierPatch::Point(one.value - other.value)) <=
+             (1 + 1e-9) * normals.width * std::abs(alongAxis(one) - alongAxis(other));
+    };
+    bool narrow_along_s = true, narrow_along_t = true;
+    for (int i = 0; i < 100; ++i) {
+      const double s = random.uniform(), t = random.uniform();
+      const BezierPatch::Values place = at(s, t);
+      const Vector3 normal = limitsurf::cross(place.ds, place.dt);
+      const double along = alongAxis(place);
+      EXPECT_GE(along, normals.low);
+      EXPECT_LE(along, normals.high);
+      EXPECT_LE((normal - along * normals.axis - normals.beside).norm(), normals.spread);
+      if ((is_up ? along : -along) > above) {
+        EXPECT_TRUE(seeEachOther(unit, normal.normalized()));
+        ++seen_places;
+      }
+      narrow_along_s &= isNarrow(place, at(random.uniform(), t));
+      narrow_along_t &= isNarrow(place, at(s, random.uniform()));
+    }
+    if (std::isfinite(normals.width)) {
+      EXPECT_TRUE(narrow_along_s || narrow_along_t);
+      ++known_widths;
+    }
+  }
+  EXPECT_GT(seen_places, 4000);
+  EXPECT_GT(known_widths, 200);
 }
 
 /// First cells no larger than discs would be slivers: they took 453 trials for each point.
 TEST(PoissonDiscSampling, TakesFewerTrialsOnSliversWithLargeFirstCells) {
-  EXPECT_LE(trialsPerPoint(pole(512)), 345);
+  EXPECT_LE(trialsPerPoint(wavy(pole(512))), 345);
 }
 
 TEST(PoissonDiscSampling, CoresLieWithinTheirReachAndTheirCones) {

@@ -86,13 +86,18 @@ NamedCages cages() {
   Cage sharp = cube();
   sharp.options.edge_sharpness.edges = {{0, 1}, {1, 3}, {3, 2}};
   sharp.options.edge_sharpness.values = {10, 10, 2.5};
+  Cage folded = perturbed(grid(6, 6), 2, 5), nearly_flat = folded;
+  folded.positions.col(2).setZero();
+  nearly_flat.positions.col(2) *= 1e-3;
   return {{"all kinds", scatteredCage()},
           {"pole of valence 23", bent(pole(23))},
           {"boundary valence 8", bent(fan(7, false, 2))},
           {"corner", bent(fan(1, false, 3))},
           {"valence 2", bent(valenceTwo())},
           {"cross", cross()},
-          {"cube with creases", sharp}};
+          {"cube with creases", sharp},
+          {"folded in a plane", folded},
+          {"nearly in a plane", nearly_flat}};
 }
 
 TEST(BlueNoise, KeepsItsDistanceAndLeavesNoGap) {

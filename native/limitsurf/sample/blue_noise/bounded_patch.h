@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "limitsurf/sample/area_form.h"
@@ -56,6 +57,39 @@ struct CellExtent : NormalBound {
   }
 };
 
+/// The vectors ds x dt of a cell in which they may vanish or turn over: in parts along an axis,
+/// along which they change most, and beside it.
+///
+/// Where a flat surface folds over, ds x dt passes through 0 from one direction to the opposite
+/// one. No disc sees both directions, so that no disc covers a cell on the fold, however small it
+/// is. Discs on the two sheets together, however, may see all of it, or all but a strip along the
+/// fold.
+struct TurningNormals {
+  Vector3 axis;      ///< a unit vector
+  double low, high;  ///< bounds on the part along the axis
+  Vector3 beside;    ///< the part beside the axis in the middle of the cell
+  double spread;     ///< elsewhere it differs from that by at most this
+  /// The places at which the part along the axis lies between two numbers are a strip whose width
+  /// is at most this times their difference. Infinite if nothing is known.
+  double width;
+
+  /// The number above which the part along `unit`, the axis or its opposite, has to be for a disc
+  /// to see the place. `unit` is the one of them that the disc's normal is closer to. May be
+  /// infinite.
+  double seenAbove(const Vector3& normal, const Vector3& unit) const {
+    const double along = normal.dot(unit);
+    if (!(along > kRightAngle)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    // normal . (ds x dt) is at least along z + others, where z is the part along `unit`, and the
+    // length of ds x dt is at most |z| + largest.
+    const double others = normal.dot(beside) - spread * std::sqrt(std::max(0., 1 - along * along));
+    const double largest = length(beside) + spread;
+    const double rest = kRightAngle * largest - others;
+    return rest / (rest > 0 ? along - kRightAngle : along + kRightAngle);
+  }
+};
+
 /// A patch with bounds on its derivatives.
 class BoundedPatch {
  public:
@@ -105,6 +139,48 @@ class BoundedPatch {
     return vanishes(extent.normal_length + extent.normal_reach);
   }
 
+  /// Whether ds x dt may vanish in the cell. Then one disc is never known to face all of it.
+  static bool mayTurnOver(const CellExtent& extent) {
+    return extent.normal_reach >= extent.normal_length;
+  }
+  /// Tighter bounds for such a cell.
+  TurningNormals turningNormals(const TrialCell& cell) const {
+    const double a = cell.width() / 2, b = cell.height() / 2;
+    BezierPatch::Values at;
+    patch_.evaluate<2>((2. * cell.column + 1) * a, (2. * cell.row + 1) * b, at);
+    const Vector3 normal = cross(at.ds, at.dt);
+    const Vector3 along_s = a * (cross(at.dss, at.dt) + cross(at.ds, at.dst)),
+                  along_t = b * (cross(at.dst, at.dt) + cross(at.ds, at.dtt));
+    const double s_length = length(along_s), t_length = length(along_t);
+    const AreaForm::SecondBounds& second = secondSlopes();
+    const double bend = (a * a * second.ss + b * b * second.tt) / 2 + a * b * second.st +
+                        kCrossRounding * bounds_.ds * bounds_.dt;
+    TurningNormals result;
+    result.axis = s_length > t_length ? Vector3(along_s / s_length) : Vector3(along_t / t_length);
+    const auto beside = [&](const Vector3& v) {
+      return Vector3(v - v.dot(result.axis) * result.axis);
+    };
+    const double middle = normal.dot(result.axis), s_part = std::abs(along_s.dot(result.axis)),
+                 t_part = std::abs(along_t.dot(result.axis));
+    result.low = middle - s_part - t_part - bend;
+    result.high = middle + s_part + t_part + bend;
+    result.beside = beside(normal);
+    result.spread = length(beside(along_s)) + length(beside(along_t)) + bend;
+    // The part along the axis changes by at least so much over half the width, or half the height.
+    const double s_least = s_part - a * (a * second.ss + b * second.st),
+                 t_least = t_part - b * (a * second.st + b * second.tt);
+    const double s_reach = a * (length(at.ds) + a * bounds_.dss + b * bounds_.dst),
+                 t_reach = b * (length(at.dt) + a * bounds_.dst + b * bounds_.dtt);
+    result.width = std::numeric_limits<double>::infinity();
+    if (s_least > 0) {
+      result.width = s_reach / s_least;
+    }
+    if (t_least > 0) {
+      result.width = std::min(result.width, t_reach / t_least);
+    }
+    return result;
+  }
+
   /// Computes bounds from the derivatives in the middles of the block's rectangles and from bounds
   /// on how far they change.
   void findExtents(ExtentBlock& block) const {
@@ -149,9 +225,16 @@ class BoundedPatch {
     }
     return *slopes_;
   }
+  const AreaForm::SecondBounds& secondSlopes() const {
+    if (!second_slopes_) {
+      second_slopes_ = AreaForm(patch_).secondDerivativeBounds();
+    }
+    return *second_slopes_;
+  }
 
   BezierPatch patch_;
   mutable std::optional<Slopes> slopes_;
+  mutable std::optional<AreaForm::SecondBounds> second_slopes_;
   DerivativeBounds bounds_;
 };
 

@@ -2,6 +2,7 @@
 #include "limitsurf/sample/blue_noise/cell_splitting.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 namespace limitsurf {
@@ -13,6 +14,10 @@ namespace {
 constexpr double kFirstReach = 3;
 /// A cell more than this many times as long as wide is halved across its longer side only.
 constexpr double kOblong = 1.5;
+/// What discs on the sheets of a fold leave out of a cell may be a strip of this part of a gap's
+/// width. Neighbouring cells may each leave out a strip, and smaller strips make it less likely
+/// that a point falls into one of them.
+constexpr double kStrip = 1. / 256;
 
 bool isCloser(const NoiseDisc& disc, const Vector3& middle, double reach, double smallest) {
   return length(Vector3(disc.position - middle)) + reach < (disc.radius + smallest) / 2;
@@ -126,7 +131,8 @@ void CellSplitting::split(const TrialCell& cell, const BoundedPatch& patch,
   CellParts tested = extent.parts(smallest);
   halves.addTo(tested, extent);
   const unsigned covered = accepted_.last().covered(tested);
-  if (covered & 1) {
+  if ((covered & 1) ||
+      (BoundedPatch::mayTurnOver(extent) && isCoveredTogether(cell, patch, extent, smallest))) {
     return;
   }
   for (unsigned part = 0; part < halves.count(); ++part) {
@@ -134,6 +140,31 @@ void CellSplitting::split(const TrialCell& cell, const BoundedPatch& patch,
       parts.push_back(halves.at(part));
     }
   }
+}
+
+bool CellSplitting::isCoveredTogether(const TrialCell& cell, const BoundedPatch& patch,
+                                      const CellExtent& extent, double smallest) const {
+  const NearDiscs& near = accepted_.last();
+  std::optional<TurningNormals> normals;
+  double low = 0, high = 0;  // discs see what is below and what is above
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const NoiseDisc disc = near[i];
+    if (!isCloser(disc, extent.middle, extent.reach(), smallest)) {
+      continue;
+    }
+    if (!normals) {
+      normals = patch.turningNormals(cell);
+      low = normals->low;
+      high = normals->high;
+    }
+    if (disc.normal.dot(normals->axis) > 0) {
+      high = std::min(high, normals->seenAbove(disc.normal, normals->axis));
+    } else {
+      low = std::max(low, -normals->seenAbove(disc.normal, -normals->axis));
+    }
+  }
+  return normals &&
+         (high <= low || normals->width * (high - low) <= kStrip * surface_.gap * smallest);
 }
 
 void CellSplitting::splitCore(const TrialCell& core, double smallest,

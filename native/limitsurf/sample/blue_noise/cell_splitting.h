@@ -61,6 +61,10 @@ class CellSplitting {
  private:
   /// Appends the first cells of some cells of a patch, at most ExtentBlock::kCount.
   void begin(Span<TrialCell> whole, const BoundedPatch& patch, std::vector<TrialCell>& cells);
+  /// Whether discs that see the one or the other side of a fold leave out no more of a cell than a
+  /// strip that is too narrow to matter. They are those that the last search has found.
+  bool isCoveredTogether(const TrialCell& cell, const BoundedPatch& patch, const CellExtent& extent,
+                         double smallest) const;
   bool coversCore(const NoiseDisc& disc, const TrialCell& core);
   void beginCore(const TrialCell& core, std::vector<TrialCell>& cells);
   /// Appends the first cells of a split core: those of its patches, and those of the smaller core.
