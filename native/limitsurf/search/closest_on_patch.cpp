@@ -66,8 +66,10 @@ class PatchSearch {
   /// After this many cells the normals of the patch are bounded, to leave out cells without feet:
   /// if the tangents are nearly parallel, the squared distance is convex in a narrow band only.
   static constexpr int kFewCells = 16;
-  /// After this many cells each is compared with a plane of its own (isAside()).
-  static constexpr int kManyCells = 256;
+  /// After this many cells each is compared with a plane of its own (isAside()), and a minimum is
+  /// looked for in each: along a curve of places that are almost equally close, the corners of
+  /// cells are no good guesses.
+  static constexpr int kManyCells = 64;
   /// The squared distance is computed anew after every so many divisions.
   static constexpr int kFreshDepths = 4;
   /// The rounding of a cell's points and of their distance from a plane, relative to the largest
@@ -212,8 +214,12 @@ class PatchSearch {
     const BezierPatch::Point line = dot(one, one) > dot(other, other) ? one : other;
     const BezierPatch::Point middle = 0.25 * ((p[0] + p[3]) + (p[12] + p[15]));
     const double square = dot(line, line);
-    const BezierPatch::Point across =
-        square > 0 ? BezierPatch::Point(middle - (dot(middle, line) / square) * line) : middle;
+    BezierPatch::Point across = middle;
+    // The first time leaves the rounding of the middle, which may be a large part of what is across
+    // and point along the line; the second time removes that.
+    for (int times = 0; times < 2 && square > 0; ++times) {
+      across -= (dot(across, line) / square) * line;
+    }
     const double length = std::sqrt(dot(across, across));
     return length > enough && std::all_of(p, p + 16, [&](const BezierPatch::Point& point) {
              return dot(point, across) >= enough * length;
@@ -289,7 +295,7 @@ class PatchSearch {
       return;
     }
     if (!facing_) {
-      if (cell.depth == 0) {
+      if (cell.depth == 0 || cells_ > kManyCells) {
         // A minimum that may be none of the whole patch is a guess that leaves out most cells.
         minimizeDistance(kernels_, relative_, away_, cell, slack, kNever, kNever, s, t, found);
         offer(found, s, t);
