@@ -53,8 +53,9 @@ class ClosestSearch {
 
   /// The number of leaves visited so far, and of cores split.
   std::int64_t leaves() const { return leaves_ + cores_.splitCount(); }
-  /// The same and the number of cells within patches.
-  std::int64_t work() const { return leaves() + cells_; }
+  /// The number of cells within patches.
+  std::int64_t cells() const { return cells_; }
+  std::int64_t work() const { return leaves() + cells(); }
   /// Whether the last search has met so many leaves in vain that it is to be made again with cones.
   bool gaveUp() const { return gave_up_; }
 
@@ -206,6 +207,7 @@ class ClosestRows {
 
   std::vector<Location> takeLocations() { return std::move(at_); }
   std::int64_t leaves() const { return leaves_; }
+  std::int64_t cells() const { return cells_; }
 
  private:
   using Rows = std::vector<std::size_t>;
@@ -254,6 +256,7 @@ class ClosestRows {
         }
       }
       leaves_ += search.leaves();
+      cells_ += search.cells();
     });
     Rows later;
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -280,7 +283,7 @@ class ClosestRows {
   const int threads_;
   const double least_cosine_;
   std::vector<Location> at_;
-  std::atomic<std::int64_t> leaves_{0};
+  std::atomic<std::int64_t> leaves_{0}, cells_{0};
 };
 
 }  // namespace
@@ -300,6 +303,9 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
   rows.run();
   if (options.leaves) {
     *options.leaves = rows.leaves();
+  }
+  if (options.cells) {
+    *options.cells = rows.cells();
   }
   Hits hits = hitsAt(data_->surface, rows.takeLocations(), threads);
   resizeRows(hits.distance, static_cast<std::size_t>(points.rows()));

@@ -45,6 +45,9 @@ struct ClosestOptions {
   /// of cores that they split, and of levels around vertices with many faces: what the cost is
   /// proportional to.
   std::int64_t* leaves = nullptr;
+  /// The same of the parts of patches that they looked at: few, but on patches that are squeezed to
+  /// nearly a line.
+  std::int64_t* cells = nullptr;
 };
 
 struct SearchTree;

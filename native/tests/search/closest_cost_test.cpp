@@ -167,6 +167,39 @@ TEST(ClosestStretched, PointsOfTheSurfaceAreFound) {
   }
 }
 
+/// On faces that are nearly on a line in space, many places are almost equally close. A fit of a
+/// path there makes thousands of searches, of which many looked at 2^17 cells.
+TEST(ClosestStretched, FewCellsOnFacesNearlyOnALine) {
+  constexpr int kFaces = 3, kCount = 60;
+  const Vector3 direction(0.6, -0.3, 0.7);
+  for (const double noise : {1e-6, 1e-9, 1e-11, 1e-12, 3e-13, 1e-13, 1e-14}) {
+    Random random(5);
+    Cage cage = fullGrid(kFaces, 1);
+    for (int v = 0; v < cage.vertexCount(); ++v) {
+      cage.positions.row(v) = (random.uniform() * direction + random.vector(noise)).transpose();
+    }
+    const LimitSurface surface = limitSurface(cage);
+    std::vector<Location> places;
+    for (int i = 0; i < kCount; ++i) {
+      places.push_back({random.below(kFaces), random.uniform(), random.uniform()});
+    }
+    Points points = surface.evaluate(places).position;
+    Points moves(kCount, 3);
+    for (int i = 0; i < kCount; ++i) {
+      moves.row(i) = random.vector(i % 4 * noise).transpose();
+    }
+    points += moves;
+    std::int64_t cells = 0;
+    ClosestOptions options;
+    options.cells = &cells;
+    const Hits hits = SurfaceSearch(surface).closest(points, options);
+    EXPECT_LE(cells, 1000 * kCount) << noise;
+    for (int i = 0; i < kCount; ++i) {
+      EXPECT_LE(hits.distance[i], moves.row(i).norm() + kSearchError) << noise;
+    }
+  }
+}
+
 /// Points on normals of a flat grid, above its vertices and edges: of the faces that meet there at
 /// least one has the foot, although rounding decides towards which side the distance falls.
 TEST(ClosestFar, FacingFindsFeetOnEdges) {
