@@ -17,9 +17,12 @@ class BoxPoint {
  public:
   using Row = WideTree::Row;
 
-  /// `point` is in the coordinates of boxes.
-  BoxPoint(const SearchPoint& from, const Vector3& point) : is_far_(from.isFar()) {
-    const double margin = is_far_ ? 0 : kRounding * (point.cwiseAbs().maxCoeff() + 1);
+  /// `point` is in the coordinates of boxes. The rounding of boxes is bounded by that of 1, their
+  /// unit, or with `is_crowd` more closely: the rounding of a box whose coordinates are larger than
+  /// the point's is a small part of their distance.
+  BoxPoint(const SearchPoint& from, const Vector3& point, bool is_crowd) : is_far_(from.isFar()) {
+    const double least = is_crowd ? kTiny : 1;
+    const double margin = is_far_ ? 0 : kRounding * (point.cwiseAbs().maxCoeff() + least);
     const Vector3& middle = is_far_ ? from.away : point;
     for (int axis = 0; axis < 3; ++axis) {
       low_[axis].setConstant(static_cast<float>(middle[axis] - margin));
@@ -55,6 +58,8 @@ class BoxPoint {
 
   /// Four units in the last place of single precision, 2^-24 each, and a little more.
   static constexpr double kRounding = 2.5e-7;
+  /// This part of it is more than the rounding of points in double precision.
+  static constexpr double kTiny = 1e-8;
   /// Less than 1 by more than the relative rounding of the squared distance.
   static constexpr float kNearlyOne = 1 - 1e-6f;
 

@@ -119,7 +119,7 @@ class ClosestSearch {
 
   /// Walks down the tree, nearer boxes first.
   void descend() {
-    const BoxPoint box_point(best_.from, point_in_boxes_);
+    const BoxPoint box_point(best_.from, point_in_boxes_, data_.crowd.has_value());
     NearestFirst open;
     NearestFirst::Entry next = SearchTree::kRoot;
     do {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limitsurf/parallel.h"
+#include "limitsurf/search/crowd.h"
 #include "limitsurf/search/nest_builder.h"
 #include "limitsurf/search/normals/normal_cones.h"
 
@@ -47,7 +48,8 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
     : surface(limit_surface),
       patches(limit_surface, threads, PatchUnit::own),
       scale(patches.scale()),
-      middle(patches.middle()),
+      crowd(crowdOf(limit_surface, patches)),
+      middle(crowd.value_or(patches.middle())),
       tolerance(kSearchError / 10 * patches.diagonal()),
       rings(patches, tolerance),
       maker_(patches, rings, middle) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "limitsurf/first_made.h"
@@ -33,7 +34,10 @@ struct SearchTree {
   const LimitSurface& surface;
   SurfacePatches patches;
   double scale;  ///< a power of two
-  Vector3 middle;
+  /// Where most of the vertices are, if only outliers make the mesh large. Boxes there keep their
+  /// digits in single precision if the coordinates begin there.
+  std::optional<Vector3> crowd;
+  Vector3 middle;  ///< the crowd, or the middle of the mesh
   /// The error that a search may leave: a tenth of kSearchError.
   double tolerance;
   Vector3 inBoxes(const Vector3& point) const { return point - middle; }

@@ -167,6 +167,37 @@ TEST(ClosestStretched, PointsOfTheSurfaceAreFound) {
   }
 }
 
+/// One vertex that is far away makes the diagonal so long that in single precision, relative to the
+/// middle of the mesh, all other faces are in one place: searches looked at all of them.
+TEST(ClosestCost, OneFarVertexDoesNotHideTheOthers) {
+  constexpr int kSide = 20, kCount = 100;
+  for (const double far : {1e6, 1e8, 1e10}) {
+    Cage cage = bumpyGrid(kSide);
+    cage.positions.row(219) += far * Eigen::RowVector3d(-0.79, 1.95, 1.1);
+    const LimitSurface surface = limitSurface(inTriangles(cage));
+    const double allowed = kSearchError * diagonal(cage.positions);
+    Random random(1);
+    Points points(kCount, 3);
+    for (int i = 0; i < kCount; ++i) {
+      points.row(i) << random.uniform(-2, 22), random.uniform(-2, 22), random.uniform(-5, 5);
+    }
+    std::int64_t leaves = 0;
+    ClosestOptions options;
+    options.leaves = &leaves;
+    const Hits hits = SurfaceSearch(surface).closest(points, options);
+    EXPECT_LE(leaves, 400 * kCount) << far;
+    std::vector<Location> places;
+    for (int face = 0; face < surface.faceCount(); ++face) {
+      places.push_back({face, random.uniform(), random.uniform()});
+    }
+    const Points samples = surface.evaluate(places).position;
+    for (int i = 0; i < kCount; ++i) {
+      const double least = (samples.rowwise() - points.row(i)).rowwise().norm().minCoeff();
+      EXPECT_LE(hits.distance[i], least + allowed) << far;
+    }
+  }
+}
+
 /// On faces that are nearly on a line in space, many places are almost equally close. A fit of a
 /// path there makes thousands of searches, of which many looked at 2^17 cells.
 TEST(ClosestStretched, FewCellsOnFacesNearlyOnALine) {
