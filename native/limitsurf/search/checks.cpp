@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -12,7 +13,7 @@
 namespace limitsurf {
 namespace {
 
-[[noreturn]] void refuse(const char* name, Eigen::Index row, const Points& rows,
+[[noreturn]] void refuse(const char* name, Eigen::Index row, const PointRows& rows,
                          const char* reason) {
   std::ostringstream message;
   message << "row " << row << ": the " << name << " (" << numberText(rows(row, 0)) << ", "
@@ -20,9 +21,24 @@ namespace {
   throw std::invalid_argument(message.str());
 }
 
+/// Whether all numbers are finite and, times `scale`, at most `most`.
+bool areAllWithin(const PointRows& rows, double scale, double most) {
+  double largest = 0, products = 0;
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      products += 0 * rows(row, axis);  // becomes NaN if one is infinite or NaN
+      largest = std::max(largest, std::abs(rows(row, axis)));
+    }
+  }
+  return products == 0 && scale * largest <= most;
+}
+
 }  // namespace
 
-void checkFinite(const Points& rows, const char* name, double scale) {
+void checkFinite(const PointRows& rows, const char* name, double scale) {
+  if (areAllWithin(rows, scale, kFarthestPoint)) {
+    return;
+  }
   for (Eigen::Index row = 0; row < rows.rows(); ++row) {
     if (!rows.row(row).allFinite()) {
       refuse(name, row, rows, "is not finite");
@@ -34,7 +50,7 @@ void checkFinite(const Points& rows, const char* name, double scale) {
   }
 }
 
-void checkDirections(const Points& rows) {
+void checkDirections(const PointRows& rows) {
   for (Eigen::Index row = 0; row < rows.rows(); ++row) {
     if (!rows.row(row).allFinite()) {
       refuse("direction", row, rows, "is not finite");

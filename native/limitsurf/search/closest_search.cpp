@@ -179,15 +179,18 @@ class ClosestSearch {
 /// A call of SurfaceSearch::closest().
 class ClosestRows {
  public:
-  ClosestRows(const SearchTree& data, const Points& points, const ClosestOptions& options,
-              int threads)
+  /// Searches for the locations `at`, which get as many rows.
+  ClosestRows(const SearchTree& data, const PointRows& points, const ClosestOptions& options,
+              int threads, std::vector<Location>& at)
       : data_(data),
         points_(points),
         options_(options),
         threads_(threads),
         // An angle of pi accepts all normals; a cosine of -2 keeps rounding from excluding any.
         least_cosine_(options.max_angle >= kNearlyPi ? kAnyCosine : std::cos(options.max_angle)),
-        at_(static_cast<std::size_t>(points.rows())) {}
+        at_(at) {
+    at_.assign(static_cast<std::size_t>(points.rows()), {});
+  }
 
   void run() {
     Rows open = spatialOrder(points_, threads_);
@@ -205,7 +208,6 @@ class ClosestRows {
     }
   }
 
-  std::vector<Location> takeLocations() { return std::move(at_); }
   std::int64_t leaves() const { return leaves_; }
   std::int64_t cells() const { return cells_; }
 
@@ -269,26 +271,35 @@ class ClosestRows {
 
   /// Leaves the rows for which a place was found whose normal does not meet the condition.
   void removeDone(Rows& rows) const {
-    const Points normals = hitsAt(data_.surface, at_, threads_).normal;
+    Hits hits;
+    hits.at = at_;
+    completeHits(data_.surface, hits, threads_);
     const auto isDone = [&](std::size_t row) {
-      const Vector3 normal = normals.row(static_cast<Eigen::Index>(row));
+      const Vector3 normal = hits.normal.row(static_cast<Eigen::Index>(row));
       return at_[row].face < 0 || facing(row).accepts(normal);
     };
     rows.erase(std::remove_if(rows.begin(), rows.end(), isDone), rows.end());
   }
 
   const SearchTree& data_;
-  const Points& points_;
+  const PointRows& points_;
   const ClosestOptions& options_;
   const int threads_;
   const double least_cosine_;
-  std::vector<Location> at_;
+  std::vector<Location>& at_;
   std::atomic<std::int64_t> leaves_{0}, cells_{0};
 };
 
 }  // namespace
 
-Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
+Hits SurfaceSearch::closest(const PointRows& points, const ClosestOptions& options,
+                            int threads) const {
+  Hits hits;
+  closest(points, options, hits, threads);
+  return hits;
+}
+
+void SurfaceSearch::closest(const PointRows& points, const ClosestOptions& options, Hits& hits,
                             int threads) const {
   checkThreads(threads);
   const double scale = data_->scale;
@@ -299,7 +310,7 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
     checkDirections(options.facing);
   }
   checkAngle(options.max_angle);
-  ClosestRows rows(*data_, points, options, threads);
+  ClosestRows rows(*data_, points, options, threads, hits.at);
   rows.run();
   if (options.leaves) {
     *options.leaves = rows.leaves();
@@ -307,12 +318,10 @@ Hits SurfaceSearch::closest(const Points& points, const ClosestOptions& options,
   if (options.cells) {
     *options.cells = rows.cells();
   }
-  Hits hits = hitsAt(data_->surface, rows.takeLocations(), threads);
-  resizeRows(hits.distance, static_cast<std::size_t>(points.rows()));
+  completeHits(data_->surface, hits, threads);
   for (Eigen::Index row = 0; row < points.rows(); ++row) {
     hits.distance[row] = (scale * (hits.position.row(row) - points.row(row))).norm() / scale;
   }
-  return hits;
 }
 
 }  // namespace limitsurf

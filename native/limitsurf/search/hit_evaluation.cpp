@@ -2,7 +2,6 @@
 #include "limitsurf/search/hit_evaluation.h"
 
 #include <limits>
-#include <utility>
 
 #include "limitsurf/large_pages.h"
 #include "limitsurf/surface/batch/part_evaluator.h"
@@ -54,12 +53,11 @@ class HitEvaluator {
 
 }  // namespace
 
-Hits hitsAt(const LimitSurface& surface, std::vector<Location> at, int threads) {
-  Hits hits;
-  hits.at = std::move(at);
+void completeHits(const LimitSurface& surface, Hits& hits, int threads) {
   const std::size_t count = hits.at.size();
   resizeRows(hits.position, count);
   resizeRows(hits.normal, count);
+  resizeRows(hits.distance, count);
   HitEvaluator evaluate(surface, count, threads);
   forEachPart(hits.at, [&](std::size_t begin, Span<Location> part) {
     evaluate(part, hits.position.data() + 3 * begin, hits.normal.data() + 3 * begin);
@@ -69,7 +67,6 @@ Hits hitsAt(const LimitSurface& surface, std::vector<Location> at, int threads) 
       location.u = location.v = kNaN;
     }
   }
-  return hits;
 }
 
 }  // namespace limitsurf

@@ -55,7 +55,7 @@ void sortByKey(std::vector<Row>& rows, std::vector<Row>& sorted) {
 
 }  // namespace
 
-std::vector<std::size_t> spatialOrder(const Points& points, int threads) {
+std::vector<std::size_t> spatialOrder(const Eigen::Ref<const Points>& points, int threads) {
   const std::size_t count = static_cast<std::size_t>(points.rows());
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});

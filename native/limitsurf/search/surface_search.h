@@ -11,6 +11,10 @@
 
 namespace limitsurf {
 
+/// Points or directions that are read where they lie: a matrix with a row for each, or a part of
+/// it.
+using PointRows = Eigen::Ref<const Points>;
+
 /// The results of searches, one row for each. Where nothing was found `at` has face -1, and all
 /// else is NaN.
 struct Hits {
@@ -84,7 +88,10 @@ class SurfaceSearch {
   /// Error: kSearchError. Of several points that are equally close, any one is returned. Throws
   /// std::invalid_argument naming the first row that is not finite, and for a max_distance or an
   /// angle out of range.
-  Hits closest(const Points& points, const ClosestOptions& options = {}, int threads = 0) const;
+  Hits closest(const PointRows& points, const ClosestOptions& options = {}, int threads = 0) const;
+  /// The same, in the memory of earlier hits.
+  void closest(const PointRows& points, const ClosestOptions& options, Hits& hits,
+               int threads = 0) const;
 
   /// The largest coordinate that the origin of a ray may have, and a point whose closest point is
   /// sought.
@@ -97,15 +104,18 @@ class SurfaceSearch {
   ///
   /// `directions` need not be unit vectors. Throws std::invalid_argument naming the first row that
   /// is not finite, or whose direction is 0.
-  Hits rayCast(const Points& origins, const Points& directions,
+  Hits rayCast(const PointRows& origins, const PointRows& directions,
                double max_distance = std::numeric_limits<double>::infinity(),
                int threads = 0) const;
+  /// The same, in the memory of earlier hits.
+  void rayCast(const PointRows& origins, const PointRows& directions, double max_distance,
+               Hits& hits, int threads = 0) const;
 
   /// All points at which each ray meets the surface, sorted along the ray. Hits on faces with a
   /// common vertex count as one if their distance is less than kSearchError divided by the sine of
   /// the angle between ray and surface, or by 1e-7 if that is larger. Where a ray runs within the
   /// surface, one point at the beginning of each patch is returned.
-  RayHits rayCastAll(const Points& origins, const Points& directions,
+  RayHits rayCastAll(const PointRows& origins, const PointRows& directions,
                      double max_distance = std::numeric_limits<double>::infinity(),
                      int threads = 0) const;
 

@@ -18,25 +18,48 @@ namespace {
 /// The number of rows searched between two reports of the progress; Ctrl-C takes effect there.
 constexpr Eigen::Index kRowsPerSearch = Eigen::Index{1} << 15;
 
-void requireAsMany(const Points& rows, const char* name, const Points& others,
+/// SearchRows of three numbers, read in place where they are an array of float64. They are checked
+/// all together before searches, so that errors name rows of the call, and in parts again, since
+/// other threads of Python may write to the array meanwhile.
+class SearchRows {
+ public:
+  SearchRows(const py::handle& object, const char* name) : array_(doubles(object, name)) {
+    requireRows<std::invalid_argument>(array_, name, 3);
+    data_ = array_.data();
+    count_ = array_.shape(0);
+  }
+  Eigen::Index count() const { return count_; }
+  Eigen::Map<const Points> all() const { return {data_, count_, 3}; }
+  /// Copies some rows into `part`. It may be called without the GIL.
+  void copy(Eigen::Index begin, Eigen::Index count, Points& part) const {
+    part = all().middleRows(begin, count);
+  }
+
+ private:
+  Doubles array_;
+  const double* data_;
+  Eigen::Index count_;
+};
+
+void requireAsMany(Eigen::Index rows, const char* name, Eigen::Index others,
                    const char* others_name) {
-  if (rows.rows() != others.rows()) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows.rows()) +
-                                " rows and " + others_name + " " + std::to_string(others.rows()));
+  if (rows != others) {
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(rows) + " rows and " +
+                                others_name + " " + std::to_string(others));
   }
 }
 
 /// A direction for each point, from one for each, one for all, or none.
-Points facingOf(const py::object& facing, const Points& points) {
+Points facingOf(const py::object& facing, Eigen::Index points) {
   if (facing.is_none()) {
     return Points(0, 3);
   }
   const Doubles array = doubles(facing, "facing");
   if (array.ndim() == 1 && array.shape(0) == 3) {
-    return Eigen::Map<const Eigen::RowVector3d>(array.data()).replicate(points.rows(), 1);
+    return Eigen::Map<const Eigen::RowVector3d>(array.data()).replicate(points, 1);
   }
   const Points rows = rowsOfThree(facing, "facing");
-  requireAsMany(rows, "facing", points, "points");
+  requireAsMany(rows.rows(), "facing", points, "points");
   return rows;
 }
 
@@ -95,25 +118,26 @@ py::object closest(const SharedSurface& shared, const py::object& points, double
                    const py::object& facing, double max_angle, int threads, const py::object& dtype,
                    const py::object& progress) {
   checkThreads(threads);
-  const Points all = rowsOfThree(points, "points");
-  const Points directions = facingOf(facing, all);
-  HitArrays arrays(all.rows(), floatType(dtype));
-  checkFinite(all, "point");
+  const SearchRows all(points, "points");
+  const Points directions = facingOf(facing, all.count());
+  HitArrays arrays(all.count(), floatType(dtype));
+  checkFinite(all.all(), "point");
   checkDirections(directions);
   checkDistance(max_distance);
   checkAngle(max_angle);
   ClosestOptions options;
   options.max_distance = max_distance;
   options.max_angle = max_angle;
-  Points part;  // one after the other in the same memory
-  searchInParts(shared, all.rows(), threads, progress,
+  Points part;  // one after the other in the same memory, and their hits
+  Hits hits;
+  searchInParts(shared, all.count(), threads, progress,
                 [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
                   if (directions.rows() > 0) {
                     options.facing = directions.middleRows(begin, count);
                   }
-                  part = all.middleRows(begin, count);
-                  arrays.put(static_cast<std::size_t>(begin),
-                             search.closest(part, options, threads));
+                  all.copy(begin, count, part);
+                  search.closest(part, options, hits, threads);
+                  arrays.put(static_cast<std::size_t>(begin), hits);
                 });
   return arrays.object("Hits");
 }
@@ -121,13 +145,13 @@ py::object closest(const SharedSurface& shared, const py::object& points, double
 /// The rays of a call. They are checked all together, so that errors name rows of the call.
 struct Rays {
   Rays(const py::object& from, const py::object& along, double max_distance)
-      : origins(rowsOfThree(from, "origins")), directions(rowsOfThree(along, "directions")) {
-    requireAsMany(directions, "directions", origins, "origins");
-    checkFinite(origins, "origin");
-    checkDirections(directions);
+      : origins(from, "origins"), directions(along, "directions") {
+    requireAsMany(directions.count(), "directions", origins.count(), "origins");
+    checkFinite(origins.all(), "origin");
+    checkDirections(directions.all());
     checkDistance(max_distance);
   }
-  Points origins, directions;
+  SearchRows origins, directions;
 };
 
 py::object rayCast(const SharedSurface& shared, const py::object& origins,
@@ -135,14 +159,15 @@ py::object rayCast(const SharedSurface& shared, const py::object& origins,
                    const py::object& dtype, const py::object& progress) {
   checkThreads(threads);
   const Rays rays(origins, directions, max_distance);
-  HitArrays arrays(rays.origins.rows(), floatType(dtype));
-  Points from, along;  // of one part after the other in the same memory
-  searchInParts(shared, rays.origins.rows(), threads, progress,
+  HitArrays arrays(rays.origins.count(), floatType(dtype));
+  Points from, along;  // of one part after the other in the same memory, and their hits
+  Hits hits;
+  searchInParts(shared, rays.origins.count(), threads, progress,
                 [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
-                  from = rays.origins.middleRows(begin, count);
-                  along = rays.directions.middleRows(begin, count);
-                  arrays.put(static_cast<std::size_t>(begin),
-                             search.rayCast(from, along, max_distance, threads));
+                  rays.origins.copy(begin, count, from);
+                  rays.directions.copy(begin, count, along);
+                  search.rayCast(from, along, max_distance, hits, threads);
+                  arrays.put(static_cast<std::size_t>(begin), hits);
                 });
   return arrays.object("Hits");
 }
@@ -153,13 +178,14 @@ py::object rayCastAll(const SharedSurface& shared, const py::object& origins,
   checkThreads(threads);
   const py::dtype type = floatType(dtype);
   const Rays rays(origins, directions, max_distance);
+  Points from, along;  // of one part after the other in the same memory
   std::vector<RayHits> parts;
   std::vector<std::int64_t> offsets{0};
-  searchInParts(shared, rays.origins.rows(), threads, progress,
+  searchInParts(shared, rays.origins.count(), threads, progress,
                 [&](const SurfaceSearch& search, Eigen::Index begin, Eigen::Index count) {
-                  parts.push_back(search.rayCastAll(rays.origins.middleRows(begin, count),
-                                                    rays.directions.middleRows(begin, count),
-                                                    max_distance, threads));
+                  rays.origins.copy(begin, count, from);
+                  rays.directions.copy(begin, count, along);
+                  parts.push_back(search.rayCastAll(from, along, max_distance, threads));
                   const std::int64_t before = offsets.back();
                   const std::vector<std::int64_t>& own = parts.back().offsets;
                   for (std::size_t ray = 1; ray < own.size(); ++ray) {

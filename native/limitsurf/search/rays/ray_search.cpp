@@ -257,7 +257,7 @@ constexpr std::size_t kRaysAtOnce = 8;
 
 /// Calls found(row, hits) for each ray.
 template <typename Found>
-void searchRays(const SearchTree& tree, const Points& origins, const Points& directions,
+void searchRays(const SearchTree& tree, const PointRows& origins, const PointRows& directions,
                 double max_distance, bool first_only, int threads, const Found& found) {
   if (tree.empty()) {
     return;
@@ -299,8 +299,8 @@ void searchRays(const SearchTree& tree, const Points& origins, const Points& dir
 }
 
 /// Checks the arguments of rayCast() and rayCastAll().
-void checkRays(const Points& origins, const Points& directions, double max_distance, double scale,
-               int threads) {
+void checkRays(const PointRows& origins, const PointRows& directions, double max_distance,
+               double scale, int threads) {
   checkThreads(threads);
   checkFinite(origins, "origin", scale);
   checkRows(directions, origins.rows(), "directions");
@@ -310,28 +310,32 @@ void checkRays(const Points& origins, const Points& directions, double max_dista
 
 }  // namespace
 
-Hits SurfaceSearch::rayCast(const Points& origins, const Points& directions, double max_distance,
-                            int threads) const {
+Hits SurfaceSearch::rayCast(const PointRows& origins, const PointRows& directions,
+                            double max_distance, int threads) const {
+  Hits hits;
+  rayCast(origins, directions, max_distance, hits, threads);
+  return hits;
+}
+
+void SurfaceSearch::rayCast(const PointRows& origins, const PointRows& directions,
+                            double max_distance, Hits& hits, int threads) const {
   const double scale = data_->scale;
   checkRays(origins, directions, max_distance, scale, threads);
   const auto rows = static_cast<std::size_t>(origins.rows());
-  std::vector<Location> at(rows);
-  Eigen::VectorXd distance;
-  resizeRows(distance, rows);
-  distance.setConstant(std::numeric_limits<double>::quiet_NaN());
+  hits.at.assign(rows, {});
+  resizeRows(hits.distance, rows);
+  hits.distance.setConstant(std::numeric_limits<double>::quiet_NaN());
   searchRays(*data_, origins, directions, max_distance, true, threads,
-             [&](std::size_t row, const std::vector<RayHit>& hits) {
-               if (!hits.empty()) {
-                 at[row] = hits[0].at;
-                 distance[static_cast<Eigen::Index>(row)] = hits[0].distance / scale;
+             [&](std::size_t row, const std::vector<RayHit>& found) {
+               if (!found.empty()) {
+                 hits.at[row] = found[0].at;
+                 hits.distance[static_cast<Eigen::Index>(row)] = found[0].distance / scale;
                }
              });
-  Hits result = hitsAt(data_->surface, std::move(at), threads);
-  result.distance = std::move(distance);
-  return result;
+  completeHits(data_->surface, hits, threads);
 }
 
-RayHits SurfaceSearch::rayCastAll(const Points& origins, const Points& directions,
+RayHits SurfaceSearch::rayCastAll(const PointRows& origins, const PointRows& directions,
                                   double max_distance, int threads) const {
   const double scale = data_->scale;
   checkRays(origins, directions, max_distance, scale, threads);
@@ -340,16 +344,15 @@ RayHits SurfaceSearch::rayCastAll(const Points& origins, const Points& direction
              [&](std::size_t row, const std::vector<RayHit>& found) { hits[row] = found; });
   RayHits result;
   result.offsets.push_back(0);
-  std::vector<Location> at;
   std::vector<double> distance;
   for (const std::vector<RayHit>& of_ray : hits) {
     for (const RayHit& hit : of_ray) {
-      at.push_back(hit.at);
+      result.at.push_back(hit.at);
       distance.push_back(hit.distance / scale);
     }
-    result.offsets.push_back(static_cast<std::int64_t>(at.size()));
+    result.offsets.push_back(static_cast<std::int64_t>(result.at.size()));
   }
-  static_cast<Hits&>(result) = hitsAt(data_->surface, std::move(at), threads);
+  completeHits(data_->surface, result, threads);
   result.distance =
       Eigen::Map<Eigen::VectorXd>(distance.data(), static_cast<Eigen::Index>(distance.size()));
   return result;
