@@ -61,7 +61,7 @@ void checkDirections(const PointRows& rows) {
   }
 }
 
-void checkRows(const Points& rows, Eigen::Index expected, const char* name) {
+void checkRows(const PointRows& rows, Eigen::Index expected, const char* name) {
   checkRows(name, rows.rows(), expected);
 }
 

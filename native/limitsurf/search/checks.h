@@ -16,7 +16,7 @@ void checkFinite(const PointRows& rows, const char* name, double scale = 1);
 /// Directions must be finite and not 0.
 void checkDirections(const PointRows& rows);
 /// There must be as many rows as `expected`.
-void checkRows(const Points& rows, Eigen::Index expected, const char* name);
+void checkRows(const PointRows& rows, Eigen::Index expected, const char* name);
 /// The distance must be 0 or more, and not NaN.
 void checkDistance(double max_distance);
 /// The angle, in radians, must be between 0 and pi.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/nest_store.h"
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <vector>
 
 namespace limitsurf {
 namespace {

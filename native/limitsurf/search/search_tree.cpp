@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitsurf/search/search_tree.h"
 
+#include <algorithm>
 #include <cstdint>
-#include <iterator>
 #include <utility>
 
 #include "limitsurf/parallel.h"

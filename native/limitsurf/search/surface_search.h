@@ -89,7 +89,7 @@ class SurfaceSearch {
   /// std::invalid_argument naming the first row that is not finite, and for a max_distance or an
   /// angle out of range.
   Hits closest(const PointRows& points, const ClosestOptions& options = {}, int threads = 0) const;
-  /// The same, in the memory of earlier hits.
+  /// The same, in the memory of earlier hits. These must not hold the points.
   void closest(const PointRows& points, const ClosestOptions& options, Hits& hits,
                int threads = 0) const;
 
@@ -107,7 +107,7 @@ class SurfaceSearch {
   Hits rayCast(const PointRows& origins, const PointRows& directions,
                double max_distance = std::numeric_limits<double>::infinity(),
                int threads = 0) const;
-  /// The same, in the memory of earlier hits.
+  /// The same, in the memory of earlier hits. These must not hold the origins or directions.
   void rayCast(const PointRows& origins, const PointRows& directions, double max_distance,
                Hits& hits, int threads = 0) const;
 

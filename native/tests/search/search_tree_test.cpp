@@ -198,6 +198,52 @@ TEST(SearchTree, ResultsDoNotDependOnTheNestsThatAreMade) {
   }
 }
 
+/// Hits in the memory of earlier ones, more and fewer, are the same as new ones.
+TEST(SearchTree, HitsInTheMemoryOfEarlierOnesAreTheSame) {
+  const LimitSurface surface = limitSurface(sheetOfTriangles());
+  const SurfaceSearch search(surface, 1);
+  Random random(4);
+  Points points(300, 3), directions(300, 3);
+  for (Eigen::Index row = 0; row < points.rows(); ++row) {
+    points.row(row) << random.uniform(-5, 35), random.uniform(-5, 35), random.uniform(-3, 3);
+    directions.row(row) = random.vector(1).transpose();
+  }
+  const auto expectSame = [](const Hits& hits, const Hits& fresh) {
+    ASSERT_EQ(hits.at.size(), fresh.at.size());
+    ASSERT_EQ(hits.position.rows(), fresh.position.rows());
+    ASSERT_EQ(hits.normal.rows(), fresh.normal.rows());
+    ASSERT_EQ(hits.distance.size(), fresh.distance.size());
+    for (std::size_t i = 0; i < fresh.at.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      ASSERT_EQ(hits.at[i].face, fresh.at[i].face);
+      if (fresh.at[i].face < 0) {
+        EXPECT_TRUE(std::isnan(hits.at[i].u) && std::isnan(hits.distance[row]));
+        EXPECT_TRUE(hits.position.row(row).array().isNaN().all());
+        continue;
+      }
+      EXPECT_EQ(hits.at[i].u, fresh.at[i].u);
+      EXPECT_EQ(hits.distance[row], fresh.distance[row]);
+      EXPECT_EQ(hits.position.row(row), fresh.position.row(row));
+      EXPECT_EQ(hits.normal.row(row), fresh.normal.row(row));
+    }
+  };
+  ClosestOptions options;
+  options.max_distance = 2;
+  Hits hits;
+  int missed = 0;
+  for (const Eigen::Index count : {200, 300, 100, 0, 150}) {
+    const auto from = points.topRows(count), along = directions.topRows(count);
+    search.closest(from, options, hits);
+    expectSame(hits, search.closest(from, options));
+    search.rayCast(from, along, 10, hits);
+    expectSame(hits, search.rayCast(from, along, 10));
+    for (const Location& at : hits.at) {
+      missed += at.face < 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(missed, 50);
+}
+
 /// What there is no room for is kept elsewhere.
 TEST(SearchTree, TheStoreKeepsTheFirstOfTwoNests) {
   BuiltPart built;
