@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "limitsurf/search/closest_on_patch.h"
-#include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/tree/search_tree.h"
 
 namespace limitsurf {
 

@@ -16,8 +16,8 @@
 #include "limitsurf/search/closest_on_patch.h"
 #include "limitsurf/search/hit_evaluation.h"
 #include "limitsurf/search/normals/normal_cones.h"
-#include "limitsurf/search/search_tree.h"
 #include "limitsurf/search/spatial_order.h"
+#include "limitsurf/search/tree/search_tree.h"
 
 namespace limitsurf {
 namespace {
@@ -126,10 +126,6 @@ class ClosestSearch {
       if (!(next.key < best_.enough())) {
         continue;
       }
-      const LeafBox* const box = data_.boxBeforeNest(next);
-      if (box && !(squaredDistanceTo(*box, best_.from, point_in_boxes_) < best_.enough())) {
-        continue;
-      }
       const TreePart& part = data_.part(next);
       if (!WideTree::isLeaf(next.place)) {
         const WideTree::Node& node = part.nodes[static_cast<std::size_t>(next.place)];
@@ -193,6 +189,7 @@ class ClosestRows {
   }
 
   void run() {
+    data_.prepare(at_.size(), threads_);
     Rows open = spatialOrder(points_, threads_);
     search(open, Condition::none, nullptr);
     if (options_.facing.rows() == 0) {

@@ -2,7 +2,7 @@
 #include "limitsurf/search/surface_search.h"
 
 #include "limitsurf/search/checks.h"
-#include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/tree/search_tree.h"
 
 namespace limitsurf {
 SurfaceSearch::SurfaceSearch(const LimitSurface& surface, int threads)

@@ -62,12 +62,13 @@ struct SearchTree;
 /// and keep that pose. All const members may be called from many threads at once. The result for a
 /// row depends neither on the number of threads nor on the other rows, to the last bit.
 ///
-/// Cost of making it: O(faces log faces), 0.02 s for 10,000 quads or 5,000 triangles. What searches
-/// need to know of a face with extraordinary vertices is made when one first comes near it: about
-/// 5 us for each of its Ptex faces. Memory: about 150 bytes a tile, ten times as much for a face
-/// with extraordinary vertices, and up to 64 MiB for the patches of small meshes. Searches that
-/// come near a vertex with more than 16 faces keep 240 bytes for each of these and each halving of
-/// the distance that they look into.
+/// Cost of making it: O(faces log faces), 0.01 to 0.02 s for 10,000 quads, 0.1 s for 10,000
+/// triangles. What searches need to know of a face with extraordinary vertices, about 10 us for
+/// each of its Ptex faces, is made when one first comes near it; and for all of them when there
+/// have been as many searches as such faces. Memory: about 150 bytes a tile, ten times as much for
+/// a face with extraordinary vertices, and up to 64 MiB for patches. Searches that come near a
+/// vertex with more than 16 faces keep 240 bytes for each of these and each halving of the distance
+/// that they look into.
 class SurfaceSearch {
  public:
   explicit SurfaceSearch(const LimitSurface& surface, int threads = 0);

@@ -65,7 +65,7 @@ the path's points from the curve; and .resolution, by how many chords a Bezier s
 Bounds: .deviation is measured on the curve as it is drawn, at the ends and in the middle of each chord. It
 is at most tolerance, if the path's own segments are; .error is at most 0.6 tolerances, the chords are off
 by 0.2 tolerances at most. Cost: O(n log n) and some 10 searches for each control point; where the path
-runs to and fro, at most 128 for each of its points in each of log2(n) + 1 rounds.
+runs back and forth, at most 128 for each of its points in each of log2(n) + 1 rounds.
 
 Raises LocationError for locations that are not on the surface, MeshError for those on refused faces, and
 ValueError for arrays of other shapes, fewer than 2 points, and a tolerance that is not above 0.

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "limitsurf/search/normals/piece_normals.h"
-#include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/tree/search_tree.h"
 #include "limitsurf/surface/patches/core_tangents.h"
 
 namespace limitsurf {

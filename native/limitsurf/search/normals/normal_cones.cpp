@@ -9,8 +9,8 @@ namespace {
 
 /// More than the rounding of boxes and of places in them, in the unit of boxes.
 constexpr double kLeastRadius = 1e-6;
-/// The number of leaves that one task looks at, and of nests that it makes.
-constexpr std::size_t kLeavesPerTask = 64, kNestsPerTask = 16;
+/// The number of leaves that one task looks at.
+constexpr std::size_t kLeavesPerTask = 64;
 
 }  // namespace
 
@@ -19,11 +19,7 @@ NormalCones::NormalCones(const SearchTree& tree, int threads) : tree_(tree) {
   const auto partOf = [&](std::size_t i) -> const TreePart& {
     return i == 0 ? tree.top() : tree.nest(static_cast<std::int32_t>(i - 1));
   };
-  parallelFor(nests, kNestsPerTask, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t nest = begin; nest < end; ++nest) {
-      tree.nest(static_cast<std::int32_t>(nest));
-    }
-  });
+  tree.makeAllNests(threads);
   first_.push_back(0);
   std::vector<const SurfacePiece*> pieces;
   std::vector<std::size_t> first_leaves{0};

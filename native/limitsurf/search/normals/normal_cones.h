@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limitsurf/search/normals/piece_normals.h"
-#include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/tree/search_tree.h"
 
 namespace limitsurf {
 

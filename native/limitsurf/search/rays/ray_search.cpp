@@ -14,7 +14,7 @@
 #include "limitsurf/search/hit_evaluation.h"
 #include "limitsurf/search/rays/hit_merging.h"
 #include "limitsurf/search/rays/patch_intersection.h"
-#include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/tree/search_tree.h"
 
 namespace limitsurf {
 namespace {
@@ -55,11 +55,6 @@ class RaySearch {
 
   /// Visits a node, the box of a leaf, or a leaf. Returns false when there is nothing left to do.
   bool step() {
-    const LeafBox* const box = data_.boxBeforeNest(next_);
-    double enter = start();
-    if (box && !box->meets(ray_, margin(), enter, end())) {
-      return takeNext();
-    }
     const TreePart& part = data_.part(next_);
     if (!WideTree::isLeaf(next_.place)) {
       const WideTree::Node& node = part.nodes[static_cast<std::size_t>(next_.place)];
@@ -262,6 +257,7 @@ void searchRays(const SearchTree& tree, const PointRows& origins, const PointRow
   if (tree.empty()) {
     return;
   }
+  tree.prepare(static_cast<std::size_t>(origins.rows()), threads);
   parallelFor(static_cast<std::size_t>(origins.rows()), kRowsPerTask, threads,
               [&](std::size_t begin, std::size_t end) {
                 PatchCache cache(tree);

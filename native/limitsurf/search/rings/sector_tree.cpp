@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "limitsurf/interruption_point.h"
-#include "limitsurf/search/box_points.h"
+#include "limitsurf/search/tree/box_points.h"
 
 namespace limitsurf {
 namespace {

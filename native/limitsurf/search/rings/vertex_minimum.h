@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/tree/search_tree.h"
 
 namespace limitsurf {
 

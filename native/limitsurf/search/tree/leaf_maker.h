@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limitsurf/search/rings/search_rings.h"
-#include "limitsurf/search/tree_part.h"
+#include "limitsurf/search/tree/tree_part.h"
 
 namespace limitsurf {
 
@@ -34,8 +34,6 @@ class LeafMaker {
   /// A box around the leaves of some pieces of a face, but for those leaves that are of whole
   /// rings. It is empty if there are no others.
   Box boxAround(const std::vector<SurfacePiece>& pieces) const;
-  /// The same with axes of its own. It fits more closely, and costs twice as much.
-  LeafBox closeBoxAround(const std::vector<SurfacePiece>& pieces) const;
 
  private:
   /// Calls add(patch) for the first patches of a piece, and addRest(split) for what is left of a

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "limitsurf/search/leaf_maker.h"
-#include "limitsurf/search/tree_part.h"
+#include "limitsurf/search/tree/leaf_maker.h"
+#include "limitsurf/search/tree/tree_part.h"
 
 namespace limitsurf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/crowd.h"
+#include "limitsurf/search/tree/crowd.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/nest_store.h"
+#include "limitsurf/search/tree/nest_store.h"
 
 #include <functional>
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/leaf_maker.h"
+#include "limitsurf/search/tree/leaf_maker.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "limitsurf/parallel.h"
-#include "limitsurf/search/box_points.h"
+#include "limitsurf/search/tree/box_points.h"
 
 namespace limitsurf {
 namespace {
@@ -122,28 +122,6 @@ Box LeafMaker::boxAround(const std::vector<SurfacePiece>& pieces) const {
     forEachPatch(piece, add, addRest);
   }
   return {low.head<3>().matrix() - middle_, high.head<3>().matrix() - middle_};
-}
-
-LeafBox LeafMaker::closeBoxAround(const std::vector<SurfacePiece>& pieces) const {
-  BoxPoints points(middle_);
-  points.reserve(64 * pieces.size());
-  Vector3 along_u = Vector3::Zero(), along_v = along_u;
-  std::vector<Padded> rest;
-  const auto add = [&](const BezierPatch& patch) {
-    points.add(patch);
-    const Vector3 s = sideS(patch), t = sideT(patch);
-    along_u += patch.on.us * s + patch.on.ut * t;
-    along_v += patch.on.vs * s + patch.on.vt * t;
-  };
-  const auto addRest = [&](const SurfacePatches::SplitCore& split) {
-    rest.clear();
-    patches_.appendRestPoints(split, rest);
-    points.add(rest);
-  };
-  for (const SurfacePiece& piece : pieces) {
-    forEachPatch(piece, add, addRest);
-  }
-  return points.oriented<float>(along_u, along_v);
 }
 
 }  // namespace limitsurf

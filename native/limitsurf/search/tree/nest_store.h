@@ -6,7 +6,8 @@
 #include <memory>
 
 #include "limitsurf/large_pages.h"
-#include "limitsurf/search/tree_part.h"
+#include "limitsurf/prefetch.h"
+#include "limitsurf/search/tree/tree_part.h"
 
 namespace limitsurf {
 
@@ -33,6 +34,12 @@ class NestStore {
   const TreePart* made(std::size_t nest) const {
     return made_[nest].load(std::memory_order_acquire);
   }
+  /// Has a nest's first node brought into the processor's caches, if it is made.
+  void expect(std::size_t nest) const {
+    if (const TreePart* const part = made(nest)) {
+      prefetch(*reinterpret_cast<const NestHead*>(part));
+    }
+  }
   /// Keeps a copy of a nest, unless another thread was faster. Returns what is kept.
   const TreePart& keep(std::size_t nest, const BuiltPart& built);
 
@@ -41,6 +48,13 @@ class NestStore {
   struct alignas(64) Line {
     std::byte bytes[64];
   };
+
+  /// Where a nest begins: what refers to its parts, and the root.
+  struct NestHead {
+    Line part;
+    WideTree::Node root;
+  };
+  static_assert(sizeof(TreePart) <= sizeof(Line) && alignof(WideTree::Node) <= alignof(Line));
 
   /// Memory for so many lines.
   Line* allocate(std::size_t lines);

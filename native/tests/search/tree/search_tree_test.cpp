@@ -2,7 +2,7 @@
 //
 // The parts of a search tree: together they hold the whole surface, in boxes that contain it, and
 // those below faces with extraordinary vertices are only made when a search comes near.
-#include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/tree/search_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -110,40 +110,6 @@ TEST(SearchTree, LeavesCoverAllFacesWithinTheirBoxes) {
   EXPECT_GT(nests, 200);
 }
 
-/// The box that stands for a nest before it is made contains all of its leaves.
-TEST(SearchTree, TheBoxBeforeANestContainsIt) {
-  Random random(2);
-  int points = 0;
-  for (const auto& [name, cage] : queryCages()) {
-    SCOPED_TRACE(name);
-    const LimitSurface surface = limitSurface(cage);
-    const SearchTree tree(surface, 1);
-    for (const WideTree::Node& node : tree.top().nodes) {
-      for (int i = 0; i < node.count; ++i) {
-        NearestFirst::Entry at{node.children[i], 0, SearchTree::kTop};
-        const LeafBox* const box = tree.boxBeforeNest(at);
-        if (!box) {
-          continue;
-        }
-        const TreePart& nest = tree.part(at);
-        EXPECT_EQ(tree.boxBeforeNest({node.children[i], 0, SearchTree::kTop}), nullptr);
-        for (const SearchLeaf& leaf : nest.leaves) {
-          for (int round = 0; round < 4; ++round) {
-            const Location place =
-                tree.patches.rectangle(leaf.piece).at(random.uniform(), random.uniform());
-            const Points position =
-                surface.evaluate({&place, 1}, Derivatives::none, false, 1).position;
-            const Vector3 in_boxes = tree.inBoxes(tree.scale * position.row(0).transpose());
-            EXPECT_LE(std::sqrt(box->squaredDistance(in_boxes)), kRounding);
-            ++points;
-          }
-        }
-      }
-    }
-  }
-  EXPECT_GT(points, 5000);
-}
-
 /// A sheet of triangles: all faces have extraordinary vertices.
 Cage sheetOfTriangles() { return inTriangles(perturbed(fullGrid(30, 30), 0.1, 1)); }
 
@@ -156,13 +122,23 @@ TEST(SearchTree, AFewSearchesMakeFewNests) {
     const WideTree::Node& node = tree.part(at).nodes[static_cast<std::size_t>(at.place)];
     at = {node.children[0], 0, at.part};
     if (at.place >= static_cast<std::int32_t>(tree.top().nodes.size())) {
-      EXPECT_NE(tree.boxBeforeNest(at), nullptr);
       EXPECT_EQ(tree.nestsMade(), 0);
       tree.part(at);
     }
   }
   EXPECT_EQ(tree.nestsMade(), 1);
   EXPECT_GT(tree.nestCount(), 5000);
+}
+
+/// After as many searches as there are nests, no search has to make one.
+TEST(SearchTree, ManySearchesMakeAllNests) {
+  const LimitSurface surface = limitSurface(sheetOfTriangles());
+  const SearchTree tree(surface, 1);
+  const auto half = static_cast<std::size_t>(tree.nestCount() / 2);
+  tree.prepare(half, 1);
+  EXPECT_EQ(tree.nestsMade(), 0);
+  tree.prepare(half + 1, 1);
+  EXPECT_EQ(tree.nestsMade(), tree.nestCount());
 }
 
 /// Results depend neither on which searches came before nor on the number of threads, which race to

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -11,11 +12,11 @@
 #include "limitsurf/first_made.h"
 #include "limitsurf/large_pages.h"
 #include "limitsurf/prefetch.h"
-#include "limitsurf/search/leaf_maker.h"
-#include "limitsurf/search/nest_store.h"
 #include "limitsurf/search/rings/search_rings.h"
 #include "limitsurf/search/surface_search.h"
-#include "limitsurf/search/tree_part.h"
+#include "limitsurf/search/tree/leaf_maker.h"
+#include "limitsurf/search/tree/nest_store.h"
+#include "limitsurf/search/tree/tree_part.h"
 #include "limitsurf/surface/patches/surface_patches.h"
 
 namespace limitsurf {
@@ -62,16 +63,16 @@ struct SearchTree {
     }
     return nest(at.part);
   }
-  /// If a node is a nest that is not made yet, a box that fits it more closely than that of the
-  /// node and costs less than the nest. Otherwise null.
-  const LeafBox* boxBeforeNest(const NearestFirst::Entry& at) const {
-    return at.part == kTop && at.place >= first_nest_ ? closeBox(at.place - first_nest_) : nullptr;
-  }
   /// Has the memory of a node or a leaf brought into the processor's caches.
   void expect(const NearestFirst::Entry& at) const;
 
   const TreePart& top() const { return top_; }
   std::int32_t nestCount() const { return static_cast<std::int32_t>(nest_tiles_.size()); }
+  /// To be called before so many searches. When there have been as many as there are nests, those
+  /// that are left are made, one after the other: searches that reach them in no particular order
+  /// would take longer. Must not be called from within a parallel loop.
+  void prepare(std::size_t searches, int threads) const;
+  void makeAllNests(int threads) const;
   /// The number of nests that have been made.
   std::int32_t nestsMade() const;
   const TreePart& nest(std::int32_t i) const {
@@ -96,7 +97,6 @@ struct SearchTree {
   /// Appends the leaves of a face's tiles, or the face as a nest.
   void addFace(const Tiles& tiles, Pieces& out) const;
   std::vector<SurfacePiece> piecesOf(const Tiles& tiles) const;
-  const LeafBox* closeBox(std::int32_t nest) const;
   const TreePart& makeNest(std::int32_t i) const;
 
   LeafMaker maker_;
@@ -106,8 +106,8 @@ struct SearchTree {
   TreePart top_;
   std::int32_t first_nest_ = 0;  ///< its number as a child in the top: nests come after all nodes
   std::vector<Tiles> nest_tiles_;
-  std::unique_ptr<FirstMade<LeafBox>[]> nest_boxes_;
   std::unique_ptr<NestStore> nests_;
+  mutable std::atomic<std::size_t> searches_{0};
   FirstMade<NormalCones> cones_;
 };
 

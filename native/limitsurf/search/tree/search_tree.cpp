@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/search_tree.h"
+#include "limitsurf/search/tree/search_tree.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <utility>
 
 #include "limitsurf/parallel.h"
-#include "limitsurf/search/crowd.h"
-#include "limitsurf/search/nest_builder.h"
 #include "limitsurf/search/normals/normal_cones.h"
+#include "limitsurf/search/tree/crowd.h"
+#include "limitsurf/search/tree/nest_builder.h"
 
 namespace limitsurf {
 namespace {
 
 /// The number of tiles whose leaves one task finds, and of leaves whose patches it keeps.
 constexpr std::size_t kTilesPerTask = 1024, kLeavesPerTask = 1024;
+/// The number of nests that one task makes: less than a millisecond.
+constexpr std::size_t kNestsPerTask = 64;
 
 }  // namespace
 
@@ -126,7 +128,6 @@ SearchTree::SearchTree(const LimitSurface& limit_surface, int threads)
   }
   const auto spanOf = [](const auto& vector) { return Span{vector.data(), vector.size()}; };
   top_ = {spanOf(top_nodes_), spanOf(top_leaves_), spanOf(top_patches_)};
-  nest_boxes_ = std::make_unique<FirstMade<LeafBox>[]>(nest_count);
   all.room.nests = nest_count;
   all.room.patches = std::min(all.room.leaves, kMostPatches - top_patches_.size());
   nests_ = std::make_unique<NestStore>(all.room);
@@ -161,19 +162,28 @@ void SearchTree::addFace(const Tiles& tiles, Pieces& out) const {
   }
 }
 
-const LeafBox* SearchTree::closeBox(std::int32_t nest) const {
-  const auto i = static_cast<std::size_t>(nest);
-  if (nests_->made(i)) {
-    return nullptr;
-  }
-  return &nest_boxes_[i].get([&] {
-    return std::make_unique<const LeafBox>(maker_.closeBoxAround(piecesOf(nest_tiles_[i])));
-  });
-}
-
 const TreePart& SearchTree::makeNest(std::int32_t i) const {
   const auto nest = static_cast<std::size_t>(i);
   return nests_->keep(nest, NestBuilder(patches, maker_).build(piecesOf(nest_tiles_[nest])));
+}
+
+void SearchTree::prepare(std::size_t searches, int threads) const {
+  const std::size_t before = searches_.load(std::memory_order_relaxed);
+  if (before >= nest_tiles_.size()) {
+    return;  // all are made
+  }
+  if (before + searches >= nest_tiles_.size()) {
+    makeAllNests(threads);
+  }
+  searches_.fetch_add(searches, std::memory_order_relaxed);
+}
+
+void SearchTree::makeAllNests(int threads) const {
+  parallelFor(nest_tiles_.size(), kNestsPerTask, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      nest(static_cast<std::int32_t>(i));
+    }
+  });
 }
 
 std::int32_t SearchTree::nestsMade() const {
@@ -185,16 +195,15 @@ std::int32_t SearchTree::nestsMade() const {
 }
 
 void SearchTree::expect(const NearestFirst::Entry& at) const {
-  const TreePart* part = &top_;
-  if (at.part != kTop) {
-    part = nests_->made(static_cast<std::size_t>(at.part));
-  } else if (at.place >= first_nest_) {
+  if (at.part == kTop && at.place >= first_nest_) {
+    nests_->expect(static_cast<std::size_t>(at.place - first_nest_));
     return;
   }
+  const TreePart& part = at.part == kTop ? top_ : *nests_->made(static_cast<std::size_t>(at.part));
   if (WideTree::isLeaf(at.place)) {
-    prefetch(part->leaves[static_cast<std::size_t>(WideTree::leaf(at.place))]);
+    prefetch(part.leaves[static_cast<std::size_t>(WideTree::leaf(at.place))]);
   } else {
-    prefetch(part->nodes[static_cast<std::size_t>(at.place)]);
+    prefetch(part.nodes[static_cast<std::size_t>(at.place)]);
   }
 }
 

@@ -40,14 +40,7 @@ class BoxPoints {
       points_.push_back(box.corner(corner));
     }
   }
-  /// Points that are not relative.
-  void add(const std::vector<Padded>& points) {
-    for (const Padded& point : points) {
-      points_.push_back(point - origin_);
-    }
-  }
 
-  bool empty() const { return points_.empty(); }
   void reserve(std::size_t count) { points_.reserve(count); }
   Vector3 point(std::size_t i) const { return points_[i].head<3>(); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitsurf/search/nest_builder.h"
+#include "limitsurf/search/tree/nest_builder.h"
 
 #include "limitsurf/search/box_tree.h"
 #include "limitsurf/search/wide_tree.h"
