@@ -48,8 +48,8 @@ TEST(ClosestOnPatch, TakesABoundedTimeOnNarrowPatches) {
   }
 }
 
-/// A patch that is nearly a straight line in some direction of space, along which it may run to and
-/// fro.
+/// A patch that is nearly a straight line in some direction of space, along which it may run back
+/// and forth.
 BezierPatch lineLikePatch(double squeeze, bool folded, Random& random) {
   const Eigen::Matrix3d turn = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
                                                   random.uniform(-1, 1), random.uniform(-1, 1))
